@@ -1,0 +1,1 @@
+//! Design of flexible multibody systems by gradient.
