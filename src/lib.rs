@@ -1,1 +1,5 @@
 //! Design of flexible multibody systems by gradient.
+
+pub mod functions;
+pub mod math;
+pub mod model;

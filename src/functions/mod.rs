@@ -1,0 +1,9 @@
+//! Functions of interest: what is measured at an instant, and how a run is reduced to a number.
+
+pub mod function;
+pub mod instant;
+pub mod scene;
+
+pub use function::{Function, Reduction, Release};
+pub use instant::{EnergyPart, Gate, Instant, Projectile, Side};
+pub use scene::Scene;
