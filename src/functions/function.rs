@@ -70,7 +70,12 @@ impl<S: Scalar> Function<S> {
     pub fn parameters(&self, all: &mut Vec<S>) {
         match self {
             Function::Reduced { instant, .. } => instant.parameters(all),
-            Function::Clearance { projectile, release, distance, top } => {
+            Function::Clearance {
+                projectile,
+                release,
+                distance,
+                top,
+            } => {
                 projectile.parameters(all);
                 if let Release::Best { projectile, .. } = release {
                     projectile.parameters(all);
@@ -83,14 +88,23 @@ impl<S: Scalar> Function<S> {
     /// The cotangent of this function: every parameter zero.
     pub fn zero_cotangent(&self) -> Function<f64> {
         match self {
-            Function::Reduced { instant, reduction } => {
-                Function::Reduced { instant: instant.zero_cotangent(), reduction: *reduction }
-            }
-            Function::Clearance { projectile, release, .. } => Function::Clearance {
+            Function::Reduced { instant, reduction } => Function::Reduced {
+                instant: instant.zero_cotangent(),
+                reduction: *reduction,
+            },
+            Function::Clearance {
+                projectile,
+                release,
+                ..
+            } => Function::Clearance {
                 projectile: projectile.zero_cotangent(),
                 release: match release {
                     Release::Final => Release::Final,
-                    Release::Best { rho, projectile, gate } => Release::Best {
+                    Release::Best {
+                        rho,
+                        projectile,
+                        gate,
+                    } => Release::Best {
                         rho: *rho,
                         projectile: projectile.zero_cotangent(),
                         gate: *gate,

@@ -133,9 +133,15 @@ impl<S: Scalar> Instant<S> {
     /// Appends the parameters in one fixed order.
     pub fn parameters(&self, all: &mut Vec<S>) {
         match self {
-            Instant::Position { point, direction, .. }
-            | Instant::Velocity { point, direction, .. }
-            | Instant::Acceleration { point, direction, .. } => {
+            Instant::Position {
+                point, direction, ..
+            }
+            | Instant::Velocity {
+                point, direction, ..
+            }
+            | Instant::Acceleration {
+                point, direction, ..
+            } => {
                 all.extend(point.iter());
                 all.extend(direction.iter());
             }
@@ -150,15 +156,34 @@ impl<S: Scalar> Instant<S> {
     pub fn zero_cotangent(&self) -> Instant<f64> {
         let (point, direction) = (Vec3::zeros(), Vec3::zeros());
         match *self {
-            Instant::Position { body, .. } => Instant::Position { body, point, direction },
-            Instant::Velocity { body, .. } => Instant::Velocity { body, point, direction },
-            Instant::Acceleration { body, .. } => Instant::Acceleration { body, point, direction },
+            Instant::Position { body, .. } => Instant::Position {
+                body,
+                point,
+                direction,
+            },
+            Instant::Velocity { body, .. } => Instant::Velocity {
+                body,
+                point,
+                direction,
+            },
+            Instant::Acceleration { body, .. } => Instant::Acceleration {
+                body,
+                point,
+                direction,
+            },
             Instant::Speed { body, .. } => Instant::Speed { body, point },
             Instant::Energy(part) => Instant::Energy(part),
-            Instant::Rotation { body, .. } => Instant::Rotation { body, axis: Vec3::zeros() },
-            Instant::Range { ref projectile, gate } => {
-                Instant::Range { projectile: projectile.zero_cotangent(), gate }
-            }
+            Instant::Rotation { body, .. } => Instant::Rotation {
+                body,
+                axis: Vec3::zeros(),
+            },
+            Instant::Range {
+                ref projectile,
+                gate,
+            } => Instant::Range {
+                projectile: projectile.zero_cotangent(),
+                gate,
+            },
         }
     }
 }

@@ -31,7 +31,11 @@ impl<S: Scalar> Scene<S> {
         Scene {
             model: self.model.zero_cotangent(),
             duration: 0.0,
-            functions: self.functions.iter().map(Function::zero_cotangent).collect(),
+            functions: self
+                .functions
+                .iter()
+                .map(Function::zero_cotangent)
+                .collect(),
         }
     }
 }

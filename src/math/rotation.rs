@@ -136,7 +136,11 @@ mod tests {
         let (p, w) = (sample(), [0.1, 0.9, -0.4, 0.6]);
         let a = Vec3::new(0.7, 0.2, -0.3);
         let left = a.dot(&rate_product(&p, &w));
-        let right: f64 = rate_transposed(&p, &a).iter().zip(&w).map(|(x, y)| x * y).sum();
+        let right: f64 = rate_transposed(&p, &a)
+            .iter()
+            .zip(&w)
+            .map(|(x, y)| x * y)
+            .sum();
         assert!((left - right).abs() < 1e-15);
         assert!((rate_product(&p, &w) + rate_product(&w, &p)).abs().max() < 1e-15);
     }

@@ -105,7 +105,10 @@ impl Scalar for Complex64 {
     }
     fn sin_cos(self) -> (Self, Self) {
         let (s, c) = self.re.sin_cos();
-        (Complex64::new(s, c * self.im), Complex64::new(c, -s * self.im))
+        (
+            Complex64::new(s, c * self.im),
+            Complex64::new(c, -s * self.im),
+        )
     }
     fn atan2(self, other: Self) -> Self {
         let r2 = self.re * self.re + other.re * other.re;
@@ -268,7 +271,10 @@ impl Scalar for Dual {
     }
     fn atan2(self, other: Self) -> Self {
         let r2 = self.re * self.re + other.re * other.re;
-        Self::new(self.re.atan2(other.re), (other.re * self.du - self.re * other.du) / r2)
+        Self::new(
+            self.re.atan2(other.re),
+            (other.re * self.du - self.re * other.du) / r2,
+        )
     }
     fn is_finite(self) -> bool {
         self.re.is_finite() && self.du.is_finite()

@@ -98,7 +98,10 @@ pub struct JointFrame<S> {
 impl<S: Scalar> JointFrame<S> {
     /// The frame of zeros (a cotangent).
     pub fn zero() -> Self {
-        Self { point: Vec3::zeros(), axes: [Vec3::zeros(); 3] }
+        Self {
+            point: Vec3::zeros(),
+            axes: [Vec3::zeros(); 3],
+        }
     }
 }
 
