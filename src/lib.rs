@@ -1,5 +1,6 @@
 //! Design of flexible multibody systems by gradient.
 
 pub mod functions;
+pub mod integrate;
 pub mod math;
 pub mod model;

@@ -1,0 +1,5 @@
+//! Time integration.
+
+pub mod settings;
+
+pub use settings::{Method, Settings};
