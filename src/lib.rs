@@ -2,5 +2,7 @@
 
 pub mod functions;
 pub mod integrate;
+pub mod linalg;
 pub mod math;
 pub mod model;
+pub mod system;

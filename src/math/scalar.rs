@@ -45,6 +45,8 @@ pub trait Scalar:
     + MulAssign
     + DivAssign
 {
+    /// True if the number carries an infinitesimal part (a derivative) beside its value.
+    const INFINITESIMAL: bool;
     /// Real part: the only thing that a branch may look at.
     fn re(self) -> f64;
     /// Square root (principal branch).
@@ -63,6 +65,7 @@ pub trait Scalar:
 }
 
 impl Scalar for f64 {
+    const INFINITESIMAL: bool = false;
     fn re(self) -> f64 {
         self
     }
@@ -87,6 +90,7 @@ impl Scalar for f64 {
 }
 
 impl Scalar for Complex64 {
+    const INFINITESIMAL: bool = true;
     fn re(self) -> f64 {
         self.re
     }
@@ -251,6 +255,7 @@ impl DivAssign for Dual {
 }
 
 impl Scalar for Dual {
+    const INFINITESIMAL: bool = true;
     fn re(self) -> f64 {
         self.re
     }

@@ -33,6 +33,51 @@ pub enum ConstraintRow {
     },
 }
 
+impl ConstraintRow {
+    /// The component, if the row's force points along a ground axis.
+    pub fn ground_component(self) -> Option<usize> {
+        match self {
+            Coincident(k) => Some(k),
+            Perpendicular { .. } | Sliding { .. } => None,
+        }
+    }
+
+    /// What the row holds, for messages.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Coincident(0) => "x distance",
+            Coincident(1) => "y distance",
+            Coincident(_) => "z distance",
+            Perpendicular { .. } => "angle between axes",
+            Sliding { .. } => "distance across the sliding direction",
+        }
+    }
+
+    /// True if the row transmits a force.
+    pub fn has_force(self) -> bool {
+        match self {
+            Coincident(_) | Sliding { .. } => true,
+            Perpendicular { .. } => false,
+        }
+    }
+
+    /// True if the force turns with body A.
+    pub fn follows_axis(self) -> bool {
+        match self {
+            Sliding { .. } => true,
+            Coincident(_) | Perpendicular { .. } => false,
+        }
+    }
+
+    /// True if the reaction on one body depends on the rotation of the other.
+    pub fn couples_rotations(self) -> bool {
+        match self {
+            Perpendicular { .. } | Sliding { .. } => true,
+            Coincident(_) => false,
+        }
+    }
+}
+
 /// The kinds of joint; e3 of the joint frame is the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
@@ -72,6 +117,15 @@ impl JointKind {
                 Perpendicular { a: 2, b: 0 },
                 Perpendicular { a: 2, b: 1 },
             ],
+        }
+    }
+
+    /// Frame axes that both bodies share; the rows alone would also admit them turned by 180°.
+    pub fn common_axes(self) -> &'static [usize] {
+        match self {
+            JointKind::Spherical => &[],
+            JointKind::Revolute | JointKind::Planar => &[2],
+            JointKind::Prismatic => &[0, 1, 2],
         }
     }
 
