@@ -1,5 +1,6 @@
 //! Design of flexible multibody systems by gradient.
 
+pub mod adjoint;
 pub mod functions;
 pub mod integrate;
 pub mod linalg;

@@ -66,38 +66,20 @@ pub enum Function<S> {
 }
 
 impl<S: Scalar> Function<S> {
-    /// Appends the parameters in one fixed order.
-    pub fn parameters(&self, all: &mut Vec<S>) {
-        match self {
-            Function::Reduced { instant, .. } => instant.parameters(all),
-            Function::Clearance {
-                projectile,
-                release,
-                distance,
-                top,
-            } => {
-                projectile.parameters(all);
-                if let Release::Best { projectile, .. } = release {
-                    projectile.parameters(all);
-                }
-                all.extend([*distance, *top]);
-            }
-        }
-    }
-
-    /// The cotangent of this function: every parameter zero.
-    pub fn zero_cotangent(&self) -> Function<f64> {
+    /// The function with every parameter replaced by `f` of it.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Function<T> {
         match self {
             Function::Reduced { instant, reduction } => Function::Reduced {
-                instant: instant.zero_cotangent(),
+                instant: instant.map(f),
                 reduction: *reduction,
             },
             Function::Clearance {
                 projectile,
                 release,
-                ..
+                distance,
+                top,
             } => Function::Clearance {
-                projectile: projectile.zero_cotangent(),
+                projectile: projectile.map(f),
                 release: match release {
                     Release::Final => Release::Final,
                     Release::Best {
@@ -106,12 +88,12 @@ impl<S: Scalar> Function<S> {
                         gate,
                     } => Release::Best {
                         rho: *rho,
-                        projectile: projectile.zero_cotangent(),
+                        projectile: projectile.map(f),
                         gate: *gate,
                     },
                 },
-                distance: 0.0,
-                top: 0.0,
+                distance: f(*distance),
+                top: f(*top),
             },
         }
     }

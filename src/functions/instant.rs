@@ -111,78 +111,60 @@ pub enum Instant<S> {
 }
 
 impl<S: Scalar> Projectile<S> {
-    /// Appends the parameters in one fixed order.
-    pub fn parameters(&self, all: &mut Vec<S>) {
-        all.extend(self.point.iter());
-        all.extend(self.direction.iter());
-        all.push(self.ground);
-    }
-
-    /// The same projectile with every parameter zero.
-    pub fn zero_cotangent(&self) -> Projectile<f64> {
+    /// The projectile with every parameter replaced by `f` of it.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Projectile<T> {
         Projectile {
             body: self.body,
-            point: Vec3::zeros(),
-            direction: Vec3::zeros(),
-            ground: 0.0,
+            point: self.point.map(&mut *f),
+            direction: self.direction.map(&mut *f),
+            ground: f(self.ground),
         }
     }
 }
 
 impl<S: Scalar> Instant<S> {
-    /// Appends the parameters in one fixed order.
-    pub fn parameters(&self, all: &mut Vec<S>) {
+    /// The quantity with every parameter replaced by `f` of it.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Instant<T> {
         match self {
             Instant::Position {
-                point, direction, ..
-            }
-            | Instant::Velocity {
-                point, direction, ..
-            }
-            | Instant::Acceleration {
-                point, direction, ..
-            } => {
-                all.extend(point.iter());
-                all.extend(direction.iter());
-            }
-            Instant::Speed { point, .. } => all.extend(point.iter()),
-            Instant::Energy(_) => {}
-            Instant::Rotation { axis, .. } => all.extend(axis.iter()),
-            Instant::Range { projectile, .. } => projectile.parameters(all),
-        }
-    }
-
-    /// The cotangent of this quantity: every parameter zero.
-    pub fn zero_cotangent(&self) -> Instant<f64> {
-        let (point, direction) = (Vec3::zeros(), Vec3::zeros());
-        match *self {
-            Instant::Position { body, .. } => Instant::Position {
                 body,
                 point,
                 direction,
+            } => Instant::Position {
+                body: *body,
+                point: point.map(&mut *f),
+                direction: direction.map(&mut *f),
             },
-            Instant::Velocity { body, .. } => Instant::Velocity {
+            Instant::Velocity {
                 body,
                 point,
                 direction,
+            } => Instant::Velocity {
+                body: *body,
+                point: point.map(&mut *f),
+                direction: direction.map(&mut *f),
             },
-            Instant::Acceleration { body, .. } => Instant::Acceleration {
+            Instant::Acceleration {
                 body,
                 point,
                 direction,
+            } => Instant::Acceleration {
+                body: *body,
+                point: point.map(&mut *f),
+                direction: direction.map(&mut *f),
             },
-            Instant::Speed { body, .. } => Instant::Speed { body, point },
-            Instant::Energy(part) => Instant::Energy(part),
-            Instant::Rotation { body, .. } => Instant::Rotation {
-                body,
-                axis: Vec3::zeros(),
+            Instant::Speed { body, point } => Instant::Speed {
+                body: *body,
+                point: point.map(&mut *f),
             },
-            Instant::Range {
-                ref projectile,
-                gate,
-            } => Instant::Range {
-                projectile: projectile.zero_cotangent(),
-                gate,
+            Instant::Energy(part) => Instant::Energy(*part),
+            Instant::Rotation { body, axis } => Instant::Rotation {
+                body: *body,
+                axis: axis.map(&mut *f),
+            },
+            Instant::Range { projectile, gate } => Instant::Range {
+                projectile: projectile.map(f),
+                gate: *gate,
             },
         }
     }

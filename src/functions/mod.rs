@@ -1,7 +1,10 @@
 //! Functions of interest: what is measured at an instant, and how a run is reduced to a number.
 
+pub mod evaluate;
+pub mod flight;
 pub mod function;
 pub mod instant;
+pub mod measure;
 pub mod scene;
 
 pub use function::{Function, Reduction, Release};

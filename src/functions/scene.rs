@@ -16,26 +16,32 @@ pub struct Scene<S> {
 }
 
 impl<S: Scalar> Scene<S> {
-    /// All parameters in one fixed order: model, duration, functions.
-    pub fn parameters(&self) -> Vec<S> {
-        let mut all = self.model.parameters();
-        all.push(self.duration);
-        for function in &self.functions {
-            function.parameters(&mut all);
+    /// The scene with every parameter replaced by `f` of it, visited in one fixed order: model,
+    /// duration, functions.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Scene<T> {
+        Scene {
+            model: self.model.map(f),
+            duration: f(self.duration),
+            functions: self
+                .functions
+                .iter()
+                .map(|function| function.map(f))
+                .collect(),
         }
+    }
+
+    /// All parameters in the order of [`Scene::map`].
+    pub fn parameters(&self) -> Vec<S> {
+        let mut all = Vec::new();
+        self.map(&mut |x| {
+            all.push(x);
+            x
+        });
         all
     }
 
     /// The cotangent of this scene: every parameter zero.
     pub fn zero_cotangent(&self) -> Scene<f64> {
-        Scene {
-            model: self.model.zero_cotangent(),
-            duration: 0.0,
-            functions: self
-                .functions
-                .iter()
-                .map(Function::zero_cotangent)
-                .collect(),
-        }
+        self.map(&mut |_| 0.0)
     }
 }

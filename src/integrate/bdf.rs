@@ -72,7 +72,7 @@ fn march<S: SolveScalar>(
         solves: saddle.factorisations,
         ..Default::default()
     };
-    let mut run = Trajectory::start(numbering.clone(), h, settings.steps, start);
+    let mut run = Trajectory::start(numbering.clone(), h, settings, start);
     let mut newton = Newton::new(model, &numbering);
     let mut history = History {
         c: S::zero(),

@@ -10,9 +10,9 @@ use crate::system::{Numbering, bodies, initial};
 
 /// Scaled size of the remaining error of a step at which Newton's method stops: relative to the
 /// scene's length scale, and in radians.
-const TOLERANCE: f64 = 1e-13;
+const TOLERANCE: f64 = 1e-16;
 /// Scaled step below which a stagnating iteration has reached round-off.
-const ROUND_OFF: f64 = 1e-10;
+const ROUND_OFF: f64 = 1e-12;
 /// Contraction above which the iteration matrix is renewed.
 const RENEW: f64 = 0.2;
 const ITERATIONS: usize = 25;

@@ -1,5 +1,6 @@
 //! What a run leaves behind.
 
+use super::settings::{Method, Settings};
 use crate::math::Scalar;
 use crate::system::Numbering;
 use crate::system::initial::InitialState;
@@ -35,6 +36,8 @@ pub struct Trajectory<S> {
     pub h: S,
     /// Number of steps N.
     pub steps: usize,
+    /// The method that made it.
+    pub method: Method,
     /// Positions, one row of `numbering.positions()` an instant.
     pub q: Vec<S>,
     /// Velocities, one row of `numbering.velocities()` an instant.
@@ -53,7 +56,13 @@ pub struct Trajectory<S> {
 
 impl<S: Scalar> Trajectory<S> {
     /// A trajectory that holds its start only.
-    pub fn start(numbering: Numbering, h: S, steps: usize, initial: InitialState<S>) -> Self {
+    pub fn start(
+        numbering: Numbering,
+        h: S,
+        settings: &Settings,
+        initial: InitialState<S>,
+    ) -> Self {
+        let steps = settings.steps;
         let room = |first: &[S]| {
             let mut all = Vec::with_capacity(first.len() * (steps + 1));
             all.extend_from_slice(first);
@@ -62,6 +71,7 @@ impl<S: Scalar> Trajectory<S> {
         Self {
             h,
             steps,
+            method: settings.method,
             q: room(&initial.q),
             v: room(&initial.v),
             a: room(&initial.a),

@@ -175,3 +175,21 @@ pub struct Joint<S> {
     /// Where the joint sits on body B.
     pub frame_b: JointFrame<S>,
 }
+
+impl<S: Scalar> Joint<S> {
+    /// The joint with every parameter replaced by `f` of it.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Joint<T> {
+        let mut frame = |frame: &JointFrame<S>| JointFrame {
+            point: frame.point.map(&mut *f),
+            axes: frame.axes.map(|axis| axis.map(&mut *f)),
+        };
+        Joint {
+            name: self.name.clone(),
+            kind: self.kind,
+            body_a: self.body_a,
+            body_b: self.body_b,
+            frame_a: frame(&self.frame_a),
+            frame_b: frame(&self.frame_b),
+        }
+    }
+}

@@ -10,7 +10,7 @@ pub mod rigid_body;
 pub use joint::{ConstraintRow, Joint, JointFrame, JointKind};
 pub use rigid_body::RigidBody;
 
-use crate::math::{Mat3, Scalar, Vec3};
+use crate::math::{Scalar, Vec3};
 
 /// Bodies, joints and gravity of a scene.
 #[derive(Clone, Debug)]
@@ -24,56 +24,12 @@ pub struct Model<S> {
 }
 
 impl<S: Scalar> Model<S> {
-    /// All parameters in one fixed order (gravity, bodies, joints).
-    pub fn parameters(&self) -> Vec<S> {
-        let mut all = Vec::with_capacity(3 + 23 * self.bodies.len() + 24 * self.joints.len());
-        all.extend(self.gravity.iter());
-        for body in &self.bodies {
-            all.push(body.mass);
-            all.extend(body.inertia.iter());
-            all.extend(body.position.iter());
-            all.extend(body.orientation);
-            all.extend(body.velocity.iter());
-            all.extend(body.angular_velocity.iter());
-        }
-        for joint in &self.joints {
-            for frame in [&joint.frame_a, &joint.frame_b] {
-                all.extend(frame.point.iter());
-                all.extend(frame.axes.iter().flat_map(|axis| axis.iter()));
-            }
-        }
-        all
-    }
-
-    /// The cotangent of this model: same bodies and joints, every parameter zero.
-    pub fn zero_cotangent(&self) -> Model<f64> {
+    /// The model with every parameter replaced by `f` of it, visited in one fixed order.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Model<T> {
         Model {
-            gravity: Vec3::zeros(),
-            bodies: self
-                .bodies
-                .iter()
-                .map(|body| RigidBody {
-                    name: body.name.clone(),
-                    mass: 0.0,
-                    inertia: Mat3::zeros(),
-                    position: Vec3::zeros(),
-                    orientation: [0.0; 4],
-                    velocity: Vec3::zeros(),
-                    angular_velocity: Vec3::zeros(),
-                })
-                .collect(),
-            joints: self
-                .joints
-                .iter()
-                .map(|joint| Joint {
-                    name: joint.name.clone(),
-                    kind: joint.kind,
-                    body_a: joint.body_a,
-                    body_b: joint.body_b,
-                    frame_a: JointFrame::zero(),
-                    frame_b: JointFrame::zero(),
-                })
-                .collect(),
+            gravity: self.gravity.map(&mut *f),
+            bodies: self.bodies.iter().map(|body| body.map(f)).collect(),
+            joints: self.joints.iter().map(|joint| joint.map(f)).collect(),
         }
     }
 }

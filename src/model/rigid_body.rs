@@ -1,7 +1,7 @@
 //! A rigid body: its mass properties and its start.
 
 use crate::math::rotation::Quat;
-use crate::math::{Mat3, Vec3};
+use crate::math::{Mat3, Scalar, Vec3};
 
 /// A rigid body. Its reference point is the centre of mass; its axes are the body's axes in the
 /// problem file.
@@ -21,4 +21,19 @@ pub struct RigidBody<S> {
     pub velocity: Vec3<S>,
     /// Guess of the angular velocity at t = 0 in body axes [rad/s].
     pub angular_velocity: Vec3<S>,
+}
+
+impl<S: Scalar> RigidBody<S> {
+    /// The body with every parameter replaced by `f` of it.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> RigidBody<T> {
+        RigidBody {
+            name: self.name.clone(),
+            mass: f(self.mass),
+            inertia: self.inertia.map(&mut *f),
+            position: self.position.map(&mut *f),
+            orientation: self.orientation.map(&mut *f),
+            velocity: self.velocity.map(&mut *f),
+            angular_velocity: self.angular_velocity.map(&mut *f),
+        }
+    }
 }

@@ -1,13 +1,7 @@
 //! The three constraint rows: value, rate, acceleration bias, Jacobian and pull-back of each.
 //!
-//! A row is a bilinear function of *marker* vectors. A marker of a body is a point
-//! P = r + R s or a direction u = R e, with the jet
-//!
-//! ```text
-//! u = R e,   u̇ = R (ω × e),   ü|_{v̇=0} = R (ω × (ω × e))        (P adds r, ṙ, 0)
-//! ```
-//!
-//! and with d = P_A − P_B (see [`crate::model::joint`]) the rows are
+//! A row is a bilinear function of markers (see [`super::marker`]): with d = P_A − P_B the
+//! distance of two points and u, w axes of the two frames (see [`crate::model::joint`]),
 //!
 //! ```text
 //!                  value Φ     rate G v             bias: Φ̈ = G v̇ + bias
@@ -19,6 +13,7 @@
 //! The acceleration term of the index-1 equations is γ = −bias.
 
 use super::bodies::Motion;
+use super::marker::{self, Jet};
 use crate::math::scalar::skew;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::{ConstraintRow, JointFrame};
@@ -33,14 +28,6 @@ pub struct Side<'a, S> {
     pub frame: &'a JointFrame<S>,
 }
 
-/// Value, velocity and acceleration (at v̇ = 0) of a marker.
-#[derive(Clone, Copy, Debug)]
-struct Jet<S> {
-    x: Vec3<S>,
-    rate: Vec3<S>,
-    bias: Vec3<S>,
-}
-
 impl<S: Scalar> Side<'_, S> {
     fn axis(&self, i: usize) -> Vec3<S> {
         self.motion.rotation * self.frame.axes[i]
@@ -51,24 +38,11 @@ impl<S: Scalar> Side<'_, S> {
     }
 
     fn axis_jet(&self, i: usize) -> Jet<S> {
-        self.jet(&self.frame.axes[i])
+        Jet::direction(self.motion, &self.frame.axes[i])
     }
 
     fn point_jet(&self) -> Jet<S> {
-        let mut jet = self.jet(&self.frame.point);
-        jet.x += self.motion.position;
-        jet.rate += self.motion.velocity;
-        jet
-    }
-
-    fn jet(&self, e: &Vec3<S>) -> Jet<S> {
-        let (r, w) = (&self.motion.rotation, &self.motion.omega);
-        let turned = w.cross(e);
-        Jet {
-            x: r * e,
-            rate: r * turned,
-            bias: r * w.cross(&turned),
-        }
+        Jet::point(self.motion, &self.frame.point)
     }
 }
 
@@ -263,31 +237,18 @@ impl<S: Scalar> SideCotangent<S> {
     }
 }
 
-/// Pulls cotangents of a marker's jet back to the body's motion; returns that of the marker's
-/// constant body vector `e`.
-fn pull_marker<S: Scalar>(
-    side: &Side<S>,
-    e: &Vec3<S>,
-    cot: &Jet<S>,
-    out: &mut SideCotangent<S>,
-) -> Vec3<S> {
-    let (r, w) = (&side.motion.rotation, &side.motion.omega);
-    let (x, rate, bias) = (r.tr_mul(&cot.x), r.tr_mul(&cot.rate), r.tr_mul(&cot.bias));
-    let turned = w.cross(e);
-    let bias_turned = bias.cross(w);
-    out.theta += e.cross(&x) + turned.cross(&rate) + w.cross(&turned).cross(&bias);
-    out.omega += e.cross(&(rate + bias_turned)) + turned.cross(&bias);
-    x + (rate + bias_turned).cross(w)
-}
-
 fn pull_axis<S: Scalar>(side: &Side<S>, i: usize, cot: &Jet<S>, out: &mut SideCotangent<S>) {
-    let by_axis = pull_marker(side, &side.frame.axes[i], cot, out);
-    out.frame.axes[i] += by_axis;
+    let by = marker::pull_back(side.motion, &side.frame.axes[i], cot);
+    out.theta += by.theta;
+    out.omega += by.omega;
+    out.frame.axes[i] += by.vector;
 }
 
 fn pull_point<S: Scalar>(side: &Side<S>, cot: &Jet<S>, out: &mut SideCotangent<S>) {
-    let by_point = pull_marker(side, &side.frame.point, cot, out);
-    out.frame.point += by_point;
+    let by = marker::pull_back(side.motion, &side.frame.point, cot);
+    out.theta += by.theta;
+    out.omega += by.omega;
+    out.frame.point += by.vector;
     out.position += cot.x;
     out.velocity += cot.rate;
 }

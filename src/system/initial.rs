@@ -297,8 +297,8 @@ fn check_turned<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> Result<()
     Ok(())
 }
 
-/// Pulls cotangents (q̄ of q0, v̄ of v0, ā of the initial accelerations) back through the three
-/// solves to the parameters of `cot`.
+/// Pulls cotangents (ȳ of q0 in its tangent, v̄ of v0, ā of the initial accelerations) back through
+/// the three solves to the parameters of `cot`.
 ///
 /// # Errors
 /// [`AssemblyFailure::Singular`] if a matrix that was regular forwards is not any more.
@@ -307,7 +307,7 @@ pub fn pull_back(
     numbering: &Numbering,
     saddle: &mut SaddlePoint<f64>,
     state: &InitialState<f64>,
-    (q_bar, v_bar, a_bar): (&[f64], &[f64], &[f64]),
+    (y_bar, v_bar, a_bar): (&[f64], &[f64], &[f64]),
     cot: &mut Model<f64>,
 ) -> Result<(), AssemblyFailure> {
     let (nv, nc) = (numbering.velocities(), numbering.constraints());
@@ -318,8 +318,7 @@ pub fn pull_back(
     Motion::all(numbering, &state.q, &state.v, &mut motions);
     let zeros = vec![0.0; nc];
     let mut v_bar = v_bar.to_vec();
-    let mut y_bar = vec![0.0; nv];
-    tangent_of_cotangent(numbering, &state.q, q_bar, &mut y_bar);
+    let mut y_bar = y_bar.to_vec();
 
     let transposed = |saddle: &mut SaddlePoint<f64>, cotangent: &[f64]| {
         let mut psi: Vec<f64> = cotangent.iter().map(|x| -x).collect();

@@ -11,6 +11,8 @@ pub mod constraint;
 pub mod initial;
 pub mod joints;
 pub mod kkt;
+pub mod marker;
+
 pub mod numbering;
 pub mod rank;
 

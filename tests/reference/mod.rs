@@ -19,15 +19,32 @@ pub struct Instant {
 
 /// Reads `tests/data/<name>_reference.json`.
 pub fn load(name: &str) -> (Model<f64>, Vec<Instant>) {
-    let path = format!("{}/tests/data/{name}_reference.json", env!("CARGO_MANIFEST_DIR"));
+    let path = format!(
+        "{}/tests/data/{name}_reference.json",
+        env!("CARGO_MANIFEST_DIR")
+    );
     let text = std::fs::read_to_string(path).expect("reference file");
     let file: Value = serde_json::from_str(&text).expect("valid JSON");
-    let instants = file["trajectory"].as_array().expect("list").iter().map(|at| Instant {
-        time: at["t"].as_f64().expect("number"),
-        centres: at["com"].as_array().expect("list").iter().map(vector).collect(),
-        velocities: at["v"].as_array().expect("list").iter().map(vector).collect(),
-        value: at.clone(),
-    });
+    let instants = file["trajectory"]
+        .as_array()
+        .expect("list")
+        .iter()
+        .map(|at| Instant {
+            time: at["t"].as_f64().expect("number"),
+            centres: at["com"]
+                .as_array()
+                .expect("list")
+                .iter()
+                .map(vector)
+                .collect(),
+            velocities: at["v"]
+                .as_array()
+                .expect("list")
+                .iter()
+                .map(vector)
+                .collect(),
+            value: at.clone(),
+        });
     (model(&file["scene"]), instants.collect())
 }
 
@@ -38,7 +55,11 @@ fn vector(value: &Value) -> Vec3<f64> {
 
 fn matrix(value: &Value) -> Mat3<f64> {
     let rows: Vec<Vec3<f64>> = value.as_array().expect("rows").iter().map(vector).collect();
-    Mat3::from_rows(&[rows[0].transpose(), rows[1].transpose(), rows[2].transpose()])
+    Mat3::from_rows(&[
+        rows[0].transpose(),
+        rows[1].transpose(),
+        rows[2].transpose(),
+    ])
 }
 
 /// Euler parameters of a rotation matrix whose trace is not −1.
@@ -81,7 +102,11 @@ fn model(scene: &Value) -> Model<f64> {
                 "revolute" => JointKind::Revolute,
                 other => panic!("unknown joint {other}"),
             };
-            let axis = if joint["axis"].is_null() { Vec3::z() } else { vector(&joint["axis"]) };
+            let axis = if joint["axis"].is_null() {
+                Vec3::z()
+            } else {
+                vector(&joint["axis"])
+            };
             let axis = axis.normalize();
             let e1 = axis.cross(&Vec3::new(0.3, -0.5, 0.2)).normalize();
             let axes = [e1, axis.cross(&e1), axis];
@@ -111,7 +136,11 @@ fn model(scene: &Value) -> Model<f64> {
             }
         })
         .collect();
-    Model { gravity: vector(&scene["gravity"]), bodies, joints }
+    Model {
+        gravity: vector(&scene["gravity"]),
+        bodies,
+        joints,
+    }
 }
 
 /// Largest distance of a centre of mass from the reference, over all bodies and the reference
@@ -120,7 +149,10 @@ pub fn position_error(run: &Trajectory<f64>, reference: &[Instant]) -> f64 {
     let mut worst = 0.0_f64;
     for at in reference {
         let k = (at.time / run.h).round();
-        assert!((k * run.h - at.time).abs() < 1e-9, "reference instants are ends of steps");
+        assert!(
+            (k * run.h - at.time).abs() < 1e-9,
+            "reference instants are ends of steps"
+        );
         let q = run.q(k as usize);
         for (body, centre) in at.centres.iter().enumerate() {
             let r = &q[run.numbering.position(body)..];
