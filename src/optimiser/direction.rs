@@ -1,0 +1,135 @@
+//! The primal–dual Newton step of the barrier problem.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::iterate::{Iterate, Layout};
+use super::kkt_system::KktSystem;
+use super::quasi_newton::QuasiNewton;
+
+/// Step of all parts of an [`Iterate`].
+#[derive(Clone, Debug)]
+pub(super) struct Direction {
+    pub x: DVector<f64>,
+    pub s: DVector<f64>,
+    pub y: DVector<f64>,
+    pub zl: DVector<f64>,
+    pub zu: DVector<f64>,
+}
+
+/// The linear system of one iterate, factored once for all right-hand sides.
+pub(super) struct NewtonSystem {
+    system: KktSystem,
+    sigma: DVector<f64>,
+}
+
+impl NewtonSystem {
+    /// Factors the system at `at`; `None` if it cannot be made regular.
+    pub fn new(at: &Iterate, layout: &Layout, b: &mut QuasiNewton) -> Option<NewtonSystem> {
+        let sigma = at.sigma(layout);
+        let mut d = DVector::zeros(at.y.len());
+        for (k, &j) in layout.slack_rows.iter().enumerate() {
+            d[j] = 1.0 / sigma[layout.n + k];
+        }
+        let head = sigma.rows(0, layout.n).into_owned();
+        let system = KktSystem::factor(b, head, &at.slopes.a, d)?;
+        Some(NewtonSystem { system, sigma })
+    }
+
+    /// δ that was added to dependent rows.
+    pub fn regularisation(&self) -> f64 {
+        self.system.regularisation
+    }
+
+    /// Step towards the point of the central path with parameter `mu`, where the rows have the
+    /// residual `r`.
+    pub fn step(
+        &self,
+        at: &Iterate,
+        layout: &Layout,
+        b: &mut QuasiNewton,
+        mu: f64,
+        r: &DVector<f64>,
+    ) -> Direction {
+        let force = at.barrier_slope(layout, mu) + at.row_force(layout);
+        let n = layout.n;
+        let p = -force.rows(0, n).into_owned();
+        let mut q = -r.clone_owned();
+        for (k, &j) in layout.slack_rows.iter().enumerate() {
+            q[j] -= force[n + k] / self.sigma[n + k];
+        }
+        let a: &DMatrix<f64> = &at.slopes.a;
+        let (x, y) = self.system.solve(b, a, &p, &q);
+        let slack = |k: usize, j: usize| (y[j] - force[n + k]) / self.sigma[n + k];
+        let slacks = layout
+            .slack_rows
+            .iter()
+            .enumerate()
+            .map(|(k, &j)| slack(k, j));
+        let s = DVector::from_iterator(layout.slack_rows.len(), slacks);
+        let (below, above) = layout.distances(&at.point.x, &at.s);
+        let dw = |i: usize| if i < n { x[i] } else { s[i - n] };
+        let zl = DVector::from_fn(layout.len(), |i, _| {
+            if below[i].is_finite() {
+                (mu - at.zl[i] * dw(i)) / below[i] - at.zl[i]
+            } else {
+                0.0
+            }
+        });
+        let zu = DVector::from_fn(layout.len(), |i, _| {
+            if above[i].is_finite() {
+                (mu + at.zu[i] * dw(i)) / above[i] - at.zu[i]
+            } else {
+                0.0
+            }
+        });
+        Direction { x, s, y, zl, zu }
+    }
+}
+
+impl Direction {
+    /// Largest step in (0, 1] that keeps the share 1 − τ of every distance to a bound.
+    pub fn primal_limit(&self, at: &Iterate, layout: &Layout, tau: f64) -> f64 {
+        let (below, above) = layout.distances(&at.point.x, &at.s);
+        let dw = |i: usize| {
+            if i < layout.n {
+                self.x[i]
+            } else {
+                self.s[i - layout.n]
+            }
+        };
+        (0..layout.len()).fold(1.0, |alpha: f64, i| {
+            let d = dw(i);
+            let room = if d < 0.0 { below[i] } else { above[i] };
+            if room.is_finite() && d != 0.0 {
+                alpha.min(tau * room / d.abs())
+            } else {
+                alpha
+            }
+        })
+    }
+
+    /// Largest step in (0, 1] that keeps the share 1 − τ of every multiplier of a bound.
+    pub fn dual_limit(&self, at: &Iterate, tau: f64) -> f64 {
+        let limit = |alpha: f64, z: &DVector<f64>, dz: &DVector<f64>| {
+            z.iter().zip(dz.iter()).fold(alpha, |alpha: f64, (z, dz)| {
+                if *dz < 0.0 {
+                    alpha.min(-tau * z / dz)
+                } else {
+                    alpha
+                }
+            })
+        };
+        limit(limit(1.0, &at.zl, &self.zl), &at.zu, &self.zu)
+    }
+
+    /// Largest component of the step in x and s.
+    pub fn size(&self) -> f64 {
+        self.x.amax().max(self.s.amax())
+    }
+
+    /// Whether every component is a number.
+    pub fn is_finite(&self) -> bool {
+        let parts = [&self.x, &self.s, &self.y, &self.zl, &self.zu];
+        parts.iter().all(|v| v.iter().all(|e| e.is_finite()))
+    }
+}

@@ -1,0 +1,262 @@
+//! Quadratic subproblem with elastic constraints, solved by Clarabel.
+
+use std::time::Instant;
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT,
+    SolverStatus,
+};
+use nalgebra::{DMatrix, DVector};
+
+use super::outcome::Counts;
+
+/// The subproblem
+///
+/// ```text
+/// minimise    gᵀd + ½ dᵀB d + Σ ν_j e_j
+/// subject to  c_L − e ≤ c + A d ≤ c_U + e,   e ≥ 0,   d_L ≤ d ≤ d_U
+/// ```
+///
+/// It always has a solution. It is solved in t = d/Δ, so that the absolute tolerances of Clarabel
+/// are relative to the size Δ of the box.
+pub(super) struct ElasticQp {
+    n: usize,
+    has_lower: Vec<bool>,
+    has_upper: Vec<bool>,
+    solver: Option<DefaultSolver<f64>>,
+}
+
+/// Data of one subproblem.
+pub(super) struct QpData<'a> {
+    pub g: &'a DVector<f64>,
+    /// Positive definite.
+    pub b: &'a DMatrix<f64>,
+    pub a: &'a DMatrix<f64>,
+    /// Room c_U − c and c − c_L of every row; infinite where there is no bound.
+    pub above: &'a DVector<f64>,
+    pub below: &'a DVector<f64>,
+    pub penalty: &'a DVector<f64>,
+    /// Box; finite.
+    pub lower: &'a DVector<f64>,
+    pub upper: &'a DVector<f64>,
+}
+
+/// Solution of a subproblem.
+#[derive(Clone, Debug)]
+pub(super) struct QpStep {
+    pub d: DVector<f64>,
+    /// Multipliers of the rows, positive at upper bounds.
+    pub y: DVector<f64>,
+}
+
+impl ElasticQp {
+    /// A solver for `n` variables and rows with the given sets of finite bounds.
+    pub fn new(n: usize, row_lower: &DVector<f64>, row_upper: &DVector<f64>) -> ElasticQp {
+        let finite = |v: &DVector<f64>| v.iter().map(|b| b.is_finite()).collect();
+        ElasticQp {
+            n,
+            has_lower: finite(row_lower),
+            has_upper: finite(row_upper),
+            solver: None,
+        }
+    }
+
+    /// Solves the subproblem, and once more in a smaller box if its step is short; `None` if
+    /// Clarabel fails or its answer does not satisfy the optimality conditions.
+    pub fn solve(&mut self, data: &QpData<'_>, counts: &mut Counts) -> Option<QpStep> {
+        let coarse = self.solve_once(data, counts)?;
+        let size = coarse.d.amax();
+        let radius = data.upper.amax().max(data.lower.amax());
+        if size == 0.0 || size > 1e-2 * radius {
+            return Some(coarse);
+        }
+        let limit = 10.0 * size;
+        let lower = data.lower.map(|v| v.max(-limit));
+        let upper = data.upper.map(|v| v.min(limit));
+        let fine = self.solve_once(
+            &QpData {
+                lower: &lower,
+                upper: &upper,
+                ..*data
+            },
+            counts,
+        );
+        Some(fine.unwrap_or(coarse))
+    }
+
+    fn solve_once(&mut self, data: &QpData<'_>, counts: &mut Counts) -> Option<QpStep> {
+        let clock = Instant::now();
+        let step = self.solve_scaled(data);
+        counts.quadratic_programs += 1;
+        counts.quadratic_program_seconds += clock.elapsed().as_secs_f64();
+        step
+    }
+
+    fn solve_scaled(&mut self, data: &QpData<'_>) -> Option<QpStep> {
+        let (n, m) = (self.n, self.has_lower.len());
+        let radius = data.upper.amax().max(data.lower.amax());
+        if radius.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
+            return None;
+        }
+        // Divide the objective by Δ and by the largest force, the rows by Δ and by their norms.
+        let force = data
+            .g
+            .amax()
+            .max(data.penalty.amax())
+            .max(radius * data.b.amax())
+            .max(1e-100);
+        let norms = DVector::from_fn(m, |j, _| data.a.row(j).amax().max(1e-8));
+        let mut p = Vec::with_capacity(n * (n + 1) / 2 + m);
+        for k in 0..n {
+            p.extend((0..=k).map(|i| data.b[(i, k)] * radius / force));
+        }
+        let q: Vec<f64> = (data.g.iter().map(|g| g / force))
+            .chain((0..m).map(|j| data.penalty[j] * norms[j] / force))
+            .collect();
+        let values = self.row_values(data.a, &norms);
+        let rhs = self.right_hand_side(data, &norms, radius);
+        let solver = match self.solver.take() {
+            Some(mut solver) => {
+                solver.update_data(&p, &q, &values, &rhs).ok()?;
+                solver
+            }
+            None => self.new_solver(p, &q, values, &rhs)?,
+        };
+        let solver = self.solver.insert(solver);
+        solver.solve();
+        let status = solver.solution.status;
+        if !matches!(status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
+            return None;
+        }
+        let (t, z) = (&solver.solution.x, &solver.solution.z);
+        let mut y = DVector::zeros(m);
+        let mut row = 0;
+        for j in 0..m {
+            if self.has_upper[j] {
+                y[j] += z[row] * force / norms[j];
+                row += 1;
+            }
+            if self.has_lower[j] {
+                y[j] -= z[row] * force / norms[j];
+                row += 1;
+            }
+        }
+        let d = DVector::from_fn(n, |i, _| {
+            (t[i] * radius).clamp(data.lower[i], data.upper[i])
+        });
+        let accurate = status == SolverStatus::Solved || is_stationary(data, &d, &y, force);
+        (accurate && d.iter().chain(y.iter()).all(|v| v.is_finite())).then_some(QpStep { d, y })
+    }
+
+    /// Right-hand sides in the order of the rows: bounds of each row, e ≥ 0, box.
+    ///
+    /// |A t| cannot exceed the sum of |A|, so more room than that is cut off, and a violation
+    /// beyond it is taken out of the elastic variable.
+    fn right_hand_side(&self, data: &QpData<'_>, norms: &DVector<f64>, radius: f64) -> Vec<f64> {
+        let m = self.has_lower.len();
+        let mut rhs = Vec::new();
+        for j in 0..m {
+            let reach = data.a.row(j).iter().map(|v| v.abs()).sum::<f64>() / norms[j] + 1.0;
+            let above = data.above[j] / (norms[j] * radius);
+            let below = data.below[j] / (norms[j] * radius);
+            let excess = (-above - reach).max(-below - reach).max(0.0);
+            let cut = |room: f64| (room + excess).clamp(-reach, 2.0 * reach);
+            if self.has_upper[j] {
+                rhs.push(cut(above));
+            }
+            if self.has_lower[j] {
+                rhs.push(cut(below));
+            }
+        }
+        rhs.extend(std::iter::repeat_n(0.0, m));
+        for i in 0..self.n {
+            rhs.push(data.upper[i] / radius);
+            rhs.push(-data.lower[i] / radius);
+        }
+        rhs
+    }
+
+    /// Non-zero values of the constraint matrix, column by column.
+    fn row_values(&self, a: &DMatrix<f64>, norms: &DVector<f64>) -> Vec<f64> {
+        let m = self.has_lower.len();
+        let mut values = Vec::new();
+        for i in 0..self.n {
+            for j in 0..m {
+                let v = a[(j, i)] / norms[j];
+                if self.has_upper[j] {
+                    values.push(v);
+                }
+                if self.has_lower[j] {
+                    values.push(-v);
+                }
+            }
+            values.extend([1.0, -1.0]);
+        }
+        for j in 0..m {
+            let sides = usize::from(self.has_upper[j]) + usize::from(self.has_lower[j]);
+            values.extend(std::iter::repeat_n(-1.0, sides + 1));
+        }
+        values
+    }
+
+    fn new_solver(
+        &self,
+        p: Vec<f64>,
+        q: &[f64],
+        values: Vec<f64>,
+        rhs: &[f64],
+    ) -> Option<DefaultSolver<f64>> {
+        let (n, m) = (self.n, self.has_lower.len());
+        let mut pointers = vec![0];
+        let mut indices = Vec::new();
+        for k in 0..n {
+            indices.extend(0..=k);
+            pointers.push(indices.len());
+        }
+        pointers.extend(std::iter::repeat_n(indices.len(), m));
+        let p = CscMatrix::new(n + m, n + m, pointers, indices, p);
+
+        let sides = |j: usize| usize::from(self.has_upper[j]) + usize::from(self.has_lower[j]);
+        let bounded: usize = (0..m).map(sides).sum();
+        let total = bounded + m + 2 * n;
+        let mut pointers = vec![0];
+        let mut indices = Vec::new();
+        for i in 0..n {
+            indices.extend(0..bounded);
+            indices.extend([bounded + m + 2 * i, bounded + m + 2 * i + 1]);
+            pointers.push(indices.len());
+        }
+        let mut first = 0;
+        for j in 0..m {
+            indices.extend(first..first + sides(j));
+            indices.push(bounded + j);
+            pointers.push(indices.len());
+            first += sides(j);
+        }
+        let a = CscMatrix::new(total, n + m, pointers, indices, values);
+        let settings: DefaultSettings<f64> = DefaultSettingsBuilder::default()
+            .verbose(false)
+            .presolve_enable(false)
+            .max_iter(100)
+            .build()
+            .ok()?;
+        DefaultSolver::new(&p, q, &a, rhs, &[NonnegativeConeT(total)], settings).ok()
+    }
+}
+
+/// Whether the force g + B d + Aᵀy on every variable inside its box is small, 0 ≤ |y| ≤ ν.
+fn is_stationary(data: &QpData<'_>, d: &DVector<f64>, y: &DVector<f64>, force: f64) -> bool {
+    let residual = data.g + data.b * d + data.a.tr_mul(y);
+    let size = data.upper.amax().max(data.lower.amax());
+    let balanced = (0..d.len()).all(|i| {
+        let r = residual[i];
+        let room = if r > 0.0 {
+            d[i] - data.lower[i]
+        } else {
+            data.upper[i] - d[i]
+        };
+        r.abs() * room / size <= 1e-5 * force
+    });
+    balanced && (0..y.len()).all(|j| y[j].abs() <= (1.0 + 1e-5) * data.penalty[j] + 1e-8 * force)
+}

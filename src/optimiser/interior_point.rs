@@ -1,0 +1,333 @@
+//! Primal–dual interior-point iteration (Wächter & Biegler 2006, algorithm A).
+
+use nalgebra::DVector;
+
+use super::direction::{Direction, NewtonSystem};
+use super::filter::Filter;
+use super::iterate::{Iterate, Layout};
+use super::line_search::{Accepted, LineSearch};
+use super::observer::Phase;
+use super::program::{Point, Program, Progress, Slopes, Trouble};
+use super::quasi_newton::QuasiNewton;
+use super::trust_region::{Ending, Goal, TrustRegion};
+use super::verdict::{ScaledMultipliers, is_solved, kkt};
+
+/// A barrier subproblem is solved when its residual is below this multiple of μ.
+const SUBPROBLEM: f64 = 10.0;
+/// Multipliers of bounds stay within this factor of μ/distance.
+const MULTIPLIER_BAND: f64 = 1e10;
+/// Largest least-squares multiplier that is used.
+const LARGEST_ESTIMATE: f64 = 1e3;
+/// Infeasibility below which multipliers of rows are recomputed by least squares.
+const NEARLY_FEASIBLE: f64 = 1e-6;
+
+/// State of the iteration.
+pub(super) struct InteriorPoint {
+    layout: Layout,
+    pub at: Iterate,
+    pub b: QuasiNewton,
+    pub mu: f64,
+    filter: Filter,
+    theta_small: f64,
+}
+
+impl InteriorPoint {
+    /// Starts from a strictly interior point.
+    pub fn new(program: &Program<'_>, point: Point, slopes: Slopes) -> InteriorPoint {
+        let layout = Layout::new(program);
+        let options = program.options;
+        let n = layout.n;
+        let s = DVector::from_iterator(
+            layout.slack_rows.len(),
+            layout
+                .slack_rows
+                .iter()
+                .enumerate()
+                .map(|(k, &j)| layout.push_inside(n + k, point.c[j], options.bound_push)),
+        );
+        let one = |bound: &f64| if bound.is_finite() { 1.0 } else { 0.0 };
+        let mut at = Iterate {
+            y: DVector::zeros(point.c.len()),
+            zl: layout.lower.map(|v| one(&v)),
+            zu: layout.upper.map(|v| one(&v)),
+            point,
+            slopes,
+            s,
+        };
+        at.estimate_multipliers(&layout, LARGEST_ESTIMATE);
+        let theta = layout.residual(&at.point.c, &at.s).lp_norm(1);
+        InteriorPoint {
+            b: QuasiNewton::new(n, options.dense_limit, options.memory),
+            mu: options.initial_barrier,
+            filter: Filter::new(1e4 * theta.max(1.0)),
+            theta_small: 1e-4 * theta.max(1.0),
+            layout,
+            at,
+        }
+    }
+
+    /// Continues with multipliers of an earlier run.
+    pub fn adopt(&mut self, multipliers: &ScaledMultipliers, b: QuasiNewton, mu: f64) {
+        let n = self.layout.n;
+        self.mu = mu;
+        if b.order() == n {
+            self.b = b;
+        }
+        self.at.y.copy_from(&multipliers.y);
+        for i in 0..self.layout.len() {
+            let (zl, zu) = match self.layout.row_of(i) {
+                None => (multipliers.zl[i], multipliers.zu[i]),
+                Some(j) => ((-multipliers.y[j]).max(0.0), multipliers.y[j].max(0.0)),
+            };
+            self.at.zl[i] = if self.at.zl[i] > 0.0 { zl } else { 0.0 };
+            self.at.zu[i] = if self.at.zu[i] > 0.0 { zu } else { 0.0 };
+        }
+        self.at.keep_multipliers_in_band(&self.layout, mu);
+    }
+
+    /// Multipliers of the program at the present point.
+    pub fn multipliers(&self, program: &Program<'_>) -> ScaledMultipliers {
+        let n = self.layout.n;
+        let mut z = ScaledMultipliers {
+            y: self.at.y.clone(),
+            zl: self.at.zl.rows(0, n).into_owned(),
+            zu: self.at.zu.rows(0, n).into_owned(),
+        };
+        z.clip(program);
+        z
+    }
+
+    /// Scaled residual of the optimality conditions.
+    pub fn optimality(&self) -> f64 {
+        self.at.residuals(&self.layout, 0.0).largest()
+    }
+
+    /// Iterates until the run ends.
+    pub fn run(&mut self, program: &mut Program<'_>) -> Result<Ending, Trouble> {
+        let mut failures = 0;
+        loop {
+            if self.is_solved(program) {
+                return Ok(Ending::Reached);
+            }
+            if self.is_unbounded(program) {
+                return Ok(Ending::Unbounded);
+            }
+            self.lower_barrier(program);
+            program.next_iteration()?;
+            let Some((system, direction)) = self.direction() else {
+                return Ok(Ending::Stalled);
+            };
+            let tau = (1.0 - self.mu).max(0.99);
+            let dual = direction.dual_limit(&self.at, tau);
+            let search = LineSearch {
+                layout: &self.layout,
+                at: &self.at,
+                system: &system,
+                mu: self.mu,
+                tau,
+                theta_small: self.theta_small,
+            };
+            match search.run(program, &mut self.b, &mut self.filter, direction)? {
+                Some(accepted) => {
+                    failures = 0;
+                    self.step(program, accepted, dual, system.regularisation())?;
+                }
+                None => {
+                    failures += 1;
+                    if let Some(ending) = self.recover(program, failures)? {
+                        return Ok(ending);
+                    }
+                }
+            }
+        }
+    }
+
+    fn direction(&mut self) -> Option<(NewtonSystem, Direction)> {
+        for _ in 0..2 {
+            if let Some(system) = NewtonSystem::new(&self.at, &self.layout, &mut self.b) {
+                let r = self.layout.residual(&self.at.point.c, &self.at.s);
+                let step = system.step(&self.at, &self.layout, &mut self.b, self.mu, &r);
+                if step.is_finite() {
+                    return Some((system, step));
+                }
+            }
+            self.b.reset();
+        }
+        None
+    }
+
+    /// Moves to an accepted point.
+    fn step(
+        &mut self,
+        program: &mut Program<'_>,
+        accepted: Accepted,
+        dual: f64,
+        regularisation: f64,
+    ) -> Result<(), Trouble> {
+        let Accepted {
+            point,
+            slopes,
+            s,
+            alpha,
+            direction,
+            trials,
+        } = accepted;
+        let moved = &point.x - &self.at.point.x;
+        let at = &mut self.at;
+        at.y += &direction.y * alpha;
+        at.zl += &direction.zl * dual;
+        at.zu += &direction.zu * dual;
+        at.point = point;
+        let before = std::mem::replace(&mut at.slopes, slopes);
+        at.s = s;
+        at.keep_multipliers_in_band(&self.layout, self.mu);
+        let r = self.layout.residual(&at.point.c, &at.s);
+        if r.lp_norm(1) < NEARLY_FEASIBLE {
+            at.estimate_multipliers(&self.layout, f64::INFINITY);
+        }
+        let change = &at.slopes.g - &before.g + at.slopes.a.tr_mul(&at.y) - before.a.tr_mul(&at.y);
+        self.b.update(moved, change);
+        let progress = Progress {
+            optimality: self.optimality(),
+            barrier: self.mu,
+            step: direction.size(),
+            regularisation,
+            primal_step: alpha,
+            dual_step: dual,
+            trials,
+            phase: Phase::Regular,
+        };
+        program.report(&self.at.point, &progress)
+    }
+
+    /// Lowers μ until its subproblem is not yet solved.
+    fn lower_barrier(&mut self, program: &Program<'_>) {
+        let least = 1e-4 * program.options.tolerance;
+        while self.mu > least
+            && self.at.residuals(&self.layout, self.mu).largest() <= SUBPROBLEM * self.mu
+        {
+            self.mu = (0.2 * self.mu).min(self.mu.powf(1.5)).max(least);
+            self.filter.clear();
+        }
+    }
+
+    fn is_solved(&self, program: &Program<'_>) -> bool {
+        let scaled = self.optimality();
+        if scaled > program.options.tolerance {
+            return false;
+        }
+        let z = self.multipliers(program);
+        let gap: f64 = self.at.products(&self.layout).iter().sum();
+        let residuals = kkt(program, &self.at.point, &self.at.slopes, &z, scaled);
+        is_solved(&residuals, program.options)
+            && gap <= 0.1 * program.options.tolerance * self.at.point.f.abs().max(0.1)
+    }
+
+    fn is_unbounded(&self, program: &Program<'_>) -> bool {
+        let f = self.at.point.f / program.scaling.objective;
+        f < program.options.unbounded_below
+            && program.worst_violation(&self.at.point.c).0 <= program.options.constraint_tolerance
+    }
+
+    /// What to do when the line search found no step: forget the quasi-Newton matrix if the point
+    /// is feasible, else restore feasibility.
+    fn recover(
+        &mut self,
+        program: &mut Program<'_>,
+        failures: usize,
+    ) -> Result<Option<Ending>, Trouble> {
+        let theta = self
+            .layout
+            .residual(&self.at.point.c, &self.at.s)
+            .lp_norm(1);
+        let small = 1e-2 * program.options.tolerance;
+        if theta <= small || failures > 3 {
+            if failures == 1 && !self.b.is_empty() {
+                self.b.reset();
+                self.filter.clear();
+                return Ok(None);
+            }
+            if theta <= small || failures > 6 {
+                return Ok(Some(Ending::Stalled));
+            }
+        }
+        self.restore(program, theta)
+    }
+
+    /// Reduces the violation until the filter accepts the point.
+    fn restore(
+        &mut self,
+        program: &mut Program<'_>,
+        theta: f64,
+    ) -> Result<Option<Ending>, Trouble> {
+        let phi =
+            self.layout
+                .barrier_function(self.at.point.f, &self.at.point.x, &self.at.s, self.mu);
+        self.filter.add(theta, phi);
+        let (point, slopes) = (self.at.point.clone(), self.at.slopes.clone());
+        let mut search = TrustRegion::new(program, point, slopes, Goal::Feasibility);
+        let (layout, filter, mu) = (&self.layout, &self.filter, self.mu);
+        let accepted = |_: &Program<'_>, p: &Point| {
+            let s = slacks(layout, p);
+            let theta_new = layout.residual(&p.c, &s).lp_norm(1);
+            let phi = layout.barrier_function(p.f, &p.x, &s, mu);
+            theta_new <= 0.9 * theta && filter.accepts(theta_new, phi)
+        };
+        let ending = search.run(program, accepted)?;
+        let before = self
+            .layout
+            .residual(&self.at.point.c, &self.at.s)
+            .lp_norm(1);
+        self.at.s = slacks(&self.layout, &search.point);
+        self.at.point = search.point;
+        self.at.slopes = search.slopes;
+        let after = self
+            .layout
+            .residual(&self.at.point.c, &self.at.s)
+            .lp_norm(1);
+        self.at.keep_multipliers_in_band(&self.layout, self.mu);
+        self.at.estimate_multipliers(&self.layout, LARGEST_ESTIMATE);
+        match ending {
+            Ending::Reached => Ok(None),
+            Ending::Infeasible => Ok(Some(Ending::Infeasible)),
+            _ if after < 0.5 * before => {
+                self.filter.clear();
+                Ok(None)
+            }
+            other => Ok(Some(other)),
+        }
+    }
+}
+
+/// Slacks nearest to the values of the rows that keep a small distance from the bounds.
+fn slacks(layout: &Layout, point: &Point) -> DVector<f64> {
+    let inside = |(k, &j): (usize, &usize)| layout.push_inside(layout.n + k, point.c[j], 1e-6);
+    let slacks = layout.slack_rows.iter().enumerate().map(inside);
+    DVector::from_iterator(layout.slack_rows.len(), slacks)
+}
+
+impl Iterate {
+    /// Least-squares multipliers of the rows, unless they exceed `largest`, which sets zero.
+    fn estimate_multipliers(&mut self, layout: &Layout, largest: f64) {
+        if let Some(y) = self.least_squares_multipliers(layout) {
+            if y.amax() <= largest {
+                self.y = y;
+            } else {
+                self.y.fill(0.0);
+            }
+        }
+    }
+
+    fn keep_multipliers_in_band(&mut self, layout: &Layout, mu: f64) {
+        let (below, above) = layout.distances(&self.point.x, &self.s);
+        let clamp = |z: &mut DVector<f64>, distance: &DVector<f64>| {
+            for (z, d) in z.iter_mut().zip(distance.iter()) {
+                if d.is_finite() {
+                    *z = z.clamp(mu / (MULTIPLIER_BAND * d), MULTIPLIER_BAND * mu / d);
+                }
+            }
+        };
+        clamp(&mut self.zl, &below);
+        clamp(&mut self.zu, &above);
+    }
+}

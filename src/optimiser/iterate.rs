@@ -1,0 +1,209 @@
+//! A primal–dual point of the barrier problem and the quantities derived from it.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::program::{Point, Program, Slopes};
+
+/// Rows, slacks and bounds of the barrier problem.
+///
+/// The vector w = (x, s) holds the variables and one slack for each row that is not an equality.
+pub(super) struct Layout {
+    pub n: usize,
+    /// Rows that have a slack.
+    pub slack_rows: Vec<usize>,
+    pub lower: DVector<f64>,
+    pub upper: DVector<f64>,
+    /// Right-hand side of equality rows.
+    target: DVector<f64>,
+}
+
+/// Primal–dual point.
+#[derive(Clone, Debug)]
+pub(super) struct Iterate {
+    pub point: Point,
+    pub slopes: Slopes,
+    /// Slacks, of the length of [`Layout::slack_rows`].
+    pub s: DVector<f64>,
+    /// Multipliers of the rows.
+    pub y: DVector<f64>,
+    /// Multipliers of the bounds of w.
+    pub zl: DVector<f64>,
+    pub zu: DVector<f64>,
+}
+
+/// Residuals of the perturbed optimality conditions, scaled by the size of the multipliers
+/// (Wächter & Biegler 2006, eq. 5).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Residuals {
+    pub stationarity: f64,
+    pub violation: f64,
+    pub complementarity: f64,
+}
+
+impl Residuals {
+    pub fn largest(&self) -> f64 {
+        self.stationarity
+            .max(self.violation)
+            .max(self.complementarity)
+    }
+}
+
+impl Layout {
+    pub fn new(program: &Program<'_>) -> Layout {
+        let (n, m) = (program.lower.len(), program.row_lower.len());
+        let slack_rows: Vec<usize> = (0..m)
+            .filter(|&j| program.row_lower[j] < program.row_upper[j])
+            .collect();
+        let join = |x: &DVector<f64>, rows: &DVector<f64>| {
+            let slacks = slack_rows.iter().map(|&j| rows[j]);
+            DVector::from_iterator(n + slack_rows.len(), x.iter().copied().chain(slacks))
+        };
+        Layout {
+            n,
+            lower: join(&program.lower, &program.row_lower),
+            upper: join(&program.upper, &program.row_upper),
+            target: program.row_lower.clone(),
+            slack_rows,
+        }
+    }
+
+    /// Number of entries of w.
+    pub fn len(&self) -> usize {
+        self.lower.len()
+    }
+
+    /// Row of entry `i` of w, if it is a slack.
+    pub fn row_of(&self, i: usize) -> Option<usize> {
+        (i >= self.n).then(|| self.slack_rows[i - self.n])
+    }
+
+    /// Distances of w from its bounds; infinite where there is none.
+    pub fn distances(&self, x: &DVector<f64>, s: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+        let value = |i: usize| if i < self.n { x[i] } else { s[i - self.n] };
+        let below = DVector::from_fn(self.len(), |i, _| value(i) - self.lower[i]);
+        let above = DVector::from_fn(self.len(), |i, _| self.upper[i] - value(i));
+        (below, above)
+    }
+
+    /// Residuals c(x) − s, or c(x) − target in equality rows.
+    pub fn residual(&self, c: &DVector<f64>, s: &DVector<f64>) -> DVector<f64> {
+        let mut r = c - &self.target;
+        for (k, &j) in self.slack_rows.iter().enumerate() {
+            r[j] = c[j] - s[k];
+        }
+        r
+    }
+
+    /// Barrier function φ = f − μ Σ ln(distance).
+    pub fn barrier_function(&self, f: f64, x: &DVector<f64>, s: &DVector<f64>, mu: f64) -> f64 {
+        let (below, above) = self.distances(x, s);
+        let logarithm = |d: &f64| if d.is_finite() { d.ln() } else { 0.0 };
+        f - mu * below.iter().chain(above.iter()).map(logarithm).sum::<f64>()
+    }
+
+    /// Moves `value`, entry `i` of w, into the interior of its bounds.
+    pub fn push_inside(&self, i: usize, value: f64, push: f64) -> f64 {
+        let (l, u) = (self.lower[i], self.upper[i]);
+        let width = u - l;
+        let margin = |bound: f64| {
+            let absolute = push * bound.abs().max(1.0);
+            if width.is_finite() {
+                absolute.min(push.min(0.49) * width)
+            } else {
+                absolute
+            }
+        };
+        let mut inside = value;
+        if l.is_finite() {
+            inside = inside.max(l + margin(l));
+        }
+        if u.is_finite() {
+            inside = inside.min(u - margin(u));
+        }
+        inside
+    }
+}
+
+impl Iterate {
+    /// Complementarity products' right-hand sides: gradient of the barrier terms over w.
+    pub fn barrier_slope(&self, layout: &Layout, mu: f64) -> DVector<f64> {
+        let (below, above) = layout.distances(&self.point.x, &self.s);
+        DVector::from_fn(layout.len(), |i, _| {
+            let f = if i < layout.n { self.slopes.g[i] } else { 0.0 };
+            f - mu / below[i] + mu / above[i]
+        })
+    }
+
+    /// Jᵀ y over w: Aᵀ y for the variables, −y for the slacks.
+    pub fn row_force(&self, layout: &Layout) -> DVector<f64> {
+        let x = self.slopes.a.tr_mul(&self.y);
+        DVector::from_fn(layout.len(), |i, _| match layout.row_of(i) {
+            None => x[i],
+            Some(j) => -self.y[j],
+        })
+    }
+
+    /// Σ = z_L/(w − l) + z_U/(u − w).
+    pub fn sigma(&self, layout: &Layout) -> DVector<f64> {
+        let (below, above) = layout.distances(&self.point.x, &self.s);
+        DVector::from_fn(layout.len(), |i, _| {
+            self.zl[i] / below[i] + self.zu[i] / above[i]
+        })
+    }
+
+    /// Gradient of the Lagrangian over w.
+    pub fn lagrangian_slope(&self, layout: &Layout) -> DVector<f64> {
+        let mut slope = self.row_force(layout) - &self.zl + &self.zu;
+        for i in 0..layout.n {
+            slope[i] += self.slopes.g[i];
+        }
+        slope
+    }
+
+    /// Products of multipliers and distances, one per finite bound.
+    pub fn products(&self, layout: &Layout) -> Vec<f64> {
+        let (below, above) = layout.distances(&self.point.x, &self.s);
+        let lower = (0..layout.len()).map(|i| (below[i], self.zl[i]));
+        let upper = (0..layout.len()).map(|i| (above[i], self.zu[i]));
+        lower
+            .chain(upper)
+            .filter(|(d, _)| d.is_finite())
+            .map(|(d, z)| d * z)
+            .collect()
+    }
+
+    /// Residuals of the conditions perturbed by `mu`.
+    pub fn residuals(&self, layout: &Layout, mu: f64) -> Residuals {
+        let products = self.products(layout);
+        let bounds: f64 = self.zl.lp_norm(1) + self.zu.lp_norm(1);
+        let size = (self.y.len() + products.len()).max(1) as f64;
+        let scale_s = ((self.y.lp_norm(1) + bounds) / size).max(100.0) / 100.0;
+        let scale_c = (bounds / products.len().max(1) as f64).max(100.0) / 100.0;
+        let complementarity = products.iter().map(|p| (p - mu).abs()).fold(0.0, f64::max);
+        Residuals {
+            stationarity: self.lagrangian_slope(layout).amax() / scale_s,
+            violation: layout.residual(&self.point.c, &self.s).amax(),
+            complementarity: complementarity / scale_c,
+        }
+    }
+
+    /// Multipliers of the rows that minimise the norm of the gradient of the Lagrangian, or `None`
+    /// if their system cannot be solved.
+    pub fn least_squares_multipliers(&self, layout: &Layout) -> Option<DVector<f64>> {
+        let a = &self.slopes.a;
+        let m = a.nrows();
+        let force = |i: usize| self.zu[i] - self.zl[i];
+        let x = DVector::from_fn(layout.n, |i, _| self.slopes.g[i] + force(i));
+        let mut normal: DMatrix<f64> = a * a.transpose();
+        let mut rhs = -(a * x);
+        for (k, &j) in layout.slack_rows.iter().enumerate() {
+            normal[(j, j)] += 1.0;
+            rhs[j] += force(layout.n + k);
+        }
+        for j in 0..m {
+            normal[(j, j)] += 1e-12 * (1.0 + normal[(j, j)]);
+        }
+        let y = Cholesky::new(normal)?.solve(&rhs);
+        y.iter().all(|v| v.is_finite()).then_some(y)
+    }
+}

@@ -1,0 +1,224 @@
+//! Filter line search of the barrier problem (Wächter & Biegler 2006, section 2.3 and 2.4).
+
+use nalgebra::DVector;
+
+use super::direction::{Direction, NewtonSystem};
+use super::filter::{Filter, MARGIN};
+use super::iterate::{Iterate, Layout};
+use super::program::{Point, Program, Slopes, Trouble};
+use super::quasi_newton::QuasiNewton;
+
+const ARMIJO: f64 = 1e-4;
+/// Exponents of the switching condition, of the directional derivative and of the infeasibility.
+const SLOPE_POWER: f64 = 2.3;
+const THETA_POWER: f64 = 1.1;
+/// Share of the least sensible step at which the search gives up.
+const LEAST_STEP: f64 = 0.05;
+/// Second-order corrections tried, and the factor by which each must reduce the infeasibility.
+const CORRECTIONS: usize = 4;
+const CORRECTION_GAIN: f64 = 0.99;
+
+/// A point that the search accepted.
+pub(super) struct Accepted {
+    pub point: Point,
+    pub slopes: Slopes,
+    pub s: DVector<f64>,
+    pub alpha: f64,
+    /// The direction along which the point lies.
+    pub direction: Direction,
+    pub trials: usize,
+}
+
+/// Data of one search.
+pub(super) struct LineSearch<'s> {
+    pub layout: &'s Layout,
+    pub at: &'s Iterate,
+    pub system: &'s NewtonSystem,
+    pub mu: f64,
+    pub tau: f64,
+    /// Infeasibility below which the objective decides.
+    pub theta_small: f64,
+}
+
+enum Trial {
+    Accepted(Box<(Point, Slopes, DVector<f64>)>),
+    Refused { theta: f64, c: DVector<f64> },
+    Undefined,
+}
+
+struct Measure {
+    theta: f64,
+    phi: f64,
+    slope: f64,
+}
+
+impl LineSearch<'_> {
+    /// Searches along `direction`; `None` if the step becomes too small. The filter is augmented
+    /// when a step is accepted for its feasibility.
+    pub fn run(
+        &self,
+        program: &mut Program<'_>,
+        b: &mut QuasiNewton,
+        filter: &mut Filter,
+        direction: Direction,
+    ) -> Result<Option<Accepted>, Trouble> {
+        let r = self.layout.residual(&self.at.point.c, &self.at.s);
+        let here = Measure {
+            theta: r.lp_norm(1),
+            phi: self.layout.barrier_function(
+                self.at.point.f,
+                &self.at.point.x,
+                &self.at.s,
+                self.mu,
+            ),
+            slope: self.slope(&direction),
+        };
+        let longest = direction.primal_limit(self.at, self.layout, self.tau);
+        let least = self.least_step(&here).min(1e-3 * longest);
+        let mut alpha = longest;
+        let mut trials = 0;
+        while alpha >= least && alpha * direction.size() > 1e-16 * self.at.point.x.amax() {
+            trials += 1;
+            match self.attempt(program, filter, &here, &direction, alpha, alpha)? {
+                Trial::Accepted(found) => {
+                    return Ok(Some(
+                        self.accept(filter, &here, direction, *found, alpha, trials),
+                    ));
+                }
+                Trial::Refused { theta, c } if trials == 1 && theta >= here.theta => {
+                    let start = (alpha, theta, c);
+                    let corrected = self.correct(program, b, filter, &here, start, &mut trials)?;
+                    if corrected.is_some() {
+                        return Ok(corrected);
+                    }
+                }
+                Trial::Refused { .. } | Trial::Undefined => {}
+            }
+            alpha *= 0.5;
+        }
+        Ok(None)
+    }
+
+    fn slope(&self, direction: &Direction) -> f64 {
+        let slope = self.at.barrier_slope(self.layout, self.mu);
+        let n = self.layout.n;
+        slope.rows(0, n).dot(&direction.x) + slope.rows(n, slope.len() - n).dot(&direction.s)
+    }
+
+    fn least_step(&self, here: &Measure) -> f64 {
+        let m = -here.slope;
+        let mut least = MARGIN;
+        if m > 0.0 {
+            least = least.min(MARGIN * here.theta / m);
+            if here.theta <= self.theta_small {
+                least = least.min(here.theta.powf(THETA_POWER) / m.powf(SLOPE_POWER));
+            }
+        }
+        LEAST_STEP * least
+    }
+
+    /// Evaluates the point at `alpha`; the tests use `alpha_test`, which differs in corrections.
+    fn attempt(
+        &self,
+        program: &mut Program<'_>,
+        filter: &Filter,
+        here: &Measure,
+        direction: &Direction,
+        alpha: f64,
+        alpha_test: f64,
+    ) -> Result<Trial, Trouble> {
+        let x = &self.at.point.x + &direction.x * alpha;
+        let s = &self.at.s + &direction.s * alpha;
+        let point = match program.evaluate(&x) {
+            Ok(point) => point,
+            Err(Trouble::Failed(_)) => return Ok(Trial::Undefined),
+            Err(halt) => return Err(halt),
+        };
+        let r = self.layout.residual(&point.c, &s);
+        let theta = r.lp_norm(1);
+        let phi = self.layout.barrier_function(point.f, &x, &s, self.mu);
+        if !phi.is_finite() {
+            return Ok(Trial::Undefined);
+        }
+        if !(self.is_acceptable(here, theta, phi, alpha_test) && filter.accepts(theta, phi)) {
+            return Ok(Trial::Refused { theta, c: r });
+        }
+        match program.gradients(&x) {
+            Ok(slopes) => Ok(Trial::Accepted(Box::new((point, slopes, s)))),
+            Err(Trouble::Failed(_)) => Ok(Trial::Undefined),
+            Err(halt) => Err(halt),
+        }
+    }
+
+    fn is_acceptable(&self, here: &Measure, theta: f64, phi: f64, alpha: f64) -> bool {
+        let rounding = 10.0 * f64::EPSILON * here.phi.abs();
+        if self.decides_by_objective(here, alpha) {
+            return phi - here.phi - rounding <= ARMIJO * alpha * here.slope;
+        }
+        theta <= (1.0 - MARGIN) * here.theta || phi - rounding <= here.phi - MARGIN * here.theta
+    }
+
+    fn decides_by_objective(&self, here: &Measure, alpha: f64) -> bool {
+        here.slope < 0.0
+            && here.theta <= self.theta_small
+            && alpha * (-here.slope).powf(SLOPE_POWER) > here.theta.powf(THETA_POWER)
+    }
+
+    fn accept(
+        &self,
+        filter: &mut Filter,
+        here: &Measure,
+        direction: Direction,
+        (point, slopes, s): (Point, Slopes, DVector<f64>),
+        alpha: f64,
+        trials: usize,
+    ) -> Accepted {
+        if !self.decides_by_objective(here, alpha) {
+            filter.add(here.theta, here.phi);
+        }
+        Accepted {
+            point,
+            slopes,
+            s,
+            alpha,
+            direction,
+            trials,
+        }
+    }
+
+    /// Second-order correction: the rows are linearised about the values at the refused point.
+    fn correct(
+        &self,
+        program: &mut Program<'_>,
+        b: &mut QuasiNewton,
+        filter: &mut Filter,
+        here: &Measure,
+        (alpha_test, mut last, mut c): (f64, f64, DVector<f64>),
+        trials: &mut usize,
+    ) -> Result<Option<Accepted>, Trouble> {
+        let mut r = self.layout.residual(&self.at.point.c, &self.at.s);
+        let mut alpha = alpha_test;
+        for _ in 0..CORRECTIONS {
+            r = &r * alpha + &c;
+            let direction = self.system.step(self.at, self.layout, b, self.mu, &r);
+            if !direction.is_finite() {
+                return Ok(None);
+            }
+            alpha = direction.primal_limit(self.at, self.layout, self.tau);
+            *trials += 1;
+            match self.attempt(program, filter, here, &direction, alpha, alpha_test)? {
+                Trial::Accepted(found) => {
+                    return Ok(Some(
+                        self.accept(filter, here, direction, *found, alpha, *trials),
+                    ));
+                }
+                Trial::Refused { theta, c: next } if theta <= CORRECTION_GAIN * last => {
+                    last = theta;
+                    c = next;
+                }
+                Trial::Refused { .. } | Trial::Undefined => return Ok(None),
+            }
+        }
+        Ok(None)
+    }
+}

@@ -1,0 +1,29 @@
+//! Optimiser for smooth nonlinear programs of which only first derivatives are known.
+
+mod direction;
+mod elastic_qp;
+mod filter;
+mod interior_point;
+mod iterate;
+mod kkt_system;
+mod line_search;
+mod nlp;
+mod observer;
+mod options;
+mod outcome;
+mod program;
+mod quasi_newton;
+mod solve;
+mod state;
+mod trust_region;
+mod verdict;
+
+pub use nlp::{Evaluation, EvaluationFailure, Gradients, Nlp};
+pub use observer::{Observer, Phase, Row, Silent};
+pub use options::{Barrier, Method, Options};
+pub use outcome::{
+    ActiveBound, Counts, FailedDesign, Kkt, Multipliers, Outcome, Scaling, Side, Status,
+};
+pub use quasi_newton::QuasiNewton;
+pub use solve::{resume, solve};
+pub use state::SavedState;

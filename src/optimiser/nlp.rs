@@ -1,0 +1,142 @@
+//! The smooth nonlinear program that the optimiser solves.
+
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+/// A smooth nonlinear program, minimise f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
+///
+/// A row with c_L = c_U is an equality; an infinite bound is absent. Only first derivatives are
+/// asked for, and always at a point that was evaluated last or shortly before.
+pub trait Nlp {
+    /// Number of variables n.
+    fn variables(&self) -> usize;
+
+    /// Number of constraint rows m.
+    fn constraints(&self) -> usize;
+
+    /// Bounds x_L and x_U of the variables, each of length n.
+    fn variable_bounds(&self) -> (Vec<f64>, Vec<f64>);
+
+    /// Bounds c_L and c_U of the constraint rows, each of length m.
+    fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>);
+
+    /// Point from which to start, of length n; it need not respect the bounds.
+    fn start(&self) -> Vec<f64>;
+
+    /// Name of variable `i`, used in verdicts and warnings.
+    fn variable_name(&self, i: usize) -> String {
+        format!("x[{i}]")
+    }
+
+    /// Name of constraint row `j`, used in verdicts and warnings.
+    fn constraint_name(&self, j: usize) -> String {
+        format!("c[{j}]")
+    }
+
+    /// Objective and constraints at `x`.
+    ///
+    /// # Errors
+    /// [`EvaluationFailure`] where the functions are not defined or their simulation fails; the
+    /// optimiser then shortens its step. A value that is not finite is treated likewise.
+    fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure>;
+
+    /// Gradient of the objective and Jacobian of the constraints at `x`.
+    ///
+    /// # Errors
+    /// [`EvaluationFailure`] as for [`Nlp::evaluate`].
+    fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure>;
+}
+
+/// Values of the functions at one point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Evaluation {
+    /// Objective f.
+    pub objective: f64,
+    /// Constraint values c, of length m.
+    pub constraints: Vec<f64>,
+}
+
+/// First derivatives of the functions at one point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gradients {
+    /// Gradient ∇f, of length n.
+    pub objective: Vec<f64>,
+    /// Jacobian ∂c/∂x, m × n.
+    pub jacobian: DMatrix<f64>,
+}
+
+/// The functions could not be evaluated at a point.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
+#[error("{what} is not defined: {reason}")]
+pub struct EvaluationFailure {
+    /// Function that failed, by name.
+    pub what: String,
+    /// Why it failed.
+    pub reason: String,
+}
+
+/// Finds the first value that is not finite or the first length that is wrong.
+pub(super) fn fault_of_evaluation(nlp: &dyn Nlp, e: &Evaluation) -> Option<EvaluationFailure> {
+    if e.constraints.len() != nlp.constraints() {
+        return Some(wrong_length(
+            "constraints",
+            e.constraints.len(),
+            nlp.constraints(),
+        ));
+    }
+    if !e.objective.is_finite() {
+        return Some(not_finite("the objective".into(), e.objective));
+    }
+    let j = e.constraints.iter().position(|c| !c.is_finite())?;
+    Some(not_finite(nlp.constraint_name(j), e.constraints[j]))
+}
+
+/// As [`fault_of_evaluation`], for derivatives.
+pub(super) fn fault_of_gradients(nlp: &dyn Nlp, g: &Gradients) -> Option<EvaluationFailure> {
+    let (n, m) = (nlp.variables(), nlp.constraints());
+    if g.objective.len() != n {
+        return Some(wrong_length(
+            "gradient of the objective",
+            g.objective.len(),
+            n,
+        ));
+    }
+    if g.jacobian.shape() != (m, n) {
+        return Some(wrong_length("Jacobian", g.jacobian.len(), m * n));
+    }
+    if let Some(i) = g.objective.iter().position(|v| !v.is_finite()) {
+        let what = format!(
+            "the derivative of the objective in {}",
+            nlp.variable_name(i)
+        );
+        return Some(not_finite(what, g.objective[i]));
+    }
+    for i in 0..n {
+        for j in 0..m {
+            let value = g.jacobian[(j, i)];
+            if !value.is_finite() {
+                let (row, column) = (nlp.constraint_name(j), nlp.variable_name(i));
+                return Some(not_finite(
+                    format!("the derivative of {row} in {column}"),
+                    value,
+                ));
+            }
+        }
+    }
+    None
+}
+
+fn not_finite(what: String, value: f64) -> EvaluationFailure {
+    EvaluationFailure {
+        what,
+        reason: format!("its value is {value}"),
+    }
+}
+
+fn wrong_length(what: &str, found: usize, expected: usize) -> EvaluationFailure {
+    let reason = format!("it has {found} entries where {expected} are expected");
+    EvaluationFailure {
+        what: format!("the {what}"),
+        reason,
+    }
+}

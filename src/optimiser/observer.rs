@@ -1,0 +1,75 @@
+//! What the optimiser reports while it runs.
+
+use std::ops::ControlFlow;
+
+use serde::{Deserialize, Serialize};
+
+/// Part of the algorithm that made an iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Phase {
+    /// Interior-point iteration.
+    Regular,
+    /// Reduction of the constraint violation alone.
+    Restoration,
+    /// Trust-region iteration.
+    Sqp,
+}
+
+/// One iteration.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<'a> {
+    /// Number of the iteration; 0 is the start.
+    pub iteration: usize,
+    /// Objective, in the units of the user.
+    pub objective: f64,
+    /// Largest violation of a constraint or bound, in the units of the user.
+    pub infeasibility: f64,
+    /// Largest scaled KKT residual.
+    pub optimality: f64,
+    /// Barrier parameter; 0 in trust-region iterations.
+    pub barrier: f64,
+    /// Largest component of the step in scaled variables.
+    pub step: f64,
+    /// Regularisation of the linear system; radius of the trust region in its iterations.
+    pub regularisation: f64,
+    /// Fraction of the primal step that was taken.
+    pub primal_step: f64,
+    /// Fraction of the dual step that was taken.
+    pub dual_step: f64,
+    /// Points tried by the line search.
+    pub trials: usize,
+    /// Evaluations of the functions so far.
+    pub evaluations: usize,
+    /// Part of the algorithm.
+    pub phase: Phase,
+    /// The point, in the units of the user.
+    pub x: &'a [f64],
+}
+
+/// Receives every iteration and may stop the run.
+pub trait Observer {
+    /// Called after each iteration and once at the start; `Break` ends the run as interrupted.
+    fn iteration(&mut self, row: &Row<'_>) -> ControlFlow<()>;
+}
+
+/// Observer that ignores what it is told.
+///
+/// ```
+/// use flexbody::optimiser::{Observer, Phase, Row, Silent};
+/// let x = [1.0];
+/// let row = Row {
+///     iteration: 0, objective: 2.0, infeasibility: 0.0, optimality: 1.0, barrier: 0.1,
+///     step: 0.0, regularisation: 0.0, primal_step: 0.0, dual_step: 0.0, trials: 0,
+///     evaluations: 1, phase: Phase::Regular, x: &x,
+/// };
+/// assert!(Silent.iteration(&row).is_continue());
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Observer for Silent {
+    fn iteration(&mut self, _row: &Row<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,88 @@
+//! Settings of the optimiser.
+
+use serde::{Deserialize, Serialize};
+
+/// Algorithm by which the program is solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Primal–dual interior point with a filter line search.
+    #[default]
+    InteriorPoint,
+    /// Trust-region sequential quadratic programming with elastic subproblems.
+    TrustRegion,
+    /// Interior point; the trust region continues from its best point where it does not converge.
+    Auto,
+}
+
+/// Rule by which the barrier parameter falls.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Barrier {
+    /// Fiacco–McCormick: constant until its subproblem is solved, then superlinearly smaller.
+    Monotone,
+    /// Chosen at each iteration from a predictor step, monotone where that makes no progress.
+    #[default]
+    Adaptive,
+}
+
+/// Settings of [`solve`](super::solve).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// Algorithm (default interior point).
+    pub method: Method,
+    /// Largest scaled KKT residual of a solution, and the largest relative residual in the units
+    /// of the user (default 1e-6).
+    pub tolerance: f64,
+    /// Largest violation of a constraint of a solution, in the units of the user (default 1e-6).
+    pub constraint_tolerance: f64,
+    /// Iterations allowed (default 500).
+    pub max_iterations: usize,
+    /// Evaluations of the functions allowed (default 3000).
+    pub max_evaluations: usize,
+    /// Wall time allowed [s] (default unlimited).
+    pub max_seconds: Option<f64>,
+    /// An objective below this, at a feasible point, is called unbounded (default −1e20).
+    pub unbounded_below: f64,
+    /// Largest gradient, at the start, that is left unscaled (default 100).
+    pub scaling_gradient: f64,
+    /// Divide each variable that has two bounds by their distance (default false).
+    pub scale_variables: bool,
+    /// Rule for the barrier parameter (default adaptive).
+    pub barrier: Barrier,
+    /// First barrier parameter (default 0.1).
+    pub initial_barrier: f64,
+    /// Least distance of the start from a bound, relative to max(1, |bound|) and to the distance
+    /// of the two bounds (default 1e-2).
+    pub bound_push: f64,
+    /// Number of variables above which the quasi-Newton matrix is kept in limited memory
+    /// (default 300).
+    pub dense_limit: usize,
+    /// Pairs of steps and gradient differences kept in limited memory (default 30).
+    pub memory: usize,
+    /// First radius of the trust region in scaled variables (default 1).
+    pub initial_radius: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            tolerance: 1e-6,
+            constraint_tolerance: 1e-6,
+            max_iterations: 500,
+            max_evaluations: 3000,
+            max_seconds: None,
+            unbounded_below: -1e20,
+            scaling_gradient: 100.0,
+            scale_variables: false,
+            barrier: Barrier::default(),
+            initial_barrier: 0.1,
+            bound_push: 1e-2,
+            dense_limit: 300,
+            memory: 30,
+            initial_radius: 1.0,
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! How a run ended, and what it found.
+
+use serde::{Deserialize, Serialize};
+
+use super::state::SavedState;
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// The point satisfies the first-order conditions to the tolerances, in scaled units and in
+    /// those of the user.
+    Converged,
+    /// The point is a stationary point of the constraint violation and not feasible.
+    Infeasible {
+        /// Name of the constraint that is violated most.
+        constraint: String,
+        /// Its violation at the point, in its own units.
+        violation: f64,
+    },
+    /// The objective falls below every bound along feasible points.
+    Unbounded,
+    /// A function is not defined at the start nor at perturbed starts.
+    UndefinedStart {
+        /// Which function, and why.
+        what: String,
+    },
+    /// No step makes progress although the conditions are not met; the best point is returned.
+    Stalled,
+    /// The limit of iterations was reached.
+    IterationLimit,
+    /// The limit of evaluations was reached.
+    EvaluationLimit,
+    /// The limit of wall time was reached.
+    TimeLimit,
+    /// The observer asked to stop.
+    Interrupted,
+}
+
+/// Lagrange multipliers in the units of the user.
+///
+/// They satisfy ∇f + (∂c/∂x)ᵀ y − z_L + z_U = 0 with z_L, z_U ≥ 0. Hence moving the active bound
+/// of constraint j up by one unit changes the least objective by −y_j, moving an active lower
+/// bound of variable i by z_Li, and moving an active upper one by −z_Ui.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Multipliers {
+    /// y, one per constraint row: positive where the upper bound is active, negative where the
+    /// lower one is.
+    pub constraints: Vec<f64>,
+    /// z_L, one per variable.
+    pub lower_bounds: Vec<f64>,
+    /// z_U, one per variable.
+    pub upper_bounds: Vec<f64>,
+}
+
+/// Residuals of the Karush–Kuhn–Tucker conditions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Kkt {
+    /// Largest violation of a constraint row or bound, in the units of the user.
+    pub violation: f64,
+    /// Largest |∇f + Jᵀy − z_L + z_U|, in the units of the user.
+    pub stationarity: f64,
+    /// `stationarity` divided by max(1, ‖∇f‖∞, largest term of Jᵀy).
+    pub relative_stationarity: f64,
+    /// Largest product of a multiplier and the distance to its bound, in units of the objective.
+    pub complementarity: f64,
+    /// `complementarity` divided by max(1, |f|).
+    pub relative_complementarity: f64,
+    /// Largest residual in the scaled units in which the iteration runs.
+    pub scaled: f64,
+}
+
+/// Work done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Counts {
+    /// Iterations of either method.
+    pub iterations: usize,
+    /// Evaluations of the functions.
+    pub evaluations: usize,
+    /// Evaluations of the gradients.
+    pub gradients: usize,
+    /// Evaluations, of functions or gradients, that failed or were not finite.
+    pub failures: usize,
+    /// Quadratic programs solved.
+    pub quadratic_programs: usize,
+    /// Wall time spent in the quadratic programs [s].
+    pub quadratic_program_seconds: f64,
+    /// Wall time spent in evaluating functions and gradients [s].
+    pub evaluation_seconds: f64,
+    /// Wall time of the run [s].
+    pub seconds: f64,
+}
+
+/// A design at which the functions or their gradients could not be evaluated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FailedDesign {
+    /// The design.
+    pub x: Vec<f64>,
+    /// What failed, and why.
+    pub what: String,
+}
+
+/// Bound of a variable or a constraint that is active at the solution.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ActiveBound {
+    /// Name of the variable or constraint.
+    pub name: String,
+    /// Which bound.
+    pub side: Side,
+    /// Multiplier, never negative, in the units of the user.
+    pub multiplier: f64,
+}
+
+/// Side of a pair of bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Lower bound.
+    Lower,
+    /// Upper bound.
+    Upper,
+    /// Both bounds coincide.
+    Equal,
+}
+
+/// Scale factors chosen at the start, and what looks suspicious in the derivatives there.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Scaling {
+    /// Factor of the objective.
+    pub objective: f64,
+    /// Factor of each constraint row.
+    pub constraints: Vec<f64>,
+    /// Length of one scaled unit of each variable, in the units of the user.
+    pub variables: Vec<f64>,
+    /// Norm ‖∇f‖∞ at the start, in the units of the user.
+    pub objective_gradient: f64,
+    /// Norm ‖∇c_j‖∞ of each row at the start, in the units of the user.
+    pub constraint_gradients: Vec<f64>,
+    /// Constraints whose gradient is zero at the start, by name.
+    pub zero_rows: Vec<String>,
+    /// Variables on which neither objective nor constraints depend at the start, by name.
+    pub zero_columns: Vec<String>,
+}
+
+/// What a run found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// How the run ended.
+    pub status: Status,
+    /// The best point.
+    pub x: Vec<f64>,
+    /// Objective there.
+    pub objective: f64,
+    /// Constraint values there.
+    pub constraints: Vec<f64>,
+    /// Multipliers there.
+    pub multipliers: Multipliers,
+    /// Residuals there.
+    pub kkt: Kkt,
+    /// Variables at a bound.
+    pub active_bounds: Vec<ActiveBound>,
+    /// Constraints at a bound.
+    pub active_constraints: Vec<ActiveBound>,
+    /// Work done.
+    pub counts: Counts,
+    /// Designs at which an evaluation failed, the first hundred of them.
+    pub failed_designs: Vec<FailedDesign>,
+    /// Scale factors and warnings about derivatives.
+    pub scaling: Scaling,
+    /// What a later run needs to continue from here.
+    pub state: Option<SavedState>,
+}
+
+impl Outcome {
+    /// Whether the run ended at a point that satisfies the first-order conditions.
+    #[must_use]
+    pub fn converged(&self) -> bool {
+        self.status == Status::Converged
+    }
+}

@@ -1,0 +1,372 @@
+//! The program as the algorithms see it: scaled, without fixed variables and free rows, counted,
+//! and with every failure recorded.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::nlp::{
+    Evaluation, EvaluationFailure, Gradients, Nlp, fault_of_evaluation, fault_of_gradients,
+};
+use super::observer::{Observer, Phase, Row};
+use super::options::Options;
+use super::outcome::{Counts, FailedDesign, Scaling, Status};
+
+/// Most designs kept of those at which an evaluation failed.
+const FAILED_DESIGNS_KEPT: usize = 100;
+
+/// Values of the scaled functions at a scaled point.
+#[derive(Clone, Debug)]
+pub(super) struct Point {
+    pub x: DVector<f64>,
+    pub f: f64,
+    pub c: DVector<f64>,
+}
+
+/// Derivatives of the scaled functions.
+#[derive(Clone, Debug)]
+pub(super) struct Slopes {
+    pub g: DVector<f64>,
+    pub a: DMatrix<f64>,
+}
+
+/// Why no value came back.
+#[derive(Clone, Debug)]
+pub(super) enum Trouble {
+    /// The functions are not defined here; another point may do.
+    Failed(EvaluationFailure),
+    /// The run must end.
+    Halt(Status),
+}
+
+/// What an iteration reports beyond the point itself.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Progress {
+    pub optimality: f64,
+    pub barrier: f64,
+    pub step: f64,
+    pub regularisation: f64,
+    pub primal_step: f64,
+    pub dual_step: f64,
+    pub trials: usize,
+    pub phase: Phase,
+}
+
+/// The scaled program.
+pub(super) struct Program<'a> {
+    nlp: &'a mut dyn Nlp,
+    observer: &'a mut dyn Observer,
+    pub options: &'a Options,
+    /// Variables whose bounds differ.
+    pub free: Vec<usize>,
+    /// Rows that have at least one bound.
+    pub rows: Vec<usize>,
+    /// Bounds of the scaled variables and rows.
+    pub lower: DVector<f64>,
+    pub upper: DVector<f64>,
+    pub row_lower: DVector<f64>,
+    pub row_upper: DVector<f64>,
+    user_row_lower: Vec<f64>,
+    user_row_upper: Vec<f64>,
+    template: Vec<f64>,
+    pub scaling: Scaling,
+    pub counts: Counts,
+    pub failed: Vec<FailedDesign>,
+    started: Instant,
+}
+
+impl<'a> Program<'a> {
+    /// Takes the bounds from `nlp`; scale factors are 1 until [`Program::scale`] is called.
+    pub fn new(
+        nlp: &'a mut dyn Nlp,
+        options: &'a Options,
+        observer: &'a mut dyn Observer,
+    ) -> Program<'a> {
+        let (lower, upper) = nlp.variable_bounds();
+        let (row_lower, row_upper) = nlp.constraint_bounds();
+        let (n, m) = (nlp.variables(), nlp.constraints());
+        let free: Vec<usize> = (0..n).filter(|&i| lower[i] < upper[i]).collect();
+        let rows: Vec<usize> = (0..m)
+            .filter(|&j| row_lower[j].is_finite() || row_upper[j].is_finite())
+            .collect();
+        let mut template = nlp.start();
+        for i in 0..n {
+            template[i] = template[i].clamp(lower[i], upper[i].max(lower[i]));
+        }
+        let mut scaling = Scaling {
+            objective: 1.0,
+            constraints: vec![1.0; m],
+            variables: vec![1.0; n],
+            ..Scaling::default()
+        };
+        if options.scale_variables {
+            for &i in &free {
+                let width = upper[i] - lower[i];
+                if width.is_finite() {
+                    scaling.variables[i] = width;
+                }
+            }
+        }
+        let pick = |v: &[f64], index: &[usize]| {
+            DVector::from_iterator(index.len(), index.iter().map(|&i| v[i]))
+        };
+        let unit = |i: usize| scaling.variables[i];
+        let scaled =
+            |v: &[f64]| DVector::from_iterator(free.len(), free.iter().map(|&i| v[i] / unit(i)));
+        Program {
+            lower: scaled(&lower),
+            upper: scaled(&upper),
+            row_lower: pick(&row_lower, &rows),
+            row_upper: pick(&row_upper, &rows),
+            user_row_lower: row_lower,
+            user_row_upper: row_upper,
+            nlp,
+            observer,
+            options,
+            free,
+            rows,
+            template,
+            scaling,
+            counts: Counts::default(),
+            failed: Vec::new(),
+            started: Instant::now(),
+        }
+    }
+
+    /// Scaled start of the user.
+    pub fn start(&self) -> DVector<f64> {
+        self.to_scaled(&self.template)
+    }
+
+    /// Scaled free variables of a point of the user.
+    pub fn to_scaled(&self, x: &[f64]) -> DVector<f64> {
+        let unit = |&i: &usize| x[i] / self.scaling.variables[i];
+        DVector::from_iterator(self.free.len(), self.free.iter().map(unit))
+    }
+
+    /// Point of the user, with the fixed variables; never outside the bounds by rounding.
+    pub fn to_user(&self, x: &DVector<f64>) -> Vec<f64> {
+        let mut full = self.template.clone();
+        for (k, &i) in self.free.iter().enumerate() {
+            full[i] = x[k] * self.scaling.variables[i];
+        }
+        full
+    }
+
+    /// Sets the scale factors of functions from unscaled derivatives `slopes` and rescales both.
+    pub fn scale(&mut self, point: &mut Point, slopes: &mut Slopes) {
+        let limit = self.options.scaling_gradient;
+        let norm = slopes.g.amax();
+        self.scaling.objective = if norm > limit { limit / norm } else { 1.0 };
+        for (k, &j) in self.rows.iter().enumerate() {
+            let norm = slopes.a.row(k).amax();
+            self.scaling.constraints[j] = if norm > limit {
+                (limit / norm).max(1e-8)
+            } else {
+                1.0
+            };
+        }
+        self.apply_scaling(point, slopes);
+    }
+
+    /// Uses scale factors of an earlier run.
+    pub fn adopt_scaling(&mut self, saved: &Scaling, point: &mut Point, slopes: &mut Slopes) {
+        self.scaling.objective = saved.objective;
+        self.scaling.constraints.clone_from(&saved.constraints);
+        self.apply_scaling(point, slopes);
+    }
+
+    fn apply_scaling(&mut self, point: &mut Point, slopes: &mut Slopes) {
+        point.f *= self.scaling.objective;
+        slopes.g *= self.scaling.objective;
+        for (k, &j) in self.rows.iter().enumerate() {
+            let factor = self.scaling.constraints[j];
+            self.row_lower[k] *= factor;
+            self.row_upper[k] *= factor;
+            point.c[k] *= factor;
+            slopes.a.row_mut(k).scale_mut(factor);
+        }
+    }
+
+    /// Records gradients and zero rows and columns for the scaling report, before scaling.
+    pub fn survey(&mut self, slopes: &Slopes) {
+        let unit = |k: usize| self.scaling.variables[self.free[k]];
+        let in_user_units = |v: f64, k: usize| (v / unit(k)).abs();
+        let n = self.free.len();
+        self.scaling.objective_gradient = (0..n)
+            .map(|k| in_user_units(slopes.g[k], k))
+            .fold(0.0, f64::max);
+        self.scaling.constraint_gradients = vec![0.0; self.scaling.constraints.len()];
+        for (r, &j) in self.rows.iter().enumerate() {
+            let norm = (0..n)
+                .map(|k| in_user_units(slopes.a[(r, k)], k))
+                .fold(0.0, f64::max);
+            self.scaling.constraint_gradients[j] = norm;
+            if norm == 0.0 {
+                self.scaling.zero_rows.push(self.nlp.constraint_name(j));
+            }
+        }
+        for k in 0..n {
+            if slopes.g[k] == 0.0 && slopes.a.column(k).iter().all(|v| *v == 0.0) {
+                self.scaling
+                    .zero_columns
+                    .push(self.nlp.variable_name(self.free[k]));
+            }
+        }
+    }
+
+    /// Values of the scaled functions at `x`.
+    pub fn evaluate(&mut self, x: &DVector<f64>) -> Result<Point, Trouble> {
+        self.check_limits()?;
+        let full = self.to_user(x);
+        let clock = Instant::now();
+        let mut result = self.nlp.evaluate(&full);
+        self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
+        self.counts.evaluations += 1;
+        if let Ok(e) = &result {
+            if let Some(fault) = fault_of_evaluation(self.nlp, e) {
+                result = Err(fault);
+            }
+        }
+        let Evaluation {
+            objective,
+            constraints,
+        } = result.map_err(|failure| self.record(full, failure))?;
+        let c = self
+            .rows
+            .iter()
+            .map(|&j| constraints[j] * self.scaling.constraints[j]);
+        let c = DVector::from_iterator(self.rows.len(), c);
+        Ok(Point {
+            x: x.clone(),
+            f: objective * self.scaling.objective,
+            c,
+        })
+    }
+
+    /// Derivatives of the scaled functions at `x`.
+    pub fn gradients(&mut self, x: &DVector<f64>) -> Result<Slopes, Trouble> {
+        let full = self.to_user(x);
+        let clock = Instant::now();
+        let mut result = self.nlp.gradients(&full);
+        self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
+        self.counts.gradients += 1;
+        if let Ok(g) = &result {
+            if let Some(fault) = fault_of_gradients(self.nlp, g) {
+                result = Err(fault);
+            }
+        }
+        let Gradients {
+            objective,
+            jacobian,
+        } = result.map_err(|failure| self.record(full, failure))?;
+        let (free, rows, scaling) = (&self.free, &self.rows, &self.scaling);
+        let g = free
+            .iter()
+            .map(|&i| objective[i] * scaling.objective * scaling.variables[i]);
+        let g = DVector::from_iterator(free.len(), g);
+        let a = DMatrix::from_fn(rows.len(), free.len(), |r, k| {
+            let (j, i) = (rows[r], free[k]);
+            jacobian[(j, i)] * scaling.constraints[j] * scaling.variables[i]
+        });
+        Ok(Slopes { g, a })
+    }
+
+    fn record(&mut self, x: Vec<f64>, failure: EvaluationFailure) -> Trouble {
+        self.counts.failures += 1;
+        if self.failed.len() < FAILED_DESIGNS_KEPT {
+            self.failed.push(FailedDesign {
+                x,
+                what: failure.to_string(),
+            });
+        }
+        Trouble::Failed(failure)
+    }
+
+    fn check_limits(&self) -> Result<(), Trouble> {
+        if self.counts.evaluations >= self.options.max_evaluations {
+            return Err(Trouble::Halt(Status::EvaluationLimit));
+        }
+        match self.options.max_seconds {
+            Some(limit) if self.seconds() >= limit => Err(Trouble::Halt(Status::TimeLimit)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Wall time since the start of the run [s].
+    pub fn seconds(&self) -> f64 {
+        self.started.elapsed().as_secs_f64()
+    }
+
+    /// Largest violation of a row, in the units of the user, and the row's index there.
+    pub fn worst_violation(&self, c: &DVector<f64>) -> (f64, usize) {
+        let mut worst = (0.0, self.rows.first().copied().unwrap_or(0));
+        for (k, &j) in self.rows.iter().enumerate() {
+            let value = c[k] / self.scaling.constraints[j];
+            let violation = (self.user_row_lower[j] - value)
+                .max(value - self.user_row_upper[j])
+                .max(0.0);
+            if violation > worst.0 {
+                worst = (violation, j);
+            }
+        }
+        worst
+    }
+
+    /// Sum of the violations of the scaled rows.
+    pub fn total_violation(&self, c: &DVector<f64>) -> f64 {
+        (0..c.len()).map(|k| self.row_violation(c, k)).sum()
+    }
+
+    /// Violation of scaled row `k`.
+    pub fn row_violation(&self, c: &DVector<f64>, k: usize) -> f64 {
+        (self.row_lower[k] - c[k])
+            .max(c[k] - self.row_upper[k])
+            .max(0.0)
+    }
+
+    /// Name of constraint `j` of the user.
+    pub fn constraint_name(&self, j: usize) -> String {
+        self.nlp.constraint_name(j)
+    }
+
+    /// The program of the user.
+    pub fn nlp(&self) -> &dyn Nlp {
+        self.nlp
+    }
+
+    /// Tells the observer of an iteration.
+    pub fn report(&mut self, point: &Point, progress: &Progress) -> Result<(), Trouble> {
+        let x = self.to_user(&point.x);
+        let row = Row {
+            iteration: self.counts.iterations,
+            objective: point.f / self.scaling.objective,
+            infeasibility: self.worst_violation(&point.c).0,
+            optimality: progress.optimality,
+            barrier: progress.barrier,
+            step: progress.step,
+            regularisation: progress.regularisation,
+            primal_step: progress.primal_step,
+            dual_step: progress.dual_step,
+            trials: progress.trials,
+            evaluations: self.counts.evaluations,
+            phase: progress.phase,
+            x: &x,
+        };
+        match self.observer.iteration(&row) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(Trouble::Halt(Status::Interrupted)),
+        }
+    }
+
+    /// Counts an iteration and checks the limits before it.
+    pub fn next_iteration(&mut self) -> Result<(), Trouble> {
+        self.check_limits()?;
+        if self.counts.iterations >= self.options.max_iterations {
+            return Err(Trouble::Halt(Status::IterationLimit));
+        }
+        self.counts.iterations += 1;
+        Ok(())
+    }
+}

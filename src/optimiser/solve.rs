@@ -1,0 +1,374 @@
+//! Start, choice of method, and verdict of a run.
+
+use nalgebra::DVector;
+
+use super::interior_point::InteriorPoint;
+use super::nlp::{EvaluationFailure, Nlp};
+use super::observer::{Observer, Phase};
+use super::options::{Method, Options};
+use super::outcome::{Kkt, Outcome, Status};
+use super::program::{Point, Program, Progress, Slopes, Trouble};
+use super::quasi_newton::QuasiNewton;
+use super::state::SavedState;
+use super::trust_region::{Ending, Goal, TrustRegion};
+use super::verdict::{
+    ScaledMultipliers, active, is_solved, kkt, scaled_multipliers, user_multipliers,
+};
+
+/// Starts tried where the functions are not defined.
+const START_TRIALS: usize = 12;
+
+/// Minimises f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
+///
+/// ```
+/// use flexbody::optimiser::{solve, Evaluation, EvaluationFailure, Gradients, Nlp, Options, Silent};
+/// use nalgebra::dmatrix;
+///
+/// /// Minimise (x − 2)² + y² subject to x² + y² ≤ 1.
+/// struct Disc;
+///
+/// impl Nlp for Disc {
+///     fn variables(&self) -> usize { 2 }
+///     fn constraints(&self) -> usize { 1 }
+///     fn variable_bounds(&self) -> (Vec<f64>, Vec<f64>) {
+///         (vec![f64::NEG_INFINITY; 2], vec![f64::INFINITY; 2])
+///     }
+///     fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>) {
+///         (vec![f64::NEG_INFINITY], vec![1.0])
+///     }
+///     fn start(&self) -> Vec<f64> { vec![0.0, 0.5] }
+///     fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
+///         let objective = (x[0] - 2.0).powi(2) + x[1] * x[1];
+///         Ok(Evaluation { objective, constraints: vec![x[0] * x[0] + x[1] * x[1]] })
+///     }
+///     fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
+///         let objective = vec![2.0 * (x[0] - 2.0), 2.0 * x[1]];
+///         Ok(Gradients { objective, jacobian: dmatrix![2.0 * x[0], 2.0 * x[1]] })
+///     }
+/// }
+///
+/// let outcome = solve(&mut Disc, &Options::default(), &mut Silent);
+/// assert!(outcome.converged());
+/// assert!((outcome.x[0] - 1.0).abs() < 1e-6);
+/// assert!((outcome.multipliers.constraints[0] - 1.0).abs() < 1e-4);
+/// ```
+pub fn solve(nlp: &mut dyn Nlp, options: &Options, observer: &mut dyn Observer) -> Outcome {
+    run(nlp, options, observer, None)
+}
+
+/// As [`solve`], continuing from the point, multipliers and quasi-Newton matrix of an earlier run.
+///
+/// A state that does not fit the program, because the number of variables or constraints has
+/// changed, gives its point as far as it goes and is ignored otherwise.
+pub fn resume(
+    nlp: &mut dyn Nlp,
+    options: &Options,
+    observer: &mut dyn Observer,
+    saved: &SavedState,
+) -> Outcome {
+    run(nlp, options, observer, Some(saved))
+}
+
+/// Where a method ended.
+struct Finish {
+    status: Status,
+    point: Point,
+    slopes: Slopes,
+    multipliers: ScaledMultipliers,
+    scaled: f64,
+    b: QuasiNewton,
+    barrier: f64,
+    radius: f64,
+}
+
+fn run(
+    nlp: &mut dyn Nlp,
+    options: &Options,
+    observer: &mut dyn Observer,
+    saved: Option<&SavedState>,
+) -> Outcome {
+    let mut program = Program::new(nlp, options, observer);
+    let (mut point, mut slopes) = match first_point(&mut program) {
+        Ok(first) => first,
+        Err(Trouble::Halt(status)) => return without_values(&program, status),
+        Err(Trouble::Failed(failure)) => {
+            return without_values(
+                &program,
+                Status::UndefinedStart {
+                    what: failure.to_string(),
+                },
+            );
+        }
+    };
+    program.survey(&slopes);
+    let saved = saved.filter(|s| s.scaling.constraints.len() == program.scaling.constraints.len());
+    match saved {
+        Some(saved) => program.adopt_scaling(&saved.scaling, &mut point, &mut slopes),
+        None => program.scale(&mut point, &mut slopes),
+    }
+    let progress = Progress {
+        optimality: f64::NAN,
+        barrier: options.initial_barrier,
+        step: 0.0,
+        regularisation: 0.0,
+        primal_step: 0.0,
+        dual_step: 0.0,
+        trials: 0,
+        phase: if options.method == Method::TrustRegion {
+            Phase::Sqp
+        } else {
+            Phase::Regular
+        },
+    };
+    let interrupted = program.report(&point, &progress).is_err();
+    let finish = match options.method {
+        _ if interrupted => unfinished(&program, point, slopes),
+        Method::InteriorPoint => interior_point(&mut program, point, slopes, saved),
+        Method::TrustRegion => trust_region(&mut program, point, slopes, saved),
+        Method::Auto => {
+            let first = interior_point(&mut program, point, slopes, saved);
+            if first.status == Status::Stalled {
+                trust_region(&mut program, first.point, first.slopes, None)
+            } else {
+                first
+            }
+        }
+    };
+    outcome(&program, finish)
+}
+
+/// Evaluates the start, moved into the interior of the bounds, or points near it.
+fn first_point(program: &mut Program<'_>) -> Result<(Point, Slopes), Trouble> {
+    let start = program.start();
+    let mut first_failure: Option<EvaluationFailure> = None;
+    for trial in 0..START_TRIALS {
+        let x = perturbed(program, &start, trial);
+        let tried = program
+            .evaluate(&x)
+            .and_then(|p| program.gradients(&x).map(|s| (p, s)));
+        match tried {
+            Ok(found) => return Ok(found),
+            Err(Trouble::Failed(failure)) => {
+                first_failure.get_or_insert(failure);
+            }
+            Err(halt) => return Err(halt),
+        }
+    }
+    let missing = EvaluationFailure {
+        what: "the start".into(),
+        reason: "no trial".into(),
+    };
+    Err(Trouble::Failed(first_failure.unwrap_or(missing)))
+}
+
+/// The start for `trial` 0, then points at growing distances in alternating directions.
+fn perturbed(program: &Program<'_>, start: &DVector<f64>, trial: usize) -> DVector<f64> {
+    let options = program.options;
+    DVector::from_fn(start.len(), |i, _| {
+        let (l, u) = (program.lower[i], program.upper[i]);
+        let width = u - l;
+        let margin = |bound: f64| {
+            let absolute = options.bound_push * bound.abs().max(1.0);
+            if width.is_finite() {
+                absolute.min(options.bound_push.min(0.49) * width)
+            } else {
+                absolute
+            }
+        };
+        // Weyl sequence: spreads the directions without a random generator.
+        let phase = ((trial * (i + 1)) as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        let reach = if width.is_finite() {
+            width
+        } else {
+            start[i].abs().max(1.0)
+        };
+        let shift = if trial == 0 {
+            0.0
+        } else {
+            reach * phase * (trial as f64 / 6.0).min(1.0)
+        };
+        let mut x = start[i] + shift;
+        if options.method != Method::TrustRegion || trial > 0 {
+            x = if l.is_finite() {
+                x.max(l + margin(l))
+            } else {
+                x
+            };
+            x = if u.is_finite() {
+                x.min(u - margin(u))
+            } else {
+                x
+            };
+        }
+        x
+    })
+}
+
+fn interior_point(
+    program: &mut Program<'_>,
+    point: Point,
+    slopes: Slopes,
+    saved: Option<&SavedState>,
+) -> Finish {
+    let mut method = InteriorPoint::new(program, point, slopes);
+    if let Some(saved) = saved {
+        let multipliers = scaled_multipliers(program, &saved.multipliers);
+        method.adopt(&multipliers, saved.quasi_newton.clone(), saved.barrier);
+    }
+    let result = method.run(program);
+    let status = status_of(program, result, &method.at.point);
+    Finish {
+        status,
+        multipliers: method.multipliers(program),
+        scaled: method.optimality(),
+        point: method.at.point,
+        slopes: method.at.slopes,
+        b: method.b,
+        barrier: method.mu,
+        radius: program.options.initial_radius,
+    }
+}
+
+fn trust_region(
+    program: &mut Program<'_>,
+    point: Point,
+    slopes: Slopes,
+    saved: Option<&SavedState>,
+) -> Finish {
+    let mut method = TrustRegion::new(program, point, slopes, Goal::Optimum);
+    if let Some(saved) = saved {
+        method.y = scaled_multipliers(program, &saved.multipliers).y;
+        if saved.quasi_newton.order() == method.b.order() {
+            method.b = saved.quasi_newton.clone();
+        }
+        method.radius = saved.radius;
+    }
+    let result = method.run(program, |_, _| false);
+    let status = status_of(program, result, &method.point);
+    Finish {
+        status,
+        multipliers: method.multipliers(program),
+        scaled: method.optimality(program),
+        point: method.point,
+        slopes: method.slopes,
+        b: method.b,
+        barrier: program.options.initial_barrier,
+        radius: method.radius,
+    }
+}
+
+/// The start, where the observer asked to stop at once.
+fn unfinished(program: &Program<'_>, point: Point, slopes: Slopes) -> Finish {
+    let y = DVector::zeros(point.c.len());
+    let multipliers = ScaledMultipliers::from_rows(program, &point, &slopes, y);
+    let options = program.options;
+    Finish {
+        status: Status::Interrupted,
+        b: QuasiNewton::new(point.x.len(), options.dense_limit, options.memory),
+        scaled: f64::NAN,
+        multipliers,
+        point,
+        slopes,
+        barrier: options.initial_barrier,
+        radius: options.initial_radius,
+    }
+}
+
+fn status_of(program: &Program<'_>, result: Result<Ending, Trouble>, at: &Point) -> Status {
+    match result {
+        Ok(Ending::Reached) => Status::Converged,
+        Ok(Ending::Unbounded) => Status::Unbounded,
+        Ok(Ending::Infeasible) => {
+            let (violation, j) = program.worst_violation(&at.c);
+            Status::Infeasible {
+                constraint: program.constraint_name(j),
+                violation,
+            }
+        }
+        Ok(Ending::Stalled) | Err(Trouble::Failed(_)) => Status::Stalled,
+        Err(Trouble::Halt(status)) => status,
+    }
+}
+
+fn outcome(program: &Program<'_>, finish: Finish) -> Outcome {
+    let Finish {
+        mut status,
+        point,
+        slopes,
+        multipliers,
+        scaled,
+        b,
+        barrier,
+        radius,
+    } = finish;
+    let kkt = kkt(program, &point, &slopes, &multipliers, scaled);
+    // A method that can go no further has converged if the conditions hold all the same.
+    if matches!(status, Status::Converged | Status::Stalled) {
+        let solved = is_solved(&kkt, program.options);
+        status = if solved {
+            Status::Converged
+        } else {
+            Status::Stalled
+        };
+    }
+    let x = program.to_user(&point.x);
+    let mut constraints = vec![0.0; program.scaling.constraints.len()];
+    for (k, &j) in program.rows.iter().enumerate() {
+        constraints[j] = point.c[k] / program.scaling.constraints[j];
+    }
+    let user = user_multipliers(program, &multipliers);
+    let nlp = program.nlp();
+    let (lower, upper) = nlp.variable_bounds();
+    let (row_lower, row_upper) = nlp.constraint_bounds();
+    let of_bound = |i: usize| (user.lower_bounds[i], user.upper_bounds[i]);
+    let of_row = |j: usize| {
+        (
+            (-user.constraints[j]).max(0.0),
+            user.constraints[j].max(0.0),
+        )
+    };
+    let mut counts = program.counts;
+    counts.seconds = program.seconds();
+    Outcome {
+        status,
+        objective: point.f / program.scaling.objective,
+        active_bounds: active(&x, (&lower, &upper), of_bound, |i| nlp.variable_name(i)),
+        active_constraints: active(&constraints, (&row_lower, &row_upper), of_row, |j| {
+            nlp.constraint_name(j)
+        }),
+        kkt,
+        counts,
+        failed_designs: program.failed.clone(),
+        scaling: program.scaling.clone(),
+        state: Some(SavedState {
+            x: x.clone(),
+            multipliers: user.clone(),
+            scaling: program.scaling.clone(),
+            quasi_newton: b,
+            barrier,
+            radius,
+        }),
+        constraints,
+        multipliers: user,
+        x,
+    }
+}
+
+fn without_values(program: &Program<'_>, status: Status) -> Outcome {
+    let mut counts = program.counts;
+    counts.seconds = program.seconds();
+    Outcome {
+        status,
+        x: program.to_user(&program.start()),
+        objective: f64::NAN,
+        constraints: vec![f64::NAN; program.scaling.constraints.len()],
+        multipliers: Default::default(),
+        kkt: Kkt::default(),
+        active_bounds: Vec::new(),
+        active_constraints: Vec::new(),
+        counts,
+        failed_designs: program.failed.clone(),
+        scaling: program.scaling.clone(),
+        state: None,
+    }
+}

@@ -1,0 +1,385 @@
+//! Trust-region sequential quadratic programming with an exact penalty function.
+//!
+//! Byrd, Lopez-Calva & Nocedal (2012), *A line search exact penalty method using steering rules*,
+//! for the penalties; Fletcher (1987), *Practical Methods of Optimization*, section 14.4, for the
+//! trust region and the second-order correction.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::elastic_qp::{ElasticQp, QpData, QpStep};
+use super::observer::Phase;
+use super::program::{Point, Program, Progress, Slopes, Trouble};
+use super::quasi_newton::QuasiNewton;
+use super::verdict::{ScaledMultipliers, is_solved, kkt};
+
+/// Share of the predicted reduction for which a step is accepted.
+const ACCEPT: f64 = 1e-4;
+
+/// Share of the best possible reduction of the linearised violation that a step must reach.
+const STEERING: f64 = 0.1;
+
+/// What the iteration minimises.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Goal {
+    /// Objective and violation.
+    Optimum,
+    /// Violation alone; steps keep the share 0.01 of every distance to a bound.
+    Feasibility,
+}
+
+/// How the iteration ended.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Ending {
+    /// The caller's test was met, or the optimality conditions.
+    Reached,
+    /// The point is a stationary point of the violation.
+    Infeasible,
+    /// The objective falls below all bounds.
+    Unbounded,
+    /// No step is accepted although the radius is tiny.
+    Stalled,
+}
+
+/// State of the iteration.
+pub(super) struct TrustRegion {
+    pub point: Point,
+    pub slopes: Slopes,
+    /// Multipliers of the rows from the last subproblem.
+    pub y: DVector<f64>,
+    pub b: QuasiNewton,
+    pub radius: f64,
+    goal: Goal,
+    penalty: DVector<f64>,
+    qp: ElasticQp,
+}
+
+/// Trial of one subproblem.
+struct Model {
+    step: QpStep,
+    predicted: f64,
+}
+
+impl TrustRegion {
+    pub fn new(program: &Program<'_>, point: Point, slopes: Slopes, goal: Goal) -> TrustRegion {
+        let (n, m) = (point.x.len(), point.c.len());
+        let options = program.options;
+        let mut b = QuasiNewton::new(n, usize::MAX, options.memory);
+        if goal == Goal::Feasibility {
+            b.set_scale(1e-4 * slopes.a.amax().max(1e-8));
+        }
+        TrustRegion {
+            qp: ElasticQp::new(n, &program.row_lower, &program.row_upper),
+            point,
+            slopes,
+            y: DVector::zeros(m),
+            b,
+            radius: options.initial_radius,
+            goal,
+            penalty: DVector::from_element(m, 1.0),
+        }
+    }
+
+    fn weight(&self) -> f64 {
+        if self.goal == Goal::Optimum { 1.0 } else { 0.0 }
+    }
+
+    /// Multipliers of the whole program at the present point.
+    pub fn multipliers(&self, program: &Program<'_>) -> ScaledMultipliers {
+        let mut z =
+            ScaledMultipliers::from_rows(program, &self.point, &self.slopes, self.y.clone());
+        z.clip(program);
+        z
+    }
+
+    /// Iterates until `reached` or an ending of its own.
+    pub fn run(
+        &mut self,
+        program: &mut Program<'_>,
+        mut reached: impl FnMut(&Program<'_>, &Point) -> bool,
+    ) -> Result<Ending, Trouble> {
+        let tiny = 1e-13;
+        let mut rejected = 0;
+        loop {
+            if self.goal == Goal::Optimum && self.is_unbounded(program) {
+                return Ok(Ending::Unbounded);
+            }
+            let Some(model) = self.solve_model(program) else {
+                if self.b.is_empty() && self.radius < 1e-6 {
+                    return Ok(Ending::Stalled);
+                }
+                self.b.reset();
+                self.radius *= 0.1;
+                continue;
+            };
+            self.y.copy_from(&model.step.y);
+            if self.goal == Goal::Optimum && self.is_optimal(program) {
+                return Ok(Ending::Reached);
+            }
+            let size = model.step.d.amax();
+            let negligible =
+                model.predicted <= 1e-14 * self.merit(program, &self.point).abs().max(1e-8);
+            if negligible || self.radius < tiny {
+                return Ok(self.end(program, negligible));
+            }
+            program.next_iteration()?;
+            let (ratio, trials) = self.attempt(program, &model)?;
+            let boundary = size >= 0.99 * self.radius;
+            let radius = self.radius;
+            if ratio < 0.25 {
+                self.radius = if ratio < -1e3 { 0.1 } else { 0.4 } * size.min(self.radius);
+            } else if ratio > 0.75 && boundary {
+                self.radius *= 2.5;
+            }
+            rejected = if ratio > ACCEPT { 0 } else { rejected + 1 };
+            if rejected == 8 {
+                self.b.reset();
+            }
+            let scaled = self.optimality(program);
+            let progress = Progress {
+                optimality: scaled,
+                barrier: 0.0,
+                step: size,
+                regularisation: radius,
+                primal_step: if ratio > ACCEPT { 1.0 } else { 0.0 },
+                dual_step: 1.0,
+                trials,
+                phase: if self.goal == Goal::Optimum {
+                    Phase::Sqp
+                } else {
+                    Phase::Restoration
+                },
+            };
+            let point = self.point.clone();
+            program.report(&point, &progress)?;
+            if ratio > ACCEPT && reached(program, &self.point) {
+                return Ok(Ending::Reached);
+            }
+            if self.goal == Goal::Optimum && self.is_optimal(program) {
+                return Ok(Ending::Reached);
+            }
+        }
+    }
+
+    fn end(&self, program: &Program<'_>, stationary: bool) -> Ending {
+        let feasible =
+            program.worst_violation(&self.point.c).0 <= program.options.constraint_tolerance;
+        if feasible || !stationary {
+            Ending::Stalled
+        } else {
+            Ending::Infeasible
+        }
+    }
+
+    fn is_unbounded(&self, program: &Program<'_>) -> bool {
+        let f = self.point.f / program.scaling.objective;
+        f < program.options.unbounded_below
+            && program.worst_violation(&self.point.c).0 <= program.options.constraint_tolerance
+    }
+
+    /// Largest scaled residual of the optimality conditions.
+    pub fn optimality(&self, program: &Program<'_>) -> f64 {
+        let z = self.multipliers(program);
+        let force = &self.slopes.g + self.slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
+        let size = (z.y.lp_norm(1) + z.zl.lp_norm(1) + z.zu.lp_norm(1))
+            / (z.y.len() + z.zl.len()).max(1) as f64;
+        let scale = size.max(100.0) / 100.0;
+        let violation = (0..z.y.len())
+            .map(|k| program.row_violation(&self.point.c, k))
+            .fold(0.0, f64::max);
+        (force.amax() / scale).max(violation)
+    }
+
+    fn is_optimal(&self, program: &Program<'_>) -> bool {
+        let z = self.multipliers(program);
+        let scaled = self.optimality(program);
+        let residuals = kkt(program, &self.point, &self.slopes, &z, scaled);
+        is_solved(&residuals, program.options)
+    }
+
+    /// Exact penalty function w f + Σ ν_j violation_j.
+    fn merit(&self, program: &Program<'_>, at: &Point) -> f64 {
+        let violation: f64 = (0..at.c.len())
+            .map(|k| self.penalty[k] * program.row_violation(&at.c, k))
+            .sum();
+        self.weight() * at.f + violation
+    }
+
+    /// Subproblem with steering of the penalties.
+    fn solve_model(&mut self, program: &mut Program<'_>) -> Option<Model> {
+        let c = self.point.c.clone();
+        let mut step = self.solve_qp(program, self.weight(), &c)?;
+        let now = program.total_violation(&c);
+        let mut left = self.linear_violation(program, &step.d);
+        let small = 0.01 * program.options.constraint_tolerance;
+        if self.goal == Goal::Optimum && now > 0.0 && left > small {
+            let kept = std::mem::replace(&mut self.penalty, DVector::from_element(c.len(), 1.0));
+            let best = self.solve_qp(program, 0.0, &c);
+            self.penalty = kept;
+            let best = best.map_or(left, |s| self.linear_violation(program, &s.d));
+            for _ in 0..8 {
+                let enough = if best <= small {
+                    left <= small.max(0.9 * now) && left <= 10.0 * small || left <= 0.5 * now
+                } else {
+                    now - left >= STEERING * (now - best)
+                };
+                if enough {
+                    break;
+                }
+                for k in 0..c.len() {
+                    if self.linear_row_violation(program, &step.d, k) > 0.0 {
+                        self.penalty[k] *= 10.0;
+                    }
+                }
+                step = self.solve_qp(program, self.weight(), &c)?;
+                left = self.linear_violation(program, &step.d);
+            }
+        }
+        for k in 0..c.len() {
+            if step.y[k].abs() > 0.9 * self.penalty[k]
+                && self.penalty[k] < 1e8
+                && self.goal == Goal::Optimum
+            {
+                self.penalty[k] = self.penalty[k].max(1.5 * step.y[k].abs());
+            }
+        }
+        let d = &step.d;
+        let bd = self.b.multiply(d);
+        let violation: f64 = (0..c.len())
+            .map(|k| {
+                let change =
+                    program.row_violation(&c, k) - self.linear_row_violation(program, d, k);
+                self.penalty[k] * change
+            })
+            .sum();
+        let predicted = violation - self.weight() * self.slopes.g.dot(d) - 0.5 * d.dot(&bd);
+        Some(Model { step, predicted })
+    }
+
+    fn linear_row_violation(&self, program: &Program<'_>, d: &DVector<f64>, k: usize) -> f64 {
+        let value = self.point.c[k] + self.slopes.a.row(k).transpose().dot(d);
+        (program.row_lower[k] - value)
+            .max(value - program.row_upper[k])
+            .max(0.0)
+    }
+
+    fn linear_violation(&self, program: &Program<'_>, d: &DVector<f64>) -> f64 {
+        (0..self.point.c.len())
+            .map(|k| self.linear_row_violation(program, d, k))
+            .sum()
+    }
+
+    fn solve_qp(
+        &mut self,
+        program: &mut Program<'_>,
+        weight: f64,
+        c: &DVector<f64>,
+    ) -> Option<QpStep> {
+        let keep = if self.goal == Goal::Feasibility {
+            0.99
+        } else {
+            1.0
+        };
+        let x = &self.point.x;
+        let radius = self.radius;
+        let lower = DVector::from_fn(x.len(), |i, _| {
+            (keep * (program.lower[i] - x[i])).clamp(-radius, 0.0)
+        });
+        let upper = DVector::from_fn(x.len(), |i, _| {
+            (keep * (program.upper[i] - x[i])).clamp(0.0, radius)
+        });
+        let scaled_b: DMatrix<f64>;
+        let b = self.b.dense();
+        let b = if weight == self_weight(self.goal) {
+            b
+        } else {
+            scaled_b = DMatrix::from_diagonal_element(
+                x.len(),
+                x.len(),
+                1e-4 * self.slopes.a.amax() / radius.max(1e-8),
+            );
+            &scaled_b
+        };
+        let data = QpData {
+            g: &(&self.slopes.g * weight),
+            b,
+            a: &self.slopes.a,
+            above: &(&program.row_upper - c),
+            below: &(c - &program.row_lower),
+            penalty: &self.penalty,
+            lower: &lower,
+            upper: &upper,
+        };
+        self.qp.solve(&data, &mut program.counts)
+    }
+
+    /// Tries the step, then its second-order correction; returns the ratio of actual and predicted
+    /// reduction and the number of points tried. The state moves if the ratio is acceptable.
+    fn attempt(
+        &mut self,
+        program: &mut Program<'_>,
+        model: &Model,
+    ) -> Result<(f64, usize), Trouble> {
+        let here = self.merit(program, &self.point);
+        let rounding = 10.0 * f64::EPSILON * here.abs();
+        let x = self.inside(program, &model.step.d);
+        let trial = match program.evaluate(&x) {
+            Ok(trial) => trial,
+            Err(Trouble::Failed(_)) => return Ok((f64::NEG_INFINITY, 1)),
+            Err(halt) => return Err(halt),
+        };
+        let ratio = |at: f64| (here - at + rounding) / (model.predicted + rounding);
+        let first = ratio(self.merit(program, &trial));
+        if first > ACCEPT {
+            let accepted = self.accept(program, trial)?;
+            return Ok((if accepted { first } else { f64::NEG_INFINITY }, 1));
+        }
+        let worse = program.total_violation(&trial.c) > 0.0;
+        if !worse || self.goal == Goal::Feasibility {
+            return Ok((first, 1));
+        }
+        let c = &trial.c - &self.slopes.a * &model.step.d;
+        let Some(corrected) = self.solve_qp(program, self.weight(), &c) else {
+            return Ok((first, 1));
+        };
+        let x = self.inside(program, &corrected.d);
+        let second = match program.evaluate(&x) {
+            Ok(second) => second,
+            Err(Trouble::Failed(_)) => return Ok((first, 2)),
+            Err(halt) => return Err(halt),
+        };
+        let gain = ratio(self.merit(program, &second));
+        if gain > ACCEPT && self.accept(program, second)? {
+            return Ok((gain, 2));
+        }
+        Ok((first, 2))
+    }
+
+    /// Point reached by `d`, never outside the bounds by rounding.
+    fn inside(&self, program: &Program<'_>, d: &DVector<f64>) -> DVector<f64> {
+        let x = &self.point.x + d;
+        DVector::from_fn(x.len(), |i, _| {
+            x[i].clamp(program.lower[i], program.upper[i])
+        })
+    }
+
+    /// Moves to `trial` unless its gradients fail.
+    fn accept(&mut self, program: &mut Program<'_>, trial: Point) -> Result<bool, Trouble> {
+        let slopes = match program.gradients(&trial.x) {
+            Ok(slopes) => slopes,
+            Err(Trouble::Failed(_)) => return Ok(false),
+            Err(halt) => return Err(halt),
+        };
+        let weight = self.weight();
+        let force = |s: &Slopes| &s.g * weight + s.a.tr_mul(&self.y);
+        let change = force(&slopes) - force(&self.slopes);
+        let s = &trial.x - &self.point.x;
+        self.b.update(s, change);
+        self.point = trial;
+        self.slopes = slopes;
+        Ok(true)
+    }
+}
+
+fn self_weight(goal: Goal) -> f64 {
+    if goal == Goal::Optimum { 1.0 } else { 0.0 }
+}

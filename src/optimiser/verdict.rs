@@ -1,0 +1,189 @@
+//! Residuals in the units of the user, by which a point is judged.
+
+use nalgebra::DVector;
+
+use super::options::Options;
+use super::outcome::{ActiveBound, Kkt, Multipliers, Side};
+use super::program::{Point, Program, Slopes};
+
+/// Multipliers of the scaled program: rows, then lower and upper bounds of the variables.
+#[derive(Clone, Debug)]
+pub(super) struct ScaledMultipliers {
+    pub y: DVector<f64>,
+    pub zl: DVector<f64>,
+    pub zu: DVector<f64>,
+}
+
+impl ScaledMultipliers {
+    /// Multipliers of the bounds that belong to the row multipliers `y`: whatever force remains on
+    /// a variable is given to the bound it pushes against, unless that bound is far away.
+    pub fn from_rows(
+        program: &Program<'_>,
+        point: &Point,
+        slopes: &Slopes,
+        y: DVector<f64>,
+    ) -> Self {
+        let force = &slopes.g + slopes.a.tr_mul(&y);
+        let n = force.len();
+        let near = |distance: f64| distance <= 1.0;
+        let zl = DVector::from_fn(n, |i, _| {
+            if near(point.x[i] - program.lower[i]) {
+                force[i].max(0.0)
+            } else {
+                0.0
+            }
+        });
+        let zu = DVector::from_fn(n, |i, _| {
+            if near(program.upper[i] - point.x[i]) {
+                (-force[i]).max(0.0)
+            } else {
+                0.0
+            }
+        });
+        ScaledMultipliers { y, zl, zu }
+    }
+
+    /// Sets to zero what has the wrong sign for the bounds that a row has.
+    pub fn clip(&mut self, program: &Program<'_>) {
+        for k in 0..self.y.len() {
+            if program.row_upper[k] == f64::INFINITY {
+                self.y[k] = self.y[k].min(0.0);
+            }
+            if program.row_lower[k] == f64::NEG_INFINITY {
+                self.y[k] = self.y[k].max(0.0);
+            }
+        }
+    }
+}
+
+/// Residuals at a point; `scaled` is left to the caller.
+pub(super) fn kkt(
+    program: &Program<'_>,
+    point: &Point,
+    slopes: &Slopes,
+    z: &ScaledMultipliers,
+    scaled: f64,
+) -> Kkt {
+    let unit_f = program.scaling.objective;
+    let force = slopes.a.tr_mul(&z.y);
+    let (mut stationarity, mut size) = (0.0_f64, 1.0_f64);
+    let mut complementarity = 0.0_f64;
+    for (i, &user) in program.free.iter().enumerate() {
+        let unit = unit_f * program.scaling.variables[user];
+        let residual = slopes.g[i] + force[i] - z.zl[i] + z.zu[i];
+        stationarity = stationarity.max(residual.abs() / unit);
+        size = size.max(slopes.g[i].abs() / unit);
+        for k in 0..z.y.len() {
+            size = size.max((slopes.a[(k, i)] * z.y[k]).abs() / unit);
+        }
+        let mut product = |multiplier: f64, distance: f64| {
+            if multiplier > 0.0 {
+                complementarity = complementarity.max(multiplier * distance.max(0.0) / unit_f);
+            }
+        };
+        product(z.zl[i], point.x[i] - program.lower[i]);
+        product(z.zu[i], program.upper[i] - point.x[i]);
+    }
+    for k in 0..z.y.len() {
+        let distance = if z.y[k] > 0.0 {
+            program.row_upper[k] - point.c[k]
+        } else {
+            point.c[k] - program.row_lower[k]
+        };
+        if z.y[k] != 0.0 {
+            complementarity = complementarity.max(z.y[k].abs() * distance.max(0.0) / unit_f);
+        }
+    }
+    Kkt {
+        violation: program.worst_violation(&point.c).0,
+        stationarity,
+        relative_stationarity: stationarity / size,
+        complementarity,
+        relative_complementarity: complementarity / (point.f / unit_f).abs().max(1.0),
+        scaled,
+    }
+}
+
+/// Whether `kkt` meets the tolerances.
+pub(super) fn is_solved(kkt: &Kkt, options: &Options) -> bool {
+    let within = |value: f64, limit: f64| value <= limit;
+    within(kkt.violation, options.constraint_tolerance)
+        && within(kkt.relative_stationarity, options.tolerance)
+        && within(kkt.relative_complementarity, options.tolerance)
+        && within(kkt.scaled, options.tolerance)
+}
+
+/// Multipliers in the units of the user.
+pub(super) fn user_multipliers(program: &Program<'_>, z: &ScaledMultipliers) -> Multipliers {
+    let unit_f = program.scaling.objective;
+    let (n, m) = (
+        program.scaling.variables.len(),
+        program.scaling.constraints.len(),
+    );
+    let mut constraints = vec![0.0; m];
+    for (k, &j) in program.rows.iter().enumerate() {
+        constraints[j] = z.y[k] * program.scaling.constraints[j] / unit_f;
+    }
+    let (mut lower_bounds, mut upper_bounds) = (vec![0.0; n], vec![0.0; n]);
+    for (k, &i) in program.free.iter().enumerate() {
+        let unit = unit_f * program.scaling.variables[i];
+        lower_bounds[i] = z.zl[k] / unit;
+        upper_bounds[i] = z.zu[k] / unit;
+    }
+    Multipliers {
+        constraints,
+        lower_bounds,
+        upper_bounds,
+    }
+}
+
+/// Multipliers of a user, in scaled units.
+pub(super) fn scaled_multipliers(program: &Program<'_>, user: &Multipliers) -> ScaledMultipliers {
+    let unit_f = program.scaling.objective;
+    let row = |&j: &usize| user.constraints[j] * unit_f / program.scaling.constraints[j];
+    let y = DVector::from_iterator(program.rows.len(), program.rows.iter().map(row));
+    let pick = |v: &[f64]| {
+        let scaled = |&i: &usize| v[i] * unit_f * program.scaling.variables[i];
+        DVector::from_iterator(program.free.len(), program.free.iter().map(scaled))
+    };
+    ScaledMultipliers {
+        y,
+        zl: pick(&user.lower_bounds),
+        zu: pick(&user.upper_bounds),
+    }
+}
+
+/// Entries whose distance to a bound is small against their multiplier, or smaller than 1e-6 of
+/// max(1, |bound|).
+pub(super) fn active(
+    values: &[f64],
+    bounds: (&[f64], &[f64]),
+    multipliers: impl Fn(usize) -> (f64, f64),
+    name: impl Fn(usize) -> String,
+) -> Vec<ActiveBound> {
+    let mut found = Vec::new();
+    for i in 0..values.len() {
+        let (l, u) = (bounds.0[i], bounds.1[i]);
+        let (zl, zu) = multipliers(i);
+        let close = |distance: f64, bound: f64, z: f64| {
+            bound.is_finite()
+                && (distance <= 1e-6 * bound.abs().max(1.0) || distance <= 1e-3 * z)
+                && (z > 0.0 || distance <= 1e-9 * bound.abs().max(1.0))
+        };
+        let (side, multiplier) = if l == u {
+            (Side::Equal, zl.max(zu))
+        } else if close(values[i] - l, l, zl) {
+            (Side::Lower, zl)
+        } else if close(u - values[i], u, zu) {
+            (Side::Upper, zu)
+        } else {
+            continue;
+        };
+        found.push(ActiveBound {
+            name: name(i),
+            side,
+            multiplier,
+        });
+    }
+    found
+}

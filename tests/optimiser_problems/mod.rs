@@ -1,0 +1,15 @@
+//! Test problems with known optima.
+
+pub mod dual;
+mod hs_001_030;
+mod hs_031_060;
+pub mod problem;
+
+use problem::Problem;
+
+/// All problems of Hock & Schittkowski (1981) that are coded here.
+pub fn hock_schittkowski() -> Vec<Problem> {
+    let mut all = hs_001_030::problems();
+    all.extend(hs_031_060::problems());
+    all
+}
