@@ -6,4 +6,6 @@ pub mod integrate;
 pub mod linalg;
 pub mod math;
 pub mod model;
+pub mod optimiser;
+pub mod report;
 pub mod system;
