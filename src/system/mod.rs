@@ -14,6 +14,7 @@ pub mod kkt;
 pub mod marker;
 
 pub mod numbering;
+pub mod observe;
 pub mod rank;
 
 pub use bodies::Motion;
