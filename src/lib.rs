@@ -4,3 +4,4 @@ pub mod functions;
 pub mod integrate;
 pub mod math;
 pub mod model;
+pub mod problem;
