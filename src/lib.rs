@@ -7,5 +7,6 @@ pub mod linalg;
 pub mod math;
 pub mod model;
 pub mod optimiser;
+pub mod problem;
 pub mod report;
 pub mod system;
