@@ -67,7 +67,10 @@ pub fn observe(model: &Model<f64>, numbering: &Numbering, q: &[f64], v: &[f64]) 
 
 /// Largest modulus; NaN if any is.
 fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::NAN } else { m.max(x.abs()) })
+    x.iter().fold(
+        0.0,
+        |m: f64, x| if x.is_nan() { f64::NAN } else { m.max(x.abs()) },
+    )
 }
 
 /// Reactions of all joints in the state (q, λ), from −Gᵀλ.
