@@ -9,6 +9,7 @@ use crate::math::{Complex64, Scalar};
 use crate::model::Model;
 use crate::system::kkt::SaddlePoint;
 use crate::system::{Numbering, bodies, initial};
+use std::collections::VecDeque;
 
 /// Coefficients a_0 … a_m of ẋ_k ≈ (1/h) Σ a_i x_{k−i}.
 ///
@@ -82,70 +83,111 @@ fn march<S: SolveScalar>(
     let mut x = Unknowns {
         q: run.q(0).to_vec(),
         v: run.v(0).to_vec(),
+        dq: history.qdot.clone(),
+        dv: history.vdot.clone(),
         lambda: run.lambda(0).to_vec(),
         mu: run.mu(0).to_vec(),
     };
-    let mut vdot = vec![S::zero(); numbering.velocities()];
+    let mut increments = Increments(VecDeque::new());
+    let mut vdot = history.vdot.clone();
+    let mut qdot = history.qdot.clone();
     for k in 1..=settings.steps {
-        let a = coefficients(order_of_step(order, k));
-        history.c = S::from(a[0]) / h;
-        past(&mut history.qdot, &run.q, a, h);
-        past(&mut history.vdot, &run.v, a, h);
-        predict(&run, k, &mut x);
+        let b = increment_coefficients(order_of_step(order, k));
+        history.c = S::from(b[0]) / h;
+        increments.past(&b, h, &mut history);
+        increments.predict(&run, k, &mut x);
         newton.solve(&mut x, &history, h, k, &mut counts)?;
-        for (out, (&v, &past)) in vdot.iter_mut().zip(x.v.iter().zip(&history.vdot)) {
-            *out = history.c * v + past;
-        }
+        history.rates(&x.dq, &x.dv, &mut qdot, &mut vdot);
         run.q.extend_from_slice(&x.q);
         run.v.extend_from_slice(&x.v);
         run.a.extend_from_slice(&vdot);
         run.lambda.extend_from_slice(&x.lambda);
         run.mu.extend_from_slice(&x.mu);
+        increments.push(&x);
     }
     run.counts = counts;
     Ok(run)
 }
 
-/// (1/h) Σ_{i≥1} a_i x_{k−i}; the last rows of `all` are x_{k−1}, x_{k−2}, …
-fn past<S: Scalar>(out: &mut [S], all: &[S], a: &[f64], h: S) {
-    let n = out.len();
-    for (j, out) in out.iter_mut().enumerate() {
-        let mut sum = S::zero();
-        for (i, &a) in a.iter().enumerate().skip(1) {
-            sum += all[all.len() - i * n + j] * a;
+/// Coefficients b_0 … b_{m−1} of ẋ_k ≈ (1/h) Σ b_i (x_{k−i} − x_{k−i−1}): the partial sums of
+/// [`coefficients`].
+fn increment_coefficients(order: usize) -> Vec<f64> {
+    let mut sum = 0.0;
+    let partial = coefficients(order)[..order].iter().map(|a| {
+        sum += a;
+        sum
+    });
+    partial.collect()
+}
+
+/// The latest increments (of q, of v), newest first.
+struct Increments<S>(VecDeque<(Vec<S>, Vec<S>)>);
+
+impl<S: Scalar> Increments<S> {
+    /// How many are kept: what cubic extrapolation needs.
+    const KEPT: usize = 3;
+
+    fn push(&mut self, x: &Unknowns<S>) {
+        let (mut dq, mut dv) = match self.0.len() {
+            Self::KEPT => self.0.pop_back().unwrap_or_default(),
+            _ => (Vec::new(), Vec::new()),
+        };
+        dq.clone_from(&x.dq);
+        dv.clone_from(&x.dv);
+        self.0.push_front((dq, dv));
+    }
+
+    /// The part of the rates that earlier increments make.
+    fn past(&self, b: &[f64], h: S, history: &mut History<S>) {
+        history.qdot.fill(S::zero());
+        history.vdot.fill(S::zero());
+        for (&b, (dq, dv)) in b[1..].iter().zip(&self.0) {
+            let b = S::from(b) / h;
+            history
+                .qdot
+                .iter_mut()
+                .zip(dq)
+                .for_each(|(out, &d)| *out += b * d);
+            history
+                .vdot
+                .iter_mut()
+                .zip(dv)
+                .for_each(|(out, &d)| *out += b * d);
         }
-        *out = sum / h;
+    }
+
+    /// Start of Newton's method: cubic extrapolation of q and v once three increments are known,
+    /// before that a Taylor polynomial; λ and μ are held.
+    fn predict(&self, run: &Trajectory<S>, k: usize, x: &mut Unknowns<S>) {
+        let numbering = &run.numbering;
+        let (q, v, a) = (run.q(k - 1), run.v(k - 1), run.a(k - 1));
+        x.q.copy_from_slice(q);
+        x.v.copy_from_slice(v);
+        if let (Some((q1, v1)), Some((q2, v2)), Some((q3, v3))) =
+            (self.0.front(), self.0.get(1), self.0.get(2))
+        {
+            extrapolate(&mut x.dq, [q1, q2, q3]);
+            extrapolate(&mut x.dv, [v1, v2, v3]);
+            x.q.iter_mut().zip(&x.dq).for_each(|(q, &d)| *q += d);
+            bodies::normalise(numbering, &mut x.q, &mut x.dq);
+        } else {
+            let h = run.h;
+            let step: Vec<S> = v
+                .iter()
+                .zip(a)
+                .map(|(&v, &a)| h * (v + h * a * 0.5))
+                .collect();
+            x.dq.fill(S::zero());
+            bodies::advance(numbering, &mut x.q, &mut x.dq, &step);
+            x.dv.iter_mut().zip(a).for_each(|(d, &a)| *d = h * a);
+        }
+        x.v.iter_mut().zip(&x.dv).for_each(|(v, &d)| *v += d);
     }
 }
 
-/// Start of Newton's method: cubic extrapolation of q and v once four instants are known, before
-/// that a Taylor polynomial; λ and μ are held.
-fn predict<S: Scalar>(run: &Trajectory<S>, k: usize, x: &mut Unknowns<S>) {
-    let numbering = &run.numbering;
-    if k >= 4 {
-        extrapolate(&mut x.q, &run.q);
-        extrapolate(&mut x.v, &run.v);
-        // Brings the extrapolated Euler parameters back to unit length.
-        let still = vec![S::zero(); numbering.velocities()];
-        bodies::retract(numbering, &mut x.q, &still);
-        return;
-    }
-    let (h, v, a) = (run.h, run.v(k - 1), run.a(k - 1));
-    let mut step = vec![S::zero(); v.len()];
-    for i in 0..v.len() {
-        step[i] = h * (v[i] + h * a[i] * 0.5);
-        x.v[i] = v[i] + h * a[i];
-    }
-    x.q.copy_from_slice(run.q(k - 1));
-    bodies::retract(numbering, &mut x.q, &step);
-}
-
-/// 4 x_{k−1} − 6 x_{k−2} + 4 x_{k−3} − x_{k−4}.
-fn extrapolate<S: Scalar>(out: &mut [S], all: &[S]) {
-    let n = out.len();
-    let last = all.len() - n;
+/// 3 d_1 − 3 d_2 + d_3.
+fn extrapolate<S: Scalar>(out: &mut [S], [d1, d2, d3]: [&Vec<S>; 3]) {
     for (j, out) in out.iter_mut().enumerate() {
-        let at = |i: usize| all[last + j - i * n];
-        *out = (at(0) + at(2)) * 4.0 - at(1) * 6.0 - at(3);
+        *out = (d1[j] - d2[j]) * 3.0 + d3[j];
     }
 }

@@ -24,13 +24,18 @@ pub struct Unknowns<S> {
     pub q: Vec<S>,
     /// Velocities.
     pub v: Vec<S>,
+    /// Increment of q since the last instant. Rates are made from increments, so that they do not
+    /// carry the round-off of positions divided by the step.
+    pub dq: Vec<S>,
+    /// Increment of v since the last instant.
+    pub dv: Vec<S>,
     /// Multipliers λ.
     pub lambda: Vec<S>,
     /// Multipliers μ.
     pub mu: Vec<S>,
 }
 
-/// How rates follow from states in this step: q̇ = c q + `qdot`, v̇ = c v + `vdot`.
+/// How rates follow from increments in this step: q̇ = c dq + `qdot`, v̇ = c dv + `vdot`.
 #[derive(Clone, Debug)]
 pub struct History<S> {
     /// c = a0 / h.
@@ -42,12 +47,12 @@ pub struct History<S> {
 }
 
 impl<S: Scalar> History<S> {
-    /// q̇ and v̇ at the given states.
-    pub fn rates(&self, q: &[S], v: &[S], qdot: &mut [S], vdot: &mut [S]) {
-        for (out, (&x, &past)) in qdot.iter_mut().zip(q.iter().zip(&self.qdot)) {
+    /// q̇ and v̇ at the given increments.
+    pub fn rates(&self, dq: &[S], dv: &[S], qdot: &mut [S], vdot: &mut [S]) {
+        for (out, (&x, &past)) in qdot.iter_mut().zip(dq.iter().zip(&self.qdot)) {
             *out = self.c * x + past;
         }
-        for (out, (&x, &past)) in vdot.iter_mut().zip(v.iter().zip(&self.vdot)) {
+        for (out, (&x, &past)) in vdot.iter_mut().zip(dv.iter().zip(&self.vdot)) {
             *out = self.c * x + past;
         }
     }
@@ -115,7 +120,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         let mut previous = f64::INFINITY;
         let mut polish = false;
         for iteration in 1..=ITERATIONS {
-            history.rates(&x.q, &x.v, &mut self.qdot, &mut self.vdot);
+            history.rates(&x.dq, &x.dv, &mut self.qdot, &mut self.vdot);
             let at = Instant {
                 q: &x.q,
                 v: &x.v,
@@ -154,9 +159,11 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             for u in &mut update {
                 *u = -*u;
             }
-            bodies::retract(numbering, &mut x.q, &update[..nv]);
-            for (value, &u) in x.v.iter_mut().zip(&update[nv..]) {
-                *value += u / h;
+            bodies::advance(numbering, &mut x.q, &mut x.dq, &update[..nv]);
+            for i in 0..nv {
+                let change = update[nv + i] / h;
+                x.v[i] += change;
+                x.dv[i] += change;
             }
             for i in 0..nc {
                 x.lambda[i] += update[2 * nv + i] / (h * h);
@@ -223,7 +230,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         h: S,
         step: usize,
     ) -> IntegrationFailure {
-        history.rates(&x.q, &x.v, &mut self.qdot, &mut self.vdot);
+        history.rates(&x.dq, &x.dv, &mut self.qdot, &mut self.vdot);
         let at = Instant {
             q: &x.q,
             v: &x.v,

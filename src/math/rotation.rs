@@ -56,18 +56,23 @@ pub fn angular_velocity<S: Scalar>(p: &Quat<S>, pdot: &Quat<S>) -> Vec3<S> {
     rate_product(p, pdot) * S::from(2.0)
 }
 
-/// Moves p by the small body-axes rotation δθ and back onto the unit sphere:
-/// (p + ½ L(p)ᵀ δθ) / |·|, equal to the exact rotation up to third order.
-pub fn retract<S: Scalar>(p: &Quat<S>, dtheta: &Vec3<S>) -> Quat<S> {
+/// Change of p that the small body-axes rotation δθ makes when p is moved by ½ L(p)ᵀ δθ and
+/// brought back onto the unit sphere; the rotation itself up to third order. The change keeps its
+/// relative accuracy however small it is.
+pub fn retraction<S: Scalar>(p: &Quat<S>, dtheta: &Vec3<S>) -> Quat<S> {
     let step = rates(p, dtheta);
-    let mut moved = *p;
-    let mut square = S::zero();
-    for i in 0..4 {
-        moved[i] += step[i];
-        square += moved[i] * moved[i];
-    }
-    let scale = S::one() / square.sqrt();
-    moved.map(|x| x * scale)
+    let square = step.iter().fold(S::zero(), |sum, &x| sum + x * x);
+    // (p + step) / root − p with root = √(1 + square), step ⟂ p.
+    let root = (square + 1.0).sqrt();
+    let shrink = square / (root * (root + 1.0));
+    std::array::from_fn(|i| step[i] / root - p[i] * shrink)
+}
+
+/// Change that brings p back to unit length.
+pub fn normalisation<S: Scalar>(p: &Quat<S>) -> Quat<S> {
+    let square = p.iter().fold(S::zero(), |sum, &x| sum + x * x);
+    let excess = S::one() / square.sqrt() - 1.0;
+    p.map(|x| x * excess)
 }
 
 /// Euler parameters of the rotation by `angle` [rad] about `axis` (any length but zero).
@@ -157,7 +162,8 @@ mod tests {
     fn retraction_stays_on_the_sphere_and_follows_the_rotation() {
         let p = sample();
         let small = Vec3::new(1e-4, -2e-4, 3e-4);
-        let moved = retract(&p, &small);
+        let change = retraction(&p, &small);
+        let moved: Quat<f64> = std::array::from_fn(|i| p[i] + change[i]);
         let exact = compose(&p, &from_axis_angle(&small, length(&small)));
         let norm: f64 = moved.iter().map(|x| x * x).sum();
         assert!((norm - 1.0).abs() < 1e-15);

@@ -101,15 +101,25 @@ pub fn add7<S: Scalar>(out: &mut [S], position: &Vec3<S>, orientation: &Quat<S>)
 }
 
 /// Moves the positions `q` of every body by the tangent step δy, the Euler parameters staying on
-/// the unit sphere.
-pub fn retract<S: Scalar>(numbering: &Numbering, q: &mut [S], step: &[S]) {
+/// the unit sphere, and adds the same change to `increment`, which stays accurate to its own size.
+pub fn advance<S: Scalar>(numbering: &Numbering, q: &mut [S], increment: &mut [S], step: &[S]) {
     for body in 0..numbering.bodies() {
+        let o = numbering.position(body);
         let (dr, dtheta) = velocities_of(&step[numbering.velocity(body)..]);
-        let q = &mut q[numbering.position(body)..][..7];
-        let (r, p) = positions_of(q);
-        let (r, p) = (r + dr, rotation::retract(&p, &dtheta));
-        q[..3].copy_from_slice(r.as_slice());
-        q[3..].copy_from_slice(&p);
+        let (_, p) = positions_of(&q[o..]);
+        let dp = rotation::retraction(&p, &dtheta);
+        add7(&mut q[o..], &dr, &dp);
+        add7(&mut increment[o..], &dr, &dp);
+    }
+}
+
+/// Brings the Euler parameters in `q` to unit length and adds the change to `increment`.
+pub fn normalise<S: Scalar>(numbering: &Numbering, q: &mut [S], increment: &mut [S]) {
+    for body in 0..numbering.bodies() {
+        let o = numbering.position(body);
+        let dp = rotation::normalisation(&positions_of(&q[o..]).1);
+        add7(&mut q[o..], &Vec3::zeros(), &dp);
+        add7(&mut increment[o..], &Vec3::zeros(), &dp);
     }
 }
 

@@ -186,6 +186,8 @@ fn assemble<S: SolveScalar>(
     let (nv, nc) = (numbering.velocities(), numbering.constraints());
     let scale = length_scale(model);
     let mut q = q_guess.to_vec();
+    let mut increment = vec![S::zero(); q.len()];
+    bodies::normalise(numbering, &mut q, &mut increment);
     let mut s = vec![S::zero(); nc];
     let mut motions = Vec::new();
     let mut phi = vec![S::zero(); nc];
@@ -213,7 +215,7 @@ fn assemble<S: SolveScalar>(
         if !finite(&rhs) {
             return Err(open(model, numbering, &phi, iteration));
         }
-        bodies::retract(numbering, &mut q, &rhs[..nv]);
+        bodies::advance(numbering, &mut q, &mut increment, &rhs[..nv]);
         for (s, step) in s.iter_mut().zip(&rhs[nv..]) {
             *s += *step;
         }
