@@ -50,5 +50,5 @@ pub enum ReportError {
     },
     /// The drawing library failed.
     #[error("figure: {0}")]
-    Drawing(String),
+    Drawing(#[from] plotters::drawing::DrawingAreaErrorKind<std::io::Error>),
 }

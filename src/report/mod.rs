@@ -10,6 +10,7 @@
 //! | [`optimum`] | the end of an optimisation, `optimum.json` |
 //! | [`compare`] | an optimum against a committed baseline |
 //! | [`summary`] | the text that a person reads at the end |
+//! | [`plots`] | figures as SVG |
 
 pub mod compare;
 mod csv;
@@ -18,6 +19,7 @@ pub mod files;
 pub mod history;
 mod number;
 pub mod optimum;
+pub mod plots;
 pub mod summary;
 mod table;
 
