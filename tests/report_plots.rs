@@ -9,25 +9,27 @@ use flexbody::report::{Column, History, HistoryRow};
 fn attributes<'a>(svg: &'a str, name: &str) -> Vec<&'a str> {
     let start = format!(" {name}=\"");
     let parts = svg.split(&start).skip(1);
-    parts.map(|part| part.split('"').next().unwrap()).collect()
+    parts
+        .map(|part| part.split('"').next().expect("is valid"))
+        .collect()
 }
 
 /// Every shape lies within the picture; a text may not even start outside.
 fn assert_inside(svg: &str) {
     let view: Vec<f64> = attributes(svg, "viewBox")[0]
         .split(' ')
-        .map(|n| n.parse().unwrap())
+        .map(|n| n.parse().expect("is valid"))
         .collect();
     let (width, height) = (view[2], view[3]);
     let mut count = 0;
     let mut check = |text: &str, limit: f64| {
-        let value: f64 = text.parse().unwrap();
+        let value: f64 = text.parse().expect("is valid");
         assert!((0.0..=limit).contains(&value), "{value} not in 0..{limit}");
         count += 1;
     };
     for list in attributes(svg, "points") {
         for pair in list.split_whitespace() {
-            let (x, y) = pair.split_once(',').unwrap();
+            let (x, y) = pair.split_once(',').expect("is valid");
             check(x, width);
             check(y, height);
         }
@@ -97,7 +99,7 @@ fn convergence_shows_four_curves_with_a_dot_an_iteration() {
             0.1 * decay,
         ]
     });
-    let svg = convergence(&history(rows)).unwrap();
+    let svg = convergence(&history(rows)).expect("is valid");
     assert_inside(&svg);
     for text in [
         "objective [m]",
@@ -124,7 +126,7 @@ fn zeros_of_a_logarithmic_axis_are_marked_on_its_floor() {
         [1.0, 0.0, 1e-3, 1e-2],
         [1.0, 0.0, 1e-6, 1e-3],
     ];
-    let svg = convergence(&history(rows.into_iter())).unwrap();
+    let svg = convergence(&history(rows.into_iter())).expect("is valid");
     assert_inside(&svg);
     assert!(has_text(&svg, "zero or below the axis"));
     // Two zeros and the sample in the legend; one dot is left.
@@ -134,19 +136,19 @@ fn zeros_of_a_logarithmic_axis_are_marked_on_its_floor() {
 
 #[test]
 fn convergence_survives_one_row_gaps_and_huge_ranges() {
-    let one = convergence(&history([[546.5, 2.76, 0.8, 0.1]].into_iter())).unwrap();
+    let one = convergence(&history([[546.5, 2.76, 0.8, 0.1]].into_iter())).expect("is valid");
     assert_inside(&one);
     assert_eq!(colored(&one, "circle", BLUE).len(), 1);
 
     let nothing = [[f64::NAN, 0.0, f64::INFINITY, 0.0]];
-    assert_inside(&convergence(&history(nothing.into_iter())).unwrap());
+    assert_inside(&convergence(&history(nothing.into_iter())).expect("is valid"));
 
     let huge = (0..300).map(|i| {
         let i = f64::from(i);
         let infeasibility = if i == 40.0 { f64::NAN } else { 10_f64.powf(-i) };
         [1e12 * i.sin(), infeasibility, 1e280, 1e-320]
     });
-    let svg = convergence(&history(huge)).unwrap();
+    let svg = convergence(&history(huge)).expect("is valid");
     assert_inside(&svg);
     assert_eq!(
         colored(&svg, "circle", BLUE).len(),
@@ -156,7 +158,7 @@ fn convergence_survives_one_row_gaps_and_huge_ranges() {
     // The sample in the legend and a curve that the gap cuts into two.
     assert_eq!(colored(&svg, "polyline", VERMILION).len(), 3);
 
-    let error = convergence(&history(std::iter::empty())).unwrap_err();
+    let error = convergence(&history(std::iter::empty())).expect_err("must be refused");
     assert_eq!(
         error.to_string(),
         "figure convergence: the history has no iterations"
@@ -211,7 +213,7 @@ fn motion_shows_designs_flights_barrier_and_ground() {
         thrower("initial design", 30.0),
         thrower("optimal design", 60.0),
     ];
-    let svg = motion(&designs, &scenery()).unwrap();
+    let svg = motion(&designs, &scenery()).expect("is valid");
     assert_inside(&svg);
     for text in [
         "initial design",
@@ -246,13 +248,13 @@ fn time_lapses_have_one_scale_in_both_directions() {
     let corners = vec![[0.0, 0.0], [8.0, 0.0], [8.0, 8.0], [0.0, 8.0]];
     square.bodies[1].outlines = vec![corners];
     for designs in [vec![square.clone()], vec![square.clone(), square]] {
-        let svg = motion(&designs, &scenery()).unwrap();
+        let svg = motion(&designs, &scenery()).expect("is valid");
         let shapes = colored(&svg, "polygon", VERMILION);
         for shape in &shapes[1..] {
             let points: Vec<(f64, f64)> = attributes(shape, "points")[0]
                 .split_whitespace()
-                .map(|pair| pair.split_once(',').unwrap())
-                .map(|(x, y)| (x.parse().unwrap(), y.parse().unwrap()))
+                .map(|pair| pair.split_once(',').expect("is valid"))
+                .map(|(x, y)| (x.parse().expect("is valid"), y.parse().expect("is valid")))
                 .collect();
             let (wide, high) = (points[1].0 - points[0].0, points[1].1 - points[2].1);
             assert!(
@@ -272,14 +274,14 @@ fn motion_without_a_projectile_shows_only_the_time_lapse() {
         barrier: None,
         ..scenery()
     };
-    let svg = motion(&[design.clone()], &bare).unwrap();
+    let svg = motion(&[design.clone()], &bare).expect("is valid");
     assert_inside(&svg);
     assert_eq!(svg.matches("x [m]").count(), 1);
     assert!(!has_text(&svg, "ground") && !has_text(&svg, "release"));
 
     design.bodies.clear();
     for designs in [vec![design], Vec::new()] {
-        let error = motion(&designs, &bare).unwrap_err();
+        let error = motion(&designs, &bare).expect_err("must be refused");
         assert_eq!(error.to_string(), "figure motion: no body has an outline");
     }
 }
@@ -292,12 +294,12 @@ fn flat_steep_and_broken_motions_stay_inside() {
     }
     flat.trace.clear();
     let mut steep = thrower("steep", 1.0);
-    let flight = steep.flight.as_mut().unwrap();
+    let flight = steep.flight.as_mut().expect("is valid");
     flight.velocity = [0.01, 500.0];
     let mut broken = thrower("broken", 1.0);
     broken.bodies[0].outlines[1][0] = [f64::NAN, 0.0];
     broken.trace[3] = [f64::INFINITY, 0.0];
-    broken.flight.as_mut().unwrap().gravity = 0.0;
+    broken.flight.as_mut().expect("is valid").gravity = 0.0;
     let point = Motion {
         bodies: vec![BodyMotion {
             name: "a point".into(),
@@ -308,8 +310,8 @@ fn flat_steep_and_broken_motions_stay_inside() {
         title: "still".into(),
     };
     for design in [flat, steep, broken, point] {
-        assert_inside(&motion(&[design.clone()], &scenery()).unwrap());
-        assert_inside(&motion(&[design, thrower("b", 30.0)], &scenery()).unwrap());
+        assert_inside(&motion(&[design.clone()], &scenery()).expect("is valid"));
+        assert_inside(&motion(&[design, thrower("b", 30.0)], &scenery()).expect("is valid"));
     }
 }
 
@@ -329,7 +331,7 @@ fn swing(title: &str, drift: f64) -> EnergyRun {
 #[test]
 fn energy_shows_kinetic_potential_total_and_drift() {
     let runs = [swing("initial design", 3e-3), swing("optimal design", 1e-3)];
-    let svg = energy(&runs).unwrap();
+    let svg = energy(&runs).expect("is valid");
     assert_inside(&svg);
     for text in [
         "kinetic",
@@ -349,7 +351,7 @@ fn energy_shows_kinetic_potential_total_and_drift() {
     for color in [BLUE, VERMILION] {
         assert_eq!(colored(&svg, "polyline", color).len(), 3, "{color}");
     }
-    assert_inside(&energy(&runs[..1]).unwrap());
+    assert_inside(&energy(&runs[..1]).expect("is valid"));
 }
 
 #[test]
@@ -360,15 +362,15 @@ fn energy_needs_complete_runs_and_takes_exact_ones() {
         kinetic: vec![0.0, 0.0],
         potential: vec![0.0, 0.0],
     };
-    assert_inside(&energy(std::slice::from_ref(&still)).unwrap());
+    assert_inside(&energy(std::slice::from_ref(&still)).expect("is valid"));
     let mut short = still;
     short.potential.pop();
     assert_eq!(
-        energy(&[short]).unwrap_err().to_string(),
+        energy(&[short]).expect_err("must be refused").to_string(),
         "figure energy: a simulation has not one energy for each instant"
     );
     assert_eq!(
-        energy(&[]).unwrap_err().to_string(),
+        energy(&[]).expect_err("must be refused").to_string(),
         "figure energy: there is no simulation"
     );
 }
@@ -378,7 +380,7 @@ fn the_same_data_give_the_same_bytes() {
     let draw = || {
         let designs = [thrower("a", 30.0), thrower("b", 60.0)];
         let runs = [swing("a", 1e-3)];
-        motion(&designs, &scenery()).unwrap() + &energy(&runs).unwrap()
+        motion(&designs, &scenery()).expect("is valid") + &energy(&runs).expect("is valid")
     };
     assert_eq!(draw(), draw());
 }

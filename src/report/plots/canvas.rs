@@ -258,7 +258,7 @@ mod tests {
     fn text_is_escaped_and_the_view_box_is_finer_than_the_picture() {
         let mut canvas = Canvas::new(100.0, 50.0);
         canvas.text((10.0, 10.0), "a < b & \"c\"", Anchor::Left);
-        let svg = canvas.svg().unwrap();
+        let svg = canvas.svg().expect("is valid");
         assert!(svg.contains("a &lt; b &amp; "), "{svg}");
         assert!(svg.contains("width=\"100\" height=\"50\""), "{svg}");
         assert!(svg.contains("viewBox=\"0 0 1000 500\""), "{svg}");

@@ -27,7 +27,7 @@ struct Curve<'a> {
 /// # Errors
 /// [`ReportError::NothingToDraw`] for a history without rows.
 pub fn convergence(history: &History) -> Result<String, ReportError> {
-    let Some(last) = history.rows.last() else {
+    let Some(last) = history.rows.iter().map(|row| row.iteration).max() else {
         return Err(ReportError::NothingToDraw {
             figure: "convergence",
             missing: "the history has no iterations",
@@ -77,7 +77,7 @@ pub fn convergence(history: &History) -> Result<String, ReportError> {
         .collect();
     let left = room_left(&axes);
     let width = WIDTH - left - 16.0;
-    let iterations = Axis::counts(last.iteration, 10, "iteration");
+    let iterations = Axis::counts(last, 10, "iteration");
 
     let mut top = 8.0;
     let mut panels = Vec::new();
