@@ -310,7 +310,7 @@ fn flat_steep_and_broken_motions_stay_inside() {
         title: "still".into(),
     };
     for design in [flat, steep, broken, point] {
-        assert_inside(&motion(&[design.clone()], &scenery()).expect("is valid"));
+        assert_inside(&motion(std::slice::from_ref(&design), &scenery()).expect("is valid"));
         assert_inside(&motion(&[design, thrower("b", 30.0)], &scenery()).expect("is valid"));
     }
 }
