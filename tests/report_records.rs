@@ -125,14 +125,14 @@ fn moved(comparison: &Comparison) -> Vec<(&str, &str)> {
 #[test]
 fn history_reads_back_exactly() {
     let history = history();
-    let back = History::from_csv(&history.to_csv().unwrap()).unwrap();
+    let back = History::from_csv(&history.to_csv().expect("is valid")).expect("is valid");
     assert_eq!(back, history);
     assert!(back.rows[0].design[1].is_sign_negative());
 }
 
 #[test]
 fn history_heading_names_units() {
-    let text = history().to_csv().unwrap();
+    let text = history().to_csv().expect("is valid");
     let start = "iteration,evaluations,objective: range [m],infeasibility,optimality,barrier,\
                  step norm,dual step,primal step,regularisation,line search trials,phase,\
                  \"variable: mass, \"\"heavy\"\" part [kg]\",variable: angle [rad] [],\
@@ -145,15 +145,20 @@ fn numbers_that_are_not_finite_are_empty_fields() {
     let mut history = history();
     history.rows[1].optimality = f64::INFINITY;
     history.rows[1].constraints[0] = f64::NAN;
-    let text = history.to_csv().unwrap();
-    assert!(text.lines().last().unwrap().ends_with("400.0,-0.0,"));
-    let back = History::from_csv(&text).unwrap();
+    let text = history.to_csv().expect("is valid");
+    assert!(
+        text.lines()
+            .last()
+            .expect("is valid")
+            .ends_with("400.0,-0.0,")
+    );
+    let back = History::from_csv(&text).expect("is valid");
     assert!(back.rows[1].optimality.is_nan() && back.rows[1].constraints[0].is_nan());
 }
 
 #[test]
 fn faults_of_a_history_name_the_line() {
-    let good = history().to_csv().unwrap();
+    let good = history().to_csv().expect("is valid");
     let cases = [
         (
             String::new(),
@@ -181,12 +186,17 @@ fn faults_of_a_history_name_the_line() {
         ),
     ];
     for (text, message) in cases {
-        assert_eq!(History::from_csv(&text).unwrap_err().to_string(), message);
+        assert_eq!(
+            History::from_csv(&text)
+                .expect_err("must be refused")
+                .to_string(),
+            message
+        );
     }
     let mut short = history();
     short.rows[1].design.pop();
     assert_eq!(
-        short.to_csv().unwrap_err().to_string(),
+        short.to_csv().expect_err("must be refused").to_string(),
         "history, line 3: found 1 design and 1 constraint values, \
          expected 2 design and 1 constraint values"
     );
@@ -194,10 +204,16 @@ fn faults_of_a_history_name_the_line() {
 
 #[test]
 fn optimum_reads_back_exactly_and_has_the_fixed_keys() {
-    let text = optimum().to_json().unwrap();
-    assert_eq!(Optimum::from_json(&text).unwrap(), optimum());
-    assert_eq!(Optimum::from_json(&text).unwrap().to_json().unwrap(), text);
-    let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let text = optimum().to_json().expect("is valid");
+    assert_eq!(Optimum::from_json(&text).expect("is valid"), optimum());
+    assert_eq!(
+        Optimum::from_json(&text)
+            .expect("is valid")
+            .to_json()
+            .expect("is valid"),
+        text
+    );
+    let value: serde_json::Value = serde_json::from_str(&text).expect("is valid");
     for key in [
         "status",
         "objective",
@@ -362,47 +378,51 @@ Maximised range: 546.507 → 849.8985 m (+55.5 %)
 
 #[test]
 fn files_are_written_whole_or_not_at_all() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = tempfile::tempdir().expect("is valid");
     let path = directory.path().join("a.txt");
-    atomic_write(&path, b"first").unwrap();
-    atomic_write(&path, b"second").unwrap();
-    assert_eq!(read_text(&path).unwrap(), "second");
+    atomic_write(&path, b"first").expect("is valid");
+    atomic_write(&path, b"second").expect("is valid");
+    assert_eq!(read_text(&path).expect("is valid"), "second");
 
     // The second file of the group cannot be written, so the first stays as it was.
     let blocked = directory.path().join("blocked");
-    std::fs::create_dir(&blocked).unwrap();
+    std::fs::create_dir(&blocked).expect("is valid");
     let group = [
         (path.clone(), b"third".to_vec()),
         (blocked.clone(), b"x".to_vec()),
     ];
-    let error = write_all(&group).unwrap_err().to_string();
+    let error = write_all(&group).expect_err("must be refused").to_string();
     assert!(
         error.starts_with(&format!("cannot write {}: ", blocked.display())),
         "{error}"
     );
-    assert_eq!(read_text(&path).unwrap(), "second");
-    let left: Vec<_> = std::fs::read_dir(directory.path()).unwrap().collect();
+    assert_eq!(read_text(&path).expect("is valid"), "second");
+    let left: Vec<_> = std::fs::read_dir(directory.path())
+        .expect("is valid")
+        .collect();
     assert_eq!(left.len(), 2, "no temporary file is left: {left:?}");
 }
 
 #[test]
 fn a_directory_that_cannot_take_a_file_is_named() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = tempfile::tempdir().expect("is valid");
     let file = directory.path().join("file");
-    atomic_write(&file, b"x").unwrap();
+    atomic_write(&file, b"x").expect("is valid");
     let inside = file.join("inside.txt");
-    let error = atomic_write(&inside, b"y").unwrap_err().to_string();
+    let error = atomic_write(&inside, b"y")
+        .expect_err("must be refused")
+        .to_string();
     assert!(
         error.starts_with(&format!("cannot write {}: ", inside.display())),
         "{error}"
     );
     let error = write_all(&[(inside, b"y".to_vec())])
-        .unwrap_err()
+        .expect_err("must be refused")
         .to_string();
     assert!(
         error.starts_with(&format!("cannot write {}: ", file.display())),
         "{error}"
     );
-    let error = read_text(&directory.path().join("none")).unwrap_err();
+    let error = read_text(&directory.path().join("none")).expect_err("must be refused");
     assert!(matches!(error, ReportError::Read { .. }));
 }

@@ -93,7 +93,7 @@ mod tests {
         for row in &rows {
             write_record(&mut text, row.iter().copied());
         }
-        let back = parse(&text).unwrap();
+        let back = parse(&text).expect("is valid");
         assert_eq!(back[0].fields, rows[0]);
         assert_eq!(back[1].fields, rows[1]);
         assert_eq!(back[1].line, 2);
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn carriage_returns_and_a_missing_last_line_end_are_accepted() {
-        let back = parse("a,b\r\n\r\n1,\"2\"").unwrap();
+        let back = parse("a,b\r\n\r\n1,\"2\"").expect("is valid");
         assert_eq!(back.len(), 2);
         assert_eq!(back[1].fields, ["1", "2"]);
         assert_eq!(back[1].line, 3);

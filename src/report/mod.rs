@@ -8,8 +8,8 @@
 //! | [`files`] | files written whole or not at all |
 //! | [`history`] | the iterations of an optimisation, `history.csv` |
 //! | [`optimum`] | the end of an optimisation, `optimum.json` |
-//! | [`compare`] | an optimum against a committed baseline |
-//! | [`summary`] | the text that a person reads at the end |
+//! | [`mod@compare`] | an optimum against a committed baseline |
+//! | [`mod@summary`] | the text that a person reads at the end |
 //! | [`plots`] | figures as SVG |
 
 pub mod compare;

@@ -149,7 +149,7 @@ fn work(optimum: &Optimum) -> String {
         n => format!(" ({} failed)", grouped(n)),
     };
     format!(
-        "Work: {} iterations, {} simulations{failed}, {} gradients; {} time steps, \
+        "Work: {} iterations, {} simulations{failed}, {} gradients\n      {} time steps, \
          {} Newton iterations, {} factorisations, {} solves\n",
         grouped(counts.iterations),
         grouped(counts.function_evaluations),

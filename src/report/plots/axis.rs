@@ -1,5 +1,7 @@
 //! Axes: ranges, ticks and the numbers at them.
 
+use super::canvas::text_width;
+
 /// How values are spread along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scale {
@@ -38,12 +40,17 @@ impl Axis {
 
     /// A linear axis from `low` to `high`.
     pub fn exact(low: f64, high: f64, count: usize, label: &str) -> Axis {
+        let mut ticks = linear_ticks(low, high, nice_step((high - low) / count as f64));
+        if ticks.len() < 2 {
+            // A range tells nothing by a single number.
+            ticks = linear_ticks(low, high, nice_step((high - low) / 5.0));
+        }
         Axis {
             low,
             high,
             scale: Scale::Linear,
             label: label.to_owned(),
-            ticks: linear_ticks(low, high, nice_step((high - low) / count as f64)),
+            ticks,
         }
     }
 
@@ -87,10 +94,10 @@ impl Axis {
         }
     }
 
-    /// Characters of the longest number at a tick.
-    pub fn widest(&self) -> usize {
-        let widths = self.ticks.iter().map(|(_, text)| text.chars().count());
-        widths.max().unwrap_or(0)
+    /// Width of the widest number at a tick [px].
+    pub fn widest(&self) -> f64 {
+        let widths = self.ticks.iter().map(|(_, text)| text_width(text));
+        widths.fold(0.0, f64::max)
     }
 }
 
@@ -131,7 +138,7 @@ fn number(value: f64, step: f64, largest: f64) -> String {
     }
     // Steps are 1, 2 or 5 times a power of ten up to rounding.
     let last_digit = (step.log10() + 1e-6).floor();
-    let plain = if (1e-2..1e6).contains(&largest) {
+    let plain = if (0.1..1e6).contains(&largest) {
         let decimals = (-last_digit).max(0.0) as usize;
         format!("{value:.decimals$}")
     } else {

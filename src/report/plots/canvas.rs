@@ -15,8 +15,18 @@ const FONT_SHRINK: f64 = 1.24;
 
 /// Size of ordinary text [px].
 pub(super) const TEXT: f64 = 12.0;
-/// Width of an average character at size [`TEXT`], on the generous side [px].
-pub(super) const CHARACTER: f64 = 6.9;
+
+/// Width of a text of ordinary size [px], estimated on the generous side: fonts differ.
+pub(super) fn text_width(text: &str) -> f64 {
+    let width = |character: char| match character {
+        'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' => 0.34,
+        'f' | 'r' | 't' | 'I' | ' ' | '(' | ')' | '[' | ']' | '-' | '/' => 0.42,
+        'm' | 'w' | 'M' | 'W' | '%' => 0.98,
+        'A'..='Z' | '−' | '…' => 0.80,
+        _ => 0.64,
+    };
+    TEXT * text.chars().map(width).sum::<f64>()
+}
 
 pub(super) const BLACK: RGBColor = RGBColor(0, 0, 0);
 pub(super) const INK: RGBColor = RGBColor(51, 51, 51);
@@ -248,7 +258,7 @@ mod tests {
     fn text_is_escaped_and_the_view_box_is_finer_than_the_picture() {
         let mut canvas = Canvas::new(100.0, 50.0);
         canvas.text((10.0, 10.0), "a < b & \"c\"", Anchor::Left);
-        let svg = canvas.svg().unwrap();
+        let svg = canvas.svg().expect("is valid");
         assert!(svg.contains("a &lt; b &amp; "), "{svg}");
         assert!(svg.contains("width=\"100\" height=\"50\""), "{svg}");
         assert!(svg.contains("viewBox=\"0 0 1000 500\""), "{svg}");

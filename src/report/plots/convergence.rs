@@ -7,11 +7,13 @@ use crate::report::{History, HistoryRow, ReportError};
 use plotters::style::RGBColor;
 
 const WIDTH: f64 = 640.0;
+/// Room between a panel and the legend of the next one [px].
+const SPACE: f64 = 12.0;
 /// Up to this many iterations each one is marked by a dot.
 const DOTS: usize = 60;
 
-struct Curve {
-    name: &'static str,
+struct Curve<'a> {
+    name: &'a str,
     color: RGBColor,
     values: Vec<f64>,
 }
@@ -25,24 +27,24 @@ struct Curve {
 /// # Errors
 /// [`ReportError::NothingToDraw`] for a history without rows.
 pub fn convergence(history: &History) -> Result<String, ReportError> {
-    let Some(last) = history.rows.last() else {
+    let Some(last) = history.rows.iter().map(|row| row.iteration).max() else {
         return Err(ReportError::NothingToDraw {
             figure: "convergence",
             missing: "the history has no iterations",
         });
+    };
+    let objective = match &history.objective.unit {
+        Some(unit) => format!("objective [{unit}]"),
+        None => "objective".to_owned(),
     };
     let curve = |name, color: usize, value: fn(&HistoryRow) -> f64| Curve {
         name,
         color: PALETTE[color],
         values: history.rows.iter().map(value).collect(),
     };
-    let objective = match &history.objective.unit {
-        Some(unit) => format!("{} [{unit}]", history.objective.name),
-        None => history.objective.name.clone(),
-    };
     let stack = [
         (
-            vec![curve("objective", 0, |row| row.objective)],
+            vec![curve(&history.objective.name, 0, |row| row.objective)],
             Scale::Linear,
             objective.as_str(),
             150.0,
@@ -75,7 +77,7 @@ pub fn convergence(history: &History) -> Result<String, ReportError> {
         .collect();
     let left = room_left(&axes);
     let width = WIDTH - left - 16.0;
-    let iterations = Axis::counts(last.iteration, 10, "iteration");
+    let iterations = Axis::counts(last, 10, "iteration");
 
     let mut top = 8.0;
     let mut panels = Vec::new();
@@ -89,10 +91,10 @@ pub fn convergence(history: &History) -> Result<String, ReportError> {
             x: iterations.clone(),
             y,
         };
-        top = panel.top + height + 10.0;
+        top = panel.top + height + SPACE;
         panels.push((panel, legend, curves));
     }
-    let mut canvas = Canvas::new(WIDTH, top - 10.0 + BELOW);
+    let mut canvas = Canvas::new(WIDTH, top - SPACE + BELOW);
     let lowest = panels.len() - 1;
     for (i, (panel, legend, curves)) in panels.iter().enumerate() {
         panel.draw(&mut canvas, i == lowest, true);
@@ -104,14 +106,9 @@ pub fn convergence(history: &History) -> Result<String, ReportError> {
     canvas.svg()
 }
 
-/// One curve needs no name beside that of its axis.
 fn legend(curves: &[Curve], axis: &Axis, width: f64) -> Legend {
-    let mut entries = Vec::new();
-    if curves.len() > 1 {
-        for curve in curves {
-            entries.push((Key::Line(curve.color), curve.name.to_owned()));
-        }
-    }
+    let entry = |curve: &Curve| (Key::Line(curve.color), curve.name.to_owned());
+    let mut entries: Vec<_> = curves.iter().map(entry).collect();
     let below = |curve: &&Curve| curve.values.iter().any(|&value| is_below(axis, value));
     if let Some(curve) = curves.iter().find(below) {
         let text = "zero or below the axis".to_owned();
@@ -132,9 +129,14 @@ fn draw(canvas: &mut Canvas, panel: &Panel, curve: &Curve, rows: &[HistoryRow]) 
     for part in panel.within(points()) {
         canvas.path(&part, curve.color, 1.8, 1.0);
     }
+    let mut free = panel.left - 10.0;
     for (x, y) in points().filter(|(_, y)| y.is_finite()) {
         if is_below(&panel.y, y) {
-            canvas.below_mark(panel.pixel(x, panel.y.low), curve.color);
+            let floor = panel.pixel(x, panel.y.low);
+            if floor.0 >= free {
+                canvas.below_mark(floor, curve.color);
+                free = floor.0 + 9.0;
+            }
         } else if rows.len() <= DOTS {
             canvas.disc(panel.pixel(x, y), 2.6, curve.color);
         }

@@ -11,11 +11,11 @@ use plotters::style::RGBColor;
 pub struct EnergyRun {
     /// What was simulated, such as `initial design`; may be empty for a single run.
     pub title: String,
-    /// Instants [s].
+    /// Instants \[s\].
     pub time: Vec<f64>,
-    /// Kinetic energy [J].
+    /// Kinetic energy \[J\].
     pub kinetic: Vec<f64>,
-    /// Potential energy [J].
+    /// Potential energy \[J\].
     pub potential: Vec<f64>,
 }
 
@@ -123,15 +123,13 @@ fn time_axis(runs: &[EnergyRun], width: f64) -> Axis {
     Axis::exact(first, last, (width / 70.0) as usize, "time [s]")
 }
 
-/// Always symmetric about what is exact, with room to see that an energy is conserved.
+/// The axis of the drift; one around zero if the energies are conserved to the last bit.
 fn drift_axis(drifts: &[Vec<f64>]) -> Axis {
     let label = "total − start [J]";
-    let axis = Axis::linear(drifts.iter().flatten().copied(), 4, label);
-    let conserved = drifts.iter().flatten().all(|&drift| drift == 0.0);
-    if conserved {
+    if drifts.iter().flatten().all(|&drift| drift == 0.0) {
         Axis::exact(-1e-12, 1e-12, 4, label)
     } else {
-        axis
+        Axis::linear(drifts.iter().flatten().copied(), 5, label)
     }
 }
 

@@ -6,7 +6,7 @@ use super::panel::{BELOW, Key, Legend, Panel, room_left};
 use crate::report::ReportError;
 use plotters::style::RGBColor;
 
-/// A point of the plane that is drawn: horizontal and vertical coordinate [m].
+/// A point of the plane that is drawn: horizontal and vertical coordinate \[m\].
 pub type Point = [f64; 2];
 
 /// A body at the instants of a time lapse.
@@ -21,11 +21,11 @@ pub struct BodyMotion {
 /// A projectile at the instant of its release; from here it falls freely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flight {
-    /// Place of the release [m].
+    /// Place of the release \[m\].
     pub position: Point,
-    /// Velocity at the release [m/s].
+    /// Velocity at the release \[m/s\].
     pub velocity: Point,
-    /// Gravity, downwards positive [m/s²].
+    /// Gravity, downwards positive \[m/s²\].
     pub gravity: f64,
 }
 
@@ -45,20 +45,20 @@ pub struct Motion {
 /// A barrier that the projectile must clear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Barrier {
-    /// Horizontal coordinate [m].
+    /// Horizontal coordinate \[m\].
     pub distance: f64,
-    /// Vertical coordinate of its top [m].
+    /// Vertical coordinate of its top \[m\].
     pub top: f64,
 }
 
 /// What stands still, and the names of the directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenery {
-    /// Height of the ground [m], if a projectile lands on it.
+    /// Height of the ground \[m\], if a projectile lands on it.
     pub ground: Option<f64>,
     /// The barrier, if there is one.
     pub barrier: Option<Barrier>,
-    /// Label of the horizontal axis, such as `x [m]`.
+    /// Label of the horizontal axis, such as `x \[m\]`.
     pub horizontal: String,
     /// Label of the vertical axis.
     pub vertical: String,
@@ -116,7 +116,12 @@ pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportErr
     let count = designs.len() as f64;
     let lapse = |left: f64| {
         let width = (WIDTH - left - RIGHT - (count - 1.0) * GAP) / count;
-        equal_axes(&points, scenery, width, [160.0, 460.0])
+        equal_axes(
+            &points,
+            scenery,
+            [280.0_f64.min(width), width],
+            [160.0, 500.0],
+        )
     };
     let flown: Vec<Point> = flights.iter().flatten().flatten().copied().collect();
     let flight = |left: f64| {
@@ -126,7 +131,8 @@ pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportErr
                 .barrier
                 .map(|barrier| [barrier.distance, barrier.top]),
         );
-        equal_axes(&points, scenery, WIDTH - left - RIGHT, [150.0, 320.0])
+        let width = WIDTH - left - RIGHT;
+        equal_axes(&points, scenery, [width, width], [150.0, 320.0])
     };
     // The room for numbers depends on the axes, whose ticks hardly depend on the room.
     let guess = 60.0;
@@ -136,7 +142,13 @@ pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportErr
     }
 
     let first = lapse(left);
-    let legend = lapse_legend(designs, WIDTH - left - RIGHT);
+    let used = count * (first.width + GAP) - GAP;
+    let (full, indent) = if flown.is_empty() {
+        (left + used + RIGHT, 0.0)
+    } else {
+        (WIDTH, (WIDTH - left - RIGHT - used) / 2.0)
+    };
+    let legend = lapse_legend(designs, full - left - RIGHT);
     let top = 8.0 + legend.height() + 24.0;
     let mut bottom = top + first.height + BELOW;
     let below = (!flown.is_empty()).then(|| {
@@ -147,11 +159,11 @@ pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportErr
         bottom = panel.top + panel.height + BELOW;
         (panel, legend)
     });
-    let mut canvas = Canvas::new(WIDTH, bottom);
+    let mut canvas = Canvas::new(full, bottom);
     legend.draw(&mut canvas, left, 6.0);
     for (i, design) in designs.iter().enumerate() {
         let panel = Panel {
-            left: left + i as f64 * (first.width + GAP),
+            left: left + indent + i as f64 * (first.width + GAP),
             top,
             x: first.x.clone(),
             y: first.y.clone(),
@@ -177,10 +189,10 @@ pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportErr
     canvas.svg()
 }
 
-/// A panel of the given width that shows all points, and the ground where it is near, with the
-/// same scale in both directions if its height [px] can then be within the limits. Where it
-/// would be too low or too high, the range of one direction is widened instead.
-fn equal_axes(points: &[Point], scenery: &Scenery, width: f64, heights: [f64; 2]) -> Panel {
+/// A panel that shows all points, and the ground where it is near, with the same scale in both
+/// directions and width and height [px] within limits: as wide as may be, narrower if it would
+/// be too high; and where that does not suffice, more is shown in one direction.
+fn equal_axes(points: &[Point], scenery: &Scenery, widths: [f64; 2], heights: [f64; 2]) -> Panel {
     let (mut west, mut east) = range(points.iter().map(|point| point[0]));
     let (mut south, mut north) = range(points.iter().map(|point| point[1]));
     let size = (east - west).max(north - south).max(1e-9);
@@ -190,23 +202,24 @@ fn equal_axes(points: &[Point], scenery: &Scenery, width: f64, heights: [f64; 2]
         south = south.min(ground);
     }
     let margin = 0.04 * size;
-    (west, east, south, north) = (west - margin, east + margin, south - margin, north + margin);
-    let natural = (north - south) / (east - west) * width;
-    let height = natural.clamp(heights[0], heights[1]);
-    if natural < height {
-        // Free height goes above: things stand on the ground.
-        north += (height / width) * (east - west) - (north - south);
-    } else if natural > height {
-        let missing = (north - south) * width / height - (east - west);
-        (west, east) = (west - missing / 2.0, east + missing / 2.0);
-    }
+    (west, east) = (west - margin, east + margin);
+    // A flat scene would drown in the margin of its length.
+    let margin = margin.min(0.1 * (north - south).max(0.2 * margin));
+    (south, north) = (south - margin, north + margin);
+    let aspect = (north - south) / (east - west);
+    let width = (heights[1] / aspect).clamp(widths[0], widths[1]);
+    let height = (aspect * width).clamp(heights[0], heights[1]);
+    // Free height goes above: things stand on the ground.
+    north += ((height / width) * (east - west) - (north - south)).max(0.0);
+    let missing = ((north - south) * width / height - (east - west)).max(0.0);
+    (west, east) = (west - missing / 2.0, east + missing / 2.0);
     Panel {
         left: 0.0,
         top: 0.0,
         width,
         height,
-        x: Axis::exact(west, east, (width / 80.0) as usize, &scenery.horizontal),
-        y: Axis::exact(south, north, (height / 45.0) as usize, &scenery.vertical),
+        x: Axis::exact(west, east, (width / 62.0) as usize, &scenery.horizontal),
+        y: Axis::exact(south, north, (height / 36.0) as usize, &scenery.vertical),
     }
 }
 
@@ -299,7 +312,7 @@ fn draw_lapse(canvas: &mut Canvas, panel: &Panel, design: &Motion) {
             }
             let mut pixels: Vec<_> = outline.iter().map(|&[x, y]| panel.pixel(x, y)).collect();
             if pixels.len() > 2 {
-                canvas.area(&pixels, body_color(i), 0.08 + 0.62 * late * late);
+                canvas.area(&pixels, body_color(i), 0.06 + 0.44 * late * late);
                 pixels.extend(pixels.first().copied());
             }
             canvas.path(&pixels, body_color(i), 1.2, 0.25 + 0.75 * late);

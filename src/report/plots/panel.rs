@@ -1,7 +1,7 @@
 //! A frame with two axes in which curves are drawn, and legends beside frames.
 
 use super::axis::{Axis, Scale};
-use super::canvas::{Anchor, CHARACTER, Canvas, GRID, INK, Pixel};
+use super::canvas::{Anchor, Canvas, GRID, INK, Pixel, text_width};
 use plotters::style::RGBColor;
 
 /// A frame at a place of the picture [px] with its axes.
@@ -19,8 +19,7 @@ pub(super) const BELOW: f64 = 42.0;
 
 /// Room left of a panel for numbers and label of its y axis [px].
 pub(super) fn room_left<'a>(axes: impl IntoIterator<Item = &'a Axis>) -> f64 {
-    let widest = axes.into_iter().map(Axis::widest).max().unwrap_or(0);
-    widest as f64 * CHARACTER + 34.0
+    axes.into_iter().map(Axis::widest).fold(0.0, f64::max) + 32.0
 }
 
 impl Panel {
@@ -67,7 +66,7 @@ impl Panel {
         }
         if number_y {
             let x = left - room_left([&self.y]) + 12.0;
-            let label = fitted(&self.y.label, self.height + 16.0);
+            let label = fitted(&self.y.label, self.height + 10.0);
             canvas.text((x, top + self.height / 2.0), &label, Anchor::Upwards);
         }
     }
@@ -148,12 +147,17 @@ impl Panel {
 
 /// The text, cut where it would be longer than the given length [px].
 fn fitted(text: &str, length: f64) -> String {
-    let room = (length / CHARACTER).max(4.0) as usize;
-    if text.chars().count() <= room {
-        text.to_owned()
-    } else {
-        text.chars().take(room - 1).collect::<String>() + "…"
+    if text_width(text) <= length {
+        return text.to_owned();
     }
+    let mut kept = String::new();
+    for character in text.chars() {
+        if text_width(&kept) + text_width("mm…") > length {
+            break;
+        }
+        kept.push(character);
+    }
+    kept + "…"
 }
 
 /// How an entry of a legend is shown.
@@ -188,8 +192,8 @@ impl Legend {
                 Key::Line(_) | Key::Dashes(_) => 32.0,
             };
             let text = fitted(&text, width - shown);
-            let needed = shown + text.chars().count() as f64 * CHARACTER + 14.0;
-            if x + needed - 14.0 > width {
+            let needed = shown + text_width(&text) + 16.0;
+            if x + needed - 16.0 > width {
                 rows.push(Vec::new());
                 x = 0.0;
             }
