@@ -8,11 +8,13 @@ use crate::math::Scalar;
 use crate::model::Model;
 use crate::system::{Numbering, bodies, initial};
 
-/// Scaled size of the remaining error of a step at which Newton's method stops: relative to the
-/// scene's length scale, and in radians.
-const TOLERANCE: f64 = 1e-16;
-/// Scaled step below which a stagnating iteration has reached round-off.
-const ROUND_OFF: f64 = 1e-12;
+/// Error left in a step, relative to the largest increments of position, rotation, velocity and
+/// angular velocity in it, at which Newton's method stops: the relative error of accelerations.
+const TOLERANCE: f64 = 1e-13;
+/// Changes below this, relative to the largest position or velocity, are round-off.
+const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
+/// Relative change below which a stagnating iteration has reached round-off as well.
+const STAGNANT: f64 = 1e-9;
 /// Contraction above which the iteration matrix is renewed.
 const RENEW: f64 = 0.2;
 const ITERATIONS: usize = 25;
@@ -117,6 +119,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
     ) -> Result<(), IntegrationFailure> {
         let numbering = self.numbering;
         let (nv, nc) = (numbering.velocities(), numbering.constraints());
+        let scales = self.scales(x);
         let mut previous = f64::INFINITY;
         let mut polish = false;
         for iteration in 1..=ITERATIONS {
@@ -150,7 +153,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             counts.solves += 1;
             let mut update = std::mem::take(&mut self.residual);
             self.factors.solve(&mut update);
-            let size = self.size(&update[..2 * nv]);
+            let size = scales.size(&update[..2 * nv], h.re());
             if !size.is_finite() {
                 let time = h.re() * step as f64;
                 self.residual = update;
@@ -177,7 +180,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 self.contraction
             };
             let remaining = size * (contraction / (1.0 - contraction.min(0.9))).min(1.0);
-            let stagnant = iteration > 2 && contraction > RENEW && size <= ROUND_OFF;
+            let stagnant = iteration > 2 && contraction > RENEW && size <= STAGNANT;
             if polish || remaining <= TOLERANCE || stagnant {
                 if S::INFINITESIMAL && !polish {
                     polish = true;
@@ -200,18 +203,24 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         Err(self.stalled(x, history, h, step))
     }
 
-    /// Largest scaled change of a position or velocity.
-    fn size(&self, update: &[S]) -> f64 {
-        let mut size = 0.0_f64;
-        for six in update.chunks_exact(6) {
-            let linear = six[..3].iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
-            let angular = six[3..].iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
-            if six.iter().any(|x| !x.is_finite()) {
-                return f64::NAN;
-            }
-            size = size.max(linear / self.length).max(angular);
+    /// What changes are judged against in the step that starts from `x`.
+    fn scales(&self, x: &Unknowns<S>) -> Scales {
+        let n = self.numbering;
+        let (mut shift, mut turn, mut place) = (0.0_f64, 0.0_f64, self.length);
+        for body in 0..n.bodies() {
+            let (dq, q) = (&x.dq[n.position(body)..], &x.q[n.position(body)..]);
+            shift = shift.max(largest(&dq[..3]));
+            place = place.max(largest(&q[..3]));
+            turn = turn.max(2.0 * largest(&dq[3..7]));
         }
-        size
+        let mut rates = [[0.0_f64; 2]; 2];
+        for (six, now) in x.dv.chunks_exact(6).zip(x.v.chunks_exact(6)) {
+            for part in 0..2 {
+                rates[part][0] = rates[part][0].max(largest(&six[3 * part..3 * part + 3]));
+                rates[part][1] = rates[part][1].max(largest(&now[3 * part..3 * part + 3]));
+            }
+        }
+        Scales([[shift, place], [turn, 1.0], rates[0], rates[1]])
     }
 
     fn not_finite(&self, residual: &[f64], time: f64, step: usize) -> IntegrationFailure {
@@ -252,6 +261,38 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             worst: self.equations.describe(worst),
         }
     }
+}
+
+/// For positions, rotations, velocities and angular velocities: the largest increment of the step
+/// and the largest value.
+struct Scales([[f64; 2]; 4]);
+
+impl Scales {
+    /// Largest change relative to the increments, round-off left out, of the scaled update (δy,
+    /// h δv); NaN if it is not finite.
+    fn size<S: Scalar>(&self, update: &[S], h: f64) -> f64 {
+        let (positions, velocities) = update.split_at(update.len() / 2);
+        let mut size = 0.0_f64;
+        for (half, all, scale) in [(0, positions, 1.0), (2, velocities, 1.0 / h)] {
+            for six in all.chunks_exact(6) {
+                if six.iter().any(|x| !x.is_finite()) {
+                    return f64::NAN;
+                }
+                for part in 0..2 {
+                    let change = largest(&six[3 * part..3 * part + 3]) * scale;
+                    let [increment, value] = self.0[half + part];
+                    if change > ROUND_OFF * value.max(increment) {
+                        size = size.max(change / increment.max(ROUND_OFF * value));
+                    }
+                }
+            }
+        }
+        size
+    }
+}
+
+fn largest<S: Scalar>(x: &[S]) -> f64 {
+    x.iter().fold(0.0, |m, x| m.max(x.re().abs()))
 }
 
 fn at_residual<S: Scalar>(residual: &[S]) -> Vec<f64> {
