@@ -4,18 +4,21 @@
 //! document against its schema; what names, numbers and design variables mean together. Only a
 //! document without a fault becomes a [`Problem`].
 
+mod check;
 mod drawing;
 mod fault;
 mod mass;
 mod overrides;
 mod placement;
 mod pointer;
+mod prune;
 mod quantity;
 mod read;
 mod scene;
 mod schema;
 mod source;
 mod structure;
+mod syntax;
 #[cfg(test)]
 mod tests;
 mod variables;
@@ -77,6 +80,8 @@ pub struct OptimiserSettings {
 pub struct Problem {
     /// Name of the problem and of its results.
     pub name: String,
+    /// What the problem is about.
+    pub description: Option<String>,
     /// How the scene is integrated.
     pub settings: Settings,
     /// Design variables in the order of the file.
