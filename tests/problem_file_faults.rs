@@ -377,6 +377,38 @@ fn every_value_replaced_by_any_other_is_a_fault_or_a_finite_scene() {
 }
 
 #[test]
+fn every_entry_left_out_is_a_fault_or_a_finite_scene() {
+    let document: Value = serde_json::from_str(PENDULUM).expect("JSON");
+    let mut list = Vec::new();
+    pointers(&document, "", &mut list);
+    for pointer in &list {
+        let (above, key) = pointer.rsplit_once('/').expect("a pointer has a slash");
+        let mut document = document.clone();
+        match document
+            .pointer_mut(above)
+            .expect("the entry is in something")
+        {
+            Value::Object(object) => object.remove(key),
+            Value::Array(items) => Some(items.remove(key.parse().expect("an index"))),
+            _ => None,
+        };
+        match Problem::parse(&document.to_string(), "pendulum.json", &[]) {
+            Ok(problem) => {
+                let scene = problem.scene(&problem.start());
+                assert!(
+                    scene.parameters().iter().all(|x| x.is_finite()),
+                    "{pointer}"
+                );
+            }
+            Err(faults) => assert!(
+                faults.list.iter().all(|f| f.line == 1),
+                "{pointer}: {faults}"
+            ),
+        }
+    }
+}
+
+#[test]
 fn every_beginning_of_a_file_is_one_fault() {
     for length in 0..PENDULUM.trim_end().len() {
         let faults = Problem::parse(&PENDULUM[..length], "pendulum.json", &[]).expect_err("a part");

@@ -130,7 +130,7 @@ mod tests {
         ];
         let near = |wanted| nearest_pointer(wanted, pointers.iter().copied());
         assert_eq!(near("/bodies/rod/mas"), Some("/bodies/rod/mass"));
-        assert_eq!(near("/body/conrod/mass"), Some("/bodies/con_rod/mass"));
+        assert_eq!(near("/bodie/conrod/mass"), Some("/bodies/con_rod/mass"));
         assert_eq!(
             near("/bodies/rod/turn/angle"),
             Some("/bodies/rod/place/turn/angle")

@@ -207,8 +207,8 @@ pub fn schema() -> serde_json::Value {
     schema
 }
 
-/// Removes `null` (a key that is not wanted is left out) and moves units and limits of arrays and
-/// maps to their numbers.
+/// Removes `null` (a key that is not wanted is left out) and line breaks in descriptions, and moves
+/// units and limits of arrays and maps to their numbers.
 fn tidy(schema: &mut serde_json::Value) {
     use serde_json::Value;
     match schema {
@@ -239,6 +239,9 @@ fn tidy(schema: &mut serde_json::Value) {
                         object[inner][key] = value;
                     }
                 }
+            }
+            if let Some(Value::String(text)) = object.get_mut("description") {
+                *text = text.replace('\n', " ");
             }
             object.values_mut().for_each(tidy);
         }
