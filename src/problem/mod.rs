@@ -76,6 +76,23 @@ pub struct OptimiserSettings {
 }
 
 /// A problem: a scene that depends on a design, what is asked of it, and how it is solved.
+///
+/// ```
+/// use flexbody::problem::Problem;
+///
+/// let text = r#"{
+///   "version": 1, "name": "ball",
+///   "bodies": {"ball": {"shape": {"sphere": {"radius": 0.5}}, "mass": 2}},
+///   "simulation": {"duration": 1, "steps": 100},
+///   "variables": {"radius": {"path": "/bodies/ball/shape/sphere/radius", "lower": 0.1}}
+/// }"#;
+/// let problem = Problem::parse(text, "ball.json", &[])?;
+/// assert_eq!(problem.start(), [0.5]);
+/// // 2/5 m r² at r = 1 m.
+/// let inertia = problem.scene(&[1.0]).model.bodies[0].inertia;
+/// assert!((inertia[(0, 0)] - 0.8).abs() < 1e-15);
+/// # Ok::<(), flexbody::problem::Faults>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Problem {
     /// Name of the problem and of its results.
