@@ -4,18 +4,21 @@
 //! document against its schema; what names, numbers and design variables mean together. Only a
 //! document without a fault becomes a [`Problem`].
 
+mod check;
 mod drawing;
 mod fault;
 mod mass;
 mod overrides;
 mod placement;
 mod pointer;
+mod prune;
 mod quantity;
 mod read;
 mod scene;
 mod schema;
 mod source;
 mod structure;
+mod syntax;
 #[cfg(test)]
 mod tests;
 mod variables;
@@ -73,10 +76,29 @@ pub struct OptimiserSettings {
 }
 
 /// A problem: a scene that depends on a design, what is asked of it, and how it is solved.
+///
+/// ```
+/// use flexbody::problem::Problem;
+///
+/// let text = r#"{
+///   "version": 1, "name": "ball",
+///   "bodies": {"ball": {"shape": {"sphere": {"radius": 0.5}}, "mass": 2}},
+///   "simulation": {"duration": 1, "steps": 100},
+///   "variables": {"radius": {"path": "/bodies/ball/shape/sphere/radius", "lower": 0.1}}
+/// }"#;
+/// let problem = Problem::parse(text, "ball.json", &[])?;
+/// assert_eq!(problem.start(), [0.5]);
+/// // 2/5 m r² at r = 1 m.
+/// let inertia = problem.scene(&[1.0]).model.bodies[0].inertia;
+/// assert!((inertia[(0, 0)] - 0.8).abs() < 1e-15);
+/// # Ok::<(), flexbody::problem::Faults>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Problem {
     /// Name of the problem and of its results.
     pub name: String,
+    /// What the problem is about.
+    pub description: Option<String>,
     /// How the scene is integrated.
     pub settings: Settings,
     /// Design variables in the order of the file.

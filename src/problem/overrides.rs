@@ -1,7 +1,7 @@
 //! One-off changes of a document: `--set PATH=VALUE`.
 
 use super::fault::Finding;
-use super::pointer::{advice, all, is_below, join, nearest};
+use super::pointer::{advice, all, is_below, join, nearest, nearest_pointer};
 use serde_json::Value;
 use std::fmt;
 
@@ -67,7 +67,7 @@ impl Override {
 /// Advice after a path that does not exist: the nearest one, or what there is where it ends.
 pub(super) fn nearest_path(path: &str, document: &Value) -> Option<String> {
     let paths = all(document);
-    if let Some(near) = nearest(path, paths.iter().map(String::as_str)) {
+    if let Some(near) = nearest_pointer(path, paths.iter().map(String::as_str)) {
         return Some(format!("did you mean {near}?"));
     }
     let mut above = path;

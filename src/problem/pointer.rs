@@ -49,17 +49,50 @@ pub fn all(value: &Value) -> Vec<String> {
     list
 }
 
-/// The name nearest to `wanted`, if one is near: a third of the letters may differ.
-pub fn nearest<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+/// How many letters of `wanted` must change to make `name`, cases and separators aside; `None` if
+/// that is more than a third of them.
+fn distance(wanted: &str, name: &str) -> Option<usize> {
     let plain = |name: &str| name.to_lowercase().replace(['_', '-', ' '], "");
-    let wanted = plain(wanted);
+    let (wanted, name) = (plain(wanted), plain(name));
     let limit = (wanted.chars().count() / 3).max(1);
+    Some(strsim::damerau_levenshtein(&wanted, &name)).filter(|distance| *distance <= limit)
+}
+
+/// The name nearest to `wanted`, if one is near.
+pub fn nearest<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     names
         .into_iter()
-        .map(|name| (strsim::damerau_levenshtein(&wanted, &plain(name)), name))
-        .filter(|(distance, _)| *distance <= limit)
+        .filter_map(|name| Some((distance(wanted, name)?, name)))
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, name)| name)
+}
+
+/// The pointer nearest to `wanted`, if one is near: each key is near its own, or keys between are
+/// left out.
+pub fn nearest_pointer<'a>(
+    wanted: &str,
+    pointers: impl Iterator<Item = &'a str> + Clone,
+) -> Option<&'a str> {
+    let wanted = keys(wanted);
+    let apart = |pointer: &str| {
+        let keys = keys(pointer);
+        let pairs = wanted.iter().zip(&keys);
+        let sum = pairs
+            .map(|(wanted, key)| distance(wanted, key))
+            .sum::<Option<usize>>()?;
+        (keys.len() == wanted.len()).then_some(sum)
+    };
+    let leaves_out = |pointer: &str| {
+        let keys = keys(pointer);
+        let mut rest = keys.iter();
+        wanted.iter().all(|wanted| rest.any(|key| key == wanted)) && wanted.last() == keys.last()
+    };
+    let near = pointers
+        .clone()
+        .filter_map(|pointer| Some((apart(pointer)?, pointer)));
+    near.min_by_key(|(distance, _)| *distance)
+        .map(|(_, pointer)| pointer)
+        .or_else(|| pointers.clone().find(|pointer| leaves_out(pointer)))
 }
 
 /// Advice after a wrong name: the nearest valid one, else all of them; `what` they are.
@@ -86,6 +119,23 @@ mod tests {
         assert_eq!(pointer, "/a~1b/c~0d");
         assert_eq!(keys(&pointer), ["a/b", "c~d"]);
         assert!(is_below("/arm/mass", "/arm") && !is_below("/arms", "/arm"));
+    }
+
+    #[test]
+    fn pointers_are_near_by_each_of_their_keys() {
+        let pointers = [
+            "/bodies/con_rod/mass",
+            "/bodies/rod/mass",
+            "/bodies/rod/place/turn/angle",
+        ];
+        let near = |wanted| nearest_pointer(wanted, pointers.iter().copied());
+        assert_eq!(near("/bodies/rod/mas"), Some("/bodies/rod/mass"));
+        assert_eq!(near("/bodie/conrod/mass"), Some("/bodies/con_rod/mass"));
+        assert_eq!(
+            near("/bodies/rod/turn/angle"),
+            Some("/bodies/rod/place/turn/angle")
+        );
+        assert_eq!(near("/bodies/wheel/mass"), None);
     }
 
     #[test]

@@ -1,16 +1,20 @@
 //! From the text of a problem file to a problem, or all of its faults.
 
+use super::check::check;
 use super::fault::{Faults, Finding, Part};
 use super::overrides::Override;
 use super::placement::placement_order;
+use super::prune::prune;
 use super::schema::{self, Document};
-use super::source::Source;
+use super::source::{Duplicate, Source};
 use super::structure::walk;
+use super::syntax;
 use super::variables::{bind, variables};
 use super::{Constraint, Objective, OptimiserSettings, Problem, Sense};
 use crate::integrate::{Settings, settings};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Order of the integration method where the file gives none.
@@ -20,58 +24,78 @@ const ORDER: usize = 2;
 pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Faults> {
     let file = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|error| {
-        let expected = "a problem file";
-        if path.is_dir() {
-            Faults::unreadable(&file, "a directory", expected)
-        } else {
-            Faults::unreadable(&file, &error.to_string(), expected)
-        }
+        let found = match error.kind() {
+            _ if path.is_dir() => "a directory".to_owned(),
+            ErrorKind::NotFound => "no file".to_owned(),
+            _ => error.to_string(),
+        };
+        Faults::unreadable(&file, &found, "a problem file")
     })?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        let found = format!("bytes that are not UTF-8, the first after {at} bytes");
-        Faults::unreadable(&file, &found, "a text in UTF-8")
+        let text = String::from_utf8_lossy(error.as_bytes());
+        let finding = Finding {
+            part: Part::Bytes(at..at + char::REPLACEMENT_CHARACTER.len_utf8()),
+            ..Finding::new("", "a byte that is not UTF-8", "a text in UTF-8")
+        };
+        Faults::locate(vec![finding], &file, &Source::plain(&text), &[])
     })?;
     parse(&text, &file, overrides)
 }
 
 /// Reads a problem from its text.
 pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Problem, Faults> {
+    // A byte order mark is allowed at the head of a text, but not in JSON.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut document: Value = serde_json::from_str(text).map_err(|error| {
-        let finding = Finding {
-            part: Part::File,
-            ..Finding::new("", error.to_string(), "JSON")
-        };
+        let finding = syntax::fault(text, &error);
         Faults::locate(vec![finding], file, &Source::plain(text), &[])
     })?;
     let source = Source::index(text);
-    let mut findings = Vec::new();
+    let mut findings: Vec<Finding> = source.duplicates.iter().map(twice).collect();
     for change in overrides {
         findings.extend(change.apply(&mut document).err());
     }
     let structure = walk(&document, &schema::schema());
     findings.extend(structure.findings.iter().cloned());
     let faults = |findings| Err(Faults::locate(findings, file, &source, overrides));
-    if !findings.is_empty() {
+    let mut sound = document.clone();
+    let Value::Object(entries) = &mut sound else {
         return faults(findings);
-    }
-    let written = match deserialise(&document) {
-        Ok(written) => written,
-        Err(finding) => return faults(vec![finding]),
     };
+    let damage = prune(entries, &structure.findings);
+    let written = match deserialise(&sound) {
+        Ok(written) => written,
+        Err(finding) => {
+            findings.push(finding);
+            return faults(findings);
+        }
+    };
+    findings.extend(check(&written, &damage));
     let (variables, wrong) = variables(&written, &document, &structure);
     findings.extend(wrong);
     if !findings.is_empty() {
         return faults(findings);
     }
-    let mut bound = document.clone();
-    bind(&mut bound, &variables);
-    let written = match deserialise(&bound) {
-        Ok(written) => written,
-        Err(finding) => return faults(vec![finding]),
-    };
-    let order = placement_order(&written).unwrap_or_default();
-    Ok(assemble(document, written, order, variables))
+    bind(&mut sound, &variables);
+    let order = placement_order(&written).expect("a checked document has no circle of places");
+    match deserialise(&sound) {
+        Ok(written) => Ok(assemble(document, written, order, variables)),
+        Err(finding) => faults(vec![finding]),
+    }
+}
+
+/// The fault of a key that stands twice.
+fn twice(duplicate: &Duplicate) -> Finding {
+    let Duplicate {
+        key, first_line, ..
+    } = duplicate;
+    let found = format!("the key \"{key}\" a second time");
+    let expected = format!("each key once, and it is on line {first_line}");
+    Finding {
+        part: Part::Bytes(duplicate.bytes.clone()),
+        ..Finding::new(&duplicate.pointer, found, expected)
+    }
 }
 
 /// The structures of a document.
@@ -126,6 +150,7 @@ fn assemble(
     let hash = Sha256::digest(document.to_string());
     Problem {
         name: written.name.clone(),
+        description: written.description.clone(),
         settings: Settings {
             steps: written.simulation.steps,
             method: settings::Method::Bdf {

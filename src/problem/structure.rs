@@ -7,6 +7,9 @@ use super::pointer::{advice, join};
 use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
+/// Largest number that is taken for a physical one: inertias, its fifth power, are finite still.
+const LARGEST: f64 = 1e50;
+
 /// What the schema says of a number.
 #[derive(Clone, Debug, Default)]
 pub struct Number {
@@ -170,6 +173,9 @@ impl<'a> Walker<'a> {
         let other = schema.get("const").is_some_and(|only| only != value);
         if low || high || other {
             self.wrong(value, schema, pointer);
+        } else if x.abs() > LARGEST {
+            let expected = format!("a number of size up to {LARGEST:e}");
+            self.fault(Finding::new(pointer, describe(value), expected));
         }
         let unit = schema["unit"].as_str().unwrap_or_default().to_owned();
         let barred = match &schema["design_variable"] {

@@ -427,3 +427,18 @@ fn the_drawing_follows_the_design() {
         [(4, Vec3::zeros())]
     );
 }
+
+#[test]
+fn the_worked_example_of_the_reference_is_sound_and_its_fault_is_the_one_shown() {
+    let page = include_str!("../../docs/problem-file.md");
+    let block = |kind: &str| {
+        let (_, rest) = page.split_once(&format!("```{kind}\n")).expect("a block");
+        rest.split_once("```").expect("the end of the block").0
+    };
+    let text = block("json");
+    let problem = Problem::parse(text, "hammer.json", &[]).unwrap_or_else(|f| panic!("{f}"));
+    derivatives_agree(&problem, &problem.start());
+    let wrong = text.replace(r#"["head", "handle"]"#, r#"["haed", "handle"]"#);
+    let faults = Problem::parse(&wrong, "hammer.json", &[]).expect_err("an unknown body");
+    assert_eq!(faults.to_string(), block("text").trim_end());
+}

@@ -2,7 +2,7 @@
 
 use super::fault::Finding;
 use super::overrides::nearest_path;
-use super::pointer::{is_below, join, nearest};
+use super::pointer::{is_below, join, keys, nearest_pointer};
 use super::quantity::Quantity;
 use super::schema::{Document, Variable as Written};
 use super::structure::{Number, Structure, describe};
@@ -148,23 +148,20 @@ impl<'a> Checker<'a> {
     fn number(&mut self, name: &str, place: &str, path: &str) -> Option<(f64, &'a Number)> {
         let expected = "the path of a physical number";
         let Some(value) = self.document.pointer(path) else {
-            let open = self
-                .structure
-                .numbers
-                .iter()
-                .filter(|(_, number)| number.barred.is_none());
-            let hint = match nearest(path, open.map(|(path, _)| path.as_str())) {
-                Some(near) => Some(format!("did you mean {near}?")),
-                None => nearest_path(path, self.document),
-            };
-            let found = format!("{path}, which does not exist");
-            self.fault(Finding::new(place, found, expected).hint(hint));
+            if !self.is_damaged(path) {
+                let found = format!("{path}, which does not exist");
+                let hint = self.hint(path);
+                self.fault(Finding::new(place, found, expected).hint(hint));
+            }
             return None;
         };
         if let Some(owner) = self.owners.insert(path.to_owned(), name.to_owned()) {
             let found = format!("{path} a second time");
             let hint = format!("it belongs to the variable \"{owner}\"");
             self.fault(Finding::new(place, found, "a path once").hint(Some(hint)));
+            return None;
+        }
+        if self.is_damaged(path) {
             return None;
         }
         let numbers = &self.structure.numbers;
@@ -176,14 +173,6 @@ impl<'a> Checker<'a> {
             self.fault(Finding::new(place, found, expected).hint(Some(why.clone())));
             return None;
         }
-        // What lies in a part of the file that is at fault anyway is not judged twice.
-        let faults = &self.structure.findings;
-        if faults
-            .iter()
-            .any(|fault| is_below(path, &fault.pointer) && !fault.pointer.is_empty())
-        {
-            return None;
-        }
         let inside = numbers
             .iter()
             .find(|(inner, number)| is_below(inner, path) && number.barred.is_none());
@@ -191,6 +180,34 @@ impl<'a> Checker<'a> {
         let found = format!("{path}, which is {}", describe(value));
         self.fault(Finding::new(place, found, expected).hint(hint));
         None
+    }
+
+    /// True if the path leads into an entry of the file that is at fault anyway: what lies there
+    /// is not judged twice.
+    fn is_damaged(&self, path: &str) -> bool {
+        let keys = keys(path);
+        let entry: String = keys.iter().take(2).map(|key| join("", key)).collect();
+        let findings = &self.structure.findings;
+        findings.iter().any(|fault| {
+            let at = &fault.pointer;
+            !at.is_empty() && (is_below(at, &entry) || is_below(path, at))
+        })
+    }
+
+    /// Advice after a path that does not exist.
+    fn hint(&self, path: &str) -> Option<String> {
+        let numbers = self.structure.numbers.iter();
+        let mut open = numbers
+            .filter(|(_, number)| number.barred.is_none())
+            .map(|(path, _)| path);
+        if let Some(near) = nearest_pointer(path, open.clone().map(String::as_str)) {
+            return Some(format!("did you mean {near}?"));
+        }
+        let section = keys(path).first().cloned().unwrap_or_default();
+        match self.document.get(&section) {
+            Some(_) => nearest_path(path, self.document),
+            None => open.next().map(|path| format!("such a path is {path}")),
+        }
     }
 
     fn bounds(

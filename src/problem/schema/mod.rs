@@ -21,13 +21,14 @@ pub const VERSION: u64 = 1;
 pub struct Document {
     /// Address of this schema, for editors.
     #[serde(rename = "$schema")]
-    pub schema: Option<String>,
+    pub _schema: Option<String>,
     /// Version of the format: 1.
     #[schemars(extend(
-        "const" = 1,
+        "const" = VERSION,
         "design_variable" = "the version of the format is not a physical number"
     ))]
-    pub version: u64,
+    #[serde(rename = "version")]
+    pub _version: u64,
     /// Name of the problem and of its results.
     pub name: String,
     /// What the problem is about.
@@ -72,6 +73,7 @@ pub struct Simulation {
     /// Number of time steps of equal size.
     #[schemars(extend(
         "minimum" = 1,
+        "maximum" = 10_000_000,
         "design_variable" = "a number of steps is a count, not a physical number"
     ))]
     pub steps: usize,
@@ -205,8 +207,8 @@ pub fn schema() -> serde_json::Value {
     schema
 }
 
-/// Removes `null` (a key that is not wanted is left out) and moves units and limits of arrays and
-/// maps to their numbers.
+/// Removes `null` (a key that is not wanted is left out) and line breaks in descriptions, and moves
+/// units and limits of arrays and maps to their numbers.
 fn tidy(schema: &mut serde_json::Value) {
     use serde_json::Value;
     match schema {
@@ -238,8 +240,65 @@ fn tidy(schema: &mut serde_json::Value) {
                     }
                 }
             }
+            if let Some(Value::String(text)) = object.get_mut("description") {
+                *text = text.replace('\n', " ");
+            }
             object.values_mut().for_each(tidy);
         }
         _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::pointer::join;
+    use serde_json::Value;
+
+    /// Calls `judge` with the pointer and the schema of every property below `schema`.
+    fn properties(schema: &Value, at: &str, judge: &mut impl FnMut(&str, &Value)) {
+        let properties_of = schema["properties"].as_object();
+        for (key, property) in properties_of.into_iter().flatten() {
+            judge(&join(at, key), property);
+        }
+        let inner: Vec<_> = match schema {
+            Value::Object(object) => object.iter().map(|(k, v)| (k.clone(), v)).collect(),
+            Value::Array(items) => items
+                .iter()
+                .enumerate()
+                .map(|(k, v)| (k.to_string(), v))
+                .collect(),
+            _ => Vec::new(),
+        };
+        for (key, value) in inner {
+            properties(value, &join(at, key), judge);
+        }
+    }
+
+    #[test]
+    fn the_schema_describes_every_key_and_says_of_every_number_what_it_is() {
+        let mut numbers = 0;
+        properties(&schema(), "", &mut |at, property| {
+            // The single key of an alternative is described beside it.
+            let described = property["description"].is_string();
+            assert!(described || at.contains("oneOf"), "{at} has no description");
+            let mut number = property;
+            for inner in ["additionalProperties", "items"] {
+                if number[inner].is_object() {
+                    number = &number[inner];
+                }
+            }
+            if number["type"] == "number" || number["type"] == "integer" {
+                numbers += 1;
+                let open = &number["design_variable"];
+                assert!(*open == true || open.is_string(), "{at}: {number}");
+                assert!(
+                    *open != true || number["unit"].is_string(),
+                    "{at} has no unit"
+                );
+            }
+        });
+        assert!(numbers > 40, "{numbers}");
+        assert!(!schema().to_string().contains("\"null\""));
     }
 }
