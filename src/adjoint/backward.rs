@@ -119,16 +119,9 @@ pub fn gradients(
                 psi[nv + i] = -(partials.v[i] + a[0] / h * partials.a[i]);
             }
             equations.scale_columns(h, &mut psi);
-            let b = psi.clone();
-            factors.solve_transposed(&mut psi);
-            for _ in 0..std::env::var("REF").map_or(0, |x| x.parse().unwrap()) {
-            let mut r = matrix.multiply_transposed(&psi);
-            for i in 0..r.len() { r[i] = b[i] - r[i]; }
-            factors.solve_transposed(&mut r);
-            for i in 0..r.len() { psi[i] += r[i]; }
-            }
+            factors.solve_transposed_refined(matrix, &mut psi);
             equations.scale_rows(h, &mut psi);
-            counts.solves += 1;
+            counts.solves += 2;
             let cot = &mut sweep.cot.model;
             equations.pull_back(&at, &psi, cot, (&mut qdot_bar, &mut vdot_bar));
             for (bar, g) in vdot_bar.iter_mut().zip(&partials.a) {

@@ -3,7 +3,7 @@
 use super::arguments::Job;
 use super::{DONE, Failure, NOT_REACHED, load, print};
 use crate::driver::simulate::estimate_errors;
-use crate::driver::{self, Simulation, figures};
+use crate::driver::{self, CheckedDerivative, Simulation, figures};
 use crate::problem::Problem;
 use crate::report::write_all;
 use std::fmt::Write;
@@ -131,6 +131,14 @@ pub fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
         text,
         "{} derivatives, largest relative difference {worst:.1e}, {failed} above {tolerance:.1e}",
         derivatives.len()
+    );
+    let noise = derivatives
+        .iter()
+        .map(CheckedDerivative::noise)
+        .fold(0.0, f64::max);
+    let _ = writeln!(
+        text,
+        "round-off in the motion moves the derivatives by up to {noise:.1e}"
     );
     if !job.quiet || failed > 0 {
         print(&text)?;

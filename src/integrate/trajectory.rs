@@ -1,7 +1,7 @@
 //! What a run leaves behind.
 
 use super::settings::{Method, Settings};
-use crate::math::Scalar;
+use crate::math::{Complex64, Scalar};
 use crate::system::Numbering;
 use crate::system::initial::InitialState;
 
@@ -120,6 +120,34 @@ impl<S: Scalar> Trajectory<S> {
     pub fn quadrature_weight(&self, k: usize) -> f64 {
         let end = k == 0 || k == self.steps;
         (if end { 0.5 } else { 1.0 }) / self.steps as f64
+    }
+}
+
+impl Trajectory<Complex64> {
+    /// The real part of a complex run.
+    pub fn real(&self) -> Trajectory<f64> {
+        let re = |all: &[Complex64]| all.iter().map(|x| x.re).collect();
+        Trajectory {
+            numbering: self.numbering.clone(),
+            h: self.h.re,
+            steps: self.steps,
+            method: self.method,
+            q: re(&self.q),
+            v: re(&self.v),
+            a: re(&self.a),
+            lambda: re(&self.lambda),
+            mu: re(&self.mu),
+            initial: InitialState {
+                q: re(&self.initial.q),
+                v: re(&self.initial.v),
+                a: re(&self.initial.a),
+                lambda: re(&self.initial.lambda),
+                s: re(&self.initial.s),
+                sigma: re(&self.initial.sigma),
+                iterations: self.initial.iterations,
+            },
+            counts: self.counts,
+        }
     }
 }
 

@@ -161,7 +161,9 @@ impl<S: Scalar> SparseMatrix<S> {
     pub fn multiply_transposed(&self, x: &[S]) -> Vec<S> {
         let column = |j: usize| self.pattern.column_starts[j]..self.pattern.column_starts[j + 1];
         let entry = |k: usize| self.values[k] * x[self.pattern.rows[k]];
-        (0..x.len()).map(|j| column(j).fold(S::zero(), |sum, k| sum + entry(k))).collect()
+        (0..x.len())
+            .map(|j| column(j).fold(S::zero(), |sum, k| sum + entry(k)))
+            .collect()
     }
 
     /// The product A x.
