@@ -11,6 +11,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::outcome::Counts;
 
+/// Tolerance asked of Clarabel, in scaled units.
+const TOLERANCE: f64 = 1e-10;
+
 /// The subproblem
 ///
 /// ```text
@@ -126,9 +129,6 @@ impl ElasticQp {
         let solver = self.solver.insert(solver);
         solver.solve();
         let status = solver.solution.status;
-        if !matches!(status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
-            return None;
-        }
         let (t, z) = (&solver.solution.x, &solver.solution.z);
         let mut y = DVector::zeros(m);
         let mut row = 0;
@@ -239,6 +239,9 @@ impl ElasticQp {
             .verbose(false)
             .presolve_enable(false)
             .max_iter(100)
+            .tol_gap_abs(TOLERANCE)
+            .tol_gap_rel(TOLERANCE)
+            .tol_feas(TOLERANCE)
             .build()
             .ok()?;
         DefaultSolver::new(&p, q, &a, rhs, &[NonnegativeConeT(total)], settings).ok()

@@ -224,10 +224,10 @@ impl<'a> Program<'a> {
         let mut result = self.nlp.evaluate(&full);
         self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
         self.counts.evaluations += 1;
-        if let Ok(e) = &result {
-            if let Some(fault) = fault_of_evaluation(self.nlp, e) {
-                result = Err(fault);
-            }
+        if let Ok(e) = &result
+            && let Some(fault) = fault_of_evaluation(self.nlp, e)
+        {
+            result = Err(fault);
         }
         let Evaluation {
             objective,
@@ -252,10 +252,10 @@ impl<'a> Program<'a> {
         let mut result = self.nlp.gradients(&full);
         self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
         self.counts.gradients += 1;
-        if let Ok(g) = &result {
-            if let Some(fault) = fault_of_gradients(self.nlp, g) {
-                result = Err(fault);
-            }
+        if let Ok(g) = &result
+            && let Some(fault) = fault_of_gradients(self.nlp, g)
+        {
+            result = Err(fault);
         }
         let Gradients {
             objective,

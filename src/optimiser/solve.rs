@@ -224,7 +224,7 @@ fn interior_point(
         point: method.at.point,
         slopes: method.at.slopes,
         b: method.b,
-        barrier: method.mu,
+        barrier: method.barrier.mu,
         radius: program.options.initial_radius,
     }
 }

@@ -18,6 +18,9 @@ const ACCEPT: f64 = 1e-4;
 /// Share of the best possible reduction of the linearised violation that a step must reach.
 const STEERING: f64 = 0.1;
 
+/// Steps in succession whose predicted reduction is lost in rounding that are still tried.
+const LOST_STEPS: usize = 4;
+
 /// What the iteration minimises.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Goal {
@@ -63,6 +66,7 @@ impl TrustRegion {
     pub fn new(program: &Program<'_>, point: Point, slopes: Slopes, goal: Goal) -> TrustRegion {
         let (n, m) = (point.x.len(), point.c.len());
         let options = program.options;
+        let point_size = point.x.amax().max(1.0);
         let mut b = QuasiNewton::new(n, usize::MAX, options.memory);
         if goal == Goal::Feasibility {
             b.set_scale(1e-4 * slopes.a.amax().max(1e-8));
@@ -73,7 +77,7 @@ impl TrustRegion {
             slopes,
             y: DVector::zeros(m),
             b,
-            radius: options.initial_radius,
+            radius: options.initial_radius * point_size,
             goal,
             penalty: DVector::from_element(m, 1.0),
         }
@@ -85,10 +89,7 @@ impl TrustRegion {
 
     /// Multipliers of the whole program at the present point.
     pub fn multipliers(&self, program: &Program<'_>) -> ScaledMultipliers {
-        let mut z =
-            ScaledMultipliers::from_rows(program, &self.point, &self.slopes, self.y.clone());
-        z.clip(program);
-        z
+        ScaledMultipliers::polished(program, &self.point, &self.slopes, &self.y)
     }
 
     /// Iterates until `reached` or an ending of its own.
@@ -99,6 +100,7 @@ impl TrustRegion {
     ) -> Result<Ending, Trouble> {
         let tiny = 1e-13;
         let mut rejected = 0;
+        let mut lost = 0;
         loop {
             if self.goal == Goal::Optimum && self.is_unbounded(program) {
                 return Ok(Ending::Unbounded);
@@ -116,8 +118,13 @@ impl TrustRegion {
                 return Ok(Ending::Reached);
             }
             let size = model.step.d.amax();
-            let negligible =
-                model.predicted <= 1e-14 * self.merit(program, &self.point).abs().max(1e-8);
+            let rounding = f64::EPSILON * self.merit(program, &self.point).abs().max(1e-8);
+            lost = if model.predicted <= rounding {
+                lost + 1
+            } else {
+                0
+            };
+            let negligible = model.predicted <= 0.0 || lost > LOST_STEPS;
             if negligible || self.radius < tiny {
                 return Ok(self.end(program, negligible));
             }
@@ -211,35 +218,27 @@ impl TrustRegion {
         let now = program.total_violation(&c);
         let mut left = self.linear_violation(program, &step.d);
         let small = 0.01 * program.options.constraint_tolerance;
-        if self.goal == Goal::Optimum && now > 0.0 && left > small {
+        if self.goal == Goal::Optimum && left > small {
             let kept = std::mem::replace(&mut self.penalty, DVector::from_element(c.len(), 1.0));
             let best = self.solve_qp(program, 0.0, &c);
             self.penalty = kept;
             let best = best.map_or(left, |s| self.linear_violation(program, &s.d));
-            for _ in 0..8 {
-                let enough = if best <= small {
-                    left <= small.max(0.9 * now) && left <= 10.0 * small || left <= 0.5 * now
+            for _ in 0..10 {
+                let target = if best <= small {
+                    10.0 * small
                 } else {
-                    now - left >= STEERING * (now - best)
+                    now - STEERING * (now - best)
                 };
-                if enough {
+                if left <= target {
                     break;
                 }
                 for k in 0..c.len() {
-                    if self.linear_row_violation(program, &step.d, k) > 0.0 {
+                    if self.linear_row_violation(program, &step.d, k) > 0.1 * small {
                         self.penalty[k] *= 10.0;
                     }
                 }
                 step = self.solve_qp(program, self.weight(), &c)?;
                 left = self.linear_violation(program, &step.d);
-            }
-        }
-        for k in 0..c.len() {
-            if step.y[k].abs() > 0.9 * self.penalty[k]
-                && self.penalty[k] < 1e8
-                && self.goal == Goal::Optimum
-            {
-                self.penalty[k] = self.penalty[k].max(1.5 * step.y[k].abs());
             }
         }
         let d = &step.d;
