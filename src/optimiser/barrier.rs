@@ -12,8 +12,11 @@ const LINEAR: f64 = 0.2;
 const POWER: f64 = 1.5;
 /// Residuals kept for the test of progress of the adaptive rule, and the factor by which their
 /// largest must fall.
-const HISTORY: usize = 4;
+const HISTORY: usize = 6;
 const PROGRESS: f64 = 0.9999;
+
+/// How often the adaptive rule comes back after the monotone one took over.
+const RETURNS: usize = 1;
 
 /// State of the rule.
 #[derive(Clone, Debug)]
@@ -24,6 +27,7 @@ pub(super) struct BarrierRule {
     free: bool,
     adaptive: bool,
     history: Vec<f64>,
+    returns: usize,
 }
 
 impl BarrierRule {
@@ -35,6 +39,7 @@ impl BarrierRule {
             free: adaptive,
             adaptive,
             history: Vec::new(),
+            returns: 0,
         }
     }
 
@@ -58,7 +63,8 @@ impl BarrierRule {
         while self.mu > self.least
             && at.residuals(layout, self.mu).largest() <= SUBPROBLEM * self.mu
         {
-            if self.adaptive {
+            if self.adaptive && self.returns < RETURNS {
+                self.returns += 1;
                 self.free = true;
                 self.history.clear();
             }

@@ -129,6 +129,9 @@ impl ElasticQp {
         let solver = self.solver.insert(solver);
         solver.solve();
         let status = solver.solution.status;
+        if !matches!(status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
+            return None;
+        }
         let (t, z) = (&solver.solution.x, &solver.solution.z);
         let mut y = DVector::zeros(m);
         let mut row = 0;

@@ -6,7 +6,7 @@ use super::barrier::BarrierRule;
 use super::direction::{Direction, NewtonSystem};
 use super::filter::Filter;
 use super::iterate::{Iterate, Layout};
-use super::line_search::{Accepted, LineSearch};
+use super::line_search::{Accepted, LineSearch, infeasibility};
 use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
@@ -25,6 +25,10 @@ const NEARLY_FEASIBLE: f64 = 1e-6;
 const SOFT_VIOLATION: f64 = 1e-4;
 const SOFT_GAIN: f64 = 0.9;
 
+/// Trials of a line search after which its step counts as short; two short steps in succession
+/// show that the quasi-Newton matrix misleads.
+const SHORT_TRIALS: usize = 7;
+
 /// State of the iteration.
 pub(super) struct InteriorPoint {
     layout: Layout,
@@ -33,6 +37,7 @@ pub(super) struct InteriorPoint {
     pub barrier: BarrierRule,
     filter: Filter,
     theta_small: f64,
+    short_steps: usize,
 }
 
 impl InteriorPoint {
@@ -59,12 +64,13 @@ impl InteriorPoint {
             s,
         };
         at.estimate_multipliers(&layout, LARGEST_ESTIMATE);
-        let theta = layout.residual(&at.point.c, &at.s).lp_norm(1);
+        let theta = infeasibility(&layout.residual(&at.point.c, &at.s));
         InteriorPoint {
             b: QuasiNewton::new(n, options.dense_limit, options.memory),
             barrier: BarrierRule::new(options),
             filter: Filter::new(1e4 * theta.max(1.0)),
             theta_small: 1e-4 * theta.max(1.0),
+            short_steps: 0,
             layout,
             at,
         }
@@ -117,7 +123,7 @@ impl InteriorPoint {
                 return Ok(Ending::Unbounded);
             }
             if self.barrier.update(&self.at, &self.layout, &mut self.b) {
-                self.filter.clear();
+                self.filter.clear(self.theta());
             }
             program.next_iteration()?;
             let Some((system, direction)) = self.direction() else {
@@ -194,9 +200,13 @@ impl InteriorPoint {
             direction,
             trials: 1,
         };
-        self.filter.clear();
+        self.filter.clear(self.theta());
         self.step(program, accepted, dual, system.regularisation())?;
         Ok(true)
+    }
+
+    fn theta(&self) -> f64 {
+        infeasibility(&self.layout.residual(&self.at.point.c, &self.at.s))
     }
 
     fn direction(&mut self) -> Option<(NewtonSystem, Direction)> {
@@ -244,6 +254,15 @@ impl InteriorPoint {
         }
         let change = &at.slopes.g - &before.g + at.slopes.a.tr_mul(&at.y) - before.a.tr_mul(&at.y);
         self.b.update(moved, change);
+        self.short_steps = if trials > SHORT_TRIALS {
+            self.short_steps + 1
+        } else {
+            0
+        };
+        if self.short_steps >= 2 {
+            self.b.reset();
+            self.short_steps = 0;
+        }
         let progress = Progress {
             optimality: self.optimality(),
             barrier: self.barrier.mu,
@@ -282,15 +301,12 @@ impl InteriorPoint {
         program: &mut Program<'_>,
         failures: usize,
     ) -> Result<Option<Ending>, Trouble> {
-        let theta = self
-            .layout
-            .residual(&self.at.point.c, &self.at.s)
-            .lp_norm(1);
+        let theta = self.theta();
         let small = 1e-2 * program.options.tolerance;
         if theta <= small || failures > 3 {
             if failures == 1 && !self.b.is_empty() {
                 self.b.reset();
-                self.filter.clear();
+                self.filter.clear(self.theta());
                 return Ok(None);
             }
             if theta <= small || failures > 6 {
@@ -318,22 +334,16 @@ impl InteriorPoint {
         let (layout, filter, mu) = (&self.layout, &self.filter, self.barrier.mu);
         let accepted = |_: &Program<'_>, p: &Point| {
             let s = slacks(layout, p);
-            let theta_new = layout.residual(&p.c, &s).lp_norm(1);
+            let theta_new = infeasibility(&layout.residual(&p.c, &s));
             let phi = layout.barrier_function(p.f, &p.x, &s, mu);
             theta_new <= 0.9 * theta && filter.accepts(theta_new, phi)
         };
         let ending = search.run(program, accepted)?;
-        let before = self
-            .layout
-            .residual(&self.at.point.c, &self.at.s)
-            .lp_norm(1);
+        let before = self.theta();
         self.at.s = slacks(&self.layout, &search.point);
         self.at.point = search.point;
         self.at.slopes = search.slopes;
-        let after = self
-            .layout
-            .residual(&self.at.point.c, &self.at.s)
-            .lp_norm(1);
+        let after = self.theta();
         self.at
             .keep_multipliers_in_band(&self.layout, self.barrier.mu);
         self.at.estimate_multipliers(&self.layout, LARGEST_ESTIMATE);
@@ -341,7 +351,7 @@ impl InteriorPoint {
             Ending::Reached => Ok(None),
             Ending::Infeasible => Ok(Some(Ending::Infeasible)),
             _ if after < 0.5 * before => {
-                self.filter.clear();
+                self.filter.clear(self.theta());
                 Ok(None)
             }
             other => Ok(Some(other)),
