@@ -41,8 +41,8 @@ pub(super) struct InteriorPoint {
 }
 
 impl InteriorPoint {
-    /// Starts from a strictly interior point.
-    pub fn new(program: &Program<'_>, point: Point, slopes: Slopes) -> InteriorPoint {
+    /// Starts from a strictly interior point; slacks keep the share `push` from their bounds.
+    pub fn new(program: &Program<'_>, point: Point, slopes: Slopes, push: f64) -> InteriorPoint {
         let layout = Layout::new(program);
         let options = program.options;
         let n = layout.n;
@@ -52,7 +52,7 @@ impl InteriorPoint {
                 .slack_rows
                 .iter()
                 .enumerate()
-                .map(|(k, &j)| layout.push_inside(n + k, point.c[j], options.bound_push)),
+                .map(|(k, &j)| layout.push_inside(n + k, point.c[j], push)),
         );
         let one = |bound: &f64| if bound.is_finite() { 1.0 } else { 0.0 };
         let mut at = Iterate {

@@ -21,6 +21,9 @@ const STEERING: f64 = 0.1;
 /// Steps in succession whose predicted reduction is lost in rounding that are still tried.
 const LOST_STEPS: usize = 4;
 
+/// Share of the violation that its linearisation may still lose at a point called infeasible.
+const STATIONARY: f64 = 1e-4;
+
 /// What the iteration minimises.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Goal {
@@ -107,7 +110,7 @@ impl TrustRegion {
             }
             let Some(model) = self.solve_model(program) else {
                 if self.b.is_empty() && self.radius < 1e-6 {
-                    return Ok(Ending::Stalled);
+                    return Ok(self.end(program));
                 }
                 self.b.reset();
                 self.radius *= 0.1;
@@ -126,7 +129,7 @@ impl TrustRegion {
             };
             let negligible = model.predicted <= 0.0 || lost > LOST_STEPS;
             if negligible || self.radius < tiny {
-                return Ok(self.end(program, negligible));
+                return Ok(self.end(program));
             }
             program.next_iteration()?;
             let (ratio, trials) = self.attempt(program, &model)?;
@@ -167,13 +170,26 @@ impl TrustRegion {
         }
     }
 
-    fn end(&self, program: &Program<'_>, stationary: bool) -> Ending {
-        let feasible =
-            program.worst_violation(&self.point.c).0 <= program.options.constraint_tolerance;
-        if feasible || !stationary {
-            Ending::Stalled
-        } else {
-            Ending::Infeasible
+    /// Names what a point at which no step is left is: infeasible only if the linearised violation
+    /// cannot be reduced in a box of the size of the point.
+    fn end(&mut self, program: &mut Program<'_>) -> Ending {
+        let limit = program.options.constraint_tolerance;
+        if program.worst_violation(&self.point.c).0 <= limit {
+            return Ending::Stalled;
+        }
+        let (radius, goal) = (self.radius, self.goal);
+        self.radius = self.point.x.amax().max(1.0);
+        self.goal = Goal::Optimum;
+        let c = self.point.c.clone();
+        let kept = std::mem::replace(&mut self.penalty, DVector::from_element(c.len(), 1.0));
+        let step = self.solve_qp(program, 0.0, &c);
+        (self.radius, self.goal, self.penalty) = (radius, goal, kept);
+        let now = program.total_violation(&c);
+        match step {
+            Some(step) if now - self.linear_violation(program, &step.d) <= STATIONARY * now => {
+                Ending::Infeasible
+            }
+            _ => Ending::Stalled,
         }
     }
 

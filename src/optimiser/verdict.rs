@@ -185,7 +185,11 @@ pub(super) fn is_solved(kkt: &Kkt, options: &Options) -> bool {
 }
 
 /// Multipliers in the units of the user.
-pub(super) fn user_multipliers(program: &Program<'_>, z: &ScaledMultipliers) -> Multipliers {
+pub(super) fn user_multipliers(
+    program: &Program<'_>,
+    x: &DVector<f64>,
+    z: &ScaledMultipliers,
+) -> Multipliers {
     let unit_f = program.scaling.objective;
     let (n, m) = (
         program.scaling.variables.len(),
