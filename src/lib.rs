@@ -1,1 +1,2 @@
 //! Design of flexible multibody systems by gradient.
+pub mod optimiser;

@@ -64,7 +64,7 @@ impl InteriorPoint {
             s,
         };
         at.estimate_multipliers(&layout, LARGEST_ESTIMATE);
-        let theta = infeasibility(&layout.residual(&at.point.c, &at.s));
+        let theta = infeasibility(&layout.residual(&at.point.c, &at.s), &at.point.c);
         InteriorPoint {
             b: QuasiNewton::new(n, options.dense_limit, options.memory),
             barrier: BarrierRule::new(options),
@@ -206,7 +206,7 @@ impl InteriorPoint {
     }
 
     fn theta(&self) -> f64 {
-        infeasibility(&self.layout.residual(&self.at.point.c, &self.at.s))
+        infeasibility(&self.layout.residual(&self.at.point.c, &self.at.s), &self.at.point.c)
     }
 
     fn direction(&mut self) -> Option<(NewtonSystem, Direction)> {
@@ -334,7 +334,7 @@ impl InteriorPoint {
         let (layout, filter, mu) = (&self.layout, &self.filter, self.barrier.mu);
         let accepted = |_: &Program<'_>, p: &Point| {
             let s = slacks(layout, p);
-            let theta_new = infeasibility(&layout.residual(&p.c, &s));
+            let theta_new = infeasibility(&layout.residual(&p.c, &s), &p.c);
             let phi = layout.barrier_function(p.f, &p.x, &s, mu);
             theta_new <= 0.9 * theta && filter.accepts(theta_new, phi)
         };

@@ -22,9 +22,9 @@ const CORRECTION_GAIN: f64 = 0.99;
 /// barrier function alone decides.
 const FEASIBLE: f64 = 1e-9;
 
-/// Infeasibility θ of the residuals `r` of the rows.
-pub(super) fn infeasibility(r: &DVector<f64>) -> f64 {
-    (r.lp_norm(1) - FEASIBLE).max(0.0)
+/// Infeasibility θ of the residuals `r` of rows whose values are `c`.
+pub(super) fn infeasibility(r: &DVector<f64>, c: &DVector<f64>) -> f64 {
+    (r.lp_norm(1) - FEASIBLE - 10.0 * f64::EPSILON * c.lp_norm(1)).max(0.0)
 }
 
 /// A point that the search accepted.
@@ -73,7 +73,7 @@ impl LineSearch<'_> {
     ) -> Result<Option<Accepted>, Trouble> {
         let r = self.layout.residual(&self.at.point.c, &self.at.s);
         let here = Measure {
-            theta: infeasibility(&r),
+            theta: infeasibility(&r, &self.at.point.c),
             phi: self.layout.barrier_function(
                 self.at.point.f,
                 &self.at.point.x,
@@ -144,7 +144,7 @@ impl LineSearch<'_> {
             Err(halt) => return Err(halt),
         };
         let r = self.layout.residual(&point.c, &s);
-        let theta = infeasibility(&r);
+        let theta = infeasibility(&r, &point.c);
         let phi = self.layout.barrier_function(point.f, &x, &s, self.mu);
         if !phi.is_finite() {
             return Ok(Trial::Undefined);

@@ -12,7 +12,8 @@ use super::quasi_newton::QuasiNewton;
 use super::state::SavedState;
 use super::trust_region::{Ending, Goal, TrustRegion};
 use super::verdict::{
-    ScaledMultipliers, active, is_solved, kkt, scaled_multipliers, user_multipliers,
+    ScaledMultipliers, active, is_solved, kkt, scaled_multipliers, scaled_residual,
+    user_multipliers,
 };
 
 /// Starts tried where the functions are not defined.
@@ -173,7 +174,7 @@ fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
     };
     let y = &finish.multipliers.y;
     let multipliers = ScaledMultipliers::polished(program, &point, &slopes, y);
-    let scaled = kkt(program, &point, &slopes, &multipliers, 0.0).relative_stationarity;
+    let scaled = scaled_residual(program, &point, &slopes, &multipliers);
     Finish {
         point,
         slopes,
@@ -264,12 +265,23 @@ fn interior_point(
     }
     let result = method.run(program);
     let status = status_of(program, result, &method.at.point);
+    let mut multipliers = method.multipliers(program);
+    let mut scaled = method.optimality();
+    let (point, slopes) = (method.at.point, method.at.slopes);
+    if status == Status::Stalled {
+        // Multipliers that grow without limit may hide a point that has finite ones.
+        let fitted = ScaledMultipliers::polished(program, &point, &slopes, &multipliers.y);
+        let residual = scaled_residual(program, &point, &slopes, &fitted);
+        if is_solved(&kkt(program, &point, &slopes, &fitted, residual), program.options) {
+            (multipliers, scaled) = (fitted, residual);
+        }
+    }
     Finish {
         status,
-        multipliers: method.multipliers(program),
-        scaled: method.optimality(),
-        point: method.at.point,
-        slopes: method.at.slopes,
+        multipliers,
+        scaled,
+        point,
+        slopes,
         b: method.b,
         barrier: method.barrier.mu,
         radius: program.options.initial_radius,

@@ -10,7 +10,7 @@ use super::elastic_qp::{ElasticQp, QpData, QpStep};
 use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
-use super::verdict::{ScaledMultipliers, is_solved, kkt};
+use super::verdict::{ScaledMultipliers, is_solved, kkt, scaled_residual};
 
 /// Share of the predicted reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-4;
@@ -137,7 +137,7 @@ impl TrustRegion {
             let radius = self.radius;
             if ratio < 0.25 {
                 self.radius = if ratio < -1e3 { 0.1 } else { 0.4 } * size.min(self.radius);
-            } else if ratio > 0.75 && boundary {
+            } else if ratio > 0.5 && boundary {
                 self.radius *= 2.5;
             }
             rejected = if ratio > ACCEPT { 0 } else { rejected + 1 };
@@ -202,14 +202,7 @@ impl TrustRegion {
     /// Largest scaled residual of the optimality conditions.
     pub fn optimality(&self, program: &Program<'_>) -> f64 {
         let z = self.multipliers(program);
-        let force = &self.slopes.g + self.slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
-        let size = (z.y.lp_norm(1) + z.zl.lp_norm(1) + z.zu.lp_norm(1))
-            / (z.y.len() + z.zl.len()).max(1) as f64;
-        let scale = size.max(100.0) / 100.0;
-        let violation = (0..z.y.len())
-            .map(|k| program.row_violation(&self.point.c, k))
-            .fold(0.0, f64::max);
-        (force.amax() / scale).max(violation)
+        scaled_residual(program, &self.point, &self.slopes, &z)
     }
 
     fn is_optimal(&self, program: &Program<'_>) -> bool {

@@ -175,6 +175,22 @@ pub(super) fn kkt(
     }
 }
 
+/// Largest residual of the conditions in scaled units, the forces divided by the size of the
+/// multipliers.
+pub(super) fn scaled_residual(
+    program: &Program<'_>,
+    point: &Point,
+    slopes: &Slopes,
+    z: &ScaledMultipliers,
+) -> f64 {
+    let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
+    let size = (z.y.lp_norm(1) + z.zl.lp_norm(1) + z.zu.lp_norm(1))
+        / (z.y.len() + z.zl.len()).max(1) as f64;
+    let violation =
+        (0..z.y.len()).map(|k| program.row_violation(&point.c, k)).fold(0.0, f64::max);
+    (force.amax() / (size.max(100.0) / 100.0)).max(violation)
+}
+
 /// Whether `kkt` meets the tolerances.
 pub(super) fn is_solved(kkt: &Kkt, options: &Options) -> bool {
     let within = |value: f64, limit: f64| value <= limit;
