@@ -1,2 +1,58 @@
 //! Design of flexible multibody systems by gradient.
+//!
+//! A problem file describes bodies, joints, design variables, functions, an objective and
+//! constraints; it becomes a scene, the scene a motion, the motion values, and the adjoint of the
+//! motion their gradients, with which an interior-point method finds the best design.
+//!
+//! ```
+//! use flexbody::driver::{check, simulate};
+//! use flexbody::problem::Problem;
+//!
+//! let text = r#"{
+//!     "version": 1, "name": "pendulum",
+//!     "bodies": {"bar": {"shape": {"box": {"size": [1, 0.1, 0.1]}}, "mass": 1,
+//!                        "points": {"end": [-0.5, 0, 0]}, "place": {"put": "end", "at": [0, 0, 0]}}},
+//!     "joints": {"hinge": {"revolute": {"between": ["bar", "ground"], "at": [0, 0, 0],
+//!                                       "axis": [0, 0, 1]}}},
+//!     "simulation": {"duration": 0.5, "steps": 100},
+//!     "functions": {"height": {"final": {"position": {"body": "bar", "direction": [0, 1, 0]}}}},
+//!     "variables": {"gravity": {"path": "/gravity/1", "lower": -20, "upper": -1}},
+//!     "gravity": [0, -9.81, 0]
+//! }"#;
+//! let problem = Problem::parse(text, "pendulum.json", &[]).expect("no faults");
+//! let motion = simulate(&problem, &problem.start()).expect("runs");
+//! assert!(motion.constraint_drift().1 < 1e-12);
+//! for derivative in check(&problem, &problem.start()).expect("runs") {
+//!     assert!(derivative.relative_difference() < 1e-11);
+//! }
+//! ```
+//!
+//! A folder imports only from folders above its own in this list (`tests/layers.rs` checks it):
+//!
+//! | Folder | What lives there |
+//! |---|---|
+//! | [`math`] | scalars (real, complex, dual), rotations, smooth maxima |
+//! | [`linalg`] | static sparsity patterns, sparse LU |
+//! | [`model`] | bodies, joints, gravity: parameters and nothing that moves |
+//! | [`system`] | kinematics, dynamics, constraints with all derivatives; consistent starts |
+//! | [`integrate`] | the equations that a method solves, Newton's method, the march |
+//! | [`functions`] | functions of interest and their derivatives |
+//! | [`adjoint`] | the backward march |
+//! | [`optimiser`] | nonlinear programs; knows nothing of mechanics |
+//! | [`problem`] | the problem file: faults, schema, the map from a design to a scene |
+//! | [`report`] | records, comparison, figures, text |
+//! | [`driver`] | simulate, check, optimise |
+//! | [`cli`] | the command line |
+
+pub mod adjoint;
+pub mod cli;
+pub mod driver;
+pub mod functions;
+pub mod integrate;
+pub mod linalg;
+pub mod math;
+pub mod model;
 pub mod optimiser;
+pub mod problem;
+pub mod report;
+pub mod system;

@@ -1,2 +1,7 @@
 //! The command `optimize`.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    flexbody::cli::run(std::env::args_os())
+}

@@ -45,6 +45,8 @@ pub struct Row<'a> {
     pub phase: Phase,
     /// The point, in the units of the user.
     pub x: &'a [f64],
+    /// Values of the constraints there, in the units of the user.
+    pub constraints: &'a [f64],
 }
 
 /// Receives every iteration and may stop the run.
@@ -61,7 +63,7 @@ pub trait Observer {
 /// let row = Row {
 ///     iteration: 0, objective: 2.0, infeasibility: 0.0, optimality: 1.0, barrier: 0.1,
 ///     step: 0.0, regularisation: 0.0, primal_step: 0.0, dual_step: 0.0, trials: 0,
-///     evaluations: 1, phase: Phase::Regular, x: &x,
+///     evaluations: 1, phase: Phase::Regular, x: &x, constraints: &[],
 /// };
 /// assert!(Silent.iteration(&row).is_continue());
 /// ```

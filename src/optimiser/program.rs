@@ -393,10 +393,20 @@ impl<'a> Program<'a> {
         }
     }
 
+    /// Values of all rows in the units of the user; zero for rows without bounds.
+    pub fn user_constraints(&self, c: &DVector<f64>) -> Vec<f64> {
+        let mut constraints = vec![0.0; self.scaling.constraints.len()];
+        for (k, &j) in self.rows.iter().enumerate() {
+            constraints[j] = c[k] / self.scaling.constraints[j];
+        }
+        constraints
+    }
+
     /// Tells the observer of an iteration.
     pub fn report(&mut self, point: &Point, progress: &Progress) -> Result<(), Trouble> {
         self.keep_best(point);
         let x = self.to_user(&point.x);
+        let constraints = self.user_constraints(&point.c);
         let row = Row {
             iteration: self.counts.iterations,
             objective: point.f / self.scaling.objective,
@@ -411,6 +421,7 @@ impl<'a> Program<'a> {
             evaluations: self.counts.evaluations,
             phase: progress.phase,
             x: &x,
+            constraints: &constraints,
         };
         match self.observer.iteration(&row) {
             ControlFlow::Continue(()) => Ok(()),

@@ -1,0 +1,85 @@
+//! The arguments of `optimize`.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Designs flexible multibody systems by gradient.
+///
+/// `optimize PROBLEM` finds the best design and writes its record and figures to
+/// results/<name of the problem>/.
+#[derive(Debug, Parser)]
+#[command(
+    name = "optimize",
+    version,
+    args_conflicts_with_subcommands = true,
+    arg_required_else_help = true,
+    after_help = "Exit codes: 0 done; 1 not converged, or a check or comparison failed; \
+                  2 bad input; 3 numerical failure; 130 interrupted."
+)]
+pub struct Arguments {
+    /// What to do instead of optimising.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// The optimisation.
+    #[command(flatten)]
+    pub job: Option<Job>,
+}
+
+/// A problem file and what is done with it.
+#[derive(Args, Debug)]
+pub struct Job {
+    /// Problem file (JSON).
+    pub problem: PathBuf,
+    /// Directory for the results [default: results/<name of the problem>; `simulate` writes
+    /// files only if this is given].
+    #[arg(long, short)]
+    pub output: Option<PathBuf>,
+    /// No progress and no summary.
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Changes one value of the file for this run: a JSON Pointer and a JSON value, as in
+    /// /bodies/arm/mass=42. May be repeated.
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
+}
+
+/// The other jobs.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Simulate the problem's start and report its functions, energy and constraint drift.
+    Simulate(Job),
+    /// Compare every derivative by the adjoint with the complex step.
+    Check {
+        /// The problem.
+        #[command(flatten)]
+        job: Job,
+        /// Largest relative difference that passes.
+        #[arg(long, default_value_t = 1e-10, value_parser = positive)]
+        tolerance: f64,
+    },
+    /// Compare two records of optimal designs; exit code 1 if they differ beyond tolerance.
+    Compare(Comparison),
+    /// Draw the figures of a result directory again from its record.
+    Plot {
+        /// Directory with optimum.json and history.csv.
+        directory: PathBuf,
+    },
+    /// Print the JSON Schema of problem files.
+    Schema,
+}
+
+/// Two records.
+#[derive(Args, Debug)]
+pub struct Comparison {
+    /// New record: optimum.json, or its directory.
+    pub new: PathBuf,
+    /// Record to compare with: optimum.json, or its directory.
+    pub baseline: PathBuf,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        _ => Err("expected a positive number".into()),
+    }
+}

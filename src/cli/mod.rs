@@ -1,0 +1,106 @@
+//! The command line: arguments, progress, exit codes.
+
+mod arguments;
+mod compare;
+mod optimise;
+mod simulate;
+
+use arguments::{Arguments, Command, Job};
+use clap::Parser;
+use clap::error::ErrorKind;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// Done.
+const DONE: u8 = 0;
+/// Did not converge, or a check or comparison failed.
+const NOT_REACHED: u8 = 1;
+/// Bad input.
+const BAD_INPUT: u8 = 2;
+/// A simulation failed.
+const NUMERICAL_FAILURE: u8 = 3;
+/// Interrupted from the keyboard.
+const INTERRUPTED: u8 = 130;
+
+/// Why a command did not do what it was asked to.
+struct Failure {
+    code: u8,
+    message: String,
+}
+
+impl Failure {
+    fn new(code: u8, message: impl ToString) -> Self {
+        Self {
+            code,
+            message: message.to_string(),
+        }
+    }
+
+    fn bad_input(message: impl ToString) -> Self {
+        Self::new(BAD_INPUT, message)
+    }
+
+    fn numerical(message: impl ToString) -> Self {
+        Self::new(NUMERICAL_FAILURE, message)
+    }
+}
+
+/// Runs the command with the given arguments (the first is the program's name).
+pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(message) => {
+            let shown = message.print();
+            let wanted = matches!(
+                message.kind(),
+                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+            );
+            return ExitCode::from(if wanted && shown.is_ok() {
+                DONE
+            } else {
+                BAD_INPUT
+            });
+        }
+    };
+    let done = match arguments.command {
+        Some(Command::Simulate(job)) => simulate::simulate(&job),
+        Some(Command::Check { job, tolerance }) => simulate::check(&job, tolerance),
+        Some(Command::Compare(files)) => compare::compare(&files),
+        Some(Command::Plot { directory }) => compare::plot(&directory),
+        Some(Command::Schema) => compare::schema(),
+        None => match arguments.job {
+            Some(job) => optimise::optimise(&job),
+            None => Err(Failure::bad_input("no problem file; see optimize --help")),
+        },
+    };
+    match done {
+        Ok(code) => ExitCode::from(code),
+        Err(failure) => {
+            eprintln!("{}", failure.message.trim_end());
+            ExitCode::from(failure.code)
+        }
+    }
+}
+
+/// Prints a result; a reader that closed the pipe is no failure.
+fn print(text: &str) -> Result<(), Failure> {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::bad_input(
+            format!("cannot write the result: {error}"),
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Reads the problem file of a job.
+fn load(job: &Job) -> Result<crate::problem::Problem, Failure> {
+    let overrides = job
+        .set
+        .iter()
+        .map(|text| crate::problem::Override::parse(text))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(Failure::bad_input)?;
+    crate::problem::Problem::load(&job.problem, &overrides).map_err(Failure::bad_input)
+}

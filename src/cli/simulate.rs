@@ -1,0 +1,147 @@
+//! `optimize simulate` and `optimize check`.
+
+use super::arguments::Job;
+use super::{DONE, Failure, NOT_REACHED, load, print};
+use crate::driver::simulate::estimate_errors;
+use crate::driver::{self, CheckedDerivative, Simulation, figures};
+use crate::problem::Problem;
+use crate::report::write_all;
+use std::fmt::Write;
+
+/// Simulates the start of a problem.
+pub fn simulate(job: &Job) -> Result<u8, Failure> {
+    let problem = load(job)?;
+    let simulation = driver::simulate(&problem, &problem.start()).map_err(Failure::numerical)?;
+    if !job.quiet {
+        print(&summary(&problem, &simulation))?;
+    }
+    if let Some(directory) = &job.output {
+        let files = figures::of_simulation(&problem, &simulation)
+            .into_iter()
+            .map(|(name, bytes)| (directory.join(name), bytes))
+            .collect::<Vec<_>>();
+        write_all(&files).map_err(Failure::bad_input)?;
+        if !job.quiet {
+            eprintln!("results in {}", directory.display());
+        }
+    }
+    Ok(DONE)
+}
+
+fn summary(problem: &Problem, simulation: &Simulation) -> String {
+    let run = &simulation.at.run;
+    let counts = run.counts;
+    let mut text = format!(
+        "{}: {} s in {} steps of {:.3e} s ({} Newton iterations, {} factorisations)\n",
+        problem.name,
+        run.time(run.steps),
+        run.steps,
+        run.h,
+        counts.newton_iterations,
+        counts.factorisations
+    );
+    let all: Vec<usize> = (0..problem.function_names.len()).collect();
+    let estimates = estimate_errors(problem, &simulation.at, &all);
+    let width = problem
+        .function_names
+        .iter()
+        .map(|n| n.chars().count())
+        .max()
+        .unwrap_or(0);
+    for (f, name) in problem.function_names.iter().enumerate() {
+        let found = simulation.at.function(f);
+        let _ = write!(text, "  {name:width$}  {:>16.9e}", found.value);
+        if let Some(estimates) = &estimates {
+            let _ = write!(text, "  error ~ {:.1e}", estimates[f].error);
+        }
+        if let Some((maximum, time)) = found.maximum {
+            let _ = write!(text, "  true maximum {maximum:.9e} at t = {time:.4} s");
+        }
+        text.push('\n');
+    }
+    let (first, last) = (&simulation.observations[0], simulation.observations.last());
+    let energy = first.kinetic + first.potential;
+    let (position, velocity) = simulation.constraint_drift();
+    let _ = writeln!(
+        text,
+        "  energy {energy:.6e} J, drift {:.2e} J; constraints: position {position:.1e}, \
+         velocity {velocity:.1e}",
+        simulation.energy_drift()
+    );
+    if let Some(last) = last {
+        let _ = writeln!(
+            text,
+            "  momentum at the end {:.6e} kg m/s, angular momentum {:.6e} kg m^2/s",
+            last.momentum.norm(),
+            last.angular_momentum.norm()
+        );
+    }
+    text
+}
+
+/// Checks all gradients of a problem at its start.
+pub fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
+    let problem = load(job)?;
+    if problem.variables.is_empty() {
+        return Err(Failure::bad_input(format!(
+            "{}: nothing to check: the problem has no variables",
+            job.problem.display()
+        )));
+    }
+    let derivatives = driver::check(&problem, &problem.start()).map_err(Failure::numerical)?;
+    let names = |all: &mut dyn Iterator<Item = &String>| {
+        all.map(|name| name.chars().count())
+            .max()
+            .unwrap_or(0)
+            .max(8)
+    };
+    let f_width = names(&mut problem.function_names.iter());
+    let v_width = names(&mut problem.variables.iter().map(|v| &v.name));
+    let mut text = format!(
+        "{:f_width$}  {:v_width$}  {:>23}  {:>23}  {:>10}\n",
+        "function", "variable", "adjoint", "complex step", "difference"
+    );
+    let mut worst = 0.0_f64;
+    let mut failed = 0;
+    for d in &derivatives {
+        let difference = d.relative_difference();
+        let passed = difference <= tolerance;
+        failed += usize::from(!passed);
+        worst = if difference.is_nan() {
+            f64::NAN
+        } else {
+            worst.max(difference)
+        };
+        let _ = writeln!(
+            text,
+            "{:f_width$}  {:v_width$}  {:>23.15e}  {:>23.15e}  {:>10.1e}{}",
+            problem.function_names[d.function],
+            problem.variables[d.variable].name,
+            d.adjoint,
+            d.complex_step,
+            difference,
+            if passed {
+                ""
+            } else {
+                "  exceeds the tolerance"
+            }
+        );
+    }
+    let _ = writeln!(
+        text,
+        "{} derivatives, largest relative difference {worst:.1e}, {failed} above {tolerance:.1e}",
+        derivatives.len()
+    );
+    let noise = derivatives
+        .iter()
+        .map(CheckedDerivative::noise)
+        .fold(0.0, f64::max);
+    let _ = writeln!(
+        text,
+        "round-off in the motion moves the derivatives by up to {noise:.1e}"
+    );
+    if !job.quiet || failed > 0 {
+        print(&text)?;
+    }
+    Ok(if failed > 0 { NOT_REACHED } else { DONE })
+}

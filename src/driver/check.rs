@@ -1,0 +1,102 @@
+//! The check of gradients: adjoint beside complex step.
+
+use super::evaluate::Evaluated;
+use crate::functions::Function;
+use crate::integrate::bdf::simulate_complex;
+use crate::integrate::{IntegrationFailure, Trajectory};
+use crate::math::Complex64;
+use crate::math::scalar::COMPLEX_STEP;
+use crate::problem::Problem;
+use rayon::prelude::*;
+
+/// One derivative, computed twice.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CheckedDerivative {
+    /// Function, by index.
+    pub function: usize,
+    /// Variable, by index.
+    pub variable: usize,
+    /// By the discrete adjoint of the motion that the complex step runs through.
+    pub adjoint: f64,
+    /// By the complex step.
+    pub complex_step: f64,
+    /// By the discrete adjoint of the motion that an optimisation would see. The two motions
+    /// differ by round-off, which a sensitive motion magnifies.
+    pub in_use: f64,
+}
+
+impl CheckedDerivative {
+    /// |adjoint − complex step| relative to the complex step; absolute where that is zero.
+    pub fn relative_difference(&self) -> f64 {
+        relative(self.adjoint, self.complex_step)
+    }
+
+    /// How far round-off in the motion moves the derivative, relative to it.
+    pub fn noise(&self) -> f64 {
+        relative(self.in_use, self.adjoint)
+    }
+}
+
+fn relative(x: f64, exact: f64) -> f64 {
+    let difference = (x - exact).abs();
+    if difference == 0.0 || exact == 0.0 {
+        difference
+    } else {
+        difference / exact.abs()
+    }
+}
+
+/// Derivatives of every function in every variable at the design `x`, function by function. The
+/// complex steps, one simulation a variable, run in parallel.
+///
+/// # Errors
+/// If a simulation fails.
+pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, IntegrationFailure> {
+    let in_use = Evaluated::new(problem, x)?;
+    let which: Vec<usize> = (0..in_use.scene.functions.len()).collect();
+    let steps: Vec<ComplexStep> = (0..x.len())
+        .into_par_iter()
+        .map(|i| complex_step(problem, x, i))
+        .collect::<Result<_, _>>()?;
+    let Some(first) = steps.first() else {
+        return Ok(Vec::new());
+    };
+    let same = Evaluated {
+        x: x.to_vec(),
+        scene: in_use.scene.clone(),
+        run: first.run.clone(),
+    };
+    let (adjoint, _) = same.gradients(problem, &which)?;
+    let (in_use, _) = in_use.gradients(problem, &which)?;
+    let pairs = which
+        .iter()
+        .flat_map(|&f| (0..x.len()).map(move |i| (f, i)));
+    Ok(pairs
+        .map(|(function, variable)| CheckedDerivative {
+            function,
+            variable,
+            adjoint: adjoint[function][variable],
+            complex_step: steps[variable].derivatives[function],
+            in_use: in_use[function][variable],
+        })
+        .collect())
+}
+
+/// Derivatives of all functions in one variable, and the real part of the motion.
+struct ComplexStep {
+    derivatives: Vec<f64>,
+    run: Trajectory<f64>,
+}
+
+fn complex_step(problem: &Problem, x: &[f64], i: usize) -> Result<ComplexStep, IntegrationFailure> {
+    let mut x: Vec<Complex64> = x.iter().map(|&x| x.into()).collect();
+    x[i].im = COMPLEX_STEP;
+    let scene = problem.scene(&x);
+    let run = simulate_complex(&scene.model, scene.duration, &problem.settings)?;
+    let derivative =
+        |f: &Function<Complex64>| f.evaluate(&scene.model, &run).value.im / COMPLEX_STEP;
+    Ok(ComplexStep {
+        derivatives: scene.functions.iter().map(derivative).collect(),
+        run: run.real(),
+    })
+}

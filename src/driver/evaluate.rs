@@ -1,0 +1,223 @@
+//! Functions and gradients of a problem at a design: one simulation, one backward march.
+
+use crate::adjoint;
+use crate::functions::{Scene, evaluate};
+use crate::integrate::{self, IntegrationFailure, Trajectory, WorkCounts};
+use crate::math::Dual;
+use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
+use crate::problem::{Problem, Sense};
+use nalgebra::DMatrix;
+
+/// A design that was simulated.
+pub struct Evaluated {
+    /// The design.
+    pub x: Vec<f64>,
+    /// The scene there.
+    pub scene: Scene<f64>,
+    /// Its motion.
+    pub run: Trajectory<f64>,
+}
+
+impl Evaluated {
+    /// Simulates the design `x`.
+    ///
+    /// # Errors
+    /// If the simulation fails.
+    pub fn new(problem: &Problem, x: &[f64]) -> Result<Self, IntegrationFailure> {
+        let scene = problem.scene::<f64>(x);
+        let run = integrate::simulate(&scene.model, scene.duration, &problem.settings)?;
+        Ok(Self {
+            x: x.to_vec(),
+            scene,
+            run,
+        })
+    }
+
+    /// A function of interest, by index.
+    pub fn function(&self, index: usize) -> evaluate::Evaluated<f64> {
+        self.scene.functions[index].evaluate(&self.scene.model, &self.run)
+    }
+
+    /// Exact gradients of the functions `which` in the design variables, and the work they took.
+    ///
+    /// # Errors
+    /// If a step's equations are singular.
+    pub fn gradients(
+        &self,
+        problem: &Problem,
+        which: &[usize],
+    ) -> Result<(Vec<Vec<f64>>, WorkCounts), IntegrationFailure> {
+        let adjoint = adjoint::gradients(&self.scene, &self.run, which)?;
+        let by_parameters: Vec<Vec<f64>> =
+            adjoint.gradients.iter().map(Scene::parameters).collect();
+        let mut all = vec![vec![0.0; self.x.len()]; which.len()];
+        for i in 0..self.x.len() {
+            let moved = parameter_derivatives(problem, &self.x, i);
+            for (gradient, by) in all.iter_mut().zip(&by_parameters) {
+                gradient[i] = by.iter().zip(&moved).map(|(a, b)| a * b).sum();
+            }
+        }
+        Ok((all, adjoint.counts))
+    }
+}
+
+/// Derivative of every parameter of the scene in variable i.
+fn parameter_derivatives(problem: &Problem, x: &[f64], i: usize) -> Vec<f64> {
+    let x: Vec<Dual> = x
+        .iter()
+        .enumerate()
+        .map(|(j, &value)| Dual::new(value, if i == j { 1.0 } else { 0.0 }))
+        .collect();
+    problem
+        .scene(&x)
+        .parameters()
+        .into_iter()
+        .map(|p| p.du)
+        .collect()
+}
+
+/// The problem as a nonlinear program. Keeps the last simulated design, so that a gradient where
+/// the functions were just evaluated costs the backward march only.
+pub struct Evaluator<'a> {
+    problem: &'a Problem,
+    objective: usize,
+    sign: f64,
+    last: Option<Evaluated>,
+    /// Work of all simulations and gradients so far.
+    pub counts: WorkCounts,
+}
+
+impl<'a> Evaluator<'a> {
+    /// The program that `problem` states, or `None` if it has no objective.
+    pub fn new(problem: &'a Problem) -> Option<Self> {
+        let objective = problem.objective?;
+        let sign = match objective.sense {
+            Sense::Minimise => 1.0,
+            Sense::Maximise => -1.0,
+        };
+        Some(Self {
+            problem,
+            objective: objective.function,
+            sign,
+            last: None,
+            counts: WorkCounts::default(),
+        })
+    }
+
+    /// +1 if the objective is minimised, −1 if it is maximised.
+    pub fn sign(&self) -> f64 {
+        self.sign
+    }
+
+    /// The simulated design `x`.
+    ///
+    /// # Errors
+    /// If the simulation fails.
+    pub fn at(&mut self, x: &[f64]) -> Result<&Evaluated, IntegrationFailure> {
+        let known = self.last.take().filter(|last| last.x == x);
+        let evaluated = match known {
+            Some(known) => known,
+            None => {
+                let evaluated = Evaluated::new(self.problem, x)?;
+                self.counts += evaluated.run.counts;
+                evaluated
+            }
+        };
+        Ok(self.last.insert(evaluated))
+    }
+
+    /// Indices of the objective's function and the constraints' functions.
+    fn functions(&self) -> Vec<usize> {
+        let constraints = self.problem.constraints.iter().map(|c| c.function);
+        std::iter::once(self.objective).chain(constraints).collect()
+    }
+
+    fn failure(&self, failure: &IntegrationFailure) -> EvaluationFailure {
+        EvaluationFailure {
+            what: format!("the simulation of \"{}\"", self.problem.name),
+            reason: failure.to_string(),
+        }
+    }
+}
+
+impl Nlp for Evaluator<'_> {
+    fn variables(&self) -> usize {
+        self.problem.variables.len()
+    }
+
+    fn constraints(&self) -> usize {
+        self.problem.constraints.len()
+    }
+
+    fn variable_bounds(&self) -> (Vec<f64>, Vec<f64>) {
+        self.problem
+            .variables
+            .iter()
+            .map(|v| (v.lower / v.scale, v.upper / v.scale))
+            .unzip()
+    }
+
+    fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>) {
+        self.problem
+            .constraints
+            .iter()
+            .map(|c| (c.lower, c.upper))
+            .unzip()
+    }
+
+    fn start(&self) -> Vec<f64> {
+        self.problem
+            .variables
+            .iter()
+            .map(|v| v.start / v.scale)
+            .collect()
+    }
+
+    fn variable_name(&self, i: usize) -> String {
+        self.problem.variables[i].name.clone()
+    }
+
+    fn constraint_name(&self, j: usize) -> String {
+        self.problem.constraints[j].name.clone()
+    }
+
+    fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
+        let x = unscaled(self.problem, x);
+        let functions = self.functions();
+        let values: Vec<f64> = match self.at(&x) {
+            Ok(at) => functions.iter().map(|&f| at.function(f).value).collect(),
+            Err(failure) => return Err(self.failure(&failure)),
+        };
+        Ok(Evaluation {
+            objective: self.sign * values[0],
+            constraints: values[1..].to_vec(),
+        })
+    }
+
+    fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
+        let problem = self.problem;
+        let x = unscaled(problem, x);
+        let functions = self.functions();
+        let (gradients, counts) = self
+            .at(&x)
+            .and_then(|at| at.gradients(problem, &functions))
+            .map_err(|failure| self.failure(&failure))?;
+        self.counts += counts;
+        let scaled = |f: usize, i: usize| gradients[f][i] * problem.variables[i].scale;
+        let n = x.len();
+        Ok(Gradients {
+            objective: (0..n).map(|i| self.sign * scaled(0, i)).collect(),
+            jacobian: DMatrix::from_fn(functions.len() - 1, n, |j, i| scaled(j + 1, i)),
+        })
+    }
+}
+
+/// A design in the problem's units from the optimiser's, x = scale · x̂.
+pub fn unscaled(problem: &Problem, x: &[f64]) -> Vec<f64> {
+    // A scaled bound comes back as the bound itself, whatever round-off did.
+    let clamp = |x: f64, v: &crate::problem::Variable| (x * v.scale).clamp(v.lower, v.upper);
+    x.iter()
+        .zip(&problem.variables)
+        .map(|(&x, v)| clamp(x, v))
+        .collect()
+}

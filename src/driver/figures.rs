@@ -1,0 +1,291 @@
+//! The figures of a simulation and of an optimisation, and the table of a simulation.
+
+use super::evaluate::Evaluated;
+use super::optimise::Optimisation;
+use super::simulate::{Simulation, simulate};
+use crate::functions::evaluate::{sample, turns};
+use crate::functions::measure::Snapshot;
+use crate::functions::{Function, Instant, Reduction};
+use crate::math::Vec3;
+use crate::problem::{Drawing, Outline, Problem};
+use crate::report::plots::{
+    Barrier, BodyMotion, EnergyRun, Flight, Motion, Scenery, convergence, energy, motion,
+};
+use crate::report::{History, Optimum, ReportError};
+use std::fmt::Write;
+
+/// A file's name and content.
+pub type NamedFile = (&'static str, Vec<u8>);
+
+/// Why the figures of a record cannot be drawn again.
+#[derive(Debug, thiserror::Error)]
+pub enum RedrawError {
+    /// The document in the record is not a problem that this version can read.
+    #[error("{0}")]
+    Problem(crate::problem::Faults),
+    /// The record lacks a variable of its own problem.
+    #[error("the record has no value for the variable \"{0}\"")]
+    Design(String),
+    /// A figure cannot be drawn.
+    #[error(transparent)]
+    Figure(#[from] ReportError),
+}
+
+/// Figures of an optimisation; those that have nothing to show are left out.
+pub fn of_optimisation(problem: &Problem, done: &Optimisation) -> Vec<NamedFile> {
+    let ends = [
+        ("initial design", &done.start),
+        ("optimal design", &done.end),
+    ];
+    let ends = ends
+        .iter()
+        .filter_map(|(title, end)| end.as_ref().map(|end| (*title, end)));
+    figures(problem, &ends.collect::<Vec<_>>(), Some(&done.history))
+}
+
+/// Figures and table of a simulation.
+pub fn of_simulation(problem: &Problem, simulation: &Simulation) -> Vec<NamedFile> {
+    let mut files = figures(problem, &[("", simulation)], None);
+    files.push(("simulation.csv", table(simulation).into_bytes()));
+    files
+}
+
+/// Figures of a recorded optimisation, from the problem and the designs in its record.
+///
+/// # Errors
+/// If the record does not hold a readable problem and a value of each of its variables.
+pub fn of_record(optimum: &Optimum, history: &History) -> Result<Vec<NamedFile>, RedrawError> {
+    let text = optimum.problem.document.to_string();
+    let problem =
+        Problem::parse(&text, &optimum.problem.file, &[]).map_err(RedrawError::Problem)?;
+    let design = problem
+        .variables
+        .iter()
+        .map(|v| {
+            let recorded = optimum.design.get(&v.name);
+            recorded
+                .map(|d| d.value)
+                .ok_or_else(|| RedrawError::Design(v.name.clone()))
+        })
+        .collect::<Result<Vec<f64>, _>>()?;
+    let start = simulate(&problem, &problem.start()).ok();
+    let end = simulate(&problem, &design).ok();
+    let ends = [
+        ("initial design", start.as_ref()),
+        ("optimal design", end.as_ref()),
+    ];
+    let ends: Vec<_> = ends
+        .iter()
+        .filter_map(|(title, end)| end.map(|end| (*title, end)))
+        .collect();
+    Ok(figures(&problem, &ends, Some(history)))
+}
+
+fn figures(
+    problem: &Problem,
+    designs: &[(&str, &Simulation)],
+    history: Option<&History>,
+) -> Vec<NamedFile> {
+    let drawings: Vec<Drawing> = designs
+        .iter()
+        .map(|(_, design)| problem.drawing(&design.at.x))
+        .collect();
+    let mut all = Vec::new();
+    if let Some(history) = history {
+        all.push(("convergence.svg", convergence(history)));
+    }
+    let lapses: Vec<Motion> = designs
+        .iter()
+        .zip(&drawings)
+        .map(|((title, design), drawing)| lapse(title, &design.at, drawing))
+        .collect();
+    if let Some(drawing) = drawings.last() {
+        all.push(("motion.svg", motion(&lapses, &scenery(drawing))));
+    }
+    let energies: Vec<EnergyRun> = designs
+        .iter()
+        .map(|(title, design)| energies(title, design))
+        .collect();
+    all.push(("energy.svg", energy(&energies)));
+    all.into_iter()
+        .filter_map(|(name, svg)| Some((name, svg.ok()?.into_bytes())))
+        .collect()
+}
+
+fn scenery(drawing: &Drawing) -> Scenery {
+    let label = |axis: &Vec3<f64>| {
+        let name = ["x", "y", "z"][axis.iamax()];
+        format!("{name} [m]")
+    };
+    Scenery {
+        ground: drawing.ground,
+        barrier: drawing.barrier.map(|b| Barrier {
+            distance: b.distance,
+            top: b.top,
+        }),
+        horizontal: label(&drawing.right),
+        vertical: label(&drawing.up),
+    }
+}
+
+fn energies(title: &str, simulation: &Simulation) -> EnergyRun {
+    let run = &simulation.at.run;
+    EnergyRun {
+        title: title.to_string(),
+        time: (0..=run.steps).map(|k| run.time(k)).collect(),
+        kinetic: simulation.observations.iter().map(|o| o.kinetic).collect(),
+        potential: simulation
+            .observations
+            .iter()
+            .map(|o| o.potential)
+            .collect(),
+    }
+}
+
+/// The instant at which a projectile is let go, and the projectile: the end of the run, or where
+/// the gated range is largest.
+fn release(at: &Evaluated) -> Option<(usize, crate::functions::instant::Projectile<f64>)> {
+    at.scene.functions.iter().find_map(|function| {
+        let Function::Reduced { instant, reduction } = function else {
+            return None;
+        };
+        let Instant::Range { projectile, .. } = instant else {
+            return None;
+        };
+        if *reduction == Reduction::Final {
+            return Some((at.run.steps, *projectile));
+        }
+        let turns = turns(instant.watched_rotation(), &at.run);
+        let values = sample(instant, &turns, &at.scene.model, &at.run);
+        let best = (0..values.len()).reduce(|b, k| if values[k] > values[b] { k } else { b })?;
+        Some((best, *projectile))
+    })
+}
+
+fn lapse(title: &str, at: &Evaluated, drawing: &Drawing) -> Motion {
+    let run = &at.run;
+    let model = &at.scene.model;
+    let release = release(at);
+    let end = release.as_ref().map_or(run.steps, |(k, _)| *k);
+    let flat = |p: &Vec3<f64>| [drawing.right.dot(p), drawing.up.dot(p)];
+    let snapshots = drawing.snapshots.clamp(2, end.max(1) + 1);
+    let instants: Vec<usize> = (0..snapshots).map(|i| i * end / (snapshots - 1)).collect();
+    let bodies = model
+        .bodies
+        .iter()
+        .enumerate()
+        .map(|(body, rigid)| BodyMotion {
+            name: rigid.name.clone(),
+            outlines: instants
+                .iter()
+                .map(|&k| {
+                    let motion = Snapshot::of(model, run, k).motion(body);
+                    outline(&drawing.outlines[body], |s| flat(&motion.point(s)))
+                })
+                .collect(),
+        })
+        .collect();
+    let followed = release
+        .map(|(_, p)| (p.body, p.point))
+        .or_else(|| drawing.traces.first().copied());
+    let trace = followed.map_or_else(Vec::new, |(body, point)| {
+        (0..=end)
+            .map(|k| flat(&Snapshot::of(model, run, k).motion(body).point(&point)))
+            .collect()
+    });
+    let flight = release.map(|(k, p)| {
+        let motion = Snapshot::of(model, run, k).motion(p.body);
+        Flight {
+            position: flat(&motion.point(&p.point)),
+            velocity: flat(&motion.point_velocity(&p.point)),
+            gravity: -drawing.up.dot(&model.gravity),
+        }
+    });
+    Motion {
+        title: title.to_string(),
+        bodies,
+        trace,
+        flight,
+    }
+}
+
+/// The silhouette of a body whose points are shown by `place`.
+fn outline(outline: &Outline, place: impl Fn(&Vec3<f64>) -> [f64; 2]) -> Vec<[f64; 2]> {
+    match outline {
+        Outline::Hull(corners) => hull(corners.iter().map(place).collect()),
+        Outline::Sphere(radius) => {
+            let [x, y] = place(&Vec3::zeros());
+            let corner = |i: usize| {
+                let (s, c) = (std::f64::consts::TAU * i as f64 / 32.0).sin_cos();
+                [x + radius * c, y + radius * s]
+            };
+            (0..32).map(corner).collect()
+        }
+        Outline::Spokes(ends) => {
+            let centre = place(&Vec3::zeros());
+            ends.iter()
+                .flat_map(|end| [centre, place(end), centre])
+                .collect()
+        }
+    }
+}
+
+/// Convex hull, counter-clockwise (Andrew's monotone chain).
+fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    points.dedup();
+    let half = |points: &mut dyn Iterator<Item = [f64; 2]>| {
+        let mut chain: Vec<[f64; 2]> = Vec::new();
+        for p in points {
+            while let [.., a, b] = chain[..]
+                && (b[0] - a[0]) * (p[1] - a[1]) <= (b[1] - a[1]) * (p[0] - a[0])
+            {
+                chain.pop();
+            }
+            chain.push(p);
+        }
+        chain.pop();
+        chain
+    };
+    let mut all = half(&mut points.iter().copied());
+    all.extend(half(&mut points.iter().rev().copied()));
+    if all.is_empty() { points } else { all }
+}
+
+/// Energy, momentum, drift and joint reactions at every instant, as comma separated values.
+fn table(simulation: &Simulation) -> String {
+    let mut text = String::from(
+        "time [s],kinetic energy [J],potential energy [J],momentum x [kg m/s],\
+         momentum y [kg m/s],momentum z [kg m/s],angular momentum x [kg m^2/s],\
+         angular momentum y [kg m^2/s],angular momentum z [kg m^2/s],position drift,velocity drift",
+    );
+    for joint in &simulation.at.scene.model.joints {
+        for (what, unit) in [("force", "N"), ("torque", "N m")] {
+            for axis in 1..=3 {
+                let name = format!("{}: {what} {axis} [{unit}]", joint.name).replace('"', "\"\"");
+                let _ = write!(text, ",\"{name}\"");
+            }
+        }
+    }
+    text.push('\n');
+    for (k, seen) in simulation.observations.iter().enumerate() {
+        let _ = write!(
+            text,
+            "{},{},{}",
+            simulation.at.run.time(k),
+            seen.kinetic,
+            seen.potential
+        );
+        for x in seen.momentum.iter().chain(seen.angular_momentum.iter()) {
+            let _ = write!(text, ",{x}");
+        }
+        let _ = write!(text, ",{},{}", seen.position_drift, seen.velocity_drift);
+        for reaction in simulation.reactions(k) {
+            for x in reaction.force.iter().chain(reaction.torque.iter()) {
+                let _ = write!(text, ",{x}");
+            }
+        }
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,376 @@
+//! Values of functions over a run, and their linearisation for the adjoint.
+
+use super::flight::Flight;
+use super::function::{Function, Reduction, Release};
+use super::instant::{Instant, Projectile};
+use super::measure::{Snapshot, SnapshotCotangent, pull_flight};
+use crate::integrate::Trajectory;
+use crate::math::soft_max::SoftMax;
+use crate::math::{Scalar, Vec3, rotation};
+use crate::model::Model;
+use std::f64::consts::TAU;
+
+/// A function's value over a run, and what else is worth reporting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evaluated<S> {
+    /// The value.
+    pub value: S,
+    /// For an aggregate: the largest sampled value and its time [s].
+    pub maximum: Option<(f64, f64)>,
+    /// For an aggregate: ρ κ h² with κ the curvature at the peak; above about one the step is too
+    /// coarse to resolve the peak that ρ asks for.
+    pub peak_sharpness: f64,
+}
+
+impl<S: Scalar> Function<S> {
+    /// Value over a run of `model`.
+    pub fn evaluate(&self, model: &Model<S>, run: &Trajectory<S>) -> Evaluated<S> {
+        match self {
+            Function::Reduced { instant, reduction } => reduce(instant, *reduction, model, run),
+            Function::Clearance {
+                projectile,
+                release,
+                distance,
+                top,
+            } => {
+                let flight = match release {
+                    Release::Final => Snapshot::of(model, run, run.steps).flight(projectile),
+                    Release::Best { .. } => mean_flight(
+                        projectile,
+                        &release_weights(release, model, run),
+                        model,
+                        run,
+                    ),
+                };
+                Evaluated {
+                    value: flight.clearance(*distance, *top),
+                    maximum: None,
+                    peak_sharpness: 0.0,
+                }
+            }
+        }
+    }
+}
+
+fn reduce<S: Scalar>(
+    instant: &Instant<S>,
+    reduction: Reduction,
+    model: &Model<S>,
+    run: &Trajectory<S>,
+) -> Evaluated<S> {
+    let turns = turns(instant.watched_rotation(), run);
+    let plain = |value| Evaluated {
+        value,
+        maximum: None,
+        peak_sharpness: 0.0,
+    };
+    match reduction {
+        Reduction::Final => {
+            let at = Snapshot::of(model, run, run.steps);
+            plain(instant.value(&at, turn(&turns, run.steps)))
+        }
+        Reduction::Integral => {
+            let values = sample(instant, &turns, model, run);
+            let mean = (0..=run.steps).fold(S::zero(), |sum, k| {
+                sum + values[k] * run.quadrature_weight(k)
+            });
+            plain(mean * run.time(run.steps))
+        }
+        Reduction::Ks { rho } | Reduction::InducedExponential { rho } => {
+            let values = sample(instant, &turns, model, run);
+            let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), rho);
+            let value = match reduction {
+                Reduction::Ks { .. } => soft.ks,
+                _ => soft.induced_exponential(&values),
+            };
+            let k = soft.peak.clamp(1, run.steps.max(2) - 1);
+            let bend = values.get(k + 1).map_or(0.0, |next| {
+                (next.re() - 2.0 * values[k].re() + values[k - 1].re()).abs()
+            });
+            Evaluated {
+                value,
+                maximum: Some((soft.maximum, run.time(soft.peak).re())),
+                peak_sharpness: rho * bend,
+            }
+        }
+    }
+}
+
+/// Values of an instant quantity at all instants of a run.
+pub fn sample<S: Scalar>(
+    instant: &Instant<S>,
+    turns: &Option<Vec<f64>>,
+    model: &Model<S>,
+    run: &Trajectory<S>,
+) -> Vec<S> {
+    (0..=run.steps)
+        .map(|k| instant.value(&Snapshot::of(model, run, k), turn(turns, k)))
+        .collect()
+}
+
+fn turn(turns: &Option<Vec<f64>>, k: usize) -> f64 {
+    turns.as_ref().map_or(0.0, |turns| turns[k])
+}
+
+/// Multiples of 2π that make a rotation continuous over a run.
+pub fn turns<S: Scalar>(
+    watched: Option<(usize, Vec3<f64>)>,
+    run: &Trajectory<S>,
+) -> Option<Vec<f64>> {
+    let (body, axis) = watched?;
+    let o = run.numbering.position(body) + 3;
+    let mut before: Option<f64> = None;
+    let all = (0..=run.steps).map(|k| {
+        let p = &run.q(k)[o..o + 4];
+        let twist = rotation::twist(&[p[0].re(), p[1].re(), p[2].re(), p[3].re()], &axis);
+        let turns = before.map_or(0.0, |before| TAU * ((before - twist) / TAU).round());
+        before = Some(twist + turns);
+        turns
+    });
+    Some(all.collect())
+}
+
+/// Softmax weights and sampled gated ranges of a release at the best instant.
+struct ReleaseWeights<S> {
+    weights: Vec<S>,
+    range: Instant<S>,
+    turns: Option<Vec<f64>>,
+    rho: f64,
+}
+
+fn release_weights<S: Scalar>(
+    release: &Release<S>,
+    model: &Model<S>,
+    run: &Trajectory<S>,
+) -> ReleaseWeights<S> {
+    let Release::Best {
+        rho,
+        projectile,
+        gate,
+    } = release
+    else {
+        unreachable!("asked for the best release only");
+    };
+    let range = Instant::Range {
+        projectile: *projectile,
+        gate: *gate,
+    };
+    let turns = turns(range.watched_rotation(), run);
+    let values = sample(&range, &turns, model, run);
+    let weights = SoftMax::new(&values, |k| run.quadrature_weight(k), *rho).weights;
+    ReleaseWeights {
+        weights,
+        range,
+        turns,
+        rho: *rho,
+    }
+}
+
+/// The mean flight Σ w_k z_k.
+fn mean_flight<S: Scalar>(
+    projectile: &Projectile<S>,
+    release: &ReleaseWeights<S>,
+    model: &Model<S>,
+    run: &Trajectory<S>,
+) -> Flight<S> {
+    let mut mean = [S::zero(); 5];
+    for (k, &w) in release.weights.iter().enumerate() {
+        let z = Snapshot::of(model, run, k).flight(projectile).to_array();
+        for i in 0..5 {
+            mean[i] += z[i] * w;
+        }
+    }
+    Flight::from_array(mean)
+}
+
+/// One instant quantity with a weight at every instant.
+struct Weighted {
+    instant: Instant<f64>,
+    turns: Option<Vec<f64>>,
+    weights: Vec<f64>,
+}
+
+/// A function linearised about a run: what it adds to the cotangents of every instant.
+pub struct Linearised<'a> {
+    function: &'a Function<f64>,
+    /// Its derivative in the duration at fixed states.
+    pub by_duration: f64,
+    quantity: Option<Weighted>,
+    flight: Option<WeightedFlight>,
+    by_barrier: [f64; 2],
+}
+
+/// Cotangents of a projectile's flight: `cot` times a weight at every instant.
+struct WeightedFlight {
+    weights: Vec<f64>,
+    cot: [f64; 5],
+}
+
+impl<'a> Linearised<'a> {
+    /// Linearises `function` about a run of `model`.
+    pub fn new(function: &'a Function<f64>, model: &Model<f64>, run: &Trajectory<f64>) -> Self {
+        let last = |k| if k == run.steps { 1.0 } else { 0.0 };
+        let mut this = Self {
+            function,
+            by_duration: 0.0,
+            quantity: None,
+            flight: None,
+            by_barrier: [0.0; 2],
+        };
+        match function {
+            Function::Reduced { instant, reduction } => {
+                let turns = turns(instant.watched_rotation(), run);
+                let instants = 0..=run.steps;
+                let weights = match *reduction {
+                    Reduction::Final => instants.map(last).collect(),
+                    Reduction::Integral => {
+                        let values = sample(instant, &turns, model, run);
+                        this.by_duration = instants
+                            .clone()
+                            .map(|k| values[k] * run.quadrature_weight(k))
+                            .sum();
+                        let duration = run.time(run.steps);
+                        instants
+                            .map(|k| duration * run.quadrature_weight(k))
+                            .collect()
+                    }
+                    Reduction::Ks { rho } => {
+                        let values = sample(instant, &turns, model, run);
+                        SoftMax::new(&values, |k| run.quadrature_weight(k), rho).weights
+                    }
+                    Reduction::InducedExponential { rho } => {
+                        let values = sample(instant, &turns, model, run);
+                        let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), rho);
+                        let mean = soft.induced_exponential(&values);
+                        let by = |k: usize| soft.weights[k] * (1.0 + rho * (values[k] - mean));
+                        instants.map(by).collect()
+                    }
+                };
+                this.quantity = Some(Weighted {
+                    instant: instant.clone(),
+                    turns,
+                    weights,
+                });
+            }
+            Function::Clearance {
+                projectile,
+                release,
+                distance,
+                ..
+            } => match release {
+                Release::Final => {
+                    let flight = Snapshot::of(model, run, run.steps).flight(projectile);
+                    let (cot, by_barrier) = flight.clearance_derivative(*distance);
+                    this.by_barrier = by_barrier;
+                    let weights = (0..=run.steps).map(last).collect();
+                    this.flight = Some(WeightedFlight { weights, cot });
+                }
+                Release::Best { .. } => this.at_best_release(projectile, *distance, model, run),
+            },
+        }
+        this
+    }
+
+    /// dc = c_z · Σ (w_k dz_k + z_k dw_k) with dw_k = ρ w_k (dR_k − Σ w dR): the mean state moves
+    /// with the states and with the weights.
+    fn at_best_release(
+        &mut self,
+        projectile: &Projectile<f64>,
+        distance: f64,
+        model: &Model<f64>,
+        run: &Trajectory<f64>,
+    ) {
+        let Function::Clearance { release, .. } = self.function else {
+            unreachable!("only a clearance has a release");
+        };
+        let release = release_weights(release, model, run);
+        let mean = mean_flight(projectile, &release, model, run);
+        let (cot, by_barrier) = mean.clearance_derivative(distance);
+        let away = |k: usize| {
+            let z = Snapshot::of(model, run, k).flight(projectile).to_array();
+            let mean = mean.to_array();
+            (0..5).map(|i| cot[i] * (z[i] - mean[i])).sum::<f64>()
+        };
+        let by_range = release
+            .weights
+            .iter()
+            .enumerate()
+            .map(|(k, &w)| {
+                if w > 0.0 {
+                    release.rho * w * away(k)
+                } else {
+                    0.0
+                }
+            })
+            .collect();
+        self.by_barrier = by_barrier;
+        self.quantity = Some(Weighted {
+            instant: release.range,
+            turns: release.turns,
+            weights: by_range,
+        });
+        self.flight = Some(WeightedFlight {
+            weights: release.weights,
+            cot,
+        });
+    }
+
+    /// Adds the derivative in the states of instant k to `out`, and that in the function's own
+    /// parameters to `own`.
+    pub fn pull_back(
+        &self,
+        k: usize,
+        at: &Snapshot<f64>,
+        out: &mut SnapshotCotangent,
+        own: &mut Function<f64>,
+    ) {
+        let mut pull = |own: &mut Instant<f64>| {
+            if let Some(Weighted {
+                instant,
+                turns,
+                weights,
+            }) = &self.quantity
+                && weights[k] != 0.0
+            {
+                instant.pull_back(at, turn(turns, k), weights[k], out, own);
+            }
+        };
+        match own {
+            Function::Reduced { instant, .. } => pull(instant),
+            Function::Clearance {
+                projectile: by_projectile,
+                release: by_release,
+                ..
+            } => {
+                if let (Some(weighted), Release::Best { projectile: by, .. }) =
+                    (&self.quantity, by_release)
+                {
+                    let mut range = weighted.instant.map(&mut |_| 0.0);
+                    pull(&mut range);
+                    if let Instant::Range { projectile, .. } = range {
+                        by.point += projectile.point;
+                        by.direction += projectile.direction;
+                        by.ground += projectile.ground;
+                    }
+                }
+                if let (Some(flight), Function::Clearance { projectile, .. }) =
+                    (&self.flight, self.function)
+                {
+                    let weight = flight.weights[k];
+                    if weight != 0.0 {
+                        let cot = flight.cot.map(|c| c * weight);
+                        pull_flight(at, projectile, cot, out, by_projectile);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds the derivative in parameters that no instant depends on.
+    pub fn pull_back_parameters(&self, own: &mut Function<f64>) {
+        if let Function::Clearance { distance, top, .. } = own {
+            *distance += self.by_barrier[0];
+            *top += self.by_barrier[1];
+        }
+    }
+}

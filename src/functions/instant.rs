@@ -1,0 +1,171 @@
+//! What is measured at an instant.
+
+use crate::math::{Scalar, Vec3};
+
+/// A thrown point and how its range is measured. Up is against gravity.
+#[derive(Clone, Copy, Debug)]
+pub struct Projectile<S> {
+    /// The body that is thrown.
+    pub body: usize,
+    /// The point of it that flies, from the centre of mass in body axes [m].
+    pub point: Vec3<S>,
+    /// Horizontal unit vector in which the range is measured, ground axes.
+    pub direction: Vec3<S>,
+    /// Height of the ground above the origin [m].
+    pub ground: S,
+}
+
+/// On which side of its limit a gate is open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Open while the rotation is above the limit.
+    Above,
+    /// Open while the rotation is below the limit.
+    Below,
+}
+
+/// A smooth gate σ(±(θ − θ_c) / w) on the unwrapped rotation θ of a body about an axis: it keeps
+/// the later, unphysical maxima of a whirling sling out of a range.
+#[derive(Clone, Copy, Debug)]
+pub struct Gate {
+    /// The body whose rotation is watched.
+    pub body: usize,
+    /// Unit axis of the rotation.
+    pub axis: Vec3<f64>,
+    /// The rotation θ_c at which the gate is half open [rad].
+    pub limit: f64,
+    /// Width w of the transition [rad].
+    pub width: f64,
+    /// Where it is open.
+    pub open: Side,
+}
+
+/// Which energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EnergyPart {
+    /// ½ Σ (m ṙᵀṙ + ωᵀJω).
+    Kinetic,
+    /// −Σ m gᵀr, from the origin.
+    Potential,
+    /// Kinetic plus potential.
+    Total,
+}
+
+/// A quantity at an instant. Points are from the centre of mass in body axes [m]; directions are
+/// in ground axes and used as they are given (a unit vector gives a component).
+#[derive(Clone, Debug)]
+pub enum Instant<S> {
+    /// Component of a point's position [m].
+    Position {
+        /// The body.
+        body: usize,
+        /// The point.
+        point: Vec3<S>,
+        /// The direction.
+        direction: Vec3<S>,
+    },
+    /// Component of a point's velocity [m/s].
+    Velocity {
+        /// The body.
+        body: usize,
+        /// The point.
+        point: Vec3<S>,
+        /// The direction.
+        direction: Vec3<S>,
+    },
+    /// Component of a point's acceleration [m/s²].
+    Acceleration {
+        /// The body.
+        body: usize,
+        /// The point.
+        point: Vec3<S>,
+        /// The direction.
+        direction: Vec3<S>,
+    },
+    /// Speed of a point [m/s]. Not differentiable at rest, where its derivative is taken as zero.
+    Speed {
+        /// The body.
+        body: usize,
+        /// The point.
+        point: Vec3<S>,
+    },
+    /// Energy of the whole model [J].
+    Energy(EnergyPart),
+    /// Unwrapped rotation of a body about an axis: its twist 2 atan2(eᵀn, p0), continuous in
+    /// time and in (−2π, 2π] at t = 0 [rad].
+    Rotation {
+        /// The body.
+        body: usize,
+        /// Unit axis.
+        axis: Vec3<S>,
+    },
+    /// Range of a projectile let go at this instant,
+    /// R = x + (v_x/g)(v_y + √s), s = ½ (s0 + √(s0² + 1)), s0 = v_y² + 2 g (y − y_g),
+    /// times the gate if there is one [m].
+    Range {
+        /// The projectile.
+        projectile: Projectile<S>,
+        /// The gate.
+        gate: Option<Gate>,
+    },
+}
+
+impl<S: Scalar> Projectile<S> {
+    /// The projectile with every parameter replaced by `f` of it.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Projectile<T> {
+        Projectile {
+            body: self.body,
+            point: self.point.map(&mut *f),
+            direction: self.direction.map(&mut *f),
+            ground: f(self.ground),
+        }
+    }
+}
+
+impl<S: Scalar> Instant<S> {
+    /// The quantity with every parameter replaced by `f` of it.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Instant<T> {
+        match self {
+            Instant::Position {
+                body,
+                point,
+                direction,
+            } => Instant::Position {
+                body: *body,
+                point: point.map(&mut *f),
+                direction: direction.map(&mut *f),
+            },
+            Instant::Velocity {
+                body,
+                point,
+                direction,
+            } => Instant::Velocity {
+                body: *body,
+                point: point.map(&mut *f),
+                direction: direction.map(&mut *f),
+            },
+            Instant::Acceleration {
+                body,
+                point,
+                direction,
+            } => Instant::Acceleration {
+                body: *body,
+                point: point.map(&mut *f),
+                direction: direction.map(&mut *f),
+            },
+            Instant::Speed { body, point } => Instant::Speed {
+                body: *body,
+                point: point.map(&mut *f),
+            },
+            Instant::Energy(part) => Instant::Energy(*part),
+            Instant::Rotation { body, axis } => Instant::Rotation {
+                body: *body,
+                axis: axis.map(&mut *f),
+            },
+            Instant::Range { projectile, gate } => Instant::Range {
+                projectile: projectile.map(f),
+                gate: *gate,
+            },
+        }
+    }
+}

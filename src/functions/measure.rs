@@ -1,0 +1,341 @@
+//! Values of instant quantities, and their exact derivatives.
+
+use super::flight::{self, Flight};
+use super::instant::{EnergyPart, Gate, Instant, Projectile};
+use crate::integrate::Trajectory;
+use crate::math::scalar::lift3;
+use crate::math::{Scalar, Vec3, rotation};
+use crate::model::Model;
+use crate::system::bodies::{add6, velocities_of};
+use crate::system::marker::{self, Jet};
+use crate::system::{Motion, Numbering};
+
+/// A model at one instant.
+#[derive(Clone, Copy)]
+pub struct Snapshot<'a, S> {
+    /// The model.
+    pub model: &'a Model<S>,
+    /// Its numbering.
+    pub numbering: &'a Numbering,
+    /// Positions.
+    pub q: &'a [S],
+    /// Velocities.
+    pub v: &'a [S],
+    /// Accelerations.
+    pub a: &'a [S],
+}
+
+impl<'a, S: Scalar> Snapshot<'a, S> {
+    /// Instant k of a run.
+    pub fn of(model: &'a Model<S>, run: &'a Trajectory<S>, k: usize) -> Self {
+        Self {
+            model,
+            numbering: &run.numbering,
+            q: run.q(k),
+            v: run.v(k),
+            a: run.a(k),
+        }
+    }
+
+    /// Motion of a body.
+    pub fn motion(&self, body: usize) -> Motion<S> {
+        Motion::of(self.numbering, body, self.q, self.v)
+    }
+
+    /// The flight of a projectile let go now.
+    pub fn flight(&self, projectile: &Projectile<S>) -> Flight<S> {
+        Flight::new(
+            projectile,
+            &self.motion(projectile.body),
+            &self.model.gravity,
+        )
+    }
+
+    /// Rotation of a body about an axis, `turns` (a multiple of 2π) added.
+    fn rotation(&self, body: usize, axis: &Vec3<S>, turns: f64) -> S {
+        rotation::twist(&self.motion(body).orientation, axis) + turns
+    }
+
+    fn openness(&self, gate: &Option<Gate>, turns: f64) -> S {
+        gate.map_or(S::one(), |gate| {
+            gate.openness(self.rotation(gate.body, &lift3(&gate.axis), turns))
+        })
+    }
+
+    fn linear_acceleration(&self, body: usize) -> (Vec3<S>, Vec3<S>) {
+        velocities_of(&self.a[self.numbering.velocity(body)..])
+    }
+}
+
+/// Cotangents of a snapshot, in tangent positions, velocities and accelerations (all in velocity
+/// numbering).
+pub struct SnapshotCotangent<'a> {
+    /// Of the tangent positions.
+    pub y: &'a mut [f64],
+    /// Of the velocities.
+    pub v: &'a mut [f64],
+    /// Of the accelerations.
+    pub a: &'a mut [f64],
+    /// Of the model's parameters.
+    pub model: &'a mut Model<f64>,
+}
+
+impl<S: Scalar> Instant<S> {
+    /// The body and axis whose rotation has to be counted in whole turns, if any.
+    pub fn watched_rotation(&self) -> Option<(usize, Vec3<f64>)> {
+        match self {
+            Instant::Rotation { body, axis } => Some((*body, axis.map(|x| x.re()))),
+            Instant::Range {
+                gate: Some(gate), ..
+            } => Some((gate.body, gate.axis)),
+            _ => None,
+        }
+    }
+
+    /// Value in a snapshot; `turns` is the multiple of 2π that makes the watched rotation
+    /// continuous.
+    pub fn value(&self, at: &Snapshot<S>, turns: f64) -> S {
+        match self {
+            Instant::Position {
+                body,
+                point,
+                direction,
+            } => direction.dot(&at.motion(*body).point(point)),
+            Instant::Velocity {
+                body,
+                point,
+                direction,
+            } => direction.dot(&at.motion(*body).point_velocity(point)),
+            Instant::Acceleration {
+                body,
+                point,
+                direction,
+            } => {
+                let motion = at.motion(*body);
+                let (linear, alpha) = at.linear_acceleration(*body);
+                let turning = motion.rotation * alpha.cross(point);
+                direction.dot(&(linear + turning + Jet::point(&motion, point).bias))
+            }
+            Instant::Speed { body, point } => {
+                let velocity = at.motion(*body).point_velocity(point);
+                let square = velocity.dot(&velocity);
+                if square.re() > 0.0 {
+                    square.sqrt()
+                } else {
+                    S::zero()
+                }
+            }
+            Instant::Energy(part) => energy(at, *part),
+            Instant::Rotation { body, axis } => at.rotation(*body, axis, turns),
+            Instant::Range { projectile, gate } => {
+                at.flight(projectile).range(projectile.ground) * at.openness(gate, turns)
+            }
+        }
+    }
+}
+
+/// Energy of the model in a snapshot [J].
+pub fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
+    let mut sum = S::zero();
+    for (i, body) in at.model.bodies.iter().enumerate() {
+        let motion = at.motion(i);
+        if part != EnergyPart::Potential {
+            let linear = motion.velocity.dot(&motion.velocity) * body.mass;
+            let angular = motion.omega.dot(&(body.inertia * motion.omega));
+            sum += (linear + angular) * 0.5;
+        }
+        if part != EnergyPart::Kinetic {
+            sum -= at.model.gravity.dot(&motion.position) * body.mass;
+        }
+    }
+    sum
+}
+
+impl Instant<f64> {
+    /// Adds `weight` times the derivative of [`Instant::value`] to the cotangents of the snapshot
+    /// and of this quantity's parameters (`own`, of the same kind).
+    pub fn pull_back(
+        &self,
+        at: &Snapshot<f64>,
+        turns: f64,
+        weight: f64,
+        out: &mut SnapshotCotangent,
+        own: &mut Instant<f64>,
+    ) {
+        match (self, own) {
+            (
+                Instant::Position {
+                    body,
+                    point,
+                    direction,
+                },
+                Instant::Position {
+                    point: by_point,
+                    direction: by_direction,
+                    ..
+                },
+            ) => {
+                let jet = Jet::point(&at.motion(*body), point);
+                *by_direction += jet.x * weight;
+                *by_point += pull_point(at, *body, point, [direction * weight, ZERO, ZERO], out);
+            }
+            (
+                Instant::Velocity {
+                    body,
+                    point,
+                    direction,
+                },
+                Instant::Velocity {
+                    point: by_point,
+                    direction: by_direction,
+                    ..
+                },
+            ) => {
+                let jet = Jet::point(&at.motion(*body), point);
+                *by_direction += jet.rate * weight;
+                *by_point += pull_point(at, *body, point, [ZERO, direction * weight, ZERO], out);
+            }
+            (
+                Instant::Acceleration {
+                    body,
+                    point,
+                    direction,
+                },
+                Instant::Acceleration {
+                    point: by_point,
+                    direction: by_direction,
+                    ..
+                },
+            ) => {
+                let motion = at.motion(*body);
+                let (linear, alpha) = at.linear_acceleration(*body);
+                let jet = Jet::point(&motion, point);
+                *by_direction +=
+                    (linear + motion.rotation * alpha.cross(point) + jet.bias) * weight;
+                *by_point += pull_point(at, *body, point, [ZERO, ZERO, direction * weight], out);
+            }
+            (
+                Instant::Speed { body, point },
+                Instant::Speed {
+                    point: by_point, ..
+                },
+            ) => {
+                let velocity = at.motion(*body).point_velocity(point);
+                let speed = velocity.norm();
+                if speed > 0.0 {
+                    let by = velocity * (weight / speed);
+                    *by_point += pull_point(at, *body, point, [ZERO, by, ZERO], out);
+                }
+            }
+            (Instant::Energy(part), _) => pull_energy(at, *part, weight, out),
+            (Instant::Rotation { body, axis }, Instant::Rotation { axis: by_axis, .. }) => {
+                *by_axis += pull_rotation(at, *body, axis, weight, out);
+            }
+            (
+                Instant::Range { projectile, gate },
+                Instant::Range {
+                    projectile: by_projectile,
+                    ..
+                },
+            ) => {
+                let flight = at.flight(projectile);
+                let open = at.openness(gate, turns);
+                let (by_flight, by_ground) = flight.range_derivative(projectile.ground);
+                by_projectile.ground += weight * open * by_ground;
+                let cot = by_flight.map(|by| weight * open * by);
+                pull_flight(at, projectile, cot, out, by_projectile);
+                if let Some(gate) = gate {
+                    let rotation = at.rotation(gate.body, &gate.axis, turns);
+                    let by = gate.openness_derivative(rotation) * flight.range(projectile.ground);
+                    pull_rotation(at, gate.body, &gate.axis, weight * by, out);
+                }
+            }
+            _ => unreachable!("a cotangent has the kind of its quantity"),
+        }
+    }
+}
+
+const ZERO: Vec3<f64> = Vec3::new(0.0, 0.0, 0.0);
+
+/// Pulls cotangents of a point's position, velocity and acceleration back; returns that of the
+/// point.
+fn pull_point(
+    at: &Snapshot<f64>,
+    body: usize,
+    point: &Vec3<f64>,
+    [x, rate, acceleration]: [Vec3<f64>; 3],
+    out: &mut SnapshotCotangent,
+) -> Vec3<f64> {
+    let motion = at.motion(body);
+    let by = marker::pull_back(
+        &motion,
+        point,
+        &Jet {
+            x,
+            rate,
+            bias: acceleration,
+        },
+    );
+    // The part R (α × s) of the acceleration.
+    let (_, alpha) = at.linear_acceleration(body);
+    let local = motion.rotation.tr_mul(&acceleration);
+    let theta = by.theta + alpha.cross(point).cross(&local);
+    let o = at.numbering.velocity(body);
+    add6(&mut out.y[o..], &x, &theta);
+    add6(&mut out.v[o..], &rate, &by.omega);
+    add6(&mut out.a[o..], &acceleration, &point.cross(&local));
+    by.vector + local.cross(&alpha)
+}
+
+fn pull_rotation(
+    at: &Snapshot<f64>,
+    body: usize,
+    axis: &Vec3<f64>,
+    weight: f64,
+    out: &mut SnapshotCotangent,
+) -> Vec3<f64> {
+    let p = at.motion(body).orientation;
+    let (by_p, by_axis) = rotation::twist_derivative(&p, axis);
+    let theta = rotation::rate_product(&p, &by_p) * (0.5 * weight);
+    add6(&mut out.y[at.numbering.velocity(body)..], &ZERO, &theta);
+    by_axis * weight
+}
+
+/// Pulls the cotangent of a flight back to the snapshot and the projectile's parameters.
+pub fn pull_flight(
+    at: &Snapshot<f64>,
+    projectile: &Projectile<f64>,
+    cot: [f64; 5],
+    out: &mut SnapshotCotangent,
+    own: &mut Projectile<f64>,
+) {
+    let motion = at.motion(projectile.body);
+    let by = flight::pull_back(projectile, &motion, &at.model.gravity, cot);
+    let o = at.numbering.velocity(projectile.body);
+    add6(&mut out.y[o..], &by.position, &by.marker.theta);
+    add6(&mut out.v[o..], &by.velocity, &by.marker.omega);
+    own.point += by.marker.vector;
+    own.direction += by.direction;
+    out.model.gravity += by.gravity;
+}
+
+fn pull_energy(at: &Snapshot<f64>, part: EnergyPart, weight: f64, out: &mut SnapshotCotangent) {
+    let gravity = at.model.gravity;
+    for (i, body) in at.model.bodies.iter().enumerate() {
+        let motion = at.motion(i);
+        let o = at.numbering.velocity(i);
+        let own = &mut out.model.bodies[i];
+        if part != EnergyPart::Potential {
+            let (velocity, omega) = (&motion.velocity, &motion.omega);
+            let (momentum, spin) = (velocity * body.mass, body.inertia * omega);
+            add6(&mut out.v[o..], &(momentum * weight), &(spin * weight));
+            own.mass += 0.5 * weight * velocity.norm_squared();
+            own.inertia += omega * omega.transpose() * (0.5 * weight);
+        }
+        if part != EnergyPart::Kinetic {
+            add6(&mut out.y[o..], &(gravity * (-weight * body.mass)), &ZERO);
+            own.mass -= weight * gravity.dot(&motion.position);
+            out.model.gravity -= motion.position * (weight * body.mass);
+        }
+    }
+}

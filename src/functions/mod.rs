@@ -1,0 +1,12 @@
+//! Functions of interest: what is measured at an instant, and how a run is reduced to a number.
+
+pub mod evaluate;
+pub mod flight;
+pub mod function;
+pub mod instant;
+pub mod measure;
+pub mod scene;
+
+pub use function::{Function, Reduction, Release};
+pub use instant::{EnergyPart, Gate, Instant, Projectile, Side};
+pub use scene::Scene;

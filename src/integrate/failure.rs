@@ -1,0 +1,54 @@
+//! How a simulation can fail.
+
+use crate::system::initial::AssemblyFailure;
+
+/// Why a simulation did not reach its end.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum IntegrationFailure {
+    /// No consistent start.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyFailure),
+    /// Newton's method did not converge.
+    #[error(
+        "Newton's method stalled at t = {time:.6e} s (step {step}) after {iterations} iterations: \
+         scaled residual {residual:.3e}, worst in {worst}"
+    )]
+    NewtonStalled {
+        /// Time of the step's end [s].
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+        /// Iterations spent.
+        iterations: usize,
+        /// Largest scaled residual.
+        residual: f64,
+        /// The equation and the body or joint that it stands in.
+        worst: String,
+    },
+    /// The iteration matrix is singular.
+    #[error("the equations became singular at t = {time:.6e} s (step {step}), at {place}")]
+    Singular {
+        /// Time of the step's end [s].
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+        /// The unknown without a pivot, by body or joint.
+        place: String,
+    },
+    /// A value overflowed or became NaN.
+    #[error("the motion is not finite at t = {time:.6e} s (step {step}), in {worst}")]
+    NotFinite {
+        /// Time of the step's end [s].
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+        /// The equation and the body or joint that it stands in.
+        worst: String,
+    },
+    /// The duration is zero, negative or not finite.
+    #[error("the duration {duration} s is not positive")]
+    Duration {
+        /// The duration [s].
+        duration: f64,
+    },
+}

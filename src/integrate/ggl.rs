@@ -1,0 +1,247 @@
+//! The GGL-stabilised equations at one instant: residual, iteration matrix and pull-back.
+//!
+//! ```text
+//! F1 = P(q) q̇ − v + Gᵀ μ            P(q) q̇ = (ṙ, 2 L(p) ṗ) per body
+//! F2 = M v̇ − f(q, v) + Gᵀ λ
+//! F3 = Φ(q)
+//! F4 = G(q) v
+//! ```
+//!
+//! (Gear, Leimkuhler & Gupta 1985.) The unknowns are the tangent positions y, v, λ and μ, in this
+//! order; q̇ and v̇ are what the method makes of q and v, with ∂q̇/∂q = ∂v̇/∂v = c. The equations
+//! are solved in a scaling that keeps the condition independent of the step h (rows times
+//! h, h², 1, h; columns v, λ, μ divided by h, h², h).
+
+use crate::linalg::{Emit, Pattern};
+use crate::math::{Mat3, Scalar};
+use crate::model::Model;
+use crate::system::bodies::{
+    self, Motion, all_force_balances, angular_velocity_by_theta, positions_of, torque_by_omega,
+    velocities_of, velocity_of_rates,
+};
+use crate::system::constraint::RowGradient;
+use crate::system::joints::{self, JointCotangent};
+use crate::system::kkt::{emit_gradients, emit_reaction_jacobian, emit_transposed_gradients};
+use crate::system::{Numbering, joints::rate_by_position};
+
+/// Unknowns and rates at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Instant<'a, S> {
+    /// Positions.
+    pub q: &'a [S],
+    /// Velocities.
+    pub v: &'a [S],
+    /// Multipliers λ.
+    pub lambda: &'a [S],
+    /// Multipliers μ.
+    pub mu: &'a [S],
+    /// Rates q̇ of the positions.
+    pub qdot: &'a [S],
+    /// Rates v̇ of the velocities.
+    pub vdot: &'a [S],
+}
+
+/// The equations of one model, with the workspace that evaluating them needs.
+pub struct Equations<'a, S> {
+    model: &'a Model<S>,
+    numbering: &'a Numbering,
+    motions: Vec<Motion<S>>,
+    gradients: Vec<RowGradient<S>>,
+}
+
+impl<'a, S: Scalar> Equations<'a, S> {
+    /// The equations of `model`.
+    pub fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
+        Self {
+            model,
+            numbering,
+            motions: Vec::new(),
+            gradients: Vec::new(),
+        }
+    }
+
+    /// Number of equations: 2 (n_v + n_c).
+    pub fn order(&self) -> usize {
+        2 * (self.numbering.velocities() + self.numbering.constraints())
+    }
+
+    /// Starts of F1 … F4, which are also the starts of y, v, λ, μ.
+    fn starts(&self) -> [usize; 4] {
+        let (nv, nc) = (self.numbering.velocities(), self.numbering.constraints());
+        [0, nv, 2 * nv, 2 * nv + nc]
+    }
+
+    fn visit(&mut self, at: &Instant<S>) {
+        Motion::all(self.numbering, at.q, at.v, &mut self.motions);
+        joints::gradients(
+            self.model,
+            self.numbering,
+            &self.motions,
+            &mut self.gradients,
+        );
+    }
+
+    /// Residual in the scaling of step h.
+    pub fn residual(&mut self, at: &Instant<S>, h: S, out: &mut [S]) {
+        self.visit(at);
+        let (model, numbering) = (self.model, self.numbering);
+        let [_, f2, f3, f4] = self.starts();
+        let (upper, lower) = out.split_at_mut(f3);
+        let (out1, out2) = upper.split_at_mut(f2);
+        let (out3, out4) = lower.split_at_mut(f4 - f3);
+        velocity_of_rates(numbering, at.q, at.qdot, out1);
+        for (f, &v) in out1.iter_mut().zip(at.v) {
+            *f -= v;
+        }
+        joints::add_reactions(model, numbering, &self.gradients, at.mu, out1);
+        all_force_balances(model, numbering, &self.motions, at.vdot, out2);
+        joints::add_reactions(model, numbering, &self.gradients, at.lambda, out2);
+        joints::values(model, numbering, &self.motions, out3);
+        joints::rates_from_gradients(model, numbering, &self.gradients, at.v, out4);
+        let scaled: [(&mut [S], S); 3] = [(out1, h), (out2, h * h), (out4, h)];
+        for (rows, scale) in scaled {
+            for f in rows {
+                *f *= scale;
+            }
+        }
+    }
+
+    /// Records the pattern of the iteration matrix.
+    pub fn pattern(&mut self, at: &Instant<S>) -> Pattern {
+        self.visit(at);
+        let this = &*self;
+        Pattern::record(self.order(), |emit: &mut dyn Emit<S>| {
+            this.emit(at, S::one(), S::one(), emit);
+        })
+    }
+
+    /// Emits the scaled iteration matrix for ∂q̇/∂q = ∂v̇/∂v = c.
+    pub fn jacobian(&mut self, at: &Instant<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
+        self.visit(at);
+        self.emit(at, h, c, emit);
+    }
+
+    fn emit(&self, at: &Instant<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
+        let (model, numbering, motions) = (self.model, self.numbering, &self.motions);
+        let [y, v, lambda, mu] = self.starts();
+        let identity = Mat3::<S>::identity();
+        for (i, (body, motion)) in model.bodies.iter().zip(motions).enumerate() {
+            let o = numbering.velocity(i);
+            let (_, pdot) = positions_of(&at.qdot[numbering.position(i)..]);
+            // F1 by y and v.
+            let turned = angular_velocity_by_theta(&motion.orientation, &pdot);
+            emit.add_identity(y + o, y + o, c * h);
+            emit.add_block(y + o + 3, y + o + 3, &(identity * (c * h) + turned * h));
+            emit.add_identity(y + o, v + o, -S::one());
+            emit.add_identity(y + o + 3, v + o + 3, -S::one());
+            // F2 by v.
+            let torque = torque_by_omega(body, &motion.omega);
+            emit.add_identity(v + o, v + o, body.mass * c * h);
+            emit.add_block(v + o + 3, v + o + 3, &(body.inertia * (c * h) + torque * h));
+        }
+        let (f1, f2, f3, f4) = (y, v, lambda, mu);
+        emit_reaction_jacobian(model, numbering, motions, at.mu, (f1, y), h, emit);
+        emit_reaction_jacobian(model, numbering, motions, at.lambda, (f2, y), h * h, emit);
+        let one = S::one();
+        emit_transposed_gradients(model, numbering, &self.gradients, (f1, mu), one, emit);
+        emit_transposed_gradients(model, numbering, &self.gradients, (f2, lambda), one, emit);
+        emit_gradients(model, numbering, &self.gradients, (f3, y), emit);
+        emit_gradients(model, numbering, &self.gradients, (f4, v), emit);
+        // F4 by y.
+        let ground = Motion::ground();
+        for (j, joint) in model.joints.iter().enumerate() {
+            let (a, b) = joints::sides(joint, motions, &ground);
+            for (i, &row) in numbering.rows(j).zip(joint.kind.rows()) {
+                let (by_a, by_b) = rate_by_position(row, &a, &b);
+                for (body, by) in [(Some(joint.body_a), by_a), (joint.body_b, by_b)] {
+                    let Some(body) = body else { continue };
+                    let column = y + numbering.velocity(body);
+                    if row.follows_axis() {
+                        emit.add_row(f4 + i, column, &(by.position * h));
+                    }
+                    emit.add_row(f4 + i, column + 3, &(by.theta * h));
+                }
+            }
+        }
+    }
+
+    /// Multiplies an unscaled cotangent of the unknowns by the column scaling, or the solution of
+    /// the scaled transposed system by the row scaling.
+    pub fn scale_columns(&self, h: f64, b: &mut [f64]) {
+        let [_, v, lambda, mu] = self.starts();
+        scale_parts(b, &[(v, 1.0 / h), (lambda, 1.0 / (h * h)), (mu, 1.0 / h)]);
+    }
+
+    /// See [`Equations::scale_columns`].
+    pub fn scale_rows(&self, h: f64, psi: &mut [f64]) {
+        let [_, f2, f3, f4] = self.starts();
+        for x in &mut psi[..f2] {
+            *x *= h;
+        }
+        scale_parts(psi, &[(f2, h * h), (f3, 1.0), (f4, h)]);
+    }
+
+    /// The inverse of [`Equations::scale_rows`].
+    pub fn unscale_rows(&self, h: f64, psi: &mut [f64]) {
+        self.scale_rows(1.0 / h, psi);
+    }
+
+    /// The body or joint that an equation (or unknown) belongs to, for messages.
+    pub fn describe(&self, row: usize) -> String {
+        let [_, f2, f3, f4] = self.starts();
+        let body = |i: usize| &self.model.bodies[i / 6].name;
+        let joint = |i: usize| &self.model.joints[self.numbering.joint_of_row(i)].name;
+        match row {
+            i if i < f2 => format!("the kinematics of body \"{}\"", body(i)),
+            i if i < f3 => format!("the dynamics of body \"{}\"", body(i - f2)),
+            i if i < f4 => format!("the position constraint of joint \"{}\"", joint(i - f3)),
+            i => format!("the velocity constraint of joint \"{}\"", joint(i - f4)),
+        }
+    }
+}
+
+fn scale_parts(x: &mut [f64], parts: &[(usize, f64)]) {
+    for (k, &(start, scale)) in parts.iter().enumerate() {
+        let end = parts.get(k + 1).map_or(x.len(), |next| next.0);
+        for x in &mut x[start..end] {
+            *x *= scale;
+        }
+    }
+}
+
+impl Equations<'_, f64> {
+    /// Pulls the adjoint ψ (unscaled, of F1 … F4) back to the parameters of `cot`.
+    pub fn pull_back(&mut self, at: &Instant<f64>, psi: &[f64], cot: &mut Model<f64>) {
+        self.visit(at);
+        let (model, numbering) = (self.model, self.numbering);
+        let [_, f2, f3, f4] = self.starts();
+        let (psi1, psi2, psi3, psi4) = (&psi[..f2], &psi[f2..f3], &psi[f3..f4], &psi[f4..]);
+        for (i, body) in model.bodies.iter().enumerate() {
+            let o = numbering.velocity(i);
+            let (psi_r, psi_theta) = velocities_of(&psi2[o..]);
+            let (a, alpha) = velocities_of(&at.vdot[o..]);
+            bodies::pull_force_balance(
+                body,
+                &model.gravity,
+                &self.motions[i].omega,
+                (&a, &alpha),
+                (&psi_r, &psi_theta),
+                &mut cot.bodies[i],
+                &mut cot.gravity,
+            );
+        }
+        let mut pull = |w: &[f64], cotangents: [Option<&[f64]>; 3]| {
+            let mut motions = Vec::with_capacity(numbering.bodies());
+            Motion::all(numbering, at.q, w, &mut motions);
+            let mut out = JointCotangent {
+                y: None,
+                v: None,
+                model: cot,
+            };
+            joints::pull_back(model, numbering, &motions, cotangents, &mut out);
+        };
+        pull(psi1, [None, Some(at.mu), None]);
+        pull(psi2, [None, Some(at.lambda), None]);
+        pull(at.v, [Some(psi3), Some(psi4), None]);
+    }
+}

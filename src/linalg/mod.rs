@@ -1,0 +1,7 @@
+//! Sparse linear algebra: static patterns and the LU factorisation.
+
+pub mod pattern;
+pub mod sparse_lu;
+
+pub use pattern::{Emit, Pattern, SparseMatrix};
+pub use sparse_lu::{SingularMatrix, SolveScalar, SparseLu};

@@ -1,0 +1,195 @@
+//! The joints and the constraint rows that each is made of.
+//!
+//! With d = r_A + R_A s_A − r_B − R_B s_B and orthonormal axes e1, e2, e3 fixed in each body
+//! (e3 is the joint's axis), every joint is a list of three kinds of row (Haug 1989,
+//! *Computer Aided Kinematics and Dynamics of Mechanical Systems*, ch. 9):
+//!
+//! ```text
+//! Coincident k     d_k                     = 0      component k of d in ground axes
+//! Perpendicular    (R_A e_i) · (R_B e_j)   = 0
+//! Sliding i        (R_A e_i) · d           = 0
+//! ```
+//!
+//! The equations, Jacobians and pull-backs of the rows are in `system::constraint`.
+
+use crate::math::{Scalar, Vec3};
+
+/// One scalar constraint equation; indices are 0-based components or axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ConstraintRow {
+    /// Component `k` of d in ground axes vanishes.
+    Coincident(usize),
+    /// Axis `a` of the frame on body A is perpendicular to axis `b` of the frame on body B.
+    Perpendicular {
+        /// Axis on body A.
+        a: usize,
+        /// Axis on body B.
+        b: usize,
+    },
+    /// d has no component along axis `a` of the frame on body A.
+    Sliding {
+        /// Axis on body A.
+        a: usize,
+    },
+}
+
+impl ConstraintRow {
+    /// The component, if the row's force points along a ground axis.
+    pub fn ground_component(self) -> Option<usize> {
+        match self {
+            Coincident(k) => Some(k),
+            Perpendicular { .. } | Sliding { .. } => None,
+        }
+    }
+
+    /// What the row holds, for messages.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Coincident(0) => "x distance",
+            Coincident(1) => "y distance",
+            Coincident(_) => "z distance",
+            Perpendicular { .. } => "angle between axes",
+            Sliding { .. } => "distance across the sliding direction",
+        }
+    }
+
+    /// True if the row transmits a force.
+    pub fn has_force(self) -> bool {
+        match self {
+            Coincident(_) | Sliding { .. } => true,
+            Perpendicular { .. } => false,
+        }
+    }
+
+    /// True if the force turns with body A.
+    pub fn follows_axis(self) -> bool {
+        match self {
+            Sliding { .. } => true,
+            Coincident(_) | Perpendicular { .. } => false,
+        }
+    }
+
+    /// True if the reaction on one body depends on the rotation of the other.
+    pub fn couples_rotations(self) -> bool {
+        match self {
+            Perpendicular { .. } | Sliding { .. } => true,
+            Coincident(_) => false,
+        }
+    }
+}
+
+/// The kinds of joint; e3 of the joint frame is the axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Two points coincide: 3 rows.
+    Spherical,
+    /// Two points coincide and one axis is common: 5 rows.
+    Revolute,
+    /// One body slides along an axis of the other without turning: 5 rows.
+    Prismatic,
+    /// One body moves in a plane of the other and turns about its normal: 3 rows.
+    Planar,
+}
+
+use ConstraintRow::{Coincident, Perpendicular, Sliding};
+
+impl JointKind {
+    /// The constraint rows of this joint.
+    pub fn rows(self) -> &'static [ConstraintRow] {
+        match self {
+            JointKind::Spherical => &[Coincident(0), Coincident(1), Coincident(2)],
+            JointKind::Revolute => &[
+                Coincident(0),
+                Coincident(1),
+                Coincident(2),
+                Perpendicular { a: 2, b: 0 },
+                Perpendicular { a: 2, b: 1 },
+            ],
+            JointKind::Prismatic => &[
+                Perpendicular { a: 0, b: 1 },
+                Perpendicular { a: 1, b: 2 },
+                Perpendicular { a: 2, b: 0 },
+                Sliding { a: 0 },
+                Sliding { a: 1 },
+            ],
+            JointKind::Planar => &[
+                Sliding { a: 2 },
+                Perpendicular { a: 2, b: 0 },
+                Perpendicular { a: 2, b: 1 },
+            ],
+        }
+    }
+
+    /// Frame axes that both bodies share; the rows alone would also admit them turned by 180°.
+    pub fn common_axes(self) -> &'static [usize] {
+        match self {
+            JointKind::Spherical => &[],
+            JointKind::Revolute | JointKind::Planar => &[2],
+            JointKind::Prismatic => &[0, 1, 2],
+        }
+    }
+
+    /// The joint's name in problem files.
+    pub fn name(self) -> &'static str {
+        match self {
+            JointKind::Spherical => "spherical",
+            JointKind::Revolute => "revolute",
+            JointKind::Prismatic => "prismatic",
+            JointKind::Planar => "planar",
+        }
+    }
+}
+
+/// Where a joint sits on a body.
+#[derive(Clone, Copy, Debug)]
+pub struct JointFrame<S> {
+    /// Point from the centre of mass, in body axes (ground axes from the origin if ground) [m].
+    pub point: Vec3<S>,
+    /// Orthonormal axes e1, e2, e3 in body axes; e3 is the joint's axis.
+    pub axes: [Vec3<S>; 3],
+}
+
+impl<S: Scalar> JointFrame<S> {
+    /// The frame of zeros (a cotangent).
+    pub fn zero() -> Self {
+        Self {
+            point: Vec3::zeros(),
+            axes: [Vec3::zeros(); 3],
+        }
+    }
+}
+
+/// A joint between two bodies, or a body and ground.
+#[derive(Clone, Debug)]
+pub struct Joint<S> {
+    /// Name in the problem file.
+    pub name: String,
+    /// Which equations it imposes.
+    pub kind: JointKind,
+    /// Body A.
+    pub body_a: usize,
+    /// Body B; `None` is ground.
+    pub body_b: Option<usize>,
+    /// Where the joint sits on body A.
+    pub frame_a: JointFrame<S>,
+    /// Where the joint sits on body B.
+    pub frame_b: JointFrame<S>,
+}
+
+impl<S: Scalar> Joint<S> {
+    /// The joint with every parameter replaced by `f` of it.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Joint<T> {
+        let mut frame = |frame: &JointFrame<S>| JointFrame {
+            point: frame.point.map(&mut *f),
+            axes: frame.axes.map(|axis| axis.map(&mut *f)),
+        };
+        Joint {
+            name: self.name.clone(),
+            kind: self.kind,
+            body_a: self.body_a,
+            body_b: self.body_b,
+            frame_a: frame(&self.frame_a),
+            frame_b: frame(&self.frame_b),
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! The mechanical model: bodies, joints and gravity with their parameters, and nothing that moves.
+//!
+//! Parameters are generic in the scalar, so that the same model carries values (`f64`), complex
+//! steps or dual numbers. A model of zeros in `f64` also serves as the cotangent of a model:
+//! every parameter's place then holds the derivative of a function with respect to it.
+
+pub mod joint;
+pub mod rigid_body;
+
+pub use joint::{ConstraintRow, Joint, JointFrame, JointKind};
+pub use rigid_body::RigidBody;
+
+use crate::math::{Scalar, Vec3};
+
+/// Bodies, joints and gravity of a scene.
+#[derive(Clone, Debug)]
+pub struct Model<S> {
+    /// Gravitational acceleration in ground axes [m/s²].
+    pub gravity: Vec3<S>,
+    /// Bodies in the order of the problem file.
+    pub bodies: Vec<RigidBody<S>>,
+    /// Joints in the order of the problem file.
+    pub joints: Vec<Joint<S>>,
+}
+
+impl<S: Scalar> Model<S> {
+    /// The model with every parameter replaced by `f` of it, visited in one fixed order.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Model<T> {
+        Model {
+            gravity: self.gravity.map(&mut *f),
+            bodies: self.bodies.iter().map(|body| body.map(f)).collect(),
+            joints: self.joints.iter().map(|joint| joint.map(f)).collect(),
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! A rigid body: its mass properties and its start.
+
+use crate::math::rotation::Quat;
+use crate::math::{Mat3, Scalar, Vec3};
+
+/// A rigid body. Its reference point is the centre of mass; its axes are the body's axes in the
+/// problem file.
+#[derive(Clone, Debug)]
+pub struct RigidBody<S> {
+    /// Name in the problem file.
+    pub name: String,
+    /// Mass [kg].
+    pub mass: S,
+    /// Inertia about the centre of mass in body axes, symmetric [kg m²].
+    pub inertia: Mat3<S>,
+    /// Guess of the centre of mass at t = 0 in ground axes [m].
+    pub position: Vec3<S>,
+    /// Guess of the Euler parameters at t = 0, of unit length (body axes to ground).
+    pub orientation: Quat<S>,
+    /// Guess of the velocity of the centre of mass at t = 0 in ground axes [m/s].
+    pub velocity: Vec3<S>,
+    /// Guess of the angular velocity at t = 0 in body axes [rad/s].
+    pub angular_velocity: Vec3<S>,
+}
+
+impl<S: Scalar> RigidBody<S> {
+    /// The body with every parameter replaced by `f` of it.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> RigidBody<T> {
+        RigidBody {
+            name: self.name.clone(),
+            mass: f(self.mass),
+            inertia: self.inertia.map(&mut *f),
+            position: self.position.map(&mut *f),
+            orientation: self.orientation.map(&mut *f),
+            velocity: self.velocity.map(&mut *f),
+            angular_velocity: self.angular_velocity.map(&mut *f),
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! Bodies, placements and joints.
+
+use super::Checker;
+use crate::problem::fault::Finding;
+use crate::problem::mass::{mass_properties, volume};
+use crate::problem::placement::{GROUND, placement_order};
+use crate::problem::pointer::join;
+use crate::problem::schema::mechanics::{Axis, Body, Joint, JointPlace, Location, Place, Turns};
+
+/// Rounding that principal moments of inertia are forgiven, relative to the largest.
+const ROUNDING: f64 = 1e-12;
+
+impl Checker<'_> {
+    pub(super) fn mechanics(&mut self) {
+        let document = self.document;
+        self.names("bodies", document.bodies.keys());
+        self.names("joints", document.joints.keys());
+        if document.bodies.is_empty() && !self.damage.holds("bodies", "") {
+            self.fault(Finding::new("/bodies", "no body", "at least one"));
+        }
+        for (name, body) in &document.bodies {
+            let pointer = join("/bodies", name);
+            if name == GROUND || name.contains('.') {
+                let found = format!("the name \"{name}\"");
+                let expected = "a name that is not \"ground\" and has no dot";
+                self.fault(Finding::new(&pointer, found, expected).of_key());
+            }
+            self.mass(&pointer, body);
+            self.place(&join(&pointer, "place"), name, &body.place);
+        }
+        if let Err(circle) = placement_order(document) {
+            let pointer = join(&join("/bodies", &circle[0]), "place");
+            let found = format!("the circle {}", circle.join(" → "));
+            let expected = "bodies whose places lead to the ground";
+            self.fault(Finding::new(pointer, found, expected));
+        }
+        for (name, joint) in &document.joints {
+            let pointer = join(&join("/joints", name), joint.kind().name());
+            self.joint(&pointer, joint);
+        }
+    }
+
+    /// Checks that a body has its mass properties once, and that they are those of some solid.
+    fn mass(&mut self, pointer: &str, body: &Body) {
+        let mut wrong = |key: &str, found: &str, expected: &str| {
+            let finding = Finding::new(join(pointer, key), found, expected);
+            self.findings.push(finding.of_key());
+        };
+        match (&body.shape, &body.density, &body.mass) {
+            (Some(_), Some(_), Some(_)) => {
+                wrong("density", "\"density\" beside \"mass\"", "one of them");
+            }
+            (Some(_), None, None) => {
+                wrong(
+                    "shape",
+                    "\"shape\" alone",
+                    "\"mass\" or \"density\" beside it",
+                );
+            }
+            (None, Some(_), _) => {
+                wrong(
+                    "density",
+                    "\"density\" without \"shape\"",
+                    "\"mass\" and \"inertia\"",
+                );
+            }
+            (Some(shape), Some(_), None) if volume::<f64>(shape, &[]) == 0.0 => {
+                let found = "the density of a rod without radius";
+                wrong("density", found, "a mass, or a radius above 0");
+            }
+            (None, None, mass) if mass.is_none() || body.inertia.is_none() => {
+                let finding = Finding::new(
+                    pointer,
+                    "a body without its mass properties",
+                    "\"shape\" and \"mass\" or \"density\", or else \"mass\" and \"inertia\"",
+                );
+                self.fault(finding.of_key());
+                return;
+            }
+            _ => {}
+        }
+        if body.shape.is_some() {
+            let extra = [
+                ("inertia", body.inertia.is_some()),
+                ("centre_of_mass", body.centre_of_mass.is_some()),
+            ];
+            for (key, _) in extra.into_iter().filter(|(_, given)| *given) {
+                let found = format!("\"{key}\" beside \"shape\"");
+                let expected = "one of them, as the shape gives it";
+                self.fault(Finding::new(join(pointer, key), found, expected).of_key());
+            }
+            return;
+        }
+        if body.inertia.is_some() {
+            self.inertia(&join(pointer, "inertia"), body);
+        }
+    }
+
+    /// Principal moments of a solid are integrals of squares: none is negative, and none is larger
+    /// than the sum of the other two.
+    fn inertia(&mut self, pointer: &str, body: &Body) {
+        let inertia = mass_properties::<f64>(body, &[]).inertia;
+        let mut moments: [f64; 3] = inertia.symmetric_eigenvalues().into();
+        moments.sort_by(f64::total_cmp);
+        let [a, b, c] = moments;
+        let slack = ROUNDING * c.abs();
+        if a < -slack || c > a + b + slack {
+            let [a, b, c] = moments.map(rounded);
+            let found = format!("principal moments of inertia {a}, {b}, {c} kg m²");
+            let expected = "those of a solid: none negative, none above the sum of the others";
+            self.fault(Finding::new(pointer, found, expected));
+        }
+    }
+
+    fn place(&mut self, pointer: &str, name: &str, place: &Place) {
+        if let Some(put) = &place.put {
+            self.point(&join(pointer, "put"), name, put);
+        }
+        if let Some(Location::Named(text)) = &place.at {
+            self.location(&join(pointer, "at"), text);
+        }
+        if let Some(other) = place
+            .relative_to
+            .as_deref()
+            .filter(|other| *other != GROUND)
+        {
+            self.body(&join(pointer, "relative_to"), other);
+        }
+        let turn = join(pointer, "turn");
+        match &place.turn {
+            Some(Turns::One(one)) => self.direction(&join(&turn, "axis"), &one.axis),
+            Some(Turns::Several(several)) => {
+                for (k, one) in several.iter().enumerate() {
+                    self.direction(&join(&join(&turn, k), "axis"), &one.axis);
+                }
+            }
+            None => {}
+        }
+    }
+
+    fn joint(&mut self, pointer: &str, joint: &Joint) {
+        let (between, place, axis) = joint.parts();
+        let list = join(pointer, "between");
+        for (k, name) in between.iter().enumerate() {
+            if name != GROUND {
+                self.body(&join(&list, k), name);
+            }
+        }
+        if between[0] == between[1] {
+            let found = format!("\"{}\" twice", between[0]);
+            self.fault(Finding::new(&list, found, "two different bodies"));
+        }
+        let at = join(pointer, "at");
+        match place {
+            JointPlace::Named(text) => self.location(&at, text),
+            JointPlace::Coordinates(_) => {}
+            JointPlace::Each(pair) => {
+                self.point(&join(&at, "a"), &between[0], &pair.a);
+                self.point(&join(&at, "b"), &between[1], &pair.b);
+            }
+        }
+        let pointer = join(pointer, "axis");
+        match axis {
+            Some(Axis::Ground(axis)) => self.direction(&pointer, axis),
+            Some(Axis::OfBody(of)) => {
+                self.body(&join(&pointer, "body"), &of.body);
+                self.direction(&join(&pointer, "axis"), &of.axis);
+            }
+            None => {}
+        }
+    }
+}
+
+/// A number to six digits.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}

@@ -1,0 +1,110 @@
+//! What names and numbers of a document mean together: every fault that the schema cannot see.
+
+mod mechanics;
+mod study;
+
+use super::fault::Finding;
+use super::placement::{GROUND, split_location};
+use super::pointer::{advice, join};
+use super::prune::Damage;
+use super::quantity::{Vector, values};
+use super::schema::Document;
+use super::schema::mechanics::{Body, Point};
+
+/// All faults of a document; what is damaged is not judged.
+pub(super) fn check(document: &Document, damage: &Damage) -> Vec<Finding> {
+    let mut checker = Checker {
+        document,
+        damage,
+        findings: Vec::new(),
+    };
+    checker.mechanics();
+    checker.study();
+    checker.findings
+}
+
+/// A document and what was found in it.
+struct Checker<'a> {
+    document: &'a Document,
+    damage: &'a Damage,
+    findings: Vec<Finding>,
+}
+
+impl<'a> Checker<'a> {
+    fn fault(&mut self, finding: Finding) {
+        self.findings.push(finding);
+    }
+
+    /// The body of this name, which stands at `pointer`; a fault if there is none.
+    fn body(&mut self, pointer: &str, name: &str) -> Option<&'a Body> {
+        let body = self.document.bodies.get(name);
+        if body.is_none() && !self.damage.holds("bodies", name) {
+            let names = self.document.bodies.keys().map(String::as_str);
+            let hint = advice(name, "bodies", names);
+            let found = format!("\"{name}\"");
+            self.fault(Finding::new(pointer, found, "the name of a body").hint(hint));
+        }
+        body
+    }
+
+    /// Checks that a body has a point; `whole` is what stands in the file.
+    fn named_point(&mut self, pointer: &str, body: &Body, name: &str, whole: &str) {
+        if body.points.contains_key(name) {
+            return;
+        }
+        let prefix = whole.strip_suffix(name).unwrap_or_default();
+        let names: Vec<String> = body
+            .points
+            .keys()
+            .map(|key| format!("{prefix}{key}"))
+            .collect();
+        let hint = advice(whole, "points", names.iter().map(String::as_str));
+        let found = format!("\"{whole}\"");
+        self.fault(Finding::new(pointer, found, "the name of a point of the body").hint(hint));
+    }
+
+    /// Checks a point of a body, by name or by coordinates.
+    fn point(&mut self, pointer: &str, body: &str, point: &Point) {
+        if let Point::Named(name) = point {
+            if body == GROUND {
+                let expected = "a list of 3 numbers [m], as ground has no named points";
+                self.fault(Finding::new(pointer, format!("\"{name}\""), expected));
+            } else if let Some(body) = self.document.bodies.get(body) {
+                self.named_point(pointer, body, name, name);
+            }
+        }
+    }
+
+    /// Checks `"body.point"` or `"body"`.
+    fn location(&mut self, pointer: &str, text: &str) {
+        let (name, point) = split_location(text);
+        if name == GROUND {
+            let expected = "\"body.point\", or a list of 3 numbers [m] for a point of ground";
+            self.fault(Finding::new(pointer, format!("\"{text}\""), expected));
+        } else if let (Some(body), Some(point)) = (self.body(pointer, name), point) {
+            self.named_point(pointer, body, point, text);
+        }
+    }
+
+    /// Checks that a direction is not zero.
+    fn direction(&mut self, pointer: &str, direction: &Vector) {
+        self.nonzero(pointer, values(direction).into());
+    }
+
+    fn nonzero(&mut self, pointer: &str, direction: [f64; 3]) {
+        let square: f64 = direction.iter().map(|x| x * x).sum();
+        if !(square.is_normal()) {
+            let [x, y, z] = direction;
+            let found = format!("the direction [{x}, {y}, {z}]");
+            self.fault(Finding::new(pointer, found, "a direction that is not zero"));
+        }
+    }
+
+    /// Checks the names of a section.
+    fn names<'n>(&mut self, section: &str, names: impl Iterator<Item = &'n String>) {
+        for name in names.filter(|name| name.trim().is_empty()) {
+            let pointer = join(&format!("/{section}"), name);
+            self.fault(Finding::new(pointer, "an empty name", "a name").of_key());
+        }
+    }
+}

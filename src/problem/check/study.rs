@@ -1,0 +1,191 @@
+//! Functions, objective, constraints, and how the problem is solved and drawn.
+
+use super::Checker;
+use crate::math::Vec3;
+use crate::problem::fault::Finding;
+use crate::problem::placement::GROUND;
+use crate::problem::pointer::{advice, join};
+use crate::problem::quantity::values;
+use crate::problem::scene::{GRAVITY, released};
+use crate::problem::schema::Objective;
+use crate::problem::schema::functions::{Clearance, Component, Function, Gate, Instant, Range};
+use crate::problem::schema::mechanics::Point;
+
+/// Largest cosine between gravity and a direction that counts as horizontal.
+const HORIZONTAL: f64 = 1e-9;
+
+impl Checker<'_> {
+    pub(super) fn study(&mut self) {
+        let document = self.document;
+        self.names("functions", document.functions.keys());
+        self.names("variables", document.variables.keys());
+        self.names("constraints", document.constraints.keys());
+        self.problem_name();
+        for (name, function) in &document.functions {
+            self.function(&join("/functions", name), function);
+        }
+        if let Some(objective) = &document.objective {
+            let (key, name) = match objective {
+                Objective::Minimise(name) => ("minimise", name),
+                Objective::Maximise(name) => ("maximise", name),
+            };
+            self.function_name(&join("/objective", key), name);
+        }
+        for (name, constraint) in &document.constraints {
+            let pointer = join("/constraints", name);
+            self.function_name(&join(&pointer, "function"), &constraint.function);
+            match (constraint.lower, constraint.upper) {
+                (None, None) => {
+                    let expected = "\"lower\", \"upper\" or both";
+                    self.fault(Finding::new(&pointer, "no bound", expected).of_key());
+                }
+                (Some(lower), Some(upper)) if lower > upper => {
+                    let found = format!("the bounds {lower} and {upper}");
+                    let expected = "a lower bound that is not above the upper one";
+                    self.fault(Finding::new(join(&pointer, "upper"), found, expected));
+                }
+                _ => {}
+            }
+        }
+        for (k, text) in document.plot.trace.iter().enumerate() {
+            self.location(&join("/plot/trace", k), text);
+        }
+    }
+
+    /// The name of a problem is that of a directory.
+    fn problem_name(&mut self) {
+        let name = &self.document.name;
+        let fits = |c: char| c.is_alphanumeric() || "-_ .".contains(c);
+        if name.trim().is_empty() || name.starts_with('.') || !name.chars().all(fits) {
+            let expected = "a name for a directory, of letters, digits, spaces, dots, - and _";
+            self.fault(Finding::new("/name", format!("\"{name}\""), expected));
+        }
+    }
+
+    fn function_name(&mut self, pointer: &str, name: &str) {
+        let functions = &self.document.functions;
+        if !functions.contains_key(name) && !self.damage.holds("functions", name) {
+            let hint = advice(name, "functions", functions.keys().map(String::as_str));
+            let found = format!("\"{name}\"");
+            self.fault(Finding::new(pointer, found, "the name of a function").hint(hint));
+        }
+    }
+
+    fn function(&mut self, pointer: &str, function: &Function) {
+        match function {
+            Function::Ks(aggregate) => self.instant(&format!("{pointer}/ks/of"), &aggregate.of),
+            Function::InducedExponential(aggregate) => {
+                self.instant(&format!("{pointer}/induced_exponential/of"), &aggregate.of);
+            }
+            Function::Integral(instant) => self.instant(&join(pointer, "integral"), instant),
+            Function::Final(instant) => self.instant(&join(pointer, "final"), instant),
+            Function::Clearance(clearance) => {
+                self.clearance(&format!("{pointer}/clearance"), clearance);
+            }
+        }
+    }
+
+    fn clearance(&mut self, pointer: &str, clearance: &Clearance) {
+        let (pointer, name) = (join(pointer, "release"), &clearance.release);
+        let document = self.document;
+        if released(document, name).is_some() || self.damage.holds("functions", name) {
+            return;
+        }
+        let names = document.functions.keys().map(String::as_str);
+        let mut ranges = names
+            .filter(|name| released(document, name).is_some())
+            .peekable();
+        let hint = match ranges.peek() {
+            None => Some("there is none".to_owned()),
+            Some(_) => advice(name, "such functions", ranges),
+        };
+        let expected = "the name of a \"final\", \"ks\" or \"induced_exponential\" range function";
+        self.fault(Finding::new(pointer, format!("\"{name}\""), expected).hint(hint));
+    }
+
+    fn instant(&mut self, pointer: &str, instant: &Instant) {
+        match instant {
+            Instant::Position(component) => self.component(&join(pointer, "position"), component),
+            Instant::Velocity(component) => self.component(&join(pointer, "velocity"), component),
+            Instant::Acceleration(component) => {
+                self.component(&join(pointer, "acceleration"), component);
+            }
+            Instant::Speed(moving) => {
+                self.moving(&join(pointer, "speed"), &moving.body, &moving.point);
+            }
+            Instant::Energy(_) => {}
+            Instant::Rotation(rotation) => {
+                let pointer = join(pointer, "rotation");
+                self.moving(&pointer, &rotation.body, &None);
+                self.direction(&join(&pointer, "axis"), &rotation.axis);
+            }
+            Instant::Range(range) => self.range(&join(pointer, "range"), range),
+        }
+    }
+
+    fn component(&mut self, pointer: &str, component: &Component) {
+        self.moving(pointer, &component.body, &component.point);
+        self.direction(&join(pointer, "direction"), &component.direction);
+    }
+
+    /// Checks a body that moves and a point of it.
+    fn moving(&mut self, pointer: &str, body: &str, point: &Option<Point>) {
+        let place = join(pointer, "body");
+        if body == GROUND {
+            let expected = "the name of a body, as ground does not move";
+            self.fault(Finding::new(place, "\"ground\"", expected));
+        } else if self.body(&place, body).is_some()
+            && let Some(point) = point
+        {
+            self.point(&join(pointer, "point"), body, point);
+        }
+    }
+
+    fn range(&mut self, pointer: &str, range: &Range) {
+        self.moving(pointer, &range.body, &range.point);
+        if let Some(gate) = &range.gate {
+            self.gate(&join(pointer, "gate"), gate);
+        }
+        if self.damage.holds("gravity", "") {
+            return;
+        }
+        let gravity = self
+            .document
+            .gravity
+            .as_ref()
+            .map_or(Vec3::from(GRAVITY), values);
+        if gravity.norm() == 0.0 {
+            let expected = "a gravity that is not zero, as a range is measured under it";
+            self.fault(Finding::new(pointer, "a range without gravity", expected));
+            return;
+        }
+        let Some(direction) = &range.direction else {
+            let tilt = gravity.x / gravity.norm();
+            if tilt.abs() > HORIZONTAL {
+                let found = "a range along [1, 0, 0], which is not horizontal";
+                let expected = "a \"direction\" that is perpendicular to gravity";
+                self.fault(Finding::new(pointer, found, expected));
+            }
+            return;
+        };
+        let place = join(pointer, "direction");
+        self.direction(&place, direction);
+        let along = values(direction);
+        if along.dot(&gravity).abs() > HORIZONTAL * along.norm() * gravity.norm() {
+            let found = format!("the direction [{}, {}, {}]", along.x, along.y, along.z);
+            let expected = "a horizontal one, perpendicular to gravity";
+            self.fault(Finding::new(place, found, expected));
+        }
+    }
+
+    fn gate(&mut self, pointer: &str, gate: &Gate) {
+        self.moving(pointer, &gate.body, &None);
+        self.nonzero(&join(pointer, "axis"), gate.axis);
+        let found = match (gate.above, gate.below) {
+            (Some(_), Some(_)) => "both \"above\" and \"below\"",
+            (None, None) => "neither \"above\" nor \"below\"",
+            _ => return,
+        };
+        self.fault(Finding::new(pointer, found, "one of them").of_key());
+    }
+}

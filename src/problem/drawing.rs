@@ -1,0 +1,157 @@
+//! What a plot of the motion needs to know: outlines of the bodies, the view, ground and barrier.
+
+use super::placement::{Assembly, split_location};
+use super::quantity::vector;
+use super::schema::functions::Function;
+use super::schema::mechanics::{Body, Shape};
+use super::schema::{Document, View};
+use crate::math::Vec3;
+use std::f64::consts::TAU;
+
+/// Instants of the time lapse where the file gives no number.
+const SNAPSHOTS: usize = 12;
+/// Corners of the polygon that stands for a circle.
+const CORNERS: usize = 32;
+
+/// The outline of a body, from its centre of mass in body axes \[m\].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outline {
+    /// The silhouette is the convex hull of these points in the plane of the view.
+    Hull(Vec<Vec3<f64>>),
+    /// The silhouette is a circle of this radius about the centre of mass.
+    Sphere(f64),
+    /// A body without a shape: lines from the centre of mass to these points.
+    Spokes(Vec<Vec3<f64>>),
+}
+
+/// A barrier across the direction of flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BarrierLine {
+    /// Place along the direction of flight \[m\].
+    pub distance: f64,
+    /// Height of the top above the origin \[m\].
+    pub top: f64,
+}
+
+/// How the motion of a design is drawn.
+#[derive(Clone, Debug)]
+pub struct Drawing {
+    /// Ground axis that points to the right.
+    pub right: Vec3<f64>,
+    /// Ground axis that points up.
+    pub up: Vec3<f64>,
+    /// Number of instants of the time lapse.
+    pub snapshots: usize,
+    /// Outlines in the order of the bodies.
+    pub outlines: Vec<Outline>,
+    /// Points whose paths are drawn: the body, and the point from its centre of mass in body axes.
+    pub traces: Vec<(usize, Vec3<f64>)>,
+    /// Height of the ground that a range is measured to \[m\].
+    pub ground: Option<f64>,
+    /// The barrier of a clearance.
+    pub barrier: Option<BarrierLine>,
+}
+
+/// The drawing of a checked document at the design `x`.
+pub fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawing {
+    let assembly = Assembly::new(document, order, x);
+    let (right, up) = axes(document.plot.view.unwrap_or_default());
+    let scene = super::scene::scene(document, order, x);
+    let ground = scene.functions.iter().find_map(|function| match function {
+        crate::functions::Function::Reduced {
+            instant: crate::functions::Instant::Range { projectile, .. },
+            ..
+        } => Some(projectile.ground),
+        _ => None,
+    });
+    let barrier = document
+        .functions
+        .values()
+        .find_map(|function| match function {
+            Function::Clearance(clearance) => Some(BarrierLine {
+                distance: clearance.barrier.distance.get(x),
+                top: clearance.barrier.top.get(x),
+            }),
+            _ => None,
+        });
+    let traces = document.plot.trace.iter().filter_map(|text| {
+        let body = split_location(text).0;
+        let index = assembly.index(body)?;
+        Some((
+            index,
+            assembly.named_in_body(text) - assembly.poses[index].centre,
+        ))
+    });
+    Drawing {
+        right,
+        up,
+        snapshots: document.plot.snapshots.unwrap_or(SNAPSHOTS),
+        outlines: document
+            .bodies
+            .values()
+            .zip(&assembly.poses)
+            .map(|(body, pose)| outline(body, pose.centre, x))
+            .collect(),
+        traces: traces.collect(),
+        ground,
+        barrier,
+    }
+}
+
+/// The axes to the right and up of a view.
+fn axes(view: View) -> (Vec3<f64>, Vec3<f64>) {
+    let (ex, ey, ez) = (Vec3::x(), Vec3::y(), Vec3::z());
+    match view {
+        View::Xy => (ex, ey),
+        View::Xz => (ex, ez),
+        View::Yz => (ey, ez),
+        View::Yx => (ey, ex),
+        View::Zx => (ez, ex),
+        View::Zy => (ez, ey),
+    }
+}
+
+/// The outline of a body whose centre of mass is at `centre` in its axes.
+fn outline(body: &Body, centre: Vec3<f64>, x: &[f64]) -> Outline {
+    let circle = |radius: f64| {
+        (0..CORNERS).map(move |k| {
+            let (s, c) = (TAU * k as f64 / CORNERS as f64).sin_cos();
+            (radius * c, radius * s)
+        })
+    };
+    match &body.shape {
+        Some(Shape::Box { size }) => {
+            let half = vector(size, x) * 0.5;
+            let signs =
+                |k: usize| [k & 1, k >> 1 & 1, k >> 2 & 1].map(|bit| 2.0 * bit as f64 - 1.0);
+            Outline::Hull(
+                (0..8)
+                    .map(|k| half.component_mul(&Vec3::from(signs(k))))
+                    .collect(),
+            )
+        }
+        Some(Shape::Cylinder { radius, length }) => {
+            let half = 0.5 * length.get(x);
+            let rim = circle(radius.get(x));
+            Outline::Hull(
+                rim.flat_map(|(a, b)| [Vec3::new(a, b, -half), Vec3::new(a, b, half)])
+                    .collect(),
+            )
+        }
+        Some(Shape::Rod { length, radius }) => {
+            let half = 0.5 * length.get(x);
+            let rim = circle(radius.get(x));
+            Outline::Hull(
+                rim.flat_map(|(a, b)| [Vec3::new(-half, a, b), Vec3::new(half, a, b)])
+                    .collect(),
+            )
+        }
+        Some(Shape::Sphere { radius }) => Outline::Sphere(radius.get(x)),
+        None => Outline::Spokes(
+            body.points
+                .values()
+                .map(|p| vector(p, x) - centre)
+                .collect(),
+        ),
+    }
+}

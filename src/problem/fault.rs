@@ -1,0 +1,223 @@
+//! Faults of a problem file: what is wrong, where, and what was meant.
+
+use super::overrides::Override;
+use super::source::Source;
+use std::fmt;
+use std::ops::Range;
+
+/// Longest piece of a source line that is shown [characters].
+const EXCERPT: usize = 96;
+
+/// Which part of the entry at a pointer is at fault.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Part {
+    /// The key.
+    Key,
+    /// The value.
+    Value,
+    /// These bytes of the file.
+    Bytes(Range<usize>),
+    /// The file as a whole.
+    File,
+}
+
+/// A fault before its place in the file is looked up.
+#[derive(Clone, Debug)]
+pub(super) struct Finding {
+    pub pointer: String,
+    pub part: Part,
+    pub found: String,
+    pub expected: String,
+    pub hint: Option<String>,
+}
+
+impl Finding {
+    /// A fault of the value at `pointer`.
+    pub fn new(
+        pointer: impl Into<String>,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Self {
+        Self {
+            pointer: pointer.into(),
+            part: Part::Value,
+            found: found.into(),
+            expected: expected.into(),
+            hint: None,
+        }
+    }
+
+    /// The same fault, of the key.
+    pub fn of_key(self) -> Self {
+        Self {
+            part: Part::Key,
+            ..self
+        }
+    }
+
+    /// The same fault with advice.
+    pub fn hint(self, hint: Option<String>) -> Self {
+        Self { hint, ..self }
+    }
+}
+
+/// One fault of a problem file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// JSON Pointer to what is at fault; empty for the whole document.
+    pub path: String,
+    /// Line in the file from 1; 0 if the fault is not at a place in the file.
+    pub line: usize,
+    /// Column in characters from 1; 0 likewise.
+    pub column: usize,
+    /// What stands there.
+    pub found: String,
+    /// What should stand there.
+    pub expected: String,
+    /// Advice, such as the nearest valid name.
+    pub hint: Option<String>,
+    /// Where it was read: the file, or the override.
+    origin: String,
+    /// The source line, cut to length, and the characters in it before and under the marks.
+    excerpt: Option<(String, usize, usize)>,
+}
+
+/// All faults of a problem file, in the order of the file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub struct Faults {
+    /// The faults; never empty.
+    pub list: Vec<Fault>,
+}
+
+impl Faults {
+    /// One fault of a file that cannot be read as text.
+    pub(super) fn unreadable(file: &str, found: &str, expected: &str) -> Self {
+        let finding = Finding {
+            part: Part::File,
+            ..Finding::new("", found, expected)
+        };
+        Self::locate(vec![finding], file, &Source::default(), &[])
+    }
+
+    /// Looks up where the findings are, and sorts them by place.
+    pub(super) fn locate(
+        findings: Vec<Finding>,
+        file: &str,
+        source: &Source,
+        overrides: &[Override],
+    ) -> Self {
+        let mut list: Vec<Fault> = findings
+            .into_iter()
+            .map(|finding| locate(finding, file, source, overrides))
+            .collect();
+        list.sort_by_key(|fault| (fault.line, fault.column));
+        Self { list }
+    }
+}
+
+/// The fault of a finding.
+fn locate(finding: Finding, file: &str, source: &Source, overrides: &[Override]) -> Fault {
+    let overridden = overrides.iter().rev().find(|o| o.holds(&finding.pointer));
+    let bytes = match (&finding.part, overridden) {
+        (Part::File, _) | (_, Some(_)) => None,
+        (Part::Bytes(bytes), None) => Some(bytes.clone()),
+        (Part::Key, None) => source.key(&finding.pointer),
+        (Part::Value, None) => source.value(&finding.pointer),
+    };
+    let (line, column) = bytes
+        .clone()
+        .map_or((0, 0), |bytes| source.place(bytes.start));
+    Fault {
+        path: finding.pointer,
+        line,
+        column,
+        found: finding.found,
+        expected: finding.expected,
+        hint: finding.hint,
+        origin: overridden.map_or_else(|| file.to_owned(), |o| format!("--set {o}")),
+        excerpt: bytes.map(|bytes| excerpt(source, line, column, bytes)),
+    }
+}
+
+/// The piece of a source line around a fault, and where its marks go.
+fn excerpt(
+    source: &Source,
+    line: usize,
+    column: usize,
+    bytes: Range<usize>,
+) -> (String, usize, usize) {
+    let text: Vec<char> = source.line(line).chars().collect();
+    let before = (column - 1).min(text.len());
+    let marked = source.slice(bytes);
+    // An object or a list is marked by its bracket, all else as far as the line goes.
+    let width = match marked.chars().next() {
+        Some('{' | '[') | None => 1,
+        _ => marked.chars().count(),
+    };
+    let indent = text
+        .iter()
+        .take_while(|c| c.is_whitespace())
+        .count()
+        .min(before);
+    let start = if before - indent > EXCERPT * 2 / 3 {
+        before - EXCERPT / 3
+    } else {
+        indent
+    };
+    let end = (start + EXCERPT).min(text.len());
+    let mut shown = String::new();
+    let mut shift = 0;
+    if start > indent {
+        shown.push('…');
+        shift = 1;
+    }
+    shown.extend(
+        text[start..end]
+            .iter()
+            .map(|&c| if c == '\t' { ' ' } else { c }),
+    );
+    if end < text.len() {
+        shown.push('…');
+    }
+    let width = width.min((end.max(before + 1)) - before).max(1);
+    (shown, before - start + shift, width)
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.origin)?;
+        if self.line > 0 {
+            write!(f, ":{}:{}", self.line, self.column)?;
+        }
+        if !self.path.is_empty() {
+            write!(f, "  {}", self.path)?;
+        }
+        let number = self.line.to_string();
+        match &self.excerpt {
+            Some((text, before, width)) => {
+                write!(f, "\n  {number} | {}", text.trim_end())?;
+                let margin = " ".repeat(number.len());
+                let (before, marks) = (" ".repeat(*before), "^".repeat(*width));
+                write!(f, "\n  {margin} | {before}{marks} ")?;
+            }
+            None => write!(f, "\n  ")?,
+        }
+        write!(f, "found {}, expected {}", self.found, self.expected)?;
+        match &self.hint {
+            Some(hint) => write!(f, "; {hint}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl fmt::Display for Faults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, fault) in self.list.iter().enumerate() {
+            if k > 0 {
+                writeln!(f)?;
+            }
+            write!(f, "{fault}")?;
+        }
+        Ok(())
+    }
+}

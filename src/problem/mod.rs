@@ -1,0 +1,160 @@
+//! The problem file: reading, faults, schema, and the map from a design to a scene.
+//!
+//! A file is read in steps, each of which reports all that it finds: JSON syntax; the shape of the
+//! document against its schema; what names, numbers and design variables mean together. Only a
+//! document without a fault becomes a [`Problem`].
+
+mod check;
+mod drawing;
+mod fault;
+mod mass;
+mod overrides;
+mod placement;
+mod pointer;
+mod prune;
+mod quantity;
+mod read;
+mod scene;
+mod schema;
+mod source;
+mod structure;
+mod syntax;
+#[cfg(test)]
+mod tests;
+mod variables;
+
+pub use drawing::{BarrierLine, Drawing, Outline};
+pub use fault::{Fault, Faults};
+pub use overrides::{Override, OverrideError};
+pub use schema::schema;
+pub use variables::Variable;
+
+use crate::functions::Scene;
+use crate::integrate::Settings;
+use crate::math::Scalar;
+use schema::Document;
+use std::path::Path;
+
+/// Which way an objective goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sense {
+    /// As small as can be.
+    Minimise,
+    /// As large as can be.
+    Maximise,
+}
+
+/// The function that is optimised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Objective {
+    /// Index of the function.
+    pub function: usize,
+    /// Which way.
+    pub sense: Sense,
+}
+
+/// Bounds on a function.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Constraint {
+    /// Name in the problem file.
+    pub name: String,
+    /// Index of the function.
+    pub function: usize,
+    /// Smallest value; −∞ if there is none.
+    pub lower: f64,
+    /// Largest value; +∞ if there is none.
+    pub upper: f64,
+}
+
+/// Settings of the optimiser that a file may give.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OptimiserSettings {
+    /// Scaled residual of the optimality conditions at which it stops.
+    pub tolerance: Option<f64>,
+    /// Largest number of iterations.
+    pub iterations: Option<usize>,
+}
+
+/// A problem: a scene that depends on a design, what is asked of it, and how it is solved.
+///
+/// ```
+/// use flexbody::problem::Problem;
+///
+/// let text = r#"{
+///   "version": 1, "name": "ball",
+///   "bodies": {"ball": {"shape": {"sphere": {"radius": 0.5}}, "mass": 2}},
+///   "simulation": {"duration": 1, "steps": 100},
+///   "variables": {"radius": {"path": "/bodies/ball/shape/sphere/radius", "lower": 0.1}}
+/// }"#;
+/// let problem = Problem::parse(text, "ball.json", &[])?;
+/// assert_eq!(problem.start(), [0.5]);
+/// // 2/5 m r² at r = 1 m.
+/// let inertia = problem.scene(&[1.0]).model.bodies[0].inertia;
+/// assert!((inertia[(0, 0)] - 0.8).abs() < 1e-15);
+/// # Ok::<(), flexbody::problem::Faults>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// Name of the problem and of its results.
+    pub name: String,
+    /// What the problem is about.
+    pub description: Option<String>,
+    /// How the scene is integrated.
+    pub settings: Settings,
+    /// Design variables in the order of the file.
+    pub variables: Vec<Variable>,
+    /// The function that is optimised, if any.
+    pub objective: Option<Objective>,
+    /// Constraints in the order of the file.
+    pub constraints: Vec<Constraint>,
+    /// Names of the functions in the order of the file, which is that of [`Scene::functions`].
+    pub function_names: Vec<String>,
+    /// Settings of the optimiser.
+    pub optimiser: OptimiserSettings,
+    /// The document with its overrides applied; a problem is made from it again by
+    /// [`Problem::parse`].
+    pub document: serde_json::Value,
+    /// SHA-256 of the document without white space, in hexadecimal.
+    pub hash: String,
+    /// The document with its numbers bound to the design variables.
+    written: Document,
+    /// Order in which the bodies are placed.
+    order: Vec<usize>,
+}
+
+impl Problem {
+    /// Reads a problem file, with `overrides` in place of what it says.
+    ///
+    /// # Errors
+    /// All faults that are found, each with its place.
+    pub fn load(path: &Path, overrides: &[Override]) -> Result<Self, Faults> {
+        read::load(path, overrides)
+    }
+
+    /// Reads a problem from its text; `file` is what faults call it.
+    ///
+    /// # Errors
+    /// All faults that are found, each with its place.
+    pub fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Self, Faults> {
+        read::parse(text, file, overrides)
+    }
+
+    /// The design that the file describes.
+    pub fn start(&self) -> Vec<f64> {
+        self.variables
+            .iter()
+            .map(|variable| variable.start)
+            .collect()
+    }
+
+    /// The scene at the design `x`, analytic in `x`; one component per variable, each in the unit
+    /// of its numbers.
+    pub fn scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
+        scene::scene(&self.written, &self.order, x)
+    }
+
+    /// How the motion of the design `x` is drawn.
+    pub fn drawing(&self, x: &[f64]) -> Drawing {
+        drawing::drawing(&self.written, &self.order, x)
+    }
+}

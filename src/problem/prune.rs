@@ -1,0 +1,59 @@
+//! A document without its structural faults, so that the rest of it can be judged as well.
+
+use super::fault::Finding;
+use super::pointer::keys;
+use super::schema::VERSION;
+use serde_json::{Map, Value, json};
+use std::collections::HashSet;
+
+/// Sections whose entries have names, and stand or fall each by itself.
+const NAMED: [&str; 5] = ["bodies", "joints", "functions", "variables", "constraints"];
+
+/// What was taken out of a document.
+#[derive(Default)]
+pub(super) struct Damage {
+    sections: HashSet<String>,
+    entries: HashSet<(String, String)>,
+}
+
+impl Damage {
+    /// True if an entry of this name was there but is at fault.
+    pub fn holds(&self, section: &str, name: &str) -> bool {
+        let entry = (section.to_owned(), name.to_owned());
+        self.sections.contains(section) || self.entries.contains(&entry)
+    }
+}
+
+/// Takes out of `document` what the `findings` say is at fault, and fills in what is required.
+pub(super) fn prune(document: &mut Map<String, Value>, findings: &[Finding]) -> Damage {
+    let mut damage = Damage::default();
+    for finding in findings {
+        let keys = keys(&finding.pointer);
+        match &keys[..] {
+            [section, name, ..] if NAMED.contains(&section.as_str()) => {
+                if let Some(Value::Object(entries)) = document.get_mut(section) {
+                    entries.shift_remove(name);
+                }
+                damage.entries.insert((section.clone(), name.clone()));
+            }
+            [section, ..] => {
+                document.shift_remove(section);
+                damage.sections.insert(section.clone());
+            }
+            [] => {}
+        }
+    }
+    let required = [
+        ("version", json!(VERSION)),
+        ("name", json!("problem")),
+        ("bodies", json!({})),
+        ("simulation", json!({"duration": 1, "steps": 1})),
+    ];
+    for (key, value) in required {
+        if !document.contains_key(key) {
+            document.insert(key.to_owned(), value);
+            damage.sections.insert(key.to_owned());
+        }
+    }
+    damage
+}

@@ -1,0 +1,176 @@
+//! From the text of a problem file to a problem, or all of its faults.
+
+use super::check::check;
+use super::fault::{Faults, Finding, Part};
+use super::overrides::Override;
+use super::placement::placement_order;
+use super::prune::prune;
+use super::schema::{self, Document};
+use super::source::{Duplicate, Source};
+use super::structure::walk;
+use super::syntax;
+use super::variables::{bind, variables};
+use super::{Constraint, Objective, OptimiserSettings, Problem, Sense};
+use crate::integrate::{Settings, settings};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// Order of the integration method where the file gives none.
+const ORDER: usize = 2;
+
+/// Reads a problem file.
+pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Faults> {
+    let file = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|error| {
+        let found = match error.kind() {
+            _ if path.is_dir() => "a directory".to_owned(),
+            ErrorKind::NotFound => "no file".to_owned(),
+            _ => error.to_string(),
+        };
+        Faults::unreadable(&file, &found, "a problem file")
+    })?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let text = String::from_utf8_lossy(error.as_bytes());
+        let finding = Finding {
+            part: Part::Bytes(at..at + char::REPLACEMENT_CHARACTER.len_utf8()),
+            ..Finding::new("", "a byte that is not UTF-8", "a text in UTF-8")
+        };
+        Faults::locate(vec![finding], &file, &Source::plain(&text), &[])
+    })?;
+    parse(&text, &file, overrides)
+}
+
+/// Reads a problem from its text.
+pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Problem, Faults> {
+    // A byte order mark is allowed at the head of a text, but not in JSON.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut document: Value = serde_json::from_str(text).map_err(|error| {
+        let finding = syntax::fault(text, &error);
+        Faults::locate(vec![finding], file, &Source::plain(text), &[])
+    })?;
+    let source = Source::index(text);
+    let mut findings: Vec<Finding> = source.duplicates.iter().map(twice).collect();
+    for change in overrides {
+        findings.extend(change.apply(&mut document).err());
+    }
+    let structure = walk(&document, &schema::schema());
+    findings.extend(structure.findings.iter().cloned());
+    let faults = |findings| Err(Faults::locate(findings, file, &source, overrides));
+    let mut sound = document.clone();
+    let Value::Object(entries) = &mut sound else {
+        return faults(findings);
+    };
+    let damage = prune(entries, &structure.findings);
+    let written = match deserialise(&sound) {
+        Ok(written) => written,
+        Err(finding) => {
+            findings.push(finding);
+            return faults(findings);
+        }
+    };
+    findings.extend(check(&written, &damage));
+    let (variables, wrong) = variables(&written, &document, &structure);
+    findings.extend(wrong);
+    if !findings.is_empty() {
+        return faults(findings);
+    }
+    bind(&mut sound, &variables);
+    let order = placement_order(&written).expect("a checked document has no circle of places");
+    match deserialise(&sound) {
+        Ok(written) => Ok(assemble(document, written, order, variables)),
+        Err(finding) => faults(vec![finding]),
+    }
+}
+
+/// The fault of a key that stands twice.
+fn twice(duplicate: &Duplicate) -> Finding {
+    let Duplicate {
+        key, first_line, ..
+    } = duplicate;
+    let found = format!("the key \"{key}\" a second time");
+    let expected = format!("each key once, and it is on line {first_line}");
+    Finding {
+        part: Part::Bytes(duplicate.bytes.clone()),
+        ..Finding::new(&duplicate.pointer, found, expected)
+    }
+}
+
+/// The structures of a document.
+fn deserialise(document: &Value) -> Result<Document, Finding> {
+    serde_path_to_error::deserialize(document).map_err(|error| {
+        let pointer: String = error
+            .path()
+            .iter()
+            .map(|segment| super::pointer::join("", segment))
+            .collect();
+        Finding::new(pointer, error.inner().to_string(), "what the schema says")
+    })
+}
+
+/// The problem of a checked document.
+fn assemble(
+    document: Value,
+    written: Document,
+    order: Vec<usize>,
+    variables: Vec<super::Variable>,
+) -> Problem {
+    let function = |name: &str| {
+        written
+            .functions
+            .get_index_of(name)
+            .expect("names are checked before")
+    };
+    let objective = written.objective.as_ref().map(|objective| {
+        let (name, sense) = match objective {
+            schema::Objective::Minimise(name) => (name, Sense::Minimise),
+            schema::Objective::Maximise(name) => (name, Sense::Maximise),
+        };
+        Objective {
+            function: function(name),
+            sense,
+        }
+    });
+    let constraints = written
+        .constraints
+        .iter()
+        .map(|(name, constraint)| Constraint {
+            name: name.clone(),
+            function: function(&constraint.function),
+            lower: constraint.lower.unwrap_or(f64::NEG_INFINITY),
+            upper: constraint.upper.unwrap_or(f64::INFINITY),
+        })
+        .collect();
+    let order_of_method = match written.simulation.method {
+        Some(schema::Method::Bdf { order }) => order,
+        None => ORDER,
+    };
+    let hash = Sha256::digest(document.to_string());
+    Problem {
+        name: written.name.clone(),
+        description: written.description.clone(),
+        settings: Settings {
+            steps: written.simulation.steps,
+            method: settings::Method::Bdf {
+                order: order_of_method,
+            },
+        },
+        variables,
+        objective,
+        constraints,
+        function_names: written.functions.keys().cloned().collect(),
+        optimiser: written.optimiser.as_ref().map_or_else(
+            OptimiserSettings::default,
+            |optimiser| OptimiserSettings {
+                tolerance: optimiser.tolerance,
+                iterations: optimiser.iterations,
+            },
+        ),
+        hash: hash.iter().map(|byte| format!("{byte:02x}")).collect(),
+        document,
+        written,
+        order,
+    }
+}

@@ -1,0 +1,306 @@
+//! The map from a design to a scene, analytic in the design.
+
+use super::mass::mass_properties;
+use super::placement::{Assembly, GROUND, split_location};
+use super::quantity::{Vector, vector};
+use super::schema::Document;
+use super::schema::functions::{self as written, Function as Written};
+use super::schema::mechanics::{Joint as WrittenJoint, JointPlace, Point};
+use crate::functions::{
+    EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Scene, Side,
+};
+use crate::math::scalar::{length, lift3};
+use crate::math::{Scalar, Vec3};
+use crate::model::{Joint, JointFrame, Model, RigidBody};
+
+/// Gravity where the file gives none [m/s²].
+pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
+
+/// The scene of a checked document at the design `x`; bodies are placed in `order`.
+pub fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<S> {
+    let assembly = Assembly::new(document, order, x);
+    let gravity = match &document.gravity {
+        Some(gravity) => vector(gravity, x),
+        None => lift3(&Vec3::from(GRAVITY)),
+    };
+    let bodies = (0..document.bodies.len()).map(|index| body(document, &assembly, index, x));
+    let joints = document
+        .joints
+        .iter()
+        .map(|(name, written)| joint(&assembly, name, written));
+    let builder = Builder {
+        document,
+        assembly: &assembly,
+        gravity,
+        x,
+    };
+    Scene {
+        model: Model {
+            gravity,
+            bodies: bodies.collect(),
+            joints: joints.collect(),
+        },
+        duration: document.simulation.duration.get(x),
+        functions: document
+            .functions
+            .values()
+            .map(|f| builder.function(f))
+            .collect(),
+    }
+}
+
+/// The unit vector along `a`.
+fn unit<S: Scalar>(a: Vec3<S>) -> Vec3<S> {
+    a * (S::one() / length(&a))
+}
+
+/// A body at its start.
+fn body<S: Scalar>(
+    document: &Document,
+    assembly: &Assembly<S>,
+    index: usize,
+    x: &[S],
+) -> RigidBody<S> {
+    let (name, body) = &document
+        .bodies
+        .get_index(index)
+        .expect("the index counts the bodies");
+    let pose = &assembly.poses[index];
+    let properties = mass_properties(body, x);
+    let given = |components: &Option<Vector>| {
+        components
+            .as_ref()
+            .map_or(Vec3::zeros(), |components| vector(components, x))
+    };
+    let (velocity, omega) = match (&body.velocity, &document.initial_velocity) {
+        (Some(own), _) => (given(&own.linear), given(&own.angular)),
+        (None, Some(all)) => {
+            let omega = given(&all.angular);
+            let arm = pose.position() - given(&all.about);
+            (given(&all.linear) + omega.cross(&arm), omega)
+        }
+        (None, None) => (Vec3::zeros(), Vec3::zeros()),
+    };
+    RigidBody {
+        name: (*name).clone(),
+        mass: properties.mass,
+        inertia: properties.inertia,
+        position: pose.position(),
+        orientation: pose.orientation,
+        velocity,
+        angular_velocity: pose.rotation.tr_mul(&omega),
+    }
+}
+
+/// An orthonormal right-handed triad whose third axis is along `axis`; the first is chosen by the
+/// ground axis that is farthest from it.
+fn triad<S: Scalar>(axis: Vec3<S>) -> [Vec3<S>; 3] {
+    let e3 = unit(axis);
+    let farthest = (0..3)
+        .min_by(|&i, &j| e3[i].re().abs().total_cmp(&e3[j].re().abs()))
+        .expect("a vector has three components");
+    let mut e1 = Vec3::zeros();
+    e1[farthest] = S::one();
+    let e1 = unit(e1 - e3 * e3[farthest]);
+    [e1, e3.cross(&e1), e3]
+}
+
+/// A joint; ground is always body B.
+fn joint<S: Scalar>(assembly: &Assembly<S>, name: &str, written: &WrittenJoint) -> Joint<S> {
+    let (between, place, axis) = written.parts();
+    let triad = match axis {
+        Some(axis) => triad(assembly.axis(axis)),
+        None => triad(Vec3::z()),
+    };
+    let frame = |side: usize| {
+        let body = &between[side];
+        let pose = assembly.pose(body);
+        let point = match place {
+            JointPlace::Named(text) if split_location(text).0 == body => {
+                assembly.named_in_body(text)
+            }
+            JointPlace::Named(text) => pose.rotation.tr_mul(&(assembly.named(text) - pose.origin)),
+            JointPlace::Coordinates(point) => pose
+                .rotation
+                .tr_mul(&(assembly.ground(point) - pose.origin)),
+            JointPlace::Each(pair) => assembly.in_body(body, [&pair.a, &pair.b][side]),
+        };
+        JointFrame {
+            point: point - pose.centre,
+            axes: triad.map(|e| pose.rotation.tr_mul(&e)),
+        }
+    };
+    let (a, b) = if between[0] == GROUND { (1, 0) } else { (0, 1) };
+    Joint {
+        name: name.to_owned(),
+        kind: written.kind(),
+        body_a: assembly
+            .index(&between[a])
+            .expect("a joint has at least one body that is not ground"),
+        body_b: assembly.index(&between[b]),
+        frame_a: frame(a),
+        frame_b: frame(b),
+    }
+}
+
+/// What functions are made from.
+struct Builder<'a, S> {
+    document: &'a Document,
+    assembly: &'a Assembly<'a, S>,
+    gravity: Vec3<S>,
+    x: &'a [S],
+}
+
+impl<S: Scalar> Builder<'_, S> {
+    fn function(&self, function: &Written) -> Function<S> {
+        let reduced = |instant: &written::Instant, reduction| Function::Reduced {
+            instant: self.instant(instant),
+            reduction,
+        };
+        match function {
+            Written::Ks(ks) => reduced(&ks.of, Reduction::Ks { rho: ks.rho }),
+            Written::InducedExponential(ie) => {
+                reduced(&ie.of, Reduction::InducedExponential { rho: ie.rho })
+            }
+            Written::Integral(instant) => reduced(instant, Reduction::Integral),
+            Written::Final(instant) => reduced(instant, Reduction::Final),
+            Written::Clearance(clearance) => self.clearance(clearance),
+        }
+    }
+
+    fn clearance(&self, clearance: &written::Clearance) -> Function<S> {
+        let (range, rho) = released(self.document, &clearance.release)
+            .expect("the release is checked when a problem is read");
+        let projectile = self.projectile(range);
+        Function::Clearance {
+            projectile,
+            release: match rho {
+                None => Release::Final,
+                Some(rho) => Release::Best {
+                    rho,
+                    projectile,
+                    gate: range.gate.as_ref().map(|gate| self.gate(gate)),
+                },
+            },
+            distance: clearance.barrier.distance.get(self.x),
+            top: clearance.barrier.top.get(self.x),
+        }
+    }
+
+    fn instant(&self, instant: &written::Instant) -> Instant<S> {
+        use written::{Energy, Instant as I};
+        let parts = |c: &written::Component| {
+            let body = self.body(&c.body);
+            (
+                body,
+                self.point(&c.body, &c.point),
+                vector(&c.direction, self.x),
+            )
+        };
+        match instant {
+            I::Position(component) => {
+                let (body, point, direction) = parts(component);
+                Instant::Position {
+                    body,
+                    point,
+                    direction,
+                }
+            }
+            I::Velocity(component) => {
+                let (body, point, direction) = parts(component);
+                Instant::Velocity {
+                    body,
+                    point,
+                    direction,
+                }
+            }
+            I::Acceleration(component) => {
+                let (body, point, direction) = parts(component);
+                Instant::Acceleration {
+                    body,
+                    point,
+                    direction,
+                }
+            }
+            I::Speed(moving) => Instant::Speed {
+                body: self.body(&moving.body),
+                point: self.point(&moving.body, &moving.point),
+            },
+            I::Energy(part) => Instant::Energy(match part {
+                Energy::Kinetic => EnergyPart::Kinetic,
+                Energy::Potential => EnergyPart::Potential,
+                Energy::Total => EnergyPart::Total,
+            }),
+            I::Rotation(rotation) => Instant::Rotation {
+                body: self.body(&rotation.body),
+                axis: unit(vector(&rotation.axis, self.x)),
+            },
+            I::Range(range) => Instant::Range {
+                projectile: self.projectile(range),
+                gate: range.gate.as_ref().map(|gate| self.gate(gate)),
+            },
+        }
+    }
+
+    fn body(&self, name: &str) -> usize {
+        self.assembly
+            .index(name)
+            .expect("a function is of a body, not of ground")
+    }
+
+    /// A point from the centre of mass, which is the default.
+    fn point(&self, body: &str, point: &Option<Point>) -> Vec3<S> {
+        point.as_ref().map_or(Vec3::zeros(), |point| {
+            self.assembly.in_body(body, point) - self.assembly.pose(body).centre
+        })
+    }
+
+    /// The direction is made orthogonal to gravity, so that it stays horizontal when the design
+    /// turns gravity.
+    fn projectile(&self, range: &written::Range) -> Projectile<S> {
+        let along = range.direction.map_or(Vec3::x(), |d| vector(&d, self.x));
+        let g = self.gravity;
+        Projectile {
+            body: self.body(&range.body),
+            point: self.point(&range.body, &range.point),
+            direction: unit(along - g * (along.dot(&g) / g.dot(&g))),
+            ground: range.ground.map_or(S::zero(), |ground| ground.get(self.x)),
+        }
+    }
+
+    fn gate(&self, gate: &written::Gate) -> Gate {
+        let (limit, open) = match (gate.above, gate.below) {
+            (Some(limit), _) => (limit, Side::Above),
+            (None, limit) => (
+                limit.expect("a gate has a limit, which is checked when a problem is read"),
+                Side::Below,
+            ),
+        };
+        Gate {
+            body: self.body(&gate.body),
+            axis: unit(Vec3::from(gate.axis)),
+            limit,
+            width: gate.width,
+            open,
+        }
+    }
+}
+
+/// The range function of this name, and the parameter ρ of its aggregation; none for its final
+/// value. `None` if there is no such function or nothing is let go in it.
+pub fn released<'a>(
+    document: &'a Document,
+    name: &str,
+) -> Option<(&'a written::Range, Option<f64>)> {
+    let (instant, rho) = match document.functions.get(name)? {
+        Written::Ks(aggregate) | Written::InducedExponential(aggregate) => {
+            (&aggregate.of, Some(aggregate.rho))
+        }
+        Written::Final(instant) => (instant, None),
+        Written::Integral(_) | Written::Clearance(_) => return None,
+    };
+    match instant {
+        written::Instant::Range(range) => Some((range, rho)),
+        _ => None,
+    }
+}

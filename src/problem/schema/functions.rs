@@ -1,0 +1,178 @@
+//! Functions of interest as they are written in a file.
+
+use super::mechanics::Point;
+use crate::problem::quantity::{Quantity, Vector};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// A function of interest: an instant quantity reduced over the run, or a clearance.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Function {
+    /// Kreisselmeier–Steinhauser function, a smooth lower bound of the maximum over the run.
+    Ks(Aggregate),
+    /// Induced exponential, a smooth mean that leans to the maximum over the run.
+    InducedExponential(Aggregate),
+    /// Integral over the run.
+    Integral(Instant),
+    /// Value at the end of the run.
+    Final(Instant),
+    /// Height of a flight path above the top of a barrier [m].
+    Clearance(Clearance),
+}
+
+/// What is aggregated, and how sharply.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Aggregate {
+    /// Aggregation parameter in 1/unit of the quantity; larger is closer to the maximum.
+    #[schemars(extend(
+        "unit" = "1/unit of the quantity",
+        "exclusiveMinimum" = 0,
+        "design_variable" = "an aggregation parameter says what is asked, not what is built"
+    ))]
+    pub rho: f64,
+    /// The quantity.
+    pub of: Instant,
+}
+
+/// A quantity at an instant.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Instant {
+    /// Component of a point's position [m].
+    Position(Component),
+    /// Component of a point's velocity [m/s].
+    Velocity(Component),
+    /// Component of a point's acceleration [m/s²].
+    Acceleration(Component),
+    /// Speed of a point [m/s].
+    Speed(Moving),
+    /// Energy of the whole scene [J].
+    Energy(Energy),
+    /// Rotation of a body about an axis, counted on over whole turns [rad].
+    Rotation(Rotation),
+    /// Range of a projectile that is let go at this instant [m].
+    Range(Range),
+}
+
+/// A point of a body and a direction.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Component {
+    /// The body.
+    pub body: String,
+    /// Its point, by name or in body axes; default the centre of mass.
+    pub point: Option<Point>,
+    /// Direction in ground axes, used as it is given: a unit vector gives a component.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+}
+
+/// A point of a body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Moving {
+    /// The body.
+    pub body: String,
+    /// Its point, by name or in body axes; default the centre of mass.
+    pub point: Option<Point>,
+}
+
+/// Which energy.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Energy {
+    /// Kinetic energy.
+    Kinetic,
+    /// Potential energy, zero with the centre of mass at the origin.
+    Potential,
+    /// Their sum.
+    Total,
+}
+
+/// A body and an axis.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rotation {
+    /// The body.
+    pub body: String,
+    /// Axis in ground axes, of any length but zero.
+    #[schemars(extend("unit" = "1"))]
+    pub axis: Vector,
+}
+
+/// A projectile and how its range is measured. Up is against gravity.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Range {
+    /// The body that is thrown.
+    pub body: String,
+    /// Its point that flies, by name or in body axes; default the centre of mass.
+    pub point: Option<Point>,
+    /// Horizontal direction of the throw in ground axes, default [1, 0, 0].
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Option<Vector>,
+    /// Height of the ground where the projectile lands, default 0.
+    #[schemars(extend("unit" = "m"))]
+    pub ground: Option<Quantity>,
+    /// Gate that keeps later turns of a sling out of the range.
+    pub gate: Option<Gate>,
+}
+
+/// A smooth gate on the rotation of a body: the range counts only while the rotation is above (or
+/// below) a limit. Give one of `above` and `below`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Gate {
+    /// The body whose rotation is watched.
+    pub body: String,
+    /// Axis of the rotation in ground axes, of any length but zero.
+    #[schemars(extend(
+        "unit" = "1",
+        "design_variable" = "a gate says what is asked, not what is built"
+    ))]
+    pub axis: [f64; 3],
+    /// Rotation that the gate is open above.
+    #[schemars(extend(
+        "unit" = "rad",
+        "design_variable" = "a gate says what is asked, not what is built"
+    ))]
+    pub above: Option<f64>,
+    /// Rotation that the gate is open below.
+    #[schemars(extend(
+        "unit" = "rad",
+        "design_variable" = "a gate says what is asked, not what is built"
+    ))]
+    pub below: Option<f64>,
+    /// Width of the transition.
+    #[schemars(extend(
+        "unit" = "rad",
+        "exclusiveMinimum" = 0,
+        "design_variable" = "a gate says what is asked, not what is built"
+    ))]
+    pub width: f64,
+}
+
+/// Height of a projectile's flight path above the top of a barrier.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Clearance {
+    /// Name of the range function whose release is meant: the final state of a `final` one, the
+    /// weighted mean state of a `ks` or an `induced_exponential` one.
+    pub release: String,
+    /// The barrier.
+    pub barrier: Barrier,
+}
+
+/// A barrier across the direction of flight.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Barrier {
+    /// Its place along the direction of flight, from the origin.
+    #[schemars(extend("unit" = "m"))]
+    pub distance: Quantity,
+    /// Height of its top above the origin.
+    #[schemars(extend("unit" = "m"))]
+    pub top: Quantity,
+}

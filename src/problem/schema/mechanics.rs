@@ -1,0 +1,308 @@
+//! Bodies and joints as they are written in a file.
+
+use crate::problem::quantity::{Quantity, Vector};
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// A rigid body: a shape with its mass or density, or an explicit mass, centre of mass and
+/// inertia.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Body {
+    /// A homogeneous solid, centred at the origin of the body's axes; it gives the inertia.
+    pub shape: Option<Shape>,
+    /// Density of the shape, instead of a mass.
+    #[schemars(extend("unit" = "kg/m³", "exclusiveMinimum" = 0))]
+    pub density: Option<Quantity>,
+    /// Mass.
+    #[schemars(extend("unit" = "kg", "exclusiveMinimum" = 0))]
+    pub mass: Option<Quantity>,
+    /// Centre of mass of a body without a shape, from the origin of the body's axes; default
+    /// there.
+    #[schemars(extend("unit" = "m"))]
+    pub centre_of_mass: Option<Vector>,
+    /// Inertia of a body without a shape.
+    pub inertia: Option<Inertia>,
+    /// Named points in body axes from their origin (the centre of the shape).
+    #[serde(default)]
+    #[schemars(extend("unit" = "m"))]
+    pub points: IndexMap<String, Vector>,
+    /// Where the body is at the start; by default its axes are the ground's.
+    #[serde(default)]
+    pub place: Place,
+    /// Its own velocity at the start, instead of that of the assembly.
+    pub velocity: Option<BodyVelocity>,
+}
+
+/// A homogeneous solid, centred at the origin of the body's axes.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Shape {
+    /// A box with edges along the body's axes.
+    Box {
+        /// Edges along x, y and z.
+        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
+        size: Vector,
+    },
+    /// A cylinder about the body's z axis.
+    Cylinder {
+        /// Radius.
+        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
+        radius: Quantity,
+        /// Length along z.
+        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
+        length: Quantity,
+    },
+    /// A sphere.
+    Sphere {
+        /// Radius.
+        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
+        radius: Quantity,
+    },
+    /// A rod along the body's x axis.
+    Rod {
+        /// Length along x.
+        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
+        length: Quantity,
+        /// Radius; a rod without one (the default) has no inertia about its own axis.
+        #[serde(default = "nothing")]
+        #[schemars(extend("unit" = "m", "minimum" = 0))]
+        radius: Quantity,
+    },
+}
+
+/// The quantity 0.
+fn nothing() -> Quantity {
+    Quantity::fixed(0.0)
+}
+
+/// Entries of the symmetric inertia matrix about the centre of mass in body axes; the entry xy is
+/// minus the integral of x y over the mass.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Inertia {
+    /// Moment about x.
+    #[schemars(extend("unit" = "kg m²", "minimum" = 0))]
+    pub xx: Quantity,
+    /// Moment about y.
+    #[schemars(extend("unit" = "kg m²", "minimum" = 0))]
+    pub yy: Quantity,
+    /// Moment about z.
+    #[schemars(extend("unit" = "kg m²", "minimum" = 0))]
+    pub zz: Quantity,
+    /// Entry xy, default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "kg m²"))]
+    pub xy: Quantity,
+    /// Entry xz, default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "kg m²"))]
+    pub xz: Quantity,
+    /// Entry yz, default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "kg m²"))]
+    pub yz: Quantity,
+}
+
+/// Where a body is at the start: `put` this point of the body `at` that place, with this `turn`.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Place {
+    /// Point of this body, by name or in body axes; default the origin of its axes.
+    pub put: Option<Point>,
+    /// Where that point goes: `"body.point"`, `"body"` for the origin of its axes, or ground
+    /// coordinates; default the origin.
+    pub at: Option<Location>,
+    /// Rotation from the ground's axes (or those of `relative_to`) to the body's, or a list of
+    /// rotations about the fixed ground axes, applied in order; default none.
+    pub turn: Option<Turns>,
+    /// Body whose axes the turn starts from; default ground.
+    pub relative_to: Option<String>,
+}
+
+/// A point of a body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Point {
+    /// Name of one of the body's points.
+    Named(String),
+    /// Coordinates in body axes from their origin.
+    #[schemars(extend("unit" = "m"))]
+    Coordinates(Vector),
+}
+
+/// A place in space.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Location {
+    /// `"body.point"`, or `"body"` for the origin of its axes.
+    Named(String),
+    /// Ground coordinates.
+    #[schemars(extend("unit" = "m"))]
+    Coordinates(Vector),
+}
+
+/// One rotation or several.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Turns {
+    /// One rotation.
+    One(Turn),
+    /// Several, applied in order.
+    Several(Vec<Turn>),
+}
+
+impl Turns {
+    /// The rotations in order.
+    pub fn list(&self) -> &[Turn] {
+        match self {
+            Turns::One(turn) => std::slice::from_ref(turn),
+            Turns::Several(turns) => turns,
+        }
+    }
+}
+
+/// A rotation by an angle about an axis.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Turn {
+    /// Axis of any length but zero.
+    #[schemars(extend("unit" = "1"))]
+    pub axis: Vector,
+    /// Angle by the right-hand rule.
+    #[schemars(extend("unit" = "rad"))]
+    pub angle: Quantity,
+}
+
+/// Velocity of one body at the start.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodyVelocity {
+    /// Velocity of the centre of mass in ground axes, default 0.
+    #[schemars(extend("unit" = "m/s"))]
+    pub linear: Option<Vector>,
+    /// Angular velocity in ground axes, default 0.
+    #[schemars(extend("unit" = "rad/s"))]
+    pub angular: Option<Vector>,
+}
+
+/// Velocity of the whole assembly at the start, moving as one rigid body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AssemblyVelocity {
+    /// Velocity of the point `about` in ground axes, default 0.
+    #[schemars(extend("unit" = "m/s"))]
+    pub linear: Option<Vector>,
+    /// Angular velocity in ground axes, default 0.
+    #[schemars(extend("unit" = "rad/s"))]
+    pub angular: Option<Vector>,
+    /// Ground point that the rotation is about, default the origin.
+    #[schemars(extend("unit" = "m"))]
+    pub about: Option<Vector>,
+}
+
+/// A joint between two bodies, or a body and "ground".
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Joint {
+    /// A ball joint: the points coincide.
+    Spherical(Ball),
+    /// A hinge: the points coincide and the bodies turn about the axis.
+    Revolute(Axial),
+    /// A slider: the second body moves along the axis of the first without turning.
+    Prismatic(Axial),
+    /// The second body moves in the plane through the first body's point across its axis and
+    /// turns about the axis.
+    Planar(Axial),
+}
+
+/// Bodies and place of a joint without an axis.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ball {
+    /// The two bodies; one of them may be "ground".
+    pub between: [String; 2],
+    /// Where the joint is at the start.
+    pub at: JointPlace,
+}
+
+/// Bodies, place and axis of a joint.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Axial {
+    /// The two bodies; one of them may be "ground".
+    pub between: [String; 2],
+    /// Where the joint is at the start.
+    pub at: JointPlace,
+    /// The joint's axis at the start, of any length but zero.
+    pub axis: Axis,
+}
+
+/// Where a joint is at the start.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum JointPlace {
+    /// `"body.point"`, or `"body"` for the origin of its axes.
+    Named(String),
+    /// Ground coordinates.
+    #[schemars(extend("unit" = "m"))]
+    Coordinates(Vector),
+    /// One point on each body; assembly brings them together.
+    Each(PointPair),
+}
+
+/// One point on each body of a joint.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointPair {
+    /// Point of the first body, by name or in its axes (ground coordinates if it is ground).
+    pub a: Point,
+    /// Point of the second body, likewise.
+    pub b: Point,
+}
+
+/// Direction of a joint's axis.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Axis {
+    /// In ground axes.
+    #[schemars(extend("unit" = "1"))]
+    Ground(Vector),
+    /// In the axes of a body.
+    OfBody(BodyAxis),
+}
+
+/// An axis fixed in a body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodyAxis {
+    /// The body.
+    pub body: String,
+    /// Direction in its axes.
+    #[schemars(extend("unit" = "1"))]
+    pub axis: Vector,
+}
+
+impl Joint {
+    /// Its bodies, place and axis.
+    pub fn parts(&self) -> (&[String; 2], &JointPlace, Option<&Axis>) {
+        match self {
+            Joint::Spherical(ball) => (&ball.between, &ball.at, None),
+            Joint::Revolute(axial) | Joint::Prismatic(axial) | Joint::Planar(axial) => {
+                (&axial.between, &axial.at, Some(&axial.axis))
+            }
+        }
+    }
+
+    /// Its key in the file.
+    pub fn kind(&self) -> crate::model::JointKind {
+        use crate::model::JointKind;
+        match self {
+            Joint::Spherical(_) => JointKind::Spherical,
+            Joint::Revolute(_) => JointKind::Revolute,
+            Joint::Prismatic(_) => JointKind::Prismatic,
+            Joint::Planar(_) => JointKind::Planar,
+        }
+    }
+}

@@ -1,0 +1,304 @@
+//! The problem file as it is written: serde structures, whose documentation is the JSON Schema.
+
+pub mod functions;
+pub mod mechanics;
+
+use super::quantity::{Quantity, Vector};
+use functions::Function;
+use indexmap::IndexMap;
+use mechanics::{AssemblyVelocity, Body, Joint};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// The version of the format that is read.
+pub const VERSION: u64 = 1;
+
+/// A multibody scene, what is asked of it and what may be designed. Units are SI, angles are in
+/// radians; the keys of bodies, joints, functions, variables and constraints are their names.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "flexbody problem")]
+pub struct Document {
+    /// Address of this schema, for editors.
+    #[serde(rename = "$schema")]
+    pub _schema: Option<String>,
+    /// Version of the format: 1.
+    #[schemars(extend(
+        "const" = VERSION,
+        "design_variable" = "the version of the format is not a physical number"
+    ))]
+    #[serde(rename = "version")]
+    pub _version: u64,
+    /// Name of the problem and of its results.
+    pub name: String,
+    /// What the problem is about.
+    pub description: Option<String>,
+    /// Gravitational acceleration in ground axes, default [0, −9.81, 0].
+    #[schemars(extend("unit" = "m/s²"))]
+    pub gravity: Option<Vector>,
+    /// Bodies by name.
+    pub bodies: IndexMap<String, Body>,
+    /// Velocity of the whole assembly at the start, default at rest.
+    pub initial_velocity: Option<AssemblyVelocity>,
+    /// Joints by name.
+    #[serde(default)]
+    pub joints: IndexMap<String, Joint>,
+    /// How long and how finely the scene is simulated.
+    pub simulation: Simulation,
+    /// Functions of interest by name.
+    #[serde(default)]
+    pub functions: IndexMap<String, Function>,
+    /// Design variables by name.
+    #[serde(default)]
+    pub variables: IndexMap<String, Variable>,
+    /// The function that is made as large or small as can be.
+    pub objective: Option<Objective>,
+    /// Constraints by name.
+    #[serde(default)]
+    pub constraints: IndexMap<String, Constraint>,
+    /// Settings of the optimiser.
+    pub optimiser: Option<Optimiser>,
+    /// How the motion is drawn.
+    #[serde(default)]
+    pub plot: Plot,
+}
+
+/// How long and how finely the scene is simulated.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Simulation {
+    /// Simulated time.
+    #[schemars(extend("unit" = "s", "exclusiveMinimum" = 0))]
+    pub duration: Quantity,
+    /// Number of time steps of equal size.
+    #[schemars(extend(
+        "minimum" = 1,
+        "maximum" = 10_000_000,
+        "design_variable" = "a number of steps is a count, not a physical number"
+    ))]
+    pub steps: usize,
+    /// Integration method, default BDF of order 2.
+    pub method: Option<Method>,
+}
+
+/// An integration method.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Method {
+    /// Backward differentiation formula.
+    Bdf {
+        /// Order, 1 or 2.
+        #[schemars(extend(
+            "minimum" = 1,
+            "maximum" = 2,
+            "design_variable" = "an order is a count, not a physical number"
+        ))]
+        order: usize,
+    },
+}
+
+/// A design variable: one or several physical numbers of this file that share a value. It starts
+/// at the value that stands there.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Variable {
+    /// JSON Pointer to the number, such as /bodies/arm/mass.
+    pub path: Option<String>,
+    /// JSON Pointers to several numbers with one value, instead of `path`.
+    pub paths: Option<Vec<String>>,
+    /// Smallest value, in the number's own unit; default none.
+    #[schemars(extend("design_variable" = "a bound limits the design, it is no part of it"))]
+    pub lower: Option<f64>,
+    /// Largest value, in the number's own unit; default none.
+    #[schemars(extend("design_variable" = "a bound limits the design, it is no part of it"))]
+    pub upper: Option<f64>,
+    /// Typical change that the optimiser scales the variable by; default half the distance of the
+    /// bounds, else the size of the start, else 1.
+    #[schemars(extend(
+        "exclusiveMinimum" = 0,
+        "design_variable" = "a scale is the optimiser's, not a physical number"
+    ))]
+    pub scale: Option<f64>,
+}
+
+/// The function that is optimised.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Objective {
+    /// Name of the function to make as small as can be.
+    Minimise(String),
+    /// Name of the function to make as large as can be.
+    Maximise(String),
+}
+
+/// Bounds on a function; equal bounds ask for equality.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Constraint {
+    /// Name of the function.
+    pub function: String,
+    /// Smallest value, default none.
+    #[schemars(extend("design_variable" = "a bound limits the design, it is no part of it"))]
+    pub lower: Option<f64>,
+    /// Largest value, default none.
+    #[schemars(extend("design_variable" = "a bound limits the design, it is no part of it"))]
+    pub upper: Option<f64>,
+}
+
+/// Settings of the optimiser.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Optimiser {
+    /// Scaled residual of the optimality conditions at which it stops.
+    #[schemars(extend(
+        "exclusiveMinimum" = 0,
+        "design_variable" = "a tolerance is the optimiser's, not a physical number"
+    ))]
+    pub tolerance: Option<f64>,
+    /// Largest number of iterations.
+    #[schemars(extend(
+        "minimum" = 1,
+        "design_variable" = "a number of iterations is a count, not a physical number"
+    ))]
+    pub iterations: Option<usize>,
+}
+
+/// How the motion is drawn.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Plot {
+    /// Plane that is looked at, first axis to the right, second one up; default xy.
+    pub view: Option<View>,
+    /// Number of instants of the time lapse, default 12.
+    #[schemars(extend(
+        "minimum" = 2,
+        "design_variable" = "a number of pictures is a count, not a physical number"
+    ))]
+    pub snapshots: Option<usize>,
+    /// Points whose paths are drawn: `"body.point"`, or `"body"` for the origin of its axes.
+    #[serde(default)]
+    pub trace: Vec<String>,
+}
+
+/// A plane that is looked at: first axis to the right, second one up.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum View {
+    /// x to the right, y up.
+    #[default]
+    Xy,
+    /// x to the right, z up.
+    Xz,
+    /// y to the right, z up.
+    Yz,
+    /// y to the right, x up.
+    Yx,
+    /// z to the right, x up.
+    Zx,
+    /// z to the right, y up.
+    Zy,
+}
+
+/// The JSON Schema of a problem file: `unit` is a number's unit, `design_variable` is true where a
+/// design variable may point, or says why it may not.
+pub fn schema() -> serde_json::Value {
+    let mut schema = schemars::schema_for!(Document).to_value();
+    tidy(&mut schema);
+    schema
+}
+
+/// Removes `null` (a key that is not wanted is left out) and line breaks in descriptions, and moves
+/// units and limits of arrays and maps to their numbers.
+fn tidy(schema: &mut serde_json::Value) {
+    use serde_json::Value;
+    match schema {
+        Value::Array(items) => items.iter_mut().for_each(tidy),
+        Value::Object(object) => {
+            if let Some(Value::Array(types)) = object.get("type")
+                && let Some(only) = types.iter().find(|t| *t != "null").cloned()
+            {
+                object.insert("type".into(), only);
+            }
+            if let Some(Value::Array(choices)) = object.get("anyOf")
+                && choices.iter().any(|c| c["type"] == "null")
+                && let Some(Value::Object(only)) =
+                    choices.iter().find(|c| c["type"] != "null").cloned()
+            {
+                object.shift_remove("anyOf");
+                object.extend(only);
+            }
+            if object.get("default").is_some_and(Value::is_null) {
+                object.shift_remove("default");
+            }
+            for inner in ["items", "additionalProperties"] {
+                if !object.get(inner).is_some_and(Value::is_object) {
+                    continue;
+                }
+                for key in ["unit", "exclusiveMinimum", "minimum", "design_variable"] {
+                    if let Some(value) = object.shift_remove(key) {
+                        object[inner][key] = value;
+                    }
+                }
+            }
+            if let Some(Value::String(text)) = object.get_mut("description") {
+                *text = text.replace('\n', " ");
+            }
+            object.values_mut().for_each(tidy);
+        }
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::pointer::join;
+    use serde_json::Value;
+
+    /// Calls `judge` with the pointer and the schema of every property below `schema`.
+    fn properties(schema: &Value, at: &str, judge: &mut impl FnMut(&str, &Value)) {
+        let properties_of = schema["properties"].as_object();
+        for (key, property) in properties_of.into_iter().flatten() {
+            judge(&join(at, key), property);
+        }
+        let inner: Vec<_> = match schema {
+            Value::Object(object) => object.iter().map(|(k, v)| (k.clone(), v)).collect(),
+            Value::Array(items) => items
+                .iter()
+                .enumerate()
+                .map(|(k, v)| (k.to_string(), v))
+                .collect(),
+            _ => Vec::new(),
+        };
+        for (key, value) in inner {
+            properties(value, &join(at, key), judge);
+        }
+    }
+
+    #[test]
+    fn the_schema_describes_every_key_and_says_of_every_number_what_it_is() {
+        let mut numbers = 0;
+        properties(&schema(), "", &mut |at, property| {
+            // The single key of an alternative is described beside it.
+            let described = property["description"].is_string();
+            assert!(described || at.contains("oneOf"), "{at} has no description");
+            let mut number = property;
+            for inner in ["additionalProperties", "items"] {
+                if number[inner].is_object() {
+                    number = &number[inner];
+                }
+            }
+            if number["type"] == "number" || number["type"] == "integer" {
+                numbers += 1;
+                let open = &number["design_variable"];
+                assert!(*open == true || open.is_string(), "{at}: {number}");
+                assert!(
+                    *open != true || number["unit"].is_string(),
+                    "{at} has no unit"
+                );
+            }
+        });
+        assert!(numbers > 40, "{numbers}");
+        assert!(!schema().to_string().contains("\"null\""));
+    }
+}

@@ -1,0 +1,341 @@
+//! A document against the JSON Schema: every structural fault, and every number with its unit.
+//!
+//! It knows the part of JSON Schema that the schema of problem files uses, and no more.
+
+use super::fault::Finding;
+use super::pointer::{advice, join};
+use indexmap::IndexMap;
+use serde_json::{Map, Value};
+
+/// Largest number that is taken for a physical one: inertias, its fifth power, are finite still.
+const LARGEST: f64 = 1e50;
+
+/// What the schema says of a number.
+#[derive(Clone, Debug, Default)]
+pub struct Number {
+    /// Unit, if it has one.
+    pub unit: String,
+    /// Why no design variable may point at it; `None` if one may.
+    pub barred: Option<String>,
+    /// Least value, and whether that value itself is excluded.
+    pub least: Option<(f64, bool)>,
+}
+
+/// What a walk over a document has found.
+#[derive(Default)]
+pub(super) struct Structure {
+    /// Structural faults.
+    pub findings: Vec<Finding>,
+    /// Numbers by pointer.
+    pub numbers: IndexMap<String, Number>,
+}
+
+/// Walks over a document.
+pub(super) fn walk(document: &Value, schema: &Value) -> Structure {
+    let mut walker = Walker {
+        root: schema,
+        structure: Structure::default(),
+    };
+    walker.value(document, schema, "");
+    walker.structure
+}
+
+/// A JSON value in a few words.
+pub(super) fn describe(value: &Value) -> String {
+    match value {
+        Value::Array(items) => format!("a list of {}", items.len()),
+        Value::Object(_) => "an object".into(),
+        Value::String(text) if text.chars().count() > 40 => {
+            format!("\"{}…\"", text.chars().take(40).collect::<String>())
+        }
+        other => other.to_string(),
+    }
+}
+
+/// The alternatives of an enum: those that are a text, and those that are a key with a value.
+struct Alternatives<'a> {
+    words: Vec<&'a str>,
+    keys: Vec<(&'a str, &'a Value)>,
+}
+
+impl<'a> Alternatives<'a> {
+    fn names(&self) -> impl Iterator<Item = &'a str> + Clone {
+        let keys: Vec<&'a str> = self.keys.iter().map(|(key, _)| *key).collect();
+        self.words.clone().into_iter().chain(keys)
+    }
+}
+
+struct Walker<'a> {
+    root: &'a Value,
+    structure: Structure,
+}
+
+impl<'a> Walker<'a> {
+    /// The schema that a reference leads to.
+    fn follow(&self, schema: &'a Value) -> &'a Value {
+        match schema["$ref"]
+            .as_str()
+            .and_then(|text| text.strip_prefix('#'))
+        {
+            Some(pointer) => self.root.pointer(pointer).unwrap_or(&Value::Null),
+            None => schema,
+        }
+    }
+
+    fn fault(&mut self, finding: Finding) {
+        self.structure.findings.push(finding);
+    }
+
+    fn wrong(&mut self, value: &Value, schema: &'a Value, pointer: &str) {
+        let expected = self.wanted(schema);
+        let hint = value
+            .is_null()
+            .then(|| "leave the key out if it is not wanted".to_owned());
+        self.fault(Finding::new(pointer, describe(value), expected).hint(hint));
+    }
+
+    fn value(&mut self, value: &Value, schema: &'a Value, pointer: &str) {
+        let schema = self.follow(schema);
+        if let Some(alternatives) = alternatives(schema) {
+            return self.alternative(value, schema, &alternatives, pointer);
+        }
+        if let Some(choices) = schema["anyOf"].as_array() {
+            let choices = choices.iter().map(|choice| self.follow(choice));
+            return match choices.clone().find(|choice| kind_fits(value, choice)) {
+                Some(choice) => self.value(value, choice, pointer),
+                None => self.wrong(value, schema, pointer),
+            };
+        }
+        if !kind_fits(value, schema) {
+            return self.wrong(value, schema, pointer);
+        }
+        match value {
+            Value::Object(object) => self.object(object, schema, pointer),
+            Value::Array(items) => self.list(value, items, schema, pointer),
+            Value::Number(_) => self.number(value, schema, pointer),
+            _ => {}
+        }
+    }
+
+    fn object(&mut self, object: &Map<String, Value>, schema: &'a Value, pointer: &str) {
+        let properties = schema["properties"].as_object();
+        for (key, value) in object {
+            let inner = join(pointer, key);
+            match properties.and_then(|properties| properties.get(key)) {
+                Some(schema) => self.value(value, schema, &inner),
+                None if schema["additionalProperties"].is_object() => {
+                    self.value(value, &schema["additionalProperties"], &inner);
+                }
+                None => {
+                    let known = properties.into_iter().flat_map(|map| map.keys());
+                    let hint = advice(key, "keys", known.map(String::as_str));
+                    let found = format!("the key \"{key}\"");
+                    let finding = Finding::new(inner, found, "a key of the format");
+                    self.fault(finding.of_key().hint(hint));
+                }
+            }
+        }
+        for key in schema["required"].as_array().into_iter().flatten() {
+            let key = key.as_str().unwrap_or_default();
+            if !object.contains_key(key) {
+                let wanted = self.wanted(&schema["properties"][key]);
+                let finding = Finding::new(
+                    pointer,
+                    format!("no \"{key}\""),
+                    format!("\"{key}\": {wanted}"),
+                );
+                self.fault(finding.of_key());
+            }
+        }
+    }
+
+    fn list(&mut self, value: &Value, items: &[Value], schema: &'a Value, pointer: &str) {
+        let size = |key: &str| schema[key].as_u64().map(|size| size as usize);
+        if size("minItems").is_some_and(|least| items.len() < least)
+            || size("maxItems").is_some_and(|most| items.len() > most)
+        {
+            self.wrong(value, schema, pointer);
+        }
+        for (k, item) in items.iter().enumerate() {
+            self.value(item, &schema["items"], &join(pointer, k));
+        }
+    }
+
+    fn number(&mut self, value: &Value, schema: &'a Value, pointer: &str) {
+        let x = value.as_f64().unwrap_or(f64::NAN);
+        let limit = |key: &str| schema[key].as_f64();
+        let least = match (limit("exclusiveMinimum"), limit("minimum")) {
+            (Some(above), _) => Some((above, true)),
+            (None, least) => least.map(|least| (least, false)),
+        };
+        let low = least.is_some_and(|(least, excluded)| x < least || (excluded && x <= least));
+        let high = limit("maximum").is_some_and(|most| x > most);
+        let other = schema.get("const").is_some_and(|only| only != value);
+        if low || high || other {
+            self.wrong(value, schema, pointer);
+        } else if x.abs() > LARGEST {
+            let expected = format!("a number of size up to {LARGEST:e}");
+            self.fault(Finding::new(pointer, describe(value), expected));
+        }
+        let unit = schema["unit"].as_str().unwrap_or_default().to_owned();
+        let barred = match &schema["design_variable"] {
+            Value::Bool(true) => None,
+            Value::String(why) => Some(why.clone()),
+            _ => Some("it is not a physical number of the scene".to_owned()),
+        };
+        let number = Number {
+            unit,
+            barred,
+            least,
+        };
+        self.structure.numbers.insert(pointer.to_owned(), number);
+    }
+
+    fn alternative(
+        &mut self,
+        value: &Value,
+        schema: &'a Value,
+        alternatives: &Alternatives<'a>,
+        pointer: &str,
+    ) {
+        let names = alternatives.names();
+        let unknown = |name: &str| advice(name, "choices", names.clone());
+        let expected = self.wanted(schema);
+        match value {
+            Value::String(word) if alternatives.words.contains(&word.as_str()) => {}
+            Value::String(word) => {
+                let hint = match alternatives.keys.iter().any(|(key, _)| key == word) {
+                    true => Some(format!("\"{word}\" needs a value: {{\"{word}\": …}}")),
+                    false => unknown(word),
+                };
+                self.fault(Finding::new(pointer, describe(value), expected).hint(hint));
+            }
+            Value::Object(object) if object.len() == 1 => {
+                for (key, inner) in object {
+                    let below = join(pointer, key);
+                    match alternatives.keys.iter().find(|(name, _)| name == key) {
+                        Some((_, schema)) => self.value(inner, schema, &below),
+                        None => {
+                            let found = format!("the key \"{key}\"");
+                            let finding = Finding::new(below, found, &expected);
+                            self.fault(finding.of_key().hint(unknown(key)));
+                        }
+                    }
+                }
+            }
+            Value::Object(object) => {
+                let found = match object.len() {
+                    0 => "an empty object".to_owned(),
+                    count => format!("an object of {count} keys"),
+                };
+                self.fault(Finding::new(pointer, found, expected));
+            }
+            _ => self.wrong(value, schema, pointer),
+        }
+    }
+
+    /// What a schema asks for, in words.
+    fn wanted(&self, schema: &'a Value) -> String {
+        let schema = self.follow(schema);
+        if let Some(alternatives) = alternatives(schema) {
+            let words = alternatives.words.iter().map(|word| format!("\"{word}\""));
+            let keys = alternatives
+                .keys
+                .iter()
+                .map(|(key, _)| format!("{{\"{key}\": …}}"));
+            return match words.chain(keys).collect::<Vec<_>>() {
+                all if all.len() == 1 => all.concat(),
+                all => format!("one of {}", all.join(", ")),
+            };
+        }
+        if let Some(choices) = schema["anyOf"].as_array() {
+            let words: Vec<String> = choices.iter().map(|choice| self.wanted(choice)).collect();
+            return words.join(" or ");
+        }
+        if let Some(only) = schema.get("const") {
+            return only.to_string();
+        }
+        match schema["type"].as_str().unwrap_or_default() {
+            "number" => format!("a number{}", limits(schema)),
+            "integer" => format!("a whole number{}", limits(schema)),
+            "string" => "a text".into(),
+            "boolean" => "true or false".into(),
+            "array" => {
+                let items = self.follow(&schema["items"]);
+                let count = schema["minItems"].as_u64().map(|n| format!(" of {n}"));
+                let what = match items["type"].as_str() {
+                    Some("number") => format!("numbers{}", limits(items)),
+                    Some("string") => "texts".into(),
+                    _ => "objects".into(),
+                };
+                format!("a list{} {what}", count.unwrap_or_else(|| " of".into()))
+            }
+            _ => match schema["required"].as_array() {
+                Some(keys) if !keys.is_empty() => {
+                    let keys: Vec<String> = keys
+                        .iter()
+                        .map(|key| key.to_string().replace('"', ""))
+                        .collect();
+                    format!("an object with {}", keys.join(", "))
+                }
+                _ => "an object".into(),
+            },
+        }
+    }
+}
+
+/// Limits and unit of a number in words.
+fn limits(schema: &Value) -> String {
+    let mut words = String::new();
+    if let Some(above) = schema.get("exclusiveMinimum") {
+        words += &format!(" above {above}");
+    } else if let Some(least) = schema.get("minimum") {
+        words += &format!(" of at least {least}");
+    }
+    if let Some(most) = schema.get("maximum") {
+        words += &format!(" and at most {most}");
+    }
+    match schema["unit"].as_str() {
+        Some("1") | None => words,
+        Some(unit) => format!("{words} [{unit}]"),
+    }
+}
+
+/// The alternatives of an enum; `None` if the schema is not one.
+fn alternatives(schema: &Value) -> Option<Alternatives<'_>> {
+    let mut found = Alternatives {
+        words: Vec::new(),
+        keys: Vec::new(),
+    };
+    if schema["type"] == "string" && schema["enum"].is_array() {
+        let listed = schema["enum"].as_array().into_iter().flatten();
+        found.words = listed.filter_map(Value::as_str).collect();
+        return Some(found);
+    }
+    for choice in schema["oneOf"].as_array()? {
+        if let Some(properties) = choice["properties"].as_object() {
+            found
+                .keys
+                .extend(properties.iter().map(|(key, inner)| (key.as_str(), inner)));
+        } else {
+            let listed = choice["enum"].as_array().into_iter().flatten();
+            found
+                .words
+                .extend(listed.chain(choice.get("const")).filter_map(Value::as_str));
+        }
+    }
+    Some(found)
+}
+
+/// True if the kind of a value is that of the schema.
+fn kind_fits(value: &Value, schema: &Value) -> bool {
+    match schema["type"].as_str() {
+        Some("object") => value.is_object(),
+        Some("array") => value.is_array(),
+        Some("string") => value.is_string(),
+        Some("number") => value.is_number(),
+        Some("integer") => value.is_i64() || value.is_u64(),
+        Some("boolean") => value.is_boolean(),
+        _ => true,
+    }
+}

@@ -1,0 +1,270 @@
+//! Design variables: the numbers that they point at, their start and their bounds.
+
+use super::fault::Finding;
+use super::overrides::nearest_path;
+use super::pointer::{is_below, join, keys, nearest_pointer};
+use super::quantity::Quantity;
+use super::schema::{Document, Variable as Written};
+use super::structure::{Number, Structure, describe};
+use serde_json::Value;
+use std::collections::HashMap;
+
+/// A design variable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variable {
+    /// Name in the problem file.
+    pub name: String,
+    /// JSON Pointers to the numbers that share its value.
+    pub paths: Vec<String>,
+    /// The value in the file, where the design starts.
+    pub start: f64,
+    /// Smallest value; −∞ if there is none.
+    pub lower: f64,
+    /// Largest value; +∞ if there is none.
+    pub upper: f64,
+    /// Typical change, for the optimiser alone.
+    pub scale: f64,
+    /// Unit of the numbers.
+    pub unit: String,
+}
+
+/// Puts the bound form of the variables in their places.
+pub(super) fn bind(document: &mut Value, variables: &[Variable]) {
+    for (index, variable) in variables.iter().enumerate() {
+        for path in &variable.paths {
+            if let Some(place) = document.pointer_mut(path) {
+                *place = Quantity::bound(index, variable.start);
+            }
+        }
+    }
+}
+
+/// The variables of a document, and what is wrong with them.
+pub(super) fn variables(
+    written: &Document,
+    document: &Value,
+    structure: &Structure,
+) -> (Vec<Variable>, Vec<Finding>) {
+    let mut checker = Checker {
+        document,
+        structure,
+        owners: HashMap::new(),
+        findings: Vec::new(),
+    };
+    let variables = written
+        .variables
+        .iter()
+        .map(|(name, written)| checker.variable(name, written))
+        .collect();
+    (variables, checker.findings)
+}
+
+struct Checker<'a> {
+    document: &'a Value,
+    structure: &'a Structure,
+    /// The variable that owns each path.
+    owners: HashMap<String, String>,
+    findings: Vec<Finding>,
+}
+
+impl<'a> Checker<'a> {
+    fn fault(&mut self, finding: Finding) {
+        self.findings.push(finding);
+    }
+
+    fn variable(&mut self, name: &str, written: &Written) -> Variable {
+        let pointer = join("/variables", name);
+        let paths: Vec<(String, String)> = match (&written.path, &written.paths) {
+            (Some(path), None) => vec![(join(&pointer, "path"), path.clone())],
+            (None, Some(paths)) if !paths.is_empty() => {
+                let list = join(&pointer, "paths");
+                let entries = paths.iter().enumerate();
+                entries
+                    .map(|(k, path)| (join(&list, k), path.clone()))
+                    .collect()
+            }
+            (path, paths) => {
+                let found = match (path, paths) {
+                    (Some(_), Some(_)) => "both \"path\" and \"paths\"",
+                    (None, Some(_)) => "no path",
+                    _ => "neither \"path\" nor \"paths\"",
+                };
+                let expected = "\"path\": one JSON Pointer, or \"paths\": a list of them";
+                self.fault(Finding::new(&pointer, found, expected).of_key());
+                Vec::new()
+            }
+        };
+        let numbers: Vec<(&String, f64, &Number)> = paths
+            .iter()
+            .filter_map(|(place, path)| {
+                let (value, number) = self.number(name, place, path)?;
+                Some((path, value, number))
+            })
+            .collect();
+        let first = numbers.first().copied();
+        for (path, value, number) in numbers.iter().skip(1) {
+            let Some((shared, start, pattern)) = first else {
+                break;
+            };
+            let place = paths
+                .iter()
+                .find(|(_, p)| p == *path)
+                .map_or(&pointer, |(place, _)| place);
+            if number.unit != pattern.unit {
+                let found = format!("{path} in {}", named_unit(&number.unit));
+                let expected = format!("a number in {} as {shared}", named_unit(&pattern.unit));
+                self.findings.push(Finding::new(place, found, expected));
+            } else if *value != start {
+                let found = format!("{path} = {value}");
+                let expected = format!("the value {start} of {shared}, which it shares");
+                self.findings.push(Finding::new(place, found, expected));
+            }
+        }
+        if let Some((path, start, number)) = first {
+            self.bounds(&pointer, written, path, start, number);
+        }
+        let (start, unit) = first.map_or((0.0, String::new()), |(_, start, number)| {
+            (start, number.unit.clone())
+        });
+        let lower = written.lower.unwrap_or(f64::NEG_INFINITY);
+        let upper = written.upper.unwrap_or(f64::INFINITY);
+        let scale = match 0.5 * (upper - lower) {
+            half if half.is_finite() => half,
+            _ if start != 0.0 => start.abs(),
+            _ => 1.0,
+        };
+        Variable {
+            name: name.to_owned(),
+            paths: paths.into_iter().map(|(_, path)| path).collect(),
+            start,
+            lower,
+            upper,
+            scale: written.scale.unwrap_or(scale),
+            unit,
+        }
+    }
+
+    /// The number that `path` points at, if a design variable may; `place` is where it is written.
+    fn number(&mut self, name: &str, place: &str, path: &str) -> Option<(f64, &'a Number)> {
+        let expected = "the path of a physical number";
+        let Some(value) = self.document.pointer(path) else {
+            if !self.is_damaged(path) {
+                let found = format!("{path}, which does not exist");
+                let hint = self.hint(path);
+                self.fault(Finding::new(place, found, expected).hint(hint));
+            }
+            return None;
+        };
+        if let Some(owner) = self.owners.insert(path.to_owned(), name.to_owned()) {
+            let found = format!("{path} a second time");
+            let hint = format!("it belongs to the variable \"{owner}\"");
+            self.fault(Finding::new(place, found, "a path once").hint(Some(hint)));
+            return None;
+        }
+        if self.is_damaged(path) {
+            return None;
+        }
+        let numbers = &self.structure.numbers;
+        if let (Some(number), Some(value)) = (numbers.get(path), value.as_f64()) {
+            let Some(why) = &number.barred else {
+                return Some((value, number));
+            };
+            let found = format!("{path} = {value}");
+            self.fault(Finding::new(place, found, expected).hint(Some(why.clone())));
+            return None;
+        }
+        let inside = numbers
+            .iter()
+            .find(|(inner, number)| is_below(inner, path) && number.barred.is_none());
+        let hint = inside.map(|(inner, _)| format!("point at one number, such as {inner}"));
+        let found = format!("{path}, which is {}", describe(value));
+        self.fault(Finding::new(place, found, expected).hint(hint));
+        None
+    }
+
+    /// True if the path leads into an entry of the file that is at fault anyway: what lies there
+    /// is not judged twice.
+    fn is_damaged(&self, path: &str) -> bool {
+        let keys = keys(path);
+        let entry: String = keys.iter().take(2).map(|key| join("", key)).collect();
+        let findings = &self.structure.findings;
+        findings.iter().any(|fault| {
+            let at = &fault.pointer;
+            !at.is_empty() && (is_below(at, &entry) || is_below(path, at))
+        })
+    }
+
+    /// Advice after a path that does not exist.
+    fn hint(&self, path: &str) -> Option<String> {
+        let numbers = self.structure.numbers.iter();
+        let mut open = numbers
+            .filter(|(_, number)| number.barred.is_none())
+            .map(|(path, _)| path);
+        if let Some(near) = nearest_pointer(path, open.clone().map(String::as_str)) {
+            return Some(format!("did you mean {near}?"));
+        }
+        let section = keys(path).first().cloned().unwrap_or_default();
+        match self.document.get(&section) {
+            Some(_) => nearest_path(path, self.document),
+            None => open.next().map(|path| format!("such a path is {path}")),
+        }
+    }
+
+    fn bounds(
+        &mut self,
+        pointer: &str,
+        written: &Written,
+        path: &str,
+        start: f64,
+        number: &Number,
+    ) {
+        let unit = unit_suffix(&number.unit);
+        let (lower, upper) = (join(pointer, "lower"), join(pointer, "upper"));
+        if let (Some(low), Some(high)) = (written.lower, written.upper)
+            && low >= high
+        {
+            let found = format!("the bounds {low} and {high}");
+            let expected = "a lower bound below the upper one";
+            self.fault(Finding::new(&upper, found, expected));
+            return;
+        }
+        if let Some(low) = written.lower.filter(|&low| start < low) {
+            let found = format!("the lower bound {low}");
+            let expected = format!("at most the start {start}{unit}, the value of {path}");
+            self.fault(Finding::new(&lower, found, expected));
+        }
+        if let Some(high) = written.upper.filter(|&high| start > high) {
+            let found = format!("the upper bound {high}");
+            let expected = format!("at least the start {start}{unit}, the value of {path}");
+            self.fault(Finding::new(&upper, found, expected));
+        }
+        if let Some((least, excluded)) = number.least {
+            let range = if excluded { "above" } else { "of at least" };
+            let expected = format!("a lower bound {range} {least}{unit}, as {path} must be");
+            match written.lower {
+                None => self.fault(Finding::new(pointer, "no \"lower\"", expected).of_key()),
+                Some(low) if low < least || (excluded && low <= least) => {
+                    self.fault(Finding::new(
+                        &lower,
+                        format!("the lower bound {low}"),
+                        expected,
+                    ));
+                }
+                Some(_) => {}
+            }
+        }
+    }
+}
+
+/// A unit in brackets after a number.
+fn unit_suffix(unit: &str) -> String {
+    match unit {
+        "" | "1" => String::new(),
+        unit => format!(" {unit}"),
+    }
+}
+
+/// A unit in words.
+fn named_unit(unit: &str) -> &str {
+    if unit == "1" { "no unit" } else { unit }
+}

@@ -1,0 +1,357 @@
+//! An optimum against a baseline: what moved beyond tolerance.
+
+use super::number::significant;
+use super::optimum::{DesignValue, Optimum};
+use super::table;
+use indexmap::IndexMap;
+
+/// How far each kind of number may move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerances {
+    /// Objective, start objective and true maximum: relative to the baseline's magnitude (or to
+    /// 1e-12 if that is larger). Default 1e-6: an optimum is flat, so the objective is as
+    /// exact as the stopping tolerance.
+    pub objective: f64,
+    /// Design variables: relative to the width between the bounds, or, where a bound is missing,
+    /// to the larger magnitude of the baseline's value and start. Default 1e-4: along a flat
+    /// direction a variable is only as exact as the square root of the objective.
+    pub design: f64,
+    /// Constraint values: relative to the largest magnitude of value and bounds, at least one
+    /// unit. Default 1e-5.
+    pub constraint: f64,
+    /// Sensitivities of constraints: relative to their magnitude, at least one unit. Default 1e-3:
+    /// they are first derivatives at an approximate optimum.
+    pub multiplier: f64,
+    /// Counts of work, relative. A smaller count is only remarked; small counts may move by two.
+    /// Default 0.25: another machine rounds otherwise.
+    pub work: f64,
+    /// Whether another problem is a difference or only a warning. Default false.
+    pub same_problem: bool,
+}
+
+impl Default for Tolerances {
+    fn default() -> Tolerances {
+        Tolerances {
+            objective: 1e-6,
+            design: 1e-4,
+            constraint: 1e-5,
+            multiplier: 1e-3,
+            work: 0.25,
+            same_problem: false,
+        }
+    }
+}
+
+/// What a row of a comparison means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Within tolerance.
+    Same,
+    /// Worth knowing, not a failure.
+    Warning,
+    /// Beyond tolerance: the comparison fails.
+    Moved,
+}
+
+/// One quantity of two records.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Kind of quantity: `design`, `constraint`, `work`, ...
+    pub kind: &'static str,
+    /// Name of the quantity.
+    pub name: String,
+    /// New value, or `missing`.
+    pub new: String,
+    /// Value of the baseline, or `missing`.
+    pub baseline: String,
+    /// Difference and its tolerance in the same measure, for numbers.
+    pub moved: Option<(f64, f64)>,
+    /// What it means.
+    pub verdict: Verdict,
+}
+
+/// All quantities of two records, side by side.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Rows in the order of the record.
+    pub rows: Vec<Row>,
+}
+
+/// Compares a new optimum with a baseline.
+///
+/// Compared are status, problem, objective, design, constraints, active bounds, sensitivities and
+/// work; a variable or constraint that only one of them has is a difference. A number that is not
+/// finite never agrees.
+pub fn compare(new: &Optimum, baseline: &Optimum, tolerances: &Tolerances) -> Comparison {
+    let mut rows = Vec::new();
+    rows.push(text_row("status", "", &new.status, &baseline.status));
+    let mut problem = text_row(
+        "problem",
+        "sha256",
+        &new.problem.sha256,
+        &baseline.problem.sha256,
+    );
+    if problem.verdict == Verdict::Moved && !tolerances.same_problem {
+        problem.verdict = Verdict::Warning;
+    }
+    rows.push(problem);
+    objective_rows(&mut rows, new, baseline, tolerances);
+    for (name, pair) in pairs(&new.design, &baseline.design) {
+        rows.push(match pair {
+            (Some(a), Some(b)) => {
+                let unit = design_unit(b);
+                number_row("design", name, a.value, b.value, unit, tolerances.design)
+            }
+            (a, b) => lone_row("design", name, a.map(|v| v.value), b.map(|v| v.value)),
+        });
+    }
+    for (name, pair) in pairs(&new.constraints, &baseline.constraints) {
+        let (Some(a), Some(b)) = pair else {
+            let value = |v: Option<&super::optimum::ConstraintValue>| v.map(|v| v.value);
+            rows.push(lone_row("constraint", name, value(pair.0), value(pair.1)));
+            continue;
+        };
+        let bounds = b.lower.into_iter().chain(b.upper);
+        let size = bounds.fold(b.value.abs().max(1.0), |size, bound| size.max(bound.abs()));
+        rows.push(number_row(
+            "constraint",
+            name,
+            a.value,
+            b.value,
+            size,
+            tolerances.constraint,
+        ));
+        let (word_a, word_b) = (format!("{:?}", a.active), format!("{:?}", b.active));
+        rows.push(text_row(
+            "active",
+            name,
+            &word_a.to_lowercase(),
+            &word_b.to_lowercase(),
+        ));
+        let size = b.multiplier.abs().max(1.0);
+        let tolerance = tolerances.multiplier;
+        rows.push(number_row(
+            "sensitivity",
+            name,
+            a.multiplier,
+            b.multiplier,
+            size,
+            tolerance,
+        ));
+    }
+    for (name, (a, b)) in pairs(&new.active_bounds, &baseline.active_bounds) {
+        let word = |side: Option<&super::optimum::Side>| match side {
+            Some(side) => format!("{side:?}").to_lowercase(),
+            None => "inactive".to_owned(),
+        };
+        rows.push(text_row("active", name, &word(a), &word(b)));
+    }
+    for ((name, a), (_, b)) in new.counts.named().into_iter().zip(baseline.counts.named()) {
+        rows.push(work_row(name, a, b, tolerances.work));
+    }
+    Comparison { rows }
+}
+
+impl Comparison {
+    /// Whether nothing moved beyond tolerance; warnings do not count.
+    pub fn passed(&self) -> bool {
+        self.rows.iter().all(|row| row.verdict != Verdict::Moved)
+    }
+
+    /// The verdict in a sentence and a table of what moved or is worth knowing.
+    pub fn text(&self) -> String {
+        let count = |verdict| {
+            self.rows
+                .iter()
+                .filter(|row| row.verdict == verdict)
+                .count()
+        };
+        let (moved, warnings) = (count(Verdict::Moved), count(Verdict::Warning));
+        let mut text = if moved == 0 {
+            format!(
+                "same optimum: {} quantities within tolerance",
+                count(Verdict::Same)
+            )
+        } else {
+            format!(
+                "different optimum: {moved} of {} quantities moved",
+                self.rows.len()
+            )
+        };
+        if warnings > 0 {
+            text.push_str(&format!(", {warnings} to be noted"));
+        }
+        text.push('\n');
+        if moved + warnings == 0 {
+            return text;
+        }
+        let cells = |row: &Row| {
+            let (difference, tolerance) = match row.moved {
+                Some((difference, tolerance)) => {
+                    (significant(difference, 2), significant(tolerance, 2))
+                }
+                None => (String::new(), String::new()),
+            };
+            vec![
+                match row.verdict {
+                    Verdict::Moved => "moved".to_owned(),
+                    _ => "note".to_owned(),
+                },
+                row.kind.to_owned(),
+                row.name.clone(),
+                row.new.clone(),
+                row.baseline.clone(),
+                difference,
+                tolerance,
+            ]
+        };
+        let shown = self.rows.iter().filter(|row| row.verdict != Verdict::Same);
+        let headings = [
+            "",
+            "kind",
+            "name",
+            ">new",
+            ">baseline",
+            ">difference",
+            ">tolerance",
+        ];
+        text + &table::render(&headings, &shown.map(cells).collect::<Vec<_>>())
+    }
+}
+
+fn objective_rows(rows: &mut Vec<Row>, new: &Optimum, baseline: &Optimum, tolerances: &Tolerances) {
+    let (a, b) = (&new.objective, &baseline.objective);
+    rows.push(text_row("objective", "function", &a.function, &b.function));
+    let word = |sense| format!("{sense:?}").to_lowercase();
+    rows.push(text_row(
+        "objective",
+        "sense",
+        &word(a.sense),
+        &word(b.sense),
+    ));
+    let tolerance = tolerances.objective;
+    let mut number = |name: &str, a: f64, b: f64| {
+        let size = b.abs().max(1e-12);
+        rows.push(number_row("objective", name, a, b, size, tolerance));
+    };
+    number("value", a.value, b.value);
+    number(
+        "at the start",
+        new.start_objective,
+        baseline.start_objective,
+    );
+    match (a.true_maximum, b.true_maximum) {
+        (Some(a), Some(b)) => number("true maximum", a, b),
+        (None, None) => {}
+        (a, b) => rows.push(lone_row("objective", "true maximum", a, b)),
+    }
+}
+
+/// What one is to a design variable: the width between its bounds, or its magnitude.
+fn design_unit(variable: &DesignValue) -> f64 {
+    match (variable.lower, variable.upper) {
+        (Some(lower), Some(upper)) if upper > lower => upper - lower,
+        _ => variable.value.abs().max(variable.start.abs()).max(1e-12),
+    }
+}
+
+fn text_row(kind: &'static str, name: &str, new: &str, baseline: &str) -> Row {
+    Row {
+        kind,
+        name: name.to_owned(),
+        new: shortened(new),
+        baseline: shortened(baseline),
+        moved: None,
+        verdict: if new == baseline {
+            Verdict::Same
+        } else {
+            Verdict::Moved
+        },
+    }
+}
+
+/// Enough of a hash to see that it differs.
+fn shortened(text: &str) -> String {
+    if text.chars().count() > 24 {
+        text.chars().take(12).collect::<String>() + "…"
+    } else {
+        text.to_owned()
+    }
+}
+
+fn number_row(
+    kind: &'static str,
+    name: &str,
+    new: f64,
+    baseline: f64,
+    unit: f64,
+    tolerance: f64,
+) -> Row {
+    let difference = (new - baseline).abs() / unit;
+    Row {
+        kind,
+        name: name.to_owned(),
+        new: significant(new, 10),
+        baseline: significant(baseline, 10),
+        moved: Some((difference, tolerance)),
+        // A NaN is within no tolerance.
+        verdict: if difference <= tolerance {
+            Verdict::Same
+        } else {
+            Verdict::Moved
+        },
+    }
+}
+
+fn lone_row(kind: &'static str, name: &str, new: Option<f64>, baseline: Option<f64>) -> Row {
+    let text = |value: Option<f64>| match value {
+        Some(value) => significant(value, 10),
+        None => "missing".to_owned(),
+    };
+    Row {
+        kind,
+        name: name.to_owned(),
+        new: text(new),
+        baseline: text(baseline),
+        moved: None,
+        verdict: Verdict::Moved,
+    }
+}
+
+fn work_row(name: &str, new: u64, baseline: u64, tolerance: f64) -> Row {
+    let difference = new.abs_diff(baseline) as f64 / baseline.max(1) as f64;
+    let verdict = if new.abs_diff(baseline) <= 2 || difference <= tolerance {
+        Verdict::Same
+    } else if new < baseline {
+        Verdict::Warning
+    } else {
+        Verdict::Moved
+    };
+    Row {
+        kind: "work",
+        name: name.to_owned(),
+        new: new.to_string(),
+        baseline: baseline.to_string(),
+        moved: Some((difference, tolerance)),
+        verdict,
+    }
+}
+
+type Pair<'a, T> = (Option<&'a T>, Option<&'a T>);
+
+/// Entries of both maps by name, in the order of the first and then what only the second has.
+fn pairs<'a, T>(
+    first: &'a IndexMap<String, T>,
+    second: &'a IndexMap<String, T>,
+) -> Vec<(&'a str, Pair<'a, T>)> {
+    let mut all: Vec<(&str, Pair<T>)> = first
+        .iter()
+        .map(|(name, value)| (name.as_str(), (Some(value), second.get(name))))
+        .collect();
+    for (name, value) in second {
+        if !first.contains_key(name) {
+            all.push((name, (None, Some(value))));
+        }
+    }
+    all
+}

@@ -1,0 +1,54 @@
+//! What can go wrong while a record is read or written.
+
+use std::path::PathBuf;
+
+/// A record that could not be read, written or drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The operating system refused to write.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file that was asked for; it is as it was before.
+        path: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// The operating system refused to read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file that was asked for.
+        path: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// A history is not the table that it should be.
+    #[error("history, line {line}: found {found}, expected {expected}")]
+    History {
+        /// Line of the file where the record starts, counted from one.
+        line: usize,
+        /// What stands there.
+        found: String,
+        /// What should stand there.
+        expected: String,
+    },
+    /// An optimum is not the JSON document that it should be.
+    #[error("optimum: {0}")]
+    Optimum(#[from] serde_json::Error),
+    /// A number of an optimum is NaN or infinite, which JSON cannot hold.
+    #[error("optimum: the number at {pointer} is not finite, so it cannot be recorded")]
+    NotFinite {
+        /// JSON Pointer of the number.
+        pointer: String,
+    },
+    /// A figure was asked for without the data that it shows.
+    #[error("figure {figure}: {missing}")]
+    NothingToDraw {
+        /// Name of the figure.
+        figure: &'static str,
+        /// What is missing.
+        missing: &'static str,
+    },
+    /// The drawing library failed.
+    #[error("figure: {0}")]
+    Drawing(#[from] plotters::drawing::DrawingAreaErrorKind<std::io::Error>),
+}

@@ -1,0 +1,102 @@
+//! Files written whole or not at all, and read with the path in the error.
+
+use super::ReportError;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Writes a file whole or not at all.
+///
+/// The bytes go to a temporary file of the same directory, are synchronised with the disk, and
+/// the file is renamed over `path`: a reader sees the old file or the new one.
+///
+/// # Errors
+/// [`ReportError::Write`] with the path; an existing file is then untouched.
+pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
+    finish(prepare(path, bytes)?)
+}
+
+/// Writes a group of files: all of them are on the disk under temporary names before the first
+/// one gets its own name, so that a full disk or a forbidden directory leaves no mixture.
+///
+/// Directories that are missing are made.
+///
+/// # Errors
+/// [`ReportError::Write`] with the path of the first file that failed.
+pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), ReportError> {
+    for (path, _) in files {
+        let directory = directory(path);
+        std::fs::create_dir_all(directory).map_err(|source| ReportError::Write {
+            path: directory.to_path_buf(),
+            source,
+        })?;
+    }
+    let prepared: Vec<Prepared> = files
+        .iter()
+        .map(|(path, bytes)| prepare(path, bytes))
+        .collect::<Result<_, _>>()?;
+    prepared.into_iter().try_for_each(finish)
+}
+
+/// A complete file that still has a temporary name; dropping it removes it.
+struct Prepared {
+    path: PathBuf,
+    file: tempfile::NamedTempFile,
+}
+
+fn directory(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+fn prepare(path: &Path, bytes: &[u8]) -> Result<Prepared, ReportError> {
+    let fault = |source| ReportError::Write {
+        path: path.to_path_buf(),
+        source,
+    };
+    if path.is_dir() {
+        return Err(fault(std::io::ErrorKind::IsADirectory.into()));
+    }
+    let mut file = new_file(directory(path)).map_err(fault)?;
+    file.write_all(bytes).map_err(fault)?;
+    file.as_file().sync_all().map_err(fault)?;
+    Ok(Prepared {
+        path: path.to_path_buf(),
+        file,
+    })
+}
+
+/// A temporary file that others may read, as they may read any file that is made plainly
+/// (the default of `tempfile` is private to the user, and the rename would keep that).
+fn new_file(directory: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".flexbody-").suffix(".tmp");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(directory)
+}
+
+fn finish(prepared: Prepared) -> Result<(), ReportError> {
+    let Prepared { path, file } = prepared;
+    file.persist(&path)
+        .map(drop)
+        .map_err(|error| ReportError::Write {
+            path,
+            source: error.error,
+        })
+}
+
+/// Reads a text file.
+///
+/// # Errors
+/// [`ReportError::Read`] with the path, also if the file is not UTF-8.
+pub fn read_text(path: &Path) -> Result<String, ReportError> {
+    std::fs::read_to_string(path).map_err(|source| ReportError::Read {
+        path: path.to_path_buf(),
+        source,
+    })
+}

@@ -1,0 +1,31 @@
+//! What a run leaves behind: records, their comparison, figures and the text at the end.
+//!
+//! Everything here is a pure function of plain `f64` data, so that the figures can be redrawn
+//! from the record; only [`files`] touches the disk.
+//!
+//! | File | Content |
+//! |---|---|
+//! | [`files`] | files written whole or not at all |
+//! | [`history`] | the iterations of an optimisation, `history.csv` |
+//! | [`optimum`] | the end of an optimisation, `optimum.json` |
+//! | [`mod@compare`] | an optimum against a committed baseline |
+//! | [`mod@summary`] | the text that a person reads at the end |
+//! | [`plots`] | figures as SVG |
+
+pub mod compare;
+mod csv;
+mod error;
+pub mod files;
+pub mod history;
+mod number;
+pub mod optimum;
+pub mod plots;
+pub mod summary;
+mod table;
+
+pub use compare::{Comparison, Tolerances, compare};
+pub use error::ReportError;
+pub use files::{atomic_write, read_text, write_all};
+pub use history::{Column, History, HistoryRow};
+pub use optimum::Optimum;
+pub use summary::summary;

@@ -1,0 +1,265 @@
+//! The end of an optimisation as a record, `optimum.json`.
+
+use super::ReportError;
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+/// Everything worth keeping of the end of an optimisation.
+///
+/// The same run gives the same bytes: there are no dates, times or names of machines. Infinite
+/// bounds are left out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Optimum {
+    /// How the run ended, in one word such as `converged`.
+    pub status: String,
+    /// How the run ended, in a sentence.
+    pub message: String,
+    /// The objective at the optimum.
+    pub objective: Objective,
+    /// The objective at the start.
+    pub start_objective: f64,
+    /// Design variables by name.
+    pub design: IndexMap<String, DesignValue>,
+    /// Constraints by name.
+    pub constraints: IndexMap<String, ConstraintValue>,
+    /// Lagrange multipliers of constraints and bounds.
+    pub multipliers: Multipliers,
+    /// Design variables that stand on a bound, and on which.
+    pub active_bounds: IndexMap<String, Side>,
+    /// Residuals of the optimality conditions.
+    pub kkt: Kkt,
+    /// Work done.
+    pub counts: Counts,
+    /// What the user should know before believing the result.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
+    /// Version of flexbody.
+    pub version: String,
+    /// The problem that was solved.
+    pub problem: ProblemRecord,
+}
+
+/// Whether the objective is made small or large.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sense {
+    /// Smaller is better.
+    Minimise,
+    /// Larger is better.
+    Maximise,
+}
+
+/// A side of an interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Side {
+    /// The lower bound.
+    Lower,
+    /// The upper bound.
+    Upper,
+}
+
+/// Which bounds of a constraint are active.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Activity {
+    /// None.
+    Inactive,
+    /// The lower bound.
+    Lower,
+    /// The upper bound.
+    Upper,
+    /// Both, because they are equal.
+    Equality,
+}
+
+/// The objective at the optimum.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Objective {
+    /// Name of the function in the problem file.
+    pub function: String,
+    /// Whether it is minimised or maximised.
+    pub sense: Sense,
+    /// Value in the user's sense (a maximised function is not negated).
+    pub value: f64,
+    /// Unit of the value, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// The largest value over time, where `value` is a smooth aggregate of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub true_maximum: Option<f64>,
+    /// Estimated error of `value` by the discretisation in time, absolute.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub estimated_error: Option<f64>,
+}
+
+/// A design variable at the optimum, in the units of the problem file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DesignValue {
+    /// Value at the optimum.
+    pub value: f64,
+    /// Value at the start.
+    pub start: f64,
+    /// Lower bound, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower: Option<f64>,
+    /// Upper bound, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper: Option<f64>,
+    /// Unit, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+}
+
+/// A constraint at the optimum.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ConstraintValue {
+    /// Value at the optimum.
+    pub value: f64,
+    /// Lower bound, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower: Option<f64>,
+    /// Upper bound, if there is one; equal to the lower one for an equality.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper: Option<f64>,
+    /// Unit of value and bounds, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// Change of the objective (user's sense) for a unit change of the active bound:
+    /// the multiplier as a sensitivity, d objective / d bound.
+    pub multiplier: f64,
+    /// Which bound is active.
+    pub active: Activity,
+}
+
+/// Lagrange multipliers, unscaled, with the signs of the optimiser's own Lagrangian.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Multipliers {
+    /// Of the constraints, by name.
+    pub constraints: IndexMap<String, f64>,
+    /// Of the lower bounds, by variable.
+    pub lower_bounds: IndexMap<String, f64>,
+    /// Of the upper bounds, by variable.
+    pub upper_bounds: IndexMap<String, f64>,
+}
+
+/// Residuals of the optimality conditions, largest components.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Kkt {
+    /// Of the problem as the optimiser scaled it; these are what stops it.
+    pub scaled: KktResiduals,
+    /// Of the problem in the user's units.
+    pub unscaled: KktResiduals,
+}
+
+/// One set of optimality residuals.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct KktResiduals {
+    /// Gradient of the Lagrangian.
+    pub stationarity: f64,
+    /// Violation of constraints and bounds.
+    pub feasibility: f64,
+    /// Products of multipliers and distances to their bounds.
+    pub complementarity: f64,
+}
+
+/// Work done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Counts {
+    /// Iterations of the optimiser.
+    pub iterations: u64,
+    /// Simulations asked for by the optimiser.
+    pub function_evaluations: u64,
+    /// Gradients.
+    pub gradient_evaluations: u64,
+    /// Simulations that failed and shortened a step.
+    pub failed_evaluations: u64,
+    /// Time steps of all simulations.
+    pub steps: u64,
+    /// Newton iterations of all time steps.
+    pub newton_iterations: u64,
+    /// Factorisations of matrices, forward and backward.
+    pub factorisations: u64,
+    /// Solves with a factorised matrix, forward and backward.
+    pub solves: u64,
+}
+
+impl Counts {
+    /// All counts with their names, in order.
+    pub fn named(&self) -> [(&'static str, u64); 8] {
+        [
+            ("iterations", self.iterations),
+            ("function evaluations", self.function_evaluations),
+            ("gradient evaluations", self.gradient_evaluations),
+            ("failed evaluations", self.failed_evaluations),
+            ("time steps", self.steps),
+            ("Newton iterations", self.newton_iterations),
+            ("factorisations", self.factorisations),
+            ("solves", self.solves),
+        ]
+    }
+}
+
+/// The problem that was solved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProblemRecord {
+    /// Name of the problem.
+    pub name: String,
+    /// Name of the problem file, without directories.
+    pub file: String,
+    /// SHA-256 of the document, hexadecimal.
+    pub sha256: String,
+    /// The document itself, with everything that was set on the command line.
+    pub document: serde_json::Value,
+}
+
+impl Optimum {
+    /// The record as JSON text, indented, ended by a line feed.
+    ///
+    /// # Errors
+    /// [`ReportError::NotFinite`] with the place of a number that is NaN or infinite.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        let value = serde_json::to_value(self)?;
+        // An absent value is left out, so a null outside the document was a number that JSON
+        // cannot hold.
+        if let Some(pointer) = first_null(&value, String::new()) {
+            return Err(ReportError::NotFinite { pointer });
+        }
+        Ok(serde_json::to_string_pretty(&value)? + "\n")
+    }
+
+    /// Reads back what [`Optimum::to_json`] wrote.
+    ///
+    /// # Errors
+    /// [`ReportError::Optimum`] with line and column.
+    pub fn from_json(text: &str) -> Result<Optimum, ReportError> {
+        Ok(serde_json::from_str(text)?)
+    }
+}
+
+/// JSON Pointer of the first null outside the problem's document.
+fn first_null(value: &serde_json::Value, pointer: String) -> Option<String> {
+    use serde_json::Value;
+    match value {
+        Value::Null => Some(pointer),
+        _ if pointer == "/problem/document" => None,
+        Value::Object(map) => map.iter().find_map(|(key, inner)| {
+            let key = key.replace('~', "~0").replace('/', "~1");
+            first_null(inner, format!("{pointer}/{key}"))
+        }),
+        Value::Array(items) => items
+            .iter()
+            .enumerate()
+            .find_map(|(i, inner)| first_null(inner, format!("{pointer}/{i}"))),
+        _ => None,
+    }
+}

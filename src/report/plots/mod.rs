@@ -1,0 +1,15 @@
+//! Figures as SVG texts, pure functions of data.
+//!
+//! Pictures are white, their colours can be told apart with any colour vision, legends stand
+//! beside the data. The same data give the same bytes.
+
+mod axis;
+mod canvas;
+mod convergence;
+mod energy;
+mod motion;
+mod panel;
+
+pub use convergence::convergence;
+pub use energy::{EnergyRun, energy};
+pub use motion::{Barrier, BodyMotion, Flight, Motion, Scenery, motion};

@@ -1,0 +1,330 @@
+//! Designs in motion: time lapses side by side, and the flights of what they throw.
+
+use super::axis::{Axis, range};
+use super::canvas::{Anchor, BLACK, Canvas, GROUND, INK, PALETTE};
+use super::panel::{BELOW, Key, Legend, Panel, room_left};
+use crate::report::ReportError;
+use plotters::style::RGBColor;
+
+/// A point of the plane that is drawn: horizontal and vertical coordinate \[m\].
+pub type Point = [f64; 2];
+
+/// A body at the instants of a time lapse.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyMotion {
+    /// Name of the body.
+    pub name: String,
+    /// Its outline at each instant, early to late: a polygon, or a line of two points.
+    pub outlines: Vec<Vec<Point>>,
+}
+
+/// A projectile at the instant of its release; from here it falls freely.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flight {
+    /// Place of the release \[m\].
+    pub position: Point,
+    /// Velocity at the release \[m/s\].
+    pub velocity: Point,
+    /// Gravity, downwards positive \[m/s²\].
+    pub gravity: f64,
+}
+
+/// One design in motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// What it is, such as `optimal design`.
+    pub title: String,
+    /// Bodies in the order of the problem file; the same for all designs.
+    pub bodies: Vec<BodyMotion>,
+    /// Path of the point of interest (until the release, if there is one); may be empty.
+    pub trace: Vec<Point>,
+    /// Release of the projectile, if there is one.
+    pub flight: Option<Flight>,
+}
+
+/// A barrier that the projectile must clear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Barrier {
+    /// Horizontal coordinate \[m\].
+    pub distance: f64,
+    /// Vertical coordinate of its top \[m\].
+    pub top: f64,
+}
+
+/// What stands still, and the names of the directions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenery {
+    /// Height of the ground \[m\], if a projectile lands on it.
+    pub ground: Option<f64>,
+    /// The barrier, if there is one.
+    pub barrier: Option<Barrier>,
+    /// Label of the horizontal axis, such as `x \[m\]`.
+    pub horizontal: String,
+    /// Label of the vertical axis.
+    pub vertical: String,
+}
+
+const WIDTH: f64 = 880.0;
+const RIGHT: f64 = 16.0;
+const GAP: f64 = 20.0;
+/// Points of a drawn flight.
+const FLIGHT_POINTS: usize = 200;
+
+impl Flight {
+    /// The path until the projectile comes down to the ground; `None` if it starts below it or
+    /// nothing pulls it down.
+    ///
+    /// r(t) = r₀ + v₀ t − ½ g t² e_y for t from 0 to (v_y + √(v_y² + 2 g (y − y_g))) / g.
+    pub fn path(&self, ground: f64) -> Option<Vec<Point>> {
+        let ([x, y], [vx, vy], g) = (self.position, self.velocity, self.gravity);
+        let landing = (vy + (vy * vy + 2.0 * g * (y - ground)).sqrt()) / g;
+        if !(g > 0.0 && y >= ground && landing.is_finite()) {
+            return None;
+        }
+        let at = |i: usize| {
+            let t = landing * i as f64 / FLIGHT_POINTS as f64;
+            [x + vx * t, y + vy * t - 0.5 * g * t * t]
+        };
+        Some((0..=FLIGHT_POINTS).map(at).collect())
+    }
+}
+
+/// Time lapses of all designs side by side at one scale, early instants pale and late ones full,
+/// and below, if anything is thrown, the flights until they land with barrier and ground. An SVG
+/// text.
+///
+/// # Errors
+/// [`ReportError::NothingToDraw`] if there is no outline with a finite point.
+pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportError> {
+    let outlines = |design: &Motion| {
+        let bodies = design.bodies.iter().flat_map(|body| &body.outlines);
+        bodies.flatten().copied().collect::<Vec<Point>>()
+    };
+    let mut points: Vec<Point> = designs.iter().flat_map(outlines).collect();
+    if !points.iter().any(|[x, y]| x.is_finite() && y.is_finite()) {
+        return Err(ReportError::NothingToDraw {
+            figure: "motion",
+            missing: "no body has an outline",
+        });
+    }
+    points.extend(designs.iter().flat_map(|design| &design.trace));
+    let flights: Vec<Option<Vec<Point>>> = designs
+        .iter()
+        .map(|design| design.flight.as_ref()?.path(scenery.ground?))
+        .collect();
+
+    let count = designs.len() as f64;
+    let lapse = |left: f64| {
+        let width = (WIDTH - left - RIGHT - (count - 1.0) * GAP) / count;
+        equal_axes(
+            &points,
+            scenery,
+            [280.0_f64.min(width), width],
+            [160.0, 500.0],
+        )
+    };
+    let flown: Vec<Point> = flights.iter().flatten().flatten().copied().collect();
+    let flight = |left: f64| {
+        let mut points = flown.clone();
+        points.extend(
+            scenery
+                .barrier
+                .map(|barrier| [barrier.distance, barrier.top]),
+        );
+        let width = WIDTH - left - RIGHT;
+        equal_axes(&points, scenery, [width, width], [150.0, 320.0])
+    };
+    // The room for numbers depends on the axes, whose ticks hardly depend on the room.
+    let guess = 60.0;
+    let mut left = room_left([&lapse(guess).y]);
+    if !flown.is_empty() {
+        left = left.max(room_left([&flight(guess).y]));
+    }
+
+    let first = lapse(left);
+    let used = count * (first.width + GAP) - GAP;
+    let (full, indent) = if flown.is_empty() {
+        (left + used + RIGHT, 0.0)
+    } else {
+        (WIDTH, (WIDTH - left - RIGHT - used) / 2.0)
+    };
+    let legend = lapse_legend(designs, full - left - RIGHT);
+    let top = 8.0 + legend.height() + 24.0;
+    let mut bottom = top + first.height + BELOW;
+    let below = (!flown.is_empty()).then(|| {
+        let mut panel = flight(left);
+        let legend = flight_legend(designs, &flights, scenery, panel.width);
+        panel.left = left;
+        panel.top = bottom + 10.0 + legend.height() + 4.0;
+        bottom = panel.top + panel.height + BELOW;
+        (panel, legend)
+    });
+    let mut canvas = Canvas::new(full, bottom);
+    legend.draw(&mut canvas, left, 6.0);
+    for (i, design) in designs.iter().enumerate() {
+        let panel = Panel {
+            left: left + indent + i as f64 * (first.width + GAP),
+            top,
+            x: first.x.clone(),
+            y: first.y.clone(),
+            ..first
+        };
+        let middle = (panel.left + panel.width / 2.0, top - 12.0);
+        panel.draw(&mut canvas, true, i == 0);
+        canvas.title(middle, &design.title, Anchor::Centre);
+        draw_scenery(&mut canvas, &panel, scenery);
+        draw_lapse(&mut canvas, &panel, design);
+    }
+    if let Some((panel, legend)) = below {
+        legend.draw(&mut canvas, left, panel.top - legend.height() - 4.0);
+        panel.draw(&mut canvas, true, true);
+        draw_scenery(&mut canvas, &panel, scenery);
+        for (i, path) in flights.iter().enumerate() {
+            let points = path.iter().flatten().map(|&[x, y]| (x, y));
+            for part in panel.within(points) {
+                canvas.path(&part, flight_color(i), 2.0, 1.0);
+            }
+        }
+    }
+    canvas.svg()
+}
+
+/// A panel that shows all points, and the ground where it is near, with the same scale in both
+/// directions and width and height [px] within limits: as wide as may be, narrower if it would
+/// be too high; and where that does not suffice, more is shown in one direction.
+fn equal_axes(points: &[Point], scenery: &Scenery, widths: [f64; 2], heights: [f64; 2]) -> Panel {
+    let (mut west, mut east) = range(points.iter().map(|point| point[0]));
+    let (mut south, mut north) = range(points.iter().map(|point| point[1]));
+    let size = (east - west).max(north - south).max(1e-9);
+    if let Some(ground) = scenery.ground
+        && (south - 0.35 * size..=north).contains(&ground)
+    {
+        south = south.min(ground);
+    }
+    let margin = 0.04 * size;
+    (west, east) = (west - margin, east + margin);
+    // A flat scene would drown in the margin of its length.
+    let margin = margin.min(0.1 * (north - south).max(0.2 * margin));
+    (south, north) = (south - margin, north + margin);
+    let aspect = (north - south) / (east - west);
+    let width = (heights[1] / aspect).clamp(widths[0], widths[1]);
+    let height = (aspect * width).clamp(heights[0], heights[1]);
+    // Free height goes above: things stand on the ground.
+    north += ((height / width) * (east - west) - (north - south)).max(0.0);
+    let missing = ((north - south) * width / height - (east - west)).max(0.0);
+    (west, east) = (west - missing / 2.0, east + missing / 2.0);
+    Panel {
+        left: 0.0,
+        top: 0.0,
+        width,
+        height,
+        x: Axis::exact(west, east, (width / 62.0) as usize, &scenery.horizontal),
+        y: Axis::exact(south, north, (height / 36.0) as usize, &scenery.vertical),
+    }
+}
+
+fn body_color(index: usize) -> RGBColor {
+    PALETTE[index % PALETTE.len()]
+}
+
+fn flight_color(index: usize) -> RGBColor {
+    PALETTE[index % PALETTE.len()]
+}
+
+fn lapse_legend(designs: &[Motion], width: f64) -> Legend {
+    let mut entries = Vec::new();
+    for (i, body) in designs[0].bodies.iter().enumerate() {
+        entries.push((Key::Area(body_color(i)), body.name.clone()));
+    }
+    if designs.iter().any(|design| design.trace.len() > 1) {
+        entries.push((Key::Line(INK), "path".to_owned()));
+    }
+    if designs.iter().any(|design| design.flight.is_some()) {
+        entries.push((Key::Disc(BLACK), "release".to_owned()));
+    }
+    let moves = designs[0].bodies.iter().any(|body| body.outlines.len() > 1);
+    if moves {
+        entries.push((Key::Note, "(pale: early, full: late)".to_owned()));
+    }
+    Legend::new(entries, width)
+}
+
+fn flight_legend(
+    designs: &[Motion],
+    flights: &[Option<Vec<Point>>],
+    scenery: &Scenery,
+    width: f64,
+) -> Legend {
+    let mut entries = Vec::new();
+    for (i, (design, path)) in designs.iter().zip(flights).enumerate() {
+        if let Some([distance, _]) = path.as_ref().and_then(|path| path.last()) {
+            let text = format!("{}: lands at {distance:.1} m", design.title);
+            entries.push((Key::Line(flight_color(i)), text));
+        }
+    }
+    if let Some(Barrier { distance, top }) = scenery.barrier {
+        let text = format!("barrier at {distance} m, top {top} m");
+        entries.push((Key::Line(BLACK), text));
+    }
+    if scenery.ground.is_some() {
+        entries.push((Key::Area(GROUND), "ground".to_owned()));
+    }
+    Legend::new(entries, width)
+}
+
+/// Ground and barrier, where they lie within the panel.
+fn draw_scenery(canvas: &mut Canvas, panel: &Panel, scenery: &Scenery) {
+    let (x, y) = (&panel.x, &panel.y);
+    let mut foot = y.low;
+    if let Some(ground) = scenery.ground
+        && (y.low..=y.high).contains(&ground)
+    {
+        foot = ground;
+        let earth = [
+            panel.pixel(x.low, ground),
+            panel.pixel(x.high, ground),
+            panel.pixel(x.high, y.low),
+            panel.pixel(x.low, y.low),
+        ];
+        canvas.area(&earth, GROUND, 0.35);
+        canvas.path(&earth[..2], GROUND, 1.5, 1.0);
+    }
+    if let Some(barrier) = scenery.barrier {
+        let wall = [(barrier.distance, foot), (barrier.distance, barrier.top)];
+        for part in panel.within(wall.into_iter()) {
+            canvas.path(&part, BLACK, 3.0, 1.0);
+        }
+    }
+}
+
+fn draw_lapse(canvas: &mut Canvas, panel: &Panel, design: &Motion) {
+    let frames = design.bodies.iter().map(|body| body.outlines.len()).max();
+    let frames = frames.unwrap_or(0);
+    for frame in 0..frames {
+        let late = (frame + 1) as f64 / frames as f64;
+        for (i, body) in design.bodies.iter().enumerate() {
+            let Some(outline) = body.outlines.get(frame) else {
+                continue;
+            };
+            let finite = outline.iter().all(|[x, y]| x.is_finite() && y.is_finite());
+            if !finite {
+                continue;
+            }
+            let mut pixels: Vec<_> = outline.iter().map(|&[x, y]| panel.pixel(x, y)).collect();
+            if pixels.len() > 2 {
+                canvas.area(&pixels, body_color(i), 0.06 + 0.44 * late * late);
+                pixels.extend(pixels.first().copied());
+            }
+            canvas.path(&pixels, body_color(i), 1.2, 0.25 + 0.75 * late);
+        }
+    }
+    for part in panel.within(design.trace.iter().map(|&[x, y]| (x, y))) {
+        canvas.path(&part, INK, 1.2, 1.0);
+    }
+    if let Some(flight) = &design.flight {
+        let [x, y] = flight.position;
+        for point in panel.within([(x, y)].into_iter()) {
+            canvas.disc(point[0], 4.0, BLACK);
+        }
+    }
+}

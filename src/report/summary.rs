@@ -1,0 +1,177 @@
+//! The text that a person reads at the end of an optimisation.
+
+use super::number::{grouped, significant};
+use super::optimum::{Activity, KktResiduals, Optimum, Sense, Side};
+use super::table;
+
+/// Status, objective, design, constraints, accuracy and work of an optimisation, as text.
+pub fn summary(optimum: &Optimum) -> String {
+    let mut text = format!("{}: {}\n\n", optimum.problem.name, optimum.message);
+    text.push_str(&objective(optimum));
+    text.push('\n');
+    text.push_str(&design(optimum));
+    if !optimum.constraints.is_empty() {
+        text.push('\n');
+        text.push_str(&constraints(optimum));
+    }
+    text.push('\n');
+    let KktResiduals {
+        stationarity,
+        feasibility,
+        complementarity,
+    } = optimum.kkt.scaled;
+    text.push_str(&format!(
+        "Optimality (scaled): stationarity {}, feasibility {}, complementarity {}\n",
+        significant(stationarity, 2),
+        significant(feasibility, 2),
+        significant(complementarity, 2),
+    ));
+    text.push_str(&work(optimum));
+    for warning in &optimum.warnings {
+        text.push_str(&format!("Warning: {warning}\n"));
+    }
+    text
+}
+
+fn objective(optimum: &Optimum) -> String {
+    let objective = &optimum.objective;
+    let verb = match objective.sense {
+        Sense::Minimise => "Minimised",
+        Sense::Maximise => "Maximised",
+    };
+    let unit = with_space(objective.unit.as_deref());
+    let mut text = format!(
+        "{verb} {}: {} → {}{unit}",
+        objective.function,
+        significant(optimum.start_objective, 8),
+        significant(objective.value, 8),
+    );
+    let change = objective.value - optimum.start_objective;
+    if optimum.start_objective != 0.0 {
+        let percent = 100.0 * change / optimum.start_objective.abs();
+        text.push_str(&format!(" ({percent:+.1} %)"));
+    }
+    text.push('\n');
+    if let Some(maximum) = objective.true_maximum {
+        text.push_str(&format!(
+            "  the true maximum is {}{unit}, the aggregate differs from it by {}{unit}\n",
+            significant(maximum, 8),
+            significant(objective.value - maximum, 3),
+        ));
+    }
+    if let Some(error) = objective.estimated_error {
+        text.push_str(&format!(
+            "  accurate to about {}{unit} (estimated error of the time steps)\n",
+            significant(error, 2),
+        ));
+    }
+    text
+}
+
+fn design(optimum: &Optimum) -> String {
+    let rows: Vec<Vec<String>> = optimum
+        .design
+        .iter()
+        .map(|(name, variable)| {
+            vec![
+                name.clone(),
+                significant(variable.start, 6),
+                significant(variable.value, 8),
+                variable.unit.clone().unwrap_or_default(),
+                interval(variable.lower, variable.upper),
+                match optimum.active_bounds.get(name) {
+                    Some(Side::Lower) => "at its lower bound".to_owned(),
+                    Some(Side::Upper) => "at its upper bound".to_owned(),
+                    None => String::new(),
+                },
+            ]
+        })
+        .collect();
+    table::render(
+        &["variable", ">start", ">optimum", "unit", "bounds", "active"],
+        &rows,
+    )
+}
+
+fn constraints(optimum: &Optimum) -> String {
+    let rows: Vec<Vec<String>> = optimum
+        .constraints
+        .iter()
+        .map(|(name, constraint)| {
+            let active = constraint.active != Activity::Inactive;
+            vec![
+                name.clone(),
+                significant(constraint.value, 6),
+                constraint.unit.clone().unwrap_or_default(),
+                interval(constraint.lower, constraint.upper),
+                match constraint.active {
+                    Activity::Inactive => "inactive",
+                    Activity::Lower => "at its lower bound",
+                    Activity::Upper => "at its upper bound",
+                    Activity::Equality => "equality",
+                }
+                .to_owned(),
+                if active {
+                    sensitivity(optimum, constraint)
+                } else {
+                    String::new()
+                },
+            ]
+        })
+        .collect();
+    table::render(
+        &[
+            "constraint",
+            ">value",
+            "unit",
+            "bounds",
+            "active",
+            "sensitivity",
+        ],
+        &rows,
+    )
+}
+
+/// What a unit of the bound is worth.
+fn sensitivity(optimum: &Optimum, constraint: &super::optimum::ConstraintValue) -> String {
+    format!(
+        "{}{} per {}",
+        significant(constraint.multiplier, 5),
+        with_space(optimum.objective.unit.as_deref()),
+        constraint.unit.as_deref().unwrap_or("unit"),
+    )
+}
+
+fn work(optimum: &Optimum) -> String {
+    let counts = &optimum.counts;
+    let failed = match counts.failed_evaluations {
+        0 => String::new(),
+        n => format!(" ({} failed)", grouped(n)),
+    };
+    format!(
+        "Work: {} iterations, {} simulations{failed}, {} gradients\n      {} time steps, \
+         {} Newton iterations, {} factorisations, {} solves\n",
+        grouped(counts.iterations),
+        grouped(counts.function_evaluations),
+        grouped(counts.gradient_evaluations),
+        grouped(counts.steps),
+        grouped(counts.newton_iterations),
+        grouped(counts.factorisations),
+        grouped(counts.solves),
+    )
+}
+
+fn interval(lower: Option<f64>, upper: Option<f64>) -> String {
+    let number = |value| significant(value, 6);
+    match (lower, upper) {
+        (Some(a), Some(b)) if a == b => format!("= {}", number(a)),
+        (Some(a), Some(b)) => format!("{} … {}", number(a), number(b)),
+        (Some(a), None) => format!("≥ {}", number(a)),
+        (None, Some(b)) => format!("≤ {}", number(b)),
+        (None, None) => String::new(),
+    }
+}
+
+fn with_space(unit: Option<&str>) -> String {
+    unit.map(|unit| format!(" {unit}")).unwrap_or_default()
+}

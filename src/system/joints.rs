@@ -1,0 +1,235 @@
+//! The joints of a model in motion: constraint vectors, reactions and pull-backs over all rows.
+
+use super::bodies::{Motion, add6, velocities_of};
+use super::constraint::{
+    self, ReactionJacobian, RowCotangent, RowGradient, Side, SideCotangent, gradient,
+};
+use super::numbering::Numbering;
+use crate::math::{Scalar, Vec3};
+use crate::model::{ConstraintRow, Joint, Model};
+
+/// Both sides of a joint; `ground` is the motion of a missing body B.
+pub fn sides<'a, S: Scalar>(
+    joint: &'a Joint<S>,
+    motions: &'a [Motion<S>],
+    ground: &'a Motion<S>,
+) -> (Side<'a, S>, Side<'a, S>) {
+    let motion_b = joint.body_b.map_or(ground, |body| &motions[body]);
+    (
+        Side {
+            motion: &motions[joint.body_a],
+            frame: &joint.frame_a,
+        },
+        Side {
+            motion: motion_b,
+            frame: &joint.frame_b,
+        },
+    )
+}
+
+/// Calls `visit(row number, joint, row, side a, side b)` for every constraint row.
+fn for_each_row<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    motions: &[Motion<S>],
+    mut visit: impl FnMut(usize, &Joint<S>, ConstraintRow, &Side<S>, &Side<S>),
+) {
+    let ground = Motion::ground();
+    for (j, joint) in model.joints.iter().enumerate() {
+        let (a, b) = sides(joint, motions, &ground);
+        for (number, &row) in numbering.rows(j).zip(joint.kind.rows()) {
+            visit(number, joint, row, &a, &b);
+        }
+    }
+}
+
+/// Constraints Φ(q).
+pub fn values<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    motions: &[Motion<S>],
+    out: &mut [S],
+) {
+    for_each_row(model, numbering, motions, |i, _, row, a, b| {
+        out[i] = constraint::value(row, a, b);
+    });
+}
+
+/// Constraint rates G(q) v from the gradients.
+pub fn rates_from_gradients<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    gradients: &[RowGradient<S>],
+    v: &[S],
+    out: &mut [S],
+) {
+    for (j, joint) in model.joints.iter().enumerate() {
+        let (linear_a, omega_a) = velocities_of(&v[numbering.velocity(joint.body_a)..]);
+        let (linear_b, omega_b) = joint.body_b.map_or((Vec3::zeros(), Vec3::zeros()), |b| {
+            velocities_of(&v[numbering.velocity(b)..])
+        });
+        let relative = linear_a - linear_b;
+        for i in numbering.rows(j) {
+            let g = &gradients[i];
+            out[i] = g.force.dot(&relative) + g.torque_a.dot(&omega_a) + g.torque_b.dot(&omega_b);
+        }
+    }
+}
+
+/// Constraint rates G(q) v.
+pub fn rates<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    motions: &[Motion<S>],
+    out: &mut [S],
+) {
+    for_each_row(model, numbering, motions, |i, _, row, a, b| {
+        out[i] = constraint::rate(row, a, b);
+    });
+}
+
+/// Acceleration biases −γ: Φ̈ = G v̇ − γ.
+pub fn biases<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    motions: &[Motion<S>],
+    out: &mut [S],
+) {
+    for_each_row(model, numbering, motions, |i, _, row, a, b| {
+        out[i] = constraint::bias(row, a, b);
+    });
+}
+
+/// Gradients of all rows (the non-zero blocks of G).
+pub fn gradients<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    motions: &[Motion<S>],
+    out: &mut Vec<RowGradient<S>>,
+) {
+    out.clear();
+    for_each_row(model, numbering, motions, |_, _, row, a, b| {
+        out.push(gradient(row, a, b))
+    });
+}
+
+/// Adds G(q)ᵀ λ to `out` (velocity coordinates).
+pub fn add_reactions<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    gradients: &[RowGradient<S>],
+    lambda: &[S],
+    out: &mut [S],
+) {
+    for (j, joint) in model.joints.iter().enumerate() {
+        let mut total = RowGradient {
+            force: Vec3::zeros(),
+            torque_a: Vec3::zeros(),
+            torque_b: Vec3::zeros(),
+        };
+        for i in numbering.rows(j) {
+            total.force += gradients[i].force * lambda[i];
+            total.torque_a += gradients[i].torque_a * lambda[i];
+            total.torque_b += gradients[i].torque_b * lambda[i];
+        }
+        add6(
+            &mut out[numbering.velocity(joint.body_a)..],
+            &total.force,
+            &total.torque_a,
+        );
+        if let Some(body) = joint.body_b {
+            add6(
+                &mut out[numbering.velocity(body)..],
+                &-total.force,
+                &total.torque_b,
+            );
+        }
+    }
+}
+
+/// Derivative of G(q)ᵀ λ of one joint in the tangent positions of its two bodies.
+pub fn reaction_jacobian<S: Scalar>(
+    joint: &Joint<S>,
+    motions: &[Motion<S>],
+    lambda: &[S],
+) -> ReactionJacobian<S> {
+    let ground = Motion::ground();
+    let (a, b) = sides(joint, motions, &ground);
+    let mut out = ReactionJacobian::zero();
+    for (&row, &l) in joint.kind.rows().iter().zip(lambda) {
+        constraint::add_reaction_jacobian(row, l, &a, &b, &mut out);
+    }
+    out
+}
+
+/// Derivative of the rate of one row in the tangent positions of its two bodies.
+pub fn rate_by_position<S: Scalar>(
+    row: ConstraintRow,
+    a: &Side<S>,
+    b: &Side<S>,
+) -> (SideCotangent<S>, SideCotangent<S>) {
+    let (mut by_a, mut by_b) = (SideCotangent::zero(), SideCotangent::zero());
+    let unit = RowCotangent {
+        value: S::zero(),
+        rate: S::one(),
+        bias: S::zero(),
+    };
+    constraint::pull_back(row, &unit, a, b, &mut by_a, &mut by_b);
+    (by_a, by_b)
+}
+
+/// Where the pull-back of the constraints is added to.
+pub struct JointCotangent<'a> {
+    /// Tangent positions, velocity numbering; `None` if not wanted.
+    pub y: Option<&'a mut [f64]>,
+    /// Velocities; `None` if not wanted.
+    pub v: Option<&'a mut [f64]>,
+    /// Joint frames.
+    pub model: &'a mut Model<f64>,
+}
+
+/// Pulls cotangents of the values, rates and biases of all rows (in this order, each optional)
+/// back to tangent positions, velocities and joint frames.
+pub fn pull_back(
+    model: &Model<f64>,
+    numbering: &Numbering,
+    motions: &[Motion<f64>],
+    cotangents: [Option<&[f64]>; 3],
+    out: &mut JointCotangent,
+) {
+    let ground = Motion::ground();
+    let at = |which: usize, i: usize| cotangents[which].map_or(0.0, |c| c[i]);
+    for (j, joint) in model.joints.iter().enumerate() {
+        let (a, b) = sides(joint, motions, &ground);
+        let (mut by_a, mut by_b) = (SideCotangent::zero(), SideCotangent::zero());
+        for (i, &row) in numbering.rows(j).zip(joint.kind.rows()) {
+            let cot = RowCotangent {
+                value: at(0, i),
+                rate: at(1, i),
+                bias: at(2, i),
+            };
+            constraint::pull_back(row, &cot, &a, &b, &mut by_a, &mut by_b);
+        }
+        let bodies = [(Some(joint.body_a), &by_a), (joint.body_b, &by_b)];
+        for (body, by) in bodies {
+            let Some(body) = body else { continue };
+            let o = numbering.velocity(body);
+            if let Some(y) = out.y.as_deref_mut() {
+                add6(&mut y[o..], &by.position, &by.theta);
+            }
+            if let Some(v) = out.v.as_deref_mut() {
+                add6(&mut v[o..], &by.velocity, &by.omega);
+            }
+        }
+        let target = &mut out.model.joints[j];
+        for (frame, by) in [
+            (&mut target.frame_a, &by_a.frame),
+            (&mut target.frame_b, &by_b.frame),
+        ] {
+            frame.point += by.point;
+            for k in 0..3 {
+                frame.axes[k] += by.axes[k];
+            }
+        }
+    }
+}

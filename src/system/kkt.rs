@@ -1,0 +1,212 @@
+//! The saddle-point systems [B Gᵀ; G 0] of projections and accelerations, and their
+//! derivatives' transposes.
+
+use super::bodies::Motion;
+use super::constraint::RowGradient;
+use super::joints;
+use super::numbering::Numbering;
+use crate::linalg::{Emit, Pattern, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
+use crate::math::{Mat3, Scalar};
+use crate::model::Model;
+
+/// Emits Gᵀ at (`row`, `column`) with the body blocks stacked by `numbering`.
+pub fn emit_transposed_gradients<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    gradients: &[RowGradient<S>],
+    (row, column): (usize, usize),
+    scale: S,
+    emit: &mut dyn Emit<S>,
+) {
+    for (j, joint) in model.joints.iter().enumerate() {
+        for (i, kind) in numbering.rows(j).zip(joint.kind.rows()) {
+            let (g, at) = (&gradients[i], row + numbering.velocity(joint.body_a));
+            if let Some(k) = kind.ground_component() {
+                emit.add(at + k, column + i, scale);
+            } else if kind.has_force() {
+                emit.add_column(at, column + i, &(g.force * scale));
+            }
+            emit.add_column(at + 3, column + i, &(g.torque_a * scale));
+            if let Some(body) = joint.body_b {
+                let at = row + numbering.velocity(body);
+                if let Some(k) = kind.ground_component() {
+                    emit.add(at + k, column + i, -scale);
+                } else if kind.has_force() {
+                    emit.add_column(at, column + i, &(g.force * -scale));
+                }
+                emit.add_column(at + 3, column + i, &(g.torque_b * scale));
+            }
+        }
+    }
+}
+
+/// Emits G at (`row`, `column`).
+pub fn emit_gradients<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    gradients: &[RowGradient<S>],
+    (row, column): (usize, usize),
+    emit: &mut dyn Emit<S>,
+) {
+    let mut transposed = Transposed(emit);
+    let at = (column, row);
+    emit_transposed_gradients(model, numbering, gradients, at, S::one(), &mut transposed);
+}
+
+/// Emits every entry with row and column exchanged.
+struct Transposed<'a, S>(&'a mut dyn Emit<S>);
+
+impl<S: Scalar> Emit<S> for Transposed<'_, S> {
+    fn add(&mut self, row: usize, column: usize, value: S) {
+        self.0.add(column, row, value);
+    }
+}
+
+/// Emits the derivative of Gᵀλ in the tangent positions, times `scale`, at (`row`, `column`).
+pub fn emit_reaction_jacobian<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    motions: &[Motion<S>],
+    lambda: &[S],
+    (row, column): (usize, usize),
+    scale: S,
+    emit: &mut dyn Emit<S>,
+) {
+    for (j, joint) in model.joints.iter().enumerate() {
+        let k = joints::reaction_jacobian(joint, motions, &lambda[numbering.rows(j)]);
+        let slides = joint.kind.rows().iter().any(|kind| kind.follows_axis());
+        let turns = joint
+            .kind
+            .rows()
+            .iter()
+            .any(|kind| kind.couples_rotations());
+        let a = numbering.velocity(joint.body_a);
+        let (ra, ca) = (row + a, column + a);
+        emit.add_block(ra + 3, ca + 3, &(k.a_by_a * scale));
+        if slides {
+            emit.add_block(ra, ca + 3, &(k.force_by_a * scale));
+            emit.add_block(ra + 3, ca, &(k.a_by_position * scale));
+        }
+        if let Some(body) = joint.body_b {
+            let b = numbering.velocity(body);
+            let (rb, cb) = (row + b, column + b);
+            emit.add_block(rb + 3, cb + 3, &(k.b_by_b * scale));
+            if slides {
+                emit.add_block(rb, ca + 3, &(k.force_by_a * -scale));
+                emit.add_block(ra + 3, cb, &(k.a_by_position * -scale));
+            }
+            if turns {
+                emit.add_block(ra + 3, cb + 3, &(k.a_by_b * scale));
+                emit.add_block(rb + 3, ca + 3, &(k.b_by_a * scale));
+            }
+        }
+    }
+}
+
+/// What stands in the upper left block B: 3 × 3 blocks of each body's linear and angular part.
+pub struct BodyBlocks<S> {
+    /// Linear.
+    pub linear: S,
+    /// Angular.
+    pub angular: Mat3<S>,
+}
+
+/// The matrix [B + (Gᵀs)_y, Gᵀ; G, 0] and its factors; order n_v + n_c.
+pub struct SaddlePoint<S> {
+    matrix: SparseMatrix<S>,
+    factors: SparseLu<S>,
+    /// Number of factorisations so far.
+    pub factorisations: usize,
+}
+
+impl<S: SolveScalar> SaddlePoint<S> {
+    /// Plans the matrix for a model.
+    pub fn new(model: &Model<S>, numbering: &Numbering) -> Self {
+        let motions = vec![Motion::ground(); numbering.bodies()];
+        let mut gradients = Vec::new();
+        joints::gradients(model, numbering, &motions, &mut gradients);
+        let zeros = vec![S::zero(); numbering.constraints()];
+        let order = numbering.velocities() + numbering.constraints();
+        let block = |_| BodyBlocks {
+            linear: S::one(),
+            angular: Mat3::identity(),
+        };
+        let pattern = Pattern::record(order, |emit: &mut dyn Emit<S>| {
+            emit_saddle_point(model, numbering, &motions, &gradients, &zeros, block, emit);
+        });
+        let factors = SparseLu::new(&pattern);
+        Self {
+            matrix: SparseMatrix::new(pattern),
+            factors,
+            factorisations: 0,
+        }
+    }
+
+    /// Assembles and factorises at the given positions, multipliers s and body blocks.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`]: redundant constraints, or a motion without inertia.
+    pub fn factorise(
+        &mut self,
+        model: &Model<S>,
+        numbering: &Numbering,
+        motions: &[Motion<S>],
+        multipliers: &[S],
+        block: impl Fn(usize) -> BodyBlocks<S>,
+    ) -> Result<(), SingularMatrix> {
+        let mut gradients = Vec::with_capacity(numbering.constraints());
+        joints::gradients(model, numbering, motions, &mut gradients);
+        self.matrix.assemble(|emit| {
+            emit_saddle_point(
+                model,
+                numbering,
+                motions,
+                &gradients,
+                multipliers,
+                block,
+                emit,
+            );
+        });
+        self.factorisations += 1;
+        self.factors.factorise(&self.matrix)
+    }
+
+    /// Solves in place.
+    pub fn solve(&mut self, rhs: &mut [S]) {
+        self.factors.solve(rhs);
+    }
+
+    /// Solves the transposed system in place.
+    pub fn solve_transposed(&mut self, rhs: &mut [S]) {
+        self.factors.solve_transposed(rhs);
+    }
+}
+
+fn emit_saddle_point<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    motions: &[Motion<S>],
+    gradients: &[RowGradient<S>],
+    multipliers: &[S],
+    block: impl Fn(usize) -> BodyBlocks<S>,
+    emit: &mut dyn Emit<S>,
+) {
+    let n = numbering.velocities();
+    for body in 0..numbering.bodies() {
+        let BodyBlocks { linear, angular } = block(body);
+        let at = numbering.velocity(body);
+        emit.add_identity(at, at, linear);
+        emit.add_block(at + 3, at + 3, &angular);
+    }
+    emit_reaction_jacobian(
+        model,
+        numbering,
+        motions,
+        multipliers,
+        (0, 0),
+        S::one(),
+        emit,
+    );
+    emit_transposed_gradients(model, numbering, gradients, (0, n), S::one(), emit);
+    emit_gradients(model, numbering, gradients, (n, 0), emit);
+}

@@ -1,0 +1,21 @@
+//! The mechanical system: what integrators assemble their equations from.
+//!
+//! States are positions q (per body r, p) and velocities v (per body ṙ in ground axes, ω in body
+//! axes), with the kinematics q̇ = T(q) v, the dynamics M(q) v̇ = f(q, v) − G(q)ᵀ λ and the
+//! constraints Φ(q) = 0, G = Φ_q T. Small changes of position are taken in the tangent,
+//! δq = T(q) δy, so the Euler parameters stay of unit length and need no multiplier.
+//! Nothing here knows how time is discretised.
+
+pub mod bodies;
+pub mod constraint;
+pub mod initial;
+pub mod joints;
+pub mod kkt;
+pub mod marker;
+
+pub mod numbering;
+pub mod observe;
+pub mod rank;
+
+pub use bodies::Motion;
+pub use numbering::Numbering;

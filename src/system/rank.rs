@@ -1,0 +1,90 @@
+//! Which joints or bodies make a model singular, by name. Runs only after a factorisation failed.
+
+use super::bodies::Motion;
+use super::joints;
+use super::numbering::Numbering;
+use crate::math::Scalar;
+use crate::model::Model;
+use nalgebra::DMatrix;
+
+/// Singular values below this, relative to the largest, count as zero.
+const NEGLIGIBLE: f64 = 1e-10;
+
+/// Says which constraints are redundant at q, or else which bodies can move without inertia.
+pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> String {
+    let numbering = Numbering::new(model);
+    let mut motions = Vec::new();
+    let at_rest = vec![S::zero(); numbering.velocities()];
+    Motion::all(&numbering, q, &at_rest, &mut motions);
+    let mut gradients = Vec::new();
+    joints::gradients(model, &numbering, &motions, &mut gradients);
+    let mut g = DMatrix::<f64>::zeros(numbering.constraints(), numbering.velocities());
+    for (j, joint) in model.joints.iter().enumerate() {
+        for i in numbering.rows(j) {
+            let row = &gradients[i];
+            for k in 0..3 {
+                let a = numbering.velocity(joint.body_a);
+                g[(i, a + k)] += row.force[k].re();
+                g[(i, a + 3 + k)] += row.torque_a[k].re();
+                if let Some(b) = joint.body_b.map(|b| numbering.velocity(b)) {
+                    g[(i, b + k)] -= row.force[k].re();
+                    g[(i, b + 3 + k)] += row.torque_b[k].re();
+                }
+            }
+        }
+    }
+    if g.iter().any(|x| !x.is_finite()) {
+        return "positions of the assembly are not finite".into();
+    }
+    let svd = g.clone().svd(true, false);
+    let largest = svd.singular_values.max();
+    let redundant: Vec<usize> = (0..svd.singular_values.len())
+        .filter(|&k| svd.singular_values[k] <= NEGLIGIBLE * largest)
+        .collect();
+    let extra = numbering
+        .constraints()
+        .saturating_sub(numbering.velocities());
+    if redundant.is_empty() && extra == 0 {
+        return without_inertia(model);
+    }
+    let mut names: Vec<&str> = Vec::new();
+    if let Some(u) = &svd.u {
+        for (j, joint) in model.joints.iter().enumerate() {
+            let share: f64 = redundant
+                .iter()
+                .flat_map(|&k| numbering.rows(j).map(move |i| u[(i, k)].powi(2)))
+                .sum();
+            if share > 1e-8 {
+                names.push(&joint.name);
+            }
+        }
+    }
+    format!(
+        "{} of {} constraints are redundant; joints that repeat each other: {}",
+        redundant.len() + extra,
+        numbering.constraints(),
+        if names.is_empty() {
+            "all".to_string()
+        } else {
+            names.join(", ")
+        }
+    )
+}
+
+fn without_inertia<S: Scalar>(model: &Model<S>) -> String {
+    let names: Vec<&str> = model
+        .bodies
+        .iter()
+        .filter(|body| {
+            let j = body.inertia.map(|x| x.re());
+            let values = j.symmetric_eigenvalues();
+            body.mass.re() <= 0.0 || values.min() <= NEGLIGIBLE * values.max()
+        })
+        .map(|body| body.name.as_str())
+        .collect();
+    if names.is_empty() {
+        "the equations of motion are singular at this placement".into()
+    } else {
+        format!("bodies that can move without inertia: {}", names.join(", "))
+    }
+}

@@ -1,0 +1,428 @@
+//! Records survive the disk exactly, and differences between them are told.
+
+use flexbody::report::optimum::*;
+use flexbody::report::{
+    Column, Comparison, History, HistoryRow, Optimum, ReportError, Tolerances, atomic_write,
+    compare, read_text, summary, write_all,
+};
+use serde_json::json;
+
+fn history() -> History {
+    let row = |iteration: usize, objective: f64, barrier: f64| HistoryRow {
+        iteration,
+        evaluations: iteration + 1,
+        objective,
+        infeasibility: 2.76,
+        optimality: 0.1 + 0.2,
+        barrier,
+        step_norm: f64::MIN_POSITIVE,
+        dual_step: 1.0,
+        primal_step: 0.995,
+        regularisation: 0.0,
+        line_search_trials: 1,
+        phase: "normal".into(),
+        design: vec![400.0, -0.0],
+        constraints: vec![-2.76],
+    };
+    History {
+        objective: Column::new("range", Some("m")),
+        variables: vec![
+            Column::new("mass, \"heavy\" part", Some("kg")),
+            Column::new("angle [rad]", None),
+        ],
+        constraints: vec![Column::new("clear the\nbarrier", Some("m"))],
+        rows: vec![row(0, 546.507, 0.1), row(1, 1.0 / 3.0, 1e-300)],
+    }
+}
+
+fn optimum() -> Optimum {
+    let variable = |value, start, lower, upper, unit: &str| DesignValue {
+        value,
+        start,
+        lower: Some(lower),
+        upper: Some(upper),
+        unit: Some(unit.into()),
+    };
+    let residuals = KktResiduals {
+        stationarity: 3.2e-8,
+        feasibility: 1e-12,
+        complementarity: 1e-9,
+    };
+    Optimum {
+        status: "converged".into(),
+        message: "Converged to the tolerance 1e-6.".into(),
+        objective: Objective {
+            function: "range".into(),
+            sense: Sense::Maximise,
+            value: 849.8985,
+            unit: Some("m".into()),
+            true_maximum: Some(867.7),
+            estimated_error: Some(0.003),
+        },
+        start_objective: 546.507,
+        design: [
+            (
+                "counterweight".to_owned(),
+                variable(500.0, 400.0, 300.0, 500.0, "kg"),
+            ),
+            (
+                "angle".to_owned(),
+                variable(-0.0071602468, 0.0, -0.3, 0.5, "rad"),
+            ),
+        ]
+        .into(),
+        constraints: [(
+            "clear the barrier".to_owned(),
+            ConstraintValue {
+                value: 1e-9,
+                lower: Some(0.0),
+                upper: None,
+                unit: Some("m".into()),
+                multiplier: -3.5014,
+                active: Activity::Lower,
+            },
+        )]
+        .into(),
+        multipliers: Multipliers {
+            constraints: [("clear the barrier".to_owned(), 3.5014)].into(),
+            lower_bounds: Default::default(),
+            upper_bounds: [("counterweight".to_owned(), 0.9)].into(),
+        },
+        active_bounds: [("counterweight".to_owned(), Side::Upper)].into(),
+        kkt: Kkt {
+            scaled: residuals,
+            unscaled: residuals,
+        },
+        counts: Counts {
+            iterations: 21,
+            function_evaluations: 25,
+            gradient_evaluations: 22,
+            failed_evaluations: 1,
+            steps: 50_000,
+            newton_iterations: 140_000,
+            factorisations: 180_000,
+            solves: 230_000,
+        },
+        warnings: vec!["the aggregate is coarse".into()],
+        version: "0.1.0".into(),
+        problem: ProblemRecord {
+            name: "trebuchet".into(),
+            file: "trebuchet.json".into(),
+            sha256: "ab".repeat(32),
+            document: json!({"version": 1, "description": null}),
+        },
+    }
+}
+
+fn moved(comparison: &Comparison) -> Vec<(&str, &str)> {
+    let moved = |row: &&flexbody::report::compare::Row| {
+        row.verdict == flexbody::report::compare::Verdict::Moved
+    };
+    let rows = comparison.rows.iter().filter(moved);
+    rows.map(|row| (row.kind, row.name.as_str())).collect()
+}
+
+#[test]
+fn history_reads_back_exactly() {
+    let history = history();
+    let back = History::from_csv(&history.to_csv().expect("is valid")).expect("is valid");
+    assert_eq!(back, history);
+    assert!(back.rows[0].design[1].is_sign_negative());
+}
+
+#[test]
+fn history_heading_names_units() {
+    let text = history().to_csv().expect("is valid");
+    let start = "iteration,evaluations,objective: range [m],infeasibility,optimality,barrier,\
+                 step norm,dual step,primal step,regularisation,line search trials,phase,\
+                 \"variable: mass, \"\"heavy\"\" part [kg]\",variable: angle [rad] [],\
+                 \"constraint: clear the\nbarrier [m]\"\n0,1,546.507,2.76,";
+    assert!(text.starts_with(start), "{text}");
+}
+
+#[test]
+fn numbers_that_are_not_finite_are_empty_fields() {
+    let mut history = history();
+    history.rows[1].optimality = f64::INFINITY;
+    history.rows[1].constraints[0] = f64::NAN;
+    let text = history.to_csv().expect("is valid");
+    assert!(
+        text.lines()
+            .last()
+            .expect("is valid")
+            .ends_with("400.0,-0.0,")
+    );
+    let back = History::from_csv(&text).expect("is valid");
+    assert!(back.rows[1].optimality.is_nan() && back.rows[1].constraints[0].is_nan());
+}
+
+#[test]
+fn faults_of_a_history_name_the_line() {
+    let good = history().to_csv().expect("is valid");
+    let cases = [
+        (
+            String::new(),
+            "history, line 1: found an empty file, expected a header",
+        ),
+        (
+            good.replace("546.507", "5x"),
+            "history, line 3: found \"5x\", expected a finite number or nothing",
+        ),
+        (
+            good.replace("546.507", "inf"),
+            "history, line 3: found \"inf\", expected a finite number or nothing",
+        ),
+        (
+            good.replace("normal,400.0,-0.0,-2.76\n1", "normal,400.0,-0.0\n1"),
+            "history, line 3: found 14 fields, expected 15 as in the header",
+        ),
+        (
+            good.replace("dual step", "double step"),
+            "history, line 1: found column \"double step\", expected column \"dual step\"",
+        ),
+        (
+            "iteration,evaluations".into(),
+            "history, line 1: found 2 columns, expected at least 12",
+        ),
+    ];
+    for (text, message) in cases {
+        assert_eq!(
+            History::from_csv(&text)
+                .expect_err("must be refused")
+                .to_string(),
+            message
+        );
+    }
+    let mut short = history();
+    short.rows[1].design.pop();
+    assert_eq!(
+        short.to_csv().expect_err("must be refused").to_string(),
+        "history, line 3: found 1 design and 1 constraint values, \
+         expected 2 design and 1 constraint values"
+    );
+}
+
+#[test]
+fn optimum_reads_back_exactly_and_has_the_fixed_keys() {
+    let text = optimum().to_json().expect("is valid");
+    assert_eq!(Optimum::from_json(&text).expect("is valid"), optimum());
+    assert_eq!(
+        Optimum::from_json(&text)
+            .expect("is valid")
+            .to_json()
+            .expect("is valid"),
+        text
+    );
+    let value: serde_json::Value = serde_json::from_str(&text).expect("is valid");
+    for key in [
+        "status",
+        "objective",
+        "design",
+        "constraints",
+        "multipliers",
+        "active_bounds",
+        "kkt",
+        "counts",
+        "version",
+        "problem",
+    ] {
+        assert!(value.get(key).is_some(), "{key}");
+    }
+    assert_eq!(value["active_bounds"]["counterweight"], "upper");
+    assert_eq!(value["objective"]["sense"], "maximise");
+    assert!(
+        value["constraints"]["clear the barrier"]
+            .get("upper")
+            .is_none()
+    );
+}
+
+#[test]
+fn a_number_that_is_not_finite_is_refused_by_name() {
+    let refused = |change: fn(&mut Optimum), pointer: &str| {
+        let mut optimum = optimum();
+        change(&mut optimum);
+        match optimum.to_json() {
+            Err(ReportError::NotFinite { pointer: found }) => assert_eq!(found, pointer),
+            other => panic!("{other:?}"),
+        }
+    };
+    refused(|o| o.objective.value = f64::NAN, "/objective/value");
+    refused(
+        |o| o.objective.true_maximum = Some(f64::NAN),
+        "/objective/true_maximum",
+    );
+    refused(
+        |o| o.design[1].lower = Some(f64::NEG_INFINITY),
+        "/design/angle/lower",
+    );
+    refused(
+        |o| o.kkt.unscaled.feasibility = f64::INFINITY,
+        "/kkt/unscaled/feasibility",
+    );
+}
+
+#[test]
+fn an_optimum_agrees_with_itself() {
+    let comparison = compare(&optimum(), &optimum(), &Tolerances::default());
+    assert!(comparison.passed());
+    let count = comparison.rows.len();
+    assert_eq!(
+        comparison.text(),
+        format!("same optimum: {count} quantities within tolerance\n")
+    );
+}
+
+#[test]
+fn what_moved_is_told_and_what_is_within_tolerance_is_not() {
+    let tolerances = Tolerances::default();
+    let mut new = optimum();
+    new.objective.value *= 1.0 + 0.9e-6;
+    new.design[0].value -= 0.9e-4 * 200.0;
+    new.constraints[0].value = 0.9e-5;
+    new.counts.solves = 280_000;
+    new.counts.iterations = 10;
+    new.problem.sha256 = "cd".repeat(32);
+    let comparison = compare(&new, &optimum(), &tolerances);
+    assert!(comparison.passed());
+    assert!(
+        comparison.text().contains("note  work     iterations"),
+        "{}",
+        comparison.text()
+    );
+    let strict = Tolerances {
+        same_problem: true,
+        ..tolerances
+    };
+    assert_eq!(
+        moved(&compare(&new, &optimum(), &strict)),
+        [("problem", "sha256")]
+    );
+
+    new.status = "iteration limit".into();
+    new.objective.value = optimum().objective.value * (1.0 - 1.1e-6);
+    new.design[1].value += 1.1e-4 * 0.8;
+    new.constraints[0].value = 1.1e-5;
+    new.constraints[0].active = Activity::Inactive;
+    new.constraints[0].multiplier = 0.0;
+    new.active_bounds.clear();
+    new.counts.solves = 290_000;
+    let comparison = compare(&new, &optimum(), &tolerances);
+    assert!(!comparison.passed());
+    assert_eq!(
+        moved(&comparison),
+        [
+            ("status", ""),
+            ("objective", "value"),
+            ("design", "angle"),
+            ("constraint", "clear the barrier"),
+            ("active", "clear the barrier"),
+            ("sensitivity", "clear the barrier"),
+            ("active", "counterweight"),
+            ("work", "solves"),
+        ]
+    );
+}
+
+#[test]
+fn missing_and_extra_names_and_nan_are_differences() {
+    let mut new = optimum();
+    new.design.shift_remove("angle");
+    new.design
+        .insert("length".into(), optimum().design[0].clone());
+    new.constraints.clear();
+    new.objective.true_maximum = None;
+    new.start_objective = f64::NAN;
+    let comparison = compare(&new, &optimum(), &Tolerances::default());
+    assert_eq!(
+        moved(&comparison),
+        [
+            ("objective", "at the start"),
+            ("objective", "true maximum"),
+            ("design", "length"),
+            ("design", "angle"),
+            ("constraint", "clear the barrier"),
+        ]
+    );
+    assert!(comparison.text().contains("missing"));
+}
+
+#[test]
+fn summary_tells_what_changed_and_what_is_active() {
+    let expected = "\
+trebuchet: Converged to the tolerance 1e-6.
+
+Maximised range: 546.507 → 849.8985 m (+55.5 %)
+  the true maximum is 867.7 m, the aggregate differs from it by -17.8 m
+  accurate to about 0.003 m (estimated error of the time steps)
+
+  variable       start      optimum  unit  bounds      active
+  counterweight    400          500  kg    300 … 500   at its upper bound
+  angle              0  -0.0071602468  rad   -0.3 … 0.5
+";
+    let text = summary(&optimum());
+    for line in expected
+        .lines()
+        .filter(|line| !line.starts_with("  variable"))
+    {
+        let squeezed = line.split_whitespace().collect::<Vec<_>>().join(" ");
+        let found = text
+            .lines()
+            .any(|l| l.split_whitespace().collect::<Vec<_>>().join(" ") == squeezed);
+        assert!(found, "{line}\n---\n{text}");
+    }
+    assert!(text.contains("-3.5014 m per m"), "{text}");
+    assert!(text.contains("25 simulations (1 failed)"), "{text}");
+    assert!(text.contains("Warning: the aggregate is coarse"), "{text}");
+}
+
+#[test]
+fn files_are_written_whole_or_not_at_all() {
+    let directory = tempfile::tempdir().expect("is valid");
+    let path = directory.path().join("a.txt");
+    atomic_write(&path, b"first").expect("is valid");
+    atomic_write(&path, b"second").expect("is valid");
+    assert_eq!(read_text(&path).expect("is valid"), "second");
+
+    // The second file of the group cannot be written, so the first stays as it was.
+    let blocked = directory.path().join("blocked");
+    std::fs::create_dir(&blocked).expect("is valid");
+    let group = [
+        (path.clone(), b"third".to_vec()),
+        (blocked.clone(), b"x".to_vec()),
+    ];
+    let error = write_all(&group).expect_err("must be refused").to_string();
+    assert!(
+        error.starts_with(&format!("cannot write {}: ", blocked.display())),
+        "{error}"
+    );
+    assert_eq!(read_text(&path).expect("is valid"), "second");
+    let left: Vec<_> = std::fs::read_dir(directory.path())
+        .expect("is valid")
+        .collect();
+    assert_eq!(left.len(), 2, "no temporary file is left: {left:?}");
+}
+
+#[test]
+fn a_directory_that_cannot_take_a_file_is_named() {
+    let directory = tempfile::tempdir().expect("is valid");
+    let file = directory.path().join("file");
+    atomic_write(&file, b"x").expect("is valid");
+    let inside = file.join("inside.txt");
+    let error = atomic_write(&inside, b"y")
+        .expect_err("must be refused")
+        .to_string();
+    assert!(
+        error.starts_with(&format!("cannot write {}: ", inside.display())),
+        "{error}"
+    );
+    let error = write_all(&[(inside, b"y".to_vec())])
+        .expect_err("must be refused")
+        .to_string();
+    assert!(
+        error.starts_with(&format!("cannot write {}: ", file.display())),
+        "{error}"
+    );
+    let error = read_text(&directory.path().join("none")).expect_err("must be refused");
+    assert!(matches!(error, ReportError::Read { .. }));
+}
