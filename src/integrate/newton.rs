@@ -121,7 +121,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         let (nv, nc) = (numbering.velocities(), numbering.constraints());
         let scales = self.scales(x);
         let mut previous = f64::INFINITY;
-        let mut polish = false;
+        let (mut polish, mut before) = (false, 0.0_f64);
         for iteration in 1..=ITERATIONS {
             history.rates(&x.dq, &x.dv, &mut self.qdot, &mut self.vdot);
             let at = Instant {
@@ -179,7 +179,10 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             } else {
                 self.contraction
             };
-            let remaining = size * (contraction / (1.0 - contraction.min(0.9))).min(1.0);
+            // Contraction alternates between positions and multipliers: trust the worse of two.
+            let slow = contraction.max(before);
+            let remaining = size * (slow / (1.0 - slow.min(0.9))).min(1.0);
+            before = contraction;
             let stagnant = iteration > 2 && contraction > RENEW && size <= STAGNANT;
             if polish || remaining <= TOLERANCE || stagnant {
                 if S::INFINITESIMAL && !polish {
