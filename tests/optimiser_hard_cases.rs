@@ -10,7 +10,10 @@ use optimiser_problems::problem::{INF, Problem};
 const METHODS: [Method; 3] = [Method::InteriorPoint, Method::TrustRegion, Method::Auto];
 
 fn run(mut problem: Problem, method: Method) -> Outcome {
-    let options = Options { method, ..Options::default() };
+    let options = Options {
+        method,
+        ..Options::default()
+    };
     solve(&mut problem, &options, &mut Silent)
 }
 
@@ -20,11 +23,28 @@ fn solved_by_all(make: impl Fn() -> Problem, limit: usize) {
         let problem = make();
         let (name, best) = (problem.name, problem.best);
         let outcome = run(problem, method);
-        assert!(outcome.converged(), "{name} {method:?}: {:?} {:?}", outcome.status, outcome.kkt);
+        assert!(
+            outcome.converged(),
+            "{name} {method:?}: {:?} {:?}",
+            outcome.status,
+            outcome.kkt
+        );
         let error = (outcome.objective - best).abs() / best.abs().max(1.0);
-        assert!(error <= 1e-6, "{name} {method:?}: {} not {best}", outcome.objective);
-        assert!(outcome.kkt.violation <= 1e-6, "{name} {method:?}: {:?}", outcome.kkt);
-        assert!(outcome.counts.evaluations <= limit, "{name} {method:?}: {:?}", outcome.counts);
+        assert!(
+            error <= 1e-6,
+            "{name} {method:?}: {} not {best}",
+            outcome.objective
+        );
+        assert!(
+            outcome.kkt.violation <= 1e-6,
+            "{name} {method:?}: {:?}",
+            outcome.kkt
+        );
+        assert!(
+            outcome.counts.evaluations <= limit,
+            "{name} {method:?}: {:?}",
+            outcome.counts
+        );
     }
 }
 
@@ -64,12 +84,24 @@ fn optimum_without_multipliers_is_not_misjudged() {
             .all_within(0.0, INF)
             .rows(1, 0, |x| vec![(1.0 - x[0]).powi(3) - x[1]]);
         let outcome = run(problem, method);
-        assert!(outcome.kkt.violation <= 1e-6, "{method:?}: {:?}", outcome.kkt);
+        assert!(
+            outcome.kkt.violation <= 1e-6,
+            "{method:?}: {:?}",
+            outcome.kkt
+        );
         // A violation v moves the optimum by the cube root of v.
-        assert!((outcome.objective + 1.0).abs() <= 1.1e-2, "{method:?}: {}", outcome.objective);
+        assert!(
+            (outcome.objective + 1.0).abs() <= 1.1e-2,
+            "{method:?}: {}",
+            outcome.objective
+        );
         let force: f64 = outcome.multipliers.constraints.iter().sum();
         if outcome.converged() {
-            assert!(outcome.kkt.stationarity <= 1e-3, "{method:?}: {force} {:?}", outcome.kkt);
+            assert!(
+                outcome.kkt.stationarity <= 1e-3,
+                "{method:?}: {force} {:?}",
+                outcome.kkt
+            );
         } else {
             assert!(
                 matches!(outcome.status, Status::Stalled | Status::IterationLimit),
@@ -111,9 +143,18 @@ fn named_infeasible(make: impl Fn() -> Problem, least: f64) {
         let name = problem.name;
         let outcome = run(problem, method);
         match &outcome.status {
-            Status::Infeasible { constraint, violation } => {
-                assert!(constraint.starts_with("c["), "{name} {method:?}: {constraint}");
-                assert!((violation - least).abs() <= 1e-3 * least, "{name} {method:?}: {violation}");
+            Status::Infeasible {
+                constraint,
+                violation,
+            } => {
+                assert!(
+                    constraint.starts_with("c["),
+                    "{name} {method:?}: {constraint}"
+                );
+                assert!(
+                    (violation - least).abs() <= 1e-3 * least,
+                    "{name} {method:?}: {violation}"
+                );
             }
             other => panic!("{name} {method:?}: {other:?} {:?}", outcome.kkt),
         }
@@ -148,7 +189,12 @@ fn unbounded_programs_are_named() {
         for problem in [linear, concave] {
             let name = problem.name;
             let outcome = run(problem, method);
-            assert_eq!(outcome.status, Status::Unbounded, "{name} {method:?}: {:?}", outcome.kkt);
+            assert_eq!(
+                outcome.status,
+                Status::Unbounded,
+                "{name} {method:?}: {:?}",
+                outcome.kkt
+            );
         }
     }
 }
@@ -168,7 +214,12 @@ fn undefined_region_beside_the_optimum_is_avoided() {
         let outcome = run(make(), method);
         assert!(outcome.counts.failures > 0, "{method:?}: nothing failed");
         assert_eq!(outcome.failed_designs.len(), outcome.counts.failures);
-        assert!(outcome.failed_designs.iter().all(|d| d.x[0] <= 0.0 && !d.what.is_empty()));
+        assert!(
+            outcome
+                .failed_designs
+                .iter()
+                .all(|d| d.x[0] <= 0.0 && !d.what.is_empty())
+        );
     }
     solved_by_all(make, 80);
 }
@@ -234,14 +285,27 @@ fn two_hundred_variables_and_a_hundred_constraints_are_solved() {
     let interior = run(large(200), Method::InteriorPoint);
     let trust = run(large(200), Method::TrustRegion);
     let limited = {
-        let options = Options { dense_limit: 0, ..Options::default() };
+        let options = Options {
+            dense_limit: 0,
+            ..Options::default()
+        };
         solve(&mut large(200), &options, &mut Silent)
     };
     for outcome in [&interior, &trust, &limited] {
-        assert!(outcome.converged(), "{:?} {:?}", outcome.status, outcome.kkt);
+        assert!(
+            outcome.converged(),
+            "{:?} {:?}",
+            outcome.status,
+            outcome.kkt
+        );
         assert!(outcome.counts.evaluations <= 150, "{:?}", outcome.counts);
         let error = (outcome.objective - interior.objective).abs() / interior.objective;
-        assert!(error <= 1e-6, "{} {}", outcome.objective, interior.objective);
+        assert!(
+            error <= 1e-6,
+            "{} {}",
+            outcome.objective,
+            interior.objective
+        );
     }
 }
 
@@ -250,14 +314,23 @@ fn two_hundred_variables_and_a_hundred_constraints_are_solved() {
 fn claims_of_convergence_are_true() {
     for method in METHODS {
         for mut problem in hock_schittkowski() {
-            let options = Options { method, ..Options::default() };
+            let options = Options {
+                method,
+                ..Options::default()
+            };
             let outcome = solve(&mut problem, &options, &mut Silent);
             if outcome.converged() {
                 let kkt = outcome.kkt;
                 let name = problem.name;
                 assert!(kkt.violation <= 1e-6, "{name} {method:?}: {kkt:?}");
-                assert!(kkt.relative_stationarity <= 1e-6, "{name} {method:?}: {kkt:?}");
-                assert!(kkt.relative_complementarity <= 1e-6, "{name} {method:?}: {kkt:?}");
+                assert!(
+                    kkt.relative_stationarity <= 1e-6,
+                    "{name} {method:?}: {kkt:?}"
+                );
+                assert!(
+                    kkt.relative_complementarity <= 1e-6,
+                    "{name} {method:?}: {kkt:?}"
+                );
             }
         }
     }

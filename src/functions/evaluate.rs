@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 pub struct Evaluated<S> {
     /// The value.
     pub value: S,
-    /// For an aggregate: the largest sampled value and its time [s].
+    /// For an aggregate: the largest sampled value and its time (s).
     pub maximum: Option<(f64, f64)>,
     /// For an aggregate: ρ κ h² with κ the curvature at the peak; above about one the step is too
     /// coarse to resolve the peak that ρ asks for.

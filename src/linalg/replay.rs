@@ -116,7 +116,10 @@ impl<S: Scalar> Replay<S> {
                 x[self.entry_rows[k] as usize] = matrix.values[k];
             }
             let at = self.upper.starts[j]..self.upper.starts[j + 1];
-            for (&k, value) in self.upper.rows[at.clone()].iter().zip(&mut self.upper.values[at]) {
+            for (&k, value) in self.upper.rows[at.clone()]
+                .iter()
+                .zip(&mut self.upper.values[at])
+            {
                 let u = std::mem::replace(&mut x[k as usize], S::zero());
                 *value = u;
                 for (i, l) in self.lower.column(k as usize) {
@@ -127,7 +130,10 @@ impl<S: Scalar> Replay<S> {
             let inverse = S::one() / pivot;
             let at = self.lower.starts[j]..self.lower.starts[j + 1];
             let mut largest = 0.0_f64;
-            for (&i, value) in self.lower.rows[at.clone()].iter().zip(&mut self.lower.values[at]) {
+            for (&i, value) in self.lower.rows[at.clone()]
+                .iter()
+                .zip(&mut self.lower.values[at])
+            {
                 let v = std::mem::replace(&mut x[i as usize], S::zero());
                 largest = largest.max(v.re().abs());
                 *value = v * inverse;
@@ -176,11 +182,17 @@ impl<S: Scalar> Replay<S> {
             *x = b[column];
         }
         for j in 0..x.len() {
-            let sum = self.upper.column(j).fold(x[j], |sum, (i, u)| sum - u * x[i]);
+            let sum = self
+                .upper
+                .column(j)
+                .fold(x[j], |sum, (i, u)| sum - u * x[i]);
             x[j] = sum * self.inverse_pivots[j];
         }
         for j in (0..x.len()).rev() {
-            x[j] = self.lower.column(j).fold(x[j], |sum, (i, l)| sum - l * x[i]);
+            x[j] = self
+                .lower
+                .column(j)
+                .fold(x[j], |sum, (i, l)| sum - l * x[i]);
         }
         for (x, &row) in x.iter_mut().zip(&self.pivot_rows) {
             b[row] = std::mem::replace(x, S::zero());

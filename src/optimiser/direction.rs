@@ -66,7 +66,11 @@ impl NewtonSystem {
         let moved = a * &x;
         let slack = |(k, &j): (usize, &usize)| {
             let sigma = self.sigma[n + k];
-            if sigma > FAR { (y[j] - force[n + k]) / sigma } else { moved[j] + r[j] }
+            if sigma > FAR {
+                (y[j] - force[n + k]) / sigma
+            } else {
+                moved[j] + r[j]
+            }
         };
         let slacks = layout.slack_rows.iter().enumerate().map(slack);
         let s = DVector::from_iterator(layout.slack_rows.len(), slacks);

@@ -206,7 +206,10 @@ impl InteriorPoint {
     }
 
     fn theta(&self) -> f64 {
-        infeasibility(&self.layout.residual(&self.at.point.c, &self.at.s), &self.at.point.c)
+        infeasibility(
+            &self.layout.residual(&self.at.point.c, &self.at.s),
+            &self.at.point.c,
+        )
     }
 
     fn direction(&mut self) -> Option<(NewtonSystem, Direction)> {

@@ -272,7 +272,10 @@ fn interior_point(
         // Multipliers that grow without limit may hide a point that has finite ones.
         let fitted = ScaledMultipliers::polished(program, &point, &slopes, &multipliers.y);
         let residual = scaled_residual(program, &point, &slopes, &fitted);
-        if is_solved(&kkt(program, &point, &slopes, &fitted, residual), program.options) {
+        if is_solved(
+            &kkt(program, &point, &slopes, &fitted, residual),
+            program.options,
+        ) {
             (multipliers, scaled) = (fitted, residual);
         }
     }

@@ -186,8 +186,9 @@ pub(super) fn scaled_residual(
     let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
     let size = (z.y.lp_norm(1) + z.zl.lp_norm(1) + z.zu.lp_norm(1))
         / (z.y.len() + z.zl.len()).max(1) as f64;
-    let violation =
-        (0..z.y.len()).map(|k| program.row_violation(&point.c, k)).fold(0.0, f64::max);
+    let violation = (0..z.y.len())
+        .map(|k| program.row_violation(&point.c, k))
+        .fold(0.0, f64::max);
     (force.amax() / (size.max(100.0) / 100.0)).max(violation)
 }
 

@@ -29,7 +29,10 @@ impl<N: Nlp> Faulty<N> {
 }
 
 fn failure() -> EvaluationFailure {
-    EvaluationFailure { what: "the simulation".into(), reason: "Newton stalled".into() }
+    EvaluationFailure {
+        what: "the simulation".into(),
+        reason: "Newton stalled".into(),
+    }
 }
 
 impl<N: Nlp> Nlp for Faulty<N> {
