@@ -7,6 +7,7 @@
 use flexbody::integrate::Trajectory;
 use flexbody::math::{Mat3, Vec3};
 use flexbody::model::{Joint, JointFrame, JointKind, Model, RigidBody};
+use flexbody::system::observe::reactions;
 use serde_json::Value;
 
 /// One instant of a reference trajectory.
@@ -160,4 +161,23 @@ pub fn position_error(run: &Trajectory<f64>, reference: &[Instant]) -> f64 {
         }
     }
     worst
+}
+
+/// Largest difference of a joint's reaction (force [N] or torque about its point [N m], on body A,
+/// ground axes) from the reference, relative to the largest reaction at any of its instants.
+pub fn reaction_error(model: &Model<f64>, run: &Trajectory<f64>, reference: &[Instant]) -> f64 {
+    let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+    for at in reference {
+        let k = (at.time / run.h).round() as usize;
+        let found = reactions(model, &run.numbering, run.q(k), run.lambda(k));
+        for (joint, found) in model.joints.iter().zip(&found) {
+            let expected = &at.value["reactions"][&joint.name];
+            for (key, found) in [("force", found.force_ground), ("moment", found.torque_ground)] {
+                let expected = vector(&expected[key]);
+                largest = largest.max(expected.norm());
+                worst = worst.max((found - expected).norm());
+            }
+        }
+    }
+    worst / largest
 }
