@@ -5,25 +5,27 @@
 //!
 //! ```text
 //! J_kᵀ ψ_k = −[ g_y + T_kᵀ q̃_k ;  g_v + ṽ_k + (a_0/h) g_a ;  0 ;  0 ]
-//! q̇̄ = P_kᵀ ψ_1,   v̇̄ = M ψ_2 + g_a
-//! q̃_{k−i} += (a_i/h) q̇̄,   ṽ_{k−i} += (a_i/h) v̇̄            i = 1 … m
+//! q̇̄_k = P_kᵀ ψ_1,   v̇̄_k = M ψ_2 + g_a
+//! q̃_k = (1/h) Σ_{i≥1} a_i^{(k+i)} q̇̄_{k+i},   ṽ_k likewise
 //! df/dh += −(q̇̄ · q̇_k + v̇̄ · v̇_k) / h,   df/dx += ψ_kᵀ ∂F_k/∂x
 //! ```
 //!
 //! with (g_y, g_v, g_a) the partial derivatives of the function at instant k. At k = 0 the
 //! cotangents go back through the initial conditions (Kennedy & Boopathy, eq. 6 and 7, with the
 //! coefficients of the later steps and the initial conditions that the paper leaves out).
+//!
+//! The march solves for the increment ψ_k − ψ_{k+1}, and the sums with a_i become sums of
+//! increments of q̇̄ and v̇̄ with partial sums of a_i. Without that, the round-off of ψ comes back
+//! divided by h², as it does forwards.
 
-use crate::functions::evaluate::Linearised;
-use crate::functions::measure::{Snapshot, SnapshotCotangent};
-use crate::functions::{Function, Scene};
-use crate::integrate::bdf::{coefficients, order_of_step};
+use super::sweep::Sweep;
+use crate::functions::Scene;
+use crate::integrate::bdf::{coefficients, increment_coefficients, order_of_step};
 use crate::integrate::ggl::{Equations, Instant};
 use crate::integrate::{IntegrationFailure, Method, Trajectory, WorkCounts};
 use crate::linalg::{SparseLu, SparseMatrix};
+use crate::system::initial;
 use crate::system::kkt::SaddlePoint;
-use crate::system::{bodies, initial};
-use std::collections::VecDeque;
 
 /// Gradients and the work that they took.
 #[derive(Clone, Debug)]
@@ -33,23 +35,6 @@ pub struct AdjointRun {
     pub gradients: Vec<Scene<f64>>,
     /// Work of the backward march.
     pub counts: WorkCounts,
-}
-
-/// Cotangents of one instant that later steps have left: of q (position numbering) and v.
-#[derive(Clone)]
-struct Pending {
-    q: Vec<f64>,
-    v: Vec<f64>,
-}
-
-/// One function on its way back.
-struct Sweep<'a> {
-    linearised: Linearised<'a>,
-    cot: Scene<f64>,
-    own: usize,
-    /// Pending cotangents of the instants k, k − 1, …, k − m.
-    pending: VecDeque<Pending>,
-    by_h: f64,
 }
 
 /// Exact derivatives of the functions `which` (indices into the scene's) over `run`.
@@ -63,31 +48,20 @@ pub fn gradients(
 ) -> Result<AdjointRun, IntegrationFailure> {
     let Method::Bdf { order } = run.method;
     let (model, numbering) = (&scene.model, &run.numbering);
-    let (nq, nv) = (numbering.positions(), numbering.velocities());
-    let nothing = Pending {
-        q: vec![0.0; nq],
-        v: vec![0.0; nv],
-    };
+    let nv = numbering.velocities();
     let mut sweeps: Vec<Sweep> = which
         .iter()
-        .map(|&own| Sweep {
-            linearised: Linearised::new(&scene.functions[own], model, run),
-            cot: scene.zero_cotangent(),
-            own,
-            pending: vec![nothing.clone(); order + 1].into(),
-            by_h: 0.0,
-        })
+        .map(|&own| Sweep::new(scene, run, own, order))
         .collect();
     let mut counts = WorkCounts::default();
     let mut equations = Equations::new(model, numbering);
-    let mut plan: Option<(SparseMatrix<f64>, SparseLu<f64>)> = None;
-    let mut qdot = vec![0.0; nq];
-    let (mut qdot_bar, mut vdot_bar) = (vec![0.0; nq], vec![0.0; nv]);
-    let mut partials = Partials::new(nv);
+    let mut plan: Option<Plan> = None;
+    let mut qdot = vec![0.0; numbering.positions()];
+    let mut psi = vec![0.0; equations.order()];
     let h = run.h;
     for k in (1..=run.steps).rev() {
-        let a = coefficients(order_of_step(order, k));
-        difference(&mut qdot, a, h, |i| run.q(k - i));
+        let order_here = order_of_step(order, k);
+        rates(&mut qdot, run, k, order_here);
         let at = Instant {
             q: run.q(k),
             v: run.v(k),
@@ -96,14 +70,18 @@ pub fn gradients(
             qdot: &qdot,
             vdot: run.a(k),
         };
-        let (matrix, factors) = plan.get_or_insert_with(|| {
-            let pattern = equations.pattern(&at);
-            let factors = SparseLu::new(&pattern);
-            (SparseMatrix::new(pattern), factors)
-        });
-        matrix.assemble(|emit| equations.jacobian(&at, h, a[0] / h, emit));
-        factors
-            .factorise(matrix)
+        let plan = plan.get_or_insert_with(|| Plan::new(&mut equations, &at));
+        let a = coefficients(order_here);
+        // Steps near the start depend on coefficients that change from step to step.
+        let incremental = k >= order;
+        if incremental {
+            plan.held
+                .assemble(|emit| equations.jacobian(&at, h, 0.0, emit));
+        }
+        plan.matrix
+            .assemble(|emit| equations.jacobian(&at, h, a[0] / h, emit));
+        plan.factors
+            .factorise(&plan.matrix)
             .map_err(|singular| IntegrationFailure::Singular {
                 time: run.time(k),
                 step: k,
@@ -112,36 +90,47 @@ pub fn gradients(
         counts.steps += 1;
         counts.factorisations += 1;
         for sweep in &mut sweeps {
-            partials.linearise(sweep, scene, run, k);
-            let mut psi = vec![0.0; equations.order()];
+            sweep.linearise(scene, run, k);
+            psi.fill(0.0);
+            if incremental {
+                sweep.rates_by_increments(run, k, &increment_coefficients(order));
+            } else {
+                sweep.rates_by_values(run, k, a[0], |i| {
+                    let later = order_of_step(order, k + i);
+                    coefficients(later).get(i).copied()
+                });
+            }
             for i in 0..nv {
-                psi[i] = -partials.y[i];
-                psi[nv + i] = -(partials.v[i] + a[0] / h * partials.a[i]);
+                psi[i] = -sweep.y[i];
+                psi[nv + i] = -sweep.v[i];
             }
             equations.scale_columns(h, &mut psi);
-            factors.solve_transposed_refined(matrix, &mut psi);
+            if incremental {
+                let mut later = sweep.psi.clone();
+                equations.unscale_rows(h, &mut later);
+                let held = plan.held.multiply_transposed(&later);
+                psi.iter_mut()
+                    .zip(&held)
+                    .for_each(|(psi, held)| *psi -= held);
+            } else {
+                sweep.psi.fill(0.0);
+            }
+            plan.factors.solve_transposed(&mut psi);
             equations.scale_rows(h, &mut psi);
-            counts.solves += 2;
+            counts.solves += 1;
+            sweep.advance(&psi);
             let cot = &mut sweep.cot.model;
-            equations.pull_back(&at, &psi, cot, (&mut qdot_bar, &mut vdot_bar));
-            for (bar, g) in vdot_bar.iter_mut().zip(&partials.a) {
-                *bar += g;
-            }
-            for (i, &a) in a.iter().enumerate().skip(1) {
-                let earlier = &mut sweep.pending[i];
-                add_scaled(&mut earlier.q, a / h, &qdot_bar);
-                add_scaled(&mut earlier.v, a / h, &vdot_bar);
-            }
-            sweep.by_h -= (dot(&qdot_bar, &qdot) + dot(&vdot_bar, run.a(k))) / h;
-            sweep.pending.rotate_left(1);
-            sweep.pending[order].q.fill(0.0);
-            sweep.pending[order].v.fill(0.0);
+            equations.pull_back(&at, &sweep.psi, cot);
+            sweep.record_rates(scene, run, k, &psi, &qdot);
         }
     }
     let mut saddle = SaddlePoint::new(model, numbering);
     for sweep in &mut sweeps {
-        partials.linearise(sweep, scene, run, 0);
-        let bars = (&partials.y[..], &partials.v[..], &partials.a[..]);
+        sweep.linearise(scene, run, 0);
+        sweep.rates_by_values(run, 0, 0.0, |i| {
+            coefficients(order_of_step(order, i)).get(i).copied()
+        });
+        let bars = (&sweep.y[..], &sweep.v[..], &sweep.a[..]);
         let cot = &mut sweep.cot;
         initial::pull_back(
             model,
@@ -151,10 +140,7 @@ pub fn gradients(
             bars,
             &mut cot.model,
         )?;
-        cot.duration = sweep.by_h / run.steps as f64 + sweep.linearised.by_duration;
-        sweep
-            .linearised
-            .pull_back_parameters(&mut cot.functions[sweep.own]);
+        sweep.finish(run);
     }
     counts.factorisations += saddle.factorisations;
     counts.solves += saddle.factorisations;
@@ -164,59 +150,32 @@ pub fn gradients(
     })
 }
 
-/// Cotangents of one instant: partial derivatives of the function plus what is pending.
-struct Partials {
-    y: Vec<f64>,
-    v: Vec<f64>,
-    a: Vec<f64>,
+/// Matrices that every step fills again.
+struct Plan {
+    /// The iteration matrix.
+    matrix: SparseMatrix<f64>,
+    /// Its part with q̇ and v̇ held.
+    held: SparseMatrix<f64>,
+    factors: SparseLu<f64>,
 }
 
-impl Partials {
-    fn new(nv: usize) -> Self {
+impl Plan {
+    fn new(equations: &mut Equations<f64>, at: &Instant<f64>) -> Self {
+        let pattern = equations.pattern(at);
         Self {
-            y: vec![0.0; nv],
-            v: vec![0.0; nv],
-            a: vec![0.0; nv],
+            factors: SparseLu::new(&pattern),
+            held: SparseMatrix::new(pattern.clone()),
+            matrix: SparseMatrix::new(pattern),
         }
     }
-
-    fn linearise(
-        &mut self,
-        sweep: &mut Sweep,
-        scene: &Scene<f64>,
-        run: &Trajectory<f64>,
-        k: usize,
-    ) {
-        let pending = &sweep.pending[0];
-        bodies::tangent_of_cotangent(&run.numbering, run.q(k), &pending.q, &mut self.y);
-        self.v.copy_from_slice(&pending.v);
-        self.a.fill(0.0);
-        let mut out = SnapshotCotangent {
-            y: &mut self.y,
-            v: &mut self.v,
-            a: &mut self.a,
-            model: &mut sweep.cot.model,
-        };
-        let own: &mut Function<f64> = &mut sweep.cot.functions[sweep.own];
-        let at = Snapshot::of(&scene.model, run, k);
-        sweep.linearised.pull_back(k, &at, &mut out, own);
-    }
 }
 
-/// (1/h) Σ a_i x_{k−i}.
-fn difference<'a>(out: &mut [f64], a: &[f64], h: f64, x: impl Fn(usize) -> &'a [f64]) {
+/// q̇_k from the increments of the steps k, k − 1, ….
+fn rates(out: &mut [f64], run: &Trajectory<f64>, k: usize, order: usize) {
     out.fill(0.0);
-    for (i, &a) in a.iter().enumerate() {
-        add_scaled(out, a / h, x(i));
+    for (i, b) in increment_coefficients(order).iter().enumerate() {
+        for (out, d) in out.iter_mut().zip(run.dq(k - i)) {
+            *out += b / run.h * d;
+        }
     }
-}
-
-fn add_scaled(out: &mut [f64], scale: f64, x: &[f64]) {
-    for (out, x) in out.iter_mut().zip(x) {
-        *out += scale * x;
-    }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -99,6 +99,7 @@ fn march<S: SolveScalar>(
         newton.solve(&mut x, &history, h, k, &mut counts)?;
         history.rates(&x.dq, &x.dv, &mut qdot, &mut vdot);
         run.q.extend_from_slice(&x.q);
+        run.dq.extend_from_slice(&x.dq);
         run.v.extend_from_slice(&x.v);
         run.a.extend_from_slice(&vdot);
         run.lambda.extend_from_slice(&x.lambda);
@@ -111,7 +112,7 @@ fn march<S: SolveScalar>(
 
 /// Coefficients b_0 … b_{m−1} of ẋ_k ≈ (1/h) Σ b_i (x_{k−i} − x_{k−i−1}): the partial sums of
 /// [`coefficients`].
-fn increment_coefficients(order: usize) -> Vec<f64> {
+pub fn increment_coefficients(order: usize) -> Vec<f64> {
     let mut sum = 0.0;
     let partial = coefficients(order)[..order].iter().map(|a| {
         sum += a;

@@ -13,7 +13,7 @@
 //! h, h², 1, h; columns v, λ, μ divided by h, h², h).
 
 use crate::linalg::{Emit, Pattern};
-use crate::math::{Mat3, Scalar, Vec3};
+use crate::math::{Mat3, Scalar};
 use crate::model::Model;
 use crate::system::bodies::{
     self, Motion, all_force_balances, angular_velocity_by_theta, positions_of, torque_by_omega,
@@ -181,6 +181,11 @@ impl<'a, S: Scalar> Equations<'a, S> {
         scale_parts(psi, &[(f2, h * h), (f3, 1.0), (f4, h)]);
     }
 
+    /// The inverse of [`Equations::scale_rows`].
+    pub fn unscale_rows(&self, h: f64, psi: &mut [f64]) {
+        self.scale_rows(1.0 / h, psi);
+    }
+
     /// The body or joint that an equation (or unknown) belongs to, for messages.
     pub fn describe(&self, row: usize) -> String {
         let [_, f2, f3, f4] = self.starts();
@@ -205,20 +210,12 @@ fn scale_parts(x: &mut [f64], parts: &[(usize, f64)]) {
 }
 
 impl Equations<'_, f64> {
-    /// Pulls the adjoint ψ (unscaled, of F1 … F4) back to the parameters of `cot`, and returns the
-    /// cotangents of q̇ and v̇ in `qdot_bar`, `vdot_bar`.
-    pub fn pull_back(
-        &mut self,
-        at: &Instant<f64>,
-        psi: &[f64],
-        cot: &mut Model<f64>,
-        (qdot_bar, vdot_bar): (&mut [f64], &mut [f64]),
-    ) {
+    /// Pulls the adjoint ψ (unscaled, of F1 … F4) back to the parameters of `cot`.
+    pub fn pull_back(&mut self, at: &Instant<f64>, psi: &[f64], cot: &mut Model<f64>) {
         self.visit(at);
         let (model, numbering) = (self.model, self.numbering);
         let [_, f2, f3, f4] = self.starts();
         let (psi1, psi2, psi3, psi4) = (&psi[..f2], &psi[f2..f3], &psi[f3..f4], &psi[f4..]);
-        bodies::rates_cotangent(numbering, at.q, psi1, qdot_bar);
         for (i, body) in model.bodies.iter().enumerate() {
             let o = numbering.velocity(i);
             let (psi_r, psi_theta) = velocities_of(&psi2[o..]);
@@ -232,10 +229,6 @@ impl Equations<'_, f64> {
                 &mut cot.bodies[i],
                 &mut cot.gravity,
             );
-            let linear = psi_r * body.mass;
-            let angular: Vec3<f64> = body.inertia.tr_mul(&psi_theta);
-            vdot_bar[o..o + 3].copy_from_slice(linear.as_slice());
-            vdot_bar[o + 3..o + 6].copy_from_slice(angular.as_slice());
         }
         let mut pull = |w: &[f64], cotangents: [Option<&[f64]>; 3]| {
             let mut motions = Vec::with_capacity(numbering.bodies());

@@ -40,6 +40,9 @@ pub struct Trajectory<S> {
     pub method: Method,
     /// Positions, one row of `numbering.positions()` an instant.
     pub q: Vec<S>,
+    /// Increments of the positions in steps 1 … N, one row of `numbering.positions()` a step,
+    /// accurate to their own size.
+    pub dq: Vec<S>,
     /// Velocities, one row of `numbering.velocities()` an instant.
     pub v: Vec<S>,
     /// Accelerations v̇ as the method sees them.
@@ -72,6 +75,7 @@ impl<S: Scalar> Trajectory<S> {
             h,
             steps,
             method: settings.method,
+            dq: Vec::with_capacity(initial.q.len() * steps),
             q: room(&initial.q),
             v: room(&initial.v),
             a: room(&initial.a),
@@ -94,6 +98,11 @@ impl<S: Scalar> Trajectory<S> {
     /// Positions at t_k.
     pub fn q(&self, k: usize) -> &[S] {
         row(&self.q, self.numbering.positions(), k)
+    }
+
+    /// Increment q_k − q_{k−1} of step k ≥ 1.
+    pub fn dq(&self, k: usize) -> &[S] {
+        row(&self.dq, self.numbering.positions(), k - 1)
     }
 
     /// Velocities at t_k.
@@ -133,6 +142,7 @@ impl Trajectory<Complex64> {
             steps: self.steps,
             method: self.method,
             q: re(&self.q),
+            dq: re(&self.dq),
             v: re(&self.v),
             a: re(&self.a),
             lambda: re(&self.lambda),

@@ -101,21 +101,6 @@ impl<S: SolveScalar> SparseLu<S> {
         self.apply(b, true);
     }
 
-    /// Solves Aᵀ x = b in place, with one step of iterative refinement: x gains the digits that
-    /// partial pivoting alone loses on a badly scaled `matrix`.
-    pub fn solve_transposed_refined(&mut self, matrix: &SparseMatrix<S>, b: &mut [S]) {
-        let rhs = b.to_vec();
-        self.apply(b, true);
-        let mut residual = matrix.multiply_transposed(b);
-        for (r, &b) in residual.iter_mut().zip(&rhs) {
-            *r = b - *r;
-        }
-        self.apply(&mut residual, true);
-        for (x, &correction) in b.iter_mut().zip(&residual) {
-            *x += correction;
-        }
-    }
-
     fn apply(&mut self, b: &mut [S], transposed: bool) {
         let n = b.len();
         let rows = PermRef::new_checked(&self.rows_forward, &self.rows_inverse, n);

@@ -217,6 +217,16 @@ pub fn pull_force_balance(
     (body.inertia * omega).cross(psi_theta) + body.inertia.tr_mul(&turned)
 }
 
+/// The product M x, transposed: per body (m x_r, Jᵀ x_θ).
+pub fn mass_product<S: Scalar>(model: &Model<S>, numbering: &Numbering, x: &[S], out: &mut [S]) {
+    for (i, body) in model.bodies.iter().enumerate() {
+        let o = numbering.velocity(i);
+        let (linear, angular) = velocities_of(&x[o..]);
+        out[o..o + 3].copy_from_slice((linear * body.mass).as_slice());
+        out[o + 3..o + 6].copy_from_slice(body.inertia.tr_mul(&angular).as_slice());
+    }
+}
+
 /// Inertial minus applied forces of all bodies.
 pub fn all_force_balances<S: Scalar>(
     model: &Model<S>,
