@@ -6,6 +6,9 @@ use super::iterate::{Iterate, Layout};
 use super::kkt_system::KktSystem;
 use super::quasi_newton::QuasiNewton;
 
+/// Largest Σ of a slack that counts as far from its bounds.
+const FAR: f64 = 1e-8;
+
 /// Step of all parts of an [`Iterate`].
 #[derive(Clone, Debug)]
 pub(super) struct Direction {
@@ -59,12 +62,13 @@ impl NewtonSystem {
         }
         let a: &DMatrix<f64> = &at.slopes.a;
         let (x, y) = self.system.solve(b, a, &p, &q);
-        let slack = |k: usize, j: usize| (y[j] - force[n + k]) / self.sigma[n + k];
-        let slacks = layout
-            .slack_rows
-            .iter()
-            .enumerate()
-            .map(|(k, &j)| slack(k, j));
+        // Near a bound Σ is large and dy/Σ is accurate; far away Σ is tiny and only the rows are.
+        let moved = a * &x;
+        let slack = |(k, &j): (usize, &usize)| {
+            let sigma = self.sigma[n + k];
+            if sigma > FAR { (y[j] - force[n + k]) / sigma } else { moved[j] + r[j] }
+        };
+        let slacks = layout.slack_rows.iter().enumerate().map(slack);
         let s = DVector::from_iterator(layout.slack_rows.len(), slacks);
         let (below, above) = layout.distances(&at.point.x, &at.s);
         let dw = |i: usize| if i < n { x[i] } else { s[i - n] };

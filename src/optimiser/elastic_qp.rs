@@ -11,6 +11,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::outcome::Counts;
 
+/// Tolerance asked of Clarabel, in scaled units.
+const TOLERANCE: f64 = 1e-10;
+
 /// The subproblem
 ///
 /// ```text
@@ -239,6 +242,9 @@ impl ElasticQp {
             .verbose(false)
             .presolve_enable(false)
             .max_iter(100)
+            .tol_gap_abs(TOLERANCE)
+            .tol_gap_rel(TOLERANCE)
+            .tol_feas(TOLERANCE)
             .build()
             .ok()?;
         DefaultSolver::new(&p, q, &a, rhs, &[NonnegativeConeT(total)], settings).ok()

@@ -3,6 +3,9 @@
 /// Share of the infeasibility by which a step must improve on a filter entry.
 pub(super) const MARGIN: f64 = 1e-5;
 
+/// Growth of the infeasibility allowed after the filter was cleared.
+const GROWTH: f64 = 100.0;
+
 /// Entries (θ, φ); a point is acceptable if it improves on one of the two for every entry
 /// (Wächter & Biegler 2006, eq. 18 and 22).
 #[derive(Clone, Debug, Default)]
@@ -20,9 +23,10 @@ impl Filter {
         }
     }
 
-    /// Forgets all entries.
-    pub fn clear(&mut self) {
+    /// Forgets all entries at a point of infeasibility `theta`, which may grow a hundredfold.
+    pub fn clear(&mut self, theta: f64) {
         self.entries.clear();
+        self.largest = self.largest.min(GROWTH * theta.max(10.0));
     }
 
     /// Whether (θ, φ) is acceptable to every entry.

@@ -2,18 +2,17 @@
 
 use nalgebra::DVector;
 
+use super::barrier::BarrierRule;
 use super::direction::{Direction, NewtonSystem};
 use super::filter::Filter;
 use super::iterate::{Iterate, Layout};
-use super::line_search::{Accepted, LineSearch};
+use super::line_search::{Accepted, LineSearch, infeasibility};
 use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
 use super::trust_region::{Ending, Goal, TrustRegion};
 use super::verdict::{ScaledMultipliers, is_solved, kkt};
 
-/// A barrier subproblem is solved when its residual is below this multiple of μ.
-const SUBPROBLEM: f64 = 10.0;
 /// Multipliers of bounds stay within this factor of μ/distance.
 const MULTIPLIER_BAND: f64 = 1e10;
 /// Largest least-squares multiplier that is used.
@@ -21,19 +20,29 @@ const LARGEST_ESTIMATE: f64 = 1e3;
 /// Infeasibility below which multipliers of rows are recomputed by least squares.
 const NEARLY_FEASIBLE: f64 = 1e-6;
 
+/// Largest violation at which a step is accepted for the residual of the conditions alone, and the
+/// factor by which it must fall.
+const SOFT_VIOLATION: f64 = 1e-4;
+const SOFT_GAIN: f64 = 0.9;
+
+/// Trials of a line search after which its step counts as short; two short steps in succession
+/// show that the quasi-Newton matrix misleads.
+const SHORT_TRIALS: usize = 7;
+
 /// State of the iteration.
 pub(super) struct InteriorPoint {
     layout: Layout,
     pub at: Iterate,
     pub b: QuasiNewton,
-    pub mu: f64,
+    pub barrier: BarrierRule,
     filter: Filter,
     theta_small: f64,
+    short_steps: usize,
 }
 
 impl InteriorPoint {
-    /// Starts from a strictly interior point.
-    pub fn new(program: &Program<'_>, point: Point, slopes: Slopes) -> InteriorPoint {
+    /// Starts from a strictly interior point; slacks keep the share `push` from their bounds.
+    pub fn new(program: &Program<'_>, point: Point, slopes: Slopes, push: f64) -> InteriorPoint {
         let layout = Layout::new(program);
         let options = program.options;
         let n = layout.n;
@@ -43,7 +52,7 @@ impl InteriorPoint {
                 .slack_rows
                 .iter()
                 .enumerate()
-                .map(|(k, &j)| layout.push_inside(n + k, point.c[j], options.bound_push)),
+                .map(|(k, &j)| layout.push_inside(n + k, point.c[j], push)),
         );
         let one = |bound: &f64| if bound.is_finite() { 1.0 } else { 0.0 };
         let mut at = Iterate {
@@ -55,12 +64,13 @@ impl InteriorPoint {
             s,
         };
         at.estimate_multipliers(&layout, LARGEST_ESTIMATE);
-        let theta = layout.residual(&at.point.c, &at.s).lp_norm(1);
+        let theta = infeasibility(&layout.residual(&at.point.c, &at.s), &at.point.c);
         InteriorPoint {
             b: QuasiNewton::new(n, options.dense_limit, options.memory),
-            mu: options.initial_barrier,
+            barrier: BarrierRule::new(options),
             filter: Filter::new(1e4 * theta.max(1.0)),
             theta_small: 1e-4 * theta.max(1.0),
+            short_steps: 0,
             layout,
             at,
         }
@@ -69,7 +79,7 @@ impl InteriorPoint {
     /// Continues with multipliers of an earlier run.
     pub fn adopt(&mut self, multipliers: &ScaledMultipliers, b: QuasiNewton, mu: f64) {
         let n = self.layout.n;
-        self.mu = mu;
+        self.barrier.mu = mu;
         if b.order() == n {
             self.b = b;
         }
@@ -112,18 +122,20 @@ impl InteriorPoint {
             if self.is_unbounded(program) {
                 return Ok(Ending::Unbounded);
             }
-            self.lower_barrier(program);
+            if self.barrier.update(&self.at, &self.layout, &mut self.b) {
+                self.filter.clear(self.theta());
+            }
             program.next_iteration()?;
             let Some((system, direction)) = self.direction() else {
                 return Ok(Ending::Stalled);
             };
-            let tau = (1.0 - self.mu).max(0.99);
+            let tau = (1.0 - self.barrier.mu).max(0.99);
             let dual = direction.dual_limit(&self.at, tau);
             let search = LineSearch {
                 layout: &self.layout,
                 at: &self.at,
                 system: &system,
-                mu: self.mu,
+                mu: self.barrier.mu,
                 tau,
                 theta_small: self.theta_small,
             };
@@ -134,6 +146,9 @@ impl InteriorPoint {
                 }
                 None => {
                     failures += 1;
+                    if self.soft_step(program, failures)? {
+                        continue;
+                    }
                     if let Some(ending) = self.recover(program, failures)? {
                         return Ok(ending);
                     }
@@ -142,11 +157,63 @@ impl InteriorPoint {
         }
     }
 
+    /// Takes the longest step if it reduces the residual of the optimality conditions, where the
+    /// change of the barrier function is lost in rounding or curvature misleads the filter.
+    fn soft_step(&mut self, program: &mut Program<'_>, failures: usize) -> Result<bool, Trouble> {
+        let before = self.at.residuals(&self.layout, self.barrier.mu);
+        if failures > 2 || before.violation > SOFT_VIOLATION {
+            return Ok(false);
+        }
+        let Some((system, direction)) = self.direction() else {
+            return Ok(false);
+        };
+        let tau = (1.0 - self.barrier.mu).max(0.99);
+        let dual = direction.dual_limit(&self.at, tau);
+        let alpha = direction.primal_limit(&self.at, &self.layout, tau);
+        let x = &self.at.point.x + &direction.x * alpha;
+        let s = &self.at.s + &direction.s * alpha;
+        let tried = program
+            .evaluate(&x)
+            .and_then(|p| program.gradients(&x).map(|g| (p, g)));
+        let (point, slopes) = match tried {
+            Ok(found) => found,
+            Err(Trouble::Failed(_)) => return Ok(false),
+            Err(halt) => return Err(halt),
+        };
+        let mut moved = Iterate {
+            point: point.clone(),
+            slopes: slopes.clone(),
+            s: s.clone(),
+            y: &self.at.y + &direction.y * alpha,
+            zl: &self.at.zl + &direction.zl * dual,
+            zu: &self.at.zu + &direction.zu * dual,
+        };
+        moved.estimate_multipliers(&self.layout, f64::INFINITY);
+        if moved.residuals(&self.layout, self.barrier.mu).largest() > SOFT_GAIN * before.largest() {
+            return Ok(false);
+        }
+        let accepted = Accepted {
+            point,
+            slopes,
+            s,
+            alpha,
+            direction,
+            trials: 1,
+        };
+        self.filter.clear(self.theta());
+        self.step(program, accepted, dual, system.regularisation())?;
+        Ok(true)
+    }
+
+    fn theta(&self) -> f64 {
+        infeasibility(&self.layout.residual(&self.at.point.c, &self.at.s), &self.at.point.c)
+    }
+
     fn direction(&mut self) -> Option<(NewtonSystem, Direction)> {
         for _ in 0..2 {
             if let Some(system) = NewtonSystem::new(&self.at, &self.layout, &mut self.b) {
                 let r = self.layout.residual(&self.at.point.c, &self.at.s);
-                let step = system.step(&self.at, &self.layout, &mut self.b, self.mu, &r);
+                let step = system.step(&self.at, &self.layout, &mut self.b, self.barrier.mu, &r);
                 if step.is_finite() {
                     return Some((system, step));
                 }
@@ -180,16 +247,25 @@ impl InteriorPoint {
         at.point = point;
         let before = std::mem::replace(&mut at.slopes, slopes);
         at.s = s;
-        at.keep_multipliers_in_band(&self.layout, self.mu);
+        at.keep_multipliers_in_band(&self.layout, self.barrier.mu);
         let r = self.layout.residual(&at.point.c, &at.s);
         if r.lp_norm(1) < NEARLY_FEASIBLE {
             at.estimate_multipliers(&self.layout, f64::INFINITY);
         }
         let change = &at.slopes.g - &before.g + at.slopes.a.tr_mul(&at.y) - before.a.tr_mul(&at.y);
         self.b.update(moved, change);
+        self.short_steps = if trials > SHORT_TRIALS {
+            self.short_steps + 1
+        } else {
+            0
+        };
+        if self.short_steps >= 2 {
+            self.b.reset();
+            self.short_steps = 0;
+        }
         let progress = Progress {
             optimality: self.optimality(),
-            barrier: self.mu,
+            barrier: self.barrier.mu,
             step: direction.size(),
             regularisation,
             primal_step: alpha,
@@ -198,17 +274,6 @@ impl InteriorPoint {
             phase: Phase::Regular,
         };
         program.report(&self.at.point, &progress)
-    }
-
-    /// Lowers μ until its subproblem is not yet solved.
-    fn lower_barrier(&mut self, program: &Program<'_>) {
-        let least = 1e-4 * program.options.tolerance;
-        while self.mu > least
-            && self.at.residuals(&self.layout, self.mu).largest() <= SUBPROBLEM * self.mu
-        {
-            self.mu = (0.2 * self.mu).min(self.mu.powf(1.5)).max(least);
-            self.filter.clear();
-        }
     }
 
     fn is_solved(&self, program: &Program<'_>) -> bool {
@@ -236,15 +301,12 @@ impl InteriorPoint {
         program: &mut Program<'_>,
         failures: usize,
     ) -> Result<Option<Ending>, Trouble> {
-        let theta = self
-            .layout
-            .residual(&self.at.point.c, &self.at.s)
-            .lp_norm(1);
+        let theta = self.theta();
         let small = 1e-2 * program.options.tolerance;
         if theta <= small || failures > 3 {
             if failures == 1 && !self.b.is_empty() {
                 self.b.reset();
-                self.filter.clear();
+                self.filter.clear(self.theta());
                 return Ok(None);
             }
             if theta <= small || failures > 6 {
@@ -260,38 +322,36 @@ impl InteriorPoint {
         program: &mut Program<'_>,
         theta: f64,
     ) -> Result<Option<Ending>, Trouble> {
-        let phi =
-            self.layout
-                .barrier_function(self.at.point.f, &self.at.point.x, &self.at.s, self.mu);
+        let phi = self.layout.barrier_function(
+            self.at.point.f,
+            &self.at.point.x,
+            &self.at.s,
+            self.barrier.mu,
+        );
         self.filter.add(theta, phi);
         let (point, slopes) = (self.at.point.clone(), self.at.slopes.clone());
         let mut search = TrustRegion::new(program, point, slopes, Goal::Feasibility);
-        let (layout, filter, mu) = (&self.layout, &self.filter, self.mu);
+        let (layout, filter, mu) = (&self.layout, &self.filter, self.barrier.mu);
         let accepted = |_: &Program<'_>, p: &Point| {
             let s = slacks(layout, p);
-            let theta_new = layout.residual(&p.c, &s).lp_norm(1);
+            let theta_new = infeasibility(&layout.residual(&p.c, &s), &p.c);
             let phi = layout.barrier_function(p.f, &p.x, &s, mu);
             theta_new <= 0.9 * theta && filter.accepts(theta_new, phi)
         };
         let ending = search.run(program, accepted)?;
-        let before = self
-            .layout
-            .residual(&self.at.point.c, &self.at.s)
-            .lp_norm(1);
+        let before = self.theta();
         self.at.s = slacks(&self.layout, &search.point);
         self.at.point = search.point;
         self.at.slopes = search.slopes;
-        let after = self
-            .layout
-            .residual(&self.at.point.c, &self.at.s)
-            .lp_norm(1);
-        self.at.keep_multipliers_in_band(&self.layout, self.mu);
+        let after = self.theta();
+        self.at
+            .keep_multipliers_in_band(&self.layout, self.barrier.mu);
         self.at.estimate_multipliers(&self.layout, LARGEST_ESTIMATE);
         match ending {
             Ending::Reached => Ok(None),
             Ending::Infeasible => Ok(Some(Ending::Infeasible)),
             _ if after < 0.5 * before => {
-                self.filter.clear();
+                self.filter.clear(self.theta());
                 Ok(None)
             }
             other => Ok(Some(other)),

@@ -195,15 +195,23 @@ impl Iterate {
         let force = |i: usize| self.zu[i] - self.zl[i];
         let x = DVector::from_fn(layout.n, |i, _| self.slopes.g[i] + force(i));
         let mut normal: DMatrix<f64> = a * a.transpose();
-        let mut rhs = -(a * x);
-        for (k, &j) in layout.slack_rows.iter().enumerate() {
+        for &j in &layout.slack_rows {
             normal[(j, j)] += 1.0;
-            rhs[j] += force(layout.n + k);
         }
         for j in 0..m {
             normal[(j, j)] += 1e-12 * (1.0 + normal[(j, j)]);
         }
-        let y = Cholesky::new(normal)?.solve(&rhs);
+        let factor = Cholesky::new(normal)?;
+        // Refinement removes what the squared condition number and the small shift spoil.
+        let mut y = DVector::zeros(m);
+        for _ in 0..3 {
+            let rest = &x + a.tr_mul(&y);
+            let mut rhs = -(a * rest);
+            for (k, &j) in layout.slack_rows.iter().enumerate() {
+                rhs[j] += force(layout.n + k) - y[j];
+            }
+            y += factor.solve(&rhs);
+        }
         y.iter().all(|v| v.is_finite()).then_some(y)
     }
 }

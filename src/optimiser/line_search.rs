@@ -15,8 +15,17 @@ const THETA_POWER: f64 = 1.1;
 /// Share of the least sensible step at which the search gives up.
 const LEAST_STEP: f64 = 0.05;
 /// Second-order corrections tried, and the factor by which each must reduce the infeasibility.
-const CORRECTIONS: usize = 4;
+const CORRECTIONS: usize = 2;
 const CORRECTION_GAIN: f64 = 0.99;
+
+/// Sum of the scaled residuals that counts as none: below it they are mostly rounding, and the
+/// barrier function alone decides.
+const FEASIBLE: f64 = 1e-9;
+
+/// Infeasibility θ of the residuals `r` of rows whose values are `c`.
+pub(super) fn infeasibility(r: &DVector<f64>, c: &DVector<f64>) -> f64 {
+    (r.lp_norm(1) - FEASIBLE - 10.0 * f64::EPSILON * c.lp_norm(1)).max(0.0)
+}
 
 /// A point that the search accepted.
 pub(super) struct Accepted {
@@ -64,7 +73,7 @@ impl LineSearch<'_> {
     ) -> Result<Option<Accepted>, Trouble> {
         let r = self.layout.residual(&self.at.point.c, &self.at.s);
         let here = Measure {
-            theta: r.lp_norm(1),
+            theta: infeasibility(&r, &self.at.point.c),
             phi: self.layout.barrier_function(
                 self.at.point.f,
                 &self.at.point.x,
@@ -135,7 +144,7 @@ impl LineSearch<'_> {
             Err(halt) => return Err(halt),
         };
         let r = self.layout.residual(&point.c, &s);
-        let theta = r.lp_norm(1);
+        let theta = infeasibility(&r, &point.c);
         let phi = self.layout.barrier_function(point.f, &x, &s, self.mu);
         if !phi.is_finite() {
             return Ok(Trial::Undefined);

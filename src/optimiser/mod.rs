@@ -1,5 +1,6 @@
 //! Optimiser for smooth nonlinear programs of which only first derivatives are known.
 
+mod barrier;
 mod direction;
 mod elastic_qp;
 mod filter;

@@ -16,6 +16,12 @@ use super::outcome::{Counts, FailedDesign, Scaling, Status};
 /// Most designs kept of those at which an evaluation failed.
 const FAILED_DESIGNS_KEPT: usize = 100;
 
+/// An objective whose gradient at the start is below `FLAT` is multiplied until it is `LIFTED`, lest
+/// a start on a plateau be taken for a solution.
+const FLAT: f64 = 1e-5;
+const LIFTED: f64 = 1e-2;
+const LARGEST_LIFT: f64 = 1e8;
+
 /// Values of the scaled functions at a scaled point.
 #[derive(Clone, Debug)]
 pub(super) struct Point {
@@ -74,6 +80,10 @@ pub(super) struct Program<'a> {
     pub counts: Counts,
     pub failed: Vec<FailedDesign>,
     started: Instant,
+    /// Best point reported: feasible with the least objective, or least infeasible.
+    pub best: Option<Point>,
+    /// Last derivatives in the units of the user, kept for the multipliers of fixed variables.
+    last: Option<(DVector<f64>, Gradients)>,
 }
 
 impl<'a> Program<'a> {
@@ -131,6 +141,8 @@ impl<'a> Program<'a> {
             counts: Counts::default(),
             failed: Vec::new(),
             started: Instant::now(),
+            best: None,
+            last: None,
         }
     }
 
@@ -158,7 +170,13 @@ impl<'a> Program<'a> {
     pub fn scale(&mut self, point: &mut Point, slopes: &mut Slopes) {
         let limit = self.options.scaling_gradient;
         let norm = slopes.g.amax();
-        self.scaling.objective = if norm > limit { limit / norm } else { 1.0 };
+        self.scaling.objective = if norm > limit {
+            limit / norm
+        } else if norm > 0.0 && norm < FLAT {
+            (LIFTED / norm).min(LARGEST_LIFT)
+        } else {
+            1.0
+        };
         for (k, &j) in self.rows.iter().enumerate() {
             let norm = slopes.a.row(k).amax();
             self.scaling.constraints[j] = if norm > limit {
@@ -224,10 +242,10 @@ impl<'a> Program<'a> {
         let mut result = self.nlp.evaluate(&full);
         self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
         self.counts.evaluations += 1;
-        if let Ok(e) = &result {
-            if let Some(fault) = fault_of_evaluation(self.nlp, e) {
-                result = Err(fault);
-            }
+        if let Ok(e) = &result
+            && let Some(fault) = fault_of_evaluation(self.nlp, e)
+        {
+            result = Err(fault);
         }
         let Evaluation {
             objective,
@@ -252,10 +270,10 @@ impl<'a> Program<'a> {
         let mut result = self.nlp.gradients(&full);
         self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
         self.counts.gradients += 1;
-        if let Ok(g) = &result {
-            if let Some(fault) = fault_of_gradients(self.nlp, g) {
-                result = Err(fault);
-            }
+        if let Ok(g) = &result
+            && let Some(fault) = fault_of_gradients(self.nlp, g)
+        {
+            result = Err(fault);
         }
         let Gradients {
             objective,
@@ -336,6 +354,45 @@ impl<'a> Program<'a> {
         self.nlp
     }
 
+    /// Force ∇f + Jᵀy on the fixed variables in the units of the user, if the derivatives were last
+    /// taken at `x`; `y` are the multipliers of the user.
+    pub fn fixed_forces(&self, x: &DVector<f64>, y: &[f64]) -> Vec<(usize, f64)> {
+        let Some((_, gradients)) = self.last.as_ref().filter(|(at, _)| at == x) else {
+            return Vec::new();
+        };
+        let force = |i: usize| {
+            let rows = y
+                .iter()
+                .enumerate()
+                .map(|(j, y)| y * gradients.jacobian[(j, i)]);
+            gradients.objective[i] + rows.sum::<f64>()
+        };
+        let fixed = (0..self.scaling.variables.len()).filter(|i| !self.free.contains(i));
+        fixed.map(|i| (i, force(i))).collect()
+    }
+
+    fn keep_best(&mut self, point: &Point) {
+        let limit = self.options.constraint_tolerance;
+        let rank = |p: &Point| (self.worst_violation(&p.c).0.max(limit), p.f);
+        let better = match &self.best {
+            None => true,
+            Some(best) => {
+                let (new, old) = (rank(point), rank(best));
+                new.0 < old.0 || (new.0 == old.0 && new.1 < old.1)
+            }
+        };
+        if better {
+            self.best = Some(point.clone());
+        }
+    }
+
+    /// Starts from the design `x` instead of that of the user.
+    pub fn start_from(&mut self, x: &[f64]) {
+        for &i in &self.free {
+            self.template[i] = x[i];
+        }
+    }
+
     /// Values of all rows in the units of the user; zero for rows without bounds.
     pub fn user_constraints(&self, c: &DVector<f64>) -> Vec<f64> {
         let mut constraints = vec![0.0; self.scaling.constraints.len()];
@@ -347,6 +404,7 @@ impl<'a> Program<'a> {
 
     /// Tells the observer of an iteration.
     pub fn report(&mut self, point: &Point, progress: &Progress) -> Result<(), Trouble> {
+        self.keep_best(point);
         let x = self.to_user(&point.x);
         let constraints = self.user_constraints(&point.c);
         let row = Row {

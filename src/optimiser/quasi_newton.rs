@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 /// Least cosine of step and gradient difference for which a pair is used.
 const CURVATURE: f64 = 1.5e-8;
 
+/// Factor of the scale σ when pairs without positive curvature clear the memory.
+const FLATTER: f64 = 0.1;
+
 /// Most pairs from which a dense matrix is built again.
 const DENSE_PAIRS: usize = 200;
 
@@ -95,6 +98,7 @@ impl QuasiNewton {
             self.skipped += 1;
             if self.skipped >= 2 {
                 self.reset();
+                self.sigma = (FLATTER * self.sigma).max(1e-8);
             }
             return;
         }

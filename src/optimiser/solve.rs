@@ -12,11 +12,18 @@ use super::quasi_newton::QuasiNewton;
 use super::state::SavedState;
 use super::trust_region::{Ending, Goal, TrustRegion};
 use super::verdict::{
-    ScaledMultipliers, active, is_solved, kkt, scaled_multipliers, user_multipliers,
+    ScaledMultipliers, active, is_solved, kkt, scaled_multipliers, scaled_residual,
+    user_multipliers,
 };
 
 /// Starts tried where the functions are not defined.
 const START_TRIALS: usize = 12;
+
+/// How often the trust-region method looks for a feasible point where the penalties fail.
+const FEASIBILITY_PHASES: usize = 2;
+
+/// Least relative distance from a bound of the start of a resumed run.
+const RESUMED_PUSH: f64 = 1e-10;
 
 /// Minimises f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///
@@ -88,7 +95,20 @@ fn run(
     saved: Option<&SavedState>,
 ) -> Outcome {
     let mut program = Program::new(nlp, options, observer);
-    let (mut point, mut slopes) = match first_point(&mut program) {
+    let fits = |s: &&SavedState| {
+        s.scaling.constraints.len() == program.scaling.constraints.len()
+            && s.x.len() == program.scaling.variables.len()
+    };
+    let saved = saved.filter(fits);
+    if let Some(saved) = saved {
+        program.start_from(&saved.x);
+    }
+    let push = if saved.is_some() {
+        RESUMED_PUSH
+    } else {
+        options.bound_push
+    };
+    let (mut point, mut slopes) = match first_point(&mut program, push) {
         Ok(first) => first,
         Err(Trouble::Halt(status)) => return without_values(&program, status),
         Err(Trouble::Failed(failure)) => {
@@ -101,7 +121,6 @@ fn run(
         }
     };
     program.survey(&slopes);
-    let saved = saved.filter(|s| s.scaling.constraints.len() == program.scaling.constraints.len());
     match saved {
         Some(saved) => program.adopt_scaling(&saved.scaling, &mut point, &mut slopes),
         None => program.scale(&mut point, &mut slopes),
@@ -123,10 +142,10 @@ fn run(
     let interrupted = program.report(&point, &progress).is_err();
     let finish = match options.method {
         _ if interrupted => unfinished(&program, point, slopes),
-        Method::InteriorPoint => interior_point(&mut program, point, slopes, saved),
+        Method::InteriorPoint => interior_point(&mut program, point, slopes, saved, push),
         Method::TrustRegion => trust_region(&mut program, point, slopes, saved),
         Method::Auto => {
-            let first = interior_point(&mut program, point, slopes, saved);
+            let first = interior_point(&mut program, point, slopes, saved, push);
             if first.status == Status::Stalled {
                 trust_region(&mut program, first.point, first.slopes, None)
             } else {
@@ -134,15 +153,43 @@ fn run(
             }
         }
     };
+    let finish = best_of(&mut program, finish);
     outcome(&program, finish)
 }
 
+/// Replaces the point of a run that did not converge by a better one it passed through.
+fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
+    let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. });
+    let limit = program.options.constraint_tolerance;
+    let rank = |program: &Program<'_>, p: &Point| (program.worst_violation(&p.c).0.max(limit), p.f);
+    let found = program.best.clone().filter(|best| {
+        let (new, old) = (rank(program, best), rank(program, &finish.point));
+        !settled && (new.0 < old.0 || (new.0 == old.0 && new.1 < old.1))
+    });
+    let Some(point) = found else {
+        return finish;
+    };
+    let Ok(slopes) = program.gradients(&point.x) else {
+        return finish;
+    };
+    let y = &finish.multipliers.y;
+    let multipliers = ScaledMultipliers::polished(program, &point, &slopes, y);
+    let scaled = scaled_residual(program, &point, &slopes, &multipliers);
+    Finish {
+        point,
+        slopes,
+        multipliers,
+        scaled,
+        ..finish
+    }
+}
+
 /// Evaluates the start, moved into the interior of the bounds, or points near it.
-fn first_point(program: &mut Program<'_>) -> Result<(Point, Slopes), Trouble> {
+fn first_point(program: &mut Program<'_>, push: f64) -> Result<(Point, Slopes), Trouble> {
     let start = program.start();
     let mut first_failure: Option<EvaluationFailure> = None;
     for trial in 0..START_TRIALS {
-        let x = perturbed(program, &start, trial);
+        let x = perturbed(program, &start, trial, push);
         let tried = program
             .evaluate(&x)
             .and_then(|p| program.gradients(&x).map(|s| (p, s)));
@@ -162,15 +209,15 @@ fn first_point(program: &mut Program<'_>) -> Result<(Point, Slopes), Trouble> {
 }
 
 /// The start for `trial` 0, then points at growing distances in alternating directions.
-fn perturbed(program: &Program<'_>, start: &DVector<f64>, trial: usize) -> DVector<f64> {
+fn perturbed(program: &Program<'_>, start: &DVector<f64>, trial: usize, push: f64) -> DVector<f64> {
     let options = program.options;
     DVector::from_fn(start.len(), |i, _| {
         let (l, u) = (program.lower[i], program.upper[i]);
         let width = u - l;
         let margin = |bound: f64| {
-            let absolute = options.bound_push * bound.abs().max(1.0);
+            let absolute = push * bound.abs().max(1.0);
             if width.is_finite() {
-                absolute.min(options.bound_push.min(0.49) * width)
+                absolute.min(push.min(0.49) * width)
             } else {
                 absolute
             }
@@ -209,22 +256,34 @@ fn interior_point(
     point: Point,
     slopes: Slopes,
     saved: Option<&SavedState>,
+    push: f64,
 ) -> Finish {
-    let mut method = InteriorPoint::new(program, point, slopes);
+    let mut method = InteriorPoint::new(program, point, slopes, push);
     if let Some(saved) = saved {
         let multipliers = scaled_multipliers(program, &saved.multipliers);
         method.adopt(&multipliers, saved.quasi_newton.clone(), saved.barrier);
     }
     let result = method.run(program);
     let status = status_of(program, result, &method.at.point);
+    let mut multipliers = method.multipliers(program);
+    let mut scaled = method.optimality();
+    let (point, slopes) = (method.at.point, method.at.slopes);
+    if status == Status::Stalled {
+        // Multipliers that grow without limit may hide a point that has finite ones.
+        let fitted = ScaledMultipliers::polished(program, &point, &slopes, &multipliers.y);
+        let residual = scaled_residual(program, &point, &slopes, &fitted);
+        if is_solved(&kkt(program, &point, &slopes, &fitted, residual), program.options) {
+            (multipliers, scaled) = (fitted, residual);
+        }
+    }
     Finish {
         status,
-        multipliers: method.multipliers(program),
-        scaled: method.optimality(),
-        point: method.at.point,
-        slopes: method.at.slopes,
+        multipliers,
+        scaled,
+        point,
+        slopes,
         b: method.b,
-        barrier: method.mu,
+        barrier: method.barrier.mu,
         radius: program.options.initial_radius,
     }
 }
@@ -243,7 +302,25 @@ fn trust_region(
         }
         method.radius = saved.radius;
     }
-    let result = method.run(program, |_, _| false);
+    let mut result = method.run(program, |_, _| false);
+    for _ in 0..FEASIBILITY_PHASES {
+        let limit = program.options.constraint_tolerance;
+        let stuck = matches!(result, Ok(Ending::Stalled | Ending::Infeasible));
+        if !stuck || program.worst_violation(&method.point.c).0 <= limit {
+            break;
+        }
+        let (point, slopes) = (method.point.clone(), method.slopes.clone());
+        let mut phase = TrustRegion::new(program, point, slopes, Goal::Feasibility);
+        result = phase.run(program, |program, p| {
+            program.worst_violation(&p.c).0 <= limit
+        });
+        let (point, slopes) = (phase.point, phase.slopes);
+        method = TrustRegion::new(program, point, slopes, Goal::Optimum);
+        if !matches!(result, Ok(Ending::Reached)) {
+            break;
+        }
+        result = method.run(program, |_, _| false);
+    }
     let status = status_of(program, result, &method.point);
     Finish {
         status,
@@ -316,7 +393,7 @@ fn outcome(program: &Program<'_>, finish: Finish) -> Outcome {
     for (k, &j) in program.rows.iter().enumerate() {
         constraints[j] = point.c[k] / program.scaling.constraints[j];
     }
-    let user = user_multipliers(program, &multipliers);
+    let user = user_multipliers(program, &point.x, &multipliers);
     let nlp = program.nlp();
     let (lower, upper) = nlp.variable_bounds();
     let (row_lower, row_upper) = nlp.constraint_bounds();

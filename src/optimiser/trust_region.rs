@@ -10,13 +10,19 @@ use super::elastic_qp::{ElasticQp, QpData, QpStep};
 use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
-use super::verdict::{ScaledMultipliers, is_solved, kkt};
+use super::verdict::{ScaledMultipliers, is_solved, kkt, scaled_residual};
 
 /// Share of the predicted reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-4;
 
 /// Share of the best possible reduction of the linearised violation that a step must reach.
 const STEERING: f64 = 0.1;
+
+/// Steps in succession whose predicted reduction is lost in rounding that are still tried.
+const LOST_STEPS: usize = 4;
+
+/// Share of the violation that its linearisation may still lose at a point called infeasible.
+const STATIONARY: f64 = 1e-4;
 
 /// What the iteration minimises.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,6 +69,7 @@ impl TrustRegion {
     pub fn new(program: &Program<'_>, point: Point, slopes: Slopes, goal: Goal) -> TrustRegion {
         let (n, m) = (point.x.len(), point.c.len());
         let options = program.options;
+        let point_size = point.x.amax().max(1.0);
         let mut b = QuasiNewton::new(n, usize::MAX, options.memory);
         if goal == Goal::Feasibility {
             b.set_scale(1e-4 * slopes.a.amax().max(1e-8));
@@ -73,7 +80,7 @@ impl TrustRegion {
             slopes,
             y: DVector::zeros(m),
             b,
-            radius: options.initial_radius,
+            radius: options.initial_radius * point_size,
             goal,
             penalty: DVector::from_element(m, 1.0),
         }
@@ -85,10 +92,7 @@ impl TrustRegion {
 
     /// Multipliers of the whole program at the present point.
     pub fn multipliers(&self, program: &Program<'_>) -> ScaledMultipliers {
-        let mut z =
-            ScaledMultipliers::from_rows(program, &self.point, &self.slopes, self.y.clone());
-        z.clip(program);
-        z
+        ScaledMultipliers::polished(program, &self.point, &self.slopes, &self.y)
     }
 
     /// Iterates until `reached` or an ending of its own.
@@ -99,13 +103,14 @@ impl TrustRegion {
     ) -> Result<Ending, Trouble> {
         let tiny = 1e-13;
         let mut rejected = 0;
+        let mut lost = 0;
         loop {
             if self.goal == Goal::Optimum && self.is_unbounded(program) {
                 return Ok(Ending::Unbounded);
             }
             let Some(model) = self.solve_model(program) else {
                 if self.b.is_empty() && self.radius < 1e-6 {
-                    return Ok(Ending::Stalled);
+                    return Ok(self.end(program));
                 }
                 self.b.reset();
                 self.radius *= 0.1;
@@ -116,10 +121,15 @@ impl TrustRegion {
                 return Ok(Ending::Reached);
             }
             let size = model.step.d.amax();
-            let negligible =
-                model.predicted <= 1e-14 * self.merit(program, &self.point).abs().max(1e-8);
+            let rounding = f64::EPSILON * self.merit(program, &self.point).abs().max(1e-8);
+            lost = if model.predicted <= rounding {
+                lost + 1
+            } else {
+                0
+            };
+            let negligible = model.predicted <= 0.0 || lost > LOST_STEPS;
             if negligible || self.radius < tiny {
-                return Ok(self.end(program, negligible));
+                return Ok(self.end(program));
             }
             program.next_iteration()?;
             let (ratio, trials) = self.attempt(program, &model)?;
@@ -127,7 +137,7 @@ impl TrustRegion {
             let radius = self.radius;
             if ratio < 0.25 {
                 self.radius = if ratio < -1e3 { 0.1 } else { 0.4 } * size.min(self.radius);
-            } else if ratio > 0.75 && boundary {
+            } else if ratio > 0.5 && boundary {
                 self.radius *= 2.5;
             }
             rejected = if ratio > ACCEPT { 0 } else { rejected + 1 };
@@ -160,13 +170,26 @@ impl TrustRegion {
         }
     }
 
-    fn end(&self, program: &Program<'_>, stationary: bool) -> Ending {
-        let feasible =
-            program.worst_violation(&self.point.c).0 <= program.options.constraint_tolerance;
-        if feasible || !stationary {
-            Ending::Stalled
-        } else {
-            Ending::Infeasible
+    /// Names what a point at which no step is left is: infeasible only if the linearised violation
+    /// cannot be reduced in a box of the size of the point.
+    fn end(&mut self, program: &mut Program<'_>) -> Ending {
+        let limit = program.options.constraint_tolerance;
+        if program.worst_violation(&self.point.c).0 <= limit {
+            return Ending::Stalled;
+        }
+        let (radius, goal) = (self.radius, self.goal);
+        self.radius = self.point.x.amax().max(1.0);
+        self.goal = Goal::Optimum;
+        let c = self.point.c.clone();
+        let kept = std::mem::replace(&mut self.penalty, DVector::from_element(c.len(), 1.0));
+        let step = self.solve_qp(program, 0.0, &c);
+        (self.radius, self.goal, self.penalty) = (radius, goal, kept);
+        let now = program.total_violation(&c);
+        match step {
+            Some(step) if now - self.linear_violation(program, &step.d) <= STATIONARY * now => {
+                Ending::Infeasible
+            }
+            _ => Ending::Stalled,
         }
     }
 
@@ -179,14 +202,7 @@ impl TrustRegion {
     /// Largest scaled residual of the optimality conditions.
     pub fn optimality(&self, program: &Program<'_>) -> f64 {
         let z = self.multipliers(program);
-        let force = &self.slopes.g + self.slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
-        let size = (z.y.lp_norm(1) + z.zl.lp_norm(1) + z.zu.lp_norm(1))
-            / (z.y.len() + z.zl.len()).max(1) as f64;
-        let scale = size.max(100.0) / 100.0;
-        let violation = (0..z.y.len())
-            .map(|k| program.row_violation(&self.point.c, k))
-            .fold(0.0, f64::max);
-        (force.amax() / scale).max(violation)
+        scaled_residual(program, &self.point, &self.slopes, &z)
     }
 
     fn is_optimal(&self, program: &Program<'_>) -> bool {
@@ -211,35 +227,27 @@ impl TrustRegion {
         let now = program.total_violation(&c);
         let mut left = self.linear_violation(program, &step.d);
         let small = 0.01 * program.options.constraint_tolerance;
-        if self.goal == Goal::Optimum && now > 0.0 && left > small {
+        if self.goal == Goal::Optimum && left > small {
             let kept = std::mem::replace(&mut self.penalty, DVector::from_element(c.len(), 1.0));
             let best = self.solve_qp(program, 0.0, &c);
             self.penalty = kept;
             let best = best.map_or(left, |s| self.linear_violation(program, &s.d));
-            for _ in 0..8 {
-                let enough = if best <= small {
-                    left <= small.max(0.9 * now) && left <= 10.0 * small || left <= 0.5 * now
+            for _ in 0..10 {
+                let target = if best <= small {
+                    10.0 * small
                 } else {
-                    now - left >= STEERING * (now - best)
+                    now - STEERING * (now - best)
                 };
-                if enough {
+                if left <= target {
                     break;
                 }
                 for k in 0..c.len() {
-                    if self.linear_row_violation(program, &step.d, k) > 0.0 {
+                    if self.linear_row_violation(program, &step.d, k) > 0.1 * small {
                         self.penalty[k] *= 10.0;
                     }
                 }
                 step = self.solve_qp(program, self.weight(), &c)?;
                 left = self.linear_violation(program, &step.d);
-            }
-        }
-        for k in 0..c.len() {
-            if step.y[k].abs() > 0.9 * self.penalty[k]
-                && self.penalty[k] < 1e8
-                && self.goal == Goal::Optimum
-            {
-                self.penalty[k] = self.penalty[k].max(1.5 * step.y[k].abs());
             }
         }
         let d = &step.d;

@@ -1,6 +1,6 @@
 //! Residuals in the units of the user, by which a point is judged.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::options::Options;
 use super::outcome::{ActiveBound, Kkt, Multipliers, Side};
@@ -43,6 +43,37 @@ impl ScaledMultipliers {
         ScaledMultipliers { y, zl, zu }
     }
 
+    /// As [`ScaledMultipliers::from_rows`] with the better of `y` and the least-squares multipliers
+    /// of the rows that `y` shows to be active.
+    pub fn polished(
+        program: &Program<'_>,
+        point: &Point,
+        slopes: &Slopes,
+        y: &DVector<f64>,
+    ) -> Self {
+        let mut given = Self::from_rows(program, point, slopes, y.clone());
+        given.clip(program);
+        let Some(mut estimate) = least_squares(program, point, slopes, y) else {
+            return given;
+        };
+        let before = estimate.clone();
+        let mut fitted = Self::from_rows(program, point, slopes, estimate.clone());
+        fitted.clip(program);
+        estimate -= &fitted.y;
+        if estimate.amax() > 1e-8 * before.amax() {
+            return given;
+        }
+        let worst = |z: &Self| {
+            let k = kkt(program, point, slopes, z, 0.0);
+            k.relative_stationarity.max(k.relative_complementarity)
+        };
+        if worst(&fitted) < worst(&given) {
+            fitted
+        } else {
+            given
+        }
+    }
+
     /// Sets to zero what has the wrong sign for the bounds that a row has.
     pub fn clip(&mut self, program: &Program<'_>) {
         for k in 0..self.y.len() {
@@ -56,6 +87,46 @@ impl ScaledMultipliers {
     }
 }
 
+/// Multipliers of the active rows that balance the force on the variables between their bounds.
+fn least_squares(
+    program: &Program<'_>,
+    point: &Point,
+    slopes: &Slopes,
+    y: &DVector<f64>,
+) -> Option<DVector<f64>> {
+    let distance = |k: usize| {
+        let bound = if y[k] > 0.0 {
+            program.row_upper[k]
+        } else {
+            program.row_lower[k]
+        };
+        (point.c[k] - bound).abs()
+    };
+    let rows: Vec<usize> = (0..y.len()).filter(|&k| y[k].abs() > distance(k)).collect();
+    let inside = |i: usize| {
+        let room = (point.x[i] - program.lower[i]).min(program.upper[i] - point.x[i]);
+        room > 1e-9 * point.x[i].abs().max(1.0)
+    };
+    let variables: Vec<usize> = (0..point.x.len()).filter(|&i| inside(i)).collect();
+    if rows.is_empty() || variables.is_empty() {
+        return None;
+    }
+    let a = DMatrix::from_fn(variables.len(), rows.len(), |i, k| {
+        slopes.a[(rows[k], variables[i])]
+    });
+    let g = DVector::from_fn(variables.len(), |i, _| -slopes.g[variables[i]]);
+    let fitted = a.svd(true, true).solve(&g, 1e-12).ok()?;
+    let mut all = DVector::zeros(y.len());
+    for (value, &k) in fitted.iter().zip(&rows) {
+        all[k] = *value;
+    }
+    Some(all)
+}
+
+/// Largest ratio of the terms of Jᵀy and ∇f by which the residual is divided: multipliers that
+/// grow without limit, because constraints are dependent, must not hide it.
+const LARGEST_FORCE: f64 = 1e3;
+
 /// Residuals at a point; `scaled` is left to the caller.
 pub(super) fn kkt(
     program: &Program<'_>,
@@ -66,13 +137,13 @@ pub(super) fn kkt(
 ) -> Kkt {
     let unit_f = program.scaling.objective;
     let force = slopes.a.tr_mul(&z.y);
-    let (mut stationarity, mut size) = (0.0_f64, 1.0_f64);
+    let (mut stationarity, mut size, mut gradient) = (0.0_f64, 1.0_f64, 1.0_f64);
     let mut complementarity = 0.0_f64;
     for (i, &user) in program.free.iter().enumerate() {
         let unit = unit_f * program.scaling.variables[user];
         let residual = slopes.g[i] + force[i] - z.zl[i] + z.zu[i];
         stationarity = stationarity.max(residual.abs() / unit);
-        size = size.max(slopes.g[i].abs() / unit);
+        gradient = gradient.max(slopes.g[i].abs() / unit);
         for k in 0..z.y.len() {
             size = size.max((slopes.a[(k, i)] * z.y[k]).abs() / unit);
         }
@@ -97,11 +168,27 @@ pub(super) fn kkt(
     Kkt {
         violation: program.worst_violation(&point.c).0,
         stationarity,
-        relative_stationarity: stationarity / size,
+        relative_stationarity: stationarity / size.clamp(gradient, LARGEST_FORCE * gradient),
         complementarity,
         relative_complementarity: complementarity / (point.f / unit_f).abs().max(1.0),
         scaled,
     }
+}
+
+/// Largest residual of the conditions in scaled units, the forces divided by the size of the
+/// multipliers.
+pub(super) fn scaled_residual(
+    program: &Program<'_>,
+    point: &Point,
+    slopes: &Slopes,
+    z: &ScaledMultipliers,
+) -> f64 {
+    let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
+    let size = (z.y.lp_norm(1) + z.zl.lp_norm(1) + z.zu.lp_norm(1))
+        / (z.y.len() + z.zl.len()).max(1) as f64;
+    let violation =
+        (0..z.y.len()).map(|k| program.row_violation(&point.c, k)).fold(0.0, f64::max);
+    (force.amax() / (size.max(100.0) / 100.0)).max(violation)
 }
 
 /// Whether `kkt` meets the tolerances.
@@ -114,7 +201,11 @@ pub(super) fn is_solved(kkt: &Kkt, options: &Options) -> bool {
 }
 
 /// Multipliers in the units of the user.
-pub(super) fn user_multipliers(program: &Program<'_>, z: &ScaledMultipliers) -> Multipliers {
+pub(super) fn user_multipliers(
+    program: &Program<'_>,
+    x: &DVector<f64>,
+    z: &ScaledMultipliers,
+) -> Multipliers {
     let unit_f = program.scaling.objective;
     let (n, m) = (
         program.scaling.variables.len(),

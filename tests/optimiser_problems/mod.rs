@@ -1,8 +1,12 @@
 //! Test problems with known optima.
 
 pub mod dual;
+pub mod faulty;
 mod hs_001_030;
 mod hs_031_060;
+mod hs_061_086;
+mod hs_093_110;
+mod hs_111_119;
 pub mod problem;
 
 use problem::Problem;
@@ -11,5 +15,8 @@ use problem::Problem;
 pub fn hock_schittkowski() -> Vec<Problem> {
     let mut all = hs_001_030::problems();
     all.extend(hs_031_060::problems());
+    all.extend(hs_061_086::problems());
+    all.extend(hs_093_110::problems());
+    all.extend(hs_111_119::problems());
     all
 }

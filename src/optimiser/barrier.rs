@@ -1,0 +1,119 @@
+//! Choice of the barrier parameter.
+
+use super::direction::{Direction, NewtonSystem};
+use super::iterate::{Iterate, Layout};
+use super::options::{Barrier, Options};
+use super::quasi_newton::QuasiNewton;
+
+/// A barrier subproblem is solved when its residual is below this multiple of μ.
+const SUBPROBLEM: f64 = 10.0;
+/// Superlinear decrease μ ← min(0.2 μ, μ^1.5) of the monotone rule.
+const LINEAR: f64 = 0.2;
+const POWER: f64 = 1.5;
+/// Residuals kept for the test of progress of the adaptive rule, and the factor by which their
+/// largest must fall.
+const HISTORY: usize = 6;
+const PROGRESS: f64 = 0.9999;
+
+/// How often the adaptive rule comes back after the monotone one took over.
+const RETURNS: usize = 1;
+
+/// State of the rule.
+#[derive(Clone, Debug)]
+pub(super) struct BarrierRule {
+    pub mu: f64,
+    least: f64,
+    /// Whether μ is chosen anew at each iteration.
+    free: bool,
+    adaptive: bool,
+    history: Vec<f64>,
+    returns: usize,
+}
+
+impl BarrierRule {
+    pub fn new(options: &Options) -> BarrierRule {
+        let adaptive = options.barrier == Barrier::Adaptive;
+        BarrierRule {
+            mu: options.initial_barrier,
+            least: 1e-4 * options.tolerance,
+            free: adaptive,
+            adaptive,
+            history: Vec::new(),
+            returns: 0,
+        }
+    }
+
+    /// Updates μ for the iteration that starts at `at`; returns whether it changed.
+    pub fn update(&mut self, at: &Iterate, layout: &Layout, b: &mut QuasiNewton) -> bool {
+        let before = self.mu;
+        if at.products(layout).is_empty() {
+            self.mu = self.least;
+            return before != self.mu;
+        }
+        if self.free {
+            self.choose(at, layout, b);
+        } else {
+            self.lower(at, layout);
+        }
+        before != self.mu
+    }
+
+    /// Monotone rule: lowers μ while its subproblem is solved.
+    fn lower(&mut self, at: &Iterate, layout: &Layout) {
+        while self.mu > self.least
+            && at.residuals(layout, self.mu).largest() <= SUBPROBLEM * self.mu
+        {
+            if self.adaptive && self.returns < RETURNS {
+                self.returns += 1;
+                self.free = true;
+                self.history.clear();
+            }
+            self.mu = (LINEAR * self.mu).min(self.mu.powf(POWER)).max(self.least);
+        }
+    }
+
+    /// Adaptive rule: μ from how far a step towards μ = 0 can go (Mehrotra's probe), unless the
+    /// residual has not fallen, when the monotone rule takes over (Nocedal, Wächter & Waltz 2009).
+    fn choose(&mut self, at: &Iterate, layout: &Layout, b: &mut QuasiNewton) {
+        let error = at.residuals(layout, 0.0).largest();
+        let worst = self.history.iter().copied().fold(0.0, f64::max);
+        let average = average(&at.products(layout));
+        if self.history.len() == HISTORY && error > PROGRESS * worst {
+            self.free = false;
+            self.history.clear();
+            self.mu = (0.8 * average).clamp(self.least, 1e5);
+            return;
+        }
+        if self.history.len() == HISTORY {
+            self.history.remove(0);
+        }
+        self.history.push(error);
+        let centring = match NewtonSystem::new(at, layout, b) {
+            Some(system) => {
+                let r = layout.residual(&at.point.c, &at.s);
+                let probe = system.step(at, layout, b, 0.0, &r);
+                (probed(at, layout, &probe) / average)
+                    .powi(3)
+                    .clamp(1e-6, 1.0)
+            }
+            None => LINEAR,
+        };
+        self.mu = (centring * average).clamp(self.least, 1e5);
+    }
+}
+
+fn average(products: &[f64]) -> f64 {
+    products.iter().sum::<f64>() / products.len() as f64
+}
+
+/// Average complementarity after the longest step along `probe`.
+fn probed(at: &Iterate, layout: &Layout, probe: &Direction) -> f64 {
+    let primal = probe.primal_limit(at, layout, 1.0);
+    let dual = probe.dual_limit(at, 1.0);
+    let mut moved = at.clone();
+    moved.point.x += &probe.x * primal;
+    moved.s += &probe.s * primal;
+    moved.zl += &probe.zl * dual;
+    moved.zu += &probe.zu * dual;
+    average(&moved.products(layout)).max(0.0)
+}
