@@ -4,6 +4,7 @@
 //! arithmetic at tolerance 1e-17; accurate to 3e-14 m.
 #![allow(dead_code)] // each test binary uses a part
 
+pub mod cases;
 pub mod models;
 
 use flexbody::integrate::{Method, Settings, Trajectory, simulate};
