@@ -101,6 +101,22 @@ impl<S: SolveScalar> SparseLu<S> {
         self.apply(b, true);
     }
 
+    /// Solves Aᵀ x = b in place for the matrix A that was factorised last, with one step of
+    /// iterative refinement: the error of x is then that of its residual in each equation, however
+    /// badly the pivots have grown (Skeel 1980).
+    pub fn solve_transposed_refined(&mut self, matrix: &SparseMatrix<S>, b: &mut [S]) {
+        let mut correction = b.to_vec();
+        self.solve_transposed(b);
+        let product = matrix.multiply_transposed(b);
+        for (r, ax) in correction.iter_mut().zip(&product) {
+            *r -= *ax;
+        }
+        self.solve_transposed(&mut correction);
+        for (x, d) in b.iter_mut().zip(&correction) {
+            *x += *d;
+        }
+    }
+
     fn apply(&mut self, b: &mut [S], transposed: bool) {
         let n = b.len();
         let rows = PermRef::new_checked(&self.rows_forward, &self.rows_inverse, n);
