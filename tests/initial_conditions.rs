@@ -1,5 +1,5 @@
 //! The start of a simulation is consistent: nearest assembly, projected velocities, accelerations
-//! and reactions that obey the equations of motion; what cannot be started is told by name.
+//! that obey the equations of motion; what cannot be started is told by name.
 //!
 //! Residuals are of round-off, 1e-12 in SI units of bodies of about 2 kg and 1 m; the nearest
 //! state is judged by its definition, against other states that the joints allow.
@@ -8,14 +8,13 @@ mod reference;
 
 use flexbody::integrate::IntegrationFailure;
 use flexbody::integrate::{Method, Settings, simulate};
-use flexbody::math::{Mat3, Vec3, rotation};
+use flexbody::math::{Vec3, rotation};
 use flexbody::model::{JointFrame, JointKind, Model, RigidBody};
 use flexbody::system::bodies::{Motion, all_force_balances};
 use flexbody::system::initial::{self, AssemblyFailure, InitialState};
 use flexbody::system::kkt::SaddlePoint;
-use flexbody::system::observe::{Reaction, reactions};
 use flexbody::system::{Numbering, joints};
-use reference::models::{KINDS, Numbers, free_pair, joint};
+use reference::models::{KINDS, Numbers, free_pair, joint, rod};
 
 fn solve(model: &Model<f64>) -> Result<InitialState<f64>, AssemblyFailure> {
     let numbering = Numbering::new(model);
@@ -188,19 +187,6 @@ fn accelerations_obey_constraints_and_equations_of_motion() {
     }
 }
 
-/// A rod along x of 1 m and `mass`, its centre at `x`.
-fn rod(name: &str, mass: f64, x: f64) -> RigidBody<f64> {
-    RigidBody {
-        name: name.into(),
-        mass,
-        inertia: Mat3::from_diagonal(&Vec3::new(0.01, 0.1, 0.1)),
-        position: Vec3::new(x, 0.0, 0.0),
-        orientation: [1.0, 0.0, 0.0, 0.0],
-        velocity: Vec3::zeros(),
-        angular_velocity: Vec3::zeros(),
-    }
-}
-
 fn gravity() -> Vec3<f64> {
     Vec3::new(0.0, -9.81, 0.0)
 }
@@ -325,103 +311,4 @@ fn a_frame_turned_by_half_a_turn_is_refused() {
             }
         }
     }
-}
-
-fn reactions_at_start(model: &Model<f64>) -> Vec<Reaction> {
-    let start = solve(model).expect("is consistent");
-    reactions(model, &Numbering::new(model), &start.q, &start.lambda)
-}
-
-fn assert_near(what: &str, found: &Vec3<f64>, expected: &Vec3<f64>) {
-    let off = (found - expected).norm();
-    assert!(off <= 1e-12 * 50.0, "{what}: {found} against {expected}");
-}
-
-/// A body of 1 m that hangs upright with its centre at the height `y`.
-fn hanging(name: &str, mass: f64, y: f64) -> RigidBody<f64> {
-    RigidBody {
-        position: Vec3::new(0.0, y, 0.0),
-        ..rod(name, mass, 0.0)
-    }
-}
-
-/// Two bodies that hang from each other pull at their joints with what hangs from these, to 1e-12
-/// of 50 N.
-#[test]
-fn a_joint_carries_the_weight_that_hangs_from_it() {
-    for kind in [
-        JointKind::Spherical,
-        JointKind::Revolute,
-        JointKind::Prismatic,
-    ] {
-        let bodies = vec![hanging("upper", 2.0, -0.5), hanging("lower", 3.0, -1.5)];
-        let at = |y: f64| Vec3::new(0.0, y, 0.0);
-        let joints = vec![
-            joint(&bodies, ("ceiling", kind), (0, None), &at(0.0), &Vec3::z()),
-            joint(
-                &bodies,
-                ("middle", kind),
-                (0, Some(1)),
-                &at(-1.0),
-                &Vec3::z(),
-            ),
-        ];
-        let model = Model {
-            gravity: gravity(),
-            bodies,
-            joints,
-        };
-        let found = reactions_at_start(&model);
-        // On body A, the upper body: held by the ceiling, pulled down by the lower body.
-        let up = |force| Vec3::new(0.0, force, 0.0);
-        assert_near("ceiling", &found[0].force_ground, &up(5.0 * 9.81));
-        assert_near("middle", &found[1].force_ground, &up(-3.0 * 9.81));
-        for reaction in &found {
-            assert_near("torque", &reaction.torque_ground, &Vec3::zeros());
-        }
-    }
-}
-
-/// A drawer that is held 0.5 m from its centre of mass by a slide along x carries force m g and
-/// torque m g · 0.5 m about z on the body; in the joint's own axes they have the same lengths, and
-/// nothing acts along the slide. A puck on a horizontal plane is held up by m g.
-#[test]
-fn a_slide_and_a_plane_carry_weight_and_moment() {
-    let bodies = vec![rod("drawer", 2.0, 0.5)];
-    let slide = joint(
-        &bodies,
-        ("slide", JointKind::Prismatic),
-        (0, None),
-        &Vec3::zeros(),
-        &Vec3::x(),
-    );
-    let model = Model {
-        gravity: gravity(),
-        bodies: bodies.clone(),
-        joints: vec![slide],
-    };
-    let found = reactions_at_start(&model)[0];
-    let weight = 2.0 * 9.81;
-    assert_near("force", &found.force_ground, &Vec3::new(0.0, weight, 0.0));
-    assert_near(
-        "torque",
-        &found.torque_ground,
-        &Vec3::new(0.0, 0.0, 0.5 * weight),
-    );
-    assert!((found.force.norm() - weight).abs() <= 1e-12 && found.force.z.abs() <= 1e-12);
-    assert!((found.torque.norm() - 0.5 * weight).abs() <= 1e-12);
-    let plane = joint(
-        &bodies,
-        ("table", JointKind::Planar),
-        (0, None),
-        &bodies[0].position,
-        &Vec3::y(),
-    );
-    let model = Model {
-        joints: vec![plane],
-        ..model
-    };
-    let found = reactions_at_start(&model)[0];
-    assert_near("force", &found.force_ground, &Vec3::new(0.0, weight, 0.0));
-    assert_near("torque", &found.torque_ground, &Vec3::zeros());
 }

@@ -96,6 +96,19 @@ pub fn joint(
     }
 }
 
+/// A rod along x of 1 m and `mass`, its centre at `x`.
+pub fn rod(name: &str, mass: f64, x: f64) -> RigidBody<f64> {
+    RigidBody {
+        name: name.into(),
+        mass,
+        inertia: Mat3::from_diagonal(&Vec3::new(0.01, 0.1, 0.1)),
+        position: Vec3::new(x, 0.0, 0.0),
+        orientation: [1.0, 0.0, 0.0, 0.0],
+        velocity: Vec3::zeros(),
+        angular_velocity: Vec3::zeros(),
+    }
+}
+
 /// Two free bodies with one joint between them, without gravity; their velocities do not fit the
 /// joint, so that the start has to be made consistent first.
 pub fn free_pair(kind: JointKind, seed: u64) -> Model<f64> {
