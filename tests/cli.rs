@@ -6,6 +6,7 @@
 mod program;
 
 use program::{HAMMER, changed, every, expect, files, json, names, read, scratch};
+use std::path::Path;
 
 #[test]
 fn help_and_version() {
