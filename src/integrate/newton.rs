@@ -16,7 +16,7 @@ const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 /// Relative change below which a stagnating iteration has reached round-off as well.
 const STAGNANT: f64 = 1e-9;
 /// Contraction above which the iteration matrix is renewed.
-const RENEW: f64 = 0.2;
+const RENEW: f64 = 0.1;
 const ITERATIONS: usize = 25;
 
 /// The unknowns of a step: where Newton's method starts, and then its solution.
