@@ -102,15 +102,42 @@ fn every_joint_conserves_momentum_and_energy_in_the_limit_of_small_steps() {
     }
 }
 
-/// Linear and angular momentum and energy to 1e-9 in a single run of 2 s, with steps (50 µs) so
-/// small that the formula's own error is below that (measured 7.5e-11 and 4.2e-10).
+/// Linear and angular momentum and energy to 1e-9 in a single run of 2 s, with steps (25 µs) so
+/// small that the formula's own error is below that (measured up to 7.4e-10).
+fn assert_conserved(kind: JointKind) {
+    let drift = drift(&free_pair(kind, 1), 2.5e-5, 2);
+    let worst = drift.angular_momentum.max(drift.momentum);
+    assert!(worst.max(drift.energy) <= 1e-9, "{kind:?}: {drift:?}");
+}
+
 #[test]
-fn bodies_that_slide_on_each_other_conserve_momentum() {
-    for kind in [JointKind::Prismatic, JointKind::Planar] {
-        let drift = drift(&free_pair(kind, 3), 5e-5, 2);
-        let worst = drift.angular_momentum.max(drift.momentum);
-        assert!(worst.max(drift.energy) <= 1e-9, "{kind:?}: {drift:?}");
-    }
+fn a_spherical_joint_conserves_momentum() {
+    assert_conserved(JointKind::Spherical);
+}
+
+#[test]
+fn a_revolute_joint_conserves_momentum() {
+    assert_conserved(JointKind::Revolute);
+}
+
+#[test]
+fn a_prismatic_joint_conserves_momentum() {
+    assert_conserved(JointKind::Prismatic);
+}
+
+#[test]
+fn a_planar_joint_conserves_momentum() {
+    assert_conserved(JointKind::Planar);
+}
+
+/// At steps whose extrapolated start is as exact as positions are stored, Newton's method still
+/// solves every step: the drift of 80 µs is (80/100)² of that of 100 µs, within 5 %.
+#[test]
+fn small_steps_are_solved_as_well_as_large_ones() {
+    let model = free_pair(JointKind::Planar, 2);
+    let [coarse, fine] = [1e-4, 8e-5].map(|h| drift(&model, h, 2).energy);
+    let ratio = fine / coarse;
+    assert!((ratio / 0.64 - 1.0).abs() <= 0.05, "{coarse:e}, {fine:e}");
 }
 
 /// A free top with moments (A, A, C) turns at the rate |L|/A about its angular momentum L and, in
