@@ -104,6 +104,7 @@ impl TrustRegion {
         let tiny = 1e-13;
         let mut rejected = 0;
         let mut lost = 0;
+        let mut failed = 0;
         loop {
             if self.goal == Goal::Optimum && self.is_unbounded(program) {
                 return Ok(Ending::Unbounded);
@@ -136,11 +137,29 @@ impl TrustRegion {
             let boundary = size >= 0.99 * self.radius;
             let radius = self.radius;
             if ratio < 0.25 {
-                self.radius = if ratio < -1e3 { 0.1 } else { 0.4 } * size.min(self.radius);
-            } else if ratio > 0.5 && boundary {
-                self.radius *= 2.5;
+                // One failed evaluation says nothing of the model; a second shows a region.
+                failed = if ratio == f64::NEG_INFINITY {
+                    failed + 1
+                } else {
+                    0
+                };
+                let shrink = match (failed, ratio) {
+                    (1, _) => 0.9,
+                    (0, r) if r < -1e3 => 0.1,
+                    _ => 0.4,
+                };
+                self.radius = shrink * size.min(self.radius);
+            } else {
+                failed = 0;
+                if ratio > 0.5 && boundary {
+                    self.radius *= 2.5;
+                }
             }
-            rejected = if ratio > ACCEPT { 0 } else { rejected + 1 };
+            rejected = match ratio {
+                f64::NEG_INFINITY => rejected,
+                r if r > ACCEPT => 0,
+                _ => rejected + 1,
+            };
             if rejected == 8 {
                 self.b.reset();
             }

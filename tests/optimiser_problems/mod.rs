@@ -2,6 +2,7 @@
 
 pub mod dual;
 pub mod faulty;
+pub mod hard;
 mod hs_001_030;
 mod hs_031_060;
 mod hs_061_086;
