@@ -1,12 +1,15 @@
 //! Programs that are degenerate, infeasible, unbounded, badly scaled or undefined in places.
 
+#[path = "optimiser_problems/faulty.rs"]
+mod faulty;
+#[path = "optimiser_problems/hard.rs"]
+mod hard;
 mod optimiser_problems;
 
 use std::ops::ControlFlow;
 
+use faulty::{Fault, Faulty};
 use flexbody::optimiser::{Method, Observer, Options, Outcome, Row, Silent, Status, solve};
-use optimiser_problems::faulty::{Fault, Faulty};
-use optimiser_problems::hard;
 use optimiser_problems::hock_schittkowski;
 use optimiser_problems::problem::Problem;
 

@@ -7,8 +7,8 @@ mod optimiser_problems;
 use flexbody::optimiser::{Method, Options, Outcome, Silent, solve};
 use optimiser_problems::hock_schittkowski;
 
-/// Objectives of local minima that are not global, which a method may end at.
-const LOCAL_MINIMA: [(&str, f64); 8] = [
+/// Objectives of stationary points that are not global minima, at which a method may end.
+const STATIONARY: [(&str, f64); 9] = [
     ("HS2", 4.941229318),
     ("HS16", 23.14466091),
     ("HS20", 40.19873024),
@@ -17,6 +17,7 @@ const LOCAL_MINIMA: [(&str, f64); 8] = [
     ("HS97", 4.071246356),
     ("HS98", 4.071246356),
     ("HS108", -0.674981442),
+    ("HS116", 97.59103473),
 ];
 
 /// What is asked of a method over all problems.
@@ -39,19 +40,19 @@ fn median(mut counts: Vec<usize>) -> usize {
     counts[counts.len() / 2]
 }
 
-/// A claim of convergence must hold at the point: its conditions, and its value as a known minimum.
+/// A claim of convergence must hold at the point: its conditions, and its value be that of a known stationary point.
 fn assert_true_claim(name: &str, best: f64, outcome: &Outcome) {
     let kkt = outcome.kkt;
     assert!(kkt.violation <= 1e-6, "{name}: {kkt:?}");
     assert!(kkt.relative_stationarity <= 1e-6, "{name}: {kkt:?}");
     assert!(kkt.relative_complementarity <= 1e-7, "{name}: {kkt:?}");
-    let known = LOCAL_MINIMA
+    let known = STATIONARY
         .iter()
         .filter(|(n, _)| *n == name)
         .map(|(_, f)| *f);
-    let mut minima = known.chain([best]);
+    let mut values = known.chain([best]);
     assert!(
-        minima.any(|f| is_near(outcome.objective, f)),
+        values.any(|f| is_near(outcome.objective, f)),
         "{name}: {}",
         outcome.objective
     );
@@ -127,10 +128,10 @@ fn interior_point_finds_the_known_optima() {
 #[test]
 fn trust_region_finds_the_known_optima() {
     let demand = Demand {
-        solved: 88,
+        solved: 89,
         median_evaluations: 10,
         median_gradients: 10,
-        evaluations: 1900,
+        evaluations: 2000,
         most: 200,
     };
     check(Method::TrustRegion, &demand);

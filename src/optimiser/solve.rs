@@ -165,9 +165,16 @@ fn run(
 fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
     let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. });
     let limit = program.options.constraint_tolerance;
-    let rank = |program: &Program<'_>, p: &Point| (program.worst_violation(&p.c).0.max(limit), p.f);
+    // What a violation within the tolerance gains is not counted.
+    let y = &finish.multipliers.y;
+    let value = |p: &Point| {
+        p.f + (0..p.c.len())
+            .map(|k| y[k].abs() * program.row_violation(&p.c, k))
+            .sum::<f64>()
+    };
+    let rank = |p: &Point| (program.worst_violation(&p.c).0.max(limit), value(p));
     let found = program.best.clone().filter(|best| {
-        let (new, old) = (rank(program, best), rank(program, &finish.point));
+        let (new, old) = (rank(best), rank(&finish.point));
         !settled && (new.0 < old.0 || (new.0 == old.0 && new.1 < old.1))
     });
     let Some(point) = found else {

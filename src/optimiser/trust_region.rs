@@ -21,6 +21,11 @@ const STEERING: f64 = 0.1;
 /// Steps in succession whose predicted reduction is lost in rounding that are still tried.
 const LOST_STEPS: usize = 4;
 
+/// How often the matrix is forgotten where no progress is left, and the radius that follows,
+/// relative to the size of the point.
+const RENEWALS: usize = 3;
+const RENEWED_RADIUS: f64 = 0.1;
+
 /// Share of the violation that its linearisation may still lose at a point called infeasible.
 const STATIONARY: f64 = 1e-4;
 
@@ -105,6 +110,7 @@ impl TrustRegion {
         let mut rejected = 0;
         let mut lost = 0;
         let mut failed = 0;
+        let mut renewals = 0;
         loop {
             if self.goal == Goal::Optimum && self.is_unbounded(program) {
                 return Ok(Ending::Unbounded);
@@ -130,7 +136,15 @@ impl TrustRegion {
             };
             let negligible = model.predicted <= 0.0 || lost > LOST_STEPS;
             if negligible || self.radius < tiny {
-                return Ok(self.end(program));
+                if renewals == RENEWALS || self.b.is_empty() {
+                    return Ok(self.end(program));
+                }
+                // Curvature gathered over long steps may make the subproblem too ill-conditioned.
+                renewals += 1;
+                lost = 0;
+                self.b.reset();
+                self.radius = RENEWED_RADIUS * self.point.x.amax().max(1.0);
+                continue;
             }
             program.next_iteration()?;
             let (ratio, trials) = self.attempt(program, &model)?;

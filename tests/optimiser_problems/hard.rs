@@ -1,7 +1,7 @@
 //! Small programs, each hard for one reason.
 
-use super::dual::Dual;
-use super::problem::{INF, Problem};
+use crate::optimiser_problems::dual::Dual;
+use crate::optimiser_problems::problem::{INF, Problem};
 
 /// The full step towards the solution raises both objective and violation (Maratos 1978; Nocedal &
 /// Wright 2006, example 15.4).

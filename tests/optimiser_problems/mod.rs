@@ -1,8 +1,6 @@
 //! Test problems with known optima.
 
 pub mod dual;
-pub mod faulty;
-pub mod hard;
 mod hs_001_030;
 mod hs_031_060;
 mod hs_061_086;
