@@ -115,7 +115,8 @@ pub fn gradients(
             } else {
                 sweep.psi.fill(0.0);
             }
-            plan.factors.solve_transposed(&mut psi);
+            plan.factors
+                .solve_transposed_refined(&plan.matrix, &mut psi);
             equations.scale_rows(h, &mut psi);
             counts.solves += 1;
             sweep.advance(&psi);

@@ -27,7 +27,7 @@ pub fn simulate(problem: &Problem, x: &[f64]) -> Result<Simulation, IntegrationF
 }
 
 impl Simulation {
-    /// Largest |E(t) − E(0)| of the total energy [J].
+    /// Largest |E(t) − E(0)| of the total energy (J).
     pub fn energy_drift(&self) -> f64 {
         let total = |o: &Observation| o.kinetic + o.potential;
         let start = total(&self.observations[0]);

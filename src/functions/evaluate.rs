@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 pub struct Evaluated<S> {
     /// The value.
     pub value: S,
-    /// For an aggregate: the largest sampled value and its time [s].
+    /// For an aggregate: the largest sampled value and its time (s).
     pub maximum: Option<(f64, f64)>,
     /// For an aggregate: ρ κ h² with κ the curvature at the peak; above about one the step is too
     /// coarse to resolve the peak that ρ asks for.
@@ -136,6 +136,8 @@ struct ReleaseWeights<S> {
     range: Instant<S>,
     turns: Option<Vec<f64>>,
     rho: f64,
+    /// Instant of the longest range.
+    peak: usize,
 }
 
 fn release_weights<S: Scalar>(
@@ -157,30 +159,34 @@ fn release_weights<S: Scalar>(
     };
     let turns = turns(range.watched_rotation(), run);
     let values = sample(&range, &turns, model, run);
-    let weights = SoftMax::new(&values, |k| run.quadrature_weight(k), *rho).weights;
+    let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), *rho);
     ReleaseWeights {
-        weights,
+        weights: soft.weights,
         range,
         turns,
         rho: *rho,
+        peak: soft.peak,
     }
 }
 
-/// The mean flight Σ w_k z_k.
+/// The mean flight Σ w_k z_k, summed from its distance to the best flight so that derivatives of
+/// the weights, which add up to zero, do not cancel at the size of z.
 fn mean_flight<S: Scalar>(
     projectile: &Projectile<S>,
     release: &ReleaseWeights<S>,
     model: &Model<S>,
     run: &Trajectory<S>,
 ) -> Flight<S> {
-    let mut mean = [S::zero(); 5];
+    let flight = |k| Snapshot::of(model, run, k).flight(projectile).to_array();
+    let best = flight(release.peak);
+    let mut away = [S::zero(); 5];
     for (k, &w) in release.weights.iter().enumerate() {
-        let z = Snapshot::of(model, run, k).flight(projectile).to_array();
+        let z = flight(k);
         for i in 0..5 {
-            mean[i] += z[i] * w;
+            away[i] += (z[i] - best[i]) * w;
         }
     }
-    Flight::from_array(mean)
+    Flight::from_array(std::array::from_fn(|i| best[i] + away[i]))
 }
 
 /// One instant quantity with a weight at every instant.
@@ -286,23 +292,20 @@ impl<'a> Linearised<'a> {
         let release = release_weights(release, model, run);
         let mean = mean_flight(projectile, &release, model, run);
         let (cot, by_barrier) = mean.clearance_derivative(distance);
+        let mean = mean.to_array();
         let away = |k: usize| {
             let z = Snapshot::of(model, run, k).flight(projectile).to_array();
-            let mean = mean.to_array();
             (0..5).map(|i| cot[i] * (z[i] - mean[i])).sum::<f64>()
         };
-        let by_range = release
-            .weights
-            .iter()
-            .enumerate()
-            .map(|(k, &w)| {
-                if w > 0.0 {
-                    release.rho * w * away(k)
-                } else {
-                    0.0
-                }
-            })
+        let weighted = release.weights.iter().enumerate();
+        let mut by_range: Vec<f64> = weighted
+            .map(|(k, &w)| if w > 0.0 { w * away(k) } else { 0.0 })
             .collect();
+        // Their sum vanishes but for the round-off of the mean, which ρ dR would magnify.
+        let sum: f64 = by_range.iter().sum();
+        for (by, w) in by_range.iter_mut().zip(&release.weights) {
+            *by = release.rho * (*by - w * sum);
+        }
         self.by_barrier = by_barrier;
         self.quantity = Some(Weighted {
             instant: release.range,

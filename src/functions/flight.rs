@@ -9,15 +9,15 @@ use crate::system::marker::{self, Jet, MarkerCotangent};
 /// State of a projectile in its plane of flight, and the gravity that it flies in.
 #[derive(Clone, Copy, Debug)]
 pub struct Flight<S> {
-    /// Distance along the direction of flight [m].
+    /// Distance along the direction of flight (m).
     pub x: S,
-    /// Height above the origin [m].
+    /// Height above the origin (m).
     pub y: S,
-    /// Velocity along the direction of flight [m/s].
+    /// Velocity along the direction of flight (m/s).
     pub vx: S,
-    /// Velocity upwards [m/s].
+    /// Velocity upwards (m/s).
     pub vy: S,
-    /// Gravitational acceleration g > 0 [m/s²].
+    /// Gravitational acceleration g > 0 (m/s²).
     pub g: S,
 }
 
@@ -47,7 +47,7 @@ impl<S: Scalar> Flight<S> {
     }
 
     /// Range to the ground at height y_g,
-    /// R = x + (v_x/g)(v_y + √s), s = ½ (s0 + √(s0² + 1)), s0 = v_y² + 2 g (y − y_g) [m].
+    /// R = x + (v_x/g)(v_y + √s), s = ½ (s0 + √(s0² + 1)), s0 = v_y² + 2 g (y − y_g) (m).
     /// The smoothing (1 m²/s²) keeps it analytic where the ground is out of reach.
     pub fn range(&self, ground: S) -> S {
         let s0 = self.vy * self.vy + self.g * (self.y - ground) * 2.0;
@@ -55,7 +55,7 @@ impl<S: Scalar> Flight<S> {
     }
 
     /// Height of the path above `top` at the distance x_b,
-    /// y + v_y T − ½ g T² − h_b with T = (x_b − x)/v_x [m].
+    /// y + v_y T − ½ g T² − h_b with T = (x_b − x)/v_x (m).
     pub fn clearance(&self, distance: S, top: S) -> S {
         let t = (distance - self.x) / self.vx;
         self.y + self.vy * t - self.g * t * t * 0.5 - top

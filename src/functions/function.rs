@@ -52,15 +52,15 @@ pub enum Function<S> {
         reduction: Reduction,
     },
     /// Height of the flight path above a barrier's top at the barrier,
-    /// c = y + v_y T_b − ½ g T_b² − h_b, T_b = (x_b − x) / v_x [m].
+    /// c = y + v_y T_b − ½ g T_b² − h_b, T_b = (x_b − x) / v_x (m).
     Clearance {
         /// The thrown point and the horizontal direction of flight (its ground is not used).
         projectile: Projectile<S>,
         /// When it is let go.
         release: Release<S>,
-        /// Place x_b of the barrier along the direction of flight [m].
+        /// Place x_b of the barrier along the direction of flight (m).
         distance: S,
-        /// Height h_b of the barrier's top above the origin [m].
+        /// Height h_b of the barrier's top above the origin (m).
         top: S,
     },
 }

@@ -7,11 +7,11 @@ use crate::math::{Scalar, Vec3};
 pub struct Projectile<S> {
     /// The body that is thrown.
     pub body: usize,
-    /// The point of it that flies, from the centre of mass in body axes [m].
+    /// The point of it that flies, from the centre of mass in body axes (m).
     pub point: Vec3<S>,
     /// Horizontal unit vector in which the range is measured, ground axes.
     pub direction: Vec3<S>,
-    /// Height of the ground above the origin [m].
+    /// Height of the ground above the origin (m).
     pub ground: S,
 }
 
@@ -32,9 +32,9 @@ pub struct Gate {
     pub body: usize,
     /// Unit axis of the rotation.
     pub axis: Vec3<f64>,
-    /// The rotation θ_c at which the gate is half open [rad].
+    /// The rotation θ_c at which the gate is half open (rad).
     pub limit: f64,
-    /// Width w of the transition [rad].
+    /// Width w of the transition (rad).
     pub width: f64,
     /// Where it is open.
     pub open: Side,
@@ -51,11 +51,11 @@ pub enum EnergyPart {
     Total,
 }
 
-/// A quantity at an instant. Points are from the centre of mass in body axes [m]; directions are
+/// A quantity at an instant. Points are from the centre of mass in body axes (m); directions are
 /// in ground axes and used as they are given (a unit vector gives a component).
 #[derive(Clone, Debug)]
 pub enum Instant<S> {
-    /// Component of a point's position [m].
+    /// Component of a point's position (m).
     Position {
         /// The body.
         body: usize,
@@ -64,7 +64,7 @@ pub enum Instant<S> {
         /// The direction.
         direction: Vec3<S>,
     },
-    /// Component of a point's velocity [m/s].
+    /// Component of a point's velocity (m/s).
     Velocity {
         /// The body.
         body: usize,
@@ -73,7 +73,7 @@ pub enum Instant<S> {
         /// The direction.
         direction: Vec3<S>,
     },
-    /// Component of a point's acceleration [m/s²].
+    /// Component of a point's acceleration (m/s²).
     Acceleration {
         /// The body.
         body: usize,
@@ -82,17 +82,17 @@ pub enum Instant<S> {
         /// The direction.
         direction: Vec3<S>,
     },
-    /// Speed of a point [m/s]. Not differentiable at rest, where its derivative is taken as zero.
+    /// Speed of a point (m/s). Not differentiable at rest, where its derivative is taken as zero.
     Speed {
         /// The body.
         body: usize,
         /// The point.
         point: Vec3<S>,
     },
-    /// Energy of the whole model [J].
+    /// Energy of the whole model (J).
     Energy(EnergyPart),
     /// Unwrapped rotation of a body about an axis: its twist 2 atan2(eᵀn, p0), continuous in
-    /// time and in (−2π, 2π] at t = 0 [rad].
+    /// time and in (−2π, 2π] at t = 0 (rad).
     Rotation {
         /// The body.
         body: usize,
@@ -101,7 +101,7 @@ pub enum Instant<S> {
     },
     /// Range of a projectile let go at this instant,
     /// R = x + (v_x/g)(v_y + √s), s = ½ (s0 + √(s0² + 1)), s0 = v_y² + 2 g (y − y_g),
-    /// times the gate if there is one [m].
+    /// times the gate if there is one (m).
     Range {
         /// The projectile.
         projectile: Projectile<S>,

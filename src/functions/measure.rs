@@ -134,7 +134,7 @@ impl<S: Scalar> Instant<S> {
     }
 }
 
-/// Energy of the model in a snapshot [J].
+/// Energy of the model in a snapshot (J).
 pub fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
     let mut sum = S::zero();
     for (i, body) in at.model.bodies.iter().enumerate() {

@@ -9,7 +9,7 @@ use crate::model::Model;
 pub struct Scene<S> {
     /// Bodies, joints, gravity.
     pub model: Model<S>,
-    /// Simulated time T [s].
+    /// Simulated time T (s).
     pub duration: S,
     /// Functions of interest, in the order of the problem file.
     pub functions: Vec<Function<S>>,

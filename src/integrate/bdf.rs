@@ -157,8 +157,8 @@ impl<S: Scalar> Increments<S> {
         }
     }
 
-    /// Start of Newton's method: cubic extrapolation of q and v once three increments are known,
-    /// before that a Taylor polynomial; λ and μ are held.
+    /// Start of Newton's method: cubic extrapolation of q and v and quadratic of λ and μ once
+    /// three increments are known, before that a Taylor polynomial with λ and μ held.
     fn predict(&self, run: &Trajectory<S>, k: usize, x: &mut Unknowns<S>) {
         let numbering = &run.numbering;
         let (q, v, a) = (run.q(k - 1), run.v(k - 1), run.a(k - 1));
@@ -171,6 +171,8 @@ impl<S: Scalar> Increments<S> {
             extrapolate(&mut x.dv, [v1, v2, v3]);
             x.q.iter_mut().zip(&x.dq).for_each(|(q, &d)| *q += d);
             bodies::normalise(numbering, &mut x.q, &mut x.dq);
+            extrapolate(&mut x.lambda, [1, 2, 3].map(|i| run.lambda(k - i)));
+            extrapolate(&mut x.mu, [1, 2, 3].map(|i| run.mu(k - i)));
         } else {
             let h = run.h;
             let step: Vec<S> = v
@@ -187,7 +189,7 @@ impl<S: Scalar> Increments<S> {
 }
 
 /// 3 d_1 − 3 d_2 + d_3.
-fn extrapolate<S: Scalar>(out: &mut [S], [d1, d2, d3]: [&Vec<S>; 3]) {
+fn extrapolate<S: Scalar>(out: &mut [S], [d1, d2, d3]: [&[S]; 3]) {
     for (j, out) in out.iter_mut().enumerate() {
         *out = (d1[j] - d2[j]) * 3.0 + d3[j];
     }

@@ -14,7 +14,7 @@ pub enum IntegrationFailure {
          scaled residual {residual:.3e}, worst in {worst}"
     )]
     NewtonStalled {
-        /// Time of the step's end [s].
+        /// Time of the step's end (s).
         time: f64,
         /// Step number, from 1.
         step: usize,
@@ -28,7 +28,7 @@ pub enum IntegrationFailure {
     /// The iteration matrix is singular.
     #[error("the equations became singular at t = {time:.6e} s (step {step}), at {place}")]
     Singular {
-        /// Time of the step's end [s].
+        /// Time of the step's end (s).
         time: f64,
         /// Step number, from 1.
         step: usize,
@@ -38,7 +38,7 @@ pub enum IntegrationFailure {
     /// A value overflowed or became NaN.
     #[error("the motion is not finite at t = {time:.6e} s (step {step}), in {worst}")]
     NotFinite {
-        /// Time of the step's end [s].
+        /// Time of the step's end (s).
         time: f64,
         /// Step number, from 1.
         step: usize,
@@ -48,7 +48,7 @@ pub enum IntegrationFailure {
     /// The duration is zero, negative or not finite.
     #[error("the duration {duration} s is not positive")]
     Duration {
-        /// The duration [s].
+        /// The duration (s).
         duration: f64,
     },
 }

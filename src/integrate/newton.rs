@@ -16,7 +16,7 @@ const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 /// Relative change below which a stagnating iteration has reached round-off as well.
 const STAGNANT: f64 = 1e-9;
 /// Contraction above which the iteration matrix is renewed.
-const RENEW: f64 = 0.2;
+const RENEW: f64 = 0.1;
 const ITERATIONS: usize = 25;
 
 /// The unknowns of a step: where Newton's method starts, and then its solution.
@@ -121,7 +121,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         let (nv, nc) = (numbering.velocities(), numbering.constraints());
         let scales = self.scales(x);
         let mut previous = f64::INFINITY;
-        let mut polish = false;
+        let (mut polish, mut before) = (false, 0.0_f64);
         for iteration in 1..=ITERATIONS {
             history.rates(&x.dq, &x.dv, &mut self.qdot, &mut self.vdot);
             let at = Instant {
@@ -179,7 +179,10 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             } else {
                 self.contraction
             };
-            let remaining = size * (contraction / (1.0 - contraction.min(0.9))).min(1.0);
+            // Contraction alternates between positions and multipliers: trust the worse of two.
+            let slow = contraction.max(before);
+            let remaining = size * (slow / (1.0 - slow.min(0.9))).min(1.0);
+            before = contraction;
             let stagnant = iteration > 2 && contraction > RENEW && size <= STAGNANT;
             if polish || remaining <= TOLERANCE || stagnant {
                 if S::INFINITESIMAL && !polish {

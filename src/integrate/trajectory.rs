@@ -32,7 +32,7 @@ impl std::ops::AddAssign for WorkCounts {
 pub struct Trajectory<S> {
     /// Numbering of the states.
     pub numbering: Numbering,
-    /// Step size h = T / N [s].
+    /// Step size h = T / N (s).
     pub h: S,
     /// Number of steps N.
     pub steps: usize,
@@ -90,7 +90,7 @@ impl<S: Scalar> Trajectory<S> {
         }
     }
 
-    /// Time t_k [s].
+    /// Time t_k (s).
     pub fn time(&self, k: usize) -> S {
         self.h * k as f64
     }

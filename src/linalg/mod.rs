@@ -1,6 +1,7 @@
 //! Sparse linear algebra: static patterns and the LU factorisation.
 
 pub mod pattern;
+mod replay;
 pub mod sparse_lu;
 
 pub use pattern::{Emit, Pattern, SparseMatrix};

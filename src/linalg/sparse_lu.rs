@@ -1,13 +1,12 @@
 //! Sparse LU with partial pivoting, analysed once and factorised often. The only file that names
-//! faer.
+//! faer, which orders the columns and chooses the pivots.
 
 use super::pattern::{Pattern, SparseMatrix};
+use super::replay::Replay;
 use crate::math::Scalar;
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::perm::PermRef;
+use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::lu::{LuSymbolicParams, SymbolicLu, factorize_symbolic_lu, simplicial};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par};
 
 /// A scalar that linear systems are solved in: `f64` and `Complex64`.
 pub trait SolveScalar: Scalar + faer::traits::ComplexField {}
@@ -22,12 +21,11 @@ pub struct SingularMatrix {
 }
 
 /// LU factors P A Q = L U; Q (COLAMD) depends on the pattern only, P on the values.
+///
+/// P is found by partial pivoting at the first matrix and kept while its pivots stay good.
 pub struct SparseLu<S> {
     symbolic: SymbolicLu<usize>,
-    factors: simplicial::SimplicialLu<usize, S>,
-    rows_forward: Vec<usize>,
-    rows_inverse: Vec<usize>,
-    memory: MemBuffer,
+    replay: Option<Replay<S>>,
 }
 
 impl<S: SolveScalar> SparseLu<S> {
@@ -36,83 +34,88 @@ impl<S: SolveScalar> SparseLu<S> {
     /// # Panics
     /// If memory is exhausted.
     pub fn new(pattern: &Pattern) -> Self {
-        let n = pattern.order();
         let symbolic = factorize_symbolic_lu(structure(pattern), LuSymbolicParams::default())
             .expect("the analysis fails only when memory is exhausted");
-        let factor = simplicial::factorize_simplicial_numeric_lu_scratch::<usize, S>(n, n);
-        let solve = simplicial::solve_in_place_scratch::<usize, S>(n, 1, Par::Seq);
         Self {
             symbolic,
-            factors: simplicial::SimplicialLu::new(),
-            rows_forward: vec![0; n],
-            rows_inverse: vec![0; n],
-            memory: MemBuffer::new(StackReq::any_of(&[factor, solve])),
+            replay: None,
         }
     }
 
     /// Factorises `matrix`, which has the analysed pattern.
     ///
     /// # Errors
-    /// [`SingularMatrix`] if a pivot is zero, not finite, or smaller than 10⁻³⁰⁰.
+    /// [`SingularMatrix`] if a pivot is zero or not finite.
     pub fn factorise(&mut self, matrix: &SparseMatrix<S>) -> Result<(), SingularMatrix> {
-        let stack = MemStack::new(&mut self.memory);
-        simplicial::factorize_simplicial_numeric_lu(
-            &mut self.rows_forward,
-            &mut self.rows_inverse,
-            &mut self.factors,
-            SparseColMatRef::new(structure(&matrix.pattern), &matrix.values),
-            self.symbolic.col_perm(),
-            stack,
-        )
-        .map_err(|_| SingularMatrix { column: 0 })?;
-        let (worst, smallest) = self.smallest_pivot();
-        if smallest.is_nan() || smallest <= 1e-300 {
-            return Err(SingularMatrix { column: worst });
+        if let Some(replay) = &mut self.replay {
+            match replay.factorise(matrix) {
+                Ok(()) => return Ok(()),
+                Err(bad) if !bad.replaceable => return Err(SingularMatrix { column: bad.column }),
+                Err(_) => {}
+            }
         }
-        Ok(())
+        let pivot_rows = self.pivot_rows(matrix)?;
+        let columns = self.symbolic.col_perm().arrays().0;
+        let replay = Replay::plan(&matrix.pattern, &pivot_rows, columns);
+        self.replay
+            .insert(replay)
+            .factorise(matrix)
+            .map_err(|bad| SingularMatrix { column: bad.column })
     }
 
-    /// Smallest modulus of a pivot, and the column of the matrix that it stands in; NaN if any
-    /// pivot is not finite.
-    pub fn smallest_pivot(&self) -> (usize, f64) {
-        let u = self.factors.u_factor_unsorted();
-        let columns = self.symbolic.col_perm().arrays().0;
-        let mut worst = (0, f64::INFINITY);
-        for j in 0..u.ncols() {
-            // The diagonal entry is the last of its column.
-            let pivot = u.val_of_col(j).last().map_or(S::zero(), |p| *p).re().abs();
-            if pivot.is_nan() || pivot.is_infinite() {
-                return (columns[j], f64::NAN);
-            }
-            if pivot < worst.1 {
-                worst = (columns[j], pivot);
-            }
-        }
-        worst
+    /// Rows of the pivots that partial pivoting chooses.
+    fn pivot_rows(&self, matrix: &SparseMatrix<S>) -> Result<Vec<usize>, SingularMatrix> {
+        let n = matrix.pattern.order();
+        let (mut rows, mut inverse) = (vec![0; n], vec![0; n]);
+        let scratch = simplicial::factorize_simplicial_numeric_lu_scratch::<usize, S>(n, n);
+        simplicial::factorize_simplicial_numeric_lu(
+            &mut rows,
+            &mut inverse,
+            &mut simplicial::SimplicialLu::new(),
+            SparseColMatRef::new(structure(&matrix.pattern), &matrix.values),
+            self.symbolic.col_perm(),
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        )
+        .map_err(|_| SingularMatrix { column: 0 })?;
+        Ok(rows)
+    }
+
+    /// The factors.
+    fn factors(&mut self) -> &mut Replay<S> {
+        self.replay
+            .as_mut()
+            .expect("a matrix is factorised before a system is solved")
     }
 
     /// Solves A x = b in place.
+    ///
+    /// # Panics
+    /// If no matrix was factorised.
     pub fn solve(&mut self, b: &mut [S]) {
-        self.apply(b, false);
+        self.factors().solve(b);
     }
 
     /// Solves Aᵀ x = b in place (transposed, not conjugated).
+    ///
+    /// # Panics
+    /// If no matrix was factorised.
     pub fn solve_transposed(&mut self, b: &mut [S]) {
-        self.apply(b, true);
+        self.factors().solve_transposed(b);
     }
 
-    fn apply(&mut self, b: &mut [S], transposed: bool) {
-        let n = b.len();
-        let rows = PermRef::new_checked(&self.rows_forward, &self.rows_inverse, n);
-        let columns = self.symbolic.col_perm();
-        let stack = MemStack::new(&mut self.memory);
-        let rhs = MatMut::from_column_major_slice_mut(b, n, 1);
-        if transposed {
-            let solve = simplicial::SimplicialLu::solve_transpose_in_place_with_conj;
-            solve(&self.factors, rows, columns, Conj::No, rhs, Par::Seq, stack);
-        } else {
-            let solve = simplicial::SimplicialLu::solve_in_place_with_conj;
-            solve(&self.factors, rows, columns, Conj::No, rhs, Par::Seq, stack);
+    /// Solves Aᵀ x = b in place for the matrix A that was factorised last, with one step of
+    /// iterative refinement: the error of x is then that of its residual in each equation, however
+    /// badly the pivots have grown (Skeel 1980).
+    pub fn solve_transposed_refined(&mut self, matrix: &SparseMatrix<S>, b: &mut [S]) {
+        let mut correction = b.to_vec();
+        self.solve_transposed(b);
+        let product = matrix.multiply_transposed(b);
+        for (r, ax) in correction.iter_mut().zip(&product) {
+            *r -= *ax;
+        }
+        self.solve_transposed(&mut correction);
+        for (x, d) in b.iter_mut().zip(&correction) {
+            *x += *d;
         }
     }
 }

@@ -46,12 +46,12 @@ pub fn rate_transposed<S: Scalar>(p: &Quat<S>, a: &Vec3<S>) -> Quat<S> {
     [-e.dot(a), w.x, w.y, w.z]
 }
 
-/// Rate of the Euler parameters, ṗ = ½ L(p)ᵀ ω, ω in body axes [rad/s].
+/// Rate of the Euler parameters, ṗ = ½ L(p)ᵀ ω, ω in body axes (rad/s).
 pub fn rates<S: Scalar>(p: &Quat<S>, omega: &Vec3<S>) -> Quat<S> {
     rate_transposed(p, omega).map(|x| x * 0.5)
 }
 
-/// Angular velocity in body axes, ω = 2 L(p) ṗ [rad/s].
+/// Angular velocity in body axes, ω = 2 L(p) ṗ (rad/s).
 pub fn angular_velocity<S: Scalar>(p: &Quat<S>, pdot: &Quat<S>) -> Vec3<S> {
     rate_product(p, pdot) * S::from(2.0)
 }
@@ -75,7 +75,7 @@ pub fn normalisation<S: Scalar>(p: &Quat<S>) -> Quat<S> {
     p.map(|x| x * excess)
 }
 
-/// Euler parameters of the rotation by `angle` [rad] about `axis` (any length but zero).
+/// Euler parameters of the rotation by `angle` (rad) about `axis` (any length but zero).
 pub fn from_axis_angle<S: Scalar>(axis: &Vec3<S>, angle: S) -> Quat<S> {
     let (s, c) = (angle * 0.5).sin_cos();
     let e = axis * (s / length(axis));
@@ -89,7 +89,7 @@ pub fn compose<S: Scalar>(second: &Quat<S>, first: &Quat<S>) -> Quat<S> {
     [second[0] * first[0] - a.dot(&b), e.x, e.y, e.z]
 }
 
-/// Rotation angle about the unit axis n (its twist), 2 atan2(eᵀn, p0), in (−2π, 2π] [rad].
+/// Rotation angle about the unit axis n (its twist), 2 atan2(eᵀn, p0), in (−2π, 2π] (rad).
 pub fn twist<S: Scalar>(p: &Quat<S>, n: &Vec3<S>) -> S {
     vector(p).dot(n).atan2(p[0]) * 2.0
 }

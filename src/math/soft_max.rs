@@ -52,10 +52,9 @@ impl<S: Scalar> SoftMax<S> {
 
     /// The induced exponential Σ w_k g_k (Kennedy & Hicken 2015, eq. 16).
     pub fn induced_exponential(&self, values: &[S]) -> S {
-        self.weights
-            .iter()
-            .zip(values)
-            .fold(S::zero(), |sum, (&w, &g)| sum + w * g)
+        let top = values[self.peak];
+        let sum = |sum, (&w, &g): (&S, &S)| sum + w * (g - top);
+        self.weights.iter().zip(values).fold(top, sum)
     }
 }
 

@@ -143,7 +143,7 @@ impl JointKind {
 /// Where a joint sits on a body.
 #[derive(Clone, Copy, Debug)]
 pub struct JointFrame<S> {
-    /// Point from the centre of mass, in body axes (ground axes from the origin if ground) [m].
+    /// Point from the centre of mass, in body axes (ground axes from the origin if ground) (m).
     pub point: Vec3<S>,
     /// Orthonormal axes e1, e2, e3 in body axes; e3 is the joint's axis.
     pub axes: [Vec3<S>; 3],

@@ -15,7 +15,7 @@ use crate::math::{Scalar, Vec3};
 /// Bodies, joints and gravity of a scene.
 #[derive(Clone, Debug)]
 pub struct Model<S> {
-    /// Gravitational acceleration in ground axes [m/s²].
+    /// Gravitational acceleration in ground axes (m/s²).
     pub gravity: Vec3<S>,
     /// Bodies in the order of the problem file.
     pub bodies: Vec<RigidBody<S>>,

@@ -9,17 +9,17 @@ use crate::math::{Mat3, Scalar, Vec3};
 pub struct RigidBody<S> {
     /// Name in the problem file.
     pub name: String,
-    /// Mass [kg].
+    /// Mass (kg).
     pub mass: S,
-    /// Inertia about the centre of mass in body axes, symmetric [kg m²].
+    /// Inertia about the centre of mass in body axes, symmetric (kg m²).
     pub inertia: Mat3<S>,
-    /// Guess of the centre of mass at t = 0 in ground axes [m].
+    /// Guess of the centre of mass at t = 0 in ground axes (m).
     pub position: Vec3<S>,
     /// Guess of the Euler parameters at t = 0, of unit length (body axes to ground).
     pub orientation: Quat<S>,
-    /// Guess of the velocity of the centre of mass at t = 0 in ground axes [m/s].
+    /// Guess of the velocity of the centre of mass at t = 0 in ground axes (m/s).
     pub velocity: Vec3<S>,
-    /// Guess of the angular velocity at t = 0 in body axes [rad/s].
+    /// Guess of the angular velocity at t = 0 in body axes (rad/s).
     pub angular_velocity: Vec3<S>,
 }
 

@@ -13,7 +13,7 @@ const SNAPSHOTS: usize = 12;
 /// Corners of the polygon that stands for a circle.
 const CORNERS: usize = 32;
 
-/// The outline of a body, from its centre of mass in body axes \[m\].
+/// The outline of a body, from its centre of mass in body axes \(m).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outline {
     /// The silhouette is the convex hull of these points in the plane of the view.
@@ -27,9 +27,9 @@ pub enum Outline {
 /// A barrier across the direction of flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BarrierLine {
-    /// Place along the direction of flight \[m\].
+    /// Place along the direction of flight \(m).
     pub distance: f64,
-    /// Height of the top above the origin \[m\].
+    /// Height of the top above the origin \(m).
     pub top: f64,
 }
 
@@ -46,7 +46,7 @@ pub struct Drawing {
     pub outlines: Vec<Outline>,
     /// Points whose paths are drawn: the body, and the point from its centre of mass in body axes.
     pub traces: Vec<(usize, Vec3<f64>)>,
-    /// Height of the ground that a range is measured to \[m\].
+    /// Height of the ground that a range is measured to \(m).
     pub ground: Option<f64>,
     /// The barrier of a clearance.
     pub barrier: Option<BarrierLine>,

@@ -7,11 +7,11 @@ use std::f64::consts::PI;
 
 /// Mass, centre of mass and inertia of a body.
 pub struct MassProperties<S> {
-    /// Mass [kg].
+    /// Mass (kg).
     pub mass: S,
-    /// Centre of mass from the origin of the body's axes [m].
+    /// Centre of mass from the origin of the body's axes (m).
     pub centre: Vec3<S>,
-    /// Inertia about the centre of mass in body axes [kg m²].
+    /// Inertia about the centre of mass in body axes (kg m²).
     pub inertia: Mat3<S>,
 }
 
@@ -43,7 +43,7 @@ fn matrix<S: Scalar>(inertia: &Inertia, x: &[S]) -> Mat3<S> {
     Mat3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }
 
-/// Volume of a shape [m³].
+/// Volume of a shape (m³).
 pub fn volume<S: Scalar>(shape: &Shape, x: &[S]) -> S {
     match shape {
         Shape::Box { size } => size[0].get(x) * size[1].get(x) * size[2].get(x),
@@ -58,7 +58,7 @@ pub fn volume<S: Scalar>(shape: &Shape, x: &[S]) -> S {
     }
 }
 
-/// Principal moments of inertia per mass of a homogeneous shape about its centre [m²].
+/// Principal moments of inertia per mass of a homogeneous shape about its centre (m²).
 fn gyration<S: Scalar>(shape: &Shape, x: &[S]) -> Vec3<S> {
     let about = |r: S, l: S| (r * r * 0.5, (r * r * 3.0 + l * l) / 12.0);
     match shape {

@@ -16,9 +16,9 @@ pub const GROUND: &str = "ground";
 /// Where a body is.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose<S> {
-    /// Origin of the body's axes in ground axes [m].
+    /// Origin of the body's axes in ground axes (m).
     pub origin: Vec3<S>,
-    /// Centre of mass from the origin, in body axes [m].
+    /// Centre of mass from the origin, in body axes (m).
     pub centre: Vec3<S>,
     /// Euler parameters, body axes to ground.
     pub orientation: Quat<S>,
@@ -37,7 +37,7 @@ impl<S: Scalar> Pose<S> {
         }
     }
 
-    /// Centre of mass in ground axes [m].
+    /// Centre of mass in ground axes (m).
     pub fn position(&self) -> Vec3<S> {
         self.origin + self.rotation * self.centre
     }

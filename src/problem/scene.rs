@@ -13,7 +13,7 @@ use crate::math::scalar::{length, lift3};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Joint, JointFrame, Model, RigidBody};
 
-/// Gravity where the file gives none [m/s²].
+/// Gravity where the file gives none (m/s²).
 pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
 
 /// The scene of a checked document at the design `x`; bodies are placed in `order`.

@@ -16,15 +16,15 @@ use crate::model::{Model, RigidBody};
 /// Position and velocity of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion<S> {
-    /// Centre of mass r, ground axes [m].
+    /// Centre of mass r, ground axes (m).
     pub position: Vec3<S>,
     /// Euler parameters p.
     pub orientation: Quat<S>,
     /// Rotation matrix R(p), body axes to ground.
     pub rotation: Mat3<S>,
-    /// Velocity ṙ, ground axes [m/s].
+    /// Velocity ṙ, ground axes (m/s).
     pub velocity: Vec3<S>,
-    /// Angular velocity ω, body axes [rad/s].
+    /// Angular velocity ω, body axes (rad/s).
     pub omega: Vec3<S>,
 }
 
@@ -61,12 +61,12 @@ impl<S: Scalar> Motion<S> {
         out.extend((0..numbering.bodies()).map(|body| Self::of(numbering, body, q, v)));
     }
 
-    /// Position of the point `s` (from the centre of mass, body axes) [m].
+    /// Position of the point `s` (from the centre of mass, body axes) (m).
     pub fn point(&self, s: &Vec3<S>) -> Vec3<S> {
         self.position + self.rotation * s
     }
 
-    /// Velocity of the point `s` [m/s].
+    /// Velocity of the point `s` (m/s).
     pub fn point_velocity(&self, s: &Vec3<S>) -> Vec3<S> {
         self.velocity + self.rotation * self.omega.cross(s)
     }

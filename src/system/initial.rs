@@ -30,7 +30,7 @@ pub enum AssemblyFailure {
         joint: String,
         /// Which of its conditions.
         row: String,
-        /// The gap [m or 1].
+        /// The gap (m or 1).
         gap: f64,
         /// Iterations spent.
         iterations: usize,
@@ -80,7 +80,7 @@ pub fn guess<S: Scalar>(model: &Model<S>) -> (Vec<S>, Vec<S>) {
     (q, v)
 }
 
-/// A length that the scene's gaps and motions are judged against [m]: its largest lever arm or
+/// A length that the scene's gaps and motions are judged against (m): its largest lever arm or
 /// placement.
 pub fn length_scale<S: Scalar>(model: &Model<S>) -> f64 {
     let size = |v: &Vec3<S>| v.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));

@@ -176,9 +176,9 @@ impl<S: SolveScalar> SaddlePoint<S> {
         self.factors.solve(rhs);
     }
 
-    /// Solves the transposed system in place.
+    /// Solves the transposed system in place, with one step of iterative refinement.
     pub fn solve_transposed(&mut self, rhs: &mut [S]) {
-        self.factors.solve_transposed(rhs);
+        self.factors.solve_transposed_refined(&self.matrix, rhs);
     }
 }
 

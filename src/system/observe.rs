@@ -10,30 +10,30 @@ use crate::model::Model;
 /// What a state is judged by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
-    /// ½ Σ (m ṙᵀṙ + ωᵀJω) [J].
+    /// ½ Σ (m ṙᵀṙ + ωᵀJω) (J).
     pub kinetic: f64,
-    /// −Σ m gᵀr from the origin [J].
+    /// −Σ m gᵀr from the origin (J).
     pub potential: f64,
-    /// Linear momentum Σ m ṙ, ground axes [kg m/s].
+    /// Linear momentum Σ m ṙ, ground axes (kg m/s).
     pub momentum: Vec3<f64>,
-    /// Angular momentum about the origin, Σ (m r × ṙ + R J ω), ground axes [kg m²/s].
+    /// Angular momentum about the origin, Σ (m r × ṙ + R J ω), ground axes (kg m²/s).
     pub angular_momentum: Vec3<f64>,
-    /// Largest |Φ| [m or 1].
+    /// Largest |Φ| (m or 1).
     pub position_drift: f64,
-    /// Largest |G v| [m/s or 1/s].
+    /// Largest |G v| (m/s or 1/s).
     pub velocity_drift: f64,
 }
 
 /// Force and torque of a joint on its body A, at the joint's point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reaction {
-    /// Force in the joint's axes e1, e2, e3 on body A [N].
+    /// Force in the joint's axes e1, e2, e3 on body A (N).
     pub force: Vec3<f64>,
-    /// Torque about the joint's point in the joint's axes on body A [N m].
+    /// Torque about the joint's point in the joint's axes on body A (N m).
     pub torque: Vec3<f64>,
-    /// The same force in ground axes [N].
+    /// The same force in ground axes (N).
     pub force_ground: Vec3<f64>,
-    /// The same torque in ground axes [N m].
+    /// The same torque in ground axes (N m).
     pub torque_ground: Vec3<f64>,
 }
 

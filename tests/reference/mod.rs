@@ -4,9 +4,13 @@
 //! arithmetic at tolerance 1e-17; accurate to 3e-14 m.
 #![allow(dead_code)] // each test binary uses a part
 
-use flexbody::integrate::Trajectory;
+pub mod cases;
+pub mod models;
+
+use flexbody::integrate::{Method, Settings, Trajectory, simulate};
 use flexbody::math::{Mat3, Vec3};
-use flexbody::model::{Joint, JointFrame, JointKind, Model, RigidBody};
+use flexbody::model::{JointKind, Model, RigidBody};
+use flexbody::system::observe::reactions;
 use serde_json::Value;
 
 /// One instant of a reference trajectory.
@@ -107,33 +111,17 @@ fn model(scene: &Value) -> Model<f64> {
             } else {
                 vector(&joint["axis"])
             };
-            let axis = axis.normalize();
-            let e1 = axis.cross(&Vec3::new(0.3, -0.5, 0.2)).normalize();
-            let axes = [e1, axis.cross(&e1), axis];
-            let point = vector(&joint["point"]);
             let find = |key: &str| {
                 let name = joint[key].as_str().expect("body name");
                 bodies.iter().position(|body| body.name == name)
             };
-            let frame = |body: Option<usize>| match body {
-                None => JointFrame { point, axes },
-                Some(body) => {
-                    let r = flexbody::math::rotation::matrix(&bodies[body].orientation);
-                    JointFrame {
-                        point: r.tr_mul(&(point - bodies[body].position)),
-                        axes: axes.map(|e| r.tr_mul(&e)),
-                    }
-                }
-            };
-            let (body_a, body_b) = (find("body_a").expect("a body"), find("body_b"));
-            Joint {
-                name: joint["name"].as_str().expect("name").into(),
-                kind,
-                body_a,
-                body_b,
-                frame_a: frame(Some(body_a)),
-                frame_b: frame(body_b),
-            }
+            models::joint(
+                &bodies,
+                (joint["name"].as_str().expect("name"), kind),
+                (find("body_a").expect("a body"), find("body_b")),
+                &vector(&joint["point"]),
+                &axis,
+            )
         })
         .collect();
     Model {
@@ -143,21 +131,69 @@ fn model(scene: &Value) -> Model<f64> {
     }
 }
 
-/// Largest distance of a centre of mass from the reference, over all bodies and the reference
-/// instants that are ends of steps.
-pub fn position_error(run: &Trajectory<f64>, reference: &[Instant]) -> f64 {
-    let mut worst = 0.0_f64;
-    for at in reference {
+/// Runs BDF of the given order with steps of size `h`.
+pub fn bdf(model: &Model<f64>, duration: f64, h: f64, order: usize) -> Trajectory<f64> {
+    let settings = Settings {
+        steps: (duration / h).round() as usize,
+        method: Method::Bdf { order },
+    };
+    simulate(model, duration, &settings).expect("runs")
+}
+
+/// Observed order of an error that a step of half the size makes smaller.
+pub fn observed_order(coarse: f64, fine: f64) -> f64 {
+    (coarse / fine).log2()
+}
+
+/// Largest distance of a centre of mass from the reference [m], and largest difference of its
+/// velocity [m/s], over all bodies and the reference instants within the run, which are ends of
+/// steps.
+pub fn motion_error(run: &Trajectory<f64>, reference: &[Instant]) -> (f64, f64) {
+    let (mut position, mut velocity) = (0.0_f64, 0.0_f64);
+    for (k, at) in within(run, reference) {
+        for body in 0..at.centres.len() {
+            let r = &run.q(k)[run.numbering.position(body)..];
+            let v = &run.v(k)[run.numbering.velocity(body)..];
+            position = position.max((Vec3::new(r[0], r[1], r[2]) - at.centres[body]).norm());
+            velocity = velocity.max((Vec3::new(v[0], v[1], v[2]) - at.velocities[body]).norm());
+        }
+    }
+    (position, velocity)
+}
+
+/// The reference instants within the run with the steps that end there.
+fn within<'a>(
+    run: &'a Trajectory<f64>,
+    reference: &'a [Instant],
+) -> impl Iterator<Item = (usize, &'a Instant)> {
+    let step = |at: &'a Instant| {
         let k = (at.time / run.h).round();
         assert!(
             (k * run.h - at.time).abs() < 1e-9,
             "reference instants are ends of steps"
         );
-        let q = run.q(k as usize);
-        for (body, centre) in at.centres.iter().enumerate() {
-            let r = &q[run.numbering.position(body)..];
-            worst = worst.max((Vec3::new(r[0], r[1], r[2]) - centre).norm());
+        (k as usize, at)
+    };
+    reference.iter().map(step).filter(|(k, _)| *k <= run.steps)
+}
+
+/// Largest difference of a joint's reaction (force [N] or torque about its point [N m], on body A,
+/// ground axes) from the reference, relative to the largest reaction at any of its instants.
+pub fn reaction_error(model: &Model<f64>, run: &Trajectory<f64>, reference: &[Instant]) -> f64 {
+    let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+    for (k, at) in within(run, reference) {
+        let found = reactions(model, &run.numbering, run.q(k), run.lambda(k));
+        for (joint, found) in model.joints.iter().zip(&found) {
+            let expected = &at.value["reactions"][&joint.name];
+            for (key, found) in [
+                ("force", found.force_ground),
+                ("moment", found.torque_ground),
+            ] {
+                let expected = vector(&expected[key]);
+                largest = largest.max(expected.norm());
+                worst = worst.max((found - expected).norm());
+            }
         }
     }
-    worst
+    worst / largest
 }

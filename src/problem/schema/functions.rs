@@ -17,7 +17,7 @@ pub enum Function {
     Integral(Instant),
     /// Value at the end of the run.
     Final(Instant),
-    /// Height of a flight path above the top of a barrier [m].
+    /// Height of a flight path above the top of a barrier (m).
     Clearance(Clearance),
 }
 
@@ -40,19 +40,19 @@ pub struct Aggregate {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Instant {
-    /// Component of a point's position [m].
+    /// Component of a point's position (m).
     Position(Component),
-    /// Component of a point's velocity [m/s].
+    /// Component of a point's velocity (m/s).
     Velocity(Component),
-    /// Component of a point's acceleration [m/s²].
+    /// Component of a point's acceleration (m/s²).
     Acceleration(Component),
-    /// Speed of a point [m/s].
+    /// Speed of a point (m/s).
     Speed(Moving),
-    /// Energy of the whole scene [J].
+    /// Energy of the whole scene (J).
     Energy(Energy),
-    /// Rotation of a body about an axis, counted on over whole turns [rad].
+    /// Rotation of a body about an axis, counted on over whole turns (rad).
     Rotation(Rotation),
-    /// Range of a projectile that is let go at this instant [m].
+    /// Range of a projectile that is let go at this instant (m).
     Range(Range),
 }
 

@@ -6,7 +6,7 @@ use super::panel::{BELOW, Key, Legend, Panel, room_left};
 use crate::report::ReportError;
 use plotters::style::RGBColor;
 
-/// A point of the plane that is drawn: horizontal and vertical coordinate \[m\].
+/// A point of the plane that is drawn: horizontal and vertical coordinate \(m).
 pub type Point = [f64; 2];
 
 /// A body at the instants of a time lapse.
@@ -21,11 +21,11 @@ pub struct BodyMotion {
 /// A projectile at the instant of its release; from here it falls freely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flight {
-    /// Place of the release \[m\].
+    /// Place of the release \(m).
     pub position: Point,
-    /// Velocity at the release \[m/s\].
+    /// Velocity at the release \(m/s).
     pub velocity: Point,
-    /// Gravity, downwards positive \[m/s²\].
+    /// Gravity, downwards positive \(m/s²).
     pub gravity: f64,
 }
 
@@ -45,20 +45,20 @@ pub struct Motion {
 /// A barrier that the projectile must clear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Barrier {
-    /// Horizontal coordinate \[m\].
+    /// Horizontal coordinate \(m).
     pub distance: f64,
-    /// Vertical coordinate of its top \[m\].
+    /// Vertical coordinate of its top \(m).
     pub top: f64,
 }
 
 /// What stands still, and the names of the directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenery {
-    /// Height of the ground \[m\], if a projectile lands on it.
+    /// Height of the ground \(m), if a projectile lands on it.
     pub ground: Option<f64>,
     /// The barrier, if there is one.
     pub barrier: Option<Barrier>,
-    /// Label of the horizontal axis, such as `x \[m\]`.
+    /// Label of the horizontal axis, such as `x \(m)`.
     pub horizontal: String,
     /// Label of the vertical axis.
     pub vertical: String,
@@ -190,7 +190,7 @@ pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportErr
 }
 
 /// A panel that shows all points, and the ground where it is near, with the same scale in both
-/// directions and width and height [px] within limits: as wide as may be, narrower if it would
+/// directions and width and height (px) within limits: as wide as may be, narrower if it would
 /// be too high; and where that does not suffice, more is shown in one direction.
 fn equal_axes(points: &[Point], scenery: &Scenery, widths: [f64; 2], heights: [f64; 2]) -> Panel {
     let (mut west, mut east) = range(points.iter().map(|point| point[0]));

@@ -4,7 +4,7 @@ use super::axis::{Axis, Scale};
 use super::canvas::{Anchor, Canvas, GRID, INK, Pixel, text_width};
 use plotters::style::RGBColor;
 
-/// A frame at a place of the picture [px] with its axes.
+/// A frame at a place of the picture (px) with its axes.
 pub(super) struct Panel {
     pub left: f64,
     pub top: f64,
@@ -14,10 +14,10 @@ pub(super) struct Panel {
     pub y: Axis,
 }
 
-/// Room below a panel for numbers and label of the x axis [px].
+/// Room below a panel for numbers and label of the x axis (px).
 pub(super) const BELOW: f64 = 42.0;
 
-/// Room left of a panel for numbers and label of its y axis [px].
+/// Room left of a panel for numbers and label of its y axis (px).
 pub(super) fn room_left<'a>(axes: impl IntoIterator<Item = &'a Axis>) -> f64 {
     axes.into_iter().map(Axis::widest).fold(0.0, f64::max) + 32.0
 }
@@ -145,7 +145,7 @@ impl Panel {
     }
 }
 
-/// The text, cut where it would be longer than the given length [px].
+/// The text, cut where it would be longer than the given length (px).
 fn fitted(text: &str, length: f64) -> String {
     if text_width(text) <= length {
         return text.to_owned();
@@ -172,7 +172,7 @@ pub(super) enum Key {
     Note,
 }
 
-/// Height of a row of a legend [px].
+/// Height of a row of a legend (px).
 const ROW: f64 = 20.0;
 
 /// A legend in rows above a panel, so that it covers no data.
@@ -181,7 +181,7 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// Fills rows of the given width [px].
+    /// Fills rows of the given width (px).
     pub fn new(entries: Vec<(Key, String)>, width: f64) -> Legend {
         let mut rows: Vec<Vec<(Key, String, f64)>> = Vec::new();
         let mut x = f64::INFINITY;
@@ -204,7 +204,7 @@ impl Legend {
         Legend { rows }
     }
 
-    /// Height of all rows [px].
+    /// Height of all rows (px).
     pub fn height(&self) -> f64 {
         ROW * self.rows.len() as f64
     }

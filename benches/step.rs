@@ -1,0 +1,122 @@
+//! The parts of one implicit step: residual, iteration matrix, factorisation, solves.
+//!
+//! `cargo bench --bench step`; read the column "fastest" on a shared machine.
+
+mod scenes;
+
+use divan::{Bencher, black_box};
+use flexbody::integrate::Trajectory;
+use flexbody::integrate::ggl::{Equations, Instant};
+use flexbody::linalg::{SparseLu, SparseMatrix};
+use flexbody::model::Model;
+use flexbody::system::bodies;
+use scenes::{Case, NAMES};
+
+fn main() {
+    divan::main();
+}
+
+/// Step of the motion that is stopped [s].
+const H: f64 = 1e-3;
+
+/// A motion stopped half way through.
+struct Halted {
+    model: Model<f64>,
+    run: Trajectory<f64>,
+    k: usize,
+    qdot: Vec<f64>,
+}
+
+impl Halted {
+    fn new(name: &'static str) -> Self {
+        let case = Case::new(name, H);
+        let run = case.simulate();
+        let k = run.steps / 2;
+        let mut qdot = vec![0.0; run.numbering.positions()];
+        bodies::rates(&run.numbering, run.q(k), run.v(k), &mut qdot);
+        Self {
+            model: case.scene.model,
+            run,
+            k,
+            qdot,
+        }
+    }
+
+    fn instant(&self) -> Instant<'_, f64> {
+        let (run, k) = (&self.run, self.k);
+        Instant {
+            q: run.q(k),
+            v: run.v(k),
+            lambda: run.lambda(k),
+            mu: run.mu(k),
+            qdot: &self.qdot,
+            vdot: run.a(k),
+        }
+    }
+
+    fn equations(&self) -> Equations<'_, f64> {
+        Equations::new(&self.model, &self.run.numbering)
+    }
+
+    /// The assembled iteration matrix of BDF2.
+    fn matrix(&self) -> SparseMatrix<f64> {
+        let mut equations = self.equations();
+        let mut matrix = SparseMatrix::new(equations.pattern(&self.instant()));
+        matrix.assemble(|emit| equations.jacobian(&self.instant(), H, 1.5 / H, emit));
+        matrix
+    }
+
+    fn factors(&self) -> (SparseLu<f64>, Vec<f64>) {
+        let matrix = self.matrix();
+        let mut factors = SparseLu::new(&matrix.pattern);
+        factors.factorise(&matrix).expect("regular");
+        (factors, vec![1.0; matrix.pattern.order()])
+    }
+}
+
+#[divan::bench(args = NAMES)]
+fn residual(bencher: Bencher, name: &'static str) {
+    let halted = Halted::new(name);
+    let mut equations = halted.equations();
+    let mut out = vec![0.0; equations.order()];
+    bencher.bench_local(|| equations.residual(black_box(&halted.instant()), H, &mut out));
+}
+
+#[divan::bench(args = NAMES)]
+fn jacobian(bencher: Bencher, name: &'static str) {
+    let halted = Halted::new(name);
+    let mut equations = halted.equations();
+    let mut matrix = halted.matrix();
+    bencher.bench_local(|| {
+        let at = black_box(halted.instant());
+        matrix.assemble(|emit| equations.jacobian(&at, H, 1.5 / H, emit));
+    });
+}
+
+#[divan::bench(args = NAMES)]
+fn factorisation(bencher: Bencher, name: &'static str) {
+    let halted = Halted::new(name);
+    let matrix = halted.matrix();
+    let mut factors = SparseLu::new(&matrix.pattern);
+    bencher.bench_local(|| factors.factorise(black_box(&matrix)));
+}
+
+#[divan::bench(args = NAMES)]
+fn solve(bencher: Bencher, name: &'static str) {
+    let (mut factors, ones) = Halted::new(name).factors();
+    let mut b = ones.clone();
+    bencher.bench_local(|| {
+        b.copy_from_slice(&ones);
+        factors.solve(black_box(&mut b));
+    });
+}
+
+#[divan::bench(args = NAMES)]
+fn solve_transposed(bencher: Bencher, name: &'static str) {
+    let (mut factors, ones) = Halted::new(name).factors();
+    let mut b = ones.clone();
+    bencher.bench_local(|| {
+        b.copy_from_slice(&ones);
+        factors.solve_transposed(black_box(&mut b));
+    });
+}

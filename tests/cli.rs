@@ -1,0 +1,394 @@
+//! The command `optimize`: exit codes, what it prints, what it writes, and what it leaves alone.
+//!
+//! Every test runs the program in a scratch directory of its own, on a hammer of two bodies and two
+//! design variables (`tests/data/hammer.json`, 100 steps).
+
+mod program;
+
+use program::{HAMMER, changed, every, expect, files, json, names, read, scratch};
+use std::path::Path;
+
+#[test]
+fn help_and_version() {
+    let at = scratch();
+    let help = expect(0, at.path(), &["--help"]);
+    for word in [
+        "simulate", "check", "compare", "plot", "schema", "--output", "--quiet", "--set",
+    ] {
+        assert!(help.out.contains(word), "{word}\n{}", help.out);
+    }
+    assert!(help.out.contains("Exit codes: 0 done; 1 not converged"));
+    let version = expect(0, at.path(), &["--version"]);
+    assert_eq!(
+        version.out,
+        concat!("optimize ", env!("CARGO_PKG_VERSION"), "\n")
+    );
+    for bad in [&[][..], &["simulate"], &["--colour", HAMMER], &["a", "b"]] {
+        let ran = expect(2, at.path(), bad);
+        assert!(ran.out.is_empty() && ran.err.contains("Usage"), "{ran:?}");
+    }
+    assert!(files(at.path()).is_empty());
+}
+
+#[test]
+fn schema_describes_the_problem_file() {
+    let at = scratch();
+    let schema = json(&expect(0, at.path(), &["schema"]).out);
+    assert!(
+        schema["$schema"]
+            .as_str()
+            .expect("text")
+            .contains("json-schema.org")
+    );
+    assert_eq!(schema["type"], "object");
+    assert_eq!(schema["additionalProperties"], false);
+    let properties = schema["properties"].as_object().expect("an object");
+    let document = json(&read(Path::new(HAMMER)));
+    for key in document.as_object().expect("an object").keys() {
+        assert!(properties.contains_key(key), "{key}");
+        let property = &properties[key];
+        assert!(property["description"].is_string(), "{key}: {property}");
+    }
+    for key in schema["required"].as_array().expect("a list") {
+        let key = key.as_str().expect("text");
+        assert!(!document[key].is_null(), "{key}");
+    }
+    // References lead to something.
+    every(&schema, &mut |value| {
+        if let Some(reference) = value["$ref"].as_str() {
+            let pointer = reference.strip_prefix('#').expect("inside the schema");
+            assert!(schema.pointer(pointer).is_some(), "{reference}");
+        }
+    });
+}
+
+#[test]
+fn simulate_prints_and_writes_only_where_it_is_told_to() {
+    let at = scratch();
+    let ran = expect(0, at.path(), &["simulate", HAMMER]);
+    for word in [
+        "hammer: 0.6 s in 100 steps",
+        "strike",
+        "effort",
+        "energy",
+        "constraints:",
+    ] {
+        assert!(ran.out.contains(word), "{word}\n{}", ran.out);
+    }
+    assert!(files(at.path()).is_empty());
+    expect(0, at.path(), &["simulate", HAMMER, "--output", "made/here"]);
+    let made = at.path().join("made/here");
+    assert_eq!(names(&made), ["energy.svg", "motion.svg", "simulation.csv"]);
+    let table = read(&made.join("simulation.csv"));
+    assert_eq!(table.lines().count(), 102, "a head and 101 instants");
+    let quiet = expect(0, at.path(), &["simulate", HAMMER, "--quiet"]);
+    assert!(quiet.out.is_empty() && quiet.err.is_empty(), "{quiet:?}");
+}
+
+#[test]
+fn check_passes_or_fails_by_its_tolerance() {
+    let at = scratch();
+    let ran = expect(0, at.path(), &["check", HAMMER, "--tolerance", "1e-12"]);
+    assert!(ran.out.contains("4 derivatives"), "{}", ran.out);
+    for name in ["strike", "effort", "head mass", "reach"] {
+        assert!(ran.out.contains(name), "{name}\n{}", ran.out);
+    }
+    let ran = expect(1, at.path(), &["check", HAMMER, "--tolerance", "1e-300"]);
+    assert!(ran.out.contains("exceeds the tolerance"), "{}", ran.out);
+    let ran = expect(
+        1,
+        at.path(),
+        &["check", HAMMER, "-q", "--tolerance", "1e-300"],
+    );
+    assert!(ran.out.contains("exceeds the tolerance"), "{}", ran.out);
+    for wrong in ["0", "-1", "NaN", "inf", "tiny"] {
+        let tolerance = format!("--tolerance={wrong}");
+        expect(2, at.path(), &["check", HAMMER, &tolerance]);
+    }
+    let bare = changed(at.path(), "bare.json", |document| {
+        let object = document.as_object_mut().expect("an object");
+        for key in ["variables", "objective", "constraints"] {
+            object.remove(key);
+        }
+    });
+    let ran = expect(2, at.path(), &["check", &bare]);
+    assert!(
+        ran.err
+            .contains("nothing to check: the problem has no variables")
+    );
+    let ran = expect(2, at.path(), &[&bare]);
+    assert!(
+        ran.err
+            .contains("nothing to optimise: the problem has no \"objective\"")
+    );
+}
+
+#[test]
+fn optimising_writes_a_record_and_figures() {
+    let at = scratch();
+    let ran = expect(0, at.path(), &[HAMMER]);
+    assert!(
+        ran.out
+            .starts_with("hammer: the optimality conditions hold\n"),
+        "{}",
+        ran.out
+    );
+    assert!(
+        ran.err.starts_with("iter      objective    inf_pr"),
+        "{}",
+        ran.err
+    );
+    let results = at.path().join("results/hammer");
+    let expected = [
+        "convergence.svg",
+        "energy.svg",
+        "history.csv",
+        "motion.svg",
+        "optimum.json",
+    ];
+    assert_eq!(names(&results), expected);
+    assert_eq!(names(at.path()).len(), expected.len(), "nothing else");
+    let text = read(&results.join("optimum.json"));
+    let optimum = json(&text);
+    assert_eq!(optimum["status"], "converged");
+    assert_eq!(optimum["active_bounds"]["head mass"], "lower");
+    assert_eq!(optimum["active_bounds"]["reach"], "upper");
+    assert_eq!(optimum["problem"]["file"], "hammer.json");
+    assert_eq!(optimum["version"], env!("CARGO_PKG_VERSION"));
+    // A number that is not finite would be written as null.
+    every(&optimum, &mut |value| assert!(!value.is_null(), "{text}"));
+    assert!(!text.contains("NaN") && !text.contains("inf,"), "{text}");
+    for name in ["convergence.svg", "energy.svg", "motion.svg"] {
+        let figure = read(&results.join(name));
+        assert!(
+            figure.starts_with("<svg") && figure.trim_end().ends_with("</svg>"),
+            "{name}"
+        );
+        assert!(!figure.contains("NaN"), "{name}");
+    }
+    let history = read(&results.join("history.csv"));
+    assert!(
+        history.starts_with("iteration,evaluations,objective: strike"),
+        "{history}"
+    );
+    let iterations = optimum["counts"]["iterations"].as_u64().expect("a count");
+    assert_eq!(history.lines().count() as u64, iterations + 2);
+}
+
+#[test]
+fn the_same_run_gives_the_same_bytes() {
+    let at = scratch();
+    for directory in ["first", "second"] {
+        let ran = expect(0, at.path(), &[HAMMER, "--quiet", "--output", directory]);
+        assert!(ran.out.is_empty() && ran.err.is_empty(), "{ran:?}");
+    }
+    for name in names(&at.path().join("first")) {
+        let [first, second] = ["first", "second"].map(|d| read(&at.path().join(d).join(&name)));
+        assert!(first == second, "{name}");
+    }
+}
+
+#[test]
+fn compare_tells_what_moved() {
+    let at = scratch();
+    expect(0, at.path(), &[HAMMER, "-q", "-o", "new"]);
+    let ran = expect(0, at.path(), &["compare", "new", "new/optimum.json"]);
+    assert!(ran.out.starts_with("same optimum: "), "{}", ran.out);
+    let mut optimum = json(&read(&at.path().join("new/optimum.json")));
+    let mass = &mut optimum["design"]["head mass"]["value"];
+    *mass = (mass.as_f64().expect("a number") + 0.01).into();
+    std::fs::write(at.path().join("edited.json"), optimum.to_string()).expect("is written");
+    let ran = expect(1, at.path(), &["compare", "new", "edited.json"]);
+    let row = ran.out.lines().find(|line| line.contains("head mass"));
+    assert!(row.is_some_and(|row| row.contains("design")), "{}", ran.out);
+    assert!(!ran.out.contains("reach"), "{}", ran.out);
+    let ran = expect(2, at.path(), &["compare", "new", "none.json"]);
+    assert!(
+        ran.err.starts_with("cannot read none.json: "),
+        "{}",
+        ran.err
+    );
+    std::fs::write(at.path().join("broken.json"), "{\"status\": 1}").expect("is written");
+    let ran = expect(2, at.path(), &["compare", "broken.json", "new"]);
+    assert!(ran.err.starts_with("broken.json: "), "{}", ran.err);
+}
+
+#[test]
+fn plot_redraws_the_same_figures() {
+    let at = scratch();
+    expect(0, at.path(), &[HAMMER, "-q", "-o", "drawn"]);
+    let drawn = at.path().join("drawn");
+    let before = files(&drawn);
+    for name in ["convergence.svg", "energy.svg", "motion.svg"] {
+        std::fs::remove_file(drawn.join(name)).expect("is removed");
+    }
+    expect(0, at.path(), &["plot", "drawn"]);
+    let after = files(&drawn);
+    assert_eq!(after.len(), before.len());
+    for (path, content) in &before {
+        assert!(after[path] == *content, "{}", path.display());
+    }
+    std::fs::remove_file(drawn.join("history.csv")).expect("is removed");
+    let ran = expect(2, at.path(), &["plot", "drawn"]);
+    assert!(
+        ran.err.starts_with("cannot read drawn/history.csv: "),
+        "{}",
+        ran.err
+    );
+}
+
+#[test]
+fn set_changes_one_value_for_this_run() {
+    let at = scratch();
+    let heavier = [
+        "simulate",
+        HAMMER,
+        "--set",
+        "/bodies/head/mass=3",
+        "--set",
+        "/simulation/steps=50",
+    ];
+    let ran = expect(0, at.path(), &heavier);
+    assert!(ran.out.contains("in 50 steps"), "{}", ran.out);
+    let file = changed(at.path(), "heavier.json", |document| {
+        document["bodies"]["head"]["mass"] = 3.into();
+        document["simulation"]["steps"] = 50.into();
+    });
+    assert_eq!(ran.out, expect(0, at.path(), &["simulate", &file]).out);
+    let ran = expect(
+        2,
+        at.path(),
+        &["simulate", HAMMER, "--set", "/bodies/haed/mass=3"],
+    );
+    assert!(
+        ran.err.contains("found nothing at this path"),
+        "{}",
+        ran.err
+    );
+    assert!(
+        ran.err.contains("did you mean /bodies/head/mass?"),
+        "{}",
+        ran.err
+    );
+    let ran = expect(
+        2,
+        at.path(),
+        &["simulate", HAMMER, "--set", "/bodies/head/mass=heavy"],
+    );
+    assert!(ran.err.contains("\"heavy\""), "{}", ran.err);
+    let ran = expect(
+        2,
+        at.path(),
+        &["simulate", HAMMER, "--set", "/bodies/head/mass"],
+    );
+    assert!(ran.err.contains("expected PATH=VALUE"), "{}", ran.err);
+}
+
+/// One iteration is not enough: exit code 1, and the record says so.
+#[test]
+fn a_run_that_does_not_converge_is_recorded_as_such() {
+    let at = scratch();
+    let few = ["--set", "/optimiser/iterations=1", "-o", "out", "-q"];
+    let ran = expect(1, at.path(), &[&[HAMMER], &few[..]].concat());
+    assert_eq!(ran.err, "hammer: the iteration limit was reached\n");
+    let optimum = json(&read(&at.path().join("out/optimum.json")));
+    assert_eq!(optimum["status"], "iteration_limit");
+    every(&optimum, &mut |value| assert!(!value.is_null()));
+}
+
+/// What a run would have overwritten stays when the problem cannot be read.
+#[test]
+fn a_bad_problem_leaves_results_untouched() {
+    let at = scratch();
+    expect(0, at.path(), &[HAMMER, "-q"]);
+    let before = files(at.path());
+    let bad = [
+        "/bodies/head/mass=-1",
+        "/variables/reach/upper=0.1",
+        "/name=3",
+    ];
+    for change in bad {
+        let ran = expect(2, at.path(), &[HAMMER, "--set", change]);
+        assert!(ran.out.is_empty() && !ran.err.is_empty(), "{ran:?}");
+    }
+    let ran = expect(2, at.path(), &["missing.json"]);
+    assert!(ran.err.contains("missing.json"), "{}", ran.err);
+    assert_eq!(files(at.path()), before);
+}
+
+#[test]
+fn paths_are_taken_from_the_working_directory() {
+    let at = scratch();
+    let inner = at.path().join("inner");
+    std::fs::create_dir(&inner).expect("is made");
+    std::fs::copy(HAMMER, at.path().join("hammer.json")).expect("is copied");
+    let ran = expect(0, &inner, &["../hammer.json"]);
+    assert!(ran.err.contains("results in results/hammer"), "{}", ran.err);
+    assert_eq!(names(&inner).len(), 5);
+    assert!(inner.join("results/hammer/optimum.json").is_file());
+    assert_eq!(names(at.path()).len(), 6, "five results and the problem");
+}
+
+#[test]
+fn results_that_cannot_be_written_are_bad_input() {
+    let at = scratch();
+    std::fs::write(at.path().join("file"), "mine").expect("is written");
+    for job in [&[HAMMER][..], &["simulate", HAMMER]] {
+        for output in ["file", "file/below"] {
+            let ran = expect(2, at.path(), &[job, &["--output", output]].concat());
+            assert!(ran.err.contains("file"), "{}", ran.err);
+        }
+    }
+    assert_eq!(read(&at.path().join("file")), "mine");
+    assert_eq!(names(at.path()), ["file"]);
+}
+
+/// Steps much too long for the spin: exit code 3, with the time and the body.
+#[test]
+fn a_simulation_that_fails_is_told_with_time_and_body() {
+    let at = scratch();
+    let wild = [
+        "--set",
+        "/initial_velocity/angular/2=5000",
+        "--set",
+        "/simulation/steps=5",
+    ];
+    for job in [
+        &["simulate", HAMMER][..],
+        &["check", HAMMER],
+        &[HAMMER, "-o", "out"],
+    ] {
+        let ran = expect(3, at.path(), &[job, &wild].concat());
+        assert!(
+            ran.err.contains("at t = 1.200000e-1 s (step 1)"),
+            "{}",
+            ran.err
+        );
+        let named = [
+            "body \"head\"",
+            "body \"handle\"",
+            "joint \"pin\"",
+            "joint \"seat\"",
+        ];
+        assert!(
+            named.iter().any(|name| ran.err.contains(name)),
+            "{}",
+            ran.err
+        );
+    }
+    assert!(!at.path().join("out/optimum.json").exists());
+}
+
+/// A handle between two pins that are farther apart than it is long: exit code 3, with the joint.
+#[test]
+fn an_assembly_that_cannot_be_closed_is_told_with_its_joint() {
+    let at = scratch();
+    let file = changed(at.path(), "apart.json", |document| {
+        let joint = r#"{"spherical": {"between": ["head", "ground"],
+                        "at": {"a": [0, 0, 0], "b": [1.2, 0.3, 0]}}}"#;
+        document["joints"]["wall"] = json(joint);
+    });
+    let ran = expect(3, at.path(), &["simulate", &file]);
+    assert!(ran.err.contains("joint"), "{}", ran.err);
+    assert!(ran.err.contains("wall"), "{}", ran.err);
+}

@@ -1,0 +1,115 @@
+//! Joints carry what hangs from them: reactions of bodies at rest against statics, to 5e-11 N or
+//! N m (1e-12 of 50 N).
+
+mod reference;
+
+use flexbody::math::Vec3;
+use flexbody::model::{JointKind, Model, RigidBody};
+use flexbody::system::kkt::SaddlePoint;
+use flexbody::system::observe::{Reaction, reactions};
+use flexbody::system::{Numbering, initial};
+use reference::models::{joint, rod};
+
+fn gravity() -> Vec3<f64> {
+    Vec3::new(0.0, -9.81, 0.0)
+}
+
+fn reactions_at_start(model: &Model<f64>) -> Vec<Reaction> {
+    let numbering = Numbering::new(model);
+    let mut saddle = SaddlePoint::new(model, &numbering);
+    let start = initial::solve(model, &numbering, &mut saddle).expect("is consistent");
+    reactions(model, &numbering, &start.q, &start.lambda)
+}
+
+fn assert_near(what: &str, found: &Vec3<f64>, expected: &Vec3<f64>) {
+    let off = (found - expected).norm();
+    assert!(off <= 5e-11, "{what}: {found} against {expected}");
+}
+
+/// A body of 1 m that hangs upright with its centre at the height `y`.
+fn hanging(name: &str, mass: f64, y: f64) -> RigidBody<f64> {
+    RigidBody {
+        position: Vec3::new(0.0, y, 0.0),
+        ..rod(name, mass, 0.0)
+    }
+}
+
+/// Two bodies that hang from each other pull at their joints with what hangs from these.
+#[test]
+fn a_joint_carries_the_weight_that_hangs_from_it() {
+    for kind in [
+        JointKind::Spherical,
+        JointKind::Revolute,
+        JointKind::Prismatic,
+    ] {
+        let bodies = vec![hanging("upper", 2.0, -0.5), hanging("lower", 3.0, -1.5)];
+        let at = |y: f64| Vec3::new(0.0, y, 0.0);
+        let joints = vec![
+            joint(&bodies, ("ceiling", kind), (0, None), &at(0.0), &Vec3::z()),
+            joint(
+                &bodies,
+                ("middle", kind),
+                (0, Some(1)),
+                &at(-1.0),
+                &Vec3::z(),
+            ),
+        ];
+        let model = Model {
+            gravity: gravity(),
+            bodies,
+            joints,
+        };
+        let found = reactions_at_start(&model);
+        // On body A, the upper body: held by the ceiling, pulled down by the lower body.
+        let up = |force| Vec3::new(0.0, force, 0.0);
+        assert_near("ceiling", &found[0].force_ground, &up(5.0 * 9.81));
+        assert_near("middle", &found[1].force_ground, &up(-3.0 * 9.81));
+        for reaction in &found {
+            assert_near("torque", &reaction.torque_ground, &Vec3::zeros());
+        }
+    }
+}
+
+/// A drawer that is held 0.5 m from its centre of mass by a slide along x carries force m g and
+/// torque m g · 0.5 m about z on the body; in the joint's own axes they have the same lengths, and
+/// nothing acts along the slide. A puck on a horizontal plane is held up by m g.
+#[test]
+fn a_slide_and_a_plane_carry_weight_and_moment() {
+    let bodies = vec![rod("drawer", 2.0, 0.5)];
+    let slide = joint(
+        &bodies,
+        ("slide", JointKind::Prismatic),
+        (0, None),
+        &Vec3::zeros(),
+        &Vec3::x(),
+    );
+    let model = Model {
+        gravity: gravity(),
+        bodies: bodies.clone(),
+        joints: vec![slide],
+    };
+    let found = reactions_at_start(&model)[0];
+    let weight = 2.0 * 9.81;
+    assert_near("force", &found.force_ground, &Vec3::new(0.0, weight, 0.0));
+    assert_near(
+        "torque",
+        &found.torque_ground,
+        &Vec3::new(0.0, 0.0, 0.5 * weight),
+    );
+    assert!((found.force.norm() - weight).abs() <= 1e-12 && found.force.z.abs() <= 1e-12);
+    assert!((found.torque.norm() - 0.5 * weight).abs() <= 1e-12);
+    let plane = joint(
+        &bodies,
+        ("table", JointKind::Planar),
+        (0, None),
+        &bodies[0].position,
+        &Vec3::y(),
+    );
+    let model = Model {
+        joints: vec![plane],
+        ..model
+    };
+    let found = reactions_at_start(&model)[0];
+    assert_near("force", &found.force_ground, &Vec3::new(0.0, weight, 0.0));
+    assert_near("torque", &found.torque_ground, &Vec3::zeros());
+}

@@ -1,0 +1,158 @@
+//! Open joints in random states, and their complex steps.
+
+use super::models::{KINDS, Numbers, axes_along, joint};
+use flexbody::math::scalar::COMPLEX_STEP;
+use flexbody::math::{Complex64, Scalar};
+use flexbody::model::{JointKind, Model};
+use flexbody::system::bodies::{Motion, rates};
+use flexbody::system::{Numbering, initial, joints};
+
+/// A model in a state, and random numbers for what the derivatives are multiplied with.
+pub struct Case {
+    pub name: String,
+    pub model: Model<f64>,
+    pub numbering: Numbering,
+    pub q: Vec<f64>,
+    pub v: Vec<f64>,
+    pub numbers: Numbers,
+}
+
+/// Every kind of joint between two bodies and to ground, at two random states.
+pub fn cases() -> Vec<Case> {
+    let mut all = Vec::new();
+    for kind in KINDS {
+        for body_b in [Some(0), None] {
+            for seed in [3, 4] {
+                all.push(case(kind, body_b, seed));
+            }
+        }
+    }
+    all
+}
+
+fn case(kind: JointKind, body_b: Option<usize>, seed: u64) -> Case {
+    let mut numbers = Numbers(seed);
+    let bodies = vec![numbers.body("first"), numbers.body("second")];
+    let (point, axis) = (numbers.vector(), numbers.vector());
+    let mut joint = joint(&bodies, ("joint", kind), (1, body_b), &point, &axis);
+    joint.frame_b.point += numbers.vector();
+    joint.frame_b.axes = axes_along(&numbers.vector());
+    let model = Model {
+        gravity: numbers.vector() * 10.0,
+        bodies,
+        joints: vec![joint],
+    };
+    let (q, v) = initial::guess(&model);
+    Case {
+        name: format!("{kind:?} {body_b:?} {seed}"),
+        numbering: Numbering::new(&model),
+        model,
+        q,
+        v,
+        numbers,
+    }
+}
+
+impl Case {
+    /// Asserts the tolerance for a list of derivatives.
+    pub fn assert(&self, what: &str, given: &[f64], exact: &[f64]) {
+        assert_eq!(given.len(), exact.len());
+        let largest = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        for (i, (given, exact)) in given.iter().zip(exact).enumerate() {
+            assert!(
+                (given - exact).abs() <= 1e-12 * largest,
+                "{}: {what} {i}: {given} against {exact} (largest {largest})",
+                self.name
+            );
+        }
+    }
+
+    /// q + i h T(q) dy.
+    pub fn moved(&self, dy: &[f64]) -> Vec<Complex64> {
+        let mut dq = vec![0.0; self.q.len()];
+        rates(&self.numbering, &self.q, dy, &mut dq);
+        self.q.iter().zip(&dq).map(step).collect()
+    }
+
+    pub fn motions<S: Scalar>(&self, q: &[S], v: &[S]) -> Vec<Motion<S>> {
+        let mut motions = Vec::new();
+        Motion::all(&self.numbering, q, v, &mut motions);
+        motions
+    }
+
+    /// Values, rates and biases of all rows, one after the other.
+    pub fn constraints(
+        &self,
+        model: &Model<Complex64>,
+        q: &[Complex64],
+        v: &[Complex64],
+    ) -> Vec<f64> {
+        let (numbering, motions) = (&self.numbering, self.motions(q, v));
+        let rows = numbering.constraints();
+        let mut all = vec![Complex64::from(0.0); 3 * rows];
+        joints::values(model, numbering, &motions, &mut all[..rows]);
+        joints::rates(model, numbering, &motions, &mut all[rows..2 * rows]);
+        joints::biases(model, numbering, &motions, &mut all[2 * rows..]);
+        slopes(&all)
+    }
+
+    pub fn lifted(&self) -> Model<Complex64> {
+        self.model.map(&mut Complex64::from)
+    }
+
+    /// G(q)ᵀ λ.
+    pub fn reactions<S: Scalar>(&self, model: &Model<S>, q: &[S], lambda: &[S]) -> Vec<S> {
+        let at_rest = vec![S::zero(); self.v.len()];
+        let mut gradients = Vec::new();
+        let motions = self.motions(q, &at_rest);
+        joints::gradients(model, &self.numbering, &motions, &mut gradients);
+        let mut out = at_rest;
+        joints::add_reactions(model, &self.numbering, &gradients, lambda, &mut out);
+        out
+    }
+
+    /// The derivative of `f` in every parameter of the model, by the complex step.
+    pub fn by_parameters(&self, f: impl Fn(&Model<Complex64>) -> f64) -> Vec<f64> {
+        let count = parameters(&self.model).len();
+        (0..count)
+            .map(|wanted| {
+                let mut i = 0;
+                f(&self.model.map(&mut |x| {
+                    i += 1;
+                    step((&x, &if i == wanted + 1 { 1.0 } else { 0.0 }))
+                }))
+            })
+            .collect()
+    }
+}
+
+pub fn step((x, dx): (&f64, &f64)) -> Complex64 {
+    Complex64::new(*x, COMPLEX_STEP * dx)
+}
+
+pub fn lift(x: &[f64]) -> Vec<Complex64> {
+    x.iter().map(|&x| x.into()).collect()
+}
+
+pub fn slopes(x: &[Complex64]) -> Vec<f64> {
+    x.iter().map(|x| x.im / COMPLEX_STEP).collect()
+}
+
+pub fn unit(n: usize, i: usize) -> Vec<f64> {
+    let mut e = vec![0.0; n];
+    e[i] = 1.0;
+    e
+}
+
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+pub fn parameters(model: &Model<f64>) -> Vec<f64> {
+    let mut all = Vec::new();
+    model.map(&mut |x| {
+        all.push(x);
+        x
+    });
+    all
+}
