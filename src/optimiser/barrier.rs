@@ -88,16 +88,17 @@ impl BarrierRule {
             self.history.remove(0);
         }
         self.history.push(error);
-        let centring = match NewtonSystem::new(at, layout, b) {
-            Some(system) => {
-                let r = layout.residual(&at.point.c, &at.s);
-                let probe = system.step(at, layout, b, 0.0, &r);
-                (probed(at, layout, &probe) / average)
-                    .powi(3)
-                    .clamp(1e-6, 1.0)
-            }
-            None => LINEAR,
-        };
+        let centring =
+            match NewtonSystem::new(at, layout, b, nalgebra::DVector::zeros(layout.len())) {
+                Some(system) => {
+                    let r = layout.residual(&at.point.c, &at.s);
+                    let probe = system.step(at, layout, b, 0.0, &r);
+                    (probed(at, layout, &probe) / average)
+                        .powi(3)
+                        .clamp(1e-6, 1.0)
+                }
+                None => LINEAR,
+            };
         self.mu = (centring * average).clamp(self.least, 1e5);
     }
 }

@@ -9,6 +9,11 @@ use super::quasi_newton::QuasiNewton;
 /// Largest Σ of a slack that counts as far from its bounds.
 const FAR: f64 = 1e-8;
 
+/// An entry overshoots its bound if this share of its step reaches it, and is then made so stiff
+/// that its step ends at the share `REACH` of its distance.
+const OVERSHOOT: f64 = 0.8;
+const REACH: f64 = 0.9;
+
 /// Step of all parts of an [`Iterate`].
 #[derive(Clone, Debug)]
 pub(super) struct Direction {
@@ -23,19 +28,30 @@ pub(super) struct Direction {
 pub(super) struct NewtonSystem {
     system: KktSystem,
     sigma: DVector<f64>,
+    /// What was added to Σ.
+    pub stiffness: DVector<f64>,
 }
 
 impl NewtonSystem {
     /// Factors the system at `at`; `None` if it cannot be made regular.
-    pub fn new(at: &Iterate, layout: &Layout, b: &mut QuasiNewton) -> Option<NewtonSystem> {
-        let sigma = at.sigma(layout);
+    pub fn new(
+        at: &Iterate,
+        layout: &Layout,
+        b: &mut QuasiNewton,
+        stiffness: DVector<f64>,
+    ) -> Option<NewtonSystem> {
+        let sigma = at.sigma(layout) + &stiffness;
         let mut d = DVector::zeros(at.y.len());
         for (k, &j) in layout.slack_rows.iter().enumerate() {
             d[j] = 1.0 / sigma[layout.n + k];
         }
         let head = sigma.rows(0, layout.n).into_owned();
         let system = KktSystem::factor(b, head, &at.slopes.a, d)?;
-        Some(NewtonSystem { system, sigma })
+        Some(NewtonSystem {
+            system,
+            sigma,
+            stiffness,
+        })
     }
 
     /// δ that was added to dependent rows.
@@ -79,13 +95,14 @@ impl NewtonSystem {
         let zl = DVector::from_fn(layout.len(), |i, _| {
             if below[i].is_finite() {
                 (mu - at.zl[i] * dw(i)) / below[i] - at.zl[i]
+                    + (-self.stiffness[i] * dw(i)).max(0.0)
             } else {
                 0.0
             }
         });
         let zu = DVector::from_fn(layout.len(), |i, _| {
             if above[i].is_finite() {
-                (mu + at.zu[i] * dw(i)) / above[i] - at.zu[i]
+                (mu + at.zu[i] * dw(i)) / above[i] - at.zu[i] + (self.stiffness[i] * dw(i)).max(0.0)
             } else {
                 0.0
             }
@@ -133,6 +150,35 @@ impl Direction {
     /// Largest component of the step in x and s.
     pub fn size(&self) -> f64 {
         self.x.amax().max(self.s.amax())
+    }
+
+    /// Stiffness, to be added to Σ, with which every entry that overshoots its bound would stop
+    /// before it, were it alone; `None` if no entry overshoots.
+    pub fn stiffened(
+        &self,
+        at: &Iterate,
+        layout: &Layout,
+        system: &NewtonSystem,
+        b: &mut QuasiNewton,
+    ) -> Option<DVector<f64>> {
+        let (below, above) = layout.distances(&at.point.x, &at.s);
+        let mut stiffness = system.stiffness.clone();
+        let mut found = false;
+        for i in 0..layout.len() {
+            let d = if i < layout.n {
+                self.x[i]
+            } else {
+                self.s[i - layout.n]
+            };
+            let room = if d < 0.0 { below[i] } else { above[i] };
+            if !room.is_finite() || d.abs() * OVERSHOOT <= room {
+                continue;
+            }
+            found = true;
+            let own = system.sigma[i] + if i < layout.n { b.dense()[(i, i)] } else { 0.0 };
+            stiffness[i] += own * (d.abs() / (REACH * room) - 1.0);
+        }
+        found.then_some(stiffness)
     }
 
     /// Whether every component is a number.

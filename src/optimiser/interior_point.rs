@@ -20,14 +20,16 @@ const LARGEST_ESTIMATE: f64 = 1e3;
 /// Infeasibility below which multipliers of rows are recomputed by least squares.
 const NEARLY_FEASIBLE: f64 = 1e-6;
 
-/// Largest violation at which a step is accepted for the residual of the conditions alone, and the
-/// factor by which it must fall.
-const SOFT_VIOLATION: f64 = 1e-4;
-const SOFT_GAIN: f64 = 0.9;
-
 /// Trials of a line search after which its step counts as short; two short steps in succession
-/// show that the quasi-Newton matrix misleads.
+/// show that the quasi-Newton matrix misleads, and `LONGEST_CRAWL` of them at an infeasibility above
+/// `CRAWLING` that this must be reduced by the factor `LEAVE_CRAWL` on its own.
 const SHORT_TRIALS: usize = 7;
+const LONGEST_CRAWL: usize = 4;
+const CRAWLING: f64 = 1e-4;
+const LEAVE_CRAWL: f64 = 0.1;
+
+/// Times that entries are made stiffer in one iteration.
+const STIFFENINGS: usize = 8;
 
 /// State of the iteration.
 pub(super) struct InteriorPoint {
@@ -65,8 +67,12 @@ impl InteriorPoint {
         };
         at.estimate_multipliers(&layout, LARGEST_ESTIMATE);
         let theta = infeasibility(&layout.residual(&at.point.c, &at.s), &at.point.c);
+        // The first step is no longer than the point, or 1.
+        let mut b = QuasiNewton::new(n, options.dense_limit, options.memory);
+        let force = at.lagrangian_slope(&layout).rows(0, n).amax();
+        b.set_scale((force / at.point.x.amax().max(1.0)).max(1.0));
         InteriorPoint {
-            b: QuasiNewton::new(n, options.dense_limit, options.memory),
+            b,
             barrier: BarrierRule::new(options),
             filter: Filter::new(1e4 * theta.max(1.0)),
             theta_small: 1e-4 * theta.max(1.0),
@@ -126,10 +132,10 @@ impl InteriorPoint {
                 self.filter.clear(self.theta());
             }
             program.next_iteration()?;
-            let Some((system, direction)) = self.direction() else {
+            let tau = (1.0 - self.barrier.mu).max(0.99);
+            let Some((system, direction)) = self.direction(tau) else {
                 return Ok(Ending::Stalled);
             };
-            let tau = (1.0 - self.barrier.mu).max(0.99);
             let dual = direction.dual_limit(&self.at, tau);
             let search = LineSearch {
                 layout: &self.layout,
@@ -143,66 +149,24 @@ impl InteriorPoint {
                 Some(accepted) => {
                     failures = 0;
                     self.step(program, accepted, dual, system.regularisation())?;
+                    if self.short_steps == LONGEST_CRAWL {
+                        self.short_steps = 0;
+                        let theta = self.theta();
+                        if theta > CRAWLING
+                            && let Some(ending) = self.restore(program, theta, LEAVE_CRAWL)?
+                        {
+                            return Ok(ending);
+                        }
+                    }
                 }
                 None => {
                     failures += 1;
-                    if self.soft_step(program, failures)? {
-                        continue;
-                    }
                     if let Some(ending) = self.recover(program, failures)? {
                         return Ok(ending);
                     }
                 }
             }
         }
-    }
-
-    /// Takes the longest step if it reduces the residual of the optimality conditions, where the
-    /// change of the barrier function is lost in rounding or curvature misleads the filter.
-    fn soft_step(&mut self, program: &mut Program<'_>, failures: usize) -> Result<bool, Trouble> {
-        let before = self.at.residuals(&self.layout, self.barrier.mu);
-        if failures > 2 || before.violation > SOFT_VIOLATION {
-            return Ok(false);
-        }
-        let Some((system, direction)) = self.direction() else {
-            return Ok(false);
-        };
-        let tau = (1.0 - self.barrier.mu).max(0.99);
-        let dual = direction.dual_limit(&self.at, tau);
-        let alpha = direction.primal_limit(&self.at, &self.layout, tau);
-        let x = &self.at.point.x + &direction.x * alpha;
-        let s = &self.at.s + &direction.s * alpha;
-        let tried = program
-            .evaluate(&x)
-            .and_then(|p| program.gradients(&x).map(|g| (p, g)));
-        let (point, slopes) = match tried {
-            Ok(found) => found,
-            Err(Trouble::Failed(_)) => return Ok(false),
-            Err(halt) => return Err(halt),
-        };
-        let mut moved = Iterate {
-            point: point.clone(),
-            slopes: slopes.clone(),
-            s: s.clone(),
-            y: &self.at.y + &direction.y * alpha,
-            zl: &self.at.zl + &direction.zl * dual,
-            zu: &self.at.zu + &direction.zu * dual,
-        };
-        moved.estimate_multipliers(&self.layout, f64::INFINITY);
-        if moved.residuals(&self.layout, self.barrier.mu).largest() > SOFT_GAIN * before.largest() {
-            return Ok(false);
-        }
-        let accepted = Accepted {
-            point,
-            slopes,
-            s,
-            alpha,
-            direction,
-            trials: 1,
-        };
-        self.filter.clear(self.theta());
-        self.step(program, accepted, dual, system.regularisation())?;
-        Ok(true)
     }
 
     fn theta(&self) -> f64 {
@@ -212,18 +176,42 @@ impl InteriorPoint {
         )
     }
 
-    fn direction(&mut self) -> Option<(NewtonSystem, Direction)> {
+    fn direction(&mut self, tau: f64) -> Option<(NewtonSystem, Direction)> {
         for _ in 0..2 {
-            if let Some(system) = NewtonSystem::new(&self.at, &self.layout, &mut self.b) {
-                let r = self.layout.residual(&self.at.point.c, &self.at.s);
-                let step = system.step(&self.at, &self.layout, &mut self.b, self.barrier.mu, &r);
-                if step.is_finite() {
-                    return Some((system, step));
-                }
+            if let Some(found) = self.newton(DVector::zeros(self.layout.len())) {
+                return Some(self.stiffen(found, tau));
             }
             self.b.reset();
         }
         None
+    }
+
+    fn newton(&mut self, stiffness: DVector<f64>) -> Option<(NewtonSystem, Direction)> {
+        let system = NewtonSystem::new(&self.at, &self.layout, &mut self.b, stiffness)?;
+        let r = self.layout.residual(&self.at.point.c, &self.at.s);
+        let step = system.step(&self.at, &self.layout, &mut self.b, self.barrier.mu, &r);
+        step.is_finite().then_some((system, step))
+    }
+
+    /// Stiffens the entries of w that overshoot their bounds, so that they do not shorten the step
+    /// of all others; their force goes to the multipliers of the bounds.
+    fn stiffen(&mut self, found: (NewtonSystem, Direction), tau: f64) -> (NewtonSystem, Direction) {
+        let plain = found.1.primal_limit(&self.at, &self.layout, tau);
+        let mut last: Option<(NewtonSystem, Direction)> = None;
+        for _ in 0..STIFFENINGS {
+            let (system, step) = last.as_ref().unwrap_or(&found);
+            let Some(more) = step.stiffened(&self.at, &self.layout, system, &mut self.b) else {
+                break;
+            };
+            let Some(stiffer) = self.newton(more) else {
+                break;
+            };
+            last = Some(stiffer);
+        }
+        match last {
+            Some(stiff) if stiff.1.primal_limit(&self.at, &self.layout, tau) > 2.0 * plain => stiff,
+            _ => found,
+        }
     }
 
     /// Moves to an accepted point.
@@ -262,9 +250,8 @@ impl InteriorPoint {
         } else {
             0
         };
-        if self.short_steps >= 2 {
+        if self.short_steps == 2 {
             self.b.reset();
-            self.short_steps = 0;
         }
         let progress = Progress {
             optimality: self.optimality(),
@@ -316,14 +303,15 @@ impl InteriorPoint {
                 return Ok(Some(Ending::Stalled));
             }
         }
-        self.restore(program, theta)
+        self.restore(program, theta, 0.9)
     }
 
-    /// Reduces the violation until the filter accepts the point.
+    /// Reduces the violation by the factor `gain` and until the filter accepts the point.
     fn restore(
         &mut self,
         program: &mut Program<'_>,
         theta: f64,
+        gain: f64,
     ) -> Result<Option<Ending>, Trouble> {
         let phi = self.layout.barrier_function(
             self.at.point.f,
@@ -339,7 +327,7 @@ impl InteriorPoint {
             let s = slacks(layout, p);
             let theta_new = infeasibility(&layout.residual(&p.c, &s), &p.c);
             let phi = layout.barrier_function(p.f, &p.x, &s, mu);
-            theta_new <= 0.9 * theta && filter.accepts(theta_new, phi)
+            theta_new <= gain * theta && filter.accepts(theta_new, phi)
         };
         let ending = search.run(program, accepted)?;
         let before = self.theta();
@@ -371,7 +359,7 @@ fn slacks(layout: &Layout, point: &Point) -> DVector<f64> {
 
 impl Iterate {
     /// Least-squares multipliers of the rows, unless they exceed `largest`, which sets zero.
-    fn estimate_multipliers(&mut self, layout: &Layout, largest: f64) {
+    pub fn estimate_multipliers(&mut self, layout: &Layout, largest: f64) {
         if let Some(y) = self.least_squares_multipliers(layout) {
             if y.amax() <= largest {
                 self.y = y;

@@ -8,6 +8,17 @@ use super::iterate::{Iterate, Layout};
 use super::program::{Point, Program, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
 
+/// A step is accepted for the residual of the conditions alone if that falls by this factor, at a
+/// violation and a relative rise of the barrier function that are at most these, after so many
+/// refused trials.
+const SOFT_GAIN: f64 = 0.9;
+const SOFT_VIOLATION: f64 = 1e-4;
+const SOFT_RISE: f64 = 1e-6;
+const SOFT_TRIALS: usize = 5;
+
+/// Least factor by which a refused step is shortened.
+const SHORTEST: f64 = 0.1;
+
 const ARMIJO: f64 = 1e-4;
 /// Exponents of the switching condition, of the directional derivative and of the infeasibility.
 const SLOPE_POWER: f64 = 2.3;
@@ -51,7 +62,12 @@ pub(super) struct LineSearch<'s> {
 
 enum Trial {
     Accepted(Box<(Point, Slopes, DVector<f64>)>),
-    Refused { theta: f64, c: DVector<f64> },
+    Refused {
+        theta: f64,
+        phi: f64,
+        c: DVector<f64>,
+        point: Point,
+    },
     Undefined,
 }
 
@@ -83,18 +99,30 @@ impl LineSearch<'_> {
             slope: self.slope(&direction),
         };
         let longest = direction.primal_limit(self.at, self.layout, self.tau);
+        let mut first = None;
         let least = self.least_step(&here).min(1e-3 * longest);
         let mut alpha = longest;
         let mut trials = 0;
         while alpha >= least && alpha * direction.size() > 1e-16 * self.at.point.x.amax() {
             trials += 1;
-            match self.attempt(program, filter, &here, &direction, alpha, alpha)? {
+            let trial = self.attempt(program, filter, &here, &direction, alpha, alpha)?;
+            let mut last = None;
+            if let Trial::Refused {
+                theta, phi, point, ..
+            } = &trial
+            {
+                last = Some((*theta, *phi));
+                if trials == 1 {
+                    first = Some(point.clone());
+                }
+            }
+            match trial {
                 Trial::Accepted(found) => {
                     return Ok(Some(
                         self.accept(filter, &here, direction, *found, alpha, trials),
                     ));
                 }
-                Trial::Refused { theta, c } if trials == 1 && theta >= here.theta => {
+                Trial::Refused { theta, c, .. } if trials == 1 && theta >= here.theta => {
                     let start = (alpha, theta, c);
                     let corrected = self.correct(program, b, filter, &here, start, &mut trials)?;
                     if corrected.is_some() {
@@ -103,9 +131,89 @@ impl LineSearch<'_> {
                 }
                 Trial::Refused { .. } | Trial::Undefined => {}
             }
-            alpha *= 0.5;
+            if trials >= SOFT_TRIALS
+                && let Some(point) = first.take()
+                && let Some((point, slopes, s)) =
+                    self.soft(program, &here, point, &direction, longest)?
+            {
+                filter.clear(here.theta);
+                let alpha = longest;
+                return Ok(Some(Accepted {
+                    point,
+                    slopes,
+                    s,
+                    alpha,
+                    direction,
+                    trials,
+                }));
+            }
+            alpha *= self.shorten(&here, alpha, &last);
+        }
+        if let Some(point) = first.take()
+            && let Some((point, slopes, s)) =
+                self.soft(program, &here, point, &direction, longest)?
+        {
+            filter.clear(here.theta);
+            let alpha = longest;
+            return Ok(Some(Accepted {
+                point,
+                slopes,
+                s,
+                alpha,
+                direction,
+                trials,
+            }));
         }
         Ok(None)
+    }
+
+    /// Factor by which a refused step is shortened: the minimum of the parabola through the values
+    /// of the barrier function, within bounds, where that function refused the step.
+    fn shorten(&self, here: &Measure, alpha: f64, last: &Option<(f64, f64)>) -> f64 {
+        let Some((theta, phi)) = *last else {
+            return 0.5;
+        };
+        let rise = phi - here.phi - alpha * here.slope;
+        if here.slope >= 0.0 || rise <= 0.0 || theta > here.theta.max(SOFT_VIOLATION) {
+            return 0.5;
+        }
+        (-0.5 * alpha * here.slope / rise).clamp(SHORTEST, 0.5)
+    }
+
+    /// Gradients at the first point of the search if it reduces the residual of the optimality
+    /// conditions, where the change of the barrier function is lost in rounding or curvature
+    /// misleads the filter.
+    fn soft(
+        &self,
+        program: &mut Program<'_>,
+        here: &Measure,
+        point: Point,
+        direction: &Direction,
+        alpha: f64,
+    ) -> Result<Option<(Point, Slopes, DVector<f64>)>, Trouble> {
+        let before = self.at.residuals(self.layout, self.mu);
+        let s = &self.at.s + &direction.s * alpha;
+        let rise = self.layout.barrier_function(point.f, &point.x, &s, self.mu) - here.phi;
+        if before.violation > SOFT_VIOLATION || rise > SOFT_RISE * here.phi.abs().max(1.0) {
+            return Ok(None);
+        }
+        let slopes = match program.gradients(&point.x) {
+            Ok(slopes) => slopes,
+            Err(Trouble::Failed(_)) => return Ok(None),
+            Err(halt) => return Err(halt),
+        };
+        let dual = direction.dual_limit(self.at, self.tau);
+        let mut moved = Iterate {
+            point: point.clone(),
+            slopes: slopes.clone(),
+            s: s.clone(),
+            y: &self.at.y + &direction.y * alpha,
+            zl: &self.at.zl + &direction.zl * dual,
+            zu: &self.at.zu + &direction.zu * dual,
+        };
+        moved.estimate_multipliers(self.layout, f64::INFINITY);
+        let after = moved.residuals(self.layout, self.mu);
+        Ok((after.largest() <= SOFT_GAIN * before.largest()).then_some((point, slopes, s)))
     }
 
     fn slope(&self, direction: &Direction) -> f64 {
@@ -150,7 +258,12 @@ impl LineSearch<'_> {
             return Ok(Trial::Undefined);
         }
         if !(self.is_acceptable(here, theta, phi, alpha_test) && filter.accepts(theta, phi)) {
-            return Ok(Trial::Refused { theta, c: r });
+            return Ok(Trial::Refused {
+                theta,
+                phi,
+                c: r,
+                point,
+            });
         }
         match program.gradients(&x) {
             Ok(slopes) => Ok(Trial::Accepted(Box::new((point, slopes, s)))),
@@ -221,7 +334,7 @@ impl LineSearch<'_> {
                         self.accept(filter, here, direction, *found, alpha, *trials),
                     ));
                 }
-                Trial::Refused { theta, c: next } if theta <= CORRECTION_GAIN * last => {
+                Trial::Refused { theta, c: next, .. } if theta <= CORRECTION_GAIN * last => {
                     last = theta;
                     c = next;
                 }

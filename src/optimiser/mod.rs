@@ -15,6 +15,7 @@ mod outcome;
 mod program;
 mod quasi_newton;
 mod solve;
+mod start;
 mod state;
 mod trust_region;
 mod verdict;

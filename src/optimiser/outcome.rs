@@ -62,7 +62,8 @@ pub struct Kkt {
     pub stationarity: f64,
     /// `stationarity` divided by max(1, ‖∇f‖∞, largest term of Jᵀy).
     pub relative_stationarity: f64,
-    /// Largest product of a multiplier and the distance to its bound, in units of the objective.
+    /// Sum of the products of multipliers and distances to their bounds, on either side, in units of
+    /// the objective: to first order, how far the objective is from the least.
     pub complementarity: f64,
     /// `complementarity` divided by max(1, |f|).
     pub relative_complementarity: f64,

@@ -82,8 +82,6 @@ pub(super) struct Program<'a> {
     started: Instant,
     /// Best point reported: feasible with the least objective, or least infeasible.
     pub best: Option<Point>,
-    /// Last derivatives in the units of the user, kept for the multipliers of fixed variables.
-    last: Option<(DVector<f64>, Gradients)>,
 }
 
 impl<'a> Program<'a> {
@@ -142,7 +140,6 @@ impl<'a> Program<'a> {
             failed: Vec::new(),
             started: Instant::now(),
             best: None,
-            last: None,
         }
     }
 
@@ -352,23 +349,6 @@ impl<'a> Program<'a> {
     /// The program of the user.
     pub fn nlp(&self) -> &dyn Nlp {
         self.nlp
-    }
-
-    /// Force ∇f + Jᵀy on the fixed variables in the units of the user, if the derivatives were last
-    /// taken at `x`; `y` are the multipliers of the user.
-    pub fn fixed_forces(&self, x: &DVector<f64>, y: &[f64]) -> Vec<(usize, f64)> {
-        let Some((_, gradients)) = self.last.as_ref().filter(|(at, _)| at == x) else {
-            return Vec::new();
-        };
-        let force = |i: usize| {
-            let rows = y
-                .iter()
-                .enumerate()
-                .map(|(j, y)| y * gradients.jacobian[(j, i)]);
-            gradients.objective[i] + rows.sum::<f64>()
-        };
-        let fixed = (0..self.scaling.variables.len()).filter(|i| !self.free.contains(i));
-        fixed.map(|i| (i, force(i))).collect()
     }
 
     fn keep_best(&mut self, point: &Point) {

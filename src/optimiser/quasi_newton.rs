@@ -9,6 +9,9 @@ const CURVATURE: f64 = 1.5e-8;
 /// Factor of the scale σ when pairs without positive curvature clear the memory.
 const FLATTER: f64 = 0.1;
 
+/// Least scale; it lets the steps of an unbounded program grow to 1e20 gradients.
+const FLATTEST: f64 = 1e-20;
+
 /// Most pairs from which a dense matrix is built again.
 const DENSE_PAIRS: usize = 200;
 
@@ -65,6 +68,15 @@ impl QuasiNewton {
         }
     }
 
+    /// The matrix without what can be computed again.
+    pub(super) fn stored(&self) -> QuasiNewton {
+        QuasiNewton {
+            matrix: None,
+            pairs: self.pairs.clone(),
+            ..*self
+        }
+    }
+
     /// Sets the scale σ that B has without pairs.
     pub(super) fn set_scale(&mut self, sigma: f64) {
         self.sigma = sigma;
@@ -98,7 +110,7 @@ impl QuasiNewton {
             self.skipped += 1;
             if self.skipped >= 2 {
                 self.reset();
-                self.sigma = (FLATTER * self.sigma).max(1e-8);
+                self.sigma = (FLATTER * self.sigma).max(FLATTEST);
             }
             return;
         }

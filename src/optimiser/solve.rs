@@ -3,12 +3,13 @@
 use nalgebra::DVector;
 
 use super::interior_point::InteriorPoint;
-use super::nlp::{EvaluationFailure, Nlp};
+use super::nlp::Nlp;
 use super::observer::{Observer, Phase};
 use super::options::{Method, Options};
 use super::outcome::{Kkt, Outcome, Status};
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
+use super::start::first_point;
 use super::state::SavedState;
 use super::trust_region::{Ending, Goal, TrustRegion};
 use super::verdict::{
@@ -16,14 +17,14 @@ use super::verdict::{
     user_multipliers,
 };
 
-/// Starts tried where the functions are not defined.
-const START_TRIALS: usize = 12;
-
 /// How often the trust-region method looks for a feasible point where the penalties fail.
 const FEASIBILITY_PHASES: usize = 2;
 
 /// Least relative distance from a bound of the start of a resumed run.
 const RESUMED_PUSH: f64 = 1e-10;
+
+/// Multipliers above this are replaced by fitted ones when a run ends.
+const LARGEST_MULTIPLIER: f64 = 1e20;
 
 /// Minimises f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///
@@ -125,8 +126,10 @@ fn run(
         Some(saved) => program.adopt_scaling(&saved.scaling, &mut point, &mut slopes),
         None => program.scale(&mut point, &mut slopes),
     }
+    let rest = DVector::zeros(point.c.len());
+    let without_rows = ScaledMultipliers::from_rows(&program, &point, &slopes, rest);
     let progress = Progress {
-        optimality: f64::NAN,
+        optimality: scaled_residual(&program, &point, &slopes, &without_rows),
         barrier: options.initial_barrier,
         step: 0.0,
         regularisation: 0.0,
@@ -153,17 +156,25 @@ fn run(
             }
         }
     };
+    let state = state_of(&program, &finish);
     let finish = best_of(&mut program, finish);
-    outcome(&program, finish)
+    outcome(&program, finish, state)
 }
 
 /// Replaces the point of a run that did not converge by a better one it passed through.
 fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
     let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. });
     let limit = program.options.constraint_tolerance;
-    let rank = |program: &Program<'_>, p: &Point| (program.worst_violation(&p.c).0.max(limit), p.f);
+    // What a violation within the tolerance gains is not counted.
+    let y = &finish.multipliers.y;
+    let value = |p: &Point| {
+        p.f + (0..p.c.len())
+            .map(|k| y[k].abs() * program.row_violation(&p.c, k))
+            .sum::<f64>()
+    };
+    let rank = |p: &Point| (program.worst_violation(&p.c).0.max(limit), value(p));
     let found = program.best.clone().filter(|best| {
-        let (new, old) = (rank(program, best), rank(program, &finish.point));
+        let (new, old) = (rank(best), rank(&finish.point));
         !settled && (new.0 < old.0 || (new.0 == old.0 && new.1 < old.1))
     });
     let Some(point) = found else {
@@ -184,73 +195,6 @@ fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
     }
 }
 
-/// Evaluates the start, moved into the interior of the bounds, or points near it.
-fn first_point(program: &mut Program<'_>, push: f64) -> Result<(Point, Slopes), Trouble> {
-    let start = program.start();
-    let mut first_failure: Option<EvaluationFailure> = None;
-    for trial in 0..START_TRIALS {
-        let x = perturbed(program, &start, trial, push);
-        let tried = program
-            .evaluate(&x)
-            .and_then(|p| program.gradients(&x).map(|s| (p, s)));
-        match tried {
-            Ok(found) => return Ok(found),
-            Err(Trouble::Failed(failure)) => {
-                first_failure.get_or_insert(failure);
-            }
-            Err(halt) => return Err(halt),
-        }
-    }
-    let missing = EvaluationFailure {
-        what: "the start".into(),
-        reason: "no trial".into(),
-    };
-    Err(Trouble::Failed(first_failure.unwrap_or(missing)))
-}
-
-/// The start for `trial` 0, then points at growing distances in alternating directions.
-fn perturbed(program: &Program<'_>, start: &DVector<f64>, trial: usize, push: f64) -> DVector<f64> {
-    let options = program.options;
-    DVector::from_fn(start.len(), |i, _| {
-        let (l, u) = (program.lower[i], program.upper[i]);
-        let width = u - l;
-        let margin = |bound: f64| {
-            let absolute = push * bound.abs().max(1.0);
-            if width.is_finite() {
-                absolute.min(push.min(0.49) * width)
-            } else {
-                absolute
-            }
-        };
-        // Weyl sequence: spreads the directions without a random generator.
-        let phase = ((trial * (i + 1)) as f64 * 0.618_033_988_749_895).fract() - 0.5;
-        let reach = if width.is_finite() {
-            width
-        } else {
-            start[i].abs().max(1.0)
-        };
-        let shift = if trial == 0 {
-            0.0
-        } else {
-            reach * phase * (trial as f64 / 6.0).min(1.0)
-        };
-        let mut x = start[i] + shift;
-        if options.method != Method::TrustRegion || trial > 0 {
-            x = if l.is_finite() {
-                x.max(l + margin(l))
-            } else {
-                x
-            };
-            x = if u.is_finite() {
-                x.min(u - margin(u))
-            } else {
-                x
-            };
-        }
-        x
-    })
-}
-
 fn interior_point(
     program: &mut Program<'_>,
     point: Point,
@@ -268,14 +212,27 @@ fn interior_point(
     let mut multipliers = method.multipliers(program);
     let mut scaled = method.optimality();
     let (point, slopes) = (method.at.point, method.at.slopes);
-    if status == Status::Stalled {
-        // Multipliers that grow without limit may hide a point that has finite ones.
-        let fitted = ScaledMultipliers::polished(program, &point, &slopes, &multipliers.y);
+    // Multipliers that grow without limit may hide a point that has finite ones.
+    let bounded = multipliers
+        .y
+        .iter()
+        .chain(&multipliers.zl)
+        .chain(&multipliers.zu);
+    let sane = -LARGEST_MULTIPLIER..=LARGEST_MULTIPLIER;
+    let unbounded = bounded.copied().any(|v| !sane.contains(&v));
+    if status == Status::Stalled || unbounded {
+        let y = if unbounded {
+            DVector::zeros(point.c.len())
+        } else {
+            multipliers.y.clone()
+        };
+        let fitted = ScaledMultipliers::polished(program, &point, &slopes, &y);
         let residual = scaled_residual(program, &point, &slopes, &fitted);
-        if is_solved(
+        let solved = is_solved(
             &kkt(program, &point, &slopes, &fitted, residual),
             program.options,
-        ) {
+        );
+        if solved || unbounded {
             (multipliers, scaled) = (fitted, residual);
         }
     }
@@ -345,7 +302,7 @@ fn unfinished(program: &Program<'_>, point: Point, slopes: Slopes) -> Finish {
     Finish {
         status: Status::Interrupted,
         b: QuasiNewton::new(point.x.len(), options.dense_limit, options.memory),
-        scaled: f64::NAN,
+        scaled: scaled_residual(program, &point, &slopes, &multipliers),
         multipliers,
         point,
         slopes,
@@ -370,16 +327,26 @@ fn status_of(program: &Program<'_>, result: Result<Ending, Trouble>, at: &Point)
     }
 }
 
-fn outcome(program: &Program<'_>, finish: Finish) -> Outcome {
+/// State at the last point, which need not be the best.
+fn state_of(program: &Program<'_>, finish: &Finish) -> SavedState {
+    SavedState {
+        x: program.to_user(&finish.point.x),
+        multipliers: user_multipliers(program, &finish.multipliers),
+        scaling: program.scaling.clone(),
+        quasi_newton: finish.b.stored(),
+        barrier: finish.barrier,
+        radius: finish.radius,
+    }
+}
+
+fn outcome(program: &Program<'_>, finish: Finish, state: SavedState) -> Outcome {
     let Finish {
         mut status,
         point,
         slopes,
         multipliers,
         scaled,
-        b,
-        barrier,
-        radius,
+        ..
     } = finish;
     let kkt = kkt(program, &point, &slopes, &multipliers, scaled);
     // A method that can go no further has converged if the conditions hold all the same.
@@ -396,7 +363,7 @@ fn outcome(program: &Program<'_>, finish: Finish) -> Outcome {
     for (k, &j) in program.rows.iter().enumerate() {
         constraints[j] = point.c[k] / program.scaling.constraints[j];
     }
-    let user = user_multipliers(program, &point.x, &multipliers);
+    let user = user_multipliers(program, &multipliers);
     let nlp = program.nlp();
     let (lower, upper) = nlp.variable_bounds();
     let (row_lower, row_upper) = nlp.constraint_bounds();
@@ -420,14 +387,7 @@ fn outcome(program: &Program<'_>, finish: Finish) -> Outcome {
         counts,
         failed_designs: program.failed.clone(),
         scaling: program.scaling.clone(),
-        state: Some(SavedState {
-            x: x.clone(),
-            multipliers: user.clone(),
-            scaling: program.scaling.clone(),
-            quasi_newton: b,
-            barrier,
-            radius,
-        }),
+        state: Some(state),
         constraints,
         multipliers: user,
         x,

@@ -21,6 +21,11 @@ const STEERING: f64 = 0.1;
 /// Steps in succession whose predicted reduction is lost in rounding that are still tried.
 const LOST_STEPS: usize = 4;
 
+/// How often the matrix is forgotten where no progress is left, and the radius that follows,
+/// relative to the size of the point.
+const RENEWALS: usize = 3;
+const RENEWED_RADIUS: f64 = 0.1;
+
 /// Share of the violation that its linearisation may still lose at a point called infeasible.
 const STATIONARY: f64 = 1e-4;
 
@@ -104,6 +109,8 @@ impl TrustRegion {
         let tiny = 1e-13;
         let mut rejected = 0;
         let mut lost = 0;
+        let mut failed = 0;
+        let mut renewals = 0;
         loop {
             if self.goal == Goal::Optimum && self.is_unbounded(program) {
                 return Ok(Ending::Unbounded);
@@ -129,18 +136,44 @@ impl TrustRegion {
             };
             let negligible = model.predicted <= 0.0 || lost > LOST_STEPS;
             if negligible || self.radius < tiny {
-                return Ok(self.end(program));
+                if renewals == RENEWALS || self.b.is_empty() {
+                    return Ok(self.end(program));
+                }
+                // Curvature gathered over long steps may make the subproblem too ill-conditioned.
+                renewals += 1;
+                lost = 0;
+                self.b.reset();
+                self.radius = RENEWED_RADIUS * self.point.x.amax().max(1.0);
+                continue;
             }
             program.next_iteration()?;
             let (ratio, trials) = self.attempt(program, &model)?;
             let boundary = size >= 0.99 * self.radius;
             let radius = self.radius;
             if ratio < 0.25 {
-                self.radius = if ratio < -1e3 { 0.1 } else { 0.4 } * size.min(self.radius);
-            } else if ratio > 0.5 && boundary {
-                self.radius *= 2.5;
+                // One failed evaluation says nothing of the model; a second shows a region.
+                failed = if ratio == f64::NEG_INFINITY {
+                    failed + 1
+                } else {
+                    0
+                };
+                let shrink = match (failed, ratio) {
+                    (1, _) => 0.9,
+                    (0, r) if r < -1e3 => 0.1,
+                    _ => 0.4,
+                };
+                self.radius = shrink * size.min(self.radius);
+            } else {
+                failed = 0;
+                if ratio > 0.5 && boundary {
+                    self.radius *= 2.5;
+                }
             }
-            rejected = if ratio > ACCEPT { 0 } else { rejected + 1 };
+            rejected = match ratio {
+                f64::NEG_INFINITY => rejected,
+                r if r > ACCEPT => 0,
+                _ => rejected + 1,
+            };
             if rejected == 8 {
                 self.b.reset();
             }

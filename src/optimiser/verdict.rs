@@ -149,7 +149,7 @@ pub(super) fn kkt(
         }
         let mut product = |multiplier: f64, distance: f64| {
             if multiplier > 0.0 {
-                complementarity = complementarity.max(multiplier * distance.max(0.0) / unit_f);
+                complementarity += multiplier * distance.max(0.0) / unit_f;
             }
         };
         product(z.zl[i], point.x[i] - program.lower[i]);
@@ -162,7 +162,7 @@ pub(super) fn kkt(
             point.c[k] - program.row_lower[k]
         };
         if z.y[k] != 0.0 {
-            complementarity = complementarity.max(z.y[k].abs() * distance.max(0.0) / unit_f);
+            complementarity += z.y[k].abs() * distance.abs() / unit_f;
         }
     }
     Kkt {
@@ -175,8 +175,8 @@ pub(super) fn kkt(
     }
 }
 
-/// Largest residual of the conditions in scaled units, the forces divided by the size of the
-/// multipliers.
+/// Largest residual of the conditions in scaled units; forces and complementarity are divided by
+/// the size of the multipliers.
 pub(super) fn scaled_residual(
     program: &Program<'_>,
     point: &Point,
@@ -189,7 +189,29 @@ pub(super) fn scaled_residual(
     let violation = (0..z.y.len())
         .map(|k| program.row_violation(&point.c, k))
         .fold(0.0, f64::max);
-    (force.amax() / (size.max(100.0) / 100.0)).max(violation)
+    let between = |value: &DVector<f64>, lower: &DVector<f64>, upper: &DVector<f64>, k: usize| {
+        (
+            (value[k] - lower[k]).max(0.0),
+            (upper[k] - value[k]).max(0.0),
+        )
+    };
+    let product = |multiplier: f64, distance: f64| {
+        if multiplier > 0.0 {
+            multiplier * distance
+        } else {
+            0.0
+        }
+    };
+    let rows = (0..z.y.len()).map(|k| {
+        let (below, above) = between(&point.c, &program.row_lower, &program.row_upper, k);
+        product(-z.y[k], below).max(product(z.y[k], above))
+    });
+    let variables = (0..z.zl.len()).map(|i| {
+        let (below, above) = between(&point.x, &program.lower, &program.upper, i);
+        product(z.zl[i], below).max(product(z.zu[i], above))
+    });
+    let complementarity = rows.chain(variables).fold(0.0, f64::max);
+    (force.amax().max(complementarity) / (size.max(100.0) / 100.0)).max(violation)
 }
 
 /// Whether `kkt` meets the tolerances.
@@ -197,16 +219,12 @@ pub(super) fn is_solved(kkt: &Kkt, options: &Options) -> bool {
     let within = |value: f64, limit: f64| value <= limit;
     within(kkt.violation, options.constraint_tolerance)
         && within(kkt.relative_stationarity, options.tolerance)
-        && within(kkt.relative_complementarity, options.tolerance)
+        && within(kkt.relative_complementarity, 0.1 * options.tolerance)
         && within(kkt.scaled, options.tolerance)
 }
 
 /// Multipliers in the units of the user.
-pub(super) fn user_multipliers(
-    program: &Program<'_>,
-    x: &DVector<f64>,
-    z: &ScaledMultipliers,
-) -> Multipliers {
+pub(super) fn user_multipliers(program: &Program<'_>, z: &ScaledMultipliers) -> Multipliers {
     let unit_f = program.scaling.objective;
     let (n, m) = (
         program.scaling.variables.len(),

@@ -1,4 +1,4 @@
-//! Programs whose evaluation fails, and records of what was asked of them.
+//! Programs whose evaluation fails.
 
 use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
 

@@ -1,7 +1,6 @@
 //! Test problems with known optima.
 
 pub mod dual;
-pub mod faulty;
 mod hs_001_030;
 mod hs_031_060;
 mod hs_061_086;

@@ -79,12 +79,6 @@ impl Problem {
         self.row_upper = upper.to_vec();
         self
     }
-
-    /// The same problem from another start.
-    pub fn from_start(mut self, start: &[f64]) -> Problem {
-        self.start = start.to_vec();
-        self
-    }
 }
 
 fn dual(x: &[f64], direction: usize) -> Vec<Dual> {
