@@ -83,7 +83,7 @@ fn bodies_at_rest_stay_at_rest() {
         let bodies = vec![hanging("upper", 2.0, -0.5), hanging("lower", 3.0, -1.5)];
         let at = |y: f64| Vec3::new(0.0, y, 0.0);
         let pin = |name, between, y| joint(&bodies, (name, kind), between, &at(y), &Vec3::z());
-        let joints = vec![
+        let joints = [
             pin("ceiling", (0, None), 0.0),
             pin("middle", (0, Some(1)), -1.0),
         ];
