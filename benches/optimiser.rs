@@ -41,7 +41,13 @@ impl Nlp for Chain {
     }
 
     fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>) {
-        let upper = (0..self.n / 2).map(|j| if j.is_multiple_of(2) { f64::INFINITY } else { 0.0 });
+        let upper = (0..self.n / 2).map(|j| {
+            if j.is_multiple_of(2) {
+                f64::INFINITY
+            } else {
+                0.0
+            }
+        });
         (vec![0.0; self.n / 2], upper.collect())
     }
 

@@ -7,7 +7,7 @@
 //! required within 0.05 %. Multipliers are required within 0.5 %.
 
 use flexbody::driver::evaluate::Evaluated;
-use flexbody::driver::{Optimisation, optimise};
+use flexbody::driver::{Journal, Optimisation, optimise};
 use flexbody::problem::{Override, Problem};
 use flexbody::report::optimum::{Activity, Side};
 use std::ops::ControlFlow;
@@ -32,7 +32,10 @@ fn problem(file: &str, steps: usize, start: &[f64]) -> Problem {
 }
 
 fn solve(problem: &Problem) -> Optimisation {
-    optimise(problem, "", &mut |_| ControlFlow::Continue(())).expect("an objective and variables")
+    optimise(problem, "", None, Journal::default(), &mut |_| {
+        ControlFlow::Continue(())
+    })
+    .expect("an objective and variables")
 }
 
 /// Asserts convergence with scaled residuals up to 1e-6, the active bounds, and that the barrier

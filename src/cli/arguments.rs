@@ -22,7 +22,27 @@ pub struct Arguments {
     pub command: Option<Command>,
     /// The optimisation.
     #[command(flatten)]
-    pub job: Option<Job>,
+    pub optimisation: Option<Optimisation>,
+}
+
+/// An optimisation: where it starts and what it does besides.
+#[derive(Args, Debug)]
+pub struct Optimisation {
+    /// The problem.
+    #[command(flatten)]
+    pub job: Job,
+    /// Goes on with the interrupted run of this directory: its evaluations are not repeated.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["from", "starts"])]
+    pub resume: Option<PathBuf>,
+    /// Starts from the design of another optimum.json (or its directory), by names of variables.
+    #[arg(long, value_name = "FILE")]
+    pub from: Option<PathBuf>,
+    /// Optimises from this many starts, spread evenly between the bounds, and keeps the best.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub starts: Option<u32>,
+    /// Checks by differences of gradients whether the optimum is a minimum of second order.
+    #[arg(long)]
+    pub second_order: bool,
 }
 
 /// A problem file and what is done with it.

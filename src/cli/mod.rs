@@ -3,12 +3,16 @@
 mod arguments;
 mod compare;
 mod optimise;
+mod progress;
 mod simulate;
+mod starts;
 
+use crate::report::{Optimum, read_text};
 use arguments::{Arguments, Command, Job};
 use clap::Parser;
 use clap::error::ErrorKind;
 use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Done.
@@ -68,8 +72,8 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         Some(Command::Compare(files)) => compare::compare(&files),
         Some(Command::Plot { directory }) => compare::plot(&directory),
         Some(Command::Schema) => compare::schema(),
-        None => match arguments.job {
-            Some(job) => optimise::optimise(&job),
+        None => match arguments.optimisation {
+            Some(optimisation) => optimise::optimise(&optimisation),
             None => Err(Failure::bad_input("no problem file; see optimize --help")),
         },
     };
@@ -103,4 +107,18 @@ fn load(job: &Job) -> Result<crate::problem::Problem, Failure> {
         .collect::<Result<Vec<_>, _>>()
         .map_err(Failure::bad_input)?;
     crate::problem::Problem::load(&job.problem, &overrides).map_err(Failure::bad_input)
+}
+
+/// Reads a record from its file or its directory; also says which file that is.
+fn record(path: &Path) -> Result<(PathBuf, Optimum), Failure> {
+    let path = if path.is_dir() {
+        path.join("optimum.json")
+    } else {
+        path.to_path_buf()
+    };
+    let text = read_text(&path).map_err(Failure::bad_input)?;
+    match Optimum::from_json(&text) {
+        Ok(optimum) => Ok((path, optimum)),
+        Err(error) => Err(Failure::bad_input(format!("{}: {error}", path.display()))),
+    }
 }

@@ -1,41 +1,42 @@
 //! `optimize PROBLEM`: the default job.
 
-use super::arguments::Job;
-use super::{DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, load, print};
-use crate::driver::{self, figures};
+use super::arguments::{Job, Optimisation as Asked};
+use super::progress::show;
+use super::starts::several;
+use super::{DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, load, print, record};
+use crate::driver::{self, Journal, Optimisation, WarmStart, figures, journal};
 use crate::optimiser::Status;
+use crate::problem::Problem;
+use crate::report::evaluations::{EvaluationLog, EvaluationRecord};
 use crate::report::{History, atomic_write, summary, write_all};
+use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Every evaluation of the run.
+const EVALUATIONS: &str = "evaluations.jsonl";
+/// What another run can start from.
+const STATE: &str = "state.json";
+
 /// Optimises a problem and writes its results.
-pub fn optimise(job: &Job) -> Result<u8, Failure> {
-    let problem = load(job)?;
+pub fn optimise(asked: &Asked) -> Result<u8, Failure> {
+    let job = &asked.job;
+    let mut problem = load(job)?;
     let file = job
         .problem
         .file_name()
         .map_or_else(String::new, |n| n.to_string_lossy().into());
-    let lacking = |what: &str, instead: &str| {
-        Failure::bad_input(format!(
-            "{}: nothing to optimise: the problem has no {what}; {instead}",
-            job.problem.display()
-        ))
+    complete(&problem, job)?;
+    let state = match &asked.from {
+        Some(from) => start_from(&mut problem, from)?,
+        None => None,
     };
-    if problem.objective.is_none() {
-        return Err(lacking(
-            "\"objective\"",
-            "use optimize simulate or optimize check",
-        ));
-    }
-    if problem.variables.is_empty() {
-        return Err(lacking("\"variables\"", "use optimize simulate"));
-    }
-    let directory = job
-        .output
-        .clone()
-        .unwrap_or_else(|| Path::new("results").join(&problem.name));
+    let directory = match (&job.output, &asked.resume) {
+        (Some(directory), _) | (None, Some(directory)) => directory.clone(),
+        (None, None) => Path::new("results").join(&problem.name),
+    };
     std::fs::create_dir_all(&directory).map_err(|error| {
         Failure::bad_input(format!(
             "cannot make the directory {}: {error}",
@@ -44,36 +45,26 @@ pub fn optimise(job: &Job) -> Result<u8, Failure> {
     })?;
 
     let stop = Arc::new(AtomicBool::new(false));
-    let asked = Arc::clone(&stop);
+    let interrupted = Arc::clone(&stop);
     // A second handler in one process is refused; the first then still ends the run.
-    let _ = ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed));
+    let _ = ctrlc::set_handler(move || interrupted.store(true, Ordering::Relaxed));
+    let stopped = || stop.load(Ordering::Relaxed);
 
-    let mut unwritable = None;
-    let mut progress = |history: &History| {
-        if !job.quiet {
-            show(history);
-        }
-        let saved = history
-            .to_csv()
-            .and_then(|text| atomic_write(&directory.join("history.csv"), text.as_bytes()));
-        if let Err(error) = saved {
-            unwritable = Some(error);
-            return ControlFlow::Break(());
-        }
-        if stop.load(Ordering::Relaxed) {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
+    let (problem, mut done) = match asked.starts {
+        Some(count) => several(&problem, &file, count as usize, &stopped, job.quiet)?,
+        None => {
+            let resume = asked.resume.as_deref();
+            let start = (state.as_ref(), resume);
+            let done = one(&problem, &file, start, &directory, &stopped, job.quiet)?;
+            (problem, done)
         }
     };
-    let done = driver::optimise(&problem, &file, &mut progress)
-        .ok_or_else(|| lacking("objective or variables", "use optimize simulate"))?;
-    if let Some(error) = unwritable {
-        return Err(Failure::bad_input(error));
-    }
-
-    if let Status::UndefinedStart { what } = done.outcome.status {
+    if let Status::UndefinedStart { what } = &done.outcome.status {
         return Err(Failure::new(NUMERICAL_FAILURE, what));
+    }
+    if asked.second_order && done.outcome.converged() {
+        done.optimum.second_order =
+            driver::second_order(&problem, &done.outcome).map_err(Failure::numerical)?;
     }
 
     let mut files = figures::of_optimisation(&problem, &done);
@@ -83,6 +74,10 @@ pub fn optimise(job: &Job) -> Result<u8, Failure> {
     }
     if let Ok(text) = done.history.to_csv() {
         files.push(("history.csv", text.into_bytes()));
+    }
+    let state = WarmStart::of(&problem, &done.outcome);
+    if let Some(text) = state.and_then(|state| serde_json::to_vec(&state).ok()) {
+        files.push((STATE, text));
     }
     let files: Vec<(PathBuf, Vec<u8>)> = files
         .into_iter()
@@ -106,42 +101,112 @@ pub fn optimise(job: &Job) -> Result<u8, Failure> {
     }
 }
 
-/// One line an iteration, with the column heads every twenty lines.
-fn show(history: &History) {
-    let Some(row) = history.rows.last() else {
-        return;
+/// Refuses a problem that has nothing to optimise.
+fn complete(problem: &Problem, job: &Job) -> Result<(), Failure> {
+    let lacking = |what: &str, instead: &str| {
+        Err(Failure::bad_input(format!(
+            "{}: nothing to optimise: the problem has no {what}; {instead}",
+            job.problem.display()
+        )))
     };
-    if history.rows.len() % 20 == 1 {
-        eprintln!(
-            "iter      objective    inf_pr    inf_du  lg(mu)     ||d||  lg(rg)  alpha_du  alpha_pr \
-             ls  evals"
-        );
+    if problem.objective.is_none() {
+        return lacking("\"objective\"", "use optimize simulate or optimize check");
     }
-    let logarithm = |x: f64| {
-        if x > 0.0 {
-            format!("{:.1}", x.log10())
-        } else {
-            "-".to_string()
+    if problem.variables.is_empty() {
+        return lacking("\"variables\"", "use optimize simulate");
+    }
+    Ok(())
+}
+
+/// Moves the start to the design of another optimum; its state, if it is there and fits.
+fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<WarmStart>, Failure> {
+    let (record, optimum) = record(from)?;
+    let mut start = problem.start();
+    let mut known = 0;
+    for (x, variable) in start.iter_mut().zip(&problem.variables) {
+        if let Some(design) = optimum.design.get(&variable.name) {
+            *x = design.value;
+            known += 1;
+        }
+    }
+    if known == 0 {
+        return Err(Failure::bad_input(format!(
+            "{}: found the variables {}, expected at least one of {}",
+            record.display(),
+            optimum
+                .design
+                .keys()
+                .cloned()
+                .collect::<Vec<_>>()
+                .join(", "),
+            problem
+                .variables
+                .iter()
+                .map(|v| v.name.as_str())
+                .collect::<Vec<_>>()
+                .join(", ")
+        )));
+    }
+    problem.restart(&start);
+    let state = std::fs::read(record.with_file_name(STATE)).ok();
+    let state = state.and_then(|text| serde_json::from_slice::<WarmStart>(&text).ok());
+    Ok(state.filter(|state| state.fits(problem)))
+}
+
+/// One optimisation, its evaluations and iterations on the disk as they happen.
+fn one(
+    problem: &Problem,
+    file: &str,
+    (state, resume): (Option<&WarmStart>, Option<&Path>),
+    directory: &Path,
+    stopped: &dyn Fn() -> bool,
+    quiet: bool,
+) -> Result<Optimisation, Failure> {
+    let head = journal::head(problem);
+    let earlier = match resume {
+        Some(from) => {
+            EvaluationLog::resume(&from.join(EVALUATIONS), &head)
+                .map_err(Failure::bad_input)?
+                .1
+        }
+        None => Vec::new(),
+    };
+    let path = directory.join(EVALUATIONS);
+    let mut log = match resume {
+        Some(from) if from == directory => EvaluationLog::resume(&path, &head).map(|found| found.0),
+        _ => EvaluationLog::create(&path, &head),
+    }
+    .map_err(Failure::bad_input)?;
+    let unwritable = RefCell::new(None);
+    let mut record = |evaluation: EvaluationRecord| {
+        if let Err(error) = log.append(&evaluation) {
+            unwritable.borrow_mut().get_or_insert(error);
         }
     };
-    let mark = match row.phase.as_str() {
-        "restoration" => "r",
-        "sqp" => "s",
-        _ => " ",
+    if resume.is_some_and(|from| from != directory) {
+        earlier.iter().cloned().for_each(&mut record);
+    }
+    let mut progress = |history: &History| {
+        if !quiet {
+            show(history);
+        }
+        let saved = history
+            .to_csv()
+            .and_then(|text| atomic_write(&directory.join("history.csv"), text.as_bytes()));
+        if let Err(error) = saved {
+            unwritable.borrow_mut().get_or_insert(error);
+        }
+        if stopped() || unwritable.borrow().is_some() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     };
-    eprintln!(
-        "{:>4}{mark} {:>13.6e}  {:>8.2e}  {:>8.2e}  {:>6}  {:>8.2e}  {:>6}  {:>8.2e}  {:>8.2e} \
-         {:>2}  {:>5}",
-        row.iteration,
-        row.objective,
-        row.infeasibility,
-        row.optimality,
-        logarithm(row.barrier),
-        row.step_norm,
-        logarithm(row.regularisation),
-        row.dual_step,
-        row.primal_step,
-        row.line_search_trials,
-        row.evaluations
-    );
+    let journal = Journal::new(earlier, &mut record);
+    let state = state.map(|warm| &warm.state);
+    let done = driver::optimise(problem, file, state, journal, &mut progress);
+    match unwritable.into_inner() {
+        Some(error) => Err(Failure::bad_input(error)),
+        None => done.ok_or_else(|| Failure::bad_input("nothing to optimise")),
+    }
 }

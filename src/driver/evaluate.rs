@@ -1,5 +1,6 @@
 //! Functions and gradients of a problem at a design: one simulation, one backward march.
 
+use super::journal::Journal;
 use crate::adjoint;
 use crate::functions::{Scene, evaluate};
 use crate::integrate::{self, IntegrationFailure, Trajectory, WorkCounts};
@@ -83,13 +84,14 @@ pub struct Evaluator<'a> {
     objective: usize,
     sign: f64,
     last: Option<Evaluated>,
+    journal: Journal<'a>,
     /// Work of all simulations and gradients so far.
     pub counts: WorkCounts,
 }
 
 impl<'a> Evaluator<'a> {
     /// The program that `problem` states, or `None` if it has no objective.
-    pub fn new(problem: &'a Problem) -> Option<Self> {
+    pub fn new(problem: &'a Problem, journal: Journal<'a>) -> Option<Self> {
         let objective = problem.objective?;
         let sign = match objective.sense {
             Sense::Minimise => 1.0,
@@ -100,6 +102,7 @@ impl<'a> Evaluator<'a> {
             objective: objective.function,
             sign,
             last: None,
+            journal,
             counts: WorkCounts::default(),
         })
     }
@@ -109,35 +112,36 @@ impl<'a> Evaluator<'a> {
         self.sign
     }
 
-    /// The simulated design `x`.
-    ///
-    /// # Errors
-    /// If the simulation fails.
-    pub fn at(&mut self, x: &[f64]) -> Result<&Evaluated, IntegrationFailure> {
-        let known = self.last.take().filter(|last| last.x == x);
-        let evaluated = match known {
-            Some(known) => known,
-            None => {
-                let evaluated = Evaluated::new(self.problem, x)?;
-                self.counts += evaluated.run.counts;
-                evaluated
-            }
-        };
-        Ok(self.last.insert(evaluated))
-    }
-
     /// Indices of the objective's function and the constraints' functions.
     fn functions(&self) -> Vec<usize> {
         let constraints = self.problem.constraints.iter().map(|c| c.function);
         std::iter::once(self.objective).chain(constraints).collect()
     }
 
-    fn failure(&self, failure: &IntegrationFailure) -> EvaluationFailure {
+    fn failure(&self, reason: String) -> EvaluationFailure {
         EvaluationFailure {
             what: format!("the simulation of \"{}\"", self.problem.name),
-            reason: failure.to_string(),
+            reason,
         }
     }
+}
+
+/// The simulated design `x`: the last one, or a new one.
+fn at<'e>(
+    last: &'e mut Option<Evaluated>,
+    counts: &mut WorkCounts,
+    problem: &Problem,
+    x: &[f64],
+) -> Result<&'e Evaluated, IntegrationFailure> {
+    let evaluated = match last.take().filter(|last| last.x == x) {
+        Some(known) => known,
+        None => {
+            let evaluated = Evaluated::new(problem, x)?;
+            *counts += evaluated.run.counts;
+            evaluated
+        }
+    };
+    Ok(last.insert(evaluated))
 }
 
 impl Nlp for Evaluator<'_> {
@@ -184,10 +188,12 @@ impl Nlp for Evaluator<'_> {
     fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
         let x = unscaled(self.problem, x);
         let functions = self.functions();
-        let values: Vec<f64> = match self.at(&x) {
-            Ok(at) => functions.iter().map(|&f| at.function(f).value).collect(),
-            Err(failure) => return Err(self.failure(&failure)),
-        };
+        let (problem, last, counts) = (self.problem, &mut self.last, &mut self.counts);
+        let found = self.journal.values(&x, || {
+            let at = at(last, counts, problem, &x).map_err(|failure| failure.to_string())?;
+            Ok(functions.iter().map(|&f| at.function(f).value).collect())
+        });
+        let values = found.map_err(|reason| self.failure(reason))?;
         Ok(Evaluation {
             objective: self.sign * values[0],
             constraints: values[1..].to_vec(),
@@ -198,11 +204,15 @@ impl Nlp for Evaluator<'_> {
         let problem = self.problem;
         let x = unscaled(problem, x);
         let functions = self.functions();
-        let (gradients, counts) = self
-            .at(&x)
-            .and_then(|at| at.gradients(problem, &functions))
-            .map_err(|failure| self.failure(&failure))?;
-        self.counts += counts;
+        let (last, counts) = (&mut self.last, &mut self.counts);
+        let found = self.journal.gradients(&x, || {
+            let at = at(last, counts, problem, &x).map_err(|failure| failure.to_string())?;
+            let found = at.gradients(problem, &functions);
+            let (gradients, work) = found.map_err(|failure| failure.to_string())?;
+            *counts += work;
+            Ok(gradients)
+        });
+        let gradients = found.map_err(|reason| self.failure(reason))?;
         let scaled = |f: usize, i: usize| gradients[f][i] * problem.variables[i].scale;
         let n = x.len();
         Ok(Gradients {

@@ -3,10 +3,18 @@
 pub mod check;
 pub mod evaluate;
 pub mod figures;
+pub mod journal;
+pub mod multi_start;
 pub mod optimise;
+pub mod second_order;
 pub mod simulate;
+pub mod warm_start;
 
 pub use check::{CheckedDerivative, check};
 pub use evaluate::{Evaluated, Evaluator};
+pub use journal::Journal;
+pub use multi_start::multi_start;
 pub use optimise::{Optimisation, optimise};
+pub use second_order::second_order;
 pub use simulate::{Simulation, simulate};
+pub use warm_start::WarmStart;

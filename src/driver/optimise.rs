@@ -1,9 +1,10 @@
 //! A problem optimised: the optimiser's outcome, its history, and the simulations at both ends.
 
 use super::evaluate::{Evaluator, unscaled};
+use super::journal::Journal;
 use super::simulate::{Simulation, estimate_errors, simulate};
 use crate::integrate::WorkCounts;
-use crate::optimiser::{self, Observer, Options, Outcome, Phase, Row, Status};
+use crate::optimiser::{self, Observer, Options, Outcome, Phase, Row, SavedState, Status};
 use crate::problem::{Problem, Sense};
 use crate::report::history::{Column, History, HistoryRow};
 use crate::report::optimum::{
@@ -27,15 +28,17 @@ pub struct Optimisation {
     pub end: Option<Simulation>,
 }
 
-/// Optimises `problem`. `progress` sees the history after every iteration and may stop the run.
+/// Optimises `problem`, from its start or from the state of another run. `journal` holds what is known already; `progress` sees the history after every iteration and may stop the run.
 ///
 /// Returns `None` if the problem has no objective or no variables.
-pub fn optimise(
-    problem: &Problem,
+pub fn optimise<'a>(
+    problem: &'a Problem,
     file: &str,
+    from: Option<&SavedState>,
+    journal: Journal<'a>,
     progress: &mut dyn FnMut(&History) -> ControlFlow<()>,
 ) -> Option<Optimisation> {
-    let mut program = Evaluator::new(problem)?;
+    let mut program = Evaluator::new(problem, journal)?;
     if problem.variables.is_empty() {
         return None;
     }
@@ -52,7 +55,10 @@ pub fn optimise(
         history: empty_history(problem),
         progress,
     };
-    let outcome = optimiser::solve(&mut program, &options, &mut recorder);
+    let outcome = match from {
+        Some(state) => optimiser::resume(&mut program, &options, &mut recorder, state),
+        None => optimiser::solve(&mut program, &options, &mut recorder),
+    };
     let history = recorder.history;
     let counts = program.counts;
     let start = simulate(problem, &problem.start()).ok();
@@ -284,6 +290,7 @@ fn record(
                 complementarity: outcome.kkt.complementarity,
             },
         },
+        second_order: None,
         counts: Counts {
             iterations: outcome.counts.iterations as u64,
             function_evaluations: outcome.counts.evaluations as u64,

@@ -147,6 +147,13 @@ impl Problem {
             .collect()
     }
 
+    /// Makes `x`, moved inside the bounds, the start.
+    pub fn restart(&mut self, x: &[f64]) {
+        for (variable, &x) in self.variables.iter_mut().zip(x) {
+            variable.start = x.clamp(variable.lower, variable.upper);
+        }
+    }
+
     /// SI unit of the function `index`.
     ///
     /// # Panics

@@ -31,6 +31,18 @@ pub enum ReportError {
         /// What should stand there.
         expected: String,
     },
+    /// A record of evaluations is damaged or belongs elsewhere.
+    #[error("{}:{line}: found {found}, expected {expected}", path.display())]
+    Evaluations {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from one.
+        line: usize,
+        /// What stands there.
+        found: String,
+        /// What should stand there.
+        expected: String,
+    },
     /// An optimum is not the JSON document that it should be.
     #[error("optimum: {0}")]
     Optimum(#[from] serde_json::Error),

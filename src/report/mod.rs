@@ -1,11 +1,12 @@
 //! What a run leaves behind: records, their comparison, figures and the text at the end.
 //!
 //! Everything here is a pure function of plain `f64` data, so that the figures can be redrawn
-//! from the record; only [`files`] touches the disk.
+//! from the record; only [`files`] and [`evaluations`] touch the disk.
 //!
 //! | File | Content |
 //! |---|---|
 //! | [`files`] | files written whole or not at all |
+//! | [`evaluations`] | every evaluation, `evaluations.jsonl` |
 //! | [`history`] | the iterations of an optimisation, `history.csv` |
 //! | [`optimum`] | the end of an optimisation, `optimum.json` |
 //! | [`mod@compare`] | an optimum against a committed baseline |
@@ -15,6 +16,7 @@
 pub mod compare;
 mod csv;
 mod error;
+pub mod evaluations;
 pub mod files;
 pub mod history;
 mod number;

@@ -29,6 +29,9 @@ pub struct Optimum {
     pub active_bounds: IndexMap<String, Side>,
     /// Residuals of the optimality conditions.
     pub kkt: Kkt,
+    /// Curvature at the optimum, if it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub second_order: Option<SecondOrder>,
     /// Work done.
     pub counts: Counts,
     /// What the user should know before believing the result.
@@ -168,6 +171,17 @@ pub struct KktResiduals {
     pub feasibility: f64,
     /// Products of multipliers and distances to their bounds.
     pub complementarity: f64,
+}
+
+/// Curvature of the minimised Lagrangian along the directions that active bounds and constraints
+/// leave free.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SecondOrder {
+    /// Eigenvalues of the reduced Hessian in scaled variables, ascending; none at a vertex.
+    pub eigenvalues: Vec<f64>,
+    /// Estimated error of its entries.
+    pub uncertainty: f64,
 }
 
 /// Work done.

@@ -1,7 +1,7 @@
 //! The text that a person reads at the end of an optimisation.
 
 use super::number::{grouped, significant};
-use super::optimum::{Activity, KktResiduals, Optimum, Sense, Side};
+use super::optimum::{Activity, KktResiduals, Optimum, SecondOrder, Sense, Side};
 use super::table;
 
 /// Status, objective, design, constraints, accuracy and work of an optimisation, as text.
@@ -26,6 +26,9 @@ pub fn summary(optimum: &Optimum) -> String {
         significant(feasibility, 2),
         significant(complementarity, 2),
     ));
+    if let Some(second) = &optimum.second_order {
+        text.push_str(&curvature(second));
+    }
     text.push_str(&work(optimum));
     for warning in &optimum.warnings {
         text.push_str(&format!("Warning: {warning}\n"));
@@ -139,6 +142,36 @@ fn sensitivity(optimum: &Optimum, constraint: &super::optimum::ConstraintValue) 
         significant(constraint.multiplier, 5),
         with_space(optimum.objective.unit.as_deref()),
         constraint.unit.as_deref().unwrap_or("unit"),
+    )
+}
+
+/// What the reduced Hessian says.
+fn curvature(second: &SecondOrder) -> String {
+    let SecondOrder {
+        eigenvalues,
+        uncertainty,
+    } = second;
+    let (Some(&least), Some(&most)) = (eigenvalues.first(), eigenvalues.last()) else {
+        return "Second order: bounds and constraints leave no free direction\n".to_owned();
+    };
+    let verdict = if least > *uncertainty {
+        "a strict local optimum"
+    } else if least < -uncertainty {
+        "no local optimum: it improves along a free direction"
+    } else {
+        "flat within the accuracy of the differences"
+    };
+    format!(
+        "Second order: {verdict}; curvature {} … {} along {} free {} (± {})\n",
+        significant(least, 3),
+        significant(most, 3),
+        eigenvalues.len(),
+        if eigenvalues.len() == 1 {
+            "direction"
+        } else {
+            "directions"
+        },
+        significant(*uncertainty, 2),
     )
 }
 
