@@ -41,7 +41,13 @@ impl Nlp for Chain {
     }
 
     fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>) {
-        let upper = (0..self.n / 2).map(|j| if j % 2 == 0 { f64::INFINITY } else { 0.0 });
+        let upper = (0..self.n / 2).map(|j| {
+            if j.is_multiple_of(2) {
+                f64::INFINITY
+            } else {
+                0.0
+            }
+        });
         (vec![0.0; self.n / 2], upper.collect())
     }
 
@@ -54,7 +60,7 @@ impl Nlp for Chain {
         let chain: f64 = x.windows(2).map(|w| (w[1] - w[0]).powi(4)).sum();
         let row = |j: usize| {
             let (a, b) = (x[2 * j], x[2 * j + 1]);
-            if j % 2 == 0 {
+            if j.is_multiple_of(2) {
                 1.5 - a * a - b * b
             } else {
                 a + b * x[2 * j - 2] - 0.2
@@ -79,7 +85,7 @@ impl Nlp for Chain {
         let mut jacobian = DMatrix::zeros(self.n / 2, self.n);
         for j in 0..self.n / 2 {
             let (a, b) = (2 * j, 2 * j + 1);
-            if j % 2 == 0 {
+            if j.is_multiple_of(2) {
                 jacobian[(j, a)] = -2.0 * x[a];
                 jacobian[(j, b)] = -2.0 * x[b];
             } else {
