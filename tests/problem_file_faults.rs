@@ -116,6 +116,16 @@ faults! {
         r#""con_rod": {"# => r#""con.rod": {"#,
         r#"["con_rod", "rod"]"# => r#"["rod", "ground"]"#,
         r#""range": {"body": "con_rod""# => r#""range": {"body": "rod""#;
+    an_impossible_assembly:
+        r#""joints": {"# =>
+        r#""joints": {"far": {"spherical": {"between": ["con_rod", "ground"], "at": {"a": [0, 0, 0], "b": [9, 0, 0]}}},"#;
+    a_joint_twice:
+        r#""joints": {"# =>
+        r#""joints": {"hinge": {"revolute": {"between": ["con_rod", "rod"], "at": [0, 0, 1], "axis": [0, 0, 1]}},"#;
+    a_body_without_inertia_about_itself:
+        r#"{"box": {"size": [2, 0.1, 0.1]}}"# => r#"{"rod": {"length": 2}}"#,
+        r#"{"revolute": {"between": ["con_rod", "rod"], "at": "rod.tip", "axis": [0, 0, 1]}}"# =>
+        r#"{"spherical": {"between": ["con_rod", "rod"], "at": "rod.tip"}}"#;
     crossed_bounds: r#""lower": 1, "upper": 5"# => r#""lower": 5, "upper": 1"#;
     a_start_outside_its_bounds: r#""lower": 1, "upper": 5"# => r#""lower": 4, "upper": 5"#;
     a_lower_bound_that_lets_a_mass_vanish:

@@ -3,6 +3,7 @@
 
 mod reference;
 
+use flexbody::integrate::{Method, Settings, simulate};
 use flexbody::math::Vec3;
 use flexbody::model::{JointKind, Model, RigidBody};
 use flexbody::system::kkt::SaddlePoint;
@@ -66,6 +67,48 @@ fn a_joint_carries_the_weight_that_hangs_from_it() {
         assert_near("middle", &found[1].force_ground, &up(-3.0 * 9.81));
         for reaction in &found {
             assert_near("torque", &reaction.torque_ground, &Vec3::zeros());
+        }
+    }
+}
+
+/// Two bodies that hang from each other stay at rest, to 1e-12 m, and go on pulling with their
+/// weights.
+#[test]
+fn bodies_at_rest_stay_at_rest() {
+    for kind in [
+        JointKind::Spherical,
+        JointKind::Revolute,
+        JointKind::Prismatic,
+    ] {
+        let bodies = vec![hanging("upper", 2.0, -0.5), hanging("lower", 3.0, -1.5)];
+        let at = |y: f64| Vec3::new(0.0, y, 0.0);
+        let pin = |name, between, y| joint(&bodies, (name, kind), between, &at(y), &Vec3::z());
+        let joints = [
+            pin("ceiling", (0, None), 0.0),
+            pin("middle", (0, Some(1)), -1.0),
+        ];
+        // The pair, and the upper body alone.
+        for count in [2, 1] {
+            let model = Model {
+                gravity: gravity(),
+                bodies: bodies[..count].to_vec(),
+                joints: joints[..count].to_vec(),
+            };
+            let settings = Settings {
+                steps: 100,
+                method: Method::Bdf { order: 2 },
+            };
+            let run = simulate(&model, 1.0, &settings).expect("hangs");
+            let moved = |k: usize| {
+                let off = run.q(k).iter().zip(run.q(0)).map(|(a, b)| (a - b).abs());
+                off.fold(0.0, f64::max)
+            };
+            let weight = at(9.81 * if count == 2 { 5.0 } else { 2.0 });
+            for k in 0..=run.steps {
+                let found = &reactions(&model, &run.numbering, run.q(k), run.lambda(k))[0];
+                assert_near("ceiling", &found.force_ground, &weight);
+                assert!(moved(k) <= 1e-12, "{kind:?}, step {k}");
+            }
         }
     }
 }

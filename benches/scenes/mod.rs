@@ -57,7 +57,7 @@ impl Case {
             settings,
             error: f64::NAN,
         };
-        case.error = reference::position_error(&case.simulate(), &instants);
+        case.error = reference::motion_error(&case.simulate(), &instants).0;
         case
     }
 
@@ -85,6 +85,6 @@ pub fn trebuchet_problem() -> (Problem, f64) {
     let scene = problem.scene(&problem.start());
     let run = simulate(&scene.model, scene.duration, &problem.settings).expect("the scene runs");
     let (_, instants) = reference::load("trebuchet");
-    let error = reference::position_error(&run, &instants);
+    let error = reference::motion_error(&run, &instants).0;
     (problem, error)
 }

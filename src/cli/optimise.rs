@@ -72,6 +72,10 @@ pub fn optimise(job: &Job) -> Result<u8, Failure> {
         return Err(Failure::bad_input(error));
     }
 
+    if let Status::UndefinedStart { what } = done.outcome.status {
+        return Err(Failure::new(NUMERICAL_FAILURE, what));
+    }
+
     let mut files = figures::of_optimisation(&problem, &done);
     let record = done.optimum.to_json();
     if let Ok(text) = &record {
@@ -92,7 +96,6 @@ pub fn optimise(job: &Job) -> Result<u8, Failure> {
     match done.outcome.status {
         Status::Converged => Ok(DONE),
         Status::Interrupted => Ok(INTERRUPTED),
-        Status::UndefinedStart { what } => Err(Failure::new(NUMERICAL_FAILURE, what)),
         _ => {
             record.map_err(Failure::numerical)?;
             if job.quiet {
@@ -108,7 +111,7 @@ fn show(history: &History) {
     let Some(row) = history.rows.last() else {
         return;
     };
-    if (history.rows.len() - 1) % 20 == 0 {
+    if history.rows.len() % 20 == 1 {
         eprintln!(
             "iter      objective    inf_pr    inf_du  lg(mu)     ||d||  lg(rg)  alpha_du  alpha_pr \
              ls  evals"

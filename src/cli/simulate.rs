@@ -138,7 +138,7 @@ pub fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
         .fold(0.0, f64::max);
     let _ = writeln!(
         text,
-        "round-off in the motion moves the derivatives by up to {noise:.1e}"
+        "where Newton's method stops moves the derivatives by up to {noise:.1e}"
     );
     if !job.quiet || failed > 0 {
         print(&text)?;

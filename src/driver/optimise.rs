@@ -50,7 +50,6 @@ pub fn optimise(
         problem,
         sign,
         history: empty_history(problem),
-        last: None,
         progress,
     };
     let outcome = optimiser::solve(&mut program, &options, &mut recorder);
@@ -77,23 +76,25 @@ pub fn optimise(
 
 /// The history of a problem before its first iteration.
 fn empty_history(problem: &Problem) -> History {
-    let plain = |name: &str| Column {
+    let function = |name: &str, index: usize| Column {
         name: name.to_string(),
-        unit: None,
+        unit: Some(problem.function_unit(index)),
     };
-    let objective = problem
-        .objective
-        .map_or("", |o| &problem.function_names[o.function]);
+    let objective = problem.objective.map_or(0, |o| o.function);
     let variables = problem.variables.iter();
     History {
-        objective: plain(objective),
+        objective: function(&problem.function_names[objective], objective),
         variables: variables
             .map(|v| Column {
                 name: v.name.clone(),
                 unit: Some(v.unit.clone()).filter(|unit| !unit.is_empty()),
             })
             .collect(),
-        constraints: problem.constraints.iter().map(|c| plain(&c.name)).collect(),
+        constraints: problem
+            .constraints
+            .iter()
+            .map(|c| function(&c.name, c.function))
+            .collect(),
         rows: Vec::new(),
     }
 }
@@ -103,14 +104,12 @@ struct Recorder<'a> {
     problem: &'a Problem,
     sign: f64,
     history: History,
-    last: Option<Vec<f64>>,
     progress: &'a mut dyn FnMut(&History) -> ControlFlow<()>,
 }
 
 impl Observer for Recorder<'_> {
     fn iteration(&mut self, row: &Row<'_>) -> ControlFlow<()> {
         let design = unscaled(self.problem, row.x);
-        self.last = Some(design.clone());
         self.history.rows.push(HistoryRow {
             iteration: row.iteration,
             evaluations: row.evaluations,
@@ -248,7 +247,7 @@ fn record(
                 RecordedSense::Minimise
             },
             value,
-            unit: None,
+            unit: Some(problem.function_unit(objective.function)),
             true_maximum: at_end
                 .and_then(|end| end.maximum)
                 .map(|(maximum, _)| maximum),
@@ -334,7 +333,7 @@ fn constraints(
                 value,
                 lower: Some(c.lower).filter(|b| b.is_finite()),
                 upper: Some(c.upper).filter(|b| b.is_finite()),
-                unit: None,
+                unit: Some(problem.function_unit(c.function)),
                 multiplier,
                 active: active(&c.name),
             };

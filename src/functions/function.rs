@@ -32,7 +32,7 @@ pub enum Release<S> {
     /// Around the best instant: the mean state z̄ = Σ w_k z_k with the weights
     /// w_k ∝ τ_k exp(ρ R_k) of the gated range R.
     Best {
-        /// Aggregation parameter ρ [1/m].
+        /// Aggregation parameter ρ (1/m).
         rho: f64,
         /// Ground height and direction that the range is measured with.
         projectile: Projectile<S>,
@@ -66,6 +66,18 @@ pub enum Function<S> {
 }
 
 impl<S: Scalar> Function<S> {
+    /// SI unit of the value.
+    pub fn unit(&self) -> String {
+        match self {
+            Function::Reduced {
+                instant,
+                reduction: Reduction::Integral,
+            } => format!("{} s", instant.unit()),
+            Function::Reduced { instant, .. } => instant.unit().to_owned(),
+            Function::Clearance { .. } => "m".to_owned(),
+        }
+    }
+
     /// The function with every parameter replaced by `f` of it.
     pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Function<T> {
         match self {

@@ -123,6 +123,17 @@ impl<S: Scalar> Projectile<S> {
 }
 
 impl<S: Scalar> Instant<S> {
+    /// SI unit of the quantity.
+    pub fn unit(&self) -> &'static str {
+        match self {
+            Instant::Position { .. } | Instant::Range { .. } => "m",
+            Instant::Velocity { .. } | Instant::Speed { .. } => "m/s",
+            Instant::Acceleration { .. } => "m/s²",
+            Instant::Energy(_) => "J",
+            Instant::Rotation { .. } => "rad",
+        }
+    }
+
     /// The quantity with every parameter replaced by `f` of it.
     pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Instant<T> {
         match self {

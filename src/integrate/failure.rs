@@ -1,6 +1,6 @@
 //! How a simulation can fail.
 
-use crate::system::initial::AssemblyFailure;
+use crate::system::assembly::AssemblyFailure;
 
 /// Why a simulation did not reach its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

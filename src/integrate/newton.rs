@@ -6,7 +6,7 @@ use super::trajectory::WorkCounts;
 use crate::linalg::{SolveScalar, SparseLu, SparseMatrix};
 use crate::math::Scalar;
 use crate::model::Model;
-use crate::system::{Numbering, bodies, initial};
+use crate::system::{Numbering, assembly, bodies};
 
 /// Error left in a step, relative to the largest increments of position, rotation, velocity and
 /// angular velocity in it, at which Newton's method stops: the relative error of accelerations.
@@ -71,6 +71,7 @@ pub struct Newton<'a, S> {
     /// Contraction seen with the kept factors.
     contraction: f64,
     length: f64,
+    gravity: f64,
     residual: Vec<S>,
     qdot: Vec<S>,
     vdot: Vec<S>,
@@ -98,7 +99,8 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             matrix: SparseMatrix::new(pattern),
             factored: None,
             contraction: 1.0,
-            length: initial::length_scale(model),
+            length: assembly::length_scale(model),
+            gravity: largest(model.gravity.as_slice()),
             residual: vec![S::zero(); order],
             qdot: vec![S::zero(); numbering.positions()],
             vdot: vec![S::zero(); numbering.velocities()],
@@ -119,7 +121,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
     ) -> Result<(), IntegrationFailure> {
         let numbering = self.numbering;
         let (nv, nc) = (numbering.velocities(), numbering.constraints());
-        let scales = self.scales(x);
+        let scales = self.scales(x, h.re());
         let mut previous = f64::INFINITY;
         let (mut polish, mut before) = (false, 0.0_f64);
         for iteration in 1..=ITERATIONS {
@@ -193,6 +195,10 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 if iteration > 1 && !stagnant {
                     self.contraction = contraction.clamp(1e-3, 1.0);
                 }
+                if iteration == 1 && !fresh {
+                    // Kept factors that were not seen to converge do not serve another step.
+                    self.factored = None;
+                }
                 return Ok(());
             }
             if iteration > 1 && contraction > RENEW {
@@ -206,8 +212,9 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         Err(self.stalled(x, history, h, step))
     }
 
-    /// What changes are judged against in the step that starts from `x`.
-    fn scales(&self, x: &Unknowns<S>) -> Scales {
+    /// What changes are judged against in the step of size `h` that starts from `x`: never less
+    /// than what gravity moves in a step, so that a model at rest is not judged by its noise.
+    fn scales(&self, x: &Unknowns<S>, h: f64) -> Scales {
         let n = self.numbering;
         let (mut shift, mut turn, mut place) = (0.0_f64, 0.0_f64, self.length);
         for body in 0..n.bodies() {
@@ -216,7 +223,8 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             place = place.max(largest(&q[..3]));
             turn = turn.max(2.0 * largest(&dq[3..7]));
         }
-        let mut rates = [[0.0_f64; 2]; 2];
+        let gained = h * self.gravity;
+        let mut rates = [[0.0_f64, gained], [0.0, gained / self.length]];
         for (six, now) in x.dv.chunks_exact(6).zip(x.v.chunks_exact(6)) {
             for part in 0..2 {
                 rates[part][0] = rates[part][0].max(largest(&six[3 * part..3 * part + 3]));

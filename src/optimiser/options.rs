@@ -41,7 +41,7 @@ pub struct Options {
     pub max_iterations: usize,
     /// Evaluations of the functions allowed (default 3000).
     pub max_evaluations: usize,
-    /// Wall time allowed \[s\] (default unlimited).
+    /// Wall time allowed (s) (default unlimited).
     pub max_seconds: Option<f64>,
     /// An objective below this, at a feasible point, is called unbounded (default −1e20).
     pub unbounded_below: f64,

@@ -147,6 +147,14 @@ impl Problem {
             .collect()
     }
 
+    /// SI unit of the function `index`.
+    ///
+    /// # Panics
+    /// If there is no such function.
+    pub fn function_unit(&self, index: usize) -> String {
+        self.scene(&self.start()).functions[index].unit()
+    }
+
     /// The scene at the design `x`, analytic in `x`; one component per variable, each in the unit
     /// of its numbers.
     pub fn scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {

@@ -12,6 +12,9 @@ use super::syntax;
 use super::variables::{bind, variables};
 use super::{Constraint, Objective, OptimiserSettings, Problem, Sense};
 use crate::integrate::{Settings, settings};
+use crate::system::assembly::AssemblyFailure;
+use crate::system::kkt::SaddlePoint;
+use crate::system::{Numbering, initial};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::io::ErrorKind;
@@ -80,9 +83,52 @@ pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Pr
     bind(&mut sound, &variables);
     let order = placement_order(&written).expect("a checked document has no circle of places");
     match deserialise(&sound) {
-        Ok(written) => Ok(assemble(document, written, order, variables)),
+        Ok(written) => {
+            let problem = problem(document, written, order, variables);
+            match unassembled(&problem) {
+                Some(finding) => faults(vec![finding]),
+                None => Ok(problem),
+            }
+        }
         Err(finding) => faults(vec![finding]),
     }
+}
+
+/// The fault of joints that cannot be closed, or not uniquely, at the design of the file.
+fn unassembled(problem: &Problem) -> Option<Finding> {
+    let model = problem.scene(&problem.start()).model;
+    let numbering = Numbering::new(&model);
+    let mut saddle = SaddlePoint::new(&model, &numbering);
+    let failure = initial::solve(&model, &numbering, &mut saddle).err()?;
+    let (pointer, expected, hint) = match &failure {
+        AssemblyFailure::Open { joint, .. } => (
+            super::pointer::join("/joints", joint),
+            "points that the placed bodies can bring together",
+            "look at the lengths, and at where the bodies are placed",
+        ),
+        AssemblyFailure::Turned { joint } => (
+            super::pointer::join("/joints", joint),
+            "axes that point the same way in both bodies",
+            "place one of the bodies turned by 180 degrees",
+        ),
+        AssemblyFailure::Redundant { .. } => (
+            "/joints".to_owned(),
+            "constraints that are independent of each other",
+            "leave one of the joints out, or replace a revolute joint by a spherical one",
+        ),
+        AssemblyFailure::WithoutInertia { .. } => (
+            "/bodies".to_owned(),
+            "inertia in every direction that a body can move in",
+            "give a thin rod a radius: at a spherical joint it can spin about itself",
+        ),
+        AssemblyFailure::Singular => (
+            "".to_owned(),
+            "a placement at which forces determine accelerations",
+            "place the bodies away from straight or folded positions",
+        ),
+    };
+    let finding = Finding::new(pointer, failure.to_string(), expected);
+    Some(finding.of_key().hint(Some(hint.to_owned())))
 }
 
 /// The fault of a key that stands twice.
@@ -111,7 +157,7 @@ fn deserialise(document: &Value) -> Result<Document, Finding> {
 }
 
 /// The problem of a checked document.
-fn assemble(
+fn problem(
     document: Value,
     written: Document,
     order: Vec<usize>,

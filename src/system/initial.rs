@@ -7,47 +7,14 @@
 //! accelerations   M a − f(v) + Gᵀ λ = 0,           G a + bias(q, v) = 0
 //! ```
 
-use super::bodies::{
-    self, Motion, all_force_balances, positions_of, tangent_of_cotangent, velocities_of,
-};
+use super::assembly::{AssemblyFailure, assemble, finite, position_metric};
+use super::bodies::{self, Motion, all_force_balances, velocities_of};
 use super::joints::{self, JointCotangent};
 use super::kkt::{BodyBlocks, SaddlePoint};
 use super::numbering::Numbering;
 use crate::linalg::{SingularMatrix, SolveScalar};
-use crate::math::{Mat3, Scalar, Vec3, rotation};
+use crate::math::{Mat3, Scalar, rotation};
 use crate::model::Model;
-
-/// Why a model has no consistent initial conditions.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum AssemblyFailure {
-    /// The joints cannot be closed near the given placement.
-    #[error(
-        "joint \"{joint}\" cannot be assembled: its {row} stays open by {gap:.3e} after \
-         {iterations} iterations"
-    )]
-    Open {
-        /// Joint with the largest gap.
-        joint: String,
-        /// Which of its conditions.
-        row: String,
-        /// The gap (m or 1).
-        gap: f64,
-        /// Iterations spent.
-        iterations: usize,
-    },
-    /// The joint's axes meet only after half a turn.
-    #[error("joint \"{joint}\" was assembled with its axes turned by 180 degrees")]
-    Turned {
-        /// The joint.
-        joint: String,
-    },
-    /// Constraints repeat each other, or a motion has no inertia.
-    #[error("{what}")]
-    Singular {
-        /// What is singular, by the names of joints and bodies.
-        what: String,
-    },
-}
 
 /// Consistent state at t = 0.
 #[derive(Clone, Debug)]
@@ -80,23 +47,6 @@ pub fn guess<S: Scalar>(model: &Model<S>) -> (Vec<S>, Vec<S>) {
     (q, v)
 }
 
-/// A length that the scene's gaps and motions are judged against (m): its largest lever arm or
-/// placement.
-pub fn length_scale<S: Scalar>(model: &Model<S>) -> f64 {
-    let size = |v: &Vec3<S>| v.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
-    let joints = model
-        .joints
-        .iter()
-        .flat_map(|j| [size(&j.frame_a.point), size(&j.frame_b.point)]);
-    let bodies = model.bodies.iter().map(|b| size(&b.position));
-    let largest = joints.chain(bodies).fold(0.0, f64::max);
-    if largest > 0.0 { largest } else { 1.0 }
-}
-
-const ITERATIONS: usize = 50;
-/// Gap relative to the length scale below which the joints count as closed.
-const CLOSED: f64 = 1e-13;
-
 /// Finds the consistent state nearest to the model's placement.
 ///
 /// # Errors
@@ -117,9 +67,7 @@ pub fn solve<S: SolveScalar>(
         linear: S::one(),
         angular: Mat3::identity(),
     };
-    let singular = |_| AssemblyFailure::Singular {
-        what: super::rank::explain(model, &q),
-    };
+    let singular = |_| super::rank::explain(model, &q);
     saddle
         .factorise(model, numbering, &motions, &zeros, identity)
         .map_err(singular)?;
@@ -160,10 +108,6 @@ pub fn solve<S: SolveScalar>(
     })
 }
 
-fn finite<S: Scalar>(x: &[S]) -> bool {
-    x.iter().all(|x| x.is_finite())
-}
-
 /// Mass and inertia of each body.
 pub fn mass<S: Scalar>(model: &Model<S>) -> impl Fn(usize) -> BodyBlocks<S> + '_ {
     |body| {
@@ -175,135 +119,11 @@ pub fn mass<S: Scalar>(model: &Model<S>) -> impl Fn(usize) -> BodyBlocks<S> + '_
     }
 }
 
-/// Nearest assembled positions by Newton's method: (q, s, iterations).
-fn assemble<S: SolveScalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    saddle: &mut SaddlePoint<S>,
-    q_guess: &[S],
-    v_guess: &[S],
-) -> Result<(Vec<S>, Vec<S>, usize), AssemblyFailure> {
-    let (nv, nc) = (numbering.velocities(), numbering.constraints());
-    let scale = length_scale(model);
-    let mut q = q_guess.to_vec();
-    let mut increment = vec![S::zero(); q.len()];
-    bodies::normalise(numbering, &mut q, &mut increment);
-    let mut s = vec![S::zero(); nc];
-    let mut motions = Vec::new();
-    let mut phi = vec![S::zero(); nc];
-    let mut gradients = Vec::new();
-    let mut closed_before = false;
-    for iteration in 0..ITERATIONS {
-        Motion::all(numbering, &q, v_guess, &mut motions);
-        joints::values(model, numbering, &motions, &mut phi);
-        joints::gradients(model, numbering, &motions, &mut gradients);
-        let mut rhs = vec![S::zero(); nv];
-        let away: Vec<S> = q.iter().zip(q_guess).map(|(&q, &g)| q - g).collect();
-        tangent_of_cotangent(numbering, &q, &away, &mut rhs);
-        joints::add_reactions(model, numbering, &gradients, &s, &mut rhs);
-        rhs.extend(&phi);
-        for x in &mut rhs {
-            *x = -*x;
-        }
-        let metric = position_metric(model, numbering, &q);
-        saddle
-            .factorise(model, numbering, &motions, &s, metric)
-            .map_err(|_| AssemblyFailure::Singular {
-                what: super::rank::explain(model, &q),
-            })?;
-        saddle.solve(&mut rhs);
-        if !finite(&rhs) {
-            return Err(open(model, numbering, &phi, iteration));
-        }
-        bodies::advance(numbering, &mut q, &mut increment, &rhs[..nv]);
-        for (s, step) in s.iter_mut().zip(&rhs[nv..]) {
-            *s += *step;
-        }
-        // One step past the closed real part, so that an infinitesimal part is closed as well.
-        let gap = phi.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
-        let moved = rhs[..nv].iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
-        let closed = gap <= CLOSED * scale.max(1.0) && moved <= 1e-10 * scale.max(1.0);
-        if closed && closed_before {
-            check_turned(model, &motions)?;
-            return Ok((q, s, iteration));
-        }
-        closed_before = closed;
-    }
-    Err(open(model, numbering, &phi, ITERATIONS))
-}
-
-/// W = ∂[T(q)ᵀ (q − q_g)]/∂y: the identity, and ¼ L(p_g) L(p)ᵀ for the rotation.
-fn position_metric<'a, S: Scalar>(
-    model: &'a Model<S>,
-    numbering: &'a Numbering,
-    q: &'a [S],
-) -> impl Fn(usize) -> BodyBlocks<S> + 'a {
-    |body| {
-        let (_, p) = positions_of(&q[numbering.position(body)..]);
-        let guess = &model.bodies[body].orientation;
-        let mut angular = Mat3::zeros();
-        for j in 0..3 {
-            let mut unit = Vec3::zeros();
-            unit[j] = S::from(0.25);
-            let column = rotation::rate_product(guess, &rotation::rate_transposed(&p, &unit));
-            angular.set_column(j, &column);
-        }
-        BodyBlocks {
-            linear: S::one(),
-            angular,
-        }
-    }
-}
-
-/// The worst open row, by joint.
-fn open<S: Scalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    phi: &[S],
-    iterations: usize,
-) -> AssemblyFailure {
-    let worst = (0..phi.len())
-        .reduce(|w, i| {
-            if phi[i].re().abs() > phi[w].re().abs() {
-                i
-            } else {
-                w
-            }
-        })
-        .unwrap_or(0);
-    let joint = &model.joints[numbering.joint_of_row(worst)];
-    let row = joint.kind.rows()[worst - numbering.rows(numbering.joint_of_row(worst)).start];
-    AssemblyFailure::Open {
-        joint: joint.name.clone(),
-        row: row.describe().to_string(),
-        gap: phi[worst].re().abs(),
-        iterations,
-    }
-}
-
-/// Refuses the spurious root of the orientation rows in which one frame is turned by 180°.
-fn check_turned<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> Result<(), AssemblyFailure> {
-    let ground = Motion::ground();
-    for joint in &model.joints {
-        let (a, b) = joints::sides(joint, motions, &ground);
-        for &axis in joint.kind.common_axes() {
-            let in_a = a.motion.rotation * a.frame.axes[axis];
-            let in_b = b.motion.rotation * b.frame.axes[axis];
-            if in_a.dot(&in_b).re() < 0.0 {
-                return Err(AssemblyFailure::Turned {
-                    joint: joint.name.clone(),
-                });
-            }
-        }
-    }
-    Ok(())
-}
-
 /// Pulls cotangents (ȳ of q0 in its tangent, v̄ of v0, ā of the initial accelerations) back through
 /// the three solves to the parameters of `cot`.
 ///
 /// # Errors
-/// [`AssemblyFailure::Singular`] if a matrix that was regular forwards is not any more.
+/// [`AssemblyFailure`] if a matrix that was regular forwards is not any more.
 pub fn pull_back(
     model: &Model<f64>,
     numbering: &Numbering,
@@ -313,9 +133,7 @@ pub fn pull_back(
     cot: &mut Model<f64>,
 ) -> Result<(), AssemblyFailure> {
     let (nv, nc) = (numbering.velocities(), numbering.constraints());
-    let singular = |_| AssemblyFailure::Singular {
-        what: super::rank::explain(model, &state.q),
-    };
+    let singular = |_| super::rank::explain(model, &state.q);
     let mut motions = Vec::new();
     Motion::all(numbering, &state.q, &state.v, &mut motions);
     let zeros = vec![0.0; nc];

@@ -6,13 +6,13 @@
 //! δq = T(q) δy, so the Euler parameters stay of unit length and need no multiplier.
 //! Nothing here knows how time is discretised.
 
+pub mod assembly;
 pub mod bodies;
 pub mod constraint;
 pub mod initial;
 pub mod joints;
 pub mod kkt;
 pub mod marker;
-
 pub mod numbering;
 pub mod observe;
 pub mod rank;

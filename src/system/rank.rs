@@ -1,5 +1,6 @@
 //! Which joints or bodies make a model singular, by name. Runs only after a factorisation failed.
 
+use super::assembly::AssemblyFailure;
 use super::bodies::Motion;
 use super::joints;
 use super::numbering::Numbering;
@@ -11,7 +12,7 @@ use nalgebra::DMatrix;
 const NEGLIGIBLE: f64 = 1e-10;
 
 /// Says which constraints are redundant at q, or else which bodies can move without inertia.
-pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> String {
+pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     let numbering = Numbering::new(model);
     let mut motions = Vec::new();
     let at_rest = vec![S::zero(); numbering.velocities()];
@@ -34,7 +35,7 @@ pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> String {
         }
     }
     if g.iter().any(|x| !x.is_finite()) {
-        return "positions of the assembly are not finite".into();
+        return AssemblyFailure::Singular;
     }
     let svd = g.clone().svd(true, false);
     let largest = svd.singular_values.max();
@@ -59,19 +60,18 @@ pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> String {
             }
         }
     }
-    format!(
-        "{} of {} constraints are redundant; joints that repeat each other: {}",
-        redundant.len() + extra,
-        numbering.constraints(),
-        if names.is_empty() {
+    AssemblyFailure::Redundant {
+        redundant: redundant.len() + extra,
+        constraints: numbering.constraints(),
+        joints: if names.is_empty() {
             "all".to_string()
         } else {
             names.join(", ")
-        }
-    )
+        },
+    }
 }
 
-fn without_inertia<S: Scalar>(model: &Model<S>) -> String {
+fn without_inertia<S: Scalar>(model: &Model<S>) -> AssemblyFailure {
     let names: Vec<&str> = model
         .bodies
         .iter()
@@ -83,8 +83,10 @@ fn without_inertia<S: Scalar>(model: &Model<S>) -> String {
         .map(|body| body.name.as_str())
         .collect();
     if names.is_empty() {
-        "the equations of motion are singular at this placement".into()
+        AssemblyFailure::Singular
     } else {
-        format!("bodies that can move without inertia: {}", names.join(", "))
+        AssemblyFailure::WithoutInertia {
+            bodies: names.join(", "),
+        }
     }
 }

@@ -1,0 +1,213 @@
+//! Assembly: the positions nearest to the placement that close every joint,
+//! T(q)ᵀ (q − q_g) + Gᵀ s = 0, Φ(q) = 0, or the joint that cannot be closed.
+
+use super::bodies::{self, Motion, positions_of, tangent_of_cotangent};
+use super::joints;
+use super::kkt::{BodyBlocks, SaddlePoint};
+use super::numbering::Numbering;
+use crate::linalg::SolveScalar;
+use crate::math::{Mat3, Scalar, Vec3, rotation};
+use crate::model::Model;
+
+const ITERATIONS: usize = 50;
+/// Gap relative to the length scale below which the joints count as closed.
+const CLOSED: f64 = 1e-13;
+
+/// Why a model has no consistent initial conditions.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AssemblyFailure {
+    /// The joints cannot be closed near the given placement.
+    #[error(
+        "joint \"{joint}\" cannot be assembled: its {row} stays open by {gap:.3e} after \
+         {iterations} iterations"
+    )]
+    Open {
+        /// Joint with the largest gap.
+        joint: String,
+        /// Which of its conditions.
+        row: String,
+        /// The gap (m or 1).
+        gap: f64,
+        /// Iterations spent.
+        iterations: usize,
+    },
+    /// The joint's axes meet only after half a turn.
+    #[error("joint \"{joint}\" was assembled with its axes turned by 180 degrees")]
+    Turned {
+        /// The joint.
+        joint: String,
+    },
+    /// Constraints repeat each other.
+    #[error(
+        "{redundant} of {constraints} constraints are redundant; joints that repeat each other: \
+         {joints}"
+    )]
+    Redundant {
+        /// Number of constraints that follow from the others.
+        redundant: usize,
+        /// Number of all constraints.
+        constraints: usize,
+        /// Names of the joints that they belong to.
+        joints: String,
+    },
+    /// A motion that the joints allow has no inertia.
+    #[error("bodies that can move without inertia: {bodies}")]
+    WithoutInertia {
+        /// Names of the bodies.
+        bodies: String,
+    },
+    /// The system is singular or not finite for another reason.
+    #[error("the equations of motion are singular at this placement")]
+    Singular,
+}
+
+/// A length that the scene's gaps and motions are judged against (m): its largest lever arm or
+/// placement.
+pub fn length_scale<S: Scalar>(model: &Model<S>) -> f64 {
+    let size = |v: &Vec3<S>| v.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
+    let joints = model
+        .joints
+        .iter()
+        .flat_map(|j| [size(&j.frame_a.point), size(&j.frame_b.point)]);
+    let bodies = model.bodies.iter().map(|b| size(&b.position));
+    let largest = joints.chain(bodies).fold(0.0, f64::max);
+    if largest > 0.0 { largest } else { 1.0 }
+}
+
+/// Nearest assembled positions by Newton's method: (q, s, iterations).
+pub(super) fn assemble<S: SolveScalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    saddle: &mut SaddlePoint<S>,
+    q_guess: &[S],
+    v_guess: &[S],
+) -> Result<(Vec<S>, Vec<S>, usize), AssemblyFailure> {
+    let (nv, nc) = (numbering.velocities(), numbering.constraints());
+    let scale = length_scale(model);
+    let mut q = q_guess.to_vec();
+    let mut increment = vec![S::zero(); q.len()];
+    bodies::normalise(numbering, &mut q, &mut increment);
+    let mut s = vec![S::zero(); nc];
+    let mut motions = Vec::new();
+    let mut phi = vec![S::zero(); nc];
+    let mut gradients = Vec::new();
+    let mut closed_before = false;
+    // The conditions as far as they could be closed, which is what a failure tells.
+    let mut best = Vec::new();
+    let mut least = f64::INFINITY;
+    for iteration in 0..ITERATIONS {
+        Motion::all(numbering, &q, v_guess, &mut motions);
+        joints::values(model, numbering, &motions, &mut phi);
+        let gap = phi.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
+        if gap < least {
+            least = gap;
+            best.clone_from(&phi);
+        }
+        joints::gradients(model, numbering, &motions, &mut gradients);
+        let mut rhs = vec![S::zero(); nv];
+        let away: Vec<S> = q.iter().zip(q_guess).map(|(&q, &g)| q - g).collect();
+        tangent_of_cotangent(numbering, &q, &away, &mut rhs);
+        joints::add_reactions(model, numbering, &gradients, &s, &mut rhs);
+        rhs.extend(&phi);
+        for x in &mut rhs {
+            *x = -*x;
+        }
+        let metric = position_metric(model, numbering, &q);
+        saddle
+            .factorise(model, numbering, &motions, &s, metric)
+            .map_err(|_| {
+                if least > CLOSED * scale.max(1.0) {
+                    return open(model, numbering, &best, iteration);
+                }
+                super::rank::explain(model, &q)
+            })?;
+        saddle.solve(&mut rhs);
+        if !finite(&rhs) {
+            return Err(open(model, numbering, &best, iteration));
+        }
+        bodies::advance(numbering, &mut q, &mut increment, &rhs[..nv]);
+        for (s, step) in s.iter_mut().zip(&rhs[nv..]) {
+            *s += *step;
+        }
+        // One step past the closed real part, so that an infinitesimal part is closed as well.
+        let moved = rhs[..nv].iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
+        let closed = gap <= CLOSED * scale.max(1.0) && moved <= 1e-10 * scale.max(1.0);
+        if closed && closed_before {
+            check_turned(model, &motions)?;
+            return Ok((q, s, iteration));
+        }
+        closed_before = closed;
+    }
+    Err(open(model, numbering, &best, ITERATIONS))
+}
+
+/// W = ∂[T(q)ᵀ (q − q_g)]/∂y: the identity, and ¼ L(p_g) L(p)ᵀ for the rotation.
+pub(super) fn position_metric<'a, S: Scalar>(
+    model: &'a Model<S>,
+    numbering: &'a Numbering,
+    q: &'a [S],
+) -> impl Fn(usize) -> BodyBlocks<S> + 'a {
+    |body| {
+        let (_, p) = positions_of(&q[numbering.position(body)..]);
+        let guess = &model.bodies[body].orientation;
+        let mut angular = Mat3::zeros();
+        for j in 0..3 {
+            let mut unit = Vec3::zeros();
+            unit[j] = S::from(0.25);
+            let column = rotation::rate_product(guess, &rotation::rate_transposed(&p, &unit));
+            angular.set_column(j, &column);
+        }
+        BodyBlocks {
+            linear: S::one(),
+            angular,
+        }
+    }
+}
+
+/// The worst open row, by joint.
+fn open<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    phi: &[S],
+    iterations: usize,
+) -> AssemblyFailure {
+    let worst = (0..phi.len())
+        .reduce(|w, i| {
+            if phi[i].re().abs() > phi[w].re().abs() {
+                i
+            } else {
+                w
+            }
+        })
+        .unwrap_or(0);
+    let joint = &model.joints[numbering.joint_of_row(worst)];
+    let row = joint.kind.rows()[worst - numbering.rows(numbering.joint_of_row(worst)).start];
+    AssemblyFailure::Open {
+        joint: joint.name.clone(),
+        row: row.describe().to_string(),
+        gap: phi[worst].re().abs(),
+        iterations,
+    }
+}
+
+/// Refuses the spurious root of the orientation rows in which one frame is turned by 180°.
+fn check_turned<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> Result<(), AssemblyFailure> {
+    let ground = Motion::ground();
+    for joint in &model.joints {
+        let (a, b) = joints::sides(joint, motions, &ground);
+        for &axis in joint.kind.common_axes() {
+            let in_a = a.motion.rotation * a.frame.axes[axis];
+            let in_b = b.motion.rotation * b.frame.axes[axis];
+            if in_a.dot(&in_b).re() < 0.0 {
+                return Err(AssemblyFailure::Turned {
+                    joint: joint.name.clone(),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn finite<S: Scalar>(x: &[S]) -> bool {
+    x.iter().all(|x| x.is_finite())
+}
