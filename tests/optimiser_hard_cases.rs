@@ -1,5 +1,7 @@
 //! Programs that are degenerate, infeasible, unbounded, badly scaled or undefined in places.
 
+#[path = "optimiser_problems/collected.rs"]
+mod collected;
 #[path = "optimiser_problems/faulty.rs"]
 mod faulty;
 #[path = "optimiser_problems/hard.rs"]
@@ -350,5 +352,39 @@ fn limits_and_interruptions_are_named_and_every_row_is_a_number() {
             ..all
         });
         assert_eq!(status, Status::TimeLimit);
+    }
+}
+
+/// What is left unsolved is not claimed to be solved.
+#[test]
+fn programs_of_other_collections_are_solved() {
+    // The linearised rows of "WB" lead the trust region to a stationary point of the violation.
+    for (method, unsolved) in [
+        (Method::InteriorPoint, vec![]),
+        (Method::TrustRegion, vec!["WB", "ROSEN50"]),
+        (Method::Auto, vec![]),
+    ] {
+        let mut failed = Vec::new();
+        for problem in collected::collected() {
+            let (name, best) = (problem.name, problem.best);
+            let outcome = run(problem, method);
+            let error = (outcome.objective - best).abs() / best.abs().max(1.0);
+            if outcome.converged() {
+                assert!(error <= 1e-6, "{name} {method:?}: {}", outcome.objective);
+                assert!(
+                    outcome.kkt.violation <= 1e-6,
+                    "{name} {method:?}: {:?}",
+                    outcome.kkt
+                );
+                assert!(
+                    outcome.counts.evaluations <= 700,
+                    "{name}: {:?}",
+                    outcome.counts
+                );
+            } else {
+                failed.push(name);
+            }
+        }
+        assert_eq!(failed, unsolved, "{method:?}");
     }
 }

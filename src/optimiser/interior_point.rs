@@ -74,7 +74,7 @@ impl InteriorPoint {
         InteriorPoint {
             b,
             barrier: BarrierRule::new(options),
-            filter: Filter::new(1e4 * theta.max(1.0)),
+            filter: Filter::new(1e2 * theta.max(1.0)),
             theta_small: 1e-4 * theta.max(1.0),
             short_steps: 0,
             layout,

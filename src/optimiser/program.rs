@@ -309,7 +309,7 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Wall time since the start of the run [s].
+    /// Wall time since the start of the run (s).
     pub fn seconds(&self) -> f64 {
         self.started.elapsed().as_secs_f64()
     }

@@ -212,27 +212,23 @@ fn interior_point(
     let mut multipliers = method.multipliers(program);
     let mut scaled = method.optimality();
     let (point, slopes) = (method.at.point, method.at.slopes);
-    // Multipliers that grow without limit may hide a point that has finite ones.
+    // Multipliers that grow without limit may hide a point that has finite ones; where the rows
+    // cannot be satisfied they say nothing.
     let bounded = multipliers
         .y
         .iter()
         .chain(&multipliers.zl)
         .chain(&multipliers.zu);
     let sane = -LARGEST_MULTIPLIER..=LARGEST_MULTIPLIER;
-    let unbounded = bounded.copied().any(|v| !sane.contains(&v));
-    if status == Status::Stalled || unbounded {
-        let y = if unbounded {
-            DVector::zeros(point.c.len())
-        } else {
-            multipliers.y.clone()
-        };
-        let fitted = ScaledMultipliers::polished(program, &point, &slopes, &y);
+    let useless =
+        matches!(status, Status::Infeasible { .. }) || bounded.copied().any(|v| !sane.contains(&v));
+    if status == Status::Stalled || useless {
+        let zero = DVector::zeros(point.c.len());
+        let y = if useless { &zero } else { &multipliers.y };
+        let fitted = ScaledMultipliers::polished(program, &point, &slopes, y);
         let residual = scaled_residual(program, &point, &slopes, &fitted);
-        let solved = is_solved(
-            &kkt(program, &point, &slopes, &fitted, residual),
-            program.options,
-        );
-        if solved || unbounded {
+        let residuals = kkt(program, &point, &slopes, &fitted, residual);
+        if useless || is_solved(&residuals, program.options) {
             (multipliers, scaled) = (fitted, residual);
         }
     }
