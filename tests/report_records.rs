@@ -93,6 +93,7 @@ fn optimum() -> Optimum {
             scaled: residuals,
             unscaled: residuals,
         },
+        second_order: None,
         counts: Counts {
             iterations: 21,
             function_evaluations: 25,

@@ -22,15 +22,15 @@ pub struct Arguments {
     pub command: Option<Command>,
     /// The optimisation.
     #[command(flatten)]
-    pub optimisation: Option<Optimisation>,
+    pub job: Option<Job>,
+    /// Where it starts and what it does besides.
+    #[command(flatten)]
+    pub course: Course,
 }
 
-/// An optimisation: where it starts and what it does besides.
+/// Where an optimisation starts and what it does besides.
 #[derive(Args, Debug)]
-pub struct Optimisation {
-    /// The problem.
-    #[command(flatten)]
-    pub job: Job,
+pub struct Course {
     /// Goes on with the interrupted run of this directory: its evaluations are not repeated.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["from", "starts"])]
     pub resume: Option<PathBuf>,

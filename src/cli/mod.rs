@@ -72,8 +72,8 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         Some(Command::Compare(files)) => compare::compare(&files),
         Some(Command::Plot { directory }) => compare::plot(&directory),
         Some(Command::Schema) => compare::schema(),
-        None => match arguments.optimisation {
-            Some(optimisation) => optimise::optimise(&optimisation),
+        None => match arguments.job {
+            Some(job) => optimise::optimise(&job, &arguments.course),
             None => Err(Failure::bad_input("no problem file; see optimize --help")),
         },
     };

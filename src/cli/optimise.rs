@@ -1,6 +1,6 @@
 //! `optimize PROBLEM`: the default job.
 
-use super::arguments::{Job, Optimisation as Asked};
+use super::arguments::{Course, Job};
 use super::progress::show;
 use super::starts::several;
 use super::{DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, load, print, record};
@@ -21,39 +21,31 @@ const EVALUATIONS: &str = "evaluations.jsonl";
 const STATE: &str = "state.json";
 
 /// Optimises a problem and writes its results.
-pub fn optimise(asked: &Asked) -> Result<u8, Failure> {
-    let job = &asked.job;
+pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
     let mut problem = load(job)?;
     let file = job
         .problem
         .file_name()
         .map_or_else(String::new, |n| n.to_string_lossy().into());
     complete(&problem, job)?;
-    let state = match &asked.from {
+    let state = match &course.from {
         Some(from) => start_from(&mut problem, from)?,
         None => None,
     };
-    let directory = match (&job.output, &asked.resume) {
+    let directory = match (&job.output, &course.resume) {
         (Some(directory), _) | (None, Some(directory)) => directory.clone(),
         (None, None) => Path::new("results").join(&problem.name),
     };
-    std::fs::create_dir_all(&directory).map_err(|error| {
-        Failure::bad_input(format!(
-            "cannot make the directory {}: {error}",
-            directory.display()
-        ))
-    })?;
-
     let stop = Arc::new(AtomicBool::new(false));
     let interrupted = Arc::clone(&stop);
     // A second handler in one process is refused; the first then still ends the run.
     let _ = ctrlc::set_handler(move || interrupted.store(true, Ordering::Relaxed));
     let stopped = || stop.load(Ordering::Relaxed);
 
-    let (problem, mut done) = match asked.starts {
+    let (problem, mut done) = match course.starts {
         Some(count) => several(&problem, &file, count as usize, &stopped, job.quiet)?,
         None => {
-            let resume = asked.resume.as_deref();
+            let resume = course.resume.as_deref();
             let start = (state.as_ref(), resume);
             let done = one(&problem, &file, start, &directory, &stopped, job.quiet)?;
             (problem, done)
@@ -62,7 +54,7 @@ pub fn optimise(asked: &Asked) -> Result<u8, Failure> {
     if let Status::UndefinedStart { what } = &done.outcome.status {
         return Err(Failure::new(NUMERICAL_FAILURE, what));
     }
-    if asked.second_order && done.outcome.converged() {
+    if course.second_order && done.outcome.converged() {
         done.optimum.second_order =
             driver::second_order(&problem, &done.outcome).map_err(Failure::numerical)?;
     }
@@ -171,6 +163,12 @@ fn one(
         }
         None => Vec::new(),
     };
+    std::fs::create_dir_all(directory).map_err(|error| {
+        Failure::bad_input(format!(
+            "cannot make the directory {}: {error}",
+            directory.display()
+        ))
+    })?;
     let path = directory.join(EVALUATIONS);
     let mut log = match resume {
         Some(from) if from == directory => EvaluationLog::resume(&path, &head).map(|found| found.0),

@@ -43,6 +43,7 @@ pub fn optimise<'a>(
         return None;
     }
     let mut options = Options::default();
+    options.method = problem.optimiser.method.unwrap_or(options.method);
     options.tolerance = problem.optimiser.tolerance.unwrap_or(options.tolerance);
     options.max_iterations = problem
         .optimiser

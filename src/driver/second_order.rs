@@ -15,10 +15,11 @@ const STEP: f64 = 1e-4;
 const NEGLIGIBLE: f64 = 1e-10;
 
 /// Eigenvalues of the reduced Hessian Zᵀ ∇²L Z of the minimised Lagrangian, in the variables as
-/// the optimiser scales them, by central differences of gradients: two gradients a direction.
+/// the optimiser scales them, by central differences of gradients: four gradients a direction.
 ///
 /// Z spans the directions along which free variables (those off their bounds) move without
-/// changing active constraints to first order. The asymmetry of the differences bounds the error.
+/// changing active constraints to first order. Their error is estimated from a second
+/// step of twice the length and from their asymmetry.
 ///
 /// # Errors
 /// If a simulation fails beside the optimum.
@@ -48,7 +49,7 @@ pub fn second_order(
     let basis = null_space(&rows);
     let (lower, upper) = program.variable_bounds();
     let room = |i: usize| (x[i] - lower[i]).min(upper[i] - x[i]);
-    let step = free.iter().map(|&i| 0.5 * room(i)).fold(STEP, f64::min);
+    let step = free.iter().map(|&i| 0.25 * room(i)).fold(STEP, f64::min);
     if step < 1e-3 * STEP {
         return Ok(None);
     }
@@ -63,20 +64,25 @@ pub fn second_order(
         ))
     };
     let k = basis.ncols();
-    let mut hessian = DMatrix::zeros(k, k);
-    for j in 0..k {
-        let mut move_by = |length: f64| {
-            let mut at = x.clone();
-            for (c, &i) in free.iter().enumerate() {
-                at[i] += length * basis[(c, j)];
-            }
-            slope(&at)
-        };
-        let change = move_by(step)? - move_by(-step)?;
-        hessian.set_column(j, &(basis.tr_mul(&change) / (2.0 * step)));
-    }
+    let mut differences = |step: f64| -> Result<DMatrix<f64>, EvaluationFailure> {
+        let mut hessian = DMatrix::zeros(k, k);
+        for j in 0..k {
+            let mut beside = |length: f64| {
+                let mut at = x.clone();
+                for (c, &i) in free.iter().enumerate() {
+                    at[i] += length * basis[(c, j)];
+                }
+                slope(&at)
+            };
+            let change = beside(step)? - beside(-step)?;
+            hessian.set_column(j, &(basis.tr_mul(&change) / (2.0 * step)));
+        }
+        Ok(hessian)
+    };
+    let (coarse, hessian) = (differences(2.0 * step)?, differences(step)?);
     let transposed = hessian.transpose();
-    let uncertainty = (&hessian - &transposed).amax() * 0.5;
+    let asymmetry = (&hessian - &transposed).amax() * 0.5;
+    let uncertainty = (&hessian - &coarse).amax().max(asymmetry);
     let mut eigenvalues: Vec<f64> = ((hessian + transposed) * 0.5)
         .symmetric_eigenvalues()
         .iter()

@@ -32,6 +32,7 @@ pub use variables::Variable;
 use crate::functions::Scene;
 use crate::integrate::Settings;
 use crate::math::Scalar;
+use crate::optimiser::Method;
 use schema::Document;
 use std::path::Path;
 
@@ -69,6 +70,8 @@ pub struct Constraint {
 /// Settings of the optimiser that a file may give.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OptimiserSettings {
+    /// Algorithm.
+    pub method: Option<Method>,
     /// Scaled residual of the optimality conditions at which it stops.
     pub tolerance: Option<f64>,
     /// Largest number of iterations.

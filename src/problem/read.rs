@@ -12,6 +12,7 @@ use super::syntax;
 use super::variables::{bind, variables};
 use super::{Constraint, Objective, OptimiserSettings, Problem, Sense};
 use crate::integrate::{Settings, settings};
+use crate::optimiser::Method;
 use crate::system::assembly::AssemblyFailure;
 use crate::system::kkt::SaddlePoint;
 use crate::system::{Numbering, initial};
@@ -210,6 +211,11 @@ fn problem(
         optimiser: written.optimiser.as_ref().map_or_else(
             OptimiserSettings::default,
             |optimiser| OptimiserSettings {
+                method: optimiser.method.map(|method| match method {
+                    schema::OptimisationMethod::InteriorPoint => Method::InteriorPoint,
+                    schema::OptimisationMethod::TrustRegion => Method::TrustRegion,
+                    schema::OptimisationMethod::Auto => Method::Auto,
+                }),
                 tolerance: optimiser.tolerance,
                 iterations: optimiser.iterations,
             },

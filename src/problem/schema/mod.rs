@@ -145,10 +145,24 @@ pub struct Constraint {
     pub upper: Option<f64>,
 }
 
+/// An optimisation algorithm.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum OptimisationMethod {
+    /// Primal-dual interior point with a filter line search.
+    InteriorPoint,
+    /// Trust-region sequential quadratic programming: fewest simulations for few variables.
+    TrustRegion,
+    /// Interior point, and the trust region from its best point where it does not converge.
+    Auto,
+}
+
 /// Settings of the optimiser.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Optimiser {
+    /// Algorithm, default interior point.
+    pub method: Option<OptimisationMethod>,
     /// Scaled residual of the optimality conditions at which it stops.
     #[schemars(extend(
         "exclusiveMinimum" = 0,

@@ -3,9 +3,7 @@
 //! Every test runs the program in a scratch directory of its own, on a hammer of two bodies and two
 //! design variables (`tests/data/hammer.json`, 100 steps).
 
-mod program;
-
-use program::{HAMMER, changed, every, expect, files, json, names, read, scratch};
+use crate::program::{HAMMER, changed, every, expect, files, json, names, read, scratch};
 use std::path::Path;
 
 #[test]
@@ -142,9 +140,11 @@ fn optimising_writes_a_record_and_figures() {
     let expected = [
         "convergence.svg",
         "energy.svg",
+        "evaluations.jsonl",
         "history.csv",
         "motion.svg",
         "optimum.json",
+        "state.json",
     ];
     assert_eq!(names(&results), expected);
     assert_eq!(names(at.path()).len(), expected.len(), "nothing else");
@@ -324,9 +324,9 @@ fn paths_are_taken_from_the_working_directory() {
     std::fs::copy(HAMMER, at.path().join("hammer.json")).expect("is copied");
     let ran = expect(0, &inner, &["../hammer.json"]);
     assert!(ran.err.contains("results in results/hammer"), "{}", ran.err);
-    assert_eq!(names(&inner).len(), 5);
+    assert_eq!(names(&inner).len(), 7);
     assert!(inner.join("results/hammer/optimum.json").is_file());
-    assert_eq!(names(at.path()).len(), 6, "five results and the problem");
+    assert_eq!(names(at.path()).len(), 8, "seven results and the problem");
 }
 
 #[test]

@@ -1,0 +1,117 @@
+//! What is asked of an optimum besides finding it: another start, many starts, its curvature.
+
+use crate::program::{HAMMER, expect, json, read, scratch};
+use flexbody::driver::evaluate::Evaluated;
+use flexbody::driver::{Journal, optimise, second_order};
+use flexbody::problem::Problem;
+use std::ops::ControlFlow;
+
+/// A bar that is hinged where it swings fastest, at d² = I/m from its centre.
+const SWING: &str = r#"{
+  "version": 1, "name": "swing",
+  "bodies": {"bar": {
+    "shape": {"rod": {"length": 1, "radius": 0.02}}, "mass": 2,
+    "points": {"pin": [-0.4, 0, 0]},
+    "place": {"put": "pin", "at": [0, 0, 0]}
+  }},
+  "joints": {"hinge": {"revolute": {"between": ["bar", "ground"], "at": "bar.pin", "axis": [0, 0, 1]}}},
+  "simulation": {"duration": 0.4, "steps": 200},
+  "functions": {"swept angle": {"final": {"rotation": {"body": "bar", "axis": [0, 0, 1]}}}},
+  "variables": {"pin": {"path": "/bodies/bar/points/pin/0", "lower": -0.5, "upper": 0.5}},
+  "objective": {"minimise": "swept angle"}
+}"#;
+
+#[test]
+fn the_curvature_is_that_of_the_function() {
+    let problem = Problem::parse(SWING, "swing.json", &[]).expect("no faults");
+    let done = optimise(&problem, "", None, Journal::default(), &mut |_| {
+        ControlFlow::Continue(())
+    })
+    .expect("has an objective");
+    assert!(done.outcome.converged());
+    let found = second_order(&problem, &done.outcome)
+        .expect("runs")
+        .expect("is free");
+    // The second difference of the function itself, with steps of the fourth root of round-off.
+    let scale = problem.variables[0].scale;
+    let x = done.optimum.design["pin"].value;
+    let h = 2e-3;
+    let f = |s: f64| {
+        let at = Evaluated::new(&problem, &[x + s * h * scale]).expect("runs");
+        at.function(0).value
+    };
+    let difference = (f(1.0) - 2.0 * f(0.0) + f(-1.0)) / (h * h);
+    assert_eq!(found.eigenvalues.len(), 1);
+    let error = (found.eigenvalues[0] - difference).abs();
+    assert!(error < 1e-3 * difference, "{found:?} {difference}");
+    assert!(
+        difference > 0.0 && found.uncertainty < 1e-3 * difference,
+        "{found:?}"
+    );
+}
+
+/// The swing has two optima, one on either side of the centre, of equal worth.
+#[test]
+fn many_starts_find_both_optima() {
+    let at = scratch();
+    std::fs::write(at.path().join("swing.json"), SWING).expect("is written");
+    let ran = expect(
+        0,
+        at.path(),
+        &["swing.json", "--starts", "6", "--output", "out"],
+    );
+    assert!(
+        ran.out.contains("starts converged, to 2 distinct optima"),
+        "{}",
+        ran.out
+    );
+    let again = expect(
+        0,
+        at.path(),
+        &["swing.json", "--starts", "6", "--output", "again"],
+    );
+    assert_eq!(ran.out, again.out);
+    let open = SWING.replace(r#", "upper": 0.5"#, "");
+    std::fs::write(at.path().join("open.json"), open).expect("is written");
+    let ran = expect(2, at.path(), &["open.json", "--starts", "6"]);
+    assert!(
+        ran.err.contains("\"pin\" without two bounds"),
+        "{}",
+        ran.err
+    );
+}
+
+#[test]
+fn a_start_from_another_optimum_is_warm() {
+    let at = scratch();
+    let evaluations = |directory: &str| {
+        let record = json(&read(&at.path().join(directory).join("optimum.json")));
+        record["counts"]["function_evaluations"]
+            .as_u64()
+            .expect("a count")
+    };
+    expect(0, at.path(), &[HAMMER, "--output", "cold", "--quiet"]);
+    let change = ["--set", "/constraints/light work/upper=5.1", "--quiet"];
+    expect(
+        0,
+        at.path(),
+        &[&[HAMMER, "--output", "changed"], &change[..]].concat(),
+    );
+    let warm = [HAMMER, "--from", "cold", "--output", "warm"];
+    expect(0, at.path(), &[&warm[..], &change[..]].concat());
+    assert!(evaluations("warm") < evaluations("changed"));
+    let objective = |directory: &str| {
+        let record = json(&read(&at.path().join(directory).join("optimum.json")));
+        record["objective"]["value"].as_f64().expect("a number")
+    };
+    let (warm, cold) = (objective("warm"), objective("changed"));
+    assert!((warm - cold).abs() < 1e-6 * cold, "{warm} {cold}");
+    std::fs::write(at.path().join("swing.json"), SWING).expect("is written");
+    let ran = expect(2, at.path(), &["swing.json", "--from", "cold"]);
+    assert!(
+        ran.err
+            .contains("found the variables head mass, reach, expected"),
+        "{}",
+        ran.err
+    );
+}

@@ -1,0 +1,6 @@
+//! The program `optimize`, run as a user runs it.
+
+mod beyond_one_run;
+mod commands;
+mod program;
+mod restart;
