@@ -93,6 +93,7 @@ fn optimum() -> Optimum {
             scaled: residuals,
             unscaled: residuals,
         },
+        scaling: Scaling::default(),
         second_order: None,
         counts: Counts {
             iterations: 21,

@@ -6,6 +6,7 @@ pub mod figures;
 pub mod journal;
 pub mod multi_start;
 pub mod optimise;
+mod record;
 pub mod second_order;
 pub mod simulate;
 pub mod warm_start;

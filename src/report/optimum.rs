@@ -29,6 +29,8 @@ pub struct Optimum {
     pub active_bounds: IndexMap<String, Side>,
     /// Residuals of the optimality conditions.
     pub kkt: Kkt,
+    /// How the optimiser scaled the problem.
+    pub scaling: Scaling,
     /// Curvature at the optimum, if it was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub second_order: Option<SecondOrder>,
@@ -171,6 +173,28 @@ pub struct KktResiduals {
     pub feasibility: f64,
     /// Products of multipliers and distances to their bounds.
     pub complementarity: f64,
+}
+
+/// How the optimiser scaled the problem at the start.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scaling {
+    /// Of the objective.
+    pub objective: RowScaling,
+    /// Of the constraints, by name.
+    pub constraints: IndexMap<String, RowScaling>,
+    /// Length of one scaled unit of each variable, in the variable's unit, by name.
+    pub variables: IndexMap<String, f64>,
+}
+
+/// Scaling of one function.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RowScaling {
+    /// What the function is multiplied by.
+    pub factor: f64,
+    /// Largest derivative at the start in scaled variables, before the factor.
+    pub gradient: f64,
 }
 
 /// Curvature of the minimised Lagrangian along the directions that active bounds and constraints

@@ -1,0 +1,252 @@
+//! The record of an optimisation: the optimiser's outcome in the user's names, signs and units.
+
+use super::evaluate::unscaled;
+use super::simulate::{Simulation, estimate_errors};
+use crate::integrate::WorkCounts;
+use crate::optimiser::{self, Outcome, Status};
+use crate::problem::{Problem, Sense};
+use crate::report::optimum::{
+    Activity, ConstraintValue, Counts, DesignValue, Kkt, KktResiduals, Multipliers, Objective,
+    Optimum, ProblemRecord, RowScaling, Scaling, Sense as RecordedSense, Side,
+};
+use indexmap::IndexMap;
+
+/// One word and one sentence for how the run ended.
+fn verdict(status: &Status) -> (&'static str, String) {
+    match status {
+        Status::Converged => ("converged", "the optimality conditions hold".into()),
+        Status::Infeasible {
+            constraint,
+            violation,
+        } => (
+            "infeasible",
+            format!(
+                "no feasible design was found: \"{constraint}\" is violated by {violation:.3e}, \
+                 and no small change reduces the violation"
+            ),
+        ),
+        Status::Unbounded => ("unbounded", "the objective improves without bound".into()),
+        Status::UndefinedStart { what } => (
+            "undefined_start",
+            format!("the start cannot be evaluated: {what}"),
+        ),
+        Status::Stalled => (
+            "stalled",
+            "no further progress; the best design that was found is kept".into(),
+        ),
+        Status::IterationLimit => ("iteration_limit", "the iteration limit was reached".into()),
+        Status::EvaluationLimit => (
+            "evaluation_limit",
+            "the evaluation limit was reached".into(),
+        ),
+        Status::TimeLimit => ("time_limit", "the time limit was reached".into()),
+        Status::Interrupted => (
+            "interrupted",
+            "interrupted; the best design so far is kept".into(),
+        ),
+    }
+}
+
+pub(super) fn record(
+    problem: &Problem,
+    file: &str,
+    outcome: &Outcome,
+    sign: f64,
+    work: WorkCounts,
+    ends: [Option<&Simulation>; 2],
+) -> Optimum {
+    let (status, sentence) = verdict(&outcome.status);
+    let x = unscaled(problem, &outcome.x);
+    let objective = problem
+        .objective
+        .expect("only a problem with an objective is optimised");
+    let maximise = objective.sense == Sense::Maximise;
+    let at_end = ends[1].map(|end| end.at.function(objective.function));
+    let value = sign * outcome.objective;
+    let start_objective =
+        ends[0].map_or(value, |start| start.at.function(objective.function).value);
+    let estimate = ends[1].and_then(|end| {
+        estimate_errors(problem, &end.at, &[objective.function])?
+            .into_iter()
+            .next()
+    });
+    let scales = problem.variables.iter().map(|v| v.scale);
+    let bounds = |z: &[f64]| -> IndexMap<String, f64> {
+        let names = problem.variables.iter().map(|v| v.name.clone());
+        names
+            .zip(z.iter().zip(scales.clone()).map(|(z, scale)| z / scale))
+            .collect()
+    };
+    let multipliers = Multipliers {
+        constraints: problem
+            .constraints
+            .iter()
+            .zip(&outcome.multipliers.constraints)
+            .map(|(c, &y)| (c.name.clone(), y))
+            .collect(),
+        lower_bounds: bounds(&outcome.multipliers.lower_bounds),
+        upper_bounds: bounds(&outcome.multipliers.upper_bounds),
+    };
+    let mut warnings = Vec::new();
+    if let Some(end) = &at_end
+        && end.peak_sharpness > 1.0
+    {
+        warnings.push(format!(
+            "the peak of \"{}\" is narrower than a step (rho x curvature x h^2 = {:.1}): refine \
+             the steps or lower rho",
+            problem.function_names[objective.function], end.peak_sharpness
+        ));
+    }
+    let scaling = &outcome.scaling;
+    let zero = |names: &[String], what: &str| {
+        (!names.is_empty()).then(|| format!("{what} at the start: {}", names.join(", ")))
+    };
+    warnings.extend(zero(
+        &scaling.zero_rows,
+        "no variable changes these constraints",
+    ));
+    warnings.extend(zero(
+        &scaling.zero_columns,
+        "nothing depends on these variables",
+    ));
+    Optimum {
+        status: status.to_string(),
+        message: sentence,
+        objective: Objective {
+            function: problem.function_names[objective.function].clone(),
+            sense: if maximise {
+                RecordedSense::Maximise
+            } else {
+                RecordedSense::Minimise
+            },
+            value,
+            unit: Some(problem.function_unit(objective.function)),
+            true_maximum: at_end
+                .and_then(|end| end.maximum)
+                .map(|(maximum, _)| maximum),
+            estimated_error: estimate.map(|e| e.error),
+        },
+        start_objective,
+        design: problem
+            .variables
+            .iter()
+            .zip(&x)
+            .map(|(v, &value)| {
+                let design = DesignValue {
+                    value,
+                    start: v.start,
+                    lower: Some(v.lower).filter(|b| b.is_finite()),
+                    upper: Some(v.upper).filter(|b| b.is_finite()),
+                    unit: Some(v.unit.clone()).filter(|unit| !unit.is_empty()),
+                };
+                (v.name.clone(), design)
+            })
+            .collect(),
+        constraints: constraints(problem, outcome, maximise),
+        multipliers,
+        active_bounds: active_bounds(outcome),
+        kkt: Kkt {
+            scaled: KktResiduals {
+                stationarity: outcome.kkt.relative_stationarity,
+                feasibility: outcome.kkt.violation,
+                complementarity: outcome.kkt.relative_complementarity,
+            },
+            unscaled: KktResiduals {
+                stationarity: outcome.kkt.stationarity,
+                feasibility: outcome.kkt.violation,
+                complementarity: outcome.kkt.complementarity,
+            },
+        },
+        scaling: scaling_record(problem, outcome),
+        second_order: None,
+        counts: Counts {
+            iterations: outcome.counts.iterations as u64,
+            function_evaluations: outcome.counts.evaluations as u64,
+            gradient_evaluations: outcome.counts.gradients as u64,
+            failed_evaluations: outcome.counts.failures as u64,
+            steps: work.steps as u64,
+            newton_iterations: work.newton_iterations as u64,
+            factorisations: work.factorisations as u64,
+            solves: work.solves as u64,
+        },
+        warnings,
+        version: env!("CARGO_PKG_VERSION").to_string(),
+        problem: ProblemRecord {
+            name: problem.name.clone(),
+            file: file.to_string(),
+            sha256: problem.hash.clone(),
+            document: problem.document.clone(),
+        },
+    }
+}
+
+fn constraints(
+    problem: &Problem,
+    outcome: &Outcome,
+    maximise: bool,
+) -> IndexMap<String, ConstraintValue> {
+    let active = |name: &str| {
+        let found = outcome.active_constraints.iter().find(|a| a.name == name);
+        found.map_or(Activity::Inactive, |a| match a.side {
+            optimiser::Side::Lower => Activity::Lower,
+            optimiser::Side::Upper => Activity::Upper,
+            optimiser::Side::Equal => Activity::Equality,
+        })
+    };
+    let values = outcome
+        .constraints
+        .iter()
+        .zip(&outcome.multipliers.constraints);
+    problem
+        .constraints
+        .iter()
+        .zip(values)
+        .map(|(c, (&value, &y))| {
+            // Raising the active bound by one changes the minimised objective by −y.
+            let multiplier = if maximise { y } else { -y };
+            let constraint = ConstraintValue {
+                value,
+                lower: Some(c.lower).filter(|b| b.is_finite()),
+                upper: Some(c.upper).filter(|b| b.is_finite()),
+                unit: Some(problem.function_unit(c.function)),
+                multiplier,
+                active: active(&c.name),
+            };
+            (c.name.clone(), constraint)
+        })
+        .collect()
+}
+
+fn scaling_record(problem: &Problem, outcome: &Outcome) -> Scaling {
+    let found = &outcome.scaling;
+    let factors = found.constraints.iter().zip(&found.constraint_gradients);
+    let rows = factors.map(|(&factor, &gradient)| RowScaling { factor, gradient });
+    let lengths = problem.variables.iter().zip(&found.variables);
+    Scaling {
+        objective: RowScaling {
+            factor: found.objective,
+            gradient: found.objective_gradient,
+        },
+        constraints: problem
+            .constraints
+            .iter()
+            .map(|c| c.name.clone())
+            .zip(rows)
+            .collect(),
+        variables: lengths
+            .map(|(v, length)| (v.name.clone(), v.scale * length))
+            .collect(),
+    }
+}
+
+fn active_bounds(outcome: &Outcome) -> IndexMap<String, Side> {
+    let side = |a: &optimiser::ActiveBound| match a.side {
+        optimiser::Side::Upper => Side::Upper,
+        optimiser::Side::Lower | optimiser::Side::Equal => Side::Lower,
+    };
+    outcome
+        .active_bounds
+        .iter()
+        .map(|a| (a.name.clone(), side(a)))
+        .collect()
+}
