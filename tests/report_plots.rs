@@ -186,7 +186,7 @@ fn thrower(title: &str, speed: f64) -> Motion {
                 outlines: frames.iter().map(tip).map(square).collect(),
             },
         ],
-        trace: (0..=100).map(|i| tip(&(0.02 * f64::from(i)))).collect(),
+        traces: vec![(0..=100).map(|i| tip(&(0.02 * f64::from(i)))).collect()],
         flight: Some(Flight {
             position: tip(&2.0),
             velocity: [speed, speed],
@@ -292,20 +292,20 @@ fn flat_steep_and_broken_motions_stay_inside() {
     for body in &mut flat.bodies {
         body.outlines = vec![vec![[0.0, 0.0], [100.0, 0.0]]; 3];
     }
-    flat.trace.clear();
+    flat.traces.clear();
     let mut steep = thrower("steep", 1.0);
     let flight = steep.flight.as_mut().expect("is valid");
     flight.velocity = [0.01, 500.0];
     let mut broken = thrower("broken", 1.0);
     broken.bodies[0].outlines[1][0] = [f64::NAN, 0.0];
-    broken.trace[3] = [f64::INFINITY, 0.0];
+    broken.traces[0][3] = [f64::INFINITY, 0.0];
     broken.flight.as_mut().expect("is valid").gravity = 0.0;
     let point = Motion {
         bodies: vec![BodyMotion {
             name: "a point".into(),
             outlines: vec![vec![[3.0, 3.0]]],
         }],
-        trace: Vec::new(),
+        traces: Vec::new(),
         flight: None,
         title: "still".into(),
     };

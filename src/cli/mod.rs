@@ -80,10 +80,16 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     match done {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {
-            eprintln!("{}", failure.message.trim_end());
+            tell(&format!("{}\n", failure.message.trim_end()));
             ExitCode::from(failure.code)
         }
     }
+}
+
+/// Tells of progress or a fault; where nobody can be told, the work goes on.
+fn tell(text: &str) {
+    use std::io::Write;
+    let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
 
 /// Prints a result; a reader that closed the pipe is no failure.

@@ -3,7 +3,9 @@
 use super::arguments::{Course, Job};
 use super::progress::show;
 use super::starts::several;
-use super::{DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, load, print, record};
+use super::{
+    DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, load, print, record, tell,
+};
 use crate::driver::{self, Journal, Optimisation, WarmStart, figures, journal};
 use crate::optimiser::Status;
 use crate::problem::Problem;
@@ -17,6 +19,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Every evaluation of the run.
 const EVALUATIONS: &str = "evaluations.jsonl";
+/// The history while the run goes on: the results beside it are still those of an earlier run.
+const PARTIAL: &str = "history.partial.csv";
 /// What another run can start from.
 const STATE: &str = "state.json";
 
@@ -39,7 +43,12 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
     let stop = Arc::new(AtomicBool::new(false));
     let interrupted = Arc::clone(&stop);
     // A second handler in one process is refused; the first then still ends the run.
-    let _ = ctrlc::set_handler(move || interrupted.store(true, Ordering::Relaxed));
+    let _ = ctrlc::set_handler(move || {
+        // Asked a second time, it ends at once.
+        if interrupted.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(INTERRUPTED));
+        }
+    });
     let stopped = || stop.load(Ordering::Relaxed);
 
     let (problem, mut done) = match course.starts {
@@ -76,9 +85,11 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
         .map(|(name, bytes)| (directory.join(name), bytes))
         .collect();
     write_all(&files).map_err(Failure::bad_input)?;
+    // The whole history stands beside it now; a file that stays does no harm.
+    let _ = std::fs::remove_file(directory.join(PARTIAL));
     if !job.quiet {
         print(&summary(&done.optimum))?;
-        eprintln!("results in {}", directory.display());
+        tell(&format!("results in {}\n", directory.display()));
     }
     match done.outcome.status {
         Status::Converged => Ok(DONE),
@@ -86,7 +97,7 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
         _ => {
             record.map_err(Failure::numerical)?;
             if job.quiet {
-                eprintln!("{}: {}", problem.name, done.optimum.message);
+                tell(&format!("{}: {}\n", problem.name, done.optimum.message));
             }
             Ok(NOT_REACHED)
         }
@@ -190,7 +201,7 @@ fn one(
         }
         let saved = history
             .to_csv()
-            .and_then(|text| atomic_write(&directory.join("history.csv"), text.as_bytes()));
+            .and_then(|text| atomic_write(&directory.join(PARTIAL), text.as_bytes()));
         if let Err(error) = saved {
             unwritable.borrow_mut().get_or_insert(error);
         }

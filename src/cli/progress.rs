@@ -1,5 +1,6 @@
 //! What is seen of an optimisation while it runs.
 
+use super::tell;
 use crate::report::History;
 
 /// One line an iteration, with the column heads every twenty lines.
@@ -8,9 +9,9 @@ pub fn show(history: &History) {
         return;
     };
     if history.rows.len() % 20 == 1 {
-        eprintln!(
+        tell(
             "iter      objective    inf_pr    inf_du  lg(mu)     ||d||  lg(rg)  alpha_du  alpha_pr \
-             ls  evals"
+             ls  evals\n",
         );
     }
     let logarithm = |x: f64| {
@@ -25,9 +26,9 @@ pub fn show(history: &History) {
         "sqp" => "s",
         _ => " ",
     };
-    eprintln!(
+    tell(&format!(
         "{:>4}{mark} {:>13.6e}  {:>8.2e}  {:>8.2e}  {:>6}  {:>8.2e}  {:>6}  {:>8.2e}  {:>8.2e} \
-         {:>2}  {:>5}",
+         {:>2}  {:>5}\n",
         row.iteration,
         row.objective,
         row.infeasibility,
@@ -39,5 +40,5 @@ pub fn show(history: &History) {
         row.primal_step,
         row.line_search_trials,
         row.evaluations
-    );
+    ));
 }

@@ -1,7 +1,7 @@
 //! `optimize simulate` and `optimize check`.
 
 use super::arguments::Job;
-use super::{DONE, Failure, NOT_REACHED, load, print};
+use super::{DONE, Failure, NOT_REACHED, load, print, tell};
 use crate::driver::simulate::estimate_errors;
 use crate::driver::{self, CheckedDerivative, Simulation, figures};
 use crate::problem::Problem;
@@ -22,8 +22,17 @@ pub fn simulate(job: &Job) -> Result<u8, Failure> {
             .collect::<Vec<_>>();
         write_all(&files).map_err(Failure::bad_input)?;
         if !job.quiet {
-            eprintln!("results in {}", directory.display());
+            tell(&format!("results in {}\n", directory.display()));
         }
+    }
+    let functions = problem.function_names.iter().enumerate();
+    let lost = functions
+        .filter(|(f, _)| !simulation.at.function(*f).value.is_finite())
+        .map(|(_, name)| format!("\"{name}\""))
+        .collect::<Vec<_>>();
+    if !lost.is_empty() {
+        let what = format!("{}: not finite: {}", problem.name, lost.join(", "));
+        return Err(Failure::numerical(what));
     }
     Ok(DONE)
 }
@@ -105,10 +114,13 @@ pub fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
     let mut failed = 0;
     for d in &derivatives {
         let difference = d.relative_difference();
-        let passed = difference <= tolerance;
+        let nothing = d.is_round_off();
+        let passed = nothing || difference <= tolerance;
         failed += usize::from(!passed);
         worst = if difference.is_nan() {
             f64::NAN
+        } else if nothing {
+            worst
         } else {
             worst.max(difference)
         };
@@ -120,7 +132,9 @@ pub fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
             d.adjoint,
             d.complex_step,
             difference,
-            if passed {
+            if nothing {
+                "  zero but for round-off"
+            } else if passed {
                 ""
             } else {
                 "  exceeds the tolerance"
@@ -134,6 +148,7 @@ pub fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
     );
     let noise = derivatives
         .iter()
+        .filter(|d| !d.is_round_off())
         .map(CheckedDerivative::noise)
         .fold(0.0, f64::max);
     let _ = writeln!(

@@ -20,6 +20,8 @@ pub struct CheckedDerivative {
     pub adjoint: f64,
     /// By the complex step.
     pub complex_step: f64,
+    /// Sum of the sizes of the terms that the adjoint's derivative is the sum of.
+    pub terms: f64,
     /// By the discrete adjoint of the motion that an optimisation would see. The two motions
     /// differ by round-off, which a sensitive motion magnifies.
     pub in_use: f64,
@@ -29,6 +31,13 @@ impl CheckedDerivative {
     /// |adjoint − complex step| relative to the complex step; absolute where that is zero.
     pub fn relative_difference(&self) -> f64 {
         relative(self.adjoint, self.complex_step)
+    }
+
+    /// Whether the derivative is nothing but the round-off of terms that cancel: both values and
+    /// their difference are below 64 ε times the terms.
+    pub fn is_round_off(&self) -> bool {
+        let floor = 64.0 * f64::EPSILON * self.terms;
+        self.adjoint.abs() <= floor && self.complex_step.abs() <= floor
     }
 
     /// How far round-off in the motion moves the derivative, relative to it.
@@ -66,7 +75,7 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
         scene: in_use.scene.clone(),
         run: first.run.clone(),
     };
-    let (adjoint, _) = same.gradients(problem, &which)?;
+    let (adjoint, _) = same.derivatives(problem, &which)?;
     let (in_use, _) = in_use.gradients(problem, &which)?;
     let pairs = which
         .iter()
@@ -75,7 +84,8 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
         .map(|(function, variable)| CheckedDerivative {
             function,
             variable,
-            adjoint: adjoint[function][variable],
+            adjoint: adjoint[function][variable].value,
+            terms: adjoint[function][variable].terms,
             complex_step: steps[variable].derivatives[function],
             in_use: in_use[function][variable],
         })

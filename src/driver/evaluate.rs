@@ -5,6 +5,7 @@ use crate::adjoint;
 use crate::functions::{Scene, evaluate};
 use crate::integrate::{self, IntegrationFailure, Trajectory, WorkCounts};
 use crate::math::Dual;
+use crate::model::RigidBody;
 use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
 use crate::problem::{Problem, Sense};
 use nalgebra::DMatrix;
@@ -26,6 +27,12 @@ impl Evaluated {
     /// If the simulation fails.
     pub fn new(problem: &Problem, x: &[f64]) -> Result<Self, IntegrationFailure> {
         let scene = problem.scene::<f64>(x);
+        let not_solid = |body: &&RigidBody<f64>| !body.is_solid();
+        if let Some(body) = scene.model.bodies.iter().find(not_solid) {
+            return Err(IntegrationFailure::Unphysical {
+                body: body.name.clone(),
+            });
+        }
         let run = integrate::simulate(&scene.model, scene.duration, &problem.settings)?;
         Ok(Self {
             x: x.to_vec(),
@@ -48,18 +55,46 @@ impl Evaluated {
         problem: &Problem,
         which: &[usize],
     ) -> Result<(Vec<Vec<f64>>, WorkCounts), IntegrationFailure> {
+        let (found, counts) = self.derivatives(problem, which)?;
+        let value = |row: Vec<Derivative>| row.into_iter().map(|d| d.value).collect();
+        Ok((found.into_iter().map(value).collect(), counts))
+    }
+
+    /// As [`Evaluated::gradients`], with the sizes of what was summed.
+    ///
+    /// # Errors
+    /// If a step's equations are singular.
+    pub fn derivatives(
+        &self,
+        problem: &Problem,
+        which: &[usize],
+    ) -> Result<(Vec<Vec<Derivative>>, WorkCounts), IntegrationFailure> {
         let adjoint = adjoint::gradients(&self.scene, &self.run, which)?;
         let by_parameters: Vec<Vec<f64>> =
             adjoint.gradients.iter().map(Scene::parameters).collect();
-        let mut all = vec![vec![0.0; self.x.len()]; which.len()];
+        let mut all = vec![Vec::with_capacity(self.x.len()); which.len()];
         for i in 0..self.x.len() {
             let moved = parameter_derivatives(problem, &self.x, i);
             for (gradient, by) in all.iter_mut().zip(&by_parameters) {
-                gradient[i] = by.iter().zip(&moved).map(|(a, b)| a * b).sum();
+                let mut sum = Derivative::default();
+                for (a, b) in by.iter().zip(&moved) {
+                    sum.value += a * b;
+                    sum.terms += (a * b).abs();
+                }
+                gradient.push(sum);
             }
         }
         Ok((all, adjoint.counts))
     }
+}
+
+/// A derivative in a variable: the sum over the parameters of the scene that it moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Derivative {
+    /// The sum.
+    pub value: f64,
+    /// The sum of the terms' sizes, of which the last digits are round-off.
+    pub terms: f64,
 }
 
 /// Derivative of every parameter of the scene in variable i.

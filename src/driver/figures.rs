@@ -97,7 +97,14 @@ fn figures(
     let lapses: Vec<Motion> = designs
         .iter()
         .zip(&drawings)
-        .map(|((title, design), drawing)| lapse(title, &design.at, drawing))
+        .map(|((title, design), drawing)| {
+            lapse(
+                title,
+                &design.at,
+                drawing,
+                problem.objective.map(|o| o.function),
+            )
+        })
         .collect();
     if let Some(drawing) = drawings.last() {
         all.push(("motion.svg", motion(&lapses, &scenery(drawing))));
@@ -143,9 +150,13 @@ fn energies(title: &str, simulation: &Simulation) -> EnergyRun {
 }
 
 /// The instant at which a projectile is let go, and the projectile: the end of the run, or where
-/// the gated range is largest.
-fn release(at: &Evaluated) -> Option<(usize, crate::functions::instant::Projectile<f64>)> {
-    at.scene.functions.iter().find_map(|function| {
+/// the gated range is largest. An objective that is no range lets nothing go.
+fn release(
+    at: &Evaluated,
+    objective: Option<usize>,
+) -> Option<(usize, crate::functions::instant::Projectile<f64>)> {
+    let which = objective.map_or(0..at.scene.functions.len(), |f| f..f + 1);
+    at.scene.functions[which].iter().find_map(|function| {
         let Function::Reduced { instant, reduction } = function else {
             return None;
         };
@@ -162,10 +173,12 @@ fn release(at: &Evaluated) -> Option<(usize, crate::functions::instant::Projecti
     })
 }
 
-fn lapse(title: &str, at: &Evaluated, drawing: &Drawing) -> Motion {
+fn lapse(title: &str, at: &Evaluated, drawing: &Drawing, objective: Option<usize>) -> Motion {
     let run = &at.run;
     let model = &at.scene.model;
-    let release = release(at);
+    // A flight is drawn where gravity points down in the view.
+    let falls = drawing.up.dot(&model.gravity) < -0.999 * model.gravity.norm();
+    let release = release(at, objective).filter(|_| falls);
     let end = release.as_ref().map_or(run.steps, |(k, _)| *k);
     let flat = |p: &Vec3<f64>| [drawing.right.dot(p), drawing.up.dot(p)];
     let snapshots = drawing.snapshots.clamp(2, end.max(1) + 1);
@@ -185,14 +198,14 @@ fn lapse(title: &str, at: &Evaluated, drawing: &Drawing) -> Motion {
                 .collect(),
         })
         .collect();
-    let followed = release
-        .map(|(_, p)| (p.body, p.point))
-        .or_else(|| drawing.traces.first().copied());
-    let trace = followed.map_or_else(Vec::new, |(body, point)| {
+    let thrown = release.map(|(_, p)| (p.body, p.point));
+    let followed = thrown.into_iter().chain(drawing.traces.iter().copied());
+    let trace = |(body, point): (usize, Vec3<f64>)| {
         (0..=end)
             .map(|k| flat(&Snapshot::of(model, run, k).motion(body).point(&point)))
             .collect()
-    });
+    };
+    let traces = followed.map(trace).collect();
     let flight = release.map(|(k, p)| {
         let motion = Snapshot::of(model, run, k).motion(p.body);
         Flight {
@@ -204,7 +217,7 @@ fn lapse(title: &str, at: &Evaluated, drawing: &Drawing) -> Motion {
     Motion {
         title: title.to_string(),
         bodies,
-        trace,
+        traces,
         flight,
     }
 }

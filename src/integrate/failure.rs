@@ -45,6 +45,15 @@ pub enum IntegrationFailure {
         /// The equation and the body or joint that it stands in.
         worst: String,
     },
+    /// A body has mass or inertia that no solid has.
+    #[error(
+        "body \"{body}\" has no mass and inertia of a solid: mass and principal moments are \
+         positive, and no moment exceeds the sum of the others"
+    )]
+    Unphysical {
+        /// The body.
+        body: String,
+    },
     /// The duration is zero, negative or not finite.
     #[error("the duration {duration} s is not positive")]
     Duration {

@@ -17,6 +17,8 @@ const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 const STAGNANT: f64 = 1e-9;
 /// Contraction above which the iteration matrix is renewed.
 const RENEW: f64 = 0.1;
+/// Steps of one iteration each after which the iteration matrix is renewed.
+const UNSEEN: usize = 8;
 const ITERATIONS: usize = 25;
 
 /// The unknowns of a step: where Newton's method starts, and then its solution.
@@ -70,6 +72,8 @@ pub struct Newton<'a, S> {
     factored: Option<S>,
     /// Contraction seen with the kept factors.
     contraction: f64,
+    /// Steps in a row that took one iteration, which shows no contraction.
+    unseen: usize,
     length: f64,
     gravity: f64,
     residual: Vec<S>,
@@ -99,6 +103,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             matrix: SparseMatrix::new(pattern),
             factored: None,
             contraction: 1.0,
+            unseen: 0,
             length: assembly::length_scale(model),
             gravity: largest(model.gravity.as_slice()),
             residual: vec![S::zero(); order],
@@ -176,16 +181,18 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             }
             self.residual = update;
 
-            let contraction = if iteration > 1 {
-                size / previous
-            } else {
-                self.contraction
+            let contraction = match iteration {
+                1 => self.contraction,
+                // A change after none is round-off or an infinitesimal part: no contraction.
+                _ if previous == 0.0 => 0.0,
+                _ => size / previous,
             };
             // Contraction alternates between positions and multipliers: trust the worse of two.
             let slow = contraction.max(before);
             let remaining = size * (slow / (1.0 - slow.min(0.9))).min(1.0);
             before = contraction;
-            let stagnant = iteration > 2 && contraction > RENEW && size <= STAGNANT;
+            let stagnant =
+                iteration > 2 && contraction > RENEW && size <= scales.round_off.max(STAGNANT);
             if polish || remaining <= TOLERANCE || stagnant {
                 if S::INFINITESIMAL && !polish {
                     polish = true;
@@ -195,9 +202,11 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 if iteration > 1 && !stagnant {
                     self.contraction = contraction.clamp(1e-3, 1.0);
                 }
-                if iteration == 1 && !fresh {
-                    // Kept factors that were not seen to converge do not serve another step.
+                // Kept factors that are not seen to converge do not serve for long.
+                self.unseen = if iteration == 1 { self.unseen + 1 } else { 0 };
+                if self.unseen >= UNSEEN {
                     self.factored = None;
+                    self.unseen = 0;
                 }
                 return Ok(());
             }
@@ -231,7 +240,15 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 rates[part][1] = rates[part][1].max(largest(&now[3 * part..3 * part + 3]));
             }
         }
-        Scales([[shift, place], [turn, 1.0], rates[0], rates[1]])
+        let gained = rates[0][0].max(gained);
+        Scales {
+            parts: [[shift, place], [turn, 1.0], rates[0], rates[1]],
+            round_off: if gained > 0.0 {
+                ROUND_OFF * place / (h * gained)
+            } else {
+                0.0
+            },
+        }
     }
 
     fn not_finite(&self, residual: &[f64], time: f64, step: usize) -> IntegrationFailure {
@@ -276,7 +293,11 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
 
 /// For positions, rotations, velocities and angular velocities: the largest increment of the step
 /// and the largest value.
-struct Scales([[f64; 2]; 4]);
+struct Scales {
+    parts: [[f64; 2]; 4],
+    /// What the round-off of positions makes of velocity increments, relative to them.
+    round_off: f64,
+}
 
 impl Scales {
     /// Largest change relative to the increments, round-off left out, of the scaled update (δy,
@@ -291,7 +312,7 @@ impl Scales {
                 }
                 for part in 0..2 {
                     let change = largest(&six[3 * part..3 * part + 3]) * scale;
-                    let [increment, value] = self.0[half + part];
+                    let [increment, value] = self.parts[half + part];
                     if change > ROUND_OFF * value.max(increment) {
                         size = size.max(change / increment.max(ROUND_OFF * value));
                     }

@@ -8,6 +8,9 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::lu::{LuSymbolicParams, SymbolicLu, factorize_symbolic_lu, simplicial};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 
+/// Steps of iterative refinement of a transposed solution.
+const REFINEMENTS: usize = 2;
+
 /// A scalar that linear systems are solved in: `f64` and `Complex64`.
 pub trait SolveScalar: Scalar + faer::traits::ComplexField {}
 impl<S: Scalar + faer::traits::ComplexField> SolveScalar for S {}
@@ -103,19 +106,21 @@ impl<S: SolveScalar> SparseLu<S> {
         self.factors().solve_transposed(b);
     }
 
-    /// Solves Aᵀ x = b in place for the matrix A that was factorised last, with one step of
+    /// Solves Aᵀ x = b in place for the matrix A that was factorised last, with two steps of
     /// iterative refinement: the error of x is then that of its residual in each equation, however
     /// badly the pivots have grown (Skeel 1980).
     pub fn solve_transposed_refined(&mut self, matrix: &SparseMatrix<S>, b: &mut [S]) {
-        let mut correction = b.to_vec();
+        let rhs = b.to_vec();
         self.solve_transposed(b);
-        let product = matrix.multiply_transposed(b);
-        for (r, ax) in correction.iter_mut().zip(&product) {
-            *r -= *ax;
-        }
-        self.solve_transposed(&mut correction);
-        for (x, d) in b.iter_mut().zip(&correction) {
-            *x += *d;
+        for _ in 0..REFINEMENTS {
+            let mut correction = matrix.multiply_transposed(b);
+            for (r, &b) in correction.iter_mut().zip(&rhs) {
+                *r = b - *r;
+            }
+            self.solve_transposed(&mut correction);
+            for (x, d) in b.iter_mut().zip(&correction) {
+                *x += *d;
+            }
         }
     }
 }

@@ -3,6 +3,9 @@
 use crate::math::rotation::Quat;
 use crate::math::{Mat3, Scalar, Vec3};
 
+/// Violation of the conditions of a solid, relative to the sum of the moments, that is round-off.
+const SLACK: f64 = 1e-9;
+
 /// A rigid body. Its reference point is the centre of mass; its axes are the body's axes in the
 /// problem file.
 #[derive(Clone, Debug)]
@@ -35,5 +38,17 @@ impl<S: Scalar> RigidBody<S> {
             velocity: self.velocity.map(&mut *f),
             angular_velocity: self.angular_velocity.map(&mut *f),
         }
+    }
+}
+
+impl RigidBody<f64> {
+    /// Whether mass and inertia are those of some solid: the mass is positive, no principal
+    /// moment is negative, and none exceeds the sum of the others by more than round-off.
+    pub fn is_solid(&self) -> bool {
+        let moments = self.inertia.symmetric_eigenvalues();
+        let sum: f64 = moments.iter().sum();
+        let slack = SLACK * sum.abs();
+        let possible = |moment: f64| moment >= -slack && moment <= sum - moment + slack;
+        self.mass > 0.0 && moments.iter().all(|&moment| possible(moment))
     }
 }

@@ -13,7 +13,7 @@ const SNAPSHOTS: usize = 12;
 /// Corners of the polygon that stands for a circle.
 const CORNERS: usize = 32;
 
-/// The outline of a body, from its centre of mass in body axes \(m).
+/// The outline of a body, from its centre of mass in body axes (m).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outline {
     /// The silhouette is the convex hull of these points in the plane of the view.
@@ -27,9 +27,9 @@ pub enum Outline {
 /// A barrier across the direction of flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BarrierLine {
-    /// Place along the direction of flight \(m).
+    /// Place along the direction of flight (m).
     pub distance: f64,
-    /// Height of the top above the origin \(m).
+    /// Height of the top above the origin (m).
     pub top: f64,
 }
 
@@ -46,7 +46,7 @@ pub struct Drawing {
     pub outlines: Vec<Outline>,
     /// Points whose paths are drawn: the body, and the point from its centre of mass in body axes.
     pub traces: Vec<(usize, Vec3<f64>)>,
-    /// Height of the ground that a range is measured to \(m).
+    /// Height of the ground that a range is measured to (m).
     pub ground: Option<f64>,
     /// The barrier of a clearance.
     pub barrier: Option<BarrierLine>,
@@ -57,6 +57,8 @@ pub fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawing {
     let assembly = Assembly::new(document, order, x);
     let (right, up) = axes(document.plot.view.unwrap_or_default());
     let scene = super::scene::scene(document, order, x);
+    let gravity = &scene.model.gravity;
+    let falls = up.dot(gravity) < -0.999 * gravity.norm();
     let ground = scene.functions.iter().find_map(|function| match function {
         crate::functions::Function::Reduced {
             instant: crate::functions::Instant::Range { projectile, .. },
@@ -93,8 +95,9 @@ pub fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawing {
             .map(|(body, pose)| outline(body, pose.centre, x))
             .collect(),
         traces: traces.collect(),
-        ground,
-        barrier,
+        // Heights are seen only where gravity points down in the view.
+        ground: ground.filter(|_| falls),
+        barrier: barrier.filter(|_| falls),
     }
 }
 

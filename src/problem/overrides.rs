@@ -54,6 +54,14 @@ impl Override {
             *place = self.value.clone();
             return Ok(());
         }
+        // A key with a default may be missing; whether it is a key at all, the schema says.
+        if let Some((above, key)) = self.path.rsplit_once('/')
+            && let Some(Value::Object(object)) = document.pointer_mut(above)
+        {
+            let key = key.replace("~1", "/").replace("~0", "~");
+            object.insert(key, self.value.clone());
+            return Ok(());
+        }
         let hint = nearest_path(&self.path, document);
         Err(Finding::new(
             &self.path,

@@ -37,6 +37,9 @@ pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     if g.iter().any(|x| !x.is_finite()) {
         return AssemblyFailure::Singular;
     }
+    if g.is_empty() {
+        return without_inertia(model);
+    }
     let svd = g.clone().svd(true, false);
     let largest = svd.singular_values.max();
     let redundant: Vec<usize> = (0..svd.singular_values.len())

@@ -81,7 +81,7 @@ fn an_interrupted_run_writes_everything_and_exits_with_130() {
         .args([TREBUCHET, "--output", "out", "--quiet"])
         .spawn()
         .expect("the program runs");
-    let history = at.path().join("out/history.csv");
+    let history = at.path().join("out/history.partial.csv");
     let patience = Instant::now();
     while !history.exists() && patience.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(5));

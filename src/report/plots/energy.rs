@@ -11,11 +11,11 @@ use plotters::style::RGBColor;
 pub struct EnergyRun {
     /// What was simulated, such as `initial design`; may be empty for a single run.
     pub title: String,
-    /// Instants \(s).
+    /// Instants (s).
     pub time: Vec<f64>,
-    /// Kinetic energy \(J).
+    /// Kinetic energy (J).
     pub kinetic: Vec<f64>,
-    /// Potential energy \(J).
+    /// Potential energy (J).
     pub potential: Vec<f64>,
 }
 

@@ -6,7 +6,7 @@ use super::panel::{BELOW, Key, Legend, Panel, room_left};
 use crate::report::ReportError;
 use plotters::style::RGBColor;
 
-/// A point of the plane that is drawn: horizontal and vertical coordinate \(m).
+/// A point of the plane that is drawn: horizontal and vertical coordinate (m).
 pub type Point = [f64; 2];
 
 /// A body at the instants of a time lapse.
@@ -21,11 +21,11 @@ pub struct BodyMotion {
 /// A projectile at the instant of its release; from here it falls freely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flight {
-    /// Place of the release \(m).
+    /// Place of the release (m).
     pub position: Point,
-    /// Velocity at the release \(m/s).
+    /// Velocity at the release (m/s).
     pub velocity: Point,
-    /// Gravity, downwards positive \(m/s²).
+    /// Gravity, downwards positive (m/s²).
     pub gravity: f64,
 }
 
@@ -36,8 +36,8 @@ pub struct Motion {
     pub title: String,
     /// Bodies in the order of the problem file; the same for all designs.
     pub bodies: Vec<BodyMotion>,
-    /// Path of the point of interest (until the release, if there is one); may be empty.
-    pub trace: Vec<Point>,
+    /// Paths of the points of interest (until the release, if there is one); may be empty.
+    pub traces: Vec<Vec<Point>>,
     /// Release of the projectile, if there is one.
     pub flight: Option<Flight>,
 }
@@ -45,20 +45,20 @@ pub struct Motion {
 /// A barrier that the projectile must clear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Barrier {
-    /// Horizontal coordinate \(m).
+    /// Horizontal coordinate (m).
     pub distance: f64,
-    /// Vertical coordinate of its top \(m).
+    /// Vertical coordinate of its top (m).
     pub top: f64,
 }
 
 /// What stands still, and the names of the directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenery {
-    /// Height of the ground \(m), if a projectile lands on it.
+    /// Height of the ground (m), if a projectile lands on it.
     pub ground: Option<f64>,
     /// The barrier, if there is one.
     pub barrier: Option<Barrier>,
-    /// Label of the horizontal axis, such as `x \(m)`.
+    /// Label of the horizontal axis, such as `x (m)`.
     pub horizontal: String,
     /// Label of the vertical axis.
     pub vertical: String,
@@ -107,7 +107,11 @@ pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportErr
             missing: "no body has an outline",
         });
     }
-    points.extend(designs.iter().flat_map(|design| &design.trace));
+    points.extend(
+        designs
+            .iter()
+            .flat_map(|design| design.traces.iter().flatten()),
+    );
     let flights: Vec<Option<Vec<Point>>> = designs
         .iter()
         .map(|design| design.flight.as_ref()?.path(scenery.ground?))
@@ -236,7 +240,8 @@ fn lapse_legend(designs: &[Motion], width: f64) -> Legend {
     for (i, body) in designs[0].bodies.iter().enumerate() {
         entries.push((Key::Area(body_color(i)), body.name.clone()));
     }
-    if designs.iter().any(|design| design.trace.len() > 1) {
+    let long = |design: &Motion| design.traces.iter().any(|trace| trace.len() > 1);
+    if designs.iter().any(long) {
         entries.push((Key::Line(INK), "path".to_owned()));
     }
     if designs.iter().any(|design| design.flight.is_some()) {
@@ -258,7 +263,13 @@ fn flight_legend(
     let mut entries = Vec::new();
     for (i, (design, path)) in designs.iter().zip(flights).enumerate() {
         if let Some([distance, _]) = path.as_ref().and_then(|path| path.last()) {
-            let text = format!("{}: lands at {distance:.1} m", design.title);
+            // Adding zero makes a negative zero positive.
+            let distance = (distance * 10.0).round() / 10.0 + 0.0;
+            let lands = format!("lands at {distance:.1} m");
+            let text = match design.title.as_str() {
+                "" => lands,
+                title => format!("{title}: {lands}"),
+            };
             entries.push((Key::Line(flight_color(i)), text));
         }
     }
@@ -318,8 +329,10 @@ fn draw_lapse(canvas: &mut Canvas, panel: &Panel, design: &Motion) {
             canvas.path(&pixels, body_color(i), 1.2, 0.25 + 0.75 * late);
         }
     }
-    for part in panel.within(design.trace.iter().map(|&[x, y]| (x, y))) {
-        canvas.path(&part, INK, 1.2, 1.0);
+    for trace in &design.traces {
+        for part in panel.within(trace.iter().map(|&[x, y]| (x, y))) {
+            canvas.path(&part, INK, 1.2, 1.0);
+        }
     }
     if let Some(flight) = &design.flight {
         let [x, y] = flight.position;
