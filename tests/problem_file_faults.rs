@@ -299,8 +299,8 @@ fn expect_override(change: &str, expected: &str) {
 fn an_override_of_nothing() {
     expect_override(
         "/bodies/rod/mas=3",
-        "--set /bodies/rod/mas=3  /bodies/rod/mas\n  found nothing at this path, \
-         expected the path of a value of the file; did you mean /bodies/rod/mass?",
+        "--set /bodies/rod/mas=3  /bodies/rod/mas\n  found the key \"mas\", \
+         expected a key of the format; did you mean \"mass\"?",
     );
     expect_override(
         "/bodies/wheel/mass=3",

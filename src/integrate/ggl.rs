@@ -13,12 +13,9 @@
 //! h, h², 1, h; columns v, λ, μ divided by h, h², h).
 
 use crate::linalg::{Emit, Pattern};
-use crate::math::{Mat3, Scalar};
+use crate::math::Scalar;
 use crate::model::Model;
-use crate::system::bodies::{
-    self, Motion, all_force_balances, angular_velocity_by_theta, positions_of, torque_by_omega,
-    velocities_of, velocity_of_rates,
-};
+use crate::system::bodies::{self, Motion, all_force_balances, velocities_of, velocity_of_rates};
 use crate::system::constraint::RowGradient;
 use crate::system::joints::{self, JointCotangent};
 use crate::system::kkt::{emit_gradients, emit_reaction_jacobian, emit_transposed_gradients};
@@ -124,22 +121,9 @@ impl<'a, S: Scalar> Equations<'a, S> {
     fn emit(&self, at: &Instant<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
         let (model, numbering, motions) = (self.model, self.numbering, &self.motions);
         let [y, v, lambda, mu] = self.starts();
-        let identity = Mat3::<S>::identity();
-        for (i, (body, motion)) in model.bodies.iter().zip(motions).enumerate() {
-            let o = numbering.velocity(i);
-            let (_, pdot) = positions_of(&at.qdot[numbering.position(i)..]);
-            // F1 by y and v.
-            let turned = angular_velocity_by_theta(&motion.orientation, &pdot);
-            emit.add_identity(y + o, y + o, c * h);
-            emit.add_block(y + o + 3, y + o + 3, &(identity * (c * h) + turned * h));
-            emit.add_identity(y + o, v + o, -S::one());
-            emit.add_identity(y + o + 3, v + o + 3, -S::one());
-            // F2 by v.
-            let torque = torque_by_omega(body, &motion.omega);
-            emit.add_identity(v + o, v + o, body.mass * c * h);
-            emit.add_block(v + o + 3, v + o + 3, &(body.inertia * (c * h) + torque * h));
-        }
         let (f1, f2, f3, f4) = (y, v, lambda, mu);
+        bodies::emit_kinematics(numbering, motions, at.qdot, (f1, y, v), (c, h), emit);
+        bodies::emit_force_balance(model, numbering, motions, (f2, v), (c, h), emit);
         emit_reaction_jacobian(model, numbering, motions, at.mu, (f1, y), h, emit);
         emit_reaction_jacobian(model, numbering, motions, at.lambda, (f2, y), h * h, emit);
         let one = S::one();
@@ -189,7 +173,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
     /// The body or joint that an equation (or unknown) belongs to, for messages.
     pub fn describe(&self, row: usize) -> String {
         let [_, f2, f3, f4] = self.starts();
-        let body = |i: usize| &self.model.bodies[i / 6].name;
+        let body = |i: usize| &self.model.bodies[self.numbering.body_of_velocity(i)].name;
         let joint = |i: usize| &self.model.joints[self.numbering.joint_of_row(i)].name;
         match row {
             i if i < f2 => format!("the kinematics of body \"{}\"", body(i)),

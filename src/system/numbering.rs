@@ -63,6 +63,11 @@ impl Numbering {
         self.velocity[body]
     }
 
+    /// The body that a component of v belongs to.
+    pub fn body_of_velocity(&self, component: usize) -> usize {
+        self.velocity.partition_point(|&start| start <= component) - 1
+    }
+
     /// A joint's rows among the constraints.
     pub fn rows(&self, joint: usize) -> Range<usize> {
         self.constraint[joint]..self.constraint[joint + 1]
