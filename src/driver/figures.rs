@@ -199,7 +199,11 @@ fn lapse(title: &str, at: &Evaluated, drawing: &Drawing, objective: Option<usize
         })
         .collect();
     let thrown = release.map(|(_, p)| (p.body, p.point));
-    let followed = thrown.into_iter().chain(drawing.traces.iter().copied());
+    let same =
+        |a: &(usize, Vec3<f64>), b: &(usize, Vec3<f64>)| a.0 == b.0 && (a.1 - b.1).norm() < 1e-9;
+    let others = drawing.traces.iter().copied();
+    let others = others.filter(|trace| !thrown.is_some_and(|thrown| same(trace, &thrown)));
+    let followed = thrown.into_iter().chain(others);
     let trace = |(body, point): (usize, Vec3<f64>)| {
         (0..=end)
             .map(|k| flat(&Snapshot::of(model, run, k).motion(body).point(&point)))
