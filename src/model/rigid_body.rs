@@ -3,8 +3,8 @@
 use crate::math::rotation::Quat;
 use crate::math::{Mat3, Scalar, Vec3};
 
-/// Violation of the conditions of a solid, relative to the sum of the moments, that is round-off.
-const SLACK: f64 = 1e-9;
+/// Violation of the conditions of a solid, relative to the largest moment, that is round-off.
+const ROUNDING: f64 = 1e-12;
 
 /// A rigid body. Its reference point is the centre of mass; its axes are the body's axes in the
 /// problem file.
@@ -42,13 +42,19 @@ impl<S: Scalar> RigidBody<S> {
 }
 
 impl RigidBody<f64> {
-    /// Whether mass and inertia are those of some solid: the mass is positive, no principal
-    /// moment is negative, and none exceeds the sum of the others by more than round-off.
+    /// Whether mass and inertia are those of some solid: a positive mass, and
+    /// [`is_inertia_of_solid`].
     pub fn is_solid(&self) -> bool {
-        let moments = self.inertia.symmetric_eigenvalues();
-        let sum: f64 = moments.iter().sum();
-        let slack = SLACK * sum.abs();
-        let possible = |moment: f64| moment >= -slack && moment <= sum - moment + slack;
-        self.mass > 0.0 && moments.iter().all(|&moment| possible(moment))
+        self.mass > 0.0 && is_inertia_of_solid(&self.inertia)
     }
+}
+
+/// Whether an inertia is that of some solid. Principal moments are integrals of squares: none is
+/// negative, and none is larger than the sum of the other two.
+pub fn is_inertia_of_solid(inertia: &Mat3<f64>) -> bool {
+    let moments = inertia.symmetric_eigenvalues();
+    let sum: f64 = moments.iter().sum();
+    let slack = ROUNDING * moments.amax();
+    let possible = |moment: f64| moment >= -slack && moment <= sum - moment + slack;
+    moments.iter().all(|&moment| possible(moment))
 }

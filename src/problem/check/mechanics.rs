@@ -1,14 +1,12 @@
 //! Bodies, placements and joints.
 
 use super::Checker;
+use crate::model::rigid_body::is_inertia_of_solid;
 use crate::problem::fault::Finding;
 use crate::problem::mass::{mass_properties, volume};
 use crate::problem::placement::{GROUND, placement_order};
 use crate::problem::pointer::join;
 use crate::problem::schema::mechanics::{Axis, Body, Joint, JointPlace, Location, Place, Turns};
-
-/// Rounding that principal moments of inertia are forgiven, relative to the largest.
-const ROUNDING: f64 = 1e-12;
 
 impl Checker<'_> {
     pub(super) fn mechanics(&mut self) {
@@ -96,15 +94,12 @@ impl Checker<'_> {
         }
     }
 
-    /// Principal moments of a solid are integrals of squares: none is negative, and none is larger
-    /// than the sum of the other two.
+    /// Checks that an inertia is that of some solid.
     fn inertia(&mut self, pointer: &str, body: &Body) {
         let inertia = mass_properties::<f64>(body, &[]).inertia;
-        let mut moments: [f64; 3] = inertia.symmetric_eigenvalues().into();
-        moments.sort_by(f64::total_cmp);
-        let [a, b, c] = moments;
-        let slack = ROUNDING * c.abs();
-        if a < -slack || c > a + b + slack {
+        if !is_inertia_of_solid(&inertia) {
+            let mut moments: [f64; 3] = inertia.symmetric_eigenvalues().into();
+            moments.sort_by(f64::total_cmp);
             let [a, b, c] = moments.map(rounded);
             let found = format!("principal moments of inertia {a}, {b}, {c} kg m²");
             let expected = "those of a solid: none negative, none above the sum of the others";
