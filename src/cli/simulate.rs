@@ -90,6 +90,10 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
 
 /// Checks all gradients of a problem at its start.
 pub fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
+    if job.output.is_some() {
+        let what = "found --output, expected none: optimize check writes no files";
+        return Err(Failure::bad_input(what));
+    }
     let problem = load(job)?;
     if problem.variables.is_empty() {
         return Err(Failure::bad_input(format!(
