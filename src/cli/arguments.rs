@@ -32,7 +32,7 @@ pub struct Arguments {
 #[derive(Args, Debug)]
 pub struct Course {
     /// Goes on with the interrupted run of this directory: its evaluations are not repeated.
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["from", "starts"])]
+    #[arg(long, value_name = "DIR", conflicts_with = "starts")]
     pub resume: Option<PathBuf>,
     /// Starts from the design of another optimum.json (or its directory), by names of variables.
     #[arg(long, value_name = "FILE")]

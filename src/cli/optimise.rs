@@ -91,6 +91,9 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
         print(&summary(&done.optimum))?;
         tell(&format!("results in {}\n", directory.display()));
     }
+    if stopped() {
+        return Ok(INTERRUPTED);
+    }
     match done.outcome.status {
         Status::Converged => Ok(DONE),
         Status::Interrupted => Ok(INTERRUPTED),

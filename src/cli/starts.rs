@@ -24,10 +24,7 @@ pub fn several(
     if !quiet {
         print(&table_of_optima(&runs, &optima))?;
     }
-    let best = optima.first().map_or(0, |best| best.run);
-    if best >= runs.len() {
-        return Err(Failure::bad_input("nothing to optimise"));
-    }
+    let best = multi_start::best(&runs).ok_or_else(|| Failure::bad_input("nothing to optimise"))?;
     let run = runs.swap_remove(best);
     Ok((run.problem, run.optimisation))
 }

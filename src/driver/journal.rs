@@ -100,6 +100,7 @@ pub fn head(problem: &Problem) -> Head {
     let constraints = problem.constraints.iter().map(|c| c.function);
     Head {
         sha256: problem.hash.clone(),
+        start: problem.start(),
         variables: problem.variables.iter().map(|v| v.name.clone()).collect(),
         functions: objective
             .into_iter()

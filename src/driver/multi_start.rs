@@ -11,6 +11,9 @@ const SAME_DESIGN: f64 = 1e-3;
 /// As for designs, for the objective, relative.
 const SAME_OBJECTIVE: f64 = 1e-6;
 
+/// Largest violation of a design that counts as feasible.
+const FEASIBLE: f64 = 1e-6;
+
 /// One of several optimisations.
 pub struct Run {
     /// The problem with its start.
@@ -103,6 +106,24 @@ pub fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
     };
     found.sort_by(|a, b| worth(a).total_cmp(&worth(b)));
     found
+}
+
+/// The run whose design is best: of the converged ones, else of the feasible ones, else the one
+/// that violates its constraints least.
+pub fn best(runs: &[Run]) -> Option<usize> {
+    let rank = |run: &Run| {
+        let violation = run.optimisation.outcome.kkt.violation;
+        let value = run.optimisation.outcome.objective;
+        let value = if value.is_nan() { f64::INFINITY } else { value };
+        let feasible = violation <= FEASIBLE;
+        let open = if feasible { 0.0 } else { violation };
+        (!run.optimisation.outcome.converged(), open, value)
+    };
+    (0..runs.len()).min_by(|&a, &b| {
+        let (a, b) = (rank(&runs[a]), rank(&runs[b]));
+        let feasible = a.1.total_cmp(&b.1);
+        a.0.cmp(&b.0).then(feasible).then(a.2.total_cmp(&b.2))
+    })
 }
 
 fn same(problem: &Problem, a: &Run, b: &Run) -> bool {

@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 /// Length of a difference in scaled variables: the error of a central difference of gradients is
 /// of its square.
 const STEP: f64 = 1e-4;
-/// Singular values of the active Jacobian below this, relative to the largest, count as zero.
+/// Eigenvalues of AᵀA for the active rows A, each of unit length, below this count as zero.
 const NEGLIGIBLE: f64 = 1e-10;
 
 /// Eigenvalues of the reduced Hessian Zᵀ ∇²L Z of the minimised Lagrangian, in the variables as
@@ -101,10 +101,17 @@ fn null_space(rows: &DMatrix<f64>) -> DMatrix<f64> {
     if rows.nrows() == 0 || n == 0 {
         return DMatrix::identity(n, n);
     }
-    let gram = rows.tr_mul(rows).symmetric_eigen();
-    let largest = gram.eigenvalues.amax();
+    // Rows may have any units: only their directions count.
+    let mut unit = rows.clone();
+    for mut row in unit.row_iter_mut() {
+        let length = row.norm();
+        if length > 0.0 {
+            row /= length;
+        }
+    }
+    let gram = unit.tr_mul(&unit).symmetric_eigen();
     let free: Vec<_> = (0..n)
-        .filter(|&i| gram.eigenvalues[i] <= NEGLIGIBLE * largest)
+        .filter(|&i| gram.eigenvalues[i] <= NEGLIGIBLE)
         .map(|i| gram.eigenvectors.column(i).into_owned())
         .collect();
     if free.is_empty() {
@@ -126,5 +133,7 @@ mod tests {
         assert!((&rows * &basis).amax() < 1e-14);
         assert!((basis.tr_mul(&basis) - DMatrix::identity(3, 3)).amax() < 1e-14);
         assert_eq!(null_space(&DMatrix::zeros(0, 3)).shape(), (3, 3));
+        let units = DMatrix::from_row_slice(2, 3, &[1e8, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        assert_eq!(null_space(&units).shape(), (3, 1));
     }
 }

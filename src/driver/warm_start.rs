@@ -26,9 +26,39 @@ impl WarmStart {
         })
     }
 
-    /// Whether the state can be used for `problem`: same variables, scales and constraints.
+    /// Whether the state can be used for `problem`: same variables, scales and constraints, and
+    /// undamaged.
     pub fn fits(&self, problem: &Problem) -> bool {
-        self.variables == variables(problem) && self.constraints == constraints(problem)
+        self.variables == variables(problem)
+            && self.constraints == constraints(problem)
+            && self.is_sound()
+    }
+
+    /// Whether lengths agree, and what has to be positive is.
+    fn is_sound(&self) -> bool {
+        let (n, m) = (self.variables.len(), self.constraints.len());
+        let SavedState {
+            x,
+            multipliers,
+            scaling,
+            barrier,
+            radius,
+            ..
+        } = &self.state;
+        let lengths = [
+            (x.len(), n),
+            (multipliers.lower_bounds.len(), n),
+            (multipliers.upper_bounds.len(), n),
+            (scaling.variables.len(), n),
+            (multipliers.constraints.len(), m),
+            (scaling.constraints.len(), m),
+        ];
+        let scales = scaling.constraints.iter().chain(&scaling.variables);
+        let positive = |x: &f64| x.is_finite() && *x > 0.0;
+        lengths.iter().all(|(found, expected)| found == expected)
+            && scales
+                .chain([barrier, radius, &scaling.objective])
+                .all(positive)
     }
 }
 

@@ -8,6 +8,8 @@ use super::iterate::{Iterate, Layout};
 use super::program::{Point, Program, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
 
+/// Part of the longest step below which the search ends.
+const VANISHED: f64 = 1e-16;
 /// A step is accepted for the residual of the conditions alone if that falls by this factor, at a
 /// violation and a relative rise of the barrier function that are at most these, after so many
 /// refused trials.
@@ -103,7 +105,8 @@ impl LineSearch<'_> {
         let least = self.least_step(&here).min(1e-3 * longest);
         let mut alpha = longest;
         let mut trials = 0;
-        while alpha >= least && alpha * direction.size() > 1e-16 * self.at.point.x.amax() {
+        let resolved = 1e-16 * self.at.point.x.amax();
+        while alpha >= least && alpha > VANISHED * longest && alpha * direction.size() > resolved {
             trials += 1;
             let trial = self.attempt(program, filter, &here, &direction, alpha, alpha)?;
             let mut last = None;

@@ -368,8 +368,9 @@ impl<'a> Program<'a> {
 
     /// Starts from the design `x` instead of that of the user.
     pub fn start_from(&mut self, x: &[f64]) {
+        let (lower, upper) = self.nlp.variable_bounds();
         for &i in &self.free {
-            self.template[i] = x[i];
+            self.template[i] = x[i].max(lower[i]).min(upper[i]);
         }
     }
 

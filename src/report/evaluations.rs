@@ -13,6 +13,8 @@ use std::path::{Path, PathBuf};
 pub struct Head {
     /// SHA-256 of the problem's document, hexadecimal.
     pub sha256: String,
+    /// The design that the run started from.
+    pub start: Vec<f64>,
     /// Names of the variables, in the order of every `design`.
     pub variables: Vec<String>,
     /// Names of the functions, objective first, in the order of all `values` and `gradients`.
@@ -42,6 +44,19 @@ pub enum Found {
     NoValues(String),
     /// Why there are no gradients.
     NoGradients(String),
+}
+
+impl EvaluationRecord {
+    /// Whether all lists have the lengths that the head asks for.
+    fn fits(&self, head: &Head) -> bool {
+        let (n, m) = (head.variables.len(), head.functions.len());
+        let found = match &self.found {
+            Found::Values(values) => values.len() == m,
+            Found::Gradients(rows) => rows.len() == m && rows.iter().all(|row| row.len() == n),
+            Found::NoValues(_) | Found::NoGradients(_) => true,
+        };
+        found && self.design.len() == n
+    }
 }
 
 /// The open file.
@@ -84,15 +99,25 @@ impl EvaluationLog {
         if written != *head {
             return Err(fault(
                 1,
-                "the evaluations of another problem".into(),
-                "those of this one; give the same file and the same --set, or leave --resume out",
+                "the evaluations of another problem or start".into(),
+                "those of this one; give the same file, --set and --from, or leave --resume out",
             ));
         }
         let records = lines
             .enumerate()
             .map(|(k, line)| {
-                serde_json::from_str(line)
-                    .map_err(|error| fault(k + 2, error.to_string(), "an evaluation"))
+                let record: EvaluationRecord = serde_json::from_str(line)
+                    .map_err(|error| fault(k + 2, error.to_string(), "an evaluation"))?;
+                if record.fits(head) {
+                    Ok(record)
+                } else {
+                    let found = "lists of other lengths".to_owned();
+                    Err(fault(
+                        k + 2,
+                        found,
+                        "a number for each variable and function",
+                    ))
+                }
             })
             .collect::<Result<_, _>>()?;
         let log = Self::open(path)?;
@@ -139,6 +164,7 @@ mod tests {
     fn head(sha256: &str) -> Head {
         Head {
             sha256: sha256.into(),
+            start: vec![1.0],
             variables: vec!["mass".into()],
             functions: vec!["range".into()],
         }
