@@ -18,7 +18,7 @@ const FAILED_DESIGNS_KEPT: usize = 100;
 
 /// An objective whose gradient at the start is below `FLAT` is multiplied until it is `LIFTED`, lest
 /// a start on a plateau be taken for a solution.
-const FLAT: f64 = 1e-5;
+const FLAT: f64 = 1e-2;
 const LIFTED: f64 = 1e-2;
 const LARGEST_LIFT: f64 = 1e8;
 
