@@ -52,7 +52,16 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
     let stopped = || stop.load(Ordering::Relaxed);
 
     let (problem, mut done) = match course.starts {
-        Some(count) => several(&problem, &file, count as usize, &stopped, job.quiet)?,
+        Some(count) => {
+            // Before the work, not after it.
+            std::fs::create_dir_all(&directory).map_err(|error| {
+                Failure::bad_input(format!(
+                    "cannot make the directory {}: {error}",
+                    directory.display()
+                ))
+            })?;
+            several(&problem, &file, count as usize, &stopped, job.quiet)?
+        }
         None => {
             let resume = course.resume.as_deref();
             let start = (state.as_ref(), resume);
@@ -169,24 +178,17 @@ fn one(
     quiet: bool,
 ) -> Result<Optimisation, Failure> {
     let head = journal::head(problem);
-    let earlier = match resume {
-        Some(from) => {
-            EvaluationLog::resume(&from.join(EVALUATIONS), &head)
-                .map_err(Failure::bad_input)?
-                .1
-        }
-        None => Vec::new(),
-    };
-    std::fs::create_dir_all(directory).map_err(|error| {
-        Failure::bad_input(format!(
-            "cannot make the directory {}: {error}",
-            directory.display()
-        ))
-    })?;
     let path = directory.join(EVALUATIONS);
-    let mut log = match resume {
-        Some(from) if from == directory => EvaluationLog::resume(&path, &head).map(|found| found.0),
-        _ => EvaluationLog::create(&path, &head),
+    let (mut log, earlier) = match resume {
+        Some(from) if from == directory => EvaluationLog::resume(&path, &head),
+        Some(from) => {
+            EvaluationLog::read(&from.join(EVALUATIONS), &head).and_then(|(earlier, _)| {
+                let mut log = EvaluationLog::create(&path, &head)?;
+                earlier.iter().try_for_each(|known| log.append(known))?;
+                Ok((log, earlier))
+            })
+        }
+        None => EvaluationLog::create(&path, &head).map(|log| (log, Vec::new())),
     }
     .map_err(Failure::bad_input)?;
     let unwritable = RefCell::new(None);
@@ -195,9 +197,6 @@ fn one(
             unwritable.borrow_mut().get_or_insert(error);
         }
     };
-    if resume.is_some_and(|from| from != directory) {
-        earlier.iter().cloned().for_each(&mut record);
-    }
     let mut progress = |history: &History| {
         if !quiet {
             show(history);

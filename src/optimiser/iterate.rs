@@ -105,14 +105,7 @@ impl Layout {
     pub fn push_inside(&self, i: usize, value: f64, push: f64) -> f64 {
         let (l, u) = (self.lower[i], self.upper[i]);
         let width = u - l;
-        let margin = |bound: f64| {
-            let absolute = push * bound.abs().max(1.0);
-            if width.is_finite() {
-                absolute.min(push.min(0.49) * width)
-            } else {
-                absolute
-            }
-        };
+        let margin = |bound: f64| margin(bound, width, push);
         let mut inside = value;
         if l.is_finite() {
             inside = inside.max(l + margin(l));
@@ -213,5 +206,16 @@ impl Iterate {
             y += factor.solve(&rhs);
         }
         y.iter().all(|v| v.is_finite()).then_some(y)
+    }
+}
+
+/// Distance from `bound` at which a start is put: `push` relative to max(1, |bound|), and no more
+/// than that part of the distance of two bounds.
+pub(super) fn margin(bound: f64, width: f64, push: f64) -> f64 {
+    let absolute = push * bound.abs().max(1.0);
+    if width.is_finite() {
+        absolute.min(push.min(0.49) * width)
+    } else {
+        absolute
     }
 }

@@ -106,7 +106,28 @@ impl LineSearch<'_> {
         let mut alpha = longest;
         let mut trials = 0;
         let resolved = 1e-16 * self.at.point.x.amax();
-        while alpha >= least && alpha > VANISHED * longest && alpha * direction.size() > resolved {
+        loop {
+            let goes_on =
+                alpha >= least && alpha > VANISHED * longest && alpha * direction.size() > resolved;
+            if (!goes_on || trials >= SOFT_TRIALS)
+                && let Some(point) = first.take()
+                && let Some((point, slopes, s)) =
+                    self.soft(program, &here, point, &direction, longest)?
+            {
+                filter.clear(here.theta);
+                let alpha = longest;
+                return Ok(Some(Accepted {
+                    point,
+                    slopes,
+                    s,
+                    alpha,
+                    direction,
+                    trials,
+                }));
+            }
+            if !goes_on {
+                return Ok(None);
+            }
             trials += 1;
             let trial = self.attempt(program, filter, &here, &direction, alpha, alpha)?;
             let mut last = None;
@@ -134,40 +155,8 @@ impl LineSearch<'_> {
                 }
                 Trial::Refused { .. } | Trial::Undefined => {}
             }
-            if trials >= SOFT_TRIALS
-                && let Some(point) = first.take()
-                && let Some((point, slopes, s)) =
-                    self.soft(program, &here, point, &direction, longest)?
-            {
-                filter.clear(here.theta);
-                let alpha = longest;
-                return Ok(Some(Accepted {
-                    point,
-                    slopes,
-                    s,
-                    alpha,
-                    direction,
-                    trials,
-                }));
-            }
             alpha *= self.shorten(&here, alpha, &last);
         }
-        if let Some(point) = first.take()
-            && let Some((point, slopes, s)) =
-                self.soft(program, &here, point, &direction, longest)?
-        {
-            filter.clear(here.theta);
-            let alpha = longest;
-            return Ok(Some(Accepted {
-                point,
-                slopes,
-                s,
-                alpha,
-                direction,
-                trials,
-            }));
-        }
-        Ok(None)
     }
 
     /// Factor by which a refused step is shortened: the minimum of the parabola through the values

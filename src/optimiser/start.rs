@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::iterate::margin;
 use super::nlp::EvaluationFailure;
 use super::options::Method;
 use super::program::{Point, Program, Slopes, Trouble};
@@ -42,14 +43,7 @@ fn perturbed(program: &Program<'_>, start: &DVector<f64>, trial: usize, push: f6
     DVector::from_fn(start.len(), |i, _| {
         let (l, u) = (program.lower[i], program.upper[i]);
         let width = u - l;
-        let margin = |bound: f64| {
-            let absolute = push * bound.abs().max(1.0);
-            if width.is_finite() {
-                absolute.min(push.min(0.49) * width)
-            } else {
-                absolute
-            }
-        };
+        let margin = |bound: f64| margin(bound, width, push);
         // Weyl sequence: spreads the directions without a random generator.
         let phase = ((trial * (i + 1)) as f64 * 0.618_033_988_749_895).fract() - 0.5;
         let reach = if width.is_finite() {

@@ -1,7 +1,7 @@
 //! Every evaluation of an optimisation, `evaluations.jsonl`: one JSON document a line, written as
 //! soon as it is known, so that a run that is killed loses the evaluation under way and no other.
 
-use super::{ReportError, atomic_write, read_text};
+use super::{ReportError, read_text, write_all};
 use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -67,13 +67,13 @@ pub struct EvaluationLog {
 }
 
 impl EvaluationLog {
-    /// Starts a file anew.
+    /// Starts a file anew, in a directory that is made if need be.
     ///
     /// # Errors
     /// [`ReportError::Write`] with the path.
     pub fn create(path: &Path, head: &Head) -> Result<Self, ReportError> {
         let line = serde_json::to_string(head)? + "\n";
-        atomic_write(path, line.as_bytes())?;
+        write_all(&[(path.to_path_buf(), line.into_bytes())])?;
         Self::open(path)
     }
 
@@ -81,9 +81,21 @@ impl EvaluationLog {
     /// is removed.
     ///
     /// # Errors
-    /// [`ReportError`] if the file cannot be read or written, is damaged, or belongs to another
-    /// problem.
+    /// As [`EvaluationLog::read`], and if the file cannot be written.
     pub fn resume(path: &Path, head: &Head) -> Result<(Self, Vec<EvaluationRecord>), ReportError> {
+        let (records, whole) = Self::read(path, head)?;
+        let log = Self::open(path)?;
+        log.file
+            .set_len(whole as u64)
+            .map_err(|source| log.unwritable(source))?;
+        Ok((log, records))
+    }
+
+    /// What the file of an earlier run holds, and the length of its whole lines in bytes.
+    ///
+    /// # Errors
+    /// [`ReportError`] if the file cannot be read, is damaged, or belongs to another problem.
+    pub fn read(path: &Path, head: &Head) -> Result<(Vec<EvaluationRecord>, usize), ReportError> {
         let text = read_text(path)?;
         let fault = |line: usize, found: String, expected: &str| ReportError::Evaluations {
             path: path.to_path_buf(),
@@ -120,11 +132,7 @@ impl EvaluationLog {
                 }
             })
             .collect::<Result<_, _>>()?;
-        let log = Self::open(path)?;
-        log.file
-            .set_len(whole as u64)
-            .map_err(|source| log.unwritable(source))?;
-        Ok((log, records))
+        Ok((records, whole))
     }
 
     fn open(path: &Path) -> Result<Self, ReportError> {
