@@ -23,7 +23,7 @@ use crate::functions::Scene;
 use crate::integrate::bdf::{coefficients, increment_coefficients, order_of_step};
 use crate::integrate::ggl::{Equations, Instant};
 use crate::integrate::{IntegrationFailure, Method, Trajectory, WorkCounts};
-use crate::linalg::{SparseLu, SparseMatrix};
+use crate::linalg::{REFINED_SOLVES, SparseLu, SparseMatrix};
 use crate::system::initial;
 use crate::system::kkt::SaddlePoint;
 
@@ -118,7 +118,7 @@ pub fn gradients(
             plan.factors
                 .solve_transposed_refined(&plan.matrix, &mut psi);
             equations.scale_rows(h, &mut psi);
-            counts.solves += 1;
+            counts.solves += REFINED_SOLVES;
             sweep.advance(&psi);
             let cot = &mut sweep.cot.model;
             equations.pull_back(&at, &sweep.psi, cot);
@@ -144,7 +144,7 @@ pub fn gradients(
         sweep.finish(run);
     }
     counts.factorisations += saddle.factorisations;
-    counts.solves += saddle.factorisations;
+    counts.solves += REFINED_SOLVES * saddle.factorisations;
     Ok(AdjointRun {
         gradients: sweeps.into_iter().map(|sweep| sweep.cot).collect(),
         counts,

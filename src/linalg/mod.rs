@@ -5,4 +5,4 @@ mod replay;
 pub mod sparse_lu;
 
 pub use pattern::{Emit, Pattern, SparseMatrix};
-pub use sparse_lu::{SingularMatrix, SolveScalar, SparseLu};
+pub use sparse_lu::{REFINED_SOLVES, SingularMatrix, SolveScalar, SparseLu};

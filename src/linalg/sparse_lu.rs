@@ -10,6 +10,8 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 
 /// Steps of iterative refinement of a transposed solution.
 const REFINEMENTS: usize = 2;
+/// Solves with the factors that a refined solution takes.
+pub const REFINED_SOLVES: usize = 1 + REFINEMENTS;
 
 /// A scalar that linear systems are solved in: `f64` and `Complex64`.
 pub trait SolveScalar: Scalar + faer::traits::ComplexField {}
