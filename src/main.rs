@@ -1,7 +1,1 @@
-//! The command `optimize`.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    flexbody::cli::run(std::env::args_os())
-}
+fn main() {}

@@ -49,7 +49,7 @@ fn gradients_rates_and_biases() {
         let in_time = case.constraints(&model, &case.moved(&case.v), &v);
         let (mut rate, mut bias) = (vec![0.0; rows], vec![0.0; rows]);
         joints::rates(&case.model, &case.numbering, &motions, &mut rate);
-        joints::biases(&case.model, &case.numbering, &motions, &mut bias);
+        joints::accelerations(&case.model, &case.numbering, &motions, &mut bias);
         case.assert("rate", &rate, &in_time[..rows]);
         case.assert("bias", &bias, &in_time[rows..2 * rows]);
     }

@@ -167,7 +167,7 @@ fn accelerations_obey_constraints_and_equations_of_motion() {
         let rows = numbering.constraints();
         let (mut ga, mut bias) = (vec![0.0; rows], vec![0.0; rows]);
         joints::rates_from_gradients(&model, &numbering, &gradients, &start.a, &mut ga);
-        joints::biases(&model, &numbering, &motions, &mut bias);
+        joints::accelerations(&model, &numbering, &motions, &mut bias);
         assert!(largest(&bias) > 0.1, "{name}");
         let sum: Vec<f64> = ga.iter().zip(&bias).map(|(a, b)| a + b).collect();
         let scale = largest(&ga).max(1.0);

@@ -1,6 +1,32 @@
 //! Exact gradients of functions of interest: the discrete adjoint of the integration.
 
-pub mod backward;
-mod sweep;
+mod explicit;
+mod sensitivity;
 
-pub use backward::{AdjointRun, gradients};
+use crate::functions::Scene;
+use crate::integrate::{IntegrationFailure, Tape, Trajectory, WorkCounts};
+
+/// Gradients and the work that they took.
+#[derive(Clone, Debug)]
+pub struct AdjointRun {
+    /// For each function asked for, its derivative in every parameter of the scene (a cotangent
+    /// of the scene).
+    pub gradients: Vec<Scene<f64>>,
+    /// Work of the backward march.
+    pub counts: WorkCounts,
+}
+
+/// Exact derivatives of the functions `which` (indices into the scene's) over `run`, in one
+/// backward march over its steps.
+///
+/// # Errors
+/// If the equations of a step are singular.
+pub fn gradients(
+    scene: &Scene<f64>,
+    run: &Trajectory<f64>,
+    which: &[usize],
+) -> Result<AdjointRun, IntegrationFailure> {
+    match &run.tape {
+        Tape::Explicit(tape) => explicit::gradients(scene, run, tape, which),
+    }
+}

@@ -34,7 +34,7 @@ impl<S: Scalar> Function<S> {
                 top,
             } => {
                 let flight = match release {
-                    Release::Final => Snapshot::of(model, run, run.steps).flight(projectile),
+                    Release::Final => Snapshot::of(model, run, run.last()).flight(projectile),
                     Release::Best { .. } => mean_flight(
                         projectile,
                         &release_weights(release, model, run),
@@ -66,15 +66,15 @@ fn reduce<S: Scalar>(
     };
     match reduction {
         Reduction::Final => {
-            let at = Snapshot::of(model, run, run.steps);
-            plain(instant.value(&at, turn(&turns, run.steps)))
+            let at = Snapshot::of(model, run, run.last());
+            plain(instant.value(&at, turn(&turns, run.last())))
         }
         Reduction::Integral => {
             let values = sample(instant, &turns, model, run);
-            let mean = (0..=run.steps).fold(S::zero(), |sum, k| {
+            let mean = (0..=run.last()).fold(S::zero(), |sum, k| {
                 sum + values[k] * run.quadrature_weight(k)
             });
-            plain(mean * run.time(run.steps))
+            plain(mean * run.time(run.last()))
         }
         Reduction::Ks { rho } | Reduction::InducedExponential { rho } => {
             let values = sample(instant, &turns, model, run);
@@ -83,7 +83,7 @@ fn reduce<S: Scalar>(
                 Reduction::Ks { .. } => soft.ks,
                 _ => soft.induced_exponential(&values),
             };
-            let k = soft.peak.clamp(1, run.steps.max(2) - 1);
+            let k = soft.peak.clamp(1, run.last().max(2) - 1);
             let bend = values.get(k + 1).map_or(0.0, |next| {
                 (next.re() - 2.0 * values[k].re() + values[k - 1].re()).abs()
             });
@@ -103,7 +103,7 @@ pub fn sample<S: Scalar>(
     model: &Model<S>,
     run: &Trajectory<S>,
 ) -> Vec<S> {
-    (0..=run.steps)
+    (0..=run.last())
         .map(|k| instant.value(&Snapshot::of(model, run, k), turn(turns, k)))
         .collect()
 }
@@ -120,7 +120,7 @@ pub fn turns<S: Scalar>(
     let (body, axis) = watched?;
     let o = run.numbering.position(body) + 3;
     let mut before: Option<f64> = None;
-    let all = (0..=run.steps).map(|k| {
+    let all = (0..=run.last()).map(|k| {
         let p = &run.q(k)[o..o + 4];
         let twist = rotation::twist(&[p[0].re(), p[1].re(), p[2].re(), p[3].re()], &axis);
         let turns = before.map_or(0.0, |before| TAU * ((before - twist) / TAU).round());
@@ -215,7 +215,7 @@ struct WeightedFlight {
 impl<'a> Linearised<'a> {
     /// Linearises `function` about a run of `model`.
     pub fn new(function: &'a Function<f64>, model: &Model<f64>, run: &Trajectory<f64>) -> Self {
-        let last = |k| if k == run.steps { 1.0 } else { 0.0 };
+        let last = |k| if k == run.last() { 1.0 } else { 0.0 };
         let mut this = Self {
             function,
             by_duration: 0.0,
@@ -226,7 +226,7 @@ impl<'a> Linearised<'a> {
         match function {
             Function::Reduced { instant, reduction } => {
                 let turns = turns(instant.watched_rotation(), run);
-                let instants = 0..=run.steps;
+                let instants = 0..=run.last();
                 let weights = match *reduction {
                     Reduction::Final => instants.map(last).collect(),
                     Reduction::Integral => {
@@ -235,7 +235,7 @@ impl<'a> Linearised<'a> {
                             .clone()
                             .map(|k| values[k] * run.quadrature_weight(k))
                             .sum();
-                        let duration = run.time(run.steps);
+                        let duration = run.time(run.last());
                         instants
                             .map(|k| duration * run.quadrature_weight(k))
                             .collect()
@@ -265,10 +265,10 @@ impl<'a> Linearised<'a> {
                 ..
             } => match release {
                 Release::Final => {
-                    let flight = Snapshot::of(model, run, run.steps).flight(projectile);
+                    let flight = Snapshot::of(model, run, run.last()).flight(projectile);
                     let (cot, by_barrier) = flight.clearance_derivative(*distance);
                     this.by_barrier = by_barrier;
-                    let weights = (0..=run.steps).map(last).collect();
+                    let weights = (0..=run.last()).map(last).collect();
                     this.flight = Some(WeightedFlight { weights, cot });
                 }
                 Release::Best { .. } => this.at_best_release(projectile, *distance, model, run),
@@ -316,6 +316,12 @@ impl<'a> Linearised<'a> {
             weights: release.weights,
             cot,
         });
+    }
+
+    /// Whether the function depends on the states of instant k.
+    pub fn depends_on(&self, k: usize) -> bool {
+        self.quantity.as_ref().is_some_and(|q| q.weights[k] != 0.0)
+            || self.flight.as_ref().is_some_and(|f| f.weights[k] != 0.0)
     }
 
     /// Adds the derivative in the states of instant k to `out`, and that in the function's own

@@ -132,7 +132,7 @@ pub fn pull_back(
     let cot = Jet {
         x: position,
         rate: velocity,
-        bias: Vec3::zeros(),
+        acceleration: Vec3::zeros(),
     };
     FlightCotangent {
         position,

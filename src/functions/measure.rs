@@ -6,7 +6,7 @@ use crate::integrate::Trajectory;
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3, rotation};
 use crate::model::Model;
-use crate::system::bodies::{add6, velocities_of};
+use crate::system::bodies::add6;
 use crate::system::marker::{self, Jet};
 use crate::system::{Motion, Numbering};
 
@@ -39,7 +39,8 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
 
     /// Motion of a body.
     pub fn motion(&self, body: usize) -> Motion<S> {
-        Motion::of(self.numbering, body, self.q, self.v)
+        let a = &self.a[self.numbering.velocity(body)..];
+        Motion::of(self.numbering, body, self.q, self.v).accelerated(a)
     }
 
     /// The flight of a projectile let go now.
@@ -60,10 +61,6 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
         gate.map_or(S::one(), |gate| {
             gate.openness(self.rotation(gate.body, &lift3(&gate.axis), turns))
         })
-    }
-
-    fn linear_acceleration(&self, body: usize) -> (Vec3<S>, Vec3<S>) {
-        velocities_of(&self.a[self.numbering.velocity(body)..])
     }
 }
 
@@ -111,10 +108,7 @@ impl<S: Scalar> Instant<S> {
                 point,
                 direction,
             } => {
-                let motion = at.motion(*body);
-                let (linear, alpha) = at.linear_acceleration(*body);
-                let turning = motion.rotation * alpha.cross(point);
-                direction.dot(&(linear + turning + Jet::point(&motion, point).bias))
+                direction.dot(&Jet::point(&at.motion(*body), point).acceleration)
             }
             Instant::Speed { body, point } => {
                 let velocity = at.motion(*body).point_velocity(point);
@@ -207,11 +201,8 @@ impl Instant<f64> {
                     ..
                 },
             ) => {
-                let motion = at.motion(*body);
-                let (linear, alpha) = at.linear_acceleration(*body);
-                let jet = Jet::point(&motion, point);
-                *by_direction +=
-                    (linear + motion.rotation * alpha.cross(point) + jet.bias) * weight;
+                let jet = Jet::point(&at.motion(*body), point);
+                *by_direction += jet.acceleration * weight;
                 *by_point += pull_point(at, *body, point, [ZERO, ZERO, direction * weight], out);
             }
             (
@@ -273,18 +264,14 @@ fn pull_point(
         &Jet {
             x,
             rate,
-            bias: acceleration,
+            acceleration,
         },
     );
-    // The part R (α × s) of the acceleration.
-    let (_, alpha) = at.linear_acceleration(body);
-    let local = motion.rotation.tr_mul(&acceleration);
-    let theta = by.theta + alpha.cross(point).cross(&local);
     let o = at.numbering.velocity(body);
-    add6(&mut out.y[o..], &x, &theta);
+    add6(&mut out.y[o..], &x, &by.theta);
     add6(&mut out.v[o..], &rate, &by.omega);
-    add6(&mut out.a[o..], &acceleration, &point.cross(&local));
-    by.vector + local.cross(&alpha)
+    add6(&mut out.a[o..], &acceleration, &by.alpha);
+    by.vector
 }
 
 fn pull_rotation(

@@ -35,6 +35,38 @@ pub enum IntegrationFailure {
         /// The unknown without a pivot, by body or joint.
         place: String,
     },
+    /// The positions could not be brought back onto the constraints.
+    #[error(
+        "the joints could not be closed again at t = {time:.6e} s (step {step}): the step is too \
+         large for the motion"
+    )]
+    Projection {
+        /// Time of the step's end (s).
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+    },
+    /// Stability, not accuracy, bounds the steps of an explicit method.
+    #[error(
+        "the scene is stiff at t = {time:.6e} s (step {step}): an explicit method needs steps far \
+         smaller than the accuracy asks for; use a radau method"
+    )]
+    Stiff {
+        /// Time of the step's end (s).
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+    },
+    /// The error estimate asks for steps that are too small to go on.
+    #[error(
+        "the tolerance cannot be kept at t = {time:.6e} s (step {step}): the steps became too small"
+    )]
+    StepTooSmall {
+        /// Time reached (s).
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+    },
     /// A value overflowed or became NaN.
     #[error("the motion is not finite at t = {time:.6e} s (step {step}), in {worst}")]
     NotFinite {

@@ -1,13 +1,63 @@
-//! Time integration: the equations that each method solves, and the march over the steps.
+//! Time integration: the methods, the steps they take, and the motion they leave behind.
 
-pub mod bdf;
+pub mod control;
+pub mod explicit;
 pub mod failure;
-pub mod ggl;
-pub mod newton;
+pub mod grid;
 pub mod settings;
 pub mod trajectory;
 
-pub use bdf::simulate;
 pub use failure::IntegrationFailure;
-pub use settings::{Method, Settings};
-pub use trajectory::{Trajectory, WorkCounts};
+pub use grid::Grid;
+pub use settings::{Method, Samples, Settings, Spacing, Start};
+pub use trajectory::{Tape, Trajectory, WorkCounts};
+
+use crate::linalg::SolveScalar;
+use crate::model::Model;
+use crate::system::accelerations::Accelerations;
+use crate::system::kkt::SaddlePoint;
+use crate::system::{Numbering, initial};
+
+/// Integrates `model` over `duration` in real or, for complex-step derivatives, in complex
+/// numbers.
+///
+/// # Errors
+/// [`IntegrationFailure`] says what failed, when and where.
+pub fn simulate<S: SolveScalar>(
+    model: &Model<S>,
+    duration: S,
+    settings: &Settings,
+) -> Result<Trajectory<S>, IntegrationFailure> {
+    if !(duration.is_finite() && duration.re() > 0.0) {
+        return Err(IntegrationFailure::Duration {
+            duration: duration.re(),
+        });
+    }
+    let numbering = Numbering::new(model);
+    let mut saddle = SaddlePoint::new(model, &numbering);
+    let start = initial::solve(model, &numbering, &mut saddle)?;
+    let mut run = match settings.method {
+        Method::Dop853 => explicit::march::march(model, &numbering, duration, settings, start)?,
+        _ => todo!(),
+    };
+    run.counts.factorisations += saddle.factorisations;
+    run.counts.solves += saddle.factorisations;
+    Ok(run)
+}
+
+/// Multipliers λ at instant k of a run of `model`: as the method marched them, or from the index-1
+/// equations of the state there.
+pub fn multipliers(model: &Model<f64>, run: &Trajectory<f64>, k: usize) -> Vec<f64> {
+    let nc = run.numbering.constraints();
+    if !run.lambda.is_empty() {
+        return run.lambda[k * nc..(k + 1) * nc].to_vec();
+    }
+    let mut field = Accelerations::new(model, &run.numbering);
+    let (mut a, mut lambda) = (run.a(k).to_vec(), vec![0.0; nc]);
+    field.stand(run.q(k), run.v(k));
+    match field.factorise() {
+        Ok(()) => field.accelerations(&mut a, &mut lambda),
+        Err(_) => lambda.fill(f64::NAN),
+    }
+    lambda
+}

@@ -1,21 +1,131 @@
 //! How a scene is integrated in time.
 
+use super::grid::Grid;
+
 /// The integration method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
-    /// Backward differentiation formula on the GGL-stabilised equations, of order 1 or 2; step k
-    /// has order min(k, order) (Kennedy & Boopathy, section II.A).
+    /// Explicit Runge–Kutta pair of order 8 of Dormand & Prince on the index-1 equations, projected
+    /// onto the constraints after each step (Hairer, Nørsett & Wanner 1993, section II.5; Hairer
+    /// & Wanner 1996, section VII.2): for scenes that are not stiff.
+    Dop853,
+    /// Radau IIA with 2 or 3 stages (order 3 or 5) on the GGL-stabilised equations (Hairer &
+    /// Wanner 1996, section IV.5): for stiff scenes.
+    Radau {
+        /// Stages, 2 or 3.
+        stages: usize,
+    },
+    /// Backward differentiation formula on the GGL-stabilised equations.
     Bdf {
-        /// Order, 1 or 2.
+        /// Order, 1 to 6.
         order: usize,
+        /// How the first steps, which have too short a past, are made.
+        start: Start,
+    },
+    /// Generalised-α method for first-order systems (Jansen, Whiting & Hulbert 2000) on the
+    /// GGL-stabilised equations, of order 2.
+    GeneralisedAlpha {
+        /// Spectral radius ρ∞ at infinite frequency, 0.5 to 0.9.
+        radius: f64,
     },
 }
 
-/// Method and number of steps of equal size h = T / N.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How a multistep formula of order m makes its first m − 1 steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// By Radau IIA with three stages, which keeps the order m.
+    Radau,
+    /// Step k by the formula of order min(k, m) (Kennedy & Boopathy, section II.A): the order of
+    /// the whole is then 2 at most.
+    RisingOrder,
+}
+
+impl Method {
+    /// Order of convergence.
+    pub fn order(self) -> usize {
+        match self {
+            Method::Dop853 => 8,
+            Method::Radau { stages } => 2 * stages - 1,
+            Method::Bdf {
+                order,
+                start: Start::Radau,
+            } => order,
+            Method::Bdf {
+                order,
+                start: Start::RisingOrder,
+            } => order.min(2),
+            Method::GeneralisedAlpha { .. } => 2,
+        }
+    }
+
+    /// Whether the step size can follow an error estimate.
+    pub fn is_adaptive(self) -> bool {
+        match self {
+            Method::Dop853 | Method::Radau { .. } => true,
+            Method::Bdf { .. } | Method::GeneralisedAlpha { .. } => false,
+        }
+    }
+
+    /// The method's name with its parameters.
+    pub fn name(self) -> String {
+        match self {
+            Method::Dop853 => "dop853".into(),
+            Method::Radau { stages } => format!("radau{stages}"),
+            Method::Bdf {
+                order,
+                start: Start::Radau,
+            } => format!("bdf{order}"),
+            Method::Bdf {
+                order,
+                start: Start::RisingOrder,
+            } => format!("bdf{order} with rising order"),
+            Method::GeneralisedAlpha { radius } => format!("generalised-alpha {radius}"),
+        }
+    }
+}
+
+/// Where the steps end.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Spacing {
+    /// This many steps of equal size.
+    Steps(usize),
+    /// Steps whose estimated error, relative to the scene's lengths and speeds, stays below this.
+    Tolerance(f64),
+    /// Steps that an earlier run chose, stretched to the duration.
+    Frozen(Grid),
+}
+
+/// At which instants the motion is known after the run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Samples {
+    /// The ends of the steps.
+    StepEnds,
+    /// This many intervals of equal size; between the ends of steps by the method's own
+    /// polynomial.
+    Uniform(usize),
+}
+
+/// Method, steps and what is kept.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Number of steps N ≥ 1.
-    pub steps: usize,
     /// Method.
     pub method: Method,
+    /// Where the steps end.
+    pub spacing: Spacing,
+    /// Where the motion is sampled.
+    pub samples: Samples,
+    /// Whether the stages are kept for a gradient, which otherwise computes them again.
+    pub keep_stages: bool,
+}
+
+impl Settings {
+    /// `steps` equal steps, sampled at their ends.
+    pub fn steps(method: Method, steps: usize) -> Self {
+        Self {
+            method,
+            spacing: Spacing::Steps(steps),
+            samples: Samples::StepEnds,
+            keep_stages: false,
+        }
+    }
 }

@@ -1,6 +1,8 @@
 //! What a run leaves behind.
 
-use super::settings::{Method, Settings};
+use super::explicit;
+use super::grid::{Grid, Place};
+use super::settings::{Method, Samples};
 use crate::math::{Complex64, Scalar};
 use crate::system::Numbering;
 use crate::system::initial::InitialState;
@@ -10,9 +12,13 @@ use crate::system::initial::InitialState;
 pub struct WorkCounts {
     /// Time steps.
     pub steps: usize,
+    /// Steps that were tried and given up for smaller ones.
+    pub rejected: usize,
+    /// Evaluations of the accelerations by an explicit method.
+    pub evaluations: usize,
     /// Newton iterations.
     pub newton_iterations: usize,
-    /// Iteration matrices assembled and factorised.
+    /// Matrices assembled and factorised.
     pub factorisations: usize,
     /// Linear systems solved.
     pub solves: usize,
@@ -21,144 +27,177 @@ pub struct WorkCounts {
 impl std::ops::AddAssign for WorkCounts {
     fn add_assign(&mut self, other: Self) {
         self.steps += other.steps;
+        self.rejected += other.rejected;
+        self.evaluations += other.evaluations;
         self.newton_iterations += other.newton_iterations;
         self.factorisations += other.factorisations;
         self.solves += other.solves;
     }
 }
 
-/// States at the ends of all steps, t_k = k h, k = 0 … N.
+/// The motion at the sampled instants, and what the adjoint needs of the steps.
 #[derive(Clone, Debug)]
 pub struct Trajectory<S> {
     /// Numbering of the states.
     pub numbering: Numbering,
-    /// Step size h = T / N (s).
-    pub h: S,
-    /// Number of steps N.
-    pub steps: usize,
     /// The method that made it.
     pub method: Method,
+    /// Duration T (s).
+    pub duration: S,
+    /// Ends of the steps.
+    pub grid: Grid,
+    /// Sampled instants as fractions of T, from 0 to 1.
+    pub instants: Vec<f64>,
+    /// Where the sampled instants stand among the steps.
+    pub places: Vec<Place>,
     /// Positions, one row of `numbering.positions()` an instant.
     pub q: Vec<S>,
-    /// Increments of the positions in steps 1 … N, one row of `numbering.positions()` a step,
-    /// accurate to their own size.
-    pub dq: Vec<S>,
     /// Velocities, one row of `numbering.velocities()` an instant.
     pub v: Vec<S>,
     /// Accelerations v̇ as the method sees them.
     pub a: Vec<S>,
-    /// Multipliers λ of the constraints.
+    /// Multipliers λ of the constraints; empty if the method does not march them (see
+    /// [`multipliers`](super::multipliers)).
     pub lambda: Vec<S>,
-    /// Multipliers μ of the velocity constraints (zero at t = 0).
-    pub mu: Vec<S>,
     /// The consistent start.
     pub initial: InitialState<S>,
+    /// Largest estimated error of a step, relative to the scene's lengths and speeds; zero if the
+    /// method has no estimate.
+    pub step_error: f64,
+    /// What the adjoint needs.
+    pub tape: Tape<S>,
     /// Work spent.
     pub counts: WorkCounts,
+}
+
+/// What the adjoint of each family of methods needs.
+#[derive(Clone, Debug)]
+pub enum Tape<S> {
+    /// Of the explicit method.
+    Explicit(explicit::Tape<S>),
 }
 
 impl<S: Scalar> Trajectory<S> {
     /// A trajectory that holds its start only.
     pub fn start(
         numbering: Numbering,
-        h: S,
-        settings: &Settings,
+        method: Method,
+        duration: S,
         initial: InitialState<S>,
+        tape: Tape<S>,
     ) -> Self {
-        let steps = settings.steps;
-        let room = |first: &[S]| {
-            let mut all = Vec::with_capacity(first.len() * (steps + 1));
-            all.extend_from_slice(first);
-            all
-        };
         Self {
-            h,
-            steps,
-            method: settings.method,
-            dq: Vec::with_capacity(initial.q.len() * steps),
-            q: room(&initial.q),
-            v: room(&initial.v),
-            a: room(&initial.a),
-            lambda: room(&initial.lambda),
-            mu: room(&vec![S::zero(); numbering.constraints()]),
+            method,
+            duration,
+            grid: Grid::growing(),
+            instants: vec![0.0],
+            places: vec![Place::Node(0)],
+            q: initial.q.clone(),
+            v: initial.v.clone(),
+            a: initial.a.clone(),
+            lambda: Vec::new(),
             numbering,
             initial,
-            counts: WorkCounts {
-                steps,
-                ..WorkCounts::default()
-            },
+            step_error: 0.0,
+            tape,
+            counts: WorkCounts::default(),
         }
     }
 
-    /// Time t_k (s).
-    pub fn time(&self, k: usize) -> S {
-        self.h * k as f64
+    /// Adds an instant.
+    pub fn push(&mut self, at: f64, place: Place, [q, v, a, lambda]: [&[S]; 4]) {
+        self.instants.push(at);
+        self.places.push(place);
+        self.q.extend_from_slice(q);
+        self.v.extend_from_slice(v);
+        self.a.extend_from_slice(a);
+        self.lambda.extend_from_slice(lambda);
     }
 
-    /// Positions at t_k.
+    /// Index of the last instant.
+    pub fn last(&self) -> usize {
+        self.instants.len() - 1
+    }
+
+    /// Time of instant k (s).
+    pub fn time(&self, k: usize) -> S {
+        self.duration * self.instants[k]
+    }
+
+    /// Positions at instant k.
     pub fn q(&self, k: usize) -> &[S] {
         row(&self.q, self.numbering.positions(), k)
     }
 
-    /// Increment q_k − q_{k−1} of step k ≥ 1.
-    pub fn dq(&self, k: usize) -> &[S] {
-        row(&self.dq, self.numbering.positions(), k - 1)
-    }
-
-    /// Velocities at t_k.
+    /// Velocities at instant k.
     pub fn v(&self, k: usize) -> &[S] {
         row(&self.v, self.numbering.velocities(), k)
     }
 
-    /// Accelerations at t_k.
+    /// Accelerations at instant k.
     pub fn a(&self, k: usize) -> &[S] {
         row(&self.a, self.numbering.velocities(), k)
     }
 
-    /// Multipliers λ at t_k.
-    pub fn lambda(&self, k: usize) -> &[S] {
-        row(&self.lambda, self.numbering.constraints(), k)
-    }
-
-    /// Multipliers μ at t_k.
-    pub fn mu(&self, k: usize) -> &[S] {
-        row(&self.mu, self.numbering.constraints(), k)
-    }
-
     /// Weight of instant k in the trapezoidal rule on [0, 1].
     pub fn quadrature_weight(&self, k: usize) -> f64 {
-        let end = k == 0 || k == self.steps;
-        (if end { 0.5 } else { 1.0 }) / self.steps as f64
+        let before = self.instants[k.saturating_sub(1)];
+        let after = self.instants[(k + 1).min(self.last())];
+        0.5 * (after - before)
+    }
+}
+
+/// The instants that `samples` asks for, in rising order without the first one, as far as `end`
+/// (a fraction); `next` counts those that were taken.
+pub(super) fn due(samples: Samples, next: &mut usize, end: f64) -> Vec<f64> {
+    match samples {
+        Samples::StepEnds => vec![end],
+        Samples::Uniform(count) => {
+            let mut all = Vec::new();
+            while *next <= count && super::grid::within(*next as f64 / count as f64, end) {
+                all.push(*next as f64 / count as f64);
+                *next += 1;
+            }
+            all
+        }
     }
 }
 
 impl Trajectory<Complex64> {
     /// The real part of a complex run.
     pub fn real(&self) -> Trajectory<f64> {
-        let re = |all: &[Complex64]| all.iter().map(|x| x.re).collect();
         Trajectory {
             numbering: self.numbering.clone(),
-            h: self.h.re,
-            steps: self.steps,
             method: self.method,
-            q: re(&self.q),
-            dq: re(&self.dq),
-            v: re(&self.v),
-            a: re(&self.a),
-            lambda: re(&self.lambda),
-            mu: re(&self.mu),
+            duration: self.duration.re,
+            grid: self.grid.clone(),
+            instants: self.instants.clone(),
+            places: self.places.clone(),
+            q: real(&self.q),
+            v: real(&self.v),
+            a: real(&self.a),
+            lambda: real(&self.lambda),
             initial: InitialState {
-                q: re(&self.initial.q),
-                v: re(&self.initial.v),
-                a: re(&self.initial.a),
-                lambda: re(&self.initial.lambda),
-                s: re(&self.initial.s),
-                sigma: re(&self.initial.sigma),
+                q: real(&self.initial.q),
+                v: real(&self.initial.v),
+                a: real(&self.initial.a),
+                lambda: real(&self.initial.lambda),
+                s: real(&self.initial.s),
+                sigma: real(&self.initial.sigma),
                 iterations: self.initial.iterations,
+            },
+            step_error: self.step_error,
+            tape: match &self.tape {
+                Tape::Explicit(tape) => Tape::Explicit(tape.real()),
             },
             counts: self.counts,
         }
     }
+}
+
+/// Real parts.
+pub(super) fn real(all: &[Complex64]) -> Vec<f64> {
+    all.iter().map(|x| x.re).collect()
 }
 
 fn row<S>(all: &[S], width: usize, k: usize) -> &[S] {

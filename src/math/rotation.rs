@@ -75,6 +75,19 @@ pub fn normalisation<S: Scalar>(p: &Quat<S>) -> Quat<S> {
     p.map(|x| x * excess)
 }
 
+/// p / |p|.
+pub fn unit<S: Scalar>(p: &Quat<S>) -> Quat<S> {
+    let square = p.iter().fold(S::zero(), |sum, &x| sum + x * x);
+    let inverse = S::one() / square.sqrt();
+    p.map(|x| x * inverse)
+}
+
+/// Cotangent of p from that of the tangent rotation δθ of u = p / |p|: 2 L(u)ᵀ θ̄ / |p|.
+pub fn unit_pull_back(p: &Quat<f64>, theta: &Vec3<f64>) -> Quat<f64> {
+    let square = p.iter().map(|x| x * x).sum::<f64>();
+    rate_transposed(p, theta).map(|x| x * (2.0 / square))
+}
+
 /// Euler parameters of the rotation by `angle` (rad) about `axis` (any length but zero).
 pub fn from_axis_angle<S: Scalar>(axis: &Vec3<S>, angle: S) -> Quat<S> {
     let (s, c) = (angle * 0.5).sin_cos();

@@ -14,7 +14,7 @@ use crate::math::scalar::skew;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::{Model, RigidBody};
 
-/// Position and velocity of a body.
+/// Position, velocity and, where it is asked for, acceleration of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion<S> {
     /// Centre of mass r, ground axes (m).
@@ -27,6 +27,10 @@ pub struct Motion<S> {
     pub velocity: Vec3<S>,
     /// Angular velocity ω, body axes (rad/s).
     pub omega: Vec3<S>,
+    /// Acceleration r̈, ground axes (m/s²); zero unless set by [`Motion::accelerated`].
+    pub acceleration: Vec3<S>,
+    /// Angular acceleration ω̇, body axes (rad/s²); zero unless set likewise.
+    pub alpha: Vec3<S>,
 }
 
 impl<S: Scalar> Motion<S> {
@@ -39,6 +43,8 @@ impl<S: Scalar> Motion<S> {
             rotation: Mat3::identity(),
             velocity: Vec3::zeros(),
             omega: Vec3::zeros(),
+            acceleration: Vec3::zeros(),
+            alpha: Vec3::zeros(),
         }
     }
 
@@ -53,13 +59,40 @@ impl<S: Scalar> Motion<S> {
             rotation: rotation::matrix(&orientation),
             velocity,
             omega,
+            acceleration: Vec3::zeros(),
+            alpha: Vec3::zeros(),
         }
+    }
+
+    /// The same motion with the accelerations that six coordinates give.
+    pub fn accelerated(mut self, a: &[S]) -> Self {
+        (self.acceleration, self.alpha) = velocities_of(a);
+        self
     }
 
     /// All bodies in the state (q, v).
     pub fn all(numbering: &Numbering, q: &[S], v: &[S], out: &mut Vec<Self>) {
         out.clear();
         out.extend((0..numbering.bodies()).map(|body| Self::of(numbering, body, q, v)));
+    }
+
+    /// All bodies in the state (q, v), the Euler parameters in `q` brought to unit length.
+    pub fn all_normalised(numbering: &Numbering, q: &[S], v: &[S], out: &mut Vec<Self>) {
+        out.clear();
+        out.extend((0..numbering.bodies()).map(|body| {
+            let (position, p) = positions_of(&q[numbering.position(body)..]);
+            let (velocity, omega) = velocities_of(&v[numbering.velocity(body)..]);
+            let orientation = rotation::unit(&p);
+            Self {
+                position,
+                orientation,
+                rotation: rotation::matrix(&orientation),
+                velocity,
+                omega,
+                acceleration: Vec3::zeros(),
+                alpha: Vec3::zeros(),
+            }
+        }));
     }
 
     /// Position of the point `s` (from the centre of mass, body axes) (m).

@@ -4,13 +4,13 @@
 //! distance of two points and u, w axes of the two frames (see [`crate::model::joint`]),
 //!
 //! ```text
-//!                  value Φ     rate G v             bias: Φ̈ = G v̇ + bias
+//!                  value Φ     rate G v             second derivative Φ̈
 //! Coincident k     d_k         ḋ_k                  d̈_k
 //! Perpendicular    u · w       u̇ · w + u · ẇ        ü · w + 2 u̇ · ẇ + u · ẅ
 //! Sliding          u · d       u̇ · d + u · ḋ        ü · d + 2 u̇ · ḋ + u · d̈
 //! ```
 //!
-//! The acceleration term of the index-1 equations is γ = −bias.
+//! The acceleration term of the index-1 equations is γ = −bias, the bias being Φ̈ at v̇ = 0.
 
 use super::bodies::Motion;
 use super::marker::{self, Jet};
@@ -46,30 +46,75 @@ impl<S: Scalar> Side<'_, S> {
     }
 }
 
-fn difference<S: Scalar>(a: Jet<S>, b: Jet<S>) -> Jet<S> {
-    Jet {
-        x: a.x - b.x,
-        rate: a.rate - b.rate,
-        bias: a.bias - b.bias,
+/// The markers that the rows of a joint are made of, each in motion once.
+struct Markers<S> {
+    distance: Jet<S>,
+    axes_a: [Jet<S>; 3],
+    axes_b: [Jet<S>; 3],
+}
+
+impl<S: Scalar> Markers<S> {
+    fn of(rows: &[ConstraintRow], a: &Side<S>, b: &Side<S>) -> Self {
+        let used = MarkersUsed::by(rows);
+        let axis = |side: &Side<S>, used: bool, i: usize| match used {
+            true => side.axis_jet(i),
+            false => Jet::zero(),
+        };
+        Self {
+            distance: match used.points {
+                true => a.point_jet().minus(&b.point_jet()),
+                false => Jet::zero(),
+            },
+            axes_a: std::array::from_fn(|i| axis(a, used.axes_a[i], i)),
+            axes_b: std::array::from_fn(|i| axis(b, used.axes_b[i], i)),
+        }
+    }
+
+    /// The vectors u, w (or d) whose product a row is.
+    fn factors(&self, row: ConstraintRow) -> (Jet<S>, Jet<S>) {
+        match row {
+            Coincident(k) => (Jet::fixed(unit(k)), self.distance),
+            Perpendicular { a, b } => (self.axes_a[a], self.axes_b[b]),
+            Sliding { a } => (self.axes_a[a], self.distance),
+        }
     }
 }
 
-/// The vectors u, w (or d) whose product a bilinear row is, as jets.
-fn factors<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> (Jet<S>, Jet<S>) {
-    match row {
-        Coincident(k) => {
-            let mut unit = Vec3::zeros();
-            unit[k] = S::one();
-            let fixed = Jet {
-                x: unit,
-                rate: Vec3::zeros(),
-                bias: Vec3::zeros(),
-            };
-            (fixed, difference(a.point_jet(), b.point_jet()))
+/// Which markers the rows of a joint need.
+struct MarkersUsed {
+    points: bool,
+    axes_a: [bool; 3],
+    axes_b: [bool; 3],
+}
+
+impl MarkersUsed {
+    fn by(rows: &[ConstraintRow]) -> Self {
+        let mut used = Self {
+            points: false,
+            axes_a: [false; 3],
+            axes_b: [false; 3],
+        };
+        for row in rows {
+            match *row {
+                Coincident(_) => used.points = true,
+                Perpendicular { a, b } => {
+                    used.axes_a[a] = true;
+                    used.axes_b[b] = true;
+                }
+                Sliding { a } => {
+                    used.points = true;
+                    used.axes_a[a] = true;
+                }
+            }
         }
-        Perpendicular { a: i, b: j } => (a.axis_jet(i), b.axis_jet(j)),
-        Sliding { a: i } => (a.axis_jet(i), difference(a.point_jet(), b.point_jet())),
+        used
     }
+}
+
+fn unit<S: Scalar>(k: usize) -> Vec3<S> {
+    let mut unit = Vec3::zeros();
+    unit[k] = S::one();
+    unit
 }
 
 /// Value Φ of a row.
@@ -81,16 +126,30 @@ pub fn value<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
     }
 }
 
-/// Rate G v of a row.
-pub fn rate<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
-    let (u, w) = factors(row, a, b);
-    u.rate.dot(&w.x) + u.x.dot(&w.rate)
+/// Rates G v of the rows of a joint.
+pub fn rates<S: Scalar>(rows: &[ConstraintRow], a: &Side<S>, b: &Side<S>, out: &mut [S]) {
+    let markers = Markers::of(rows, a, b);
+    for (&row, out) in rows.iter().zip(out) {
+        let (u, w) = markers.factors(row);
+        *out = u.rate.dot(&w.x) + u.x.dot(&w.rate);
+    }
 }
 
-/// Acceleration bias of a row: its second time derivative at v̇ = 0.
-pub fn bias<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
-    let (u, w) = factors(row, a, b);
-    u.bias.dot(&w.x) + u.rate.dot(&w.rate) * 2.0 + u.x.dot(&w.bias)
+/// Second derivatives Φ̈ of the rows of a joint at the accelerations of the motions: the
+/// acceleration bias if these are zero.
+pub fn accelerations<S: Scalar>(rows: &[ConstraintRow], a: &Side<S>, b: &Side<S>, out: &mut [S]) {
+    let markers = Markers::of(rows, a, b);
+    for (&row, out) in rows.iter().zip(out) {
+        let (u, w) = markers.factors(row);
+        *out = match row {
+            Coincident(k) => w.acceleration[k],
+            Perpendicular { .. } | Sliding { .. } => {
+                u.acceleration.dot(&w.x)
+                    + u.rate.dot(&w.rate) * 2.0
+                    + u.x.dot(&w.acceleration)
+            }
+        };
+    }
 }
 
 /// One row of G: derivative of the rate in the velocities of both bodies.
@@ -237,6 +296,71 @@ impl<S: Scalar> SideCotangent<S> {
     }
 }
 
+/// Pulls the cotangents of the rows of a joint back to positions, velocities and joint frames of
+/// both bodies: the transposed derivative of [`value`], [`rates`] and [`accelerations`], the
+/// accelerations of the bodies held.
+pub fn pull_back<S: Scalar>(
+    rows: &[ConstraintRow],
+    cot: impl Fn(usize) -> RowCotangent<S>,
+    a: &Side<S>,
+    b: &Side<S>,
+) -> (SideCotangent<S>, SideCotangent<S>) {
+    let markers = Markers::of(rows, a, b);
+    let mut by_distance = Jet::zero();
+    let mut by_axes_a = [Jet::zero(); 3];
+    let mut by_axes_b = [Jet::zero(); 3];
+    for (i, &row) in rows.iter().enumerate() {
+        let cot = cot(i);
+        // Φ = u·w and its time derivatives are symmetric in the two factors.
+        let by = |other: &Jet<S>| Jet {
+            x: other.x * cot.value + other.rate * cot.rate + other.acceleration * cot.acceleration,
+            rate: other.x * cot.rate + other.rate * (cot.acceleration * 2.0),
+            acceleration: other.x * cot.acceleration,
+        };
+        match row {
+            Coincident(k) => {
+                by_distance.x[k] += cot.value;
+                by_distance.rate[k] += cot.rate;
+                by_distance.acceleration[k] += cot.acceleration;
+            }
+            Perpendicular { a: i, b: j } => {
+                by_axes_a[i].add(&by(&markers.axes_b[j]));
+                by_axes_b[j].add(&by(&markers.axes_a[i]));
+            }
+            Sliding { a: i } => {
+                by_axes_a[i].add(&by(&markers.distance));
+                by_distance.add(&by(&markers.axes_a[i]));
+            }
+        }
+    }
+    let used = MarkersUsed::by(rows);
+    let (mut out_a, mut out_b) = (SideCotangent::zero(), SideCotangent::zero());
+    if used.points {
+        pull_point(a, &by_distance, &mut out_a);
+        pull_point(b, &Jet::zero().minus(&by_distance), &mut out_b);
+    }
+    for i in 0..3 {
+        if used.axes_a[i] {
+            pull_axis(a, i, &by_axes_a[i], &mut out_a);
+        }
+        if used.axes_b[i] {
+            pull_axis(b, i, &by_axes_b[i], &mut out_b);
+        }
+    }
+    (out_a, out_b)
+}
+
+/// Cotangents of a row's value, rate and second derivative.
+#[derive(Clone, Copy, Debug)]
+pub struct RowCotangent<S> {
+    /// Of Φ.
+    pub value: S,
+    /// Of G v.
+    pub rate: S,
+    /// Of Φ̈.
+    pub acceleration: S,
+}
+
 fn pull_axis<S: Scalar>(side: &Side<S>, i: usize, cot: &Jet<S>, out: &mut SideCotangent<S>) {
     let by = marker::pull_back(side.motion, &side.frame.axes[i], cot);
     out.theta += by.theta;
@@ -251,51 +375,4 @@ fn pull_point<S: Scalar>(side: &Side<S>, cot: &Jet<S>, out: &mut SideCotangent<S
     out.frame.point += by.vector;
     out.position += cot.x;
     out.velocity += cot.rate;
-}
-
-/// Cotangents of a row's value, rate and bias.
-#[derive(Clone, Copy, Debug)]
-pub struct RowCotangent<S> {
-    /// Of Φ.
-    pub value: S,
-    /// Of G v.
-    pub rate: S,
-    /// Of the bias.
-    pub bias: S,
-}
-
-/// Pulls the cotangents of a row back to positions, velocities and joint frames of both bodies:
-/// the transposed derivative of [`value`], [`rate`] and [`bias`].
-pub fn pull_back<S: Scalar>(
-    row: ConstraintRow,
-    cot: &RowCotangent<S>,
-    a: &Side<S>,
-    b: &Side<S>,
-    out_a: &mut SideCotangent<S>,
-    out_b: &mut SideCotangent<S>,
-) {
-    let (u, w) = factors(row, a, b);
-    // Φ = u·w and its time derivatives are symmetric in the two factors.
-    let by = |other: &Jet<S>| Jet {
-        x: other.x * cot.value + other.rate * cot.rate + other.bias * cot.bias,
-        rate: other.x * cot.rate + other.rate * (cot.bias * 2.0),
-        bias: other.x * cot.bias,
-    };
-    let (by_u, by_w) = (by(&w), by(&u));
-    match row {
-        Coincident(_) => {}
-        Perpendicular { a: i, .. } | Sliding { a: i } => pull_axis(a, i, &by_u, out_a),
-    }
-    match row {
-        Perpendicular { b: j, .. } => pull_axis(b, j, &by_w, out_b),
-        Coincident(_) | Sliding { .. } => {
-            pull_point(a, &by_w, out_a);
-            let minus = Jet {
-                x: -by_w.x,
-                rate: -by_w.rate,
-                bias: -by_w.bias,
-            };
-            pull_point(b, &minus, out_b);
-        }
-    }
 }

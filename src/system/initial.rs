@@ -87,7 +87,7 @@ pub fn solve<S: SolveScalar>(
         &mut balance,
     );
     let mut bias = vec![S::zero(); nc];
-    joints::biases(model, numbering, &motions, &mut bias);
+    joints::accelerations(model, numbering, &motions, &mut bias);
     saddle
         .factorise(model, numbering, &motions, &zeros, mass(model))
         .map_err(singular)?;

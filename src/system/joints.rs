@@ -7,6 +7,7 @@ use super::constraint::{
 use super::numbering::Numbering;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Joint, Model};
+use std::ops::Range;
 
 /// Both sides of a joint; `ground` is the motion of a missing body B.
 pub fn sides<'a, S: Scalar>(
@@ -27,19 +28,17 @@ pub fn sides<'a, S: Scalar>(
     )
 }
 
-/// Calls `visit(row number, joint, row, side a, side b)` for every constraint row.
-fn for_each_row<S: Scalar>(
+/// Calls `visit(row numbers, joint, side a, side b)` for every joint.
+fn for_each_joint<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
     motions: &[Motion<S>],
-    mut visit: impl FnMut(usize, &Joint<S>, ConstraintRow, &Side<S>, &Side<S>),
+    mut visit: impl FnMut(Range<usize>, &Joint<S>, &Side<S>, &Side<S>),
 ) {
     let ground = Motion::ground();
     for (j, joint) in model.joints.iter().enumerate() {
         let (a, b) = sides(joint, motions, &ground);
-        for (number, &row) in numbering.rows(j).zip(joint.kind.rows()) {
-            visit(number, joint, row, &a, &b);
-        }
+        visit(numbering.rows(j), joint, &a, &b);
     }
 }
 
@@ -50,8 +49,10 @@ pub fn values<S: Scalar>(
     motions: &[Motion<S>],
     out: &mut [S],
 ) {
-    for_each_row(model, numbering, motions, |i, _, row, a, b| {
-        out[i] = constraint::value(row, a, b);
+    for_each_joint(model, numbering, motions, |numbers, joint, a, b| {
+        for (out, &row) in out[numbers].iter_mut().zip(joint.kind.rows()) {
+            *out = constraint::value(row, a, b);
+        }
     });
 }
 
@@ -83,20 +84,21 @@ pub fn rates<S: Scalar>(
     motions: &[Motion<S>],
     out: &mut [S],
 ) {
-    for_each_row(model, numbering, motions, |i, _, row, a, b| {
-        out[i] = constraint::rate(row, a, b);
+    for_each_joint(model, numbering, motions, |numbers, joint, a, b| {
+        constraint::rates(joint.kind.rows(), a, b, &mut out[numbers]);
     });
 }
 
-/// Acceleration biases −γ: Φ̈ = G v̇ − γ.
-pub fn biases<S: Scalar>(
+/// Second derivatives Φ̈ at the accelerations of `motions`: the biases −γ of Φ̈ = G v̇ − γ if these
+/// are zero.
+pub fn accelerations<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
     motions: &[Motion<S>],
     out: &mut [S],
 ) {
-    for_each_row(model, numbering, motions, |i, _, row, a, b| {
-        out[i] = constraint::bias(row, a, b);
+    for_each_joint(model, numbering, motions, |numbers, joint, a, b| {
+        constraint::accelerations(joint.kind.rows(), a, b, &mut out[numbers]);
     });
 }
 
@@ -108,8 +110,8 @@ pub fn gradients<S: Scalar>(
     out: &mut Vec<RowGradient<S>>,
 ) {
     out.clear();
-    for_each_row(model, numbering, motions, |_, _, row, a, b| {
-        out.push(gradient(row, a, b))
+    for_each_joint(model, numbering, motions, |_, joint, a, b| {
+        out.extend(joint.kind.rows().iter().map(|&row| gradient(row, a, b)));
     });
 }
 
@@ -168,14 +170,12 @@ pub fn rate_by_position<S: Scalar>(
     a: &Side<S>,
     b: &Side<S>,
 ) -> (SideCotangent<S>, SideCotangent<S>) {
-    let (mut by_a, mut by_b) = (SideCotangent::zero(), SideCotangent::zero());
     let unit = RowCotangent {
         value: S::zero(),
         rate: S::one(),
-        bias: S::zero(),
+        acceleration: S::zero(),
     };
-    constraint::pull_back(row, &unit, a, b, &mut by_a, &mut by_b);
-    (by_a, by_b)
+    constraint::pull_back(&[row], |_| unit, a, b)
 }
 
 /// Where the pull-back of the constraints is added to.
@@ -188,8 +188,8 @@ pub struct JointCotangent<'a> {
     pub model: &'a mut Model<f64>,
 }
 
-/// Pulls cotangents of the values, rates and biases of all rows (in this order, each optional)
-/// back to tangent positions, velocities and joint frames.
+/// Pulls cotangents of the values, rates and second derivatives of all rows (in this order, each
+/// optional) back to tangent positions, velocities and joint frames, the accelerations held.
 pub fn pull_back(
     model: &Model<f64>,
     numbering: &Numbering,
@@ -201,15 +201,13 @@ pub fn pull_back(
     let at = |which: usize, i: usize| cotangents[which].map_or(0.0, |c| c[i]);
     for (j, joint) in model.joints.iter().enumerate() {
         let (a, b) = sides(joint, motions, &ground);
-        let (mut by_a, mut by_b) = (SideCotangent::zero(), SideCotangent::zero());
-        for (i, &row) in numbering.rows(j).zip(joint.kind.rows()) {
-            let cot = RowCotangent {
-                value: at(0, i),
-                rate: at(1, i),
-                bias: at(2, i),
-            };
-            constraint::pull_back(row, &cot, &a, &b, &mut by_a, &mut by_b);
-        }
+        let first = numbering.rows(j).start;
+        let cot = |i: usize| RowCotangent {
+            value: at(0, first + i),
+            rate: at(1, first + i),
+            acceleration: at(2, first + i),
+        };
+        let (by_a, by_b) = constraint::pull_back(joint.kind.rows(), cot, &a, &b);
         let bodies = [(Some(joint.body_a), &by_a), (joint.body_b, &by_b)];
         for (body, by) in bodies {
             let Some(body) = body else { continue };

@@ -2,24 +2,38 @@
 //! and acceleration, and how cotangents of these come back to the body.
 //!
 //! ```text
-//! u = R e,   u̇ = R (ω × e),   ü|_{v̇=0} = R (ω × (ω × e))        (P adds r, ṙ, 0)
+//! u = R e,   u̇ = R (ω × e),   ü = R (α × e + ω × (ω × e))        (P adds r, ṙ, r̈)
 //! ```
 
 use super::bodies::Motion;
 use crate::math::{Scalar, Vec3};
 
-/// Value, velocity and acceleration (at v̇ = 0) of a marker, in ground axes.
+/// Value, velocity and acceleration of a marker, in ground axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Jet<S> {
     /// Value.
     pub x: Vec3<S>,
     /// First derivative in time.
     pub rate: Vec3<S>,
-    /// Second derivative in time at v̇ = 0.
-    pub bias: Vec3<S>,
+    /// Second derivative in time, at the accelerations of the motion.
+    pub acceleration: Vec3<S>,
 }
 
 impl<S: Scalar> Jet<S> {
+    /// A jet that does not move from zero.
+    pub fn zero() -> Self {
+        Self::fixed(Vec3::zeros())
+    }
+
+    /// A jet that does not move.
+    pub fn fixed(x: Vec3<S>) -> Self {
+        Self {
+            x,
+            rate: Vec3::zeros(),
+            acceleration: Vec3::zeros(),
+        }
+    }
+
     /// The direction with components `e` in body axes.
     pub fn direction(motion: &Motion<S>, e: &Vec3<S>) -> Self {
         let (r, w) = (&motion.rotation, &motion.omega);
@@ -27,7 +41,7 @@ impl<S: Scalar> Jet<S> {
         Jet {
             x: r * e,
             rate: r * turned,
-            bias: r * w.cross(&turned),
+            acceleration: r * (w.cross(&turned) + motion.alpha.cross(e)),
         }
     }
 
@@ -36,18 +50,37 @@ impl<S: Scalar> Jet<S> {
         let mut jet = Self::direction(motion, s);
         jet.x += motion.position;
         jet.rate += motion.velocity;
+        jet.acceleration += motion.acceleration;
         jet
+    }
+
+    /// The difference of two jets.
+    pub fn minus(&self, other: &Self) -> Self {
+        Jet {
+            x: self.x - other.x,
+            rate: self.rate - other.rate,
+            acceleration: self.acceleration - other.acceleration,
+        }
+    }
+
+    /// Adds another jet.
+    pub fn add(&mut self, other: &Self) {
+        self.x += other.x;
+        self.rate += other.rate;
+        self.acceleration += other.acceleration;
     }
 }
 
-/// Cotangents that a marker's jet leaves on its body (for a point, those of r and ṙ are the jet's
-/// own cotangents of x and rate).
+/// Cotangents that a marker's jet leaves on its body (for a point, those of r, ṙ and r̈ are the
+/// jet's own cotangents).
 #[derive(Clone, Copy, Debug)]
 pub struct MarkerCotangent<S> {
     /// By the tangent rotation δθ, body axes.
     pub theta: Vec3<S>,
     /// By ω.
     pub omega: Vec3<S>,
+    /// By the angular acceleration α.
+    pub alpha: Vec3<S>,
     /// By the marker's constant vector in body axes.
     pub vector: Vec3<S>,
 }
@@ -55,12 +88,16 @@ pub struct MarkerCotangent<S> {
 /// Pulls the cotangent of a jet back: the transposed derivative of [`Jet::direction`].
 pub fn pull_back<S: Scalar>(motion: &Motion<S>, e: &Vec3<S>, cot: &Jet<S>) -> MarkerCotangent<S> {
     let (r, w) = (&motion.rotation, &motion.omega);
-    let (x, rate, bias) = (r.tr_mul(&cot.x), r.tr_mul(&cot.rate), r.tr_mul(&cot.bias));
+    let (x, rate) = (r.tr_mul(&cot.x), r.tr_mul(&cot.rate));
+    let second = r.tr_mul(&cot.acceleration);
     let turned = w.cross(e);
-    let bias_turned = bias.cross(w);
+    let by_turned = rate + second.cross(w);
     MarkerCotangent {
-        theta: e.cross(&x) + turned.cross(&rate) + w.cross(&turned).cross(&bias),
-        omega: e.cross(&(rate + bias_turned)) + turned.cross(&bias),
-        vector: x + (rate + bias_turned).cross(w),
+        theta: e.cross(&x)
+            + turned.cross(&rate)
+            + (w.cross(&turned) + motion.alpha.cross(e)).cross(&second),
+        omega: e.cross(&by_turned) + turned.cross(&second),
+        alpha: e.cross(&second),
+        vector: x + by_turned.cross(w) + second.cross(&motion.alpha),
     }
 }

@@ -6,6 +6,7 @@
 //! δq = T(q) δy, so the Euler parameters stay of unit length and need no multiplier.
 //! Nothing here knows how time is discretised.
 
+pub mod accelerations;
 pub mod assembly;
 pub mod bodies;
 pub mod constraint;
@@ -16,6 +17,7 @@ pub mod marker;
 pub mod numbering;
 pub mod observe;
 pub mod rank;
+pub mod tree;
 
 pub use bodies::Motion;
 pub use numbering::Numbering;

@@ -92,7 +92,7 @@ impl Case {
         let mut all = vec![Complex64::from(0.0); 3 * rows];
         joints::values(model, numbering, &motions, &mut all[..rows]);
         joints::rates(model, numbering, &motions, &mut all[rows..2 * rows]);
-        joints::biases(model, numbering, &motions, &mut all[2 * rows..]);
+        joints::accelerations(model, numbering, &motions, &mut all[2 * rows..]);
         slopes(&all)
     }
 

@@ -7,7 +7,7 @@
 pub mod cases;
 pub mod models;
 
-use flexbody::integrate::{Method, Settings, Trajectory, simulate};
+use flexbody::integrate::{Trajectory, multipliers};
 use flexbody::math::{Mat3, Vec3};
 use flexbody::model::{JointKind, Model, RigidBody};
 use flexbody::system::observe::reactions;
@@ -131,26 +131,13 @@ fn model(scene: &Value) -> Model<f64> {
     }
 }
 
-/// Runs BDF of the given order with steps of size `h`.
-pub fn bdf(model: &Model<f64>, duration: f64, h: f64, order: usize) -> Trajectory<f64> {
-    let settings = Settings {
-        steps: (duration / h).round() as usize,
-        method: Method::Bdf { order },
-    };
-    simulate(model, duration, &settings).expect("runs")
-}
-
-/// Observed order of an error that a step of half the size makes smaller.
-pub fn observed_order(coarse: f64, fine: f64) -> f64 {
-    (coarse / fine).log2()
-}
-
 /// Largest distance of a centre of mass from the reference [m], and largest difference of its
-/// velocity [m/s], over all bodies and the reference instants within the run, which are ends of
-/// steps.
+/// velocity [m/s], over all bodies and the reference instants that are samples of the run.
 pub fn motion_error(run: &Trajectory<f64>, reference: &[Instant]) -> (f64, f64) {
     let (mut position, mut velocity) = (0.0_f64, 0.0_f64);
-    for (k, at) in within(run, reference) {
+    let mut compared = 0;
+    for (k, at) in common(run, reference) {
+        compared += 1;
         for body in 0..at.centres.len() {
             let r = &run.q(k)[run.numbering.position(body)..];
             let v = &run.v(k)[run.numbering.velocity(body)..];
@@ -158,31 +145,28 @@ pub fn motion_error(run: &Trajectory<f64>, reference: &[Instant]) -> (f64, f64) 
             velocity = velocity.max((Vec3::new(v[0], v[1], v[2]) - at.velocities[body]).norm());
         }
     }
+    assert!(compared > 1, "no reference instant is sampled");
     (position, velocity)
 }
 
-/// The reference instants within the run with the steps that end there.
-fn within<'a>(
+/// The reference instants that are sampled, with their samples.
+fn common<'a>(
     run: &'a Trajectory<f64>,
     reference: &'a [Instant],
 ) -> impl Iterator<Item = (usize, &'a Instant)> {
-    let step = |at: &'a Instant| {
-        let k = (at.time / run.h).round();
-        assert!(
-            (k * run.h - at.time).abs() < 1e-9,
-            "reference instants are ends of steps"
-        );
-        (k as usize, at)
-    };
-    reference.iter().map(step).filter(|(k, _)| *k <= run.steps)
+    reference.iter().filter_map(|at| {
+        let near = |k: &usize| (run.time(*k) - at.time).abs() < 1e-9;
+        Some(((0..=run.last()).find(near)?, at))
+    })
 }
 
 /// Largest difference of a joint's reaction (force [N] or torque about its point [N m], on body A,
 /// ground axes) from the reference, relative to the largest reaction at any of its instants.
 pub fn reaction_error(model: &Model<f64>, run: &Trajectory<f64>, reference: &[Instant]) -> f64 {
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
-    for (k, at) in within(run, reference) {
-        let found = reactions(model, &run.numbering, run.q(k), run.lambda(k));
+    for (k, at) in common(run, reference) {
+        let lambda = multipliers(model, run, k);
+        let found = reactions(model, &run.numbering, run.q(k), &lambda);
         for (joint, found) in model.joints.iter().zip(&found) {
             let expected = &at.value["reactions"][&joint.name];
             for (key, found) in [

@@ -1,0 +1,163 @@
+//! The backward march through DOP853 and its projections.
+//!
+//! With k_i = (q̇_i, v̇_i) the derivatives at the stages, a bar the derivative of the function, and
+//! F the map from a stage's state to its derivatives, step n backwards is
+//!
+//! ```text
+//! ȳ*  += Fᵀ k̄_0(n+1)                           the node's own derivatives
+//! ȳ~   = (projection)ᵀ ȳ*
+//! k̄_i += h b_i ȳ~,     ȳ_n = ȳ~
+//! i = 11 … 1:   ȳ_i = Fᵀ k̄_i,   k̄_j += h a_ij ȳ_i,   ȳ_n += ȳ_i
+//! df/dh = Σ ȳ~ · b_i k_i + Σ ȳ_i · a_ij k_j
+//! ```
+//!
+//! (Hager 2000; Sandu 2006.) One symmetric solve a stage and function; the factors of a stage
+//! serve all functions.
+
+mod projection;
+mod sweep;
+
+use super::AdjointRun;
+use super::sensitivity::Sensitivity;
+use crate::functions::Scene;
+use crate::integrate::explicit::tableau::{A, ALL, END, STAGES};
+use crate::integrate::explicit::{Node, StepData, Stepper, Tape};
+use crate::integrate::grid::Place;
+use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
+use crate::linalg::SingularMatrix;
+use crate::system::accelerations::Accelerations;
+use crate::system::bodies;
+use crate::system::kkt::SaddlePoint;
+use crate::system::rank;
+use sweep::Sweep;
+
+/// See [`super::gradients`].
+pub(super) fn gradients(
+    scene: &Scene<f64>,
+    run: &Trajectory<f64>,
+    tape: &Tape<f64>,
+    which: &[usize],
+) -> Result<AdjointRun, IntegrationFailure> {
+    let (model, numbering) = (&scene.model, &run.numbering);
+    let new = |&own: &usize| Sweep::new(Sensitivity::new(scene, run, own), numbering);
+    let mut sweeps: Vec<Sweep> = which.iter().map(new).collect();
+    let mut field = Accelerations::new(model, numbering);
+    let mut scratch = scene.zero_cotangent().model;
+    let mut again = tape
+        .steps
+        .is_empty()
+        .then(|| Stepper::new(model, numbering));
+    let mut sample = run.last();
+    let mut counts = WorkCounts::default();
+    for n in (1..=run.grid.steps()).rev() {
+        let h = run.duration * run.grid.width(n);
+        let (from, to) = (&tape.nodes[n - 1], &tape.nodes[n]);
+        let first = first_sample(run, n, sample);
+        let inside = |place: &Place| matches!(place, Place::Inside { .. });
+        let dense = run.places[first..=sample].iter().any(inside);
+        let singular = |_| IntegrationFailure::Singular {
+            time: run.duration * run.grid.ends()[n],
+            step: n,
+            place: rank::explain(model, &to.q).to_string(),
+        };
+        let data = match &mut again {
+            None => &tape.steps[n - 1],
+            Some(stepper) => repeat(stepper, (from, to), h, dense).ok_or_else(|| {
+                let column = 0;
+                singular(SingularMatrix { column })
+            })?,
+        };
+        for k in (first..=sample).rev() {
+            for sweep in &mut sweeps {
+                sweep.sample(scene, run, k, Some((data, from)));
+            }
+        }
+        sample = first - 1;
+        let stage = |i: usize, field: &mut Accelerations<f64>, sweeps: &mut [Sweep]| {
+            if sweeps.iter().all(|sweep| !sweep.touched[i]) {
+                return Ok(());
+            }
+            let (nq, nv, nc) = (from.q.len(), from.v.len(), from.lambda.len());
+            let (q, v) = (row(&data.q, nq, i), row(&data.v, nv, i));
+            field.stand(q, v);
+            field.factorise()?;
+            let found = (row(&data.a, nv, i), row(&data.lambda, nc, i));
+            for sweep in sweeps {
+                sweep.stage(i, field, (q, v), found);
+                sweep.spread(i, A[i], h, run.grid.width(n), data);
+            }
+            Ok(())
+        };
+        if dense {
+            for i in (END + 1..ALL).rev() {
+                stage(i, &mut field, &mut sweeps).map_err(singular)?;
+            }
+        }
+        field.stand(&to.q, &to.v);
+        field.factorise().map_err(singular)?;
+        for sweep in &mut sweeps {
+            sweep.node(&mut field, to);
+            projection::pull_back(sweep, &mut field, data, to, &mut scratch);
+            sweep.end(h, run.grid.width(n), data);
+        }
+        for i in (1..STAGES).rev() {
+            stage(i, &mut field, &mut sweeps).map_err(singular)?;
+        }
+        for sweep in &mut sweeps {
+            sweep.leave_step();
+        }
+        counts.steps += 1;
+    }
+    counts.factorisations += field.factorisations;
+    counts.solves += field.solves;
+    if let Some(stepper) = &again {
+        counts.factorisations += stepper.field.factorisations;
+        counts.solves += stepper.field.solves;
+    }
+    let mut saddle = SaddlePoint::new(model, numbering);
+    let start = &tape.nodes[0];
+    for sweep in &mut sweeps {
+        sweep.sample(scene, run, 0, None);
+        sweep.node_rates(numbering, start);
+        let mut y = vec![0.0; start.v.len()];
+        bodies::tangent_of_cotangent(numbering, &start.q, &sweep.of.q, &mut y);
+        let (v, a) = (sweep.of.v.clone(), sweep.node.1.clone());
+        sweep
+            .of
+            .finish(scene, run, &mut saddle, (&y, &v, &a), &mut counts)?;
+    }
+    Ok(AdjointRun {
+        gradients: sweeps.into_iter().map(|sweep| sweep.of.cot).collect(),
+        counts,
+    })
+}
+
+/// The first of the samples up to `last` that stand in step n.
+fn first_sample(run: &Trajectory<f64>, n: usize, last: usize) -> usize {
+    let stands = |place: &Place| match *place {
+        Place::Node(k) => k == n,
+        Place::Inside { step, .. } => step == n,
+    };
+    let earlier = run.places[..=last].iter().rev();
+    last + 1 - earlier.take_while(|place| stands(place)).count()
+}
+
+/// Makes a step whose stages were not kept once more.
+fn repeat<'s>(
+    stepper: &'s mut Stepper<f64>,
+    (from, to): (&Node<f64>, &Node<f64>),
+    h: f64,
+    dense: bool,
+) -> Option<&'s StepData<f64>> {
+    let mut end = to.clone();
+    stepper.stages(from, h).ok()?;
+    stepper.finish(&mut end).ok()?;
+    if dense {
+        stepper.dense_stages(from, to, h).ok()?;
+    }
+    Some(&stepper.data)
+}
+
+fn row(rows: &[f64], width: usize, i: usize) -> &[f64] {
+    &rows[i * width..(i + 1) * width]
+}

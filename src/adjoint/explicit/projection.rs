@@ -1,0 +1,82 @@
+//! The projections of a step, backwards.
+
+use super::sweep::Sweep;
+use crate::adjoint::sensitivity::Sensitivity;
+use crate::integrate::explicit::{Node, StepData};
+use crate::math::{Vec3, rotation};
+use crate::model::Model;
+use crate::system::accelerations::Accelerations;
+use crate::system::bodies::{self, add7, positions_of, velocities_of};
+
+/// Pulls the cotangents of the projected state (`sweep.of`) back to the state before the
+/// projection; `field` stands at the projected state and is factorised. `scratch` receives
+/// derivatives that are of no use.
+pub(super) fn pull_back(
+    sweep: &mut Sweep,
+    field: &mut Accelerations<f64>,
+    data: &StepData<f64>,
+    to: &Node<f64>,
+    scratch: &mut Model<f64>,
+) {
+    let numbering = field.numbering;
+    let nv = to.v.len();
+    let Sensitivity { q, v, cot, .. } = &mut sweep.of;
+    let cot = &mut cot.model;
+    let mut y = vec![0.0; nv];
+    bodies::tangent_of_cotangent(numbering, &to.q, q, &mut y);
+
+    // M δ + Gᵀσ = 0, G (v~ + δ) = 0.
+    let mut psi = v.to_vec();
+    psi.resize(nv + to.lambda.len(), 0.0);
+    field.solve(&mut psi);
+    bodies::mass_product(field.model, numbering, &psi[..nv], v);
+    psi.iter_mut().for_each(|x| *x = -*x);
+    for (i, body) in cot.bodies.iter_mut().enumerate() {
+        let o = numbering.velocity(i);
+        let (psi_r, psi_theta) = velocities_of(&psi[o..]);
+        let (d_r, d_theta) = velocities_of(&data.delta[o..]);
+        body.mass += psi_r.dot(&d_r);
+        body.inertia += psi_theta * d_theta.transpose();
+    }
+    field.pull_rate(&psi[..nv], &data.sigma, &mut y, cot);
+    field.pull_rate(&to.v, &psi[nv..], &mut y, cot);
+
+    // M T⁺ (q − q~) + Gᵀs = 0, Φ(q) = 0: its matrix differs from the factorised one by terms of
+    // the size of the correction, which one step of refinement takes in.
+    let mut psi = y.clone();
+    psi.resize(nv + to.lambda.len(), 0.0);
+    field.solve(&mut psi);
+    let mut rest = vec![0.0; nv];
+    field.pull_rate(&psi[..nv], &data.s, &mut rest, scratch);
+    for (i, body) in field.model.bodies.iter().enumerate() {
+        let (o, u) = (numbering.position(i), numbering.velocity(i));
+        let (_, p) = positions_of(&to.q[o..]);
+        let (_, raw) = positions_of(&data.q_raw[o..]);
+        let w = body.inertia.tr_mul(&velocities_of(&psi[u..]).1);
+        let turned = rotation::rate_product(&p, &rotation::rate_transposed(&raw, &w)) - w;
+        bodies::add6(&mut rest[u..], &Vec3::zeros(), &turned);
+    }
+    rest.resize(psi.len(), 0.0);
+    field.solve(&mut rest);
+    psi.iter_mut().zip(&rest).for_each(|(x, &d)| *x = d - *x);
+    let mut unused = vec![0.0; nv];
+    field.pull_rate(&psi[..nv], &data.s, &mut unused, cot);
+    field.pull_constraints(&psi[nv..], &mut unused, cot);
+    q.fill(0.0);
+    for (i, body) in field.model.bodies.iter().enumerate() {
+        let (o, u) = (numbering.position(i), numbering.velocity(i));
+        let (r, p) = positions_of(&to.q[o..]);
+        let (r_raw, p_raw) = positions_of(&data.q_raw[o..]);
+        let (psi_r, psi_theta) = velocities_of(&psi[u..]);
+        let away = std::array::from_fn(|k| p[k] - p_raw[k]);
+        let turned: Vec3<f64> = rotation::angular_velocity(&p, &away);
+        cot.bodies[i].mass += psi_r.dot(&(r - r_raw));
+        cot.bodies[i].inertia += psi_theta * turned.transpose();
+        let w = body.inertia.tr_mul(&psi_theta) * -2.0;
+        add7(
+            &mut q[o..],
+            &(psi_r * -body.mass),
+            &rotation::rate_transposed(&p, &w),
+        );
+    }
+}

@@ -1,0 +1,228 @@
+//! One function on its way back through the stages of a step.
+
+use super::row;
+use crate::adjoint::sensitivity::{Sensitivity, add_scaled, dot};
+use crate::functions::Scene;
+use crate::integrate::Trajectory;
+use crate::integrate::explicit::tableau::{ALL, B, END, dense_weights};
+use crate::integrate::explicit::{Node, StepData};
+use crate::integrate::grid::Place;
+use crate::math::{Vec3, rotation};
+use crate::system::Numbering;
+use crate::system::accelerations::Accelerations;
+use crate::system::bodies::{self, add7, positions_of, velocities_of};
+
+/// One function with its cotangents of the stages.
+pub(super) struct Sweep<'a> {
+    /// Cotangents of the node after the step, and of the parameters.
+    pub of: Sensitivity<'a>,
+    /// Cotangents of q̇ and v̇ at the node after the step, as the step after it uses them.
+    pub node: (Vec<f64>, Vec<f64>),
+    /// Which stages have cotangents.
+    pub touched: [bool; ALL],
+    /// Cotangents of q̇ and v̇ at the stages.
+    qdot: Vec<f64>,
+    a: Vec<f64>,
+    /// Cotangents of the node before the step.
+    before: (Vec<f64>, Vec<f64>),
+}
+
+impl<'a> Sweep<'a> {
+    pub fn new(of: Sensitivity<'a>, numbering: &Numbering) -> Self {
+        let (nq, nv) = (numbering.positions(), numbering.velocities());
+        Self {
+            of,
+            node: (vec![0.0; nq], vec![0.0; nv]),
+            touched: [false; ALL],
+            qdot: vec![0.0; ALL * nq],
+            a: vec![0.0; ALL * nv],
+            before: (vec![0.0; nq], vec![0.0; nv]),
+        }
+    }
+
+    /// Adds the function's own derivatives at sample k; `inside` is the step that it stands in and
+    /// the node that this starts from.
+    pub fn sample(
+        &mut self,
+        scene: &Scene<f64>,
+        run: &Trajectory<f64>,
+        k: usize,
+        inside: Option<(&StepData<f64>, &Node<f64>)>,
+    ) {
+        if !self.of.linearise(scene, run, k) {
+            return;
+        }
+        let numbering = &run.numbering;
+        let (nq, nv) = (numbering.positions(), numbering.velocities());
+        let [y, v, a] = &self.of.sample;
+        let mut q = vec![0.0; nq];
+        match (run.places[k], inside) {
+            (Place::Inside { step, theta }, Some((data, from))) => {
+                let width = run.grid.width(step);
+                let h = run.duration * width;
+                let [raw, ..] = data.dense(from, h, theta);
+                add_unit_cotangent(numbering, &raw, y, &mut q);
+                let (w, rate) = dense_weights(theta);
+                for i in 0..ALL {
+                    if w[i] == 0.0 && rate[i] == 0.0 {
+                        continue;
+                    }
+                    self.touched[i] = true;
+                    add_scaled(row_mut(&mut self.qdot, nq, i), h * w[i], &q);
+                    let by_a = row_mut(&mut self.a, nv, i);
+                    add_scaled(by_a, h * w[i], v);
+                    add_scaled(by_a, rate[i], a);
+                    let slope = dot(&q, row(&data.qdot, nq, i)) + dot(v, row(&data.a, nv, i));
+                    self.of.by_duration += width * w[i] * slope;
+                }
+                add_scaled(&mut self.before.0, 1.0, &q);
+                add_scaled(&mut self.before.1, 1.0, v);
+            }
+            _ => {
+                bodies::rates_cotangent(numbering, run.q(k), y, &mut q);
+                add_scaled(&mut self.of.q, 1.0, &q);
+                add_scaled(&mut self.of.v, 1.0, v);
+                add_scaled(&mut self.node.1, 1.0, a);
+            }
+        }
+    }
+
+    /// Pulls the cotangents of stage i back to its state, where `field` stands, and leaves them in
+    /// `of.sample`'s place of the stage (see [`Sweep::spread`]).
+    pub fn stage(
+        &mut self,
+        i: usize,
+        field: &mut Accelerations<f64>,
+        (q, v): (&[f64], &[f64]),
+        found: (&[f64], &[f64]),
+    ) {
+        let numbering = field.numbering;
+        let (nq, nv) = (q.len(), v.len());
+        let (qdot_bar, a_bar) = (row(&self.qdot, nq, i), row(&self.a, nv, i));
+        let (mut q_bar, mut v_bar, mut y) = (vec![0.0; nq], vec![0.0; nv], vec![0.0; nv]);
+        pull_rates(numbering, (q, v), qdot_bar, (&mut q_bar, &mut v_bar));
+        let cot = &mut self.of.cot.model;
+        field.pull_back(found, a_bar, (&mut y, &mut v_bar), cot);
+        add_unit_cotangent(numbering, q, &y, &mut q_bar);
+        row_mut(&mut self.qdot, nq, i).copy_from_slice(&q_bar);
+        row_mut(&mut self.a, nv, i).copy_from_slice(&v_bar);
+    }
+
+    /// Hands the cotangents of stage i's state on to the stages that it was made of and to the node
+    /// before the step.
+    pub fn spread(
+        &mut self,
+        i: usize,
+        weights: &[(usize, f64)],
+        h: f64,
+        width: f64,
+        data: &StepData<f64>,
+    ) {
+        let (nq, nv) = (self.of.q.len(), self.of.v.len());
+        let q = row(&self.qdot, nq, i).to_vec();
+        let v = row(&self.a, nv, i).to_vec();
+        add_scaled(&mut self.before.0, 1.0, &q);
+        add_scaled(&mut self.before.1, 1.0, &v);
+        self.hand_on(weights, (&q, &v), h, width, data);
+    }
+
+    fn hand_on(
+        &mut self,
+        weights: &[(usize, f64)],
+        (q, v): (&[f64], &[f64]),
+        h: f64,
+        width: f64,
+        data: &StepData<f64>,
+    ) {
+        let mut slope = 0.0;
+        for &(j, weight) in weights {
+            self.touched[j] = true;
+            add_scaled(row_mut(&mut self.qdot, q.len(), j), h * weight, q);
+            add_scaled(row_mut(&mut self.a, v.len(), j), h * weight, v);
+            slope +=
+                weight * (dot(q, row(&data.qdot, q.len(), j)) + dot(v, row(&data.a, v.len(), j)));
+        }
+        self.of.by_duration += width * slope;
+    }
+
+    /// Pulls the cotangents of the derivatives at the node after the step back to its state, where
+    /// `field` stands.
+    pub fn node(&mut self, field: &mut Accelerations<f64>, to: &Node<f64>) {
+        let (nq, nv) = (to.q.len(), to.v.len());
+        if self.touched[END] {
+            add_scaled(&mut self.node.0, 1.0, row(&self.qdot, nq, END));
+            add_scaled(&mut self.node.1, 1.0, row(&self.a, nv, END));
+        }
+        self.node_rates(field.numbering, to);
+        if self.node.1.iter().any(|&x| x != 0.0) {
+            let mut y = vec![0.0; nv];
+            let Sensitivity { q, v, cot, .. } = &mut self.of;
+            let found = (&to.a[..], &to.lambda[..]);
+            field.pull_back(found, &self.node.1, (&mut y, v), &mut cot.model);
+            add_unit_cotangent(field.numbering, &to.q, &y, q);
+        }
+    }
+
+    /// Pulls the cotangent of q̇ at the node back to its state.
+    pub fn node_rates(&mut self, numbering: &Numbering, to: &Node<f64>) {
+        let Sensitivity { q, v, .. } = &mut self.of;
+        pull_rates(numbering, (&to.q, &to.v), &self.node.0, (q, v));
+    }
+
+    /// Hands the cotangents of the unprojected end on to the stages and to the node before.
+    pub fn end(&mut self, h: f64, width: f64, data: &StepData<f64>) {
+        let (q, v) = (self.of.q.clone(), self.of.v.clone());
+        add_scaled(&mut self.before.0, 1.0, &q);
+        add_scaled(&mut self.before.1, 1.0, &v);
+        self.hand_on(B, (&q, &v), h, width, data);
+    }
+
+    /// Moves to the node before the step.
+    pub fn leave_step(&mut self) {
+        std::mem::swap(&mut self.of.q, &mut self.before.0);
+        std::mem::swap(&mut self.of.v, &mut self.before.1);
+        self.before.0.fill(0.0);
+        self.before.1.fill(0.0);
+        let (nq, nv) = (self.of.q.len(), self.of.v.len());
+        self.node.0.copy_from_slice(&self.qdot[..nq]);
+        self.node.1.copy_from_slice(&self.a[..nv]);
+        self.qdot.fill(0.0);
+        self.a.fill(0.0);
+        self.touched = [false; ALL];
+    }
+}
+
+/// Pulls the cotangent of q̇ = T(q) v back to q and v.
+fn pull_rates(
+    numbering: &Numbering,
+    (q, v): (&[f64], &[f64]),
+    qdot_bar: &[f64],
+    (q_bar, v_bar): (&mut [f64], &mut [f64]),
+) {
+    for body in 0..numbering.bodies() {
+        let (o, u) = (numbering.position(body), numbering.velocity(body));
+        let (_, p) = positions_of(&q[o..]);
+        let (_, omega) = velocities_of(&v[u..]);
+        let (by_r, by_p) = positions_of(&qdot_bar[o..]);
+        // ½ L(p)ᵀ ω is linear in p by a skew matrix.
+        let turned = rotation::rates(&by_p, &omega).map(|x| -x);
+        add7(&mut q_bar[o..], &Vec3::zeros(), &turned);
+        let by_omega = rotation::rate_product(&p, &by_p) * 0.5;
+        bodies::add6(&mut v_bar[u..], &by_r, &by_omega);
+    }
+}
+
+/// Adds the cotangent of positions whose Euler parameters are brought to unit length, given the
+/// cotangent of the tangent.
+fn add_unit_cotangent(numbering: &Numbering, q: &[f64], y: &[f64], out: &mut [f64]) {
+    for body in 0..numbering.bodies() {
+        let o = numbering.position(body);
+        let (_, p) = positions_of(&q[o..]);
+        let (by_r, by_theta) = velocities_of(&y[numbering.velocity(body)..]);
+        add7(&mut out[o..], &by_r, &rotation::unit_pull_back(&p, &by_theta));
+    }
+}
+
+fn row_mut(rows: &mut [f64], width: usize, i: usize) -> &mut [f64] {
+    &mut rows[i * width..(i + 1) * width]
+}

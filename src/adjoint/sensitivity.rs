@@ -1,0 +1,109 @@
+//! One function on its way back: its cotangents at the samples and at the state that the march
+//! has reached, and its derivatives in the parameters so far.
+
+use crate::functions::evaluate::Linearised;
+use crate::functions::measure::{Snapshot, SnapshotCotangent};
+use crate::functions::Scene;
+use crate::integrate::Trajectory;
+use crate::linalg::REFINED_SOLVES;
+use crate::integrate::{IntegrationFailure, WorkCounts};
+use crate::system::initial;
+use crate::system::kkt::SaddlePoint;
+
+/// One function on its way back.
+pub(super) struct Sensitivity<'a> {
+    linearised: Linearised<'a>,
+    own: usize,
+    /// Derivatives in the parameters of the scene so far.
+    pub cot: Scene<f64>,
+    /// Derivative in the duration by way of the step sizes.
+    pub by_duration: f64,
+    /// Cotangent of the positions that the march has reached, in their seven coordinates.
+    pub q: Vec<f64>,
+    /// Cotangent of the velocities there.
+    pub v: Vec<f64>,
+    /// Partial derivatives at a sample: by tangent positions, velocities and accelerations.
+    pub sample: [Vec<f64>; 3],
+}
+
+impl<'a> Sensitivity<'a> {
+    /// Function `own` of the scene at the end of `run`.
+    pub fn new(scene: &'a Scene<f64>, run: &Trajectory<f64>, own: usize) -> Self {
+        let (nq, nv) = (run.numbering.positions(), run.numbering.velocities());
+        Self {
+            linearised: Linearised::new(&scene.functions[own], &scene.model, run),
+            own,
+            cot: scene.zero_cotangent(),
+            by_duration: 0.0,
+            q: vec![0.0; nq],
+            v: vec![0.0; nv],
+            sample: std::array::from_fn(|_| vec![0.0; nv]),
+        }
+    }
+
+    /// Puts the partial derivatives of the function at sample k into `sample`; false if there are
+    /// none.
+    pub fn linearise(&mut self, scene: &Scene<f64>, run: &Trajectory<f64>, k: usize) -> bool {
+        if !self.linearised.depends_on(k) {
+            return false;
+        }
+        for part in &mut self.sample {
+            part.fill(0.0);
+        }
+        let [y, v, a] = &mut self.sample;
+        let mut out = SnapshotCotangent {
+            y,
+            v,
+            a,
+            model: &mut self.cot.model,
+        };
+        let own = &mut self.cot.functions[self.own];
+        self.linearised
+            .pull_back(k, &Snapshot::of(&scene.model, run, k), &mut out, own);
+        true
+    }
+
+    /// Pulls the cotangents of the initial state (tangent positions, velocities, accelerations)
+    /// back to the parameters, and adds what is left: derivatives in the duration and in
+    /// parameters that no instant depends on.
+    ///
+    /// # Errors
+    /// If the equations of the initial state are singular.
+    pub fn finish(
+        &mut self,
+        scene: &Scene<f64>,
+        run: &Trajectory<f64>,
+        saddle: &mut SaddlePoint<f64>,
+        bars: (&[f64], &[f64], &[f64]),
+        counts: &mut WorkCounts,
+    ) -> Result<(), IntegrationFailure> {
+        let before = saddle.factorisations;
+        let cot = &mut self.cot;
+        initial::pull_back(
+            &scene.model,
+            &run.numbering,
+            saddle,
+            &run.initial,
+            bars,
+            &mut cot.model,
+        )?;
+        counts.factorisations += saddle.factorisations - before;
+        counts.solves += REFINED_SOLVES * (saddle.factorisations - before);
+        cot.duration = self.by_duration + self.linearised.by_duration;
+        self.linearised
+            .pull_back_parameters(&mut cot.functions[self.own]);
+        Ok(())
+    }
+}
+
+/// Adds `scale` times `x`.
+pub(super) fn add_scaled(out: &mut [f64], scale: f64, x: &[f64]) {
+    for (out, x) in out.iter_mut().zip(x) {
+        *out += scale * x;
+    }
+}
+
+/// The sum of products.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,241 @@
+//! Step size control: what errors are measured against, and how large the next step is.
+
+use super::settings::Spacing;
+use crate::math::Scalar;
+use crate::model::Model;
+use crate::system::initial::InitialState;
+use crate::system::{Numbering, assembly};
+
+/// Safety factor of the next step, and how much it may shrink or grow.
+const SAFETY: f64 = 0.9;
+const SHRINK: f64 = 0.2;
+const GROW: f64 = 6.0;
+/// Smallest step, as a part of the duration.
+const SMALLEST: f64 = 1e-12;
+/// Most steps and tries of an adaptive run.
+const MOST: usize = 50_000_000;
+
+/// Lengths and speeds of a scene that errors are relative to.
+#[derive(Clone, Copy, Debug)]
+pub struct Scale {
+    /// Length (m).
+    pub length: f64,
+    /// Least speed (m/s) and angular speed (rad/s) to be relative to.
+    pub floor: [f64; 2],
+}
+
+impl Scale {
+    /// The scale of a model that starts in `start` and moves for `duration` (s): its largest lever
+    /// arm; the speed at its start or that of a fall over the length.
+    pub fn of<S: Scalar>(
+        model: &Model<S>,
+        numbering: &Numbering,
+        start: &InitialState<S>,
+        duration: f64,
+    ) -> Self {
+        let length = assembly::length_scale(model);
+        let gravity = largest(model.gravity.as_slice());
+        let fall = (gravity * length).sqrt();
+        let [speed, spin] = fastest(numbering, &start.v);
+        let drift = if fall > 0.0 { fall } else { length / duration };
+        Self {
+            length,
+            floor: [speed.max(drift), spin.max(drift / length)],
+        }
+    }
+
+    /// Speeds that the errors of a step between the velocities `v` and `w` are relative to.
+    pub fn speeds<S: Scalar>(&self, numbering: &Numbering, v: &[S], w: &[S]) -> [f64; 2] {
+        let (v, w) = (fastest(numbering, v), fastest(numbering, w));
+        std::array::from_fn(|i| self.floor[i].max(v[i]).max(w[i]))
+    }
+
+    /// Mean square of a difference of positions and velocities, each relative to its scale.
+    pub fn square<S: Scalar>(
+        &self,
+        numbering: &Numbering,
+        q: &[S],
+        v: &[S],
+        speeds: [f64; 2],
+    ) -> f64 {
+        let part = |x: &[S], scale: f64| -> f64 {
+            x.iter().map(|x| (x.re() / scale) * (x.re() / scale)).sum()
+        };
+        let mut sum = 0.0;
+        for body in 0..numbering.bodies() {
+            let q = &q[numbering.position(body)..][..7];
+            let v = &v[numbering.velocity(body)..][..6];
+            sum += part(&q[..3], self.length) + part(&q[3..], 1.0);
+            sum += part(&v[..3], speeds[0]) + part(&v[3..], speeds[1]);
+        }
+        sum / (q.len() + v.len()).max(1) as f64
+    }
+}
+
+fn fastest<S: Scalar>(numbering: &Numbering, v: &[S]) -> [f64; 2] {
+    let mut most = [0.0_f64; 2];
+    for body in 0..numbering.bodies() {
+        let v = &v[numbering.velocity(body)..][..6];
+        most[0] = most[0].max(largest(&v[..3]));
+        most[1] = most[1].max(largest(&v[3..]));
+    }
+    most
+}
+
+fn largest<S: Scalar>(x: &[S]) -> f64 {
+    x.iter().fold(0.0, |m, x| m.max(x.re().abs()))
+}
+
+/// Gives the width of one step after the other, in fractions of the duration.
+#[derive(Clone, Debug)]
+pub struct Controller {
+    plan: Plan,
+    /// Exponent 1/m of the controller.
+    exponent: f64,
+    /// Factor for the step to come.
+    factor: f64,
+    rejected: bool,
+    latest: f64,
+    largest: f64,
+    /// Tries so far.
+    tries: usize,
+}
+
+#[derive(Clone, Debug)]
+enum Plan {
+    /// Ends that are given, and how many were reached.
+    Given { ends: Vec<f64>, next: usize },
+    /// Chosen by the error: tolerance and width of the next step.
+    Chosen { tolerance: f64, width: f64 },
+}
+
+impl Controller {
+    /// A controller for a method whose steps have an error of the given order.
+    pub fn new(spacing: &Spacing, order: usize, scale: &Scale, duration: f64) -> Self {
+        let plan = match spacing {
+            Spacing::Steps(steps) => Plan::Given {
+                ends: (0..=*steps).map(|k| k as f64 / *steps as f64).collect(),
+                next: 1,
+            },
+            Spacing::Frozen(grid) => Plan::Given {
+                ends: grid.ends().to_vec(),
+                next: 1,
+            },
+            Spacing::Tolerance(tolerance) => {
+                // The time in which the scene crosses its length, made small by the tolerance.
+                let swing = (scale.length / scale.floor[0]).min(1.0 / scale.floor[1]);
+                let width = swing / duration * tolerance.powf(1.0 / order as f64);
+                Plan::Chosen {
+                    tolerance: *tolerance,
+                    width: width.clamp(SMALLEST, 0.1),
+                }
+            }
+        };
+        Self {
+            plan,
+            exponent: 1.0 / order as f64,
+            factor: 1.0,
+            rejected: false,
+            latest: 0.0,
+            largest: 0.0,
+            tries: 0,
+        }
+    }
+
+    /// Whether the controller chooses the steps.
+    pub fn chooses(&self) -> bool {
+        matches!(self.plan, Plan::Chosen { .. })
+    }
+
+    /// Width of the step from `reached`, or `None` at the end or if the steps became too small.
+    pub fn next(&mut self, reached: f64) -> Option<f64> {
+        match &mut self.plan {
+            Plan::Given { ends, next } => {
+                let end = *ends.get(*next)?;
+                Some(end - ends[*next - 1])
+            }
+            Plan::Chosen { width, .. } => {
+                let rest = 1.0 - reached;
+                if rest <= 0.0 || *width < SMALLEST || self.tries > MOST {
+                    return None;
+                }
+                self.tries += 1;
+                // Two equal steps rather than a whole one and a remainder.
+                if *width >= rest * (1.0 - 1e-10) {
+                    *width = rest;
+                } else if *width > 0.5 * rest {
+                    *width = 0.5 * rest;
+                }
+                Some(*width)
+            }
+        }
+    }
+
+    /// The end of a step of `width` from `reached`; the last one ends at 1 exactly.
+    pub fn end(&self, reached: f64, width: f64) -> f64 {
+        match &self.plan {
+            Plan::Given { ends, next } => ends[*next],
+            Plan::Chosen { .. } if width >= 1.0 - reached => 1.0,
+            Plan::Chosen { .. } => reached + width,
+        }
+    }
+
+    /// Whether a step whose error relative to the scale is `error` is accepted.
+    pub fn judge(&mut self, error: f64) -> bool {
+        match &mut self.plan {
+            Plan::Given { .. } => {
+                self.latest = error;
+                true
+            }
+            Plan::Chosen { tolerance, width } => {
+                let relative = error / *tolerance;
+                self.latest = error;
+                let most = if self.rejected { 1.0 } else { GROW };
+                let factor = (SAFETY * relative.powf(-self.exponent)).clamp(SHRINK, most);
+                if relative <= 1.0 {
+                    self.factor = factor;
+                    true
+                } else {
+                    *width *= if relative.is_finite() { factor.min(SAFETY) } else { SHRINK };
+                    self.rejected = true;
+                    false
+                }
+            }
+        }
+    }
+
+    /// Records that the step was made.
+    pub fn accept(&mut self) {
+        self.largest = self.largest.max(self.latest);
+        self.rejected = false;
+        match &mut self.plan {
+            Plan::Given { next, .. } => *next += 1,
+            Plan::Chosen { width, .. } => *width *= self.factor,
+        }
+    }
+
+    /// Whether a step that could not be made is the end; otherwise a smaller one is tried.
+    pub fn give_up(&mut self) -> bool {
+        match &mut self.plan {
+            Plan::Given { .. } => true,
+            Plan::Chosen { width, .. } => {
+                *width *= SHRINK;
+                self.rejected = true;
+                *width < SMALLEST
+            }
+        }
+    }
+
+    /// Whether the march ended because the steps became too small.
+    pub fn too_small(&self) -> bool {
+        match &self.plan {
+            Plan::Given { .. } => false,
+            Plan::Chosen { width, .. } => *width < SMALLEST || self.tries > MOST,
+        }
+    }
+
+    /// Largest error of an accepted step, relative to the scale.
+    pub fn largest_error(&self) -> f64 {
+        self.largest
+    }
+}

@@ -1,0 +1,235 @@
+//! The march of the explicit method over given or chosen steps.
+
+use super::step::{Node, StepFailure, Stepper};
+use super::tableau::{ORDER, STAGES};
+use super::{StepData, Tape};
+use crate::integrate::control::{Controller, Scale};
+use crate::integrate::failure::IntegrationFailure;
+use crate::integrate::grid::{Place, place};
+use crate::integrate::settings::{Method, Settings, Spacing};
+use crate::integrate::trajectory::{self, Trajectory};
+use crate::linalg::SolveScalar;
+use crate::math::rotation;
+use crate::model::Model;
+use crate::system::bodies::positions_of;
+use crate::system::initial::InitialState;
+use crate::system::{Numbering, rank};
+
+/// h |λ| beyond which an explicit step is at the border of its stability region (Hairer & Wanner
+/// 1996, section IV.2), and how many such steps make a scene stiff.
+const STIFF: (f64, usize) = (6.1, 15);
+/// Steps within the stability region after which a suspicion is dropped.
+const NOT_STIFF: usize = 6;
+
+/// Integrates from a consistent start.
+///
+/// # Errors
+/// [`IntegrationFailure`] says what failed, when and where.
+pub fn march<S: SolveScalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    duration: S,
+    settings: &Settings,
+    start: InitialState<S>,
+) -> Result<Trajectory<S>, IntegrationFailure> {
+    let mut stepper = Stepper::new(model, numbering);
+    let node = Node {
+        q: start.q.clone(),
+        v: start.v.clone(),
+        a: start.a.clone(),
+        lambda: start.lambda.clone(),
+    };
+    let tape = trajectory::Tape::Explicit(Tape {
+        nodes: vec![node.clone()],
+        steps: Vec::new(),
+    });
+    let scale = Scale::of(model, numbering, &start, duration.re());
+    let mut run = Trajectory::start(numbering.clone(), Method::Dop853, duration, start, tape);
+    let mut controller = Controller::new(&settings.spacing, ORDER, &scale, duration.re());
+    let mut stiffness = Stiffness::default();
+    let (mut from, mut to) = (node.clone(), node);
+    let mut next = 1;
+    while let Some(width) = controller.next(run.grid.reached()) {
+        let h = duration * width;
+        let end = controller.end(run.grid.reached(), width);
+        let tried = stepper
+            .stages(&from, h)
+            .map(|()| error(&stepper, &scale, &from, h))
+            .and_then(|error| {
+                let accepted = controller.judge(error);
+                if accepted {
+                    stepper.finish(&mut to)?;
+                }
+                Ok(accepted)
+            });
+        let number = run.grid.steps() + 1;
+        run.counts.evaluations += STAGES;
+        match tried {
+            Ok(true) => {}
+            Ok(false) => {
+                run.counts.rejected += 1;
+                continue;
+            }
+            Err(failure) if controller.give_up() => {
+                let time = duration.re() * end;
+                return Err(failed(failure, model, &from, time, number));
+            }
+            Err(_) => {
+                run.counts.rejected += 1;
+                continue;
+            }
+        }
+        controller.accept();
+        if stiffness.seen(&stepper, &scale, &to, h.re()) && controller.chooses() {
+            return Err(IntegrationFailure::Stiff {
+                time: duration.re() * end,
+                step: number,
+            });
+        }
+        run.grid.push(end);
+        sample(&mut run, &mut stepper, (&from, &to), settings, &mut next)
+            .map_err(|failure| failed(failure, model, &to, duration.re() * end, number))?;
+        let trajectory::Tape::Explicit(tape) = &mut run.tape else {
+            unreachable!("the tape is that of the explicit method")
+        };
+        tape.nodes.push(to.clone());
+        if settings.keep_stages {
+            tape.steps.push(stepper.data.clone());
+        }
+        std::mem::swap(&mut from, &mut to);
+    }
+    if controller.too_small() {
+        return Err(IntegrationFailure::StepTooSmall {
+            time: duration.re() * run.grid.reached(),
+            step: run.grid.steps() + 1,
+        });
+    }
+    run.step_error = controller.largest_error();
+    run.counts.steps = run.grid.steps();
+    run.counts.factorisations += stepper.field.factorisations;
+    run.counts.solves += stepper.field.solves;
+    Ok(run)
+}
+
+/// Adds the instants of the step that was just accepted.
+fn sample<S: SolveScalar>(
+    run: &mut Trajectory<S>,
+    stepper: &mut Stepper<S>,
+    (from, to): (&Node<S>, &Node<S>),
+    settings: &Settings,
+    next: &mut usize,
+) -> Result<(), StepFailure> {
+    let k = run.grid.steps();
+    let h = run.duration * run.grid.width(k);
+    for at in trajectory::due(settings.samples, next, run.grid.reached()) {
+        let place = place(&run.grid, k, at);
+        match place {
+            Place::Node(_) => run.push(at, place, [&to.q, &to.v, &to.a, &[]]),
+            Place::Inside { theta, .. } => {
+                if !stepper.data.dense {
+                    stepper.dense_stages(from, to, h)?;
+                    run.counts.evaluations += super::tableau::ALL - super::tableau::END - 1;
+                }
+                let [mut q, v, a] = stepper.data.dense(from, h, theta);
+                for body in 0..run.numbering.bodies() {
+                    let o = run.numbering.position(body);
+                    let p = rotation::unit(&positions_of(&q[o..]).1);
+                    q[o + 3..o + 7].copy_from_slice(&p);
+                }
+                run.push(at, place, [&q, &v, &a, &[]]);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Estimated error of a step relative to the scene's scale (Hairer, Nørsett & Wanner 1993,
+/// eq. II.10.17): |e5|² / √(|e5|² + 0.01 |e3|²).
+fn error<S: SolveScalar>(stepper: &Stepper<S>, scale: &Scale, from: &Node<S>, h: S) -> f64 {
+    let numbering = stepper.field.numbering;
+    let data = &stepper.data;
+    let speeds = scale.speeds(numbering, &from.v, &data.v_raw);
+    let [e5, e3] = stepper
+        .error_vectors(h)
+        .map(|[q, v]| scale.square(numbering, &q, &v, speeds));
+    let denominator = e5 + 0.01 * e3;
+    if denominator == 0.0 {
+        0.0
+    } else {
+        e5 / denominator.sqrt()
+    }
+}
+
+fn failed<S: SolveScalar>(
+    failure: StepFailure,
+    model: &Model<S>,
+    from: &Node<S>,
+    time: f64,
+    step: usize,
+) -> IntegrationFailure {
+    match failure {
+        StepFailure::Singular(_) => IntegrationFailure::Singular {
+            time,
+            step,
+            place: rank::explain(model, &from.q).to_string(),
+        },
+        StepFailure::Projection => IntegrationFailure::Projection { time, step },
+        StepFailure::NotFinite => IntegrationFailure::NotFinite {
+            time,
+            step,
+            worst: "the explicit step".into(),
+        },
+    }
+}
+
+/// Watches whether stability rather than accuracy bounds the steps.
+#[derive(Default)]
+struct Stiffness {
+    suspicious: usize,
+    innocent: usize,
+}
+
+impl Stiffness {
+    /// Whether the scene is stiff after the step in `stepper`, which ended in `to`.
+    fn seen<S: SolveScalar>(
+        &mut self,
+        stepper: &Stepper<S>,
+        scale: &Scale,
+        to: &Node<S>,
+        h: f64,
+    ) -> bool {
+        let data: &StepData<S> = &stepper.data;
+        let numbering = stepper.field.numbering;
+        let last = STAGES - 1;
+        let (nq, nv) = (to.q.len(), to.v.len());
+        let away = |x: &[S], rows: &[S], n: usize| -> Vec<S> {
+            let row = &rows[last * n..(last + 1) * n];
+            x.iter().zip(row).map(|(&x, &y)| x - y).collect()
+        };
+        let speeds = scale.speeds(numbering, &to.v, &data.v_raw);
+        let dy = scale.square(
+            numbering,
+            &away(&to.q, &data.q, nq),
+            &away(&to.v, &data.v, nv),
+            speeds,
+        );
+        let mut rates = vec![S::zero(); nq];
+        crate::system::bodies::rates(numbering, &to.q, &to.v, &mut rates);
+        let df = scale.square(
+            numbering,
+            &away(&rates, &data.qdot, nq),
+            &away(&to.a, &data.a, nv),
+            speeds,
+        );
+        if dy > 0.0 && h * (df / dy).sqrt() > STIFF.0 {
+            self.innocent = 0;
+            self.suspicious += 1;
+        } else {
+            self.innocent += 1;
+            if self.innocent == NOT_STIFF {
+                self.suspicious = 0;
+            }
+        }
+        self.suspicious >= STIFF.1
+    }
+}

@@ -1,0 +1,325 @@
+//! One step of DOP853: stages, projection, dense output.
+
+use super::tableau::{A, ALL, B, C, E3, E5, END, STAGES, dense_weights};
+use crate::linalg::{SingularMatrix, SolveScalar};
+use crate::math::{Vec3, rotation};
+use crate::model::Model;
+use crate::system::accelerations::Accelerations;
+use crate::system::bodies::{self, add6, positions_of};
+use crate::system::{Numbering, assembly};
+
+/// Iterations of the position projection.
+const ITERATIONS: usize = 12;
+/// What the iterations may leave of the projection, relative to the length scale.
+const REMAINDER: f64 = 1e-16;
+
+/// State at the end of a step, with its accelerations.
+#[derive(Clone, Debug)]
+pub struct Node<S> {
+    /// Positions.
+    pub q: Vec<S>,
+    /// Velocities.
+    pub v: Vec<S>,
+    /// Accelerations.
+    pub a: Vec<S>,
+    /// Multipliers λ.
+    pub lambda: Vec<S>,
+}
+
+/// Everything that a step computed; stage i stands in row i of `q`, `v`, `qdot`, `a`, `lambda`.
+#[derive(Clone, Debug)]
+pub struct StepData<S> {
+    /// Positions of the stages; their Euler parameters are not of unit length.
+    pub q: Vec<S>,
+    /// Velocities of the stages.
+    pub v: Vec<S>,
+    /// Rates q̇ = T(q) v.
+    pub qdot: Vec<S>,
+    /// Accelerations.
+    pub a: Vec<S>,
+    /// Multipliers λ.
+    pub lambda: Vec<S>,
+    /// Positions before the projection.
+    pub q_raw: Vec<S>,
+    /// Velocities before the projection.
+    pub v_raw: Vec<S>,
+    /// Multipliers s of the position projection.
+    pub s: Vec<S>,
+    /// Correction of the velocities.
+    pub delta: Vec<S>,
+    /// Multipliers σ of the velocity projection.
+    pub sigma: Vec<S>,
+    /// Whether the stages of the dense output were computed.
+    pub dense: bool,
+}
+
+impl<S: SolveScalar> StepData<S> {
+    fn new(numbering: &Numbering) -> Self {
+        let zeros = |n: usize| vec![S::zero(); n];
+        let (nq, nv) = (numbering.positions(), numbering.velocities());
+        let nc = numbering.constraints();
+        Self {
+            q: zeros(ALL * nq),
+            v: zeros(ALL * nv),
+            qdot: zeros(ALL * nq),
+            a: zeros(ALL * nv),
+            lambda: zeros(ALL * nc),
+            q_raw: zeros(nq),
+            v_raw: zeros(nv),
+            s: zeros(nc),
+            delta: zeros(nv),
+            sigma: zeros(nc),
+            dense: false,
+        }
+    }
+
+    /// State and derivative at the fraction θ of a step of size h that starts from `node`: q before
+    /// its Euler parameters are brought to unit length, v, and the derivative of v.
+    pub fn dense(&self, node: &Node<S>, h: S, theta: f64) -> [Vec<S>; 3] {
+        let (w, rate) = dense_weights(theta);
+        let mut out = [
+            node.q.clone(),
+            node.v.clone(),
+            vec![S::zero(); node.v.len()],
+        ];
+        for i in 0..ALL {
+            add_row(&mut out[0], h * w[i], &self.qdot, i);
+            add_row(&mut out[1], h * w[i], &self.a, i);
+            add_row(&mut out[2], S::from(rate[i]), &self.a, i);
+        }
+        out
+    }
+}
+
+/// Adds `scale` times row i of `rows`, which are as long as `out`.
+fn add_row<S: SolveScalar>(out: &mut [S], scale: S, rows: &[S], i: usize) {
+    let row = &rows[i * out.len()..(i + 1) * out.len()];
+    for (out, &x) in out.iter_mut().zip(row) {
+        *out += scale * x;
+    }
+}
+
+/// Why a step could not be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepFailure {
+    /// The index-1 equations are singular.
+    Singular(SingularMatrix),
+    /// The positions could not be projected onto the constraints.
+    Projection,
+    /// A value is not finite.
+    NotFinite,
+}
+
+impl From<SingularMatrix> for StepFailure {
+    fn from(singular: SingularMatrix) -> Self {
+        Self::Singular(singular)
+    }
+}
+
+/// Makes steps of one model.
+pub struct Stepper<'a, S> {
+    /// The index-1 equations.
+    pub field: Accelerations<'a, S>,
+    /// The step made last.
+    pub data: StepData<S>,
+    length: f64,
+    residual: Vec<S>,
+    moved: Vec<S>,
+}
+
+impl<'a, S: SolveScalar> Stepper<'a, S> {
+    /// Plans the steps of a model.
+    pub fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
+        Self {
+            field: Accelerations::new(model, numbering),
+            data: StepData::new(numbering),
+            length: assembly::length_scale(model),
+            residual: vec![S::zero(); numbering.velocities() + numbering.constraints()],
+            moved: vec![S::zero(); numbering.positions()],
+        }
+    }
+
+    /// Stages 0 … 11 of a step of size `h` from `node`, and the state at its end before the
+    /// projection. The matrix of the last stage is left factorised.
+    ///
+    /// # Errors
+    /// [`StepFailure`].
+    pub fn stages(&mut self, node: &Node<S>, h: S) -> Result<(), StepFailure> {
+        self.data.dense = false;
+        self.put_node(node, 0);
+        for i in 1..STAGES {
+            self.stage(node, i, h)?;
+        }
+        let data = &mut self.data;
+        data.q_raw.copy_from_slice(&node.q);
+        data.v_raw.copy_from_slice(&node.v);
+        for &(i, b) in B {
+            add_row(&mut data.q_raw, h * b, &data.qdot, i);
+            add_row(&mut data.v_raw, h * b, &data.a, i);
+        }
+        let finite = |x: &[S]| x.iter().all(|x| x.is_finite());
+        if finite(&data.q_raw) && finite(&data.v_raw) {
+            Ok(())
+        } else {
+            Err(StepFailure::NotFinite)
+        }
+    }
+
+    /// The stages of the dense output, for a step from `node` to `end`.
+    ///
+    /// # Errors
+    /// [`StepFailure`].
+    pub fn dense_stages(&mut self, node: &Node<S>, end: &Node<S>, h: S) -> Result<(), StepFailure> {
+        self.put_node(end, END);
+        for i in END + 1..ALL {
+            self.stage(node, i, h)?;
+        }
+        self.data.dense = true;
+        Ok(())
+    }
+
+    fn put_node(&mut self, node: &Node<S>, i: usize) {
+        let numbering = self.field.numbering;
+        let data = &mut self.data;
+        let (q, v) = (span(&node.q, i), span(&node.v, i));
+        data.q[q.clone()].copy_from_slice(&node.q);
+        data.v[v.clone()].copy_from_slice(&node.v);
+        data.a[v].copy_from_slice(&node.a);
+        data.lambda[span(&node.lambda, i)].copy_from_slice(&node.lambda);
+        bodies::rates(numbering, &node.q, &node.v, &mut data.qdot[q]);
+    }
+
+    fn stage(&mut self, node: &Node<S>, i: usize, h: S) -> Result<(), StepFailure> {
+        let (q, v, c) = (span(&node.q, i), span(&node.v, i), span(&node.lambda, i));
+        let data = &mut self.data;
+        // The stages before i stand in front of it.
+        let (_, at_q) = data.q.split_at_mut(q.start);
+        let (_, at_v) = data.v.split_at_mut(v.start);
+        let (at_q, at_v) = (&mut at_q[..node.q.len()], &mut at_v[..node.v.len()]);
+        at_q.copy_from_slice(&node.q);
+        at_v.copy_from_slice(&node.v);
+        for &(j, a) in A[i] {
+            add_row(at_q, h * a, &data.qdot, j);
+            add_row(at_v, h * a, &data.a, j);
+        }
+        self.field.stand(at_q, at_v);
+        self.field.factorise()?;
+        bodies::rates(self.field.numbering, at_q, at_v, &mut data.qdot[q]);
+        let (a, lambda) = (&mut data.a[v], &mut data.lambda[c]);
+        self.field.accelerations(a, lambda);
+        Ok(())
+    }
+
+    /// Projects the end of the step onto the constraints and evaluates the accelerations there.
+    ///
+    /// # Errors
+    /// [`StepFailure`].
+    pub fn finish(&mut self, out: &mut Node<S>) -> Result<(), StepFailure> {
+        self.project_positions(&mut out.q)?;
+        self.field.factorise()?;
+        let data = &mut self.data;
+        self.field
+            .velocity_correction(&data.v_raw, &mut data.delta, &mut data.sigma);
+        for (v, (&raw, &d)) in out.v.iter_mut().zip(data.v_raw.iter().zip(&data.delta)) {
+            *v = raw + d;
+        }
+        self.field.set_velocities(&out.v);
+        self.field.accelerations(&mut out.a, &mut out.lambda);
+        Ok(())
+    }
+
+    /// Positions nearest to `q_raw` in the metric of the masses, by Newton's method with the matrix
+    /// that is factorised already. Leaves the equations standing there.
+    fn project_positions(&mut self, q: &mut [S]) -> Result<(), StepFailure> {
+        let numbering = self.field.numbering;
+        let nv = numbering.velocities();
+        let Self { field, data, .. } = self;
+        q.copy_from_slice(&data.q_raw);
+        self.moved.fill(S::zero());
+        bodies::normalise(numbering, q, &mut self.moved);
+        data.s.fill(S::zero());
+        let (mut before, mut contraction) = (f64::INFINITY, 1e-2);
+        let mut settled = 0;
+        for iteration in 0..ITERATIONS {
+            field.stand(q, &data.v_raw);
+            // The infinitesimal part converges with the real one, some iterations behind it.
+            if settled > if S::INFINITESIMAL { 4 } else { 0 } {
+                return Ok(());
+            }
+            let (upper, lower) = self.residual.split_at_mut(nv);
+            field.constraints(lower);
+            upper.fill(S::zero());
+            if iteration > 0 {
+                metric(field.model, numbering, q, &data.q_raw, upper);
+                field.add_reactions(&data.s, upper);
+            }
+            self.residual.iter_mut().for_each(|x| *x = -*x);
+            field.solve(&mut self.residual);
+            let (step, ds) = self.residual.split_at(nv);
+            let size = step.iter().fold(0.0_f64, |m, x| m.max(x.re().abs())) / self.length;
+            if !size.is_finite() {
+                return Err(StepFailure::NotFinite);
+            }
+            bodies::advance(numbering, q, &mut self.moved, step);
+            data.s.iter_mut().zip(ds).for_each(|(s, &d)| *s += d);
+            if iteration > 0 && before > 0.0 {
+                contraction = (size / before).max(1e-3);
+            }
+            if size * contraction <= REMAINDER || (size <= 1e-13 && contraction > 0.3) {
+                settled += 1;
+            }
+            before = size;
+        }
+        if settled > 0 {
+            field.stand(q, &data.v_raw);
+            return Ok(());
+        }
+        Err(StepFailure::Projection)
+    }
+
+    /// Estimated errors of positions and velocities of the step of size h: Σ h e_i k_i for the
+    /// embedded formulas of order 5 and 3.
+    pub fn error_vectors(&self, h: S) -> [[Vec<S>; 2]; 2] {
+        let data = &self.data;
+        [E5, E3].map(|e| {
+            let mut q = vec![S::zero(); data.q_raw.len()];
+            let mut v = vec![S::zero(); data.v_raw.len()];
+            for &(i, e) in e {
+                add_row(&mut q, h * e, &data.qdot, i);
+                add_row(&mut v, h * e, &data.a, i);
+            }
+            [q, v]
+        })
+    }
+}
+
+/// Nodes c_i of the stages (for loads that depend on time).
+pub fn node_of(i: usize) -> f64 {
+    C[i]
+}
+
+fn span<T>(row: &[T], i: usize) -> std::ops::Range<usize> {
+    i * row.len()..(i + 1) * row.len()
+}
+
+/// Adds M T(q)⁺ (q − q_raw): per body (m (r − r'), 2 J L(p) (p − p')).
+fn metric<S: SolveScalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    q: &[S],
+    q_raw: &[S],
+    out: &mut [S],
+) {
+    for (i, body) in model.bodies.iter().enumerate() {
+        let o = numbering.position(i);
+        let (r, p) = positions_of(&q[o..]);
+        let (r_raw, p_raw) = positions_of(&q_raw[o..]);
+        let away = std::array::from_fn(|k| p[k] - p_raw[k]);
+        let turned: Vec3<S> = rotation::angular_velocity(&p, &away);
+        add6(
+            &mut out[numbering.velocity(i)..],
+            &((r - r_raw) * body.mass),
+            &(body.inertia * turned),
+        );
+    }
+}

@@ -1,0 +1,98 @@
+//! Where steps end and where the motion is sampled, in fractions of the duration.
+
+/// Ends of the steps as fractions τ_0 = 0 < τ_1 < … < τ_N = 1 of the duration T, so that t_k = τ_k T
+/// moves with the duration and with nothing else.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    ends: Vec<f64>,
+}
+
+/// Distance of fractions below which they are the same instant.
+const SAME: f64 = 1e-13;
+
+impl Grid {
+    /// `steps` steps of equal size.
+    pub fn uniform(steps: usize) -> Self {
+        Self {
+            ends: (0..=steps).map(|k| k as f64 / steps as f64).collect(),
+        }
+    }
+
+    /// A grid that grows step by step from 0.
+    pub fn growing() -> Self {
+        Self { ends: vec![0.0] }
+    }
+
+    /// The grid with these ends, if they rise from 0 to 1.
+    pub fn from_ends(ends: Vec<f64>) -> Option<Self> {
+        let rises = ends.windows(2).all(|pair| pair[0] < pair[1]);
+        let whole = ends.len() > 1 && ends[0] == 0.0 && ends[ends.len() - 1] == 1.0;
+        (rises && whole).then_some(Self { ends })
+    }
+
+    /// Ends τ_0 … τ_N.
+    pub fn ends(&self) -> &[f64] {
+        &self.ends
+    }
+
+    /// Adds a step that ends at `end`.
+    pub fn push(&mut self, end: f64) {
+        self.ends.push(end);
+    }
+
+    /// Number of steps N.
+    pub fn steps(&self) -> usize {
+        self.ends.len() - 1
+    }
+
+    /// Length of step k = 1 … N.
+    pub fn width(&self, k: usize) -> f64 {
+        self.ends[k] - self.ends[k - 1]
+    }
+
+    /// The grid with every step cut into two halves.
+    pub fn halved(&self) -> Self {
+        let mut ends = vec![0.0];
+        for pair in self.ends.windows(2) {
+            ends.extend([0.5 * (pair[0] + pair[1]), pair[1]]);
+        }
+        Self { ends }
+    }
+
+    /// The last end so far.
+    pub fn reached(&self) -> f64 {
+        self.ends[self.ends.len() - 1]
+    }
+}
+
+/// A sample between or at the ends of steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// The end of step k (the start for k = 0).
+    Node(usize),
+    /// Inside step `step` ≥ 1 at the fraction θ of it.
+    Inside {
+        /// The step.
+        step: usize,
+        /// 0 < θ < 1.
+        theta: f64,
+    },
+}
+
+/// Where the fraction `at` in (τ_{k−1}, τ_k] stands in step k of the grid.
+pub fn place(grid: &Grid, k: usize, at: f64) -> Place {
+    let (start, end) = (grid.ends[k - 1], grid.ends[k]);
+    if (end - at).abs() <= SAME {
+        Place::Node(k)
+    } else {
+        Place::Inside {
+            step: k,
+            theta: (at - start) / (end - start),
+        }
+    }
+}
+
+/// Whether the fraction `at` belongs to a step that ends at `end`.
+pub fn within(at: f64, end: f64) -> bool {
+    at <= end + SAME
+}

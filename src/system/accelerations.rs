@@ -1,0 +1,282 @@
+//! Accelerations and multipliers of a state, from the index-1 equations
+//!
+//! ```text
+//! M v̇ + G(q)ᵀ λ = f(q, v),        G(q) v̇ = γ(q, v)
+//! ```
+//!
+//! and the projections that use the same matrix [M Gᵀ; G 0].
+
+use super::bodies::{self, Motion, all_force_balances, velocities_of};
+use super::constraint::RowGradient;
+use super::initial::mass;
+use super::joints::{self, JointCotangent};
+use super::kkt::SaddlePoint;
+use super::numbering::Numbering;
+use super::tree::Tree;
+use crate::linalg::{SingularMatrix, SolveScalar};
+use crate::model::Model;
+
+/// Solver of the index-1 equations at one position after the other.
+pub struct Accelerations<'a, S> {
+    /// The model.
+    pub model: &'a Model<S>,
+    /// Its numbering.
+    pub numbering: &'a Numbering,
+    /// Motions of the bodies where the solver stands.
+    pub motions: Vec<Motion<S>>,
+    gradients: Vec<RowGradient<S>>,
+    solver: Solver<S>,
+    rhs: Vec<S>,
+    /// Factorisations so far.
+    pub factorisations: usize,
+    /// Solutions so far.
+    pub solves: usize,
+}
+
+/// By the tree of joints, or by sparse LU where they close loops or a body lacks inertia.
+enum Solver<S> {
+    Tree(Tree<S>),
+    Sparse(Box<SaddlePoint<S>>, Vec<S>),
+}
+
+impl<'a, S: SolveScalar> Accelerations<'a, S> {
+    /// Plans the solver.
+    pub fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
+        let solver = match Tree::plan(model) {
+            Some(tree) => Solver::Tree(tree),
+            None => Self::sparse(model, numbering),
+        };
+        Self {
+            model,
+            numbering,
+            motions: Vec::new(),
+            gradients: Vec::new(),
+            solver,
+            rhs: vec![S::zero(); numbering.velocities() + numbering.constraints()],
+            factorisations: 0,
+            solves: 0,
+        }
+    }
+
+    fn sparse(model: &Model<S>, numbering: &Numbering) -> Solver<S> {
+        let zeros = vec![S::zero(); numbering.constraints()];
+        Solver::Sparse(Box::new(SaddlePoint::new(model, numbering)), zeros)
+    }
+
+    /// Moves to the state (q, v) without factorising; the Euler parameters in `q` need not be of
+    /// unit length.
+    pub fn stand(&mut self, q: &[S], v: &[S]) {
+        Motion::all_normalised(self.numbering, q, v, &mut self.motions);
+        joints::gradients(
+            self.model,
+            self.numbering,
+            &self.motions,
+            &mut self.gradients,
+        );
+    }
+
+    /// Changes the velocities, the position kept.
+    pub fn set_velocities(&mut self, v: &[S]) {
+        for (body, motion) in self.motions.iter_mut().enumerate() {
+            (motion.velocity, motion.omega) = velocities_of(&v[self.numbering.velocity(body)..]);
+        }
+    }
+
+    /// Factorises [M Gᵀ; G 0] where the solver stands.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`]: redundant constraints, or a motion without inertia.
+    pub fn factorise(&mut self) -> Result<(), SingularMatrix> {
+        self.factorisations += 1;
+        if let Solver::Tree(tree) = &mut self.solver {
+            if tree
+                .factorise(self.model, self.numbering, &self.gradients)
+                .is_ok()
+            {
+                return Ok(());
+            }
+            // A body without inertia of its own may still be held by its joints.
+            self.solver = Self::sparse(self.model, self.numbering);
+        }
+        let Solver::Sparse(saddle, zeros) = &mut self.solver else {
+            unreachable!("the tree was left above");
+        };
+        saddle.factorise(
+            self.model,
+            self.numbering,
+            &self.motions,
+            zeros,
+            mass(self.model),
+        )
+    }
+
+    /// Solves [M Gᵀ; G 0] (x, λ) = (f, g) in place, with the matrix factorised last.
+    pub fn solve(&mut self, rhs: &mut [S]) {
+        self.solves += 1;
+        if let Solver::Sparse(saddle, _) = &mut self.solver {
+            return saddle.solve(rhs);
+        }
+        // The tree takes inertias as symmetric, which their infinitesimal parts need not be.
+        let given = S::INFINITESIMAL.then(|| rhs.to_vec());
+        self.solve_tree(rhs);
+        if let Some(given) = given {
+            let mut rest = self.residual(rhs, &given);
+            self.solve_tree(&mut rest);
+            rhs.iter_mut().zip(&rest).for_each(|(x, &d)| *x += d);
+        }
+    }
+
+    fn solve_tree(&self, rhs: &mut [S]) {
+        if let Solver::Tree(tree) = &self.solver {
+            tree.solve(self.numbering, &self.gradients, rhs);
+        }
+    }
+
+    /// rhs − [M Gᵀ; G 0] (x, λ).
+    fn residual(&self, x: &[S], rhs: &[S]) -> Vec<S> {
+        let nv = self.numbering.velocities();
+        let mut out = vec![S::zero(); x.len()];
+        let (model, numbering) = (self.model, self.numbering);
+        for (i, body) in model.bodies.iter().enumerate() {
+            let o = numbering.velocity(i);
+            let (linear, angular) = velocities_of(&x[o..]);
+            bodies::add6(
+                &mut out[o..],
+                &(linear * body.mass),
+                &(body.inertia * angular),
+            );
+        }
+        joints::add_reactions(model, numbering, &self.gradients, &x[nv..], &mut out);
+        let (_, lower) = out.split_at_mut(nv);
+        joints::rates_from_gradients(model, numbering, &self.gradients, x, lower);
+        out.iter_mut().zip(rhs).for_each(|(out, &b)| *out = b - *out);
+        out
+    }
+
+    /// Accelerations and multipliers where the solver stands and was factorised.
+    pub fn accelerations(&mut self, a: &mut [S], lambda: &mut [S]) {
+        let mut rhs = std::mem::take(&mut self.rhs);
+        let nv = self.numbering.velocities();
+        let (upper, lower) = rhs.split_at_mut(nv);
+        a.fill(S::zero());
+        all_force_balances(self.model, self.numbering, &self.motions, a, upper);
+        joints::accelerations(self.model, self.numbering, &self.motions, lower);
+        rhs.iter_mut().for_each(|x| *x = -*x);
+        self.solve(&mut rhs);
+        a.copy_from_slice(&rhs[..nv]);
+        lambda.copy_from_slice(&rhs[nv..]);
+        self.rhs = rhs;
+    }
+
+    /// The correction of the velocities that makes G v = 0 in the metric of the mass, and its
+    /// multipliers: M δ + Gᵀσ = 0, G (v + δ) = 0.
+    pub fn velocity_correction(&mut self, v: &[S], delta: &mut [S], sigma: &mut [S]) {
+        let mut rhs = std::mem::take(&mut self.rhs);
+        let nv = self.numbering.velocities();
+        rhs.fill(S::zero());
+        joints::rates_from_gradients(
+            self.model,
+            self.numbering,
+            &self.gradients,
+            v,
+            &mut rhs[nv..],
+        );
+        rhs[nv..].iter_mut().for_each(|x| *x = -*x);
+        self.solve(&mut rhs);
+        delta.copy_from_slice(&rhs[..nv]);
+        sigma.copy_from_slice(&rhs[nv..]);
+        self.rhs = rhs;
+    }
+
+    /// Constraints Φ where the solver stands.
+    pub fn constraints(&self, out: &mut [S]) {
+        joints::values(self.model, self.numbering, &self.motions, out);
+    }
+
+    /// Adds Gᵀ λ to `out`.
+    pub fn add_reactions(&self, lambda: &[S], out: &mut [S]) {
+        joints::add_reactions(self.model, self.numbering, &self.gradients, lambda, out);
+    }
+}
+
+impl Accelerations<'_, f64> {
+    /// Pulls the cotangent ā of the accelerations back to tangent positions, velocities and
+    /// parameters, where the solver stands and was factorised. `a` and `lambda` are what
+    /// [`Accelerations::accelerations`] gave there.
+    pub fn pull_back(
+        &mut self,
+        (a, lambda): (&[f64], &[f64]),
+        a_bar: &[f64],
+        (y, v): (&mut [f64], &mut [f64]),
+        cot: &mut Model<f64>,
+    ) {
+        let mut psi = std::mem::take(&mut self.rhs);
+        let (model, numbering) = (self.model, self.numbering);
+        let nv = numbering.velocities();
+        psi[..nv].copy_from_slice(a_bar);
+        psi[nv..].fill(0.0);
+        self.solve(&mut psi);
+        psi.iter_mut().for_each(|x| *x = -*x);
+        for (i, body) in model.bodies.iter().enumerate() {
+            let o = numbering.velocity(i);
+            let (linear, alpha) = velocities_of(&a[o..]);
+            let (psi_r, psi_theta) = velocities_of(&psi[o..]);
+            let by_omega = bodies::pull_force_balance(
+                body,
+                &model.gravity,
+                &self.motions[i].omega,
+                (&linear, &alpha),
+                (&psi_r, &psi_theta),
+                &mut cot.bodies[i],
+                &mut cot.gravity,
+            );
+            for k in 0..3 {
+                v[o + 3 + k] += by_omega[k];
+            }
+        }
+        self.pull_rate(&psi[..nv], lambda, y, cot);
+        let accelerated: Vec<Motion<f64>> = (self.motions.iter().enumerate())
+            .map(|(i, motion)| motion.accelerated(&a[numbering.velocity(i)..]))
+            .collect();
+        let mut out = JointCotangent {
+            y: Some(y),
+            v: Some(v),
+            model: cot,
+        };
+        let cotangents = [None, None, Some(&psi[nv..])];
+        joints::pull_back(model, numbering, &accelerated, cotangents, &mut out);
+        self.rhs = psi;
+    }
+
+    /// Pulls λᵀ G(q) w, which is linear in w, back to tangent positions and joint frames.
+    pub fn pull_rate(&self, w: &[f64], lambda: &[f64], y: &mut [f64], cot: &mut Model<f64>) {
+        let moving = self.motions.iter().enumerate().map(|(i, motion)| {
+            let (velocity, omega) = velocities_of(&w[self.numbering.velocity(i)..]);
+            Motion {
+                velocity,
+                omega,
+                ..*motion
+            }
+        });
+        let moving: Vec<Motion<f64>> = moving.collect();
+        let mut out = JointCotangent {
+            y: Some(y),
+            v: None,
+            model: cot,
+        };
+        let cotangents = [None, Some(lambda), None];
+        joints::pull_back(self.model, self.numbering, &moving, cotangents, &mut out);
+    }
+
+    /// Pulls χᵀ Φ(q) back to tangent positions and joint frames.
+    pub fn pull_constraints(&self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) {
+        let mut out = JointCotangent {
+            y: Some(y),
+            v: None,
+            model: cot,
+        };
+        let cotangents = [Some(chi), None, None];
+        let motions = &self.motions;
+        joints::pull_back(self.model, self.numbering, motions, cotangents, &mut out);
+    }
+}
