@@ -1,6 +1,7 @@
 //! Exact gradients of functions of interest: the discrete adjoint of the integration.
 
 mod explicit;
+mod implicit;
 mod sensitivity;
 
 use crate::functions::Scene;
@@ -28,5 +29,6 @@ pub fn gradients(
 ) -> Result<AdjointRun, IntegrationFailure> {
     match &run.tape {
         Tape::Explicit(tape) => explicit::gradients(scene, run, tape, which),
+        Tape::Implicit(tape) => implicit::gradients(scene, run, tape, which),
     }
 }

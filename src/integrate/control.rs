@@ -1,5 +1,6 @@
 //! Step size control: what errors are measured against, and how large the next step is.
 
+use super::grid::Grid;
 use super::settings::Spacing;
 use crate::math::Scalar;
 use crate::model::Model;
@@ -70,6 +71,27 @@ impl Scale {
         }
         sum / (q.len() + v.len()).max(1) as f64
     }
+
+    /// As [`Scale::square`] for a tangent change y of positions and h times one of velocities.
+    pub fn tangent_square(
+        &self,
+        y: &[f64],
+        hv: &[f64],
+        h: f64,
+        speeds: [f64; 2],
+    ) -> f64 {
+        let part = |x: &[f64], scale: f64| -> f64 { x.iter().map(|x| (x / scale).powi(2)).sum() };
+        let both = y.chunks_exact(6).zip(hv.chunks_exact(6));
+        let sum: f64 = both
+            .map(|(y, v)| {
+                part(&y[..3], self.length)
+                    + part(&y[3..], 1.0)
+                    + part(&v[..3], h * speeds[0])
+                    + part(&v[3..], h * speeds[1])
+            })
+            .sum();
+        sum / (2 * y.len()).max(1) as f64
+    }
 }
 
 fn fastest<S: Scalar>(numbering: &Numbering, v: &[S]) -> [f64; 2] {
@@ -92,6 +114,7 @@ pub struct Controller {
     plan: Plan,
     /// Exponent 1/m of the controller.
     exponent: f64,
+    estimates: bool,
     /// Factor for the step to come.
     factor: f64,
     rejected: bool,
@@ -103,8 +126,8 @@ pub struct Controller {
 
 #[derive(Clone, Debug)]
 enum Plan {
-    /// Ends that are given, and how many were reached.
-    Given { ends: Vec<f64>, next: usize },
+    /// Steps that are given, and the number of the next one.
+    Given { grid: Grid, next: usize },
     /// Chosen by the error: tolerance and width of the next step.
     Chosen { tolerance: f64, width: f64 },
 }
@@ -114,11 +137,11 @@ impl Controller {
     pub fn new(spacing: &Spacing, order: usize, scale: &Scale, duration: f64) -> Self {
         let plan = match spacing {
             Spacing::Steps(steps) => Plan::Given {
-                ends: (0..=*steps).map(|k| k as f64 / *steps as f64).collect(),
+                grid: Grid::uniform(*steps),
                 next: 1,
             },
             Spacing::Frozen(grid) => Plan::Given {
-                ends: grid.ends().to_vec(),
+                grid: grid.clone(),
                 next: 1,
             },
             Spacing::Tolerance(tolerance) => {
@@ -134,6 +157,7 @@ impl Controller {
         Self {
             plan,
             exponent: 1.0 / order as f64,
+            estimates: !matches!(spacing, Spacing::Steps(_)),
             factor: 1.0,
             rejected: false,
             latest: 0.0,
@@ -147,13 +171,23 @@ impl Controller {
         matches!(self.plan, Plan::Chosen { .. })
     }
 
+    /// Whether the error of steps is of interest: they follow it, or are kept as long as it is small.
+    pub fn estimates(&self) -> bool {
+        self.estimates
+    }
+
+    /// Grid of the steps to come, if it is given.
+    pub fn given(&self) -> Option<&Grid> {
+        match &self.plan {
+            Plan::Given { grid, .. } => Some(grid),
+            Plan::Chosen { .. } => None,
+        }
+    }
+
     /// Width of the step from `reached`, or `None` at the end or if the steps became too small.
     pub fn next(&mut self, reached: f64) -> Option<f64> {
         match &mut self.plan {
-            Plan::Given { ends, next } => {
-                let end = *ends.get(*next)?;
-                Some(end - ends[*next - 1])
-            }
+            Plan::Given { grid, next } => (*next <= grid.steps()).then(|| grid.width(*next)),
             Plan::Chosen { width, .. } => {
                 let rest = 1.0 - reached;
                 if rest <= 0.0 || *width < SMALLEST || self.tries > MOST {
@@ -174,7 +208,7 @@ impl Controller {
     /// The end of a step of `width` from `reached`; the last one ends at 1 exactly.
     pub fn end(&self, reached: f64, width: f64) -> f64 {
         match &self.plan {
-            Plan::Given { ends, next } => ends[*next],
+            Plan::Given { grid, next } => grid.ends()[*next],
             Plan::Chosen { .. } if width >= 1.0 - reached => 1.0,
             Plan::Chosen { .. } => reached + width,
         }

@@ -5,6 +5,8 @@
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     ends: Vec<f64>,
+    /// Width of every step if all are equal, free of the round-off of their ends.
+    equal: Option<f64>,
 }
 
 /// Distance of fractions below which they are the same instant.
@@ -15,19 +17,23 @@ impl Grid {
     pub fn uniform(steps: usize) -> Self {
         Self {
             ends: (0..=steps).map(|k| k as f64 / steps as f64).collect(),
+            equal: Some(1.0 / steps as f64),
         }
     }
 
     /// A grid that grows step by step from 0.
     pub fn growing() -> Self {
-        Self { ends: vec![0.0] }
+        Self {
+            ends: vec![0.0],
+            equal: None,
+        }
     }
 
     /// The grid with these ends, if they rise from 0 to 1.
     pub fn from_ends(ends: Vec<f64>) -> Option<Self> {
         let rises = ends.windows(2).all(|pair| pair[0] < pair[1]);
         let whole = ends.len() > 1 && ends[0] == 0.0 && ends[ends.len() - 1] == 1.0;
-        (rises && whole).then_some(Self { ends })
+        (rises && whole).then_some(Self { ends, equal: None })
     }
 
     /// Ends τ_0 … τ_N.
@@ -47,7 +53,8 @@ impl Grid {
 
     /// Length of step k = 1 … N.
     pub fn width(&self, k: usize) -> f64 {
-        self.ends[k] - self.ends[k - 1]
+        self.equal
+            .unwrap_or_else(|| self.ends[k] - self.ends[k - 1])
     }
 
     /// The grid with every step cut into two halves.
@@ -56,7 +63,10 @@ impl Grid {
         for pair in self.ends.windows(2) {
             ends.extend([0.5 * (pair[0] + pair[1]), pair[1]]);
         }
-        Self { ends }
+        Self {
+            ends,
+            equal: self.equal.map(|width| 0.5 * width),
+        }
     }
 
     /// The last end so far.

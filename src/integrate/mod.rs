@@ -4,6 +4,7 @@ pub mod control;
 pub mod explicit;
 pub mod failure;
 pub mod grid;
+pub mod implicit;
 pub mod settings;
 pub mod trajectory;
 
@@ -38,7 +39,7 @@ pub fn simulate<S: SolveScalar>(
     let start = initial::solve(model, &numbering, &mut saddle)?;
     let mut run = match settings.method {
         Method::Dop853 => explicit::march::march(model, &numbering, duration, settings, start)?,
-        _ => todo!(),
+        _ => implicit::march::march(model, &numbering, duration, settings, start)?,
     };
     run.counts.factorisations += saddle.factorisations;
     run.counts.solves += saddle.factorisations;

@@ -1,6 +1,6 @@
 //! What a run leaves behind.
 
-use super::explicit;
+use super::{explicit, implicit};
 use super::grid::{Grid, Place};
 use super::settings::{Method, Samples};
 use crate::math::{Complex64, Scalar};
@@ -75,6 +75,8 @@ pub struct Trajectory<S> {
 pub enum Tape<S> {
     /// Of the explicit method.
     Explicit(explicit::Tape<S>),
+    /// Of an implicit method.
+    Implicit(implicit::Tape<S>),
 }
 
 impl<S: Scalar> Trajectory<S> {
@@ -189,6 +191,7 @@ impl Trajectory<Complex64> {
             step_error: self.step_error,
             tape: match &self.tape {
                 Tape::Explicit(tape) => Tape::Explicit(tape.real()),
+                Tape::Implicit(tape) => Tape::Implicit(tape.real()),
             },
             counts: self.counts,
         }

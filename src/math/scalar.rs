@@ -49,6 +49,10 @@ pub trait Scalar:
     const INFINITESIMAL: bool;
     /// Real part: the only thing that a branch may look at.
     fn re(self) -> f64;
+    /// Infinitesimal part; zero for a real number. No branch may look at it either.
+    fn infinitesimal(self) -> f64;
+    /// The number with this infinitesimal part and no real one; zero for real numbers.
+    fn of_infinitesimal(x: f64) -> Self;
     /// Square root (principal branch).
     fn sqrt(self) -> Self;
     /// Exponential.
@@ -68,6 +72,12 @@ impl Scalar for f64 {
     const INFINITESIMAL: bool = false;
     fn re(self) -> f64 {
         self
+    }
+    fn infinitesimal(self) -> f64 {
+        0.0
+    }
+    fn of_infinitesimal(_: f64) -> Self {
+        0.0
     }
     fn sqrt(self) -> Self {
         f64::sqrt(self)
@@ -93,6 +103,12 @@ impl Scalar for Complex64 {
     const INFINITESIMAL: bool = true;
     fn re(self) -> f64 {
         self.re
+    }
+    fn infinitesimal(self) -> f64 {
+        self.im
+    }
+    fn of_infinitesimal(x: f64) -> Self {
+        Complex64::new(0.0, x)
     }
     fn sqrt(self) -> Self {
         // Cartesian form, first order in the imaginary part: the polar form loses digits of a
@@ -258,6 +274,12 @@ impl Scalar for Dual {
     const INFINITESIMAL: bool = true;
     fn re(self) -> f64 {
         self.re
+    }
+    fn infinitesimal(self) -> f64 {
+        self.du
+    }
+    fn of_infinitesimal(x: f64) -> Self {
+        Dual::new(0.0, x)
     }
     fn sqrt(self) -> Self {
         let root = self.re.sqrt();

@@ -6,7 +6,7 @@ use super::{StepData, Tape};
 use crate::integrate::control::{Controller, Scale};
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Place, place};
-use crate::integrate::settings::{Method, Settings, Spacing};
+use crate::integrate::settings::{Method, Settings};
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::linalg::SolveScalar;
 use crate::math::rotation;

@@ -57,6 +57,11 @@ impl<'a, S: Scalar> Equations<'a, S> {
         }
     }
 
+    /// The model.
+    pub fn model(&self) -> &'a Model<S> {
+        self.model
+    }
+
     /// Number of equations: 2 (n_v + n_c).
     pub fn order(&self) -> usize {
         2 * (self.numbering.velocities() + self.numbering.constraints())

@@ -1,0 +1,142 @@
+//! One-stage formulas with a memory: backward differentiation and generalised-α.
+//!
+//! With the increment Δ = y_k − y_{k−1} and memory vectors m_j of the size of increments,
+//!
+//! ```text
+//! h ẏ_k = c Δ + Σ_j e_j m_j,        m_i' = f_i Δ + Σ_j F_ij m_j
+//! ```
+//!
+//! Increments rather than values keep the rates free of the round-off of values divided by the
+//! step, and make one backward march serve all formulas.
+
+use crate::integrate::settings::{Method, Start};
+
+/// Coefficients of a step; they do not depend on its size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Formula {
+    /// c.
+    pub lead: f64,
+    /// e_j.
+    pub past: Vec<f64>,
+    /// (f_i, F_i1 … F_im) for each memory vector.
+    pub memory: Vec<(f64, Vec<f64>)>,
+}
+
+impl Formula {
+    /// Backward differentiation of order m, of which `kept` − 1 earlier increments are remembered:
+    /// h ẏ = Σ_{j=1..m} ∇ʲy / j (Gear 1971), and ∇ʲy = Σ_l (−1)ˡ C(j−1, l) Δ_{k−l}.
+    fn bdf(order: usize, kept: usize) -> Self {
+        let weight = |l: usize| -> f64 {
+            let sign = if l % 2 == 0 { 1.0 } else { -1.0 };
+            (l + 1..=order)
+                .map(|j| sign * binomial(j - 1, l) / j as f64)
+                .sum()
+        };
+        let slots = kept - 1;
+        let shifted = |i: usize| {
+            let mut row = vec![0.0; slots];
+            if i > 0 {
+                row[i - 1] = 1.0;
+            }
+            (if i == 0 { 1.0 } else { 0.0 }, row)
+        };
+        Self {
+            lead: weight(0),
+            past: (1..=slots).map(weight).collect(),
+            memory: (0..slots).map(shifted).collect(),
+        }
+    }
+
+    /// Generalised-α of spectral radius ρ∞ (Jansen, Whiting & Hulbert 2000), the equations enforced
+    /// at the step's end as by Arnold & Brüls (2007). The memory is h times the algorithmic rates w
+    /// and the rates ẏ:
+    ///
+    /// ```text
+    /// Δ = h (1−γ) w + h γ w',     (1−α_m) w' + α_m w = (1−α_f) ẏ' + α_f ẏ
+    /// α_m = (3ρ∞ − 1) / (2 (ρ∞ + 1)),     α_f = ρ∞ / (ρ∞ + 1),     γ = ½ + α_f − α_m
+    /// ```
+    fn generalised_alpha(radius: f64) -> Self {
+        let alpha_m = (3.0 * radius - 1.0) / (2.0 * (radius + 1.0));
+        let alpha_f = radius / (radius + 1.0);
+        let gamma = 0.5 + alpha_f - alpha_m;
+        let keep = -(1.0 - gamma) / gamma;
+        let lead = (1.0 - alpha_m) / ((1.0 - alpha_f) * gamma);
+        let past = vec![
+            ((1.0 - alpha_m) * keep + alpha_m) / (1.0 - alpha_f),
+            -alpha_f / (1.0 - alpha_f),
+        ];
+        Self {
+            lead,
+            memory: vec![(1.0 / gamma, vec![keep, 0.0]), (lead, past.clone())],
+            past,
+        }
+    }
+
+    /// The formula of step k ≥ 1 of a method, or `None` where the step is made by Radau IIA.
+    pub fn of_step(method: Method, k: usize) -> Option<Self> {
+        match method {
+            Method::Dop853 | Method::Radau { .. } => None,
+            Method::Bdf { order, start } => match start {
+                Start::Radau if k < order => None,
+                Start::Radau => Some(Self::bdf(order, order)),
+                Start::RisingOrder => Some(Self::bdf(order.min(k), order)),
+            },
+            Method::GeneralisedAlpha { radius } => Some(Self::generalised_alpha(radius)),
+        }
+    }
+}
+
+/// Number of memory vectors of a method.
+pub fn memory_size(method: Method) -> usize {
+    match method {
+        Method::Dop853 | Method::Radau { .. } => 0,
+        Method::Bdf { order, .. } => order - 1,
+        Method::GeneralisedAlpha { .. } => 2,
+    }
+}
+
+/// Whether the memory starts with h times the initial rates (rather than with nothing).
+pub fn remembers_start(method: Method) -> bool {
+    matches!(method, Method::GeneralisedAlpha { .. })
+}
+
+fn binomial(n: usize, k: usize) -> f64 {
+    (0..k).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bdf_coefficients_are_the_known_ones() {
+        let bdf = |order| Formula::bdf(order, order);
+        assert_eq!(bdf(1).lead, 1.0);
+        assert_eq!((bdf(2).lead, bdf(2).past), (1.5, vec![-0.5]));
+        assert!((bdf(3).lead - 11.0 / 6.0).abs() < 1e-15);
+        // BDF6 in values begins 147/60, −360/60, 450/60.
+        let six = bdf(6);
+        assert!((six.lead - 147.0 / 60.0).abs() < 1e-14);
+        assert!((six.past[0] - six.lead + 360.0 / 60.0).abs() < 1e-13);
+        assert!((six.past[1] - six.past[0] - 450.0 / 60.0).abs() < 1e-13);
+    }
+
+    /// A polynomial of the order's degree is differentiated exactly.
+    #[test]
+    fn formulas_are_exact_for_polynomials() {
+        for order in 1..=6 {
+            let formula = Formula::bdf(order, order);
+            let y = |t: f64| t.powi(order as i32);
+            let t = 3.0;
+            let delta = |l: usize| y(t - l as f64) - y(t - l as f64 - 1.0);
+            let past: f64 = (1..order).map(|l| formula.past[l - 1] * delta(l)).sum();
+            let rate = formula.lead * delta(0) + past;
+            let exact = order as f64 * t.powi(order as i32 - 1);
+            assert!((rate - exact).abs() < 1e-10 * exact, "order {order}");
+        }
+        let formula = Formula::generalised_alpha(0.8);
+        // y = t² with exact rates in the memory after the first step's transient: y = t is exact.
+        let rate = formula.lead + formula.past.iter().sum::<f64>();
+        assert!((rate - 1.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,396 @@
+//! The march of the implicit methods.
+
+use super::formula::{Formula, memory_size, remembers_start};
+use super::newton::Newton;
+use super::radau::Scheme;
+use super::stage_newton::StageNewton;
+use super::{Stage, Tape};
+use crate::integrate::control::{Controller, Scale};
+use crate::integrate::failure::IntegrationFailure;
+use crate::integrate::grid::{Place, place};
+use crate::integrate::settings::{Method, Samples, Settings};
+use crate::integrate::trajectory::{self, Trajectory};
+use crate::linalg::SolveScalar;
+use crate::math::rotation;
+use crate::model::Model;
+use crate::system::accelerations::Accelerations;
+use crate::system::bodies::{self, positions_of};
+use crate::system::initial::InitialState;
+use crate::system::Numbering;
+use std::collections::VecDeque;
+
+/// Stages of the Radau IIA method that starts a multistep formula.
+const STARTING_STAGES: usize = 3;
+
+/// Integrates from a consistent start.
+///
+/// # Errors
+/// [`IntegrationFailure`] says what failed, when and where.
+pub fn march<S: SolveScalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    duration: S,
+    settings: &Settings,
+    start: InitialState<S>,
+) -> Result<Trajectory<S>, IntegrationFailure> {
+    let method = settings.method;
+    let real: Model<f64> = model.map(&mut |x| x.re());
+    let stages = match method {
+        Method::Radau { stages } => stages,
+        _ => STARTING_STAGES,
+    };
+    let scheme = Scheme::new(stages);
+    let scale = Scale::of(model, numbering, &start, duration.re());
+    let mut controller =
+        Controller::new(&settings.spacing, stages + 1, &scale, duration.re());
+    let estimates = controller.estimates() && method.is_adaptive();
+    let mut solver = Solver {
+        method,
+        numbering,
+        scheme: &scheme,
+        one: None,
+        coupled: None,
+        model,
+        real: &real,
+        estimates,
+        field: estimates.then(|| Accelerations::new(&real, numbering)),
+        memory: Vec::new(),
+    };
+    let first = starting_stage(numbering, &start);
+    let tape = trajectory::Tape::Implicit(Tape {
+        start: first.clone(),
+        steps: Vec::new(),
+    });
+    let lambda = start.lambda.clone();
+    let mut run = Trajectory::start(numbering.clone(), method, duration, start, tape);
+    run.lambda = lambda;
+    let mut past = Past {
+        from: first,
+        before: None,
+        recent: VecDeque::new(),
+    };
+    // A formula knows its motion at the ends of its steps only.
+    let samples = match method {
+        Method::Radau { .. } => settings.samples,
+        _ => Samples::StepEnds,
+    };
+    let mut next = 1;
+    while let Some(width) = controller.next(run.grid.reached()) {
+        let h = duration * width;
+        let end = controller.end(run.grid.reached(), width);
+        let k = run.grid.steps() + 1;
+        let at = (k, duration.re() * end);
+        let made = solver.step(&past, h, at, &mut run.counts);
+        let stages = match made {
+            Ok(stages) => stages,
+            Err(failure) if controller.give_up() => return Err(failure),
+            Err(_) => {
+                run.counts.rejected += 1;
+                continue;
+            }
+        };
+        let error = solver.error(&past.from, &stages, h.re(), &scale);
+        if !controller.judge(error) {
+            run.counts.rejected += 1;
+            continue;
+        }
+        controller.accept();
+        solver.remember(&stages, k);
+        run.grid.push(end);
+        sample(&mut run, &scheme, &past.from, &stages, samples, &mut next);
+        past.from = stages[stages.len() - 1].clone();
+        if method.is_adaptive() || stages.len() > 1 {
+            past.before = Some((h, stages.clone()));
+        } else {
+            past.before = None;
+        }
+        if !method.is_adaptive() {
+            past.recent.truncate(2);
+            past.recent.push_front(past.from.clone());
+        }
+        let trajectory::Tape::Implicit(tape) = &mut run.tape else {
+            unreachable!("the tape is that of an implicit method")
+        };
+        tape.steps.push(stages);
+    }
+    if controller.too_small() {
+        return Err(IntegrationFailure::StepTooSmall {
+            time: duration.re() * run.grid.reached(),
+            step: run.grid.steps() + 1,
+        });
+    }
+    run.step_error = controller.largest_error();
+    run.counts.steps = run.grid.steps();
+    if let Some(field) = &solver.field {
+        run.counts.factorisations += field.factorisations;
+        run.counts.solves += field.solves;
+    }
+    Ok(run)
+}
+
+/// The start as a stage, with its rates q̇ = T(q) v and v̇.
+fn starting_stage<S: SolveScalar>(numbering: &Numbering, start: &InitialState<S>) -> Stage<S> {
+    let mut first = Stage::zero(numbering);
+    first.q.copy_from_slice(&start.q);
+    first.v.copy_from_slice(&start.v);
+    first.lambda.copy_from_slice(&start.lambda);
+    first.vdot.copy_from_slice(&start.a);
+    bodies::rates(numbering, &start.q, &start.v, &mut first.qdot);
+    first
+}
+
+/// The end of the last step, that step's size and stages, and the ends of the latest steps, newest
+/// first, for a formula.
+struct Past<S> {
+    from: Stage<S>,
+    before: Option<(S, Vec<Stage<S>>)>,
+    recent: VecDeque<Stage<S>>,
+}
+
+/// Makes the steps of a method.
+struct Solver<'a, S> {
+    method: Method,
+    model: &'a Model<S>,
+    real: &'a Model<f64>,
+    numbering: &'a Numbering,
+    scheme: &'a Scheme,
+    estimates: bool,
+    /// Newton's method for formulas, once it is needed.
+    one: Option<Newton<'a, S>>,
+    /// Newton's method for Radau IIA, once it is needed.
+    coupled: Option<StageNewton<'a, S>>,
+    /// True rates at the start of a step, for the error estimate.
+    field: Option<Accelerations<'a, f64>>,
+    /// Memory of a formula, pairs of (q, v) vectors.
+    memory: Vec<(Vec<S>, Vec<S>)>,
+}
+
+impl<S: SolveScalar> Solver<'_, S> {
+    /// Stages of step `at.0` of size `h`.
+    fn step(
+        &mut self,
+        past: &Past<S>,
+        h: S,
+        at: (usize, f64),
+        counts: &mut trajectory::WorkCounts,
+    ) -> Result<Vec<Stage<S>>, IntegrationFailure> {
+        let Some(formula) = Formula::of_step(self.method, at.0) else {
+            let mut stages = predict_stages(self.numbering, self.scheme, past, h);
+            let (model, real, numbering) = (self.model, self.real, self.numbering);
+            let (scheme, estimates) = (self.scheme, self.estimates);
+            self.coupled
+                .get_or_insert_with(|| StageNewton::new(model, real, numbering, scheme, estimates))
+                .solve(&mut stages, h, at, counts)?;
+            return Ok(stages);
+        };
+        if at.0 == 1 && remembers_start(self.method) {
+            let scaled = |rates: &[S]| -> Vec<S> { rates.iter().map(|&x| x * h).collect() };
+            let start = (scaled(&past.from.qdot), scaled(&past.from.vdot));
+            self.memory = vec![start; memory_size(self.method)];
+        }
+        let mut stage = predict(self.numbering, past, h);
+        // h ẏ = c Δ + Σ e_j m_j.
+        let (mut qdot, mut vdot) = (vec![S::zero(); stage.q.len()], vec![S::zero(); stage.v.len()]);
+        for (e, (mq, mv)) in formula.past.iter().zip(&self.memory) {
+            let e = S::from(*e) / h;
+            qdot.iter_mut().zip(mq).for_each(|(out, &m)| *out += e * m);
+            vdot.iter_mut().zip(mv).for_each(|(out, &m)| *out += e * m);
+        }
+        let history = super::newton::History {
+            c: S::from(formula.lead) / h,
+            qdot,
+            vdot,
+        };
+        let (model, numbering) = (self.model, self.numbering);
+        self.one
+            .get_or_insert_with(|| Newton::new(model, numbering))
+            .solve(&mut stage, &history, h, at, counts)?;
+        Ok(vec![stage])
+    }
+
+    /// Moves the memory past step k.
+    fn remember(&mut self, stages: &[Stage<S>], k: usize) {
+        let last = &stages[stages.len() - 1];
+        let Some(formula) = Formula::of_step(self.method, k) else {
+            // Increments that a formula to come starts from, newest first.
+            if memory_size(self.method) > 0 {
+                self.memory.insert(0, (last.dq.clone(), last.dv.clone()));
+            }
+            return;
+        };
+        let combine = |pick: fn(&(Vec<S>, Vec<S>)) -> &Vec<S>, delta: &[S], row: &(f64, Vec<f64>)| {
+            let mut out: Vec<S> = delta.iter().map(|&d| d * row.0).collect();
+            for (&f, m) in row.1.iter().zip(&self.memory) {
+                if f != 0.0 {
+                    out.iter_mut().zip(pick(m)).for_each(|(out, &m)| *out += m * f);
+                }
+            }
+            out
+        };
+        self.memory = formula
+            .memory
+            .iter()
+            .map(|row| {
+                (
+                    combine(|m| &m.0, &last.dq, row),
+                    combine(|m| &m.1, &last.dv, row),
+                )
+            })
+            .collect();
+    }
+
+    /// Estimated error of a step relative to the scene's scale; zero without an estimate.
+    fn error(&mut self, from: &Stage<S>, stages: &[Stage<S>], h: f64, scale: &Scale) -> f64 {
+        let (Some(coupled), Some(field)) = (&mut self.coupled, &mut self.field) else {
+            return 0.0;
+        };
+        let start = from.real();
+        let numbering = self.numbering;
+        let (mut qdot, mut a) = (vec![0.0; start.q.len()], vec![0.0; start.v.len()]);
+        let mut lambda = vec![0.0; start.lambda.len()];
+        bodies::rates(numbering, &start.q, &start.v, &mut qdot);
+        field.stand(&start.q, &start.v);
+        if field.factorise().is_err() {
+            return f64::NAN;
+        }
+        field.accelerations(&mut a, &mut lambda);
+        let found = coupled.error(stages, (&qdot, &a), h);
+        let nv = a.len();
+        let end: Vec<f64> = stages[stages.len() - 1].v.iter().map(|x| x.re()).collect();
+        let speeds = scale.speeds(numbering, &start.v, &end);
+        scale
+            .tangent_square(&found[..nv], &found[nv..], h, speeds)
+            .sqrt()
+    }
+}
+
+/// Adds the instants of the step that was just accepted.
+fn sample<S: SolveScalar>(
+    run: &mut Trajectory<S>,
+    scheme: &Scheme,
+    from: &Stage<S>,
+    stages: &[Stage<S>],
+    samples: Samples,
+    next: &mut usize,
+) {
+    let k = run.grid.steps();
+    let h = run.duration * run.grid.width(k);
+    let last = &stages[stages.len() - 1];
+    for at in trajectory::due(samples, next, run.grid.reached()) {
+        let place = place(&run.grid, k, at);
+        match place {
+            Place::Node(_) => run.push(at, place, [&last.q, &last.v, &last.vdot, &last.lambda]),
+            Place::Inside { theta, .. } => {
+                let mut inside = dense(scheme, from, stages, h, theta);
+                for body in 0..run.numbering.bodies() {
+                    let o = run.numbering.position(body);
+                    let p = rotation::unit(&positions_of(&inside.q[o..]).1);
+                    inside.q[o + 3..o + 7].copy_from_slice(&p);
+                }
+                let Stage {
+                    q, v, vdot, lambda, ..
+                } = &inside;
+                run.push(at, place, [q, v, vdot, lambda]);
+            }
+        }
+    }
+}
+
+/// The collocation polynomial at the fraction θ of a step of size h (beyond the step for θ > 1):
+/// positions before their Euler parameters are brought to unit length, velocities, accelerations
+/// and multipliers.
+pub fn dense<S: SolveScalar>(
+    scheme: &Scheme,
+    from: &Stage<S>,
+    stages: &[Stage<S>],
+    h: S,
+    theta: f64,
+) -> Stage<S> {
+    let (w, rate) = scheme.dense_weights(theta);
+    let plain = scheme.stage_weights(theta);
+    let mut out = from.clone();
+    for x in [&mut out.lambda, &mut out.mu, &mut out.vdot, &mut out.dq, &mut out.dv] {
+        x.fill(S::zero());
+    }
+    for (i, stage) in stages.iter().enumerate() {
+        let add = |out: &mut [S], weight: S, x: &[S]| {
+            out.iter_mut().zip(x).for_each(|(out, &x)| *out += weight * x);
+        };
+        add(&mut out.q, S::from(w[i]), &stage.dq);
+        add(&mut out.dq, S::from(w[i]), &stage.dq);
+        add(&mut out.v, S::from(w[i]), &stage.dv);
+        add(&mut out.dv, S::from(w[i]), &stage.dv);
+        add(&mut out.vdot, S::from(rate[i]) / h, &stage.dv);
+        add(&mut out.lambda, S::from(plain[i]), &stage.lambda);
+        add(&mut out.mu, S::from(plain[i]), &stage.mu);
+    }
+    out
+}
+
+/// Where Newton's method starts: the stages' polynomial of the last step, extrapolated; in the
+/// first step a Taylor polynomial.
+fn predict_stages<S: SolveScalar>(
+    numbering: &Numbering,
+    scheme: &Scheme,
+    past: &Past<S>,
+    h: S,
+) -> Vec<Stage<S>> {
+    let known = past.before.as_ref();
+    let stage = |&c: &f64| match known.filter(|(_, stages)| stages.len() == scheme.stages()) {
+        Some((before, stages)) => {
+            let theta = 1.0 + c * h.re() / before.re();
+            let last = &stages[stages.len() - 1];
+            let mut far = dense(scheme, &past.from, stages, *before, theta);
+            // The polynomial starts where the last step did.
+            for (x, d) in [(&mut far.q, &last.dq), (&mut far.dq, &last.dq)] {
+                x.iter_mut().zip(d).for_each(|(x, &d)| *x = *x - d);
+            }
+            for (x, d) in [(&mut far.v, &last.dv), (&mut far.dv, &last.dv)] {
+                x.iter_mut().zip(d).for_each(|(x, &d)| *x = *x - d);
+            }
+            bodies::normalise(numbering, &mut far.q, &mut far.dq);
+            far
+        }
+        None => taylor(numbering, &past.from, h * c),
+    };
+    scheme.nodes.iter().map(stage).collect()
+}
+
+/// A Taylor polynomial over the time `h`, multipliers held.
+fn taylor<S: SolveScalar>(numbering: &Numbering, from: &Stage<S>, h: S) -> Stage<S> {
+    let mut out = from.clone();
+    out.dq.fill(S::zero());
+    let step: Vec<S> = (from.v.iter().zip(&from.vdot))
+        .map(|(&v, &a)| h * (v + h * a * 0.5))
+        .collect();
+    bodies::advance(numbering, &mut out.q, &mut out.dq, &step);
+    for (i, &a) in from.vdot.iter().enumerate() {
+        out.dv[i] = h * a;
+        out.v[i] += h * a;
+    }
+    out
+}
+
+/// Where Newton's method starts for a formula of equal steps: cubic extrapolation of q and v and
+/// quadratic of λ and μ once three increments are known, before that a Taylor polynomial.
+fn predict<S: SolveScalar>(numbering: &Numbering, past: &Past<S>, h: S) -> Stage<S> {
+    let (Some(one), Some(two), Some(three)) =
+        (past.recent.front(), past.recent.get(1), past.recent.get(2))
+    else {
+        return taylor(numbering, &past.from, h);
+    };
+    let mut out = past.from.clone();
+    let extrapolate = |out: &mut [S], pick: fn(&Stage<S>) -> &Vec<S>| {
+        for (j, out) in out.iter_mut().enumerate() {
+            *out = (pick(one)[j] - pick(two)[j]) * 3.0 + pick(three)[j];
+        }
+    };
+    extrapolate(&mut out.dq, |stage| &stage.dq);
+    extrapolate(&mut out.dv, |stage| &stage.dv);
+    extrapolate(&mut out.lambda, |stage| &stage.lambda);
+    extrapolate(&mut out.mu, |stage| &stage.mu);
+    out.q.iter_mut().zip(&out.dq).for_each(|(q, &d)| *q += d);
+    out.v.iter_mut().zip(&out.dv).for_each(|(v, &d)| *v += d);
+    bodies::normalise(numbering, &mut out.q, &mut out.dq);
+    out
+}

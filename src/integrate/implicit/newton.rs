@@ -1,0 +1,214 @@
+//! Newton's method for one implicit step, with the iteration matrix kept while it converges.
+
+use super::ggl::Equations;
+use super::Stage;
+use super::scales::SceneScale;
+use crate::integrate::failure::IntegrationFailure;
+use crate::integrate::trajectory::WorkCounts;
+use crate::linalg::{SolveScalar, SparseLu, SparseMatrix};
+use crate::math::Scalar;
+use crate::model::Model;
+use crate::system::Numbering;
+
+/// Error left in a step, relative to the largest increments of position, rotation, velocity and
+/// angular velocity in it, at which Newton's method stops: the relative error of accelerations.
+const TOLERANCE: f64 = 1e-13;
+/// Relative change below which a stagnating iteration has reached round-off as well.
+const STAGNANT: f64 = 1e-9;
+/// Contraction above which the iteration matrix is renewed.
+const RENEW: f64 = 0.1;
+/// Steps of one iteration each after which the iteration matrix is renewed.
+const UNSEEN: usize = 8;
+const ITERATIONS: usize = 25;
+
+/// How rates follow from increments in this step: q̇ = c dq + `qdot`, v̇ = c dv + `vdot`.
+#[derive(Clone, Debug)]
+pub struct History<S> {
+    /// c = a0 / h.
+    pub c: S,
+    /// History part of q̇.
+    pub qdot: Vec<S>,
+    /// History part of v̇.
+    pub vdot: Vec<S>,
+}
+
+impl<S: Scalar> History<S> {
+    /// Sets q̇ and v̇ from the increments.
+    fn rates(&self, x: &mut Stage<S>) {
+        for (out, (&d, &past)) in x.qdot.iter_mut().zip(x.dq.iter().zip(&self.qdot)) {
+            *out = self.c * d + past;
+        }
+        for (out, (&d, &past)) in x.vdot.iter_mut().zip(x.dv.iter().zip(&self.vdot)) {
+            *out = self.c * d + past;
+        }
+    }
+}
+
+/// Newton's method with everything that it needs again in every step.
+pub struct Newton<'a, S> {
+    equations: Equations<'a, S>,
+    numbering: &'a Numbering,
+    matrix: SparseMatrix<S>,
+    factors: SparseLu<S>,
+    /// c h of the kept factors, or `None`.
+    factored: Option<S>,
+    /// Contraction seen with the kept factors.
+    contraction: f64,
+    /// Steps in a row that took one iteration, which shows no contraction.
+    unseen: usize,
+    scale: SceneScale,
+    residual: Vec<S>,
+}
+
+impl<'a, S: SolveScalar> Newton<'a, S> {
+    /// Plans the solution of the model's equations.
+    pub fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
+        let mut equations = Equations::new(model, numbering);
+        let order = equations.order();
+        let pattern = equations.pattern(&Stage::zero(numbering).instant());
+        Self {
+            equations,
+            numbering,
+            factors: SparseLu::new(&pattern),
+            matrix: SparseMatrix::new(pattern),
+            factored: None,
+            contraction: 1.0,
+            unseen: 0,
+            scale: SceneScale::of(model),
+            residual: vec![S::zero(); order],
+        }
+    }
+
+    /// Solves the equations of step `step` of size `h`, which ends at `time`, starting from and ending
+    /// in `x`.
+    ///
+    /// # Errors
+    /// Stalled, singular or not finite, with the time and the worst equation by name.
+    pub fn solve(
+        &mut self,
+        x: &mut Stage<S>,
+        history: &History<S>,
+        h: S,
+        (step, time): (usize, f64),
+        counts: &mut WorkCounts,
+    ) -> Result<(), IntegrationFailure> {
+        let numbering = self.numbering;
+        let nv = numbering.velocities();
+        let scales = self.scale.step(numbering, [&x.q, &x.v, &x.dq, &x.dv], h.re());
+        let mut previous = f64::INFINITY;
+        let (mut polish, mut before) = (false, 0.0_f64);
+        for iteration in 1..=ITERATIONS {
+            history.rates(x);
+            let at = x.instant();
+            self.equations.residual(&at, h, &mut self.residual);
+            // A derivative converges with the exact matrix only.
+            let fresh = S::INFINITESIMAL || self.factored != Some(history.c * h);
+            if fresh {
+                let (equations, matrix) = (&mut self.equations, &mut self.matrix);
+                matrix.assemble(|emit| equations.jacobian(&at, h, history.c, emit));
+                self.factored = None;
+                self.factors.factorise(matrix).map_err(|singular| {
+                    IntegrationFailure::Singular {
+                        time,
+                        step,
+                        place: equations.describe(singular.column),
+                    }
+                })?;
+                counts.factorisations += 1;
+                self.factored = Some(history.c * h);
+            }
+            counts.newton_iterations += 1;
+            counts.solves += 1;
+            let mut update = std::mem::take(&mut self.residual);
+            self.factors.solve(&mut update);
+            let size = scales.size(&update[..2 * nv], h.re());
+            if !size.is_finite() {
+                self.residual = update;
+                return Err(self.not_finite(&at_residual(&self.residual), time, step));
+            }
+            for u in &mut update {
+                *u = -*u;
+            }
+            x.advance(numbering, &update, h);
+            self.residual = update;
+
+            let contraction = match iteration {
+                1 => self.contraction,
+                // A change after none is round-off or an infinitesimal part: no contraction.
+                _ if previous == 0.0 => 0.0,
+                _ => size / previous,
+            };
+            // Contraction alternates between positions and multipliers: trust the worse of two.
+            let slow = contraction.max(before);
+            let remaining = size * (slow / (1.0 - slow.min(0.9))).min(1.0);
+            before = contraction;
+            let stagnant =
+                iteration > 2 && contraction > RENEW && size <= scales.round_off.max(STAGNANT);
+            if polish || remaining <= TOLERANCE || stagnant {
+                if S::INFINITESIMAL && !polish {
+                    polish = true;
+                    previous = size;
+                    continue;
+                }
+                if iteration > 1 && !stagnant {
+                    self.contraction = contraction.clamp(1e-3, 1.0);
+                }
+                // Kept factors that are not seen to converge do not serve for long.
+                self.unseen = if iteration == 1 { self.unseen + 1 } else { 0 };
+                if self.unseen >= UNSEEN {
+                    self.factored = None;
+                    self.unseen = 0;
+                }
+                history.rates(x);
+                return Ok(());
+            }
+            if iteration > 1 && contraction > RENEW {
+                self.factored = None;
+            }
+            if fresh {
+                self.contraction = 1e-2;
+            }
+            previous = size;
+        }
+        Err(self.stalled(x, history, h, (step, time)))
+    }
+
+    fn not_finite(&self, residual: &[f64], time: f64, step: usize) -> IntegrationFailure {
+        let row = residual.iter().position(|x| !x.is_finite()).unwrap_or(0);
+        IntegrationFailure::NotFinite {
+            time,
+            step,
+            worst: self.equations.describe(row),
+        }
+    }
+
+    fn stalled(
+        &mut self,
+        x: &mut Stage<S>,
+        history: &History<S>,
+        h: S,
+        (step, time): (usize, f64),
+    ) -> IntegrationFailure {
+        history.rates(x);
+        let at = x.instant();
+        self.equations.residual(&at, h, &mut self.residual);
+        let rows = at_residual(&self.residual);
+        let worst = (0..rows.len())
+            .reduce(|w, i| if rows[i].abs() > rows[w].abs() { i } else { w })
+            .unwrap_or(0);
+        IntegrationFailure::NewtonStalled {
+            time,
+            step,
+            iterations: ITERATIONS,
+            residual: rows[worst].abs(),
+            worst: self.equations.describe(worst),
+        }
+    }
+}
+
+fn at_residual<S: Scalar>(residual: &[S]) -> Vec<f64> {
+    residual
+        .iter()
+        .map(|x| if x.is_finite() { x.re() } else { f64::NAN })
+        .collect()
+}

@@ -1,0 +1,372 @@
+//! Newton's method for the coupled stages of Radau IIA: one real and one complex matrix, kept while
+//! they converge (Hairer & Wanner 1996, section IV.8).
+
+use super::Stage;
+use super::ggl::Equations;
+use super::radau::Scheme;
+use super::scales::{SceneScale, Scales};
+use crate::integrate::failure::IntegrationFailure;
+use crate::integrate::trajectory::WorkCounts;
+use crate::linalg::{SolveScalar, SparseLu, SparseMatrix};
+use crate::math::{Complex64, Scalar};
+use crate::model::Model;
+use crate::system::{Numbering, bodies};
+
+/// Error left in the stages, relative to the largest increments in the step.
+const TOLERANCE: f64 = 1e-13;
+/// Relative change below which a stagnating iteration has reached round-off.
+const STAGNANT: f64 = 1e-9;
+/// Contraction above which the matrices are renewed for the next step.
+const RENEW: f64 = 0.05;
+/// Contraction that is given up.
+const DIVERGENT: f64 = 0.9;
+/// Relative change of the step size that the kept factors do not feel.
+const SAME_STEP: f64 = 1e-6;
+const ITERATIONS: usize = 20;
+/// Iterations that let an infinitesimal part converge after the real one.
+const INFINITESIMAL_ITERATIONS: usize = 12;
+
+/// Newton's method with what it needs again in every step.
+pub struct StageNewton<'a, S> {
+    equations: Equations<'a, S>,
+    /// The same equations in real numbers, for the matrices.
+    real: Equations<'a, f64>,
+    numbering: &'a Numbering,
+    scheme: &'a Scheme,
+    /// The matrix with the rates held, and with h ∂Ẏ/∂Y = 1.
+    held: SparseMatrix<f64>,
+    unit: SparseMatrix<f64>,
+    /// The matrix of the real eigenvalue, or of the error's filter where there is none.
+    real_mode: Option<(SparseMatrix<f64>, SparseLu<f64>)>,
+    complex_mode: (SparseMatrix<Complex64>, SparseLu<Complex64>),
+    /// Step size of the kept factors.
+    factored: Option<f64>,
+    scale: SceneScale,
+    residuals: Vec<Vec<S>>,
+    updates: Vec<Vec<S>>,
+    real_rhs: Vec<f64>,
+    complex_rhs: Vec<Complex64>,
+}
+
+impl<'a, S: SolveScalar> StageNewton<'a, S> {
+    /// Plans the solution; `real` is the real part of `model`, and `estimates` whether errors will
+    /// be asked for.
+    pub fn new(
+        model: &'a Model<S>,
+        real: &'a Model<f64>,
+        numbering: &'a Numbering,
+        scheme: &'a Scheme,
+        estimates: bool,
+    ) -> Self {
+        let mut equations = Equations::new(real, numbering);
+        let pattern = equations.pattern(&Stage::zero(numbering).instant());
+        let n = equations.order();
+        let real_mode = (scheme.modes[0].is_real() || estimates).then(|| {
+            let matrix = SparseMatrix::new(pattern.clone());
+            (matrix, SparseLu::new(&pattern))
+        });
+        Self {
+            equations: Equations::new(model, numbering),
+            real: equations,
+            numbering,
+            scheme,
+            held: SparseMatrix::new(pattern.clone()),
+            unit: SparseMatrix::new(pattern.clone()),
+            real_mode,
+            complex_mode: (
+                SparseMatrix::new(pattern.clone()),
+                SparseLu::new(&pattern),
+            ),
+            factored: None,
+            scale: SceneScale::of(model),
+            residuals: vec![vec![S::zero(); n]; scheme.stages()],
+            updates: vec![vec![S::zero(); n]; scheme.stages()],
+            real_rhs: vec![0.0; n],
+            complex_rhs: vec![Complex64::new(0.0, 0.0); n],
+        }
+    }
+
+    /// Forgets the kept factors.
+    pub fn forget(&mut self) {
+        self.factored = None;
+    }
+
+    /// Solves the stage equations of a step of size `h`, starting from and ending in `stages`.
+    ///
+    /// # Errors
+    /// Stalled, singular or not finite, with the time and the worst equation by name.
+    pub fn solve(
+        &mut self,
+        stages: &mut [Stage<S>],
+        h: S,
+        at: (usize, f64),
+        counts: &mut WorkCounts,
+    ) -> Result<(), IntegrationFailure> {
+        let kept = self.factored.is_some_and(|old| (old - h.re()).abs() < SAME_STEP * old);
+        if S::INFINITESIMAL || !kept {
+            self.factorise(stages, h.re(), at, counts)?;
+            return self.iterate(stages, h, at, counts);
+        }
+        let predicted = stages.to_vec();
+        self.iterate(stages, h, at, counts).or_else(|_| {
+            stages.clone_from_slice(&predicted);
+            self.factorise(stages, h.re(), at, counts)?;
+            self.iterate(stages, h, at, counts)
+        })
+    }
+
+    /// Simplified Newton iterations with the kept factors.
+    fn iterate(
+        &mut self,
+        stages: &mut [Stage<S>],
+        h: S,
+        at: (usize, f64),
+        counts: &mut WorkCounts,
+    ) -> Result<(), IntegrationFailure> {
+        let numbering = self.numbering;
+        let nv = numbering.velocities();
+        let last = &stages[stages.len() - 1];
+        let known = [&last.q[..], &last.v, &last.dq, &last.dv];
+        let scales = self.scale.step(numbering, known, h.re());
+        let (mut previous, mut slowest) = (f64::INFINITY, 0.0_f64);
+        for iteration in 1..=ITERATIONS {
+            let size = self.improve(stages, h, &scales, nv, counts);
+            if !size.is_finite() {
+                return Err(self.not_finite(at));
+            }
+            let contraction = match iteration {
+                1 => RENEW,
+                // A change after none is round-off or an infinitesimal part: no contraction.
+                _ if previous == 0.0 => 0.0,
+                _ => size / previous,
+            };
+            let slow = contraction > DIVERGENT;
+            let remaining = size * (contraction / (1.0 - contraction.min(0.9))).min(1.0);
+            let noise = scales.round_off.max(STAGNANT);
+            let stagnant = iteration > 2 && contraction > 0.3 && size <= noise;
+            if remaining <= TOLERANCE || stagnant {
+                if S::INFINITESIMAL {
+                    for _ in 0..INFINITESIMAL_ITERATIONS {
+                        self.improve(stages, h, &scales, nv, counts);
+                    }
+                }
+                if slowest > RENEW {
+                    self.factored = None;
+                }
+                self.set_rates(stages, h);
+                return Ok(());
+            }
+            if iteration > 1 {
+                slowest = slowest.max(contraction);
+                if slow {
+                    break;
+                }
+            }
+            previous = size;
+        }
+        self.factored = None;
+        Err(self.stalled(stages, h, at))
+    }
+
+    /// One iteration; the size of the change.
+    fn improve(
+        &mut self,
+        stages: &mut [Stage<S>],
+        h: S,
+        scales: &Scales,
+        nv: usize,
+        counts: &mut WorkCounts,
+    ) -> f64 {
+        self.set_rates(stages, h);
+        for (stage, residual) in stages.iter().zip(&mut self.residuals) {
+            self.equations.residual(&stage.instant(), h, residual);
+        }
+        for update in &mut self.updates {
+            update.fill(S::zero());
+        }
+        self.update(Scalar::re, S::from);
+        if S::INFINITESIMAL {
+            self.update(Scalar::infinitesimal, S::of_infinitesimal);
+        }
+        counts.newton_iterations += 1;
+        counts.solves += self.scheme.modes.len();
+        let mut size = 0.0_f64;
+        for (stage, update) in stages.iter_mut().zip(&self.updates) {
+            let own = scales.size(&update[..2 * nv], h.re());
+            size = if own.is_nan() { own } else { size.max(own) };
+            stage.advance(self.numbering, update, h);
+        }
+        size
+    }
+
+    /// Rates of the stages from their increments, h Ẏ_i = Σ D_ij Z_j.
+    fn set_rates(&self, stages: &mut [Stage<S>], h: S) {
+        for i in 0..stages.len() {
+            let mut qdot = std::mem::take(&mut stages[i].qdot);
+            let mut vdot = std::mem::take(&mut stages[i].vdot);
+            qdot.fill(S::zero());
+            vdot.fill(S::zero());
+            for (stage, &d) in stages.iter().zip(&self.scheme.rates[i]) {
+                let d = S::from(d) / h;
+                qdot.iter_mut().zip(&stage.dq).for_each(|(out, &z)| *out += d * z);
+                vdot.iter_mut().zip(&stage.dv).for_each(|(out, &z)| *out += d * z);
+            }
+            stages[i].qdot = qdot;
+            stages[i].vdot = vdot;
+        }
+    }
+
+    /// Adds the updates that one part of the residuals makes: x_i −= Σ r_i K⁻¹ Σ l_j F_j over the
+    /// modes and the conjugates of complex ones.
+    fn update(&mut self, part: impl Fn(S) -> f64, whole: impl Fn(f64) -> S) {
+        for mode in &self.scheme.modes {
+            if let (true, Some((_, factors))) = (mode.is_real(), &mut self.real_mode) {
+                self.real_rhs.fill(0.0);
+                for (residual, l) in self.residuals.iter().zip(&mode.left) {
+                    for (out, &x) in self.real_rhs.iter_mut().zip(residual) {
+                        *out += l.re * part(x);
+                    }
+                }
+                factors.solve(&mut self.real_rhs);
+                for (update, r) in self.updates.iter_mut().zip(&mode.right) {
+                    for (out, &x) in update.iter_mut().zip(&self.real_rhs) {
+                        *out -= whole(r.re * x);
+                    }
+                }
+            } else {
+                self.complex_rhs.fill(Complex64::new(0.0, 0.0));
+                for (residual, l) in self.residuals.iter().zip(&mode.left) {
+                    for (out, &x) in self.complex_rhs.iter_mut().zip(residual) {
+                        *out += l * part(x);
+                    }
+                }
+                self.complex_mode.1.solve(&mut self.complex_rhs);
+                for (update, r) in self.updates.iter_mut().zip(&mode.right) {
+                    for (out, x) in update.iter_mut().zip(&self.complex_rhs) {
+                        *out -= whole(2.0 * (r * x).re);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Assembles and factorises at the middle stage.
+    fn factorise(
+        &mut self,
+        stages: &mut [Stage<S>],
+        h: f64,
+        (step, time): (usize, f64),
+        counts: &mut WorkCounts,
+    ) -> Result<(), IntegrationFailure> {
+        self.set_rates(stages, S::from(h));
+        let middle = stages[(stages.len() - 1) / 2].real();
+        let at = middle.instant();
+        let Self {
+            real,
+            held,
+            unit,
+            real_mode,
+            complex_mode,
+            ..
+        } = self;
+        held.assemble(|emit| real.jacobian(&at, h, 0.0, emit));
+        unit.assemble(|emit| real.jacobian(&at, h, 1.0 / h, emit));
+        // The matrix is affine in the eigenvalue.
+        let rate = |i: usize| unit.values[i] - held.values[i];
+        let mut found = Ok(());
+        for mode in &self.scheme.modes {
+            counts.factorisations += 1;
+            let factors = if let (true, Some((matrix, factors))) = (mode.is_real(), &mut *real_mode)
+            {
+                for (i, value) in matrix.values.iter_mut().enumerate() {
+                    *value = held.values[i] + mode.value.re * rate(i);
+                }
+                factors.factorise(matrix)
+            } else {
+                let (matrix, factors) = &mut *complex_mode;
+                for (i, value) in matrix.values.iter_mut().enumerate() {
+                    *value = mode.value * rate(i) + held.values[i];
+                }
+                factors.factorise(matrix)
+            };
+            found = found.and(factors);
+        }
+        if let (false, Some((matrix, factors))) = (self.scheme.modes[0].is_real(), real_mode) {
+            for (i, value) in matrix.values.iter_mut().enumerate() {
+                *value = held.values[i] + rate(i) / self.scheme.error.0;
+            }
+            counts.factorisations += 1;
+            found = found.and(factors.factorise(matrix));
+        }
+        self.factored = found.is_ok().then_some(h);
+        found.map_err(|singular| IntegrationFailure::Singular {
+            time,
+            step,
+            place: self.real.describe(singular.column),
+        })
+    }
+
+    /// Estimated error (δy, h δv) of a step of size h: the difference of the embedded formula,
+    /// filtered by the real matrix, (K δ) = B (b̂_0 h ẏ_n + Σ e_i Z_i) / (b̂_0 h) in the equations
+    /// of motion and 0 in the constraints (Hairer & Wanner 1996, eq. IV.8.19 and 20). `rates` are
+    /// the rates (q̇, v̇) at the start.
+    pub fn error(&mut self, stages: &[Stage<S>], (qdot, vdot): (&[f64], &[f64]), h: f64) -> &[f64] {
+        let numbering = self.numbering;
+        let nv = numbering.velocities();
+        let (first, weights) = &self.scheme.error;
+        let mut dq: Vec<f64> = qdot.iter().map(|x| first * h * x).collect();
+        let mut dv: Vec<f64> = vdot.iter().map(|x| first * h * x).collect();
+        for (stage, e) in stages.iter().zip(weights) {
+            dq.iter_mut().zip(&stage.dq).for_each(|(out, z)| *out += e * z.re());
+            dv.iter_mut().zip(&stage.dv).for_each(|(out, z)| *out += e * z.re());
+        }
+        let end: Vec<f64> = stages[stages.len() - 1].q.iter().map(|x| x.re()).collect();
+        self.real_rhs.fill(0.0);
+        let (f1, rest) = self.real_rhs.split_at_mut(nv);
+        bodies::velocity_of_rates(numbering, &end, &dq, f1);
+        f1.iter_mut().for_each(|x| *x /= *first);
+        // Rows of the dynamics are scaled by h², those of the kinematics by h.
+        bodies::mass_product(self.real.model(), numbering, &dv, &mut rest[..nv]);
+        rest[..nv].iter_mut().for_each(|x| *x *= h / first);
+        if let Some((_, factors)) = &mut self.real_mode {
+            factors.solve(&mut self.real_rhs);
+        }
+        &self.real_rhs[..2 * nv]
+    }
+
+    fn not_finite(&self, (step, time): (usize, f64)) -> IntegrationFailure {
+        let row = (self.residuals.iter())
+            .find_map(|residual| residual.iter().position(|x| !x.is_finite()))
+            .unwrap_or(0);
+        IntegrationFailure::NotFinite {
+            time,
+            step,
+            worst: self.real.describe(row),
+        }
+    }
+
+    fn stalled(
+        &mut self,
+        stages: &mut [Stage<S>],
+        h: S,
+        (step, time): (usize, f64),
+    ) -> IntegrationFailure {
+        self.set_rates(stages, h);
+        let (mut worst, mut largest) = (0, 0.0_f64);
+        for (stage, residual) in stages.iter().zip(&mut self.residuals) {
+            self.equations.residual(&stage.instant(), h, residual);
+            for (row, x) in residual.iter().enumerate() {
+                if !(x.re().abs() <= largest) {
+                    (worst, largest) = (row, x.re().abs());
+                }
+            }
+        }
+        IntegrationFailure::NewtonStalled {
+            time,
+            step,
+            iterations: ITERATIONS,
+            residual: largest,
+            worst: self.real.describe(worst),
+        }
+    }
+}
