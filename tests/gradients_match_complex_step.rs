@@ -162,20 +162,50 @@ fn explicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
     vec![fixed, chosen, kept]
 }
 
+/// Every implicit method, with steps of equal size and, where they can follow the error, on a frozen
+/// grid with samples between the ends of steps.
+fn implicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
+    let bdf = |order| Method::Bdf { order, start: Start::Radau };
+    let rising = |order| Method::Bdf { order, start: Start::RisingOrder };
+    let radau = |stages| Method::Radau { stages };
+    let mut all: Vec<Settings> = [
+        bdf(1), bdf(2), bdf(3), bdf(4), bdf(5), bdf(6), rising(2), rising(5),
+        Method::GeneralisedAlpha { radius: 0.5 },
+        Method::GeneralisedAlpha { radius: 0.8 },
+        radau(2), radau(3),
+    ]
+    .map(|method| Settings::steps(method, steps))
+    .to_vec();
+    for stages in [2, 3] {
+        let mut settings = Settings::steps(radau(stages), steps);
+        settings.spacing = Spacing::Tolerance(1e-5);
+        let run = simulate(model, duration, &settings).expect("runs");
+        settings.spacing = Spacing::Frozen(run.grid);
+        settings.samples = Samples::Uniform(37);
+        all.push(settings);
+    }
+    all
+}
+
+fn check_all(model: &Model<f64>, duration: f64) {
+    for settings in explicit(model, duration, 10) {
+        check(model.clone(), duration, &settings);
+    }
+    for settings in implicit(model, duration, 40) {
+        check(model.clone(), duration, &settings);
+    }
+}
+
 #[test]
 fn triple_pendulum_in_space() {
     let (model, _) = reference::load("triple_pendulum");
-    for settings in explicit(&model, 0.4, 10) {
-        check(model.clone(), 0.4, &settings);
-    }
+    check_all(&model, 0.4);
 }
 
 #[test]
 fn trebuchet() {
     let (model, _) = reference::load("trebuchet");
-    for settings in explicit(&model, 0.5, 10) {
-        check(model.clone(), 0.5, &settings);
-    }
+    check_all(&model, 0.5);
 }
 
 #[test]
@@ -184,7 +214,5 @@ fn every_kind_of_joint() {
     for (joint, kind) in [(1, JointKind::Prismatic), (2, JointKind::Planar)] {
         model.joints[joint].kind = kind;
     }
-    for settings in explicit(&model, 0.4, 10) {
-        check(model.clone(), 0.4, &settings);
-    }
+    check_all(&model, 0.4);
 }

@@ -191,6 +191,20 @@ pub fn angular_velocity_by_theta<S: Scalar>(p: &Quat<S>, pdot: &Quat<S>) -> Mat3
     out
 }
 
+/// The angular velocity at the positions `q` (of one body) that a tangent rotation rate at the
+/// positions `other` makes: L(p) L(p')ᵀ.
+pub fn turn_between<S: Scalar>(q: &[S], other: &[S]) -> Mat3<S> {
+    let (p, other) = (positions_of(q).1, positions_of(other).1);
+    let mut out = Mat3::zeros();
+    for j in 0..3 {
+        let mut unit = Vec3::zeros();
+        unit[j] = S::one();
+        let column = rotation::rate_product(&p, &rotation::rate_transposed(&other, &unit));
+        out.set_column(j, &column);
+    }
+    out
+}
+
 /// Tangent cotangent of a cotangent of q: T(q)ᵀ g, per body (g_r, ½ L(p) g_p).
 pub fn tangent_of_cotangent<S: Scalar>(numbering: &Numbering, q: &[S], g: &[S], out: &mut [S]) {
     for body in 0..numbering.bodies() {
@@ -210,6 +224,37 @@ pub fn rates_cotangent<S: Scalar>(numbering: &Numbering, q: &[S], psi: &[S], out
         let out = &mut out[numbering.position(body)..][..7];
         out[..3].copy_from_slice(linear.as_slice());
         out[3..].copy_from_slice(&rotation::rate_transposed(&p, &(angular * S::from(2.0))));
+    }
+}
+
+/// Pulls the cotangent of q̇ = T(q) v back to q and v.
+pub fn pull_rates(
+    numbering: &Numbering,
+    (q, v): (&[f64], &[f64]),
+    qdot_bar: &[f64],
+    (q_bar, v_bar): (&mut [f64], &mut [f64]),
+) {
+    for body in 0..numbering.bodies() {
+        let (o, u) = (numbering.position(body), numbering.velocity(body));
+        let (_, p) = positions_of(&q[o..]);
+        let (_, omega) = velocities_of(&v[u..]);
+        let (by_r, by_p) = positions_of(&qdot_bar[o..]);
+        // ½ L(p)ᵀ ω is linear in p by a skew matrix.
+        let turned = rotation::rates(&by_p, &omega).map(|x| -x);
+        add7(&mut q_bar[o..], &Vec3::zeros(), &turned);
+        let by_omega = rotation::rate_product(&p, &by_p) * 0.5;
+        add6(&mut v_bar[u..], &by_r, &by_omega);
+    }
+}
+
+/// Adds the cotangent of positions whose Euler parameters are brought to unit length, given the
+/// cotangent of the tangent there.
+pub fn add_unit_cotangent(numbering: &Numbering, q: &[f64], y: &[f64], out: &mut [f64]) {
+    for body in 0..numbering.bodies() {
+        let o = numbering.position(body);
+        let (_, p) = positions_of(&q[o..]);
+        let (by_r, by_theta) = velocities_of(&y[numbering.velocity(body)..]);
+        add7(&mut out[o..], &by_r, &rotation::unit_pull_back(&p, &by_theta));
     }
 }
 

@@ -7,10 +7,9 @@ use crate::integrate::Trajectory;
 use crate::integrate::explicit::tableau::{ALL, B, END, dense_weights};
 use crate::integrate::explicit::{Node, StepData};
 use crate::integrate::grid::Place;
-use crate::math::{Vec3, rotation};
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
-use crate::system::bodies::{self, add7, positions_of, velocities_of};
+use crate::system::bodies;
 
 /// One function with its cotangents of the stages.
 pub(super) struct Sweep<'a> {
@@ -61,7 +60,7 @@ impl<'a> Sweep<'a> {
                 let width = run.grid.width(step);
                 let h = run.duration * width;
                 let [raw, ..] = data.dense(from, h, theta);
-                add_unit_cotangent(numbering, &raw, y, &mut q);
+                bodies::add_unit_cotangent(numbering, &raw, y, &mut q);
                 let (w, rate) = dense_weights(theta);
                 for i in 0..ALL {
                     if w[i] == 0.0 && rate[i] == 0.0 {
@@ -100,10 +99,10 @@ impl<'a> Sweep<'a> {
         let (nq, nv) = (q.len(), v.len());
         let (qdot_bar, a_bar) = (row(&self.qdot, nq, i), row(&self.a, nv, i));
         let (mut q_bar, mut v_bar, mut y) = (vec![0.0; nq], vec![0.0; nv], vec![0.0; nv]);
-        pull_rates(numbering, (q, v), qdot_bar, (&mut q_bar, &mut v_bar));
+        bodies::pull_rates(numbering, (q, v), qdot_bar, (&mut q_bar, &mut v_bar));
         let cot = &mut self.of.cot.model;
         field.pull_back(found, a_bar, (&mut y, &mut v_bar), cot);
-        add_unit_cotangent(numbering, q, &y, &mut q_bar);
+        bodies::add_unit_cotangent(numbering, q, &y, &mut q_bar);
         row_mut(&mut self.qdot, nq, i).copy_from_slice(&q_bar);
         row_mut(&mut self.a, nv, i).copy_from_slice(&v_bar);
     }
@@ -159,14 +158,14 @@ impl<'a> Sweep<'a> {
             let Sensitivity { q, v, cot, .. } = &mut self.of;
             let found = (&to.a[..], &to.lambda[..]);
             field.pull_back(found, &self.node.1, (&mut y, v), &mut cot.model);
-            add_unit_cotangent(field.numbering, &to.q, &y, q);
+            bodies::add_unit_cotangent(field.numbering, &to.q, &y, q);
         }
     }
 
     /// Pulls the cotangent of q̇ at the node back to its state.
     pub fn node_rates(&mut self, numbering: &Numbering, to: &Node<f64>) {
         let Sensitivity { q, v, .. } = &mut self.of;
-        pull_rates(numbering, (&to.q, &to.v), &self.node.0, (q, v));
+        bodies::pull_rates(numbering, (&to.q, &to.v), &self.node.0, (q, v));
     }
 
     /// Hands the cotangents of the unprojected end on to the stages and to the node before.
@@ -189,37 +188,6 @@ impl<'a> Sweep<'a> {
         self.qdot.fill(0.0);
         self.a.fill(0.0);
         self.touched = [false; ALL];
-    }
-}
-
-/// Pulls the cotangent of q̇ = T(q) v back to q and v.
-fn pull_rates(
-    numbering: &Numbering,
-    (q, v): (&[f64], &[f64]),
-    qdot_bar: &[f64],
-    (q_bar, v_bar): (&mut [f64], &mut [f64]),
-) {
-    for body in 0..numbering.bodies() {
-        let (o, u) = (numbering.position(body), numbering.velocity(body));
-        let (_, p) = positions_of(&q[o..]);
-        let (_, omega) = velocities_of(&v[u..]);
-        let (by_r, by_p) = positions_of(&qdot_bar[o..]);
-        // ½ L(p)ᵀ ω is linear in p by a skew matrix.
-        let turned = rotation::rates(&by_p, &omega).map(|x| -x);
-        add7(&mut q_bar[o..], &Vec3::zeros(), &turned);
-        let by_omega = rotation::rate_product(&p, &by_p) * 0.5;
-        bodies::add6(&mut v_bar[u..], &by_r, &by_omega);
-    }
-}
-
-/// Adds the cotangent of positions whose Euler parameters are brought to unit length, given the
-/// cotangent of the tangent.
-fn add_unit_cotangent(numbering: &Numbering, q: &[f64], y: &[f64], out: &mut [f64]) {
-    for body in 0..numbering.bodies() {
-        let o = numbering.position(body);
-        let (_, p) = positions_of(&q[o..]);
-        let (by_r, by_theta) = velocities_of(&y[numbering.velocity(body)..]);
-        add7(&mut out[o..], &by_r, &rotation::unit_pull_back(&p, &by_theta));
     }
 }
 

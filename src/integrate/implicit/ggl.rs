@@ -154,6 +154,21 @@ impl<'a, S: Scalar> Equations<'a, S> {
         }
     }
 
+    /// Emits the scaled derivative in the unknowns of another stage with positions `q`, of which the
+    /// rates here contain `d` / h times the tangent: d (P(q_here) T(q), M).
+    pub fn emit_rates(&self, at: &Instant<S>, q: &[S], d: f64, emit: &mut dyn Emit<S>) {
+        let [y, v, ..] = self.starts();
+        let d = S::from(d);
+        for (i, body) in self.model.bodies.iter().enumerate() {
+            let (o, u) = (self.numbering.position(i), self.numbering.velocity(i));
+            let turned = bodies::turn_between(&at.q[o..], &q[o..]);
+            emit.add_identity(y + u, y + u, d);
+            emit.add_block(y + u + 3, y + u + 3, &(turned * d));
+            emit.add_identity(v + u, v + u, body.mass * d);
+            emit.add_block(v + u + 3, v + u + 3, &(body.inertia * d));
+        }
+    }
+
     /// Multiplies an unscaled cotangent of the unknowns by the column scaling, or the solution of
     /// the scaled transposed system by the row scaling.
     pub fn scale_columns(&self, h: f64, b: &mut [f64]) {

@@ -128,7 +128,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         let last = &stages[stages.len() - 1];
         let known = [&last.q[..], &last.v, &last.dq, &last.dv];
         let scales = self.scale.step(numbering, known, h.re());
-        let (mut previous, mut slowest) = (f64::INFINITY, 0.0_f64);
+        let (mut previous, mut before, mut slowest) = (f64::INFINITY, 0.0_f64, 0.0_f64);
         for iteration in 1..=ITERATIONS {
             let size = self.improve(stages, h, &scales, nv, counts);
             if !size.is_finite() {
@@ -140,8 +140,11 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                 _ if previous == 0.0 => 0.0,
                 _ => size / previous,
             };
-            let slow = contraction > DIVERGENT;
-            let remaining = size * (contraction / (1.0 - contraction.min(0.9))).min(1.0);
+            // Contraction alternates between positions and multipliers: trust the worse of two.
+            let pair = contraction.max(before);
+            let slow = contraction.min(before) > DIVERGENT || contraction > 10.0;
+            before = contraction;
+            let remaining = size * (pair / (1.0 - pair.min(0.9))).min(1.0);
             let noise = scales.round_off.max(STAGNANT);
             let stagnant = iteration > 2 && contraction > 0.3 && size <= noise;
             if remaining <= TOLERANCE || stagnant {

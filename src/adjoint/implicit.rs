@@ -1,1 +1,0 @@
-use super::AdjointRun;use crate::functions::Scene;use crate::integrate::implicit::Tape;use crate::integrate::{IntegrationFailure, Trajectory};pub(super) fn gradients(_: &Scene<f64>,_: &Trajectory<f64>,_: &Tape<f64>,_: &[usize]) -> Result<AdjointRun, IntegrationFailure> {todo!()}

@@ -1,0 +1,95 @@
+//! A step of a formula, backwards.
+
+use super::sweep::{Sweep, add, rates_of, work, zero};
+use crate::integrate::WorkCounts;
+use crate::integrate::implicit::Stage;
+use crate::integrate::implicit::formula::Formula;
+use crate::integrate::implicit::ggl::Equations;
+use crate::linalg::{REFINED_SOLVES, SingularMatrix, SparseLu, SparseMatrix};
+use crate::model::Model;
+use crate::system::{Numbering, bodies};
+
+/// The iteration matrix, which every step fills again.
+pub(super) struct Plan<'a> {
+    model: &'a Model<f64>,
+    numbering: &'a Numbering,
+    equations: Equations<'a, f64>,
+    matrix: SparseMatrix<f64>,
+    factors: SparseLu<f64>,
+}
+
+impl<'a> Plan<'a> {
+    pub fn new(model: &'a Model<f64>, numbering: &'a Numbering) -> Self {
+        let mut equations = Equations::new(model, numbering);
+        let pattern = equations.pattern(&Stage::zero(numbering).instant());
+        Self {
+            model,
+            numbering,
+            equations,
+            factors: SparseLu::new(&pattern),
+            matrix: SparseMatrix::new(pattern),
+        }
+    }
+
+    /// Moves all functions from the end of the step to its start.
+    pub fn step(
+        &mut self,
+        formula: &Formula,
+        stage: &Stage<f64>,
+        (h, width): (f64, f64),
+        sweeps: &mut [Sweep],
+        counts: &mut WorkCounts,
+    ) -> Result<(), SingularMatrix> {
+        let (model, numbering) = (self.model, self.numbering);
+        let nv = numbering.velocities();
+        let at = stage.instant();
+        let c = formula.lead / h;
+        let equations = &mut self.equations;
+        self.matrix
+            .assemble(|emit| equations.jacobian(&at, h, c, emit));
+        self.factors.factorise(&self.matrix)?;
+        counts.factorisations += 1;
+        for sweep in sweeps {
+            // By the increment Δ: the rates' and the memory's part.
+            let mut by_increment = zero(&sweep.rates);
+            add(&mut by_increment, c, &sweep.rates);
+            for ((f, _), later) in formula.memory.iter().zip(&sweep.memory) {
+                add(&mut by_increment, *f, later);
+            }
+            let mut total = (sweep.of.q.clone(), sweep.of.v.clone());
+            add(&mut total, 1.0, &by_increment);
+            let mut psi = vec![0.0; equations.order()];
+            bodies::tangent_of_cotangent(numbering, &stage.q, &total.0, &mut psi[..nv]);
+            psi[nv..2 * nv].copy_from_slice(&total.1);
+            psi.iter_mut().for_each(|x| *x = -*x);
+            equations.scale_columns(h, &mut psi);
+            self.factors
+                .solve_transposed_refined(&self.matrix, &mut psi);
+            equations.scale_rows(h, &mut psi);
+            counts.solves += REFINED_SOLVES;
+            equations.pull_back(&at, &psi, &mut sweep.of.cot.model);
+
+            let own = rates_of(model, numbering, &stage.q, &psi);
+            add(&mut by_increment, c, &own);
+            add(&mut sweep.rates, 1.0, &own);
+            sweep.of.by_duration -= width * work(&sweep.rates, stage) / h;
+            let earlier = (0..sweep.memory.len()).map(|j| {
+                let mut out = zero(&own);
+                add(&mut out, formula.past[j] / h, &sweep.rates);
+                for ((_, row), later) in formula.memory.iter().zip(&sweep.memory) {
+                    add(&mut out, row[j], later);
+                }
+                out
+            });
+            sweep.memory = earlier.collect();
+            sweep.rates = zero(&own);
+            for (out, x) in sweep.of.q.iter_mut().zip(&by_increment.0) {
+                *out = -x;
+            }
+            for (out, x) in sweep.of.v.iter_mut().zip(&by_increment.1) {
+                *out = -x;
+            }
+        }
+        Ok(())
+    }
+}

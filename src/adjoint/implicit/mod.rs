@@ -1,0 +1,117 @@
+//! The backward march through the implicit methods.
+//!
+//! With κ the cotangent of the rates ẏ of a stage and m̄ those of a formula's memory, step k of a
+//! formula backwards is
+//!
+//! ```text
+//! Jᵀ ψ  = −[ Tᵀ(ȳ_k + (c/h) κ⁰ + Σ f_i m̄_i') ; 0 ; 0 ]
+//! κ     = κ⁰ + F_ẏᵀ ψ,            m̄_j = (e_j/h) κ + Σ_i F_ij m̄_i'
+//! ȳ_k−1 = −(c/h) κ − Σ f_i m̄_i'
+//! df/dh = −κ · ẏ / h,             df/dx += ψᵀ ∂F/∂x
+//! ```
+//!
+//! and a step of Radau IIA with the increments Z_j, Ẏ_i = Σ_j D_ij Z_j / h, and their own cotangents
+//! Z̄_j from the dense output,
+//!
+//! ```text
+//! Σ_i [δ_ij F_y + (D_ij/h) F_ẏ]_iᵀ ψ_i = −Tᵀ( δ_js ȳ_n+1 + Z̄_j + Σ_i (D_ij/h) κ⁰_i )
+//! κ_i = κ⁰_i + F_ẏ,iᵀ ψ_i,        ȳ_n = −Σ_j ( Z̄_j + Σ_i (D_ij/h) κ_i )
+//! ```
+//!
+//! One factorisation a step serves all functions. (Kennedy & Boopathy, eq. 6 and 7, in increments
+//! instead of values, and with the initial conditions that the paper leaves out.)
+
+mod formula;
+mod radau;
+mod sweep;
+
+use super::AdjointRun;
+use super::sensitivity::Sensitivity;
+use crate::functions::Scene;
+use crate::integrate::grid::Place;
+use crate::integrate::implicit::Tape;
+use crate::integrate::implicit::formula::{Formula, remembers_start};
+use crate::integrate::implicit::radau::Scheme;
+use crate::integrate::{IntegrationFailure, Method, Trajectory, WorkCounts};
+use crate::linalg::SingularMatrix;
+use crate::system::bodies;
+use crate::system::kkt::SaddlePoint;
+use sweep::Sweep;
+
+/// See [`super::gradients`].
+pub(super) fn gradients(
+    scene: &Scene<f64>,
+    run: &Trajectory<f64>,
+    tape: &Tape<f64>,
+    which: &[usize],
+) -> Result<AdjointRun, IntegrationFailure> {
+    let (model, numbering) = (&scene.model, &run.numbering);
+    let stages = match run.method {
+        Method::Radau { stages } => stages,
+        _ => 3,
+    };
+    let scheme = Scheme::new(stages);
+    let new = |&own: &usize| Sweep::new(Sensitivity::new(scene, run, own), run.method, stages);
+    let mut sweeps: Vec<Sweep> = which.iter().map(new).collect();
+    let mut one = None;
+    let mut coupled = None;
+    let mut counts = WorkCounts::default();
+    let mut sample = run.last();
+    for k in (1..=run.grid.steps()).rev() {
+        let width = run.grid.width(k);
+        let h = run.duration * width;
+        let from = match k {
+            1 => &tape.start,
+            _ => &tape.steps[k - 2][tape.steps[k - 2].len() - 1],
+        };
+        let step = &tape.steps[k - 1];
+        while stands_in(&run.places[sample], k) {
+            for sweep in &mut sweeps {
+                sweep.sample(scene, run, sample, (&scheme, from, step), width);
+            }
+            sample -= 1;
+        }
+        let found = match Formula::of_step(run.method, k) {
+            Some(formula) => one
+                .get_or_insert_with(|| formula::Plan::new(model, numbering))
+                .step(&formula, &step[0], (h, width), &mut sweeps, &mut counts),
+            None => coupled
+                .get_or_insert_with(|| radau::Plan::new(model, numbering, &scheme))
+                .step(step, (h, width), &mut sweeps, &mut counts),
+        };
+        found.map_err(|SingularMatrix { column }| IntegrationFailure::Singular {
+            time: run.duration * run.grid.ends()[k],
+            step: k,
+            place: format!("unknown {column}"),
+        })?;
+        if k == 1 && remembers_start(run.method) {
+            for sweep in &mut sweeps {
+                sweep.starting_memory(&tape.start, h, width);
+            }
+        }
+        counts.steps += 1;
+    }
+    let mut saddle = SaddlePoint::new(model, numbering);
+    let start = &tape.start;
+    for sweep in &mut sweeps {
+        sweep.sample(scene, run, 0, (&scheme, start, &[]), 0.0);
+        let mut y = vec![0.0; start.v.len()];
+        sweep.pull_starting_rates(numbering, start);
+        bodies::tangent_of_cotangent(numbering, &start.q, &sweep.of.q, &mut y);
+        let (v, a) = (sweep.of.v.clone(), sweep.rates.1.clone());
+        sweep
+            .of
+            .finish(scene, run, &mut saddle, (&y, &v, &a), &mut counts)?;
+    }
+    Ok(AdjointRun {
+        gradients: sweeps.into_iter().map(|sweep| sweep.of.cot).collect(),
+        counts,
+    })
+}
+
+fn stands_in(place: &Place, k: usize) -> bool {
+    match *place {
+        Place::Node(n) => n == k,
+        Place::Inside { step, .. } => step == k,
+    }
+}

@@ -1,0 +1,140 @@
+//! A step of Radau IIA, backwards: the coupled system of all stages.
+
+use super::sweep::{Pair, Sweep, add, rates_of, work, zero};
+use crate::integrate::WorkCounts;
+use crate::integrate::implicit::Stage;
+use crate::integrate::implicit::ggl::Equations;
+use crate::integrate::implicit::radau::Scheme;
+use crate::linalg::{Emit, Pattern, REFINED_SOLVES, SingularMatrix, SparseLu, SparseMatrix};
+use crate::model::Model;
+use crate::system::{Numbering, bodies};
+
+/// The coupled matrix, which every step fills again.
+pub(super) struct Plan<'a> {
+    model: &'a Model<f64>,
+    numbering: &'a Numbering,
+    scheme: &'a Scheme,
+    equations: Equations<'a, f64>,
+    matrix: SparseMatrix<f64>,
+    factors: SparseLu<f64>,
+}
+
+impl<'a> Plan<'a> {
+    pub fn new(model: &'a Model<f64>, numbering: &'a Numbering, scheme: &'a Scheme) -> Self {
+        let mut equations = Equations::new(model, numbering);
+        let zeros = vec![Stage::zero(numbering); scheme.stages()];
+        let order = scheme.stages() * equations.order();
+        let pattern = Pattern::record(order, |emit: &mut dyn Emit<f64>| {
+            emit_stages(&mut equations, scheme, &zeros, 1.0, emit);
+        });
+        Self {
+            model,
+            numbering,
+            scheme,
+            equations,
+            factors: SparseLu::new(&pattern),
+            matrix: SparseMatrix::new(pattern),
+        }
+    }
+
+    /// Moves all functions from the end of the step to its start.
+    pub fn step(
+        &mut self,
+        stages: &[Stage<f64>],
+        (h, width): (f64, f64),
+        sweeps: &mut [Sweep],
+        counts: &mut WorkCounts,
+    ) -> Result<(), SingularMatrix> {
+        let (model, numbering, scheme) = (self.model, self.numbering, self.scheme);
+        let (nv, n) = (numbering.velocities(), self.equations.order());
+        let equations = &mut self.equations;
+        self.matrix
+            .assemble(|emit| emit_stages(equations, scheme, stages, h, emit));
+        self.factors.factorise(&self.matrix)?;
+        counts.factorisations += 1;
+        let last = stages.len() - 1;
+        for sweep in sweeps {
+            // The step leaves its increment in front of a formula's memory.
+            if !sweep.memory.is_empty() {
+                let newest = sweep.memory.remove(0);
+                add(&mut sweep.increments[last], 1.0, &newest);
+                sweep.memory.push(zero(&newest));
+            }
+            // By the increments Z_j: their own and the rates' part.
+            let mut by: Vec<Pair> = sweep.increments.clone();
+            spread(scheme, last, &sweep.rates, h, &mut by);
+            let mut psi = vec![0.0; stages.len() * n];
+            for (j, (stage, by)) in stages.iter().zip(&by).enumerate() {
+                let mut total = by.clone();
+                if j == last {
+                    add(&mut total, 1.0, &(sweep.of.q.clone(), sweep.of.v.clone()));
+                }
+                let part = &mut psi[j * n..(j + 1) * n];
+                bodies::tangent_of_cotangent(numbering, &stage.q, &total.0, &mut part[..nv]);
+                part[nv..2 * nv].copy_from_slice(&total.1);
+                part.iter_mut().for_each(|x| *x = -*x);
+                equations.scale_columns(h, part);
+            }
+            self.factors
+                .solve_transposed_refined(&self.matrix, &mut psi);
+            counts.solves += REFINED_SOLVES;
+            let mut slope = 0.0;
+            for (i, stage) in stages.iter().enumerate() {
+                let part = &mut psi[i * n..(i + 1) * n];
+                equations.scale_rows(h, part);
+                equations.pull_back(&stage.instant(), part, &mut sweep.of.cot.model);
+                let own = rates_of(model, numbering, &stage.q, part);
+                spread(scheme, i, &own, h, &mut by);
+                slope += work(&own, stage);
+            }
+            slope += work(&sweep.rates, &stages[last]);
+            sweep.of.by_duration -= width * slope / h;
+            let mut start = std::mem::replace(&mut sweep.before, zero(&by[0]));
+            for by in &by {
+                add(&mut start, -1.0, by);
+            }
+            (sweep.of.q, sweep.of.v) = start;
+            sweep.rates = zero(&by[0]);
+            sweep.increments = by.iter().map(zero).collect();
+        }
+        Ok(())
+    }
+}
+
+/// Hands the cotangent of the rates of stage i on to the increments.
+fn spread(scheme: &Scheme, i: usize, rates: &Pair, h: f64, by: &mut [Pair]) {
+    for (by, d) in by.iter_mut().zip(&scheme.rates[i]) {
+        add(by, d / h, rates);
+    }
+}
+
+/// Emits the matrix of all stages, scaled as the equations of one.
+fn emit_stages(
+    equations: &mut Equations<f64>,
+    scheme: &Scheme,
+    stages: &[Stage<f64>],
+    h: f64,
+    emit: &mut dyn Emit<f64>,
+) {
+    let n = equations.order();
+    for (i, stage) in stages.iter().enumerate() {
+        let at = stage.instant();
+        let own = &mut At(emit, i * n, i * n);
+        equations.jacobian(&at, h, scheme.rates[i][i] / h, own);
+        for (j, other) in stages.iter().enumerate() {
+            if j != i {
+                let beside = &mut At(emit, i * n, j * n);
+                equations.emit_rates(&at, &other.q, scheme.rates[i][j], beside);
+            }
+        }
+    }
+}
+
+/// Emits every entry further down and to the right.
+struct At<'a>(&'a mut dyn Emit<f64>, usize, usize);
+
+impl Emit<f64> for At<'_> {
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        self.0.add(row + self.1, column + self.2, value);
+    }
+}
