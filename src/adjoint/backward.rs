@@ -69,6 +69,7 @@ pub fn gradients(
             mu: run.mu(k),
             qdot: &qdot,
             vdot: run.a(k),
+            time: run.time(k),
         };
         let plan = plan.get_or_insert_with(|| Plan::new(&mut equations, &at));
         let a = coefficients(order_here);
@@ -121,7 +122,8 @@ pub fn gradients(
             counts.solves += REFINED_SOLVES;
             sweep.advance(&psi);
             let cot = &mut sweep.cot.model;
-            equations.pull_back(&at, &sweep.psi, cot);
+            let by_time = equations.pull_back(&at, &sweep.psi, cot);
+            sweep.record_time(k, by_time);
             sweep.record_rates(scene, run, k, &psi, &qdot);
         }
     }

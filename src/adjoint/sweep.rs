@@ -185,6 +185,11 @@ impl<'a> Sweep<'a> {
         self.later.push_front(now);
     }
 
+    /// Adds what instant k = t_k / h says of the step size through its time.
+    pub fn record_time(&mut self, k: usize, by_time: f64) {
+        self.by_h += by_time * k as f64;
+    }
+
     /// Adds what is left once the march has reached t = 0: derivatives in the duration and in
     /// parameters that no instant depends on.
     pub fn finish(&mut self, run: &Trajectory<f64>) {

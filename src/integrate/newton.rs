@@ -94,6 +94,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             mu: &zeros[..numbering.constraints()],
             qdot: &zeros[..numbering.positions()],
             vdot: &zeros[..numbering.velocities()],
+            time: S::zero(),
         };
         let pattern = equations.pattern(&at);
         Self {
@@ -138,6 +139,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 mu: &x.mu,
                 qdot: &self.qdot,
                 vdot: &self.vdot,
+                time: h * step as f64,
             };
             self.equations.residual(&at, h, &mut self.residual);
             // A derivative converges with the exact matrix only.
@@ -275,6 +277,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             mu: &x.mu,
             qdot: &self.qdot,
             vdot: &self.vdot,
+            time: h * step as f64,
         };
         self.equations.residual(&at, h, &mut self.residual);
         let rows = at_residual(&self.residual);

@@ -4,6 +4,7 @@ use super::check::check;
 use super::fault::{Faults, Finding, Part};
 use super::overrides::Override;
 use super::placement::placement_order;
+use super::pointer::join;
 use super::prune::prune;
 use super::schema::{self, Document};
 use super::source::{Duplicate, Source};
@@ -15,7 +16,7 @@ use crate::integrate::{Settings, settings};
 use crate::optimiser::Method;
 use crate::system::assembly::AssemblyFailure;
 use crate::system::kkt::SaddlePoint;
-use crate::system::{Numbering, initial};
+use crate::system::{Numbering, initial, loads};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::io::ErrorKind;
@@ -86,13 +87,22 @@ pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Pr
     match deserialise(&sound) {
         Ok(written) => {
             let problem = problem(document, written, order, variables);
-            match unassembled(&problem) {
+            match collapsed(&problem).or_else(|| unassembled(&problem)) {
                 Some(finding) => faults(vec![finding]),
                 None => Ok(problem),
             }
         }
         Err(finding) => faults(vec![finding]),
     }
+}
+
+/// The fault of a spring whose ends meet where the bodies are placed: it has no direction.
+fn collapsed(problem: &Problem) -> Option<Finding> {
+    let model = problem.scene(&problem.start()).model;
+    let spring = loads::without_length(&model)?;
+    let pointer = join(&join(&join("/loads", spring), "spring"), "at");
+    let expected = "ends that are apart, as a force acts along the line through them";
+    Some(Finding::new(pointer, "ends at the same place", expected))
 }
 
 /// The fault of joints that cannot be closed, or not uniquely, at the design of the file.
@@ -103,12 +113,12 @@ fn unassembled(problem: &Problem) -> Option<Finding> {
     let failure = initial::solve(&model, &numbering, &mut saddle).err()?;
     let (pointer, expected, hint) = match &failure {
         AssemblyFailure::Open { joint, .. } => (
-            super::pointer::join("/joints", joint),
+            join("/joints", joint),
             "points that the placed bodies can bring together",
             "look at the lengths, and at where the bodies are placed",
         ),
         AssemblyFailure::Turned { joint } => (
-            super::pointer::join("/joints", joint),
+            join("/joints", joint),
             "axes that point the same way in both bodies",
             "place one of the bodies turned by 180 degrees",
         ),
@@ -151,7 +161,7 @@ fn deserialise(document: &Value) -> Result<Document, Finding> {
         let pointer: String = error
             .path()
             .iter()
-            .map(|segment| super::pointer::join("", segment))
+            .map(|segment| join("", segment))
             .collect();
         Finding::new(pointer, error.inner().to_string(), "what the schema says")
     })

@@ -129,7 +129,7 @@ impl Checker<'_> {
     }
 
     /// Checks a body that moves and a point of it.
-    fn moving(&mut self, pointer: &str, body: &str, point: &Option<Point>) {
+    pub(super) fn moving(&mut self, pointer: &str, body: &str, point: &Option<Point>) {
         let place = join(pointer, "body");
         if body == GROUND {
             let expected = "the name of a body, as ground does not move";

@@ -1,11 +1,13 @@
 //! The problem file as it is written: serde structures, whose documentation is the JSON Schema.
 
 pub mod functions;
+pub mod loads;
 pub mod mechanics;
 
 use super::quantity::{Quantity, Vector};
 use functions::Function;
 use indexmap::IndexMap;
+use loads::Load;
 use mechanics::{AssemblyVelocity, Body, Joint};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -14,7 +16,8 @@ use serde::Deserialize;
 pub const VERSION: u64 = 1;
 
 /// A multibody scene, what is asked of it and what may be designed. Units are SI, angles are in
-/// radians; the keys of bodies, joints, functions, variables and constraints are their names.
+/// radians; the keys of bodies, joints, loads, functions, variables and constraints are their
+/// names.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "flexbody problem")]
@@ -43,6 +46,9 @@ pub struct Document {
     /// Joints by name.
     #[serde(default)]
     pub joints: IndexMap<String, Joint>,
+    /// Loads by name: forces, torques, springs, dampers and friction.
+    #[serde(default)]
+    pub loads: IndexMap<String, Load>,
     /// How long and how finely the scene is simulated.
     pub simulation: Simulation,
     /// Functions of interest by name.
