@@ -51,6 +51,7 @@ impl Halted {
             mu: run.mu(k),
             qdot: &self.qdot,
             vdot: run.a(k),
+            time: run.time(k),
         }
     }
 

@@ -45,14 +45,14 @@
 //! | [`cli`] | the command line |
 
 pub mod adjoint;
-//pub mod cli;
-//pub mod driver;
+pub mod cli;
+pub mod driver;
 pub mod functions;
 pub mod integrate;
 pub mod linalg;
 pub mod math;
 pub mod model;
-//pub mod optimiser;
-//pub mod problem;
-//pub mod report;
+pub mod optimiser;
+pub mod problem;
+pub mod report;
 pub mod system;

@@ -168,6 +168,7 @@ fn a_free_top_follows_the_exact_solution() {
         gravity: Vec3::zeros(),
         bodies: vec![body.clone()],
         joints: Vec::new(),
+        loads: Vec::new(),
     };
     let errors = [2e-3, 1e-3, 5e-4].map(|h| {
         let run = bdf(&model, DURATION, h, 2);

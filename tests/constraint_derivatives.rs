@@ -193,6 +193,7 @@ fn residual(case: &Case, model: &Model<Complex64>, x: &Unknowns, h: f64) -> Vec<
         mu: &x.mu,
         qdot: &x.qdot,
         vdot: &x.vdot,
+        time: 0.3.into(),
     };
     equations.residual(&at, h.into(), &mut out);
     slopes(&out)
@@ -215,6 +216,7 @@ fn iteration_matrix_of_the_stabilised_equations() {
             mu: &mu,
             qdot: &qdot,
             vdot: &vdot,
+            time: 0.3,
         };
         let pattern: Pattern = equations.pattern(&at);
         let mut matrix = SparseMatrix::new(pattern);
@@ -261,6 +263,7 @@ fn pull_back_of_the_stabilised_equations() {
             mu: &mu,
             qdot: &qdot,
             vdot: &vdot,
+            time: 0.3,
         };
         let mut cot = case.model.map(&mut |_| 0.0);
         equations.pull_back(&at, &psi, &mut cot);

@@ -221,6 +221,7 @@ fn roof(span: f64) -> Model<f64> {
         gravity: gravity(),
         bodies,
         joints,
+        loads: Vec::new(),
     }
 }
 
@@ -266,6 +267,7 @@ fn redundant_constraints_are_named() {
             hinge("lower hinge", (0, None), Vec3::new(0.0, -0.5, 0.0)),
         ],
         bodies: bodies.clone(),
+        loads: Vec::new(),
     };
     let failure = solve(&model).expect_err("is redundant");
     assert_eq!(
@@ -292,6 +294,7 @@ fn a_frame_turned_by_half_a_turn_is_refused() {
                 gravity: gravity(),
                 bodies,
                 joints: vec![hinge],
+                loads: Vec::new(),
             };
             let outcome = solve(&model);
             if degrees < 90.0 {

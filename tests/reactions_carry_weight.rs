@@ -59,6 +59,7 @@ fn a_joint_carries_the_weight_that_hangs_from_it() {
             gravity: gravity(),
             bodies,
             joints,
+            loads: Vec::new(),
         };
         let found = reactions_at_start(&model);
         // On body A, the upper body: held by the ceiling, pulled down by the lower body.
@@ -93,6 +94,7 @@ fn bodies_at_rest_stay_at_rest() {
                 gravity: gravity(),
                 bodies: bodies[..count].to_vec(),
                 joints: joints[..count].to_vec(),
+                loads: Vec::new(),
             };
             let settings = Settings {
                 steps: 100,
@@ -130,6 +132,7 @@ fn a_slide_and_a_plane_carry_weight_and_moment() {
         gravity: gravity(),
         bodies: bodies.clone(),
         joints: vec![slide],
+        loads: Vec::new(),
     };
     let found = reactions_at_start(&model)[0];
     let weight = 2.0 * 9.81;

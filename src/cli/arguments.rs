@@ -46,7 +46,7 @@ pub struct Course {
 }
 
 /// A problem file and what is done with it.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct Job {
     /// Problem file (JSON).
     pub problem: PathBuf,
@@ -61,6 +61,14 @@ pub struct Job {
     /// /bodies/arm/mass=42. May be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
+    /// Reports the estimated discretisation error of every function and of its gradient, by a
+    /// second simulation with steps of half the size.
+    #[arg(long)]
+    pub error: bool,
+    /// Refines the steps until the estimated error of the objective at the start, relative to it, is
+    /// below this.
+    #[arg(long, value_name = "ERROR", value_parser = positive)]
+    pub accuracy: Option<f64>,
 }
 
 /// The other jobs.

@@ -7,6 +7,8 @@ mod progress;
 mod simulate;
 mod starts;
 
+use crate::driver::error;
+use crate::problem::{Override, Problem};
 use crate::report::{Optimum, read_text};
 use arguments::{Arguments, Command, Job};
 use clap::Parser;
@@ -104,15 +106,34 @@ fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Reads the problem file of a job.
-fn load(job: &Job) -> Result<crate::problem::Problem, Failure> {
-    let overrides = job
+/// Reads the problem file of a job, with the steps that its accuracy needs.
+fn load(job: &Job) -> Result<Problem, Failure> {
+    let mut overrides = job
         .set
         .iter()
-        .map(|text| crate::problem::Override::parse(text))
+        .map(|text| Override::parse(text))
         .collect::<Result<Vec<_>, _>>()
         .map_err(Failure::bad_input)?;
-    crate::problem::Problem::load(&job.problem, &overrides).map_err(Failure::bad_input)
+    let problem = Problem::load(&job.problem, &overrides).map_err(Failure::bad_input)?;
+    let Some(accuracy) = job.accuracy else {
+        return Ok(problem);
+    };
+    let Some(objective) = problem.objective else {
+        return Err(Failure::bad_input(format!(
+            "{}: found --accuracy, expected a problem with an objective; set /simulation/tolerance \
+             instead",
+            job.problem.display()
+        )));
+    };
+    let reached = error::reach(&mut problem.clone(), objective.function, accuracy)
+        .map_err(Failure::numerical)?;
+    if !job.quiet {
+        tell(&format!("{}\n", reached.describe(accuracy)));
+    }
+    for text in reached.overrides() {
+        overrides.push(Override::parse(&text).map_err(Failure::bad_input)?);
+    }
+    Problem::load(&job.problem, &overrides).map_err(Failure::bad_input)
 }
 
 /// Reads a record from its file or its directory; also says which file that is.

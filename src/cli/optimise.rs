@@ -100,6 +100,9 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
         print(&summary(&done.optimum))?;
         tell(&format!("results in {}\n", directory.display()));
     }
+    if let (true, Some(end)) = (job.error, &done.end) {
+        print(&super::simulate::errors(&problem, &end.at)?)?;
+    }
     if stopped() {
         return Ok(INTERRUPTED);
     }

@@ -2,8 +2,7 @@
 
 use super::arguments::Job;
 use super::{DONE, Failure, NOT_REACHED, load, print, tell};
-use crate::driver::simulate::estimate_errors;
-use crate::driver::{self, CheckedDerivative, Simulation, figures};
+use crate::driver::{self, CheckedDerivative, Evaluated, Simulation, error, figures};
 use crate::problem::Problem;
 use crate::report::write_all;
 use std::fmt::Write;
@@ -14,6 +13,9 @@ pub fn simulate(job: &Job) -> Result<u8, Failure> {
     let simulation = driver::simulate(&problem, &problem.start()).map_err(Failure::numerical)?;
     if !job.quiet {
         print(&summary(&problem, &simulation))?;
+    }
+    if job.error {
+        print(&errors(&problem, &simulation.at)?)?;
     }
     if let Some(directory) = &job.output {
         let files = figures::of_simulation(&problem, &simulation)
@@ -41,16 +43,15 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     let run = &simulation.at.run;
     let counts = run.counts;
     let mut text = format!(
-        "{}: {} s in {} steps of {:.3e} s ({} Newton iterations, {} factorisations)\n",
+        "{}: {} s by {} in {} steps ({} evaluations, {} Newton iterations, {} factorisations)\n",
         problem.name,
-        run.time(run.steps),
-        run.steps,
-        run.h,
+        run.duration,
+        run.method.name(),
+        run.grid.steps(),
+        counts.evaluations,
         counts.newton_iterations,
         counts.factorisations
     );
-    let all: Vec<usize> = (0..problem.function_names.len()).collect();
-    let estimates = estimate_errors(problem, &simulation.at, &all);
     let width = problem
         .function_names
         .iter()
@@ -60,9 +61,6 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     for (f, name) in problem.function_names.iter().enumerate() {
         let found = simulation.at.function(f);
         let _ = write!(text, "  {name:width$}  {:>16.9e}", found.value);
-        if let Some(estimates) = &estimates {
-            let _ = write!(text, "  error ~ {:.1e}", estimates[f].error);
-        }
         if let Some((maximum, time)) = found.maximum {
             let _ = write!(text, "  true maximum {maximum:.9e} at t = {time:.4} s");
         }
@@ -86,6 +84,42 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
         );
     }
     text
+}
+
+/// A table of the estimated discretisation errors of all functions and their gradients.
+pub fn errors(problem: &Problem, at: &Evaluated) -> Result<String, Failure> {
+    let all: Vec<usize> = (0..problem.function_names.len()).collect();
+    let found = error::estimate(problem, at, &all, true).map_err(Failure::numerical)?;
+    let names = |all: &mut dyn Iterator<Item = &String>| {
+        let longest = all.map(|name| name.chars().count()).max();
+        longest.unwrap_or(0).max(8)
+    };
+    let f_width = names(&mut problem.function_names.iter());
+    let v_width = names(&mut problem.variables.iter().map(|v| &v.name));
+    let mut text = format!(
+        "estimated discretisation errors\n{:f_width$}  {:v_width$}  {:>16}  {:>9}  {:>9}\n",
+        "function", "variable", "value", "error", "relative"
+    );
+    let mut line = |function: &str, variable: &str, of: &error::Estimate| {
+        let relative = of.error / of.value.abs();
+        let relative = match relative.is_finite() {
+            true => format!("{relative:.1e}"),
+            false => "-".into(),
+        };
+        let _ = writeln!(
+            text,
+            "{function:f_width$}  {variable:v_width$}  {:>16.9e}  {:>9.1e}  {relative:>9}",
+            of.value, of.error
+        );
+    };
+    for found in &found {
+        let name = &problem.function_names[found.function];
+        line(name, "", &found.value);
+        for (variable, derivative) in problem.variables.iter().zip(&found.gradient) {
+            line(name, &variable.name, derivative);
+        }
+    }
+    Ok(text)
 }
 
 /// Checks all gradients of a problem at its start.

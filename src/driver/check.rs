@@ -1,9 +1,9 @@
 //! The check of gradients: adjoint beside complex step.
 
 use super::evaluate::Evaluated;
+use super::integration::Integration;
 use crate::functions::Function;
-use crate::integrate::bdf::simulate_complex;
-use crate::integrate::{IntegrationFailure, Trajectory};
+use crate::integrate::{IntegrationFailure, Settings, Trajectory, simulate};
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
 use crate::problem::Problem;
@@ -61,11 +61,15 @@ fn relative(x: f64, exact: f64) -> f64 {
 /// # Errors
 /// If a simulation fails.
 pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, IntegrationFailure> {
-    let in_use = Evaluated::new(problem, x)?;
+    let mut integration = Integration::new(problem, &problem.scene(x), false, true);
+    let (in_use, _) = Evaluated::with(&mut integration, problem, x)?;
+    let Some((settings, _)) = integration.chosen() else {
+        return Ok(Vec::new());
+    };
     let which: Vec<usize> = (0..in_use.scene.functions.len()).collect();
     let steps: Vec<ComplexStep> = (0..x.len())
         .into_par_iter()
-        .map(|i| complex_step(problem, x, i))
+        .map(|i| complex_step(problem, settings, x, i))
         .collect::<Result<_, _>>()?;
     let Some(first) = steps.first() else {
         return Ok(Vec::new());
@@ -98,11 +102,16 @@ struct ComplexStep {
     run: Trajectory<f64>,
 }
 
-fn complex_step(problem: &Problem, x: &[f64], i: usize) -> Result<ComplexStep, IntegrationFailure> {
+fn complex_step(
+    problem: &Problem,
+    settings: &Settings,
+    x: &[f64],
+    i: usize,
+) -> Result<ComplexStep, IntegrationFailure> {
     let mut x: Vec<Complex64> = x.iter().map(|&x| x.into()).collect();
     x[i].im = COMPLEX_STEP;
     let scene = problem.scene(&x);
-    let run = simulate_complex(&scene.model, scene.duration, &problem.settings)?;
+    let run = simulate(&scene.model, scene.duration, settings)?;
     let derivative =
         |f: &Function<Complex64>| f.evaluate(&scene.model, &run).value.im / COMPLEX_STEP;
     Ok(ComplexStep {

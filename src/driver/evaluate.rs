@@ -1,9 +1,10 @@
 //! Functions and gradients of a problem at a design: one simulation, one backward march.
 
+use super::integration::{Integration, Refresh};
 use super::journal::Journal;
 use crate::adjoint;
 use crate::functions::{Scene, evaluate};
-use crate::integrate::{self, IntegrationFailure, Trajectory, WorkCounts};
+use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
 use crate::math::Dual;
 use crate::model::RigidBody;
 use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
@@ -21,11 +22,24 @@ pub struct Evaluated {
 }
 
 impl Evaluated {
-    /// Simulates the design `x`.
+    /// Simulates the design `x`; the whole motion is sampled.
     ///
     /// # Errors
     /// If the simulation fails.
     pub fn new(problem: &Problem, x: &[f64]) -> Result<Self, IntegrationFailure> {
+        let mut integration = Integration::new(problem, &problem.scene(x), true, true);
+        Ok(Self::with(&mut integration, problem, x)?.0)
+    }
+
+    /// Simulates the design `x` with the steps in use; also says if these changed.
+    ///
+    /// # Errors
+    /// If the simulation fails.
+    pub fn with(
+        integration: &mut Integration,
+        problem: &Problem,
+        x: &[f64],
+    ) -> Result<(Self, Option<Refresh>), IntegrationFailure> {
         let scene = problem.scene::<f64>(x);
         let not_solid = |body: &&RigidBody<f64>| !body.is_solid();
         if let Some(body) = scene.model.bodies.iter().find(not_solid) {
@@ -33,12 +47,9 @@ impl Evaluated {
                 body: body.name.clone(),
             });
         }
-        let run = integrate::simulate(&scene.model, scene.duration, &problem.settings)?;
-        Ok(Self {
-            x: x.to_vec(),
-            scene,
-            run,
-        })
+        let (run, refresh) = integration.simulate(&scene)?;
+        let x = x.to_vec();
+        Ok((Self { x, scene, run }, refresh))
     }
 
     /// A function of interest, by index.
@@ -119,6 +130,8 @@ pub struct Evaluator<'a> {
     objective: usize,
     sign: f64,
     last: Option<Evaluated>,
+    /// The steps in use.
+    pub integration: Integration,
     journal: Journal<'a>,
     /// Work of all simulations and gradients so far.
     pub counts: WorkCounts,
@@ -128,6 +141,11 @@ impl<'a> Evaluator<'a> {
     /// The program that `problem` states, or `None` if it has no objective.
     pub fn new(problem: &'a Problem, journal: Journal<'a>) -> Option<Self> {
         let objective = problem.objective?;
+        let scene = problem.scene(&problem.start());
+        let mut integration = Integration::new(problem, &scene, false, true);
+        if let Some((method, grid)) = journal.steps() {
+            integration.restore(method, grid);
+        }
         let sign = match objective.sense {
             Sense::Minimise => 1.0,
             Sense::Maximise => -1.0,
@@ -137,6 +155,7 @@ impl<'a> Evaluator<'a> {
             objective: objective.function,
             sign,
             last: None,
+            integration,
             journal,
             counts: WorkCounts::default(),
         })
@@ -164,6 +183,7 @@ impl<'a> Evaluator<'a> {
 /// The simulated design `x`: the last one, or a new one.
 fn at<'e>(
     last: &'e mut Option<Evaluated>,
+    (integration, refreshed): (&mut Integration, &mut Option<Refresh>),
     counts: &mut WorkCounts,
     problem: &Problem,
     x: &[f64],
@@ -171,7 +191,8 @@ fn at<'e>(
     let evaluated = match last.take().filter(|last| last.x == x) {
         Some(known) => known,
         None => {
-            let evaluated = Evaluated::new(problem, x)?;
+            let (evaluated, refresh) = Evaluated::with(integration, problem, x)?;
+            *refreshed = refresh;
             *counts += evaluated.run.counts;
             evaluated
         }
@@ -224,8 +245,10 @@ impl Nlp for Evaluator<'_> {
         let x = unscaled(self.problem, x);
         let functions = self.functions();
         let (problem, last, counts) = (self.problem, &mut self.last, &mut self.counts);
-        let found = self.journal.values(&x, || {
-            let at = at(last, counts, problem, &x).map_err(|failure| failure.to_string())?;
+        let integration = &mut self.integration;
+        let found = self.journal.values(&x, |refresh| {
+            let steps = (integration, refresh);
+            let at = at(last, steps, counts, problem, &x).map_err(|failure| failure.to_string())?;
             Ok(functions.iter().map(|&f| at.function(f).value).collect())
         });
         let values = found.map_err(|reason| self.failure(reason))?;
@@ -240,8 +263,10 @@ impl Nlp for Evaluator<'_> {
         let x = unscaled(problem, x);
         let functions = self.functions();
         let (last, counts) = (&mut self.last, &mut self.counts);
-        let found = self.journal.gradients(&x, || {
-            let at = at(last, counts, problem, &x).map_err(|failure| failure.to_string())?;
+        let integration = &mut self.integration;
+        let found = self.journal.gradients(&x, |refresh| {
+            let steps = (integration, refresh);
+            let at = at(last, steps, counts, problem, &x).map_err(|failure| failure.to_string())?;
             let found = at.gradients(problem, &functions);
             let (gradients, work) = found.map_err(|failure| failure.to_string())?;
             *counts += work;

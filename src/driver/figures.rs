@@ -139,7 +139,7 @@ fn energies(title: &str, simulation: &Simulation) -> EnergyRun {
     let run = &simulation.at.run;
     EnergyRun {
         title: title.to_string(),
-        time: (0..=run.steps).map(|k| run.time(k)).collect(),
+        time: (0..=run.last()).map(|k| run.time(k)).collect(),
         kinetic: simulation.observations.iter().map(|o| o.kinetic).collect(),
         potential: simulation
             .observations
@@ -164,7 +164,7 @@ fn release(
             return None;
         };
         if *reduction == Reduction::Final {
-            return Some((at.run.steps, *projectile));
+            return Some((at.run.last(), *projectile));
         }
         let turns = turns(instant.watched_rotation(), &at.run);
         let values = sample(instant, &turns, &at.scene.model, &at.run);
@@ -179,7 +179,7 @@ fn lapse(title: &str, at: &Evaluated, drawing: &Drawing, objective: Option<usize
     // A flight is drawn where gravity points down in the view.
     let falls = drawing.up.dot(&model.gravity) < -0.999 * model.gravity.norm();
     let release = release(at, objective).filter(|_| falls);
-    let end = release.as_ref().map_or(run.steps, |(k, _)| *k);
+    let end = release.as_ref().map_or(run.last(), |(k, _)| *k);
     let flat = |p: &Vec3<f64>| [drawing.right.dot(p), drawing.up.dot(p)];
     let snapshots = drawing.snapshots.clamp(2, end.max(1) + 1);
     let instants: Vec<usize> = (0..snapshots).map(|i| i * end / (snapshots - 1)).collect();

@@ -1,7 +1,9 @@
 //! What is known of a problem from an earlier run, and where new evaluations are written.
 
+use super::integration::Refresh;
+use crate::integrate::{Grid, Method};
 use crate::problem::Problem;
-use crate::report::evaluations::{EvaluationRecord, Found, Head};
+use crate::report::evaluations::{EvaluationRecord, Found, Head, StepsInUse};
 use std::collections::HashMap;
 
 /// Evaluations that are known, and a receiver of new ones.
@@ -13,6 +15,8 @@ use std::collections::HashMap;
 pub struct Journal<'a> {
     /// By whether they are gradients, and by the bits of the design.
     known: HashMap<(bool, Vec<u64>), Found>,
+    /// Steps in use at the end of the earlier run.
+    steps: Option<StepsInUse>,
     record: Option<&'a mut dyn FnMut(EvaluationRecord)>,
 }
 
@@ -22,8 +26,13 @@ impl<'a> Journal<'a> {
         earlier: Vec<EvaluationRecord>,
         record: &'a mut dyn FnMut(EvaluationRecord),
     ) -> Self {
+        let steps = earlier.iter().rev().find_map(|record| match &record.found {
+            Found::Steps(steps) => Some(steps.clone()),
+            _ => None,
+        });
         let known = earlier
             .into_iter()
+            .filter(|record| !matches!(record.found, Found::Steps(_)))
             .map(|EvaluationRecord { design, found }| {
                 let of_gradients = matches!(found, Found::Gradients(_) | Found::NoGradients(_));
                 ((of_gradients, bits(&design)), found)
@@ -31,15 +40,23 @@ impl<'a> Journal<'a> {
             .collect();
         Self {
             known,
+            steps,
             record: Some(record),
         }
+    }
+
+    /// Method and steps in use at the end of the earlier run.
+    pub fn steps(&self) -> Option<(Method, Grid)> {
+        let steps = self.steps.as_ref()?;
+        let method = Method::adaptive(&steps.method)?;
+        Some((method, Grid::from_ends(steps.ends.clone())?))
     }
 
     /// Values at a design: known, or found by `evaluate` and recorded.
     pub fn values(
         &mut self,
         design: &[f64],
-        evaluate: impl FnOnce() -> Result<Vec<f64>, String>,
+        evaluate: impl FnOnce(&mut Option<Refresh>) -> Result<Vec<f64>, String>,
     ) -> Result<Vec<f64>, String> {
         match self.known.get(&(false, bits(design))) {
             Some(Found::Values(values)) => return Ok(values.clone()),
@@ -50,7 +67,9 @@ impl<'a> Journal<'a> {
             Some(x) => Err(format!("a value is {x}")),
             None => Ok(values),
         };
-        let found = evaluate().and_then(finite);
+        let mut refresh = None;
+        let found = evaluate(&mut refresh).and_then(finite);
+        self.refreshed(design, refresh);
         let recorded = match &found {
             Ok(values) => Found::Values(values.clone()),
             Err(why) => Found::NoValues(why.clone()),
@@ -63,7 +82,7 @@ impl<'a> Journal<'a> {
     pub fn gradients(
         &mut self,
         design: &[f64],
-        evaluate: impl FnOnce() -> Result<Vec<Vec<f64>>, String>,
+        evaluate: impl FnOnce(&mut Option<Refresh>) -> Result<Vec<Vec<f64>>, String>,
     ) -> Result<Vec<Vec<f64>>, String> {
         match self.known.get(&(true, bits(design))) {
             Some(Found::Gradients(gradients)) => return Ok(gradients.clone()),
@@ -75,13 +94,33 @@ impl<'a> Journal<'a> {
                 Some(x) => Err(format!("a derivative is {x}")),
                 None => Ok(gradients),
             };
-        let found = evaluate().and_then(finite);
+        let mut refresh = None;
+        let found = evaluate(&mut refresh).and_then(finite);
+        self.refreshed(design, refresh);
         let recorded = match &found {
             Ok(gradients) => Found::Gradients(gradients.clone()),
             Err(why) => Found::NoGradients(why.clone()),
         };
         self.write(design, recorded);
         found
+    }
+
+    /// Writes a change of the steps in use, before what was found with them.
+    fn refreshed(&mut self, design: &[f64], refresh: Option<Refresh>) {
+        if let Some(Refresh {
+            method,
+            grid,
+            reason,
+        }) = refresh
+        {
+            let ends = grid.ends().to_vec();
+            let steps = StepsInUse {
+                method,
+                reason,
+                ends,
+            };
+            self.write(design, Found::Steps(steps));
+        }
     }
 
     fn write(&mut self, design: &[f64], found: Found) {

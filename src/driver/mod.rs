@@ -1,8 +1,10 @@
 //! What the program does with a problem: simulate it, check its gradients, optimise it.
 
 pub mod check;
+pub mod error;
 pub mod evaluate;
 pub mod figures;
+pub mod integration;
 pub mod journal;
 pub mod multi_start;
 pub mod optimise;

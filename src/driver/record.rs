@@ -1,7 +1,8 @@
 //! The record of an optimisation: the optimiser's outcome in the user's names, signs and units.
 
 use super::evaluate::unscaled;
-use super::simulate::{Simulation, estimate_errors};
+use super::error;
+use super::simulate::Simulation;
 use crate::integrate::WorkCounts;
 use crate::optimiser::{self, Outcome, Status};
 use crate::problem::{Problem, Sense};
@@ -66,9 +67,8 @@ pub(super) fn record(
     let start_objective =
         ends[0].map_or(value, |start| start.at.function(objective.function).value);
     let estimate = ends[1].and_then(|end| {
-        estimate_errors(problem, &end.at, &[objective.function])?
-            .into_iter()
-            .next()
+        let found = error::estimate(problem, &end.at, &[objective.function], false);
+        found.ok()?.into_iter().next().map(|found| found.value)
     });
     let scales = problem.variables.iter().map(|v| v.scale);
     let bounds = |z: &[f64]| -> IndexMap<String, f64> {

@@ -1,7 +1,7 @@
 //! A simulation and what it is judged by.
 
 use super::evaluate::Evaluated;
-use crate::integrate::{IntegrationFailure, Method, Settings};
+use crate::integrate::{IntegrationFailure, multipliers};
 use crate::problem::Problem;
 use crate::system::observe::{Observation, Reaction, observe, reactions};
 
@@ -20,7 +20,7 @@ pub struct Simulation {
 pub fn simulate(problem: &Problem, x: &[f64]) -> Result<Simulation, IntegrationFailure> {
     let at = Evaluated::new(problem, x)?;
     let (model, run) = (&at.scene.model, &at.run);
-    let observations = (0..=run.steps)
+    let observations = (0..=run.last())
         .map(|k| observe(model, &run.numbering, run.q(k), run.v(k)))
         .collect();
     Ok(Simulation { at, observations })
@@ -46,48 +46,8 @@ impl Simulation {
 
     /// Joint reactions at instant k.
     pub fn reactions(&self, k: usize) -> Vec<Reaction> {
-        let run = &self.at.run;
-        reactions(
-            &self.at.scene.model,
-            &run.numbering,
-            run.q(k),
-            run.lambda(k),
-        )
+        let (model, run) = (&self.at.scene.model, &self.at.run);
+        let lambda = multipliers(model, run, k);
+        reactions(model, &run.numbering, run.q(k), &lambda)
     }
-}
-
-/// A function's value and an estimate of its discretisation error.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// Value with the problem's steps.
-    pub value: f64,
-    /// Estimated error, |f_h − f_2h| / (2^m − 1) for a method of order m (Richardson).
-    pub error: f64,
-}
-
-/// Estimates the discretisation error of the functions `which` at a simulated design by a second
-/// simulation with half the steps; `None` if there are too few steps or the coarse run fails.
-pub fn estimate_errors(
-    problem: &Problem,
-    at: &Evaluated,
-    which: &[usize],
-) -> Option<Vec<Estimate>> {
-    let Settings { steps, method } = problem.settings;
-    if steps < 4 {
-        return None;
-    }
-    let mut coarse = problem.clone();
-    coarse.settings.steps = steps / 2;
-    let coarse = Evaluated::new(&coarse, &at.x).ok()?;
-    let Method::Bdf { order } = method;
-    let ratio = steps as f64 / (steps / 2) as f64;
-    let gain = ratio.powi(order as i32) - 1.0;
-    let estimate = |&f: &usize| {
-        let value = at.function(f).value;
-        Estimate {
-            value,
-            error: (value - coarse.function(f).value).abs() / gain,
-        }
-    };
-    Some(which.iter().map(estimate).collect())
 }

@@ -45,7 +45,7 @@ pub struct Gate {
 pub enum EnergyPart {
     /// ½ Σ (m ṙᵀṙ + ωᵀJω).
     Kinetic,
-    /// −Σ m gᵀr, from the origin.
+    /// −Σ m gᵀr, from the origin, and the energy of springs.
     Potential,
     /// Kinetic plus potential.
     Total,

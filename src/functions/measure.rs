@@ -8,7 +8,7 @@ use crate::math::{Scalar, Vec3, rotation};
 use crate::model::Model;
 use crate::system::bodies::add6;
 use crate::system::marker::{self, Jet};
-use crate::system::{Motion, Numbering};
+use crate::system::{Motion, Numbering, loads};
 
 /// A model at one instant.
 #[derive(Clone, Copy)]
@@ -41,6 +41,13 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
     pub fn motion(&self, body: usize) -> Motion<S> {
         let a = &self.a[self.numbering.velocity(body)..];
         Motion::of(self.numbering, body, self.q, self.v).accelerated(a)
+    }
+
+    /// Motions of all bodies.
+    fn motions(&self) -> Vec<Motion<S>> {
+        let mut motions = Vec::with_capacity(self.numbering.bodies());
+        Motion::all(self.numbering, self.q, self.v, &mut motions);
+        motions
     }
 
     /// The flight of a projectile let go now.
@@ -131,8 +138,8 @@ impl<S: Scalar> Instant<S> {
 /// Energy of the model in a snapshot (J).
 pub fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
     let mut sum = S::zero();
-    for (i, body) in at.model.bodies.iter().enumerate() {
-        let motion = at.motion(i);
+    let motions = at.motions();
+    for (body, motion) in at.model.bodies.iter().zip(&motions) {
         if part != EnergyPart::Potential {
             let linear = motion.velocity.dot(&motion.velocity) * body.mass;
             let angular = motion.omega.dot(&(body.inertia * motion.omega));
@@ -141,6 +148,9 @@ pub fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
         if part != EnergyPart::Kinetic {
             sum -= at.model.gravity.dot(&motion.position) * body.mass;
         }
+    }
+    if part != EnergyPart::Kinetic {
+        sum += loads::potential(at.model, &motions);
     }
     sum
 }
@@ -308,8 +318,8 @@ pub fn pull_flight(
 
 fn pull_energy(at: &Snapshot<f64>, part: EnergyPart, weight: f64, out: &mut SnapshotCotangent) {
     let gravity = at.model.gravity;
-    for (i, body) in at.model.bodies.iter().enumerate() {
-        let motion = at.motion(i);
+    let motions = at.motions();
+    for (i, (body, motion)) in at.model.bodies.iter().zip(&motions).enumerate() {
         let o = at.numbering.velocity(i);
         let own = &mut out.model.bodies[i];
         if part != EnergyPart::Potential {
@@ -324,5 +334,9 @@ fn pull_energy(at: &Snapshot<f64>, part: EnergyPart, weight: f64, out: &mut Snap
             own.mass -= weight * gravity.dot(&motion.position);
             out.model.gravity -= motion.position * (weight * body.mass);
         }
+    }
+    if part != EnergyPart::Kinetic {
+        let (model, numbering) = (at.model, at.numbering);
+        loads::pull_potential(model, numbering, &motions, weight, out.y, out.model);
     }
 }

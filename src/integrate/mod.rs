@@ -1,5 +1,6 @@
 //! Time integration: the methods, the steps they take, and the motion they leave behind.
 
+pub mod choice;
 pub mod control;
 pub mod explicit;
 pub mod failure;
@@ -8,6 +9,7 @@ pub mod implicit;
 pub mod settings;
 pub mod trajectory;
 
+pub use choice::{Chosen, simulate_by};
 pub use failure::IntegrationFailure;
 pub use grid::Grid;
 pub use settings::{Method, Samples, Settings, Spacing, Start};
@@ -55,7 +57,7 @@ pub fn multipliers(model: &Model<f64>, run: &Trajectory<f64>, k: usize) -> Vec<f
     }
     let mut field = Accelerations::new(model, &run.numbering);
     let (mut a, mut lambda) = (run.a(k).to_vec(), vec![0.0; nc]);
-    field.stand(run.q(k), run.v(k));
+    field.stand(run.q(k), run.v(k), run.time(k));
     match field.factorise() {
         Ok(()) => field.accelerations(&mut a, &mut lambda),
         Err(_) => lambda.fill(f64::NAN),

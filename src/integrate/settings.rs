@@ -66,6 +66,17 @@ impl Method {
         }
     }
 
+    /// The method that chooses its steps with this [`Method::name`].
+    pub fn adaptive(name: &str) -> Option<Self> {
+        [
+            Method::Dop853,
+            Method::Radau { stages: 2 },
+            Method::Radau { stages: 3 },
+        ]
+        .into_iter()
+        .find(|method| method.name() == name)
+    }
+
     /// The method's name with its parameters.
     pub fn name(self) -> String {
         match self {

@@ -1,18 +1,23 @@
-//! The mechanical model: bodies, joints and gravity with their parameters, and nothing that moves.
+//! The mechanical model: bodies, joints, loads and gravity with their parameters, and nothing that
+//! moves.
 //!
 //! Parameters are generic in the scalar, so that the same model carries values (`f64`), complex
 //! steps or dual numbers. A model of zeros in `f64` also serves as the cotangent of a model:
 //! every parameter's place then holds the derivative of a function with respect to it.
 
+pub mod course;
 pub mod joint;
+pub mod load;
 pub mod rigid_body;
 
+pub use course::Course;
 pub use joint::{ConstraintRow, Joint, JointFrame, JointKind};
+pub use load::{Axes, Freedom, Load, LoadKind};
 pub use rigid_body::RigidBody;
 
 use crate::math::{Scalar, Vec3};
 
-/// Bodies, joints and gravity of a scene.
+/// Bodies, joints, loads and gravity of a scene.
 #[derive(Clone, Debug)]
 pub struct Model<S> {
     /// Gravitational acceleration in ground axes (m/s²).
@@ -21,6 +26,8 @@ pub struct Model<S> {
     pub bodies: Vec<RigidBody<S>>,
     /// Joints in the order of the problem file.
     pub joints: Vec<Joint<S>>,
+    /// Loads in the order of the problem file.
+    pub loads: Vec<Load<S>>,
 }
 
 impl<S: Scalar> Model<S> {
@@ -30,6 +37,7 @@ impl<S: Scalar> Model<S> {
             gravity: self.gravity.map(&mut *f),
             bodies: self.bodies.iter().map(|body| body.map(f)).collect(),
             joints: self.joints.iter().map(|joint| joint.map(f)).collect(),
+            loads: self.loads.iter().map(|load| load.map(f)).collect(),
         }
     }
 }

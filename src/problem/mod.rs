@@ -7,6 +7,7 @@
 mod check;
 mod drawing;
 mod fault;
+mod loads;
 mod mass;
 mod overrides;
 mod placement;
@@ -30,7 +31,7 @@ pub use schema::schema;
 pub use variables::Variable;
 
 use crate::functions::Scene;
-use crate::integrate::Settings;
+use crate::integrate::{self, Spacing};
 use crate::math::Scalar;
 use crate::optimiser::Method;
 use schema::Document;
@@ -78,6 +79,17 @@ pub struct OptimiserSettings {
     pub iterations: Option<usize>,
 }
 
+/// How a scene is integrated, as far as the file says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulation {
+    /// The method; `None` if the scene chooses.
+    pub method: Option<integrate::Method>,
+    /// Steps or tolerance.
+    pub spacing: Spacing,
+    /// Number of equal intervals at whose ends the motion is sampled, if the file says so.
+    pub samples: Option<usize>,
+}
+
 /// A problem: a scene that depends on a design, what is asked of it, and how it is solved.
 ///
 /// ```
@@ -103,7 +115,7 @@ pub struct Problem {
     /// What the problem is about.
     pub description: Option<String>,
     /// How the scene is integrated.
-    pub settings: Settings,
+    pub simulation: Simulation,
     /// Design variables in the order of the file.
     pub variables: Vec<Variable>,
     /// The function that is optimised, if any.

@@ -1,7 +1,7 @@
 //! Where the bodies are at the start, and points and axes seen from them.
 
 use super::mass::mass_properties;
-use super::quantity::{Vector, vector};
+use super::quantity::{Quantity, Vector, vector};
 use super::schema::Document;
 use super::schema::mechanics::{Axis, Location, Point};
 use crate::math::rotation::{Quat, compose, from_axis_angle, matrix};
@@ -192,7 +192,19 @@ impl<'a, S: Scalar> Assembly<'a, S> {
         point.map_or(Vec3::zeros(), |point| self.point(body, point))
     }
 
-    /// A ground vector of the file at this design.
+    /// A point of a body (or of ground) from the origin of its axes, given by its ground
+    /// coordinates at the start.
+    pub fn at_ground(&self, body: &str, point: &Vector) -> Vec3<S> {
+        let pose = self.pose(body);
+        pose.rotation.tr_mul(&(self.ground(point) - pose.origin))
+    }
+
+    /// A number of the file at this design.
+    pub fn quantity(&self, quantity: &Quantity) -> S {
+        quantity.get(self.x)
+    }
+
+    /// A vector of the file at this design.
     pub fn ground(&self, components: &Vector) -> Vec3<S> {
         vector(components, self.x)
     }

@@ -7,7 +7,14 @@ use serde_json::{Map, Value, json};
 use std::collections::HashSet;
 
 /// Sections whose entries have names, and stand or fall each by itself.
-const NAMED: [&str; 5] = ["bodies", "joints", "functions", "variables", "constraints"];
+const NAMED: [&str; 6] = [
+    "bodies",
+    "joints",
+    "loads",
+    "functions",
+    "variables",
+    "constraints",
+];
 
 /// What was taken out of a document.
 #[derive(Default)]

@@ -4,25 +4,26 @@ use super::check::check;
 use super::fault::{Faults, Finding, Part};
 use super::overrides::Override;
 use super::placement::placement_order;
+use super::pointer::join;
 use super::prune::prune;
 use super::schema::{self, Document};
 use super::source::{Duplicate, Source};
 use super::structure::walk;
 use super::syntax;
 use super::variables::{bind, variables};
-use super::{Constraint, Objective, OptimiserSettings, Problem, Sense};
-use crate::integrate::{Settings, settings};
+use super::{Constraint, Objective, OptimiserSettings, Problem, Sense, Simulation};
+use crate::integrate::{self, Spacing, Start};
 use crate::optimiser::Method;
 use crate::system::assembly::AssemblyFailure;
 use crate::system::kkt::SaddlePoint;
-use crate::system::{Numbering, initial};
+use crate::system::{Numbering, initial, loads};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Order of the integration method where the file gives none.
-const ORDER: usize = 2;
+/// Error allowed in a step where the file gives neither steps nor a tolerance.
+const TOLERANCE: f64 = 1e-9;
 
 /// Reads a problem file.
 pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Faults> {
@@ -86,13 +87,22 @@ pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Pr
     match deserialise(&sound) {
         Ok(written) => {
             let problem = problem(document, written, order, variables);
-            match unassembled(&problem) {
+            match collapsed(&problem).or_else(|| unassembled(&problem)) {
                 Some(finding) => faults(vec![finding]),
                 None => Ok(problem),
             }
         }
         Err(finding) => faults(vec![finding]),
     }
+}
+
+/// The fault of a spring whose ends meet where the bodies are placed: it has no direction.
+fn collapsed(problem: &Problem) -> Option<Finding> {
+    let model = problem.scene(&problem.start()).model;
+    let spring = loads::without_length(&model)?;
+    let pointer = join(&join(&join("/loads", spring), "spring"), "at");
+    let expected = "ends that are apart, as a force acts along the line through them";
+    Some(Finding::new(pointer, "ends at the same place", expected))
 }
 
 /// The fault of joints that cannot be closed, or not uniquely, at the design of the file.
@@ -103,12 +113,12 @@ fn unassembled(problem: &Problem) -> Option<Finding> {
     let failure = initial::solve(&model, &numbering, &mut saddle).err()?;
     let (pointer, expected, hint) = match &failure {
         AssemblyFailure::Open { joint, .. } => (
-            super::pointer::join("/joints", joint),
+            join("/joints", joint),
             "points that the placed bodies can bring together",
             "look at the lengths, and at where the bodies are placed",
         ),
         AssemblyFailure::Turned { joint } => (
-            super::pointer::join("/joints", joint),
+            join("/joints", joint),
             "axes that point the same way in both bodies",
             "place one of the bodies turned by 180 degrees",
         ),
@@ -151,7 +161,7 @@ fn deserialise(document: &Value) -> Result<Document, Finding> {
         let pointer: String = error
             .path()
             .iter()
-            .map(|segment| super::pointer::join("", segment))
+            .map(|segment| join("", segment))
             .collect();
         Finding::new(pointer, error.inner().to_string(), "what the schema says")
     })
@@ -190,20 +200,11 @@ fn problem(
             upper: constraint.upper.unwrap_or(f64::INFINITY),
         })
         .collect();
-    let order_of_method = match written.simulation.method {
-        Some(schema::Method::Bdf { order }) => order,
-        None => ORDER,
-    };
     let hash = Sha256::digest(document.to_string());
     Problem {
         name: written.name.clone(),
         description: written.description.clone(),
-        settings: Settings {
-            steps: written.simulation.steps,
-            method: settings::Method::Bdf {
-                order: order_of_method,
-            },
-        },
+        simulation: simulation(&written.simulation),
         variables,
         objective,
         constraints,
@@ -224,5 +225,30 @@ fn problem(
         document,
         written,
         order,
+    }
+}
+
+fn simulation(written: &schema::Simulation) -> Simulation {
+    let method = written.method.as_ref().map(|method| match *method {
+        schema::Method::Dop853 => integrate::Method::Dop853,
+        schema::Method::Radau { stages } => integrate::Method::Radau { stages },
+        schema::Method::Bdf { order, start } => integrate::Method::Bdf {
+            order,
+            start: match start {
+                Some(schema::Start::RisingOrder) => Start::RisingOrder,
+                Some(schema::Start::Radau) | None => Start::Radau,
+            },
+        },
+        schema::Method::GeneralisedAlpha { radius } => {
+            integrate::Method::GeneralisedAlpha { radius }
+        }
+    });
+    Simulation {
+        method,
+        spacing: match (written.steps, written.tolerance) {
+            (Some(steps), _) => Spacing::Steps(steps),
+            (None, tolerance) => Spacing::Tolerance(tolerance.unwrap_or(TOLERANCE)),
+        },
+        samples: written.samples,
     }
 }

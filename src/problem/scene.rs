@@ -39,6 +39,7 @@ pub fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<
             gravity,
             bodies: bodies.collect(),
             joints: joints.collect(),
+            loads: super::loads::loads(document, &assembly),
         },
         duration: document.simulation.duration.get(x),
         functions: document
@@ -50,7 +51,7 @@ pub fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<
 }
 
 /// The unit vector along `a`.
-fn unit<S: Scalar>(a: Vec3<S>) -> Vec3<S> {
+pub(super) fn unit<S: Scalar>(a: Vec3<S>) -> Vec3<S> {
     a * (S::one() / length(&a))
 }
 
@@ -120,9 +121,7 @@ fn joint<S: Scalar>(assembly: &Assembly<S>, name: &str, written: &WrittenJoint) 
                 assembly.named_in_body(text)
             }
             JointPlace::Named(text) => pose.rotation.tr_mul(&(assembly.named(text) - pose.origin)),
-            JointPlace::Coordinates(point) => pose
-                .rotation
-                .tr_mul(&(assembly.ground(point) - pose.origin)),
+            JointPlace::Coordinates(point) => assembly.at_ground(body, point),
             JointPlace::Each(pair) => assembly.in_body(body, [&pair.a, &pair.b][side]),
         };
         JointFrame {

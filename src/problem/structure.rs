@@ -336,6 +336,8 @@ fn kind_fits(value: &Value, schema: &Value) -> bool {
         Some("number") => value.is_number(),
         Some("integer") => value.is_i64() || value.is_u64(),
         Some("boolean") => value.is_boolean(),
-        _ => true,
+        _ => alternatives(schema).is_none_or(|choices| {
+            value.is_object() || (value.is_string() && !choices.words.is_empty())
+        }),
     }
 }

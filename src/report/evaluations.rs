@@ -44,6 +44,20 @@ pub enum Found {
     NoValues(String),
     /// Why there are no gradients.
     NoGradients(String),
+    /// The steps that are in use from this design on.
+    Steps(StepsInUse),
+}
+
+/// Steps that follow the error at one design and are kept for others.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StepsInUse {
+    /// Name of the method.
+    pub method: String,
+    /// Why they were chosen.
+    pub reason: String,
+    /// Ends of the steps, as fractions of the duration from 0 to 1.
+    pub ends: Vec<f64>,
 }
 
 impl EvaluationRecord {
@@ -53,7 +67,7 @@ impl EvaluationRecord {
         let found = match &self.found {
             Found::Values(values) => values.len() == m,
             Found::Gradients(rows) => rows.len() == m && rows.iter().all(|row| row.len() == n),
-            Found::NoValues(_) | Found::NoGradients(_) => true,
+            Found::NoValues(_) | Found::NoGradients(_) | Found::Steps(_) => true,
         };
         found && self.design.len() == n
     }

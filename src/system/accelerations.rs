@@ -11,6 +11,7 @@ use super::constraint::RowGradient;
 use super::initial::mass;
 use super::joints::{self, JointCotangent};
 use super::kkt::SaddlePoint;
+use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
 use super::tree::Tree;
 use crate::linalg::{SingularMatrix, SolveScalar};
@@ -25,6 +26,8 @@ pub struct Accelerations<'a, S> {
     /// Motions of the bodies where the solver stands.
     pub motions: Vec<Motion<S>>,
     gradients: Vec<RowGradient<S>>,
+    /// Time where the solver stands (s).
+    time: S,
     solver: Solver<S>,
     rhs: Vec<S>,
     /// Factorisations so far.
@@ -51,6 +54,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             numbering,
             motions: Vec::new(),
             gradients: Vec::new(),
+            time: S::zero(),
             solver,
             rhs: vec![S::zero(); numbering.velocities() + numbering.constraints()],
             factorisations: 0,
@@ -63,9 +67,10 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         Solver::Sparse(Box::new(SaddlePoint::new(model, numbering)), zeros)
     }
 
-    /// Moves to the state (q, v) without factorising; the Euler parameters in `q` need not be of
-    /// unit length.
-    pub fn stand(&mut self, q: &[S], v: &[S]) {
+    /// Moves to the state (q, v) at `time` without factorising; the Euler parameters in `q` need not
+    /// be of unit length.
+    pub fn stand(&mut self, q: &[S], v: &[S], time: S) {
+        self.time = time;
         Motion::all_normalised(self.numbering, q, v, &mut self.motions);
         joints::gradients(
             self.model,
@@ -162,6 +167,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         all_force_balances(self.model, self.numbering, &self.motions, a, upper);
         joints::accelerations(self.model, self.numbering, &self.motions, lower);
         rhs.iter_mut().for_each(|x| *x = -*x);
+        let forces = &mut rhs[..nv];
+        loads::add_forces(self.model, self.numbering, &self.motions, self.time, forces);
         self.solve(&mut rhs);
         a.copy_from_slice(&rhs[..nv]);
         lambda.copy_from_slice(&rhs[nv..]);
@@ -200,8 +207,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
 }
 
 impl Accelerations<'_, f64> {
-    /// Pulls the cotangent ā of the accelerations back to tangent positions, velocities and
-    /// parameters, where the solver stands and was factorised. `a` and `lambda` are what
+    /// Pulls the cotangent ā of the accelerations back to tangent positions, velocities, time
+    /// (returned) and parameters, where the solver stands and was factorised. `a` and `lambda` are what
     /// [`Accelerations::accelerations`] gave there.
     pub fn pull_back(
         &mut self,
@@ -209,13 +216,21 @@ impl Accelerations<'_, f64> {
         a_bar: &[f64],
         (y, v): (&mut [f64], &mut [f64]),
         cot: &mut Model<f64>,
-    ) {
+    ) -> f64 {
         let mut psi = std::mem::take(&mut self.rhs);
         let (model, numbering) = (self.model, self.numbering);
         let nv = numbering.velocities();
         psi[..nv].copy_from_slice(a_bar);
         psi[nv..].fill(0.0);
         self.solve(&mut psi);
+        let mut by_time = 0.0;
+        let mut out = LoadCotangent {
+            y: Some(&mut *y),
+            v: Some(&mut *v),
+            time: &mut by_time,
+            model: cot,
+        };
+        loads::pull_back(model, numbering, &self.motions, self.time, &psi[..nv], &mut out);
         psi.iter_mut().for_each(|x| *x = -*x);
         for (i, body) in model.bodies.iter().enumerate() {
             let o = numbering.velocity(i);
@@ -246,6 +261,7 @@ impl Accelerations<'_, f64> {
         let cotangents = [None, None, Some(&psi[nv..])];
         joints::pull_back(model, numbering, &accelerated, cotangents, &mut out);
         self.rhs = psi;
+        by_time
     }
 
     /// Pulls λᵀ G(q) w, which is linear in w, back to tangent positions and joint frames.

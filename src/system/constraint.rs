@@ -126,6 +126,13 @@ pub fn value<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
     }
 }
 
+/// Rate G v of a row.
+pub fn rate<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
+    let mut out = [S::zero()];
+    rates(&[row], a, b, &mut out);
+    out[0]
+}
+
 /// Rates G v of the rows of a joint.
 pub fn rates<S: Scalar>(rows: &[ConstraintRow], a: &Side<S>, b: &Side<S>, out: &mut [S]) {
     let markers = Markers::of(rows, a, b);
@@ -359,6 +366,20 @@ pub struct RowCotangent<S> {
     pub rate: S,
     /// Of Φ̈.
     pub acceleration: S,
+}
+
+impl<S: Scalar> SideCotangent<S> {
+    /// Adds another cotangent.
+    pub fn add(&mut self, other: &Self) {
+        self.position += other.position;
+        self.theta += other.theta;
+        self.velocity += other.velocity;
+        self.omega += other.omega;
+        self.frame.point += other.frame.point;
+        for (axis, by) in self.frame.axes.iter_mut().zip(&other.frame.axes) {
+            *axis += by;
+        }
+    }
 }
 
 fn pull_axis<S: Scalar>(side: &Side<S>, i: usize, cot: &Jet<S>, out: &mut SideCotangent<S>) {

@@ -4,13 +4,14 @@
 //! ```text
 //! positions       T(q)ᵀ (q − q_g) + Gᵀ s = 0,      Φ(q) = 0
 //! velocities      v − v_g + Gᵀ σ = 0,              G v = 0
-//! accelerations   M a − f(v) + Gᵀ λ = 0,           G a + bias(q, v) = 0
+//! accelerations   M a − f(q, v, 0) + Gᵀ λ = 0,     G a + bias(q, v) = 0
 //! ```
 
 use super::assembly::{AssemblyFailure, assemble, finite, position_metric};
 use super::bodies::{self, Motion, all_force_balances, velocities_of};
 use super::joints::{self, JointCotangent};
 use super::kkt::{BodyBlocks, SaddlePoint};
+use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
 use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::math::{Mat3, Scalar, rotation};
@@ -86,6 +87,11 @@ pub fn solve<S: SolveScalar>(
         &vec![S::zero(); nv],
         &mut balance,
     );
+    let mut forces = vec![S::zero(); nv];
+    loads::add_forces(model, numbering, &motions, S::zero(), &mut forces);
+    for (balance, &force) in balance.iter_mut().zip(&forces) {
+        *balance -= force;
+    }
     let mut bias = vec![S::zero(); nc];
     joints::accelerations(model, numbering, &motions, &mut bias);
     saddle
@@ -181,6 +187,15 @@ pub fn pull_back(
                 v_bar[o + 3 + k] += by_omega[k];
             }
         }
+        let minus: Vec<f64> = psi.iter().map(|x| -x).collect();
+        let mut out = LoadCotangent {
+            y: Some(&mut y_bar),
+            v: Some(&mut v_bar),
+            // The start is at t = 0 whatever the design.
+            time: &mut 0.0,
+            model: cot,
+        };
+        loads::pull_back(model, numbering, &motions, 0.0, &minus, &mut out);
         pull_rate(&psi, &state.lambda, &mut y_bar, cot);
         pull_rate(&state.a, &chi, &mut y_bar, cot);
         let mut out = JointCotangent {

@@ -13,6 +13,7 @@ pub mod constraint;
 pub mod initial;
 pub mod joints;
 pub mod kkt;
+pub mod loads;
 pub mod marker;
 pub mod numbering;
 pub mod observe;

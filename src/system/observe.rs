@@ -3,6 +3,7 @@
 use super::bodies::{Motion, add6};
 use super::constraint::gradient;
 use super::joints;
+use super::loads;
 use super::numbering::Numbering;
 use crate::math::Vec3;
 use crate::model::Model;
@@ -12,7 +13,7 @@ use crate::model::Model;
 pub struct Observation {
     /// ½ Σ (m ṙᵀṙ + ωᵀJω) (J).
     pub kinetic: f64,
-    /// −Σ m gᵀr from the origin (J).
+    /// −Σ m gᵀr from the origin, and the energy of springs (J).
     pub potential: f64,
     /// Linear momentum Σ m ṙ, ground axes (kg m/s).
     pub momentum: Vec3<f64>,
@@ -57,6 +58,7 @@ pub fn observe(model: &Model<f64>, numbering: &Numbering, q: &[f64], v: &[f64]) 
         seen.momentum += momentum;
         seen.angular_momentum += motion.position.cross(&momentum) + motion.rotation * spin;
     }
+    seen.potential += loads::potential(model, &motions);
     let mut rows = vec![0.0; numbering.constraints()];
     joints::values(model, numbering, &motions, &mut rows);
     seen.position_drift = largest(&rows);

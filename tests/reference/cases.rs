@@ -30,7 +30,7 @@ pub fn cases() -> Vec<Case> {
     all
 }
 
-fn case(kind: JointKind, body_b: Option<usize>, seed: u64) -> Case {
+pub fn case(kind: JointKind, body_b: Option<usize>, seed: u64) -> Case {
     let mut numbers = Numbers(seed);
     let bodies = vec![numbers.body("first"), numbers.body("second")];
     let (point, axis) = (numbers.vector(), numbers.vector());
@@ -41,6 +41,7 @@ fn case(kind: JointKind, body_b: Option<usize>, seed: u64) -> Case {
         gravity: numbers.vector() * 10.0,
         bodies,
         joints: vec![joint],
+        loads: Vec::new(),
     };
     let (q, v) = initial::guess(&model);
     Case {

@@ -128,6 +128,7 @@ fn model(scene: &Value) -> Model<f64> {
         gravity: vector(&scene["gravity"]),
         bodies,
         joints,
+        loads: Vec::new(),
     }
 }
 

@@ -120,5 +120,6 @@ pub fn free_pair(kind: JointKind, seed: u64) -> Model<f64> {
         gravity: Vec3::zeros(),
         joints: vec![joint(&bodies, ("joint", kind), between, &point, &axis)],
         bodies,
+        loads: Vec::new(),
     }
 }

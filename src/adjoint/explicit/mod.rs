@@ -20,7 +20,7 @@ mod sweep;
 use super::AdjointRun;
 use super::sensitivity::Sensitivity;
 use crate::functions::Scene;
-use crate::integrate::explicit::tableau::{A, ALL, END, STAGES};
+use crate::integrate::explicit::tableau::{A, ALL, C, END, STAGES};
 use crate::integrate::explicit::{Node, StepData, Stepper, Tape};
 use crate::integrate::grid::Place;
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
@@ -52,6 +52,7 @@ pub(super) fn gradients(
     for n in (1..=run.grid.steps()).rev() {
         let h = run.duration * run.grid.width(n);
         let (from, to) = (&tape.nodes[n - 1], &tape.nodes[n]);
+        let (begin, end) = (run.grid.ends()[n - 1], run.grid.ends()[n]);
         let first = first_sample(run, n, sample);
         let inside = |place: &Place| matches!(place, Place::Inside { .. });
         let dense = run.places[first..=sample].iter().any(inside);
@@ -62,7 +63,7 @@ pub(super) fn gradients(
         };
         let data = match &mut again {
             None => &tape.steps[n - 1],
-            Some(stepper) => repeat(stepper, (from, to), h, dense).ok_or_else(|| {
+            Some(stepper) => repeat(stepper, (from, to), (run.duration, begin, h), dense).ok_or_else(|| {
                 let column = 0;
                 singular(SingularMatrix { column })
             })?,
@@ -79,11 +80,12 @@ pub(super) fn gradients(
             }
             let (nq, nv, nc) = (from.q.len(), from.v.len(), from.lambda.len());
             let (q, v) = (row(&data.q, nq, i), row(&data.v, nv, i));
-            field.stand(q, v);
+            let fraction = begin + run.grid.width(n) * C[i];
+            field.stand(q, v, run.duration * begin + h * C[i]);
             field.factorise()?;
             let found = (row(&data.a, nv, i), row(&data.lambda, nc, i));
             for sweep in sweeps {
-                sweep.stage(i, field, (q, v), found);
+                sweep.stage(i, field, (q, v, fraction), found);
                 sweep.spread(i, A[i], h, run.grid.width(n), data);
             }
             Ok(())
@@ -93,10 +95,10 @@ pub(super) fn gradients(
                 stage(i, &mut field, &mut sweeps).map_err(singular)?;
             }
         }
-        field.stand(&to.q, &to.v);
+        field.stand(&to.q, &to.v, run.duration * end);
         field.factorise().map_err(singular)?;
         for sweep in &mut sweeps {
-            sweep.node(&mut field, to);
+            sweep.node(&mut field, to, end);
             projection::pull_back(sweep, &mut field, data, to, &mut scratch);
             sweep.end(h, run.grid.width(n), data);
         }
@@ -146,14 +148,15 @@ fn first_sample(run: &Trajectory<f64>, n: usize, last: usize) -> usize {
 fn repeat<'s>(
     stepper: &'s mut Stepper<f64>,
     (from, to): (&Node<f64>, &Node<f64>),
-    h: f64,
+    (duration, begin, h): (f64, f64, f64),
     dense: bool,
 ) -> Option<&'s StepData<f64>> {
     let mut end = to.clone();
-    stepper.stages(from, h).ok()?;
-    stepper.finish(&mut end).ok()?;
+    let start = duration * begin;
+    stepper.stages(from, (start, h)).ok()?;
+    stepper.finish(&mut end, start + h).ok()?;
     if dense {
-        stepper.dense_stages(from, to, h).ok()?;
+        stepper.dense_stages((from, to), (start, h)).ok()?;
     }
     Some(&stepper.data)
 }

@@ -92,7 +92,7 @@ impl<'a> Sweep<'a> {
         &mut self,
         i: usize,
         field: &mut Accelerations<f64>,
-        (q, v): (&[f64], &[f64]),
+        (q, v, fraction): (&[f64], &[f64], f64),
         found: (&[f64], &[f64]),
     ) {
         let numbering = field.numbering;
@@ -101,7 +101,8 @@ impl<'a> Sweep<'a> {
         let (mut q_bar, mut v_bar, mut y) = (vec![0.0; nq], vec![0.0; nv], vec![0.0; nv]);
         bodies::pull_rates(numbering, (q, v), qdot_bar, (&mut q_bar, &mut v_bar));
         let cot = &mut self.of.cot.model;
-        field.pull_back(found, a_bar, (&mut y, &mut v_bar), cot);
+        let by_time = field.pull_back(found, a_bar, (&mut y, &mut v_bar), cot);
+        self.of.by_duration += fraction * by_time;
         bodies::add_unit_cotangent(numbering, q, &y, &mut q_bar);
         row_mut(&mut self.qdot, nq, i).copy_from_slice(&q_bar);
         row_mut(&mut self.a, nv, i).copy_from_slice(&v_bar);
@@ -146,7 +147,7 @@ impl<'a> Sweep<'a> {
 
     /// Pulls the cotangents of the derivatives at the node after the step back to its state, where
     /// `field` stands.
-    pub fn node(&mut self, field: &mut Accelerations<f64>, to: &Node<f64>) {
+    pub fn node(&mut self, field: &mut Accelerations<f64>, to: &Node<f64>, fraction: f64) {
         let (nq, nv) = (to.q.len(), to.v.len());
         if self.touched[END] {
             add_scaled(&mut self.node.0, 1.0, row(&self.qdot, nq, END));
@@ -155,9 +156,16 @@ impl<'a> Sweep<'a> {
         self.node_rates(field.numbering, to);
         if self.node.1.iter().any(|&x| x != 0.0) {
             let mut y = vec![0.0; nv];
-            let Sensitivity { q, v, cot, .. } = &mut self.of;
+            let Sensitivity {
+                q,
+                v,
+                cot,
+                by_duration,
+                ..
+            } = &mut self.of;
             let found = (&to.a[..], &to.lambda[..]);
-            field.pull_back(found, &self.node.1, (&mut y, v), &mut cot.model);
+            let by_time = field.pull_back(found, &self.node.1, (&mut y, v), &mut cot.model);
+            *by_duration += fraction * by_time;
             bodies::add_unit_cotangent(field.numbering, &to.q, &y, q);
         }
     }

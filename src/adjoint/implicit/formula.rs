@@ -36,7 +36,7 @@ impl<'a> Plan<'a> {
         &mut self,
         formula: &Formula,
         stage: &Stage<f64>,
-        (h, width): (f64, f64),
+        (h, width, end): (f64, f64, f64),
         sweeps: &mut [Sweep],
         counts: &mut WorkCounts,
     ) -> Result<(), SingularMatrix> {
@@ -67,7 +67,8 @@ impl<'a> Plan<'a> {
                 .solve_transposed_refined(&self.matrix, &mut psi);
             equations.scale_rows(h, &mut psi);
             counts.solves += REFINED_SOLVES;
-            equations.pull_back(&at, &psi, &mut sweep.of.cot.model);
+            let by_time = equations.pull_back(&at, &psi, &mut sweep.of.cot.model);
+            sweep.of.by_duration += end * by_time;
 
             let own = rates_of(model, numbering, &stage.q, &psi);
             add(&mut by_increment, c, &own);

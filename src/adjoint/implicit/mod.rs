@@ -58,7 +58,7 @@ pub(super) fn gradients(
     let mut counts = WorkCounts::default();
     let mut sample = run.last();
     for k in (1..=run.grid.steps()).rev() {
-        let width = run.grid.width(k);
+        let (width, end) = (run.grid.width(k), run.grid.ends()[k]);
         let h = run.duration * width;
         let from = match k {
             1 => &tape.start,
@@ -74,10 +74,10 @@ pub(super) fn gradients(
         let found = match Formula::of_step(run.method, k) {
             Some(formula) => one
                 .get_or_insert_with(|| formula::Plan::new(model, numbering))
-                .step(&formula, &step[0], (h, width), &mut sweeps, &mut counts),
+                .step(&formula, &step[0], (h, width, end), &mut sweeps, &mut counts),
             None => coupled
                 .get_or_insert_with(|| radau::Plan::new(model, numbering, &scheme))
-                .step(step, (h, width), &mut sweeps, &mut counts),
+                .step(step, (h, width, end), &mut sweeps, &mut counts),
         };
         found.map_err(|SingularMatrix { column }| IntegrationFailure::Singular {
             time: run.duration * run.grid.ends()[k],

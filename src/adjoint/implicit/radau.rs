@@ -41,7 +41,7 @@ impl<'a> Plan<'a> {
     pub fn step(
         &mut self,
         stages: &[Stage<f64>],
-        (h, width): (f64, f64),
+        (h, width, end): (f64, f64, f64),
         sweeps: &mut [Sweep],
         counts: &mut WorkCounts,
     ) -> Result<(), SingularMatrix> {
@@ -82,7 +82,9 @@ impl<'a> Plan<'a> {
             for (i, stage) in stages.iter().enumerate() {
                 let part = &mut psi[i * n..(i + 1) * n];
                 equations.scale_rows(h, part);
-                equations.pull_back(&stage.instant(), part, &mut sweep.of.cot.model);
+                let cot = &mut sweep.of.cot.model;
+                let by_time = equations.pull_back(&stage.instant(), part, cot);
+                sweep.of.by_duration += (end - width * (1.0 - scheme.nodes[i])) * by_time;
                 let own = rates_of(model, numbering, &stage.q, part);
                 spread(scheme, i, &own, h, &mut by);
                 slope += work(&own, stage);

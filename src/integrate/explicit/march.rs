@@ -53,12 +53,12 @@ pub fn march<S: SolveScalar>(
         let h = duration * width;
         let end = controller.end(run.grid.reached(), width);
         let tried = stepper
-            .stages(&from, h)
+            .stages(&from, (duration * run.grid.reached(), h))
             .map(|()| error(&stepper, &scale, &from, h))
             .and_then(|error| {
                 let accepted = controller.judge(error);
                 if accepted {
-                    stepper.finish(&mut to)?;
+                    stepper.finish(&mut to, duration * end)?;
                 }
                 Ok(accepted)
             });
@@ -127,7 +127,8 @@ fn sample<S: SolveScalar>(
             Place::Node(_) => run.push(at, place, [&to.q, &to.v, &to.a, &[]]),
             Place::Inside { theta, .. } => {
                 if !stepper.data.dense {
-                    stepper.dense_stages(from, to, h)?;
+                    let start = run.duration * run.grid.ends()[k - 1];
+                    stepper.dense_stages((from, to), (start, h))?;
                     run.counts.evaluations += super::tableau::ALL - super::tableau::END - 1;
                 }
                 let [mut q, v, a] = stepper.data.dense(from, h, theta);

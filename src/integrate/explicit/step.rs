@@ -139,16 +139,16 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         }
     }
 
-    /// Stages 0 … 11 of a step of size `h` from `node`, and the state at its end before the
+    /// Stages 0 … 11 of a step of size `h` from `node` at the time `start`, and the state at its end before the
     /// projection. The matrix of the last stage is left factorised.
     ///
     /// # Errors
     /// [`StepFailure`].
-    pub fn stages(&mut self, node: &Node<S>, h: S) -> Result<(), StepFailure> {
+    pub fn stages(&mut self, node: &Node<S>, (start, h): (S, S)) -> Result<(), StepFailure> {
         self.data.dense = false;
         self.put_node(node, 0);
         for i in 1..STAGES {
-            self.stage(node, i, h)?;
+            self.stage(node, i, (start, h))?;
         }
         let data = &mut self.data;
         data.q_raw.copy_from_slice(&node.q);
@@ -169,10 +169,14 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
     ///
     /// # Errors
     /// [`StepFailure`].
-    pub fn dense_stages(&mut self, node: &Node<S>, end: &Node<S>, h: S) -> Result<(), StepFailure> {
+    pub fn dense_stages(
+        &mut self,
+        (node, end): (&Node<S>, &Node<S>),
+        (start, h): (S, S),
+    ) -> Result<(), StepFailure> {
         self.put_node(end, END);
         for i in END + 1..ALL {
-            self.stage(node, i, h)?;
+            self.stage(node, i, (start, h))?;
         }
         self.data.dense = true;
         Ok(())
@@ -189,7 +193,12 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         bodies::rates(numbering, &node.q, &node.v, &mut data.qdot[q]);
     }
 
-    fn stage(&mut self, node: &Node<S>, i: usize, h: S) -> Result<(), StepFailure> {
+    fn stage(
+        &mut self,
+        node: &Node<S>,
+        i: usize,
+        (start, h): (S, S),
+    ) -> Result<(), StepFailure> {
         let (q, v, c) = (span(&node.q, i), span(&node.v, i), span(&node.lambda, i));
         let data = &mut self.data;
         // The stages before i stand in front of it.
@@ -202,7 +211,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             add_row(at_q, h * a, &data.qdot, j);
             add_row(at_v, h * a, &data.a, j);
         }
-        self.field.stand(at_q, at_v);
+        self.field.stand(at_q, at_v, start + h * C[i]);
         self.field.factorise()?;
         bodies::rates(self.field.numbering, at_q, at_v, &mut data.qdot[q]);
         let (a, lambda) = (&mut data.a[v], &mut data.lambda[c]);
@@ -210,12 +219,13 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         Ok(())
     }
 
-    /// Projects the end of the step onto the constraints and evaluates the accelerations there.
+    /// Projects the end of the step, at the time `end`, onto the constraints and evaluates the
+    /// accelerations there.
     ///
     /// # Errors
     /// [`StepFailure`].
-    pub fn finish(&mut self, out: &mut Node<S>) -> Result<(), StepFailure> {
-        self.project_positions(&mut out.q)?;
+    pub fn finish(&mut self, out: &mut Node<S>, end: S) -> Result<(), StepFailure> {
+        self.project_positions(&mut out.q, end)?;
         self.field.factorise()?;
         let data = &mut self.data;
         self.field
@@ -230,7 +240,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
 
     /// Positions nearest to `q_raw` in the metric of the masses, by Newton's method with the matrix
     /// that is factorised already. Leaves the equations standing there.
-    fn project_positions(&mut self, q: &mut [S]) -> Result<(), StepFailure> {
+    fn project_positions(&mut self, q: &mut [S], end: S) -> Result<(), StepFailure> {
         let numbering = self.field.numbering;
         let nv = numbering.velocities();
         let Self { field, data, .. } = self;
@@ -241,7 +251,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         let (mut before, mut contraction) = (f64::INFINITY, 1e-2);
         let mut settled = 0;
         for iteration in 0..ITERATIONS {
-            field.stand(q, &data.v_raw);
+            field.stand(q, &data.v_raw, end);
             // The infinitesimal part converges with the real one, some iterations behind it.
             if settled > if S::INFINITESIMAL { 4 } else { 0 } {
                 return Ok(());
@@ -271,7 +281,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             before = size;
         }
         if settled > 0 {
-            field.stand(q, &data.v_raw);
+            field.stand(q, &data.v_raw, end);
             return Ok(());
         }
         Err(StepFailure::Projection)
@@ -291,11 +301,6 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             [q, v]
         })
     }
-}
-
-/// Nodes c_i of the stages (for loads that depend on time).
-pub fn node_of(i: usize) -> f64 {
-    C[i]
 }
 
 fn span<T>(row: &[T], i: usize) -> std::ops::Range<usize> {

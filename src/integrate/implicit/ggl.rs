@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! F1 = P(q) q̇ − v + Gᵀ μ            P(q) q̇ = (ṙ, 2 L(p) ṗ) per body
-//! F2 = M v̇ − f(q, v) + Gᵀ λ
+//! F2 = M v̇ − f(q, v, t) + Gᵀ λ
 //! F3 = Φ(q)
 //! F4 = G(q) v
 //! ```
@@ -19,6 +19,7 @@ use crate::system::bodies::{self, Motion, all_force_balances, velocities_of, vel
 use crate::system::constraint::RowGradient;
 use crate::system::joints::{self, JointCotangent};
 use crate::system::kkt::{emit_gradients, emit_reaction_jacobian, emit_transposed_gradients};
+use crate::system::loads::{self, LoadCotangent};
 use crate::system::{Numbering, joints::rate_by_position};
 
 /// Unknowns and rates at one instant.
@@ -36,6 +37,8 @@ pub struct Instant<'a, S> {
     pub qdot: &'a [S],
     /// Rates v̇ of the velocities.
     pub vdot: &'a [S],
+    /// Time (s).
+    pub time: S,
 }
 
 /// The equations of one model, with the workspace that evaluating them needs.
@@ -44,6 +47,7 @@ pub struct Equations<'a, S> {
     numbering: &'a Numbering,
     motions: Vec<Motion<S>>,
     gradients: Vec<RowGradient<S>>,
+    loads: Vec<S>,
 }
 
 impl<'a, S: Scalar> Equations<'a, S> {
@@ -54,6 +58,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
             numbering,
             motions: Vec::new(),
             gradients: Vec::new(),
+            loads: vec![S::zero(); numbering.velocities()],
         }
     }
 
@@ -98,6 +103,11 @@ impl<'a, S: Scalar> Equations<'a, S> {
         joints::add_reactions(model, numbering, &self.gradients, at.mu, out1);
         all_force_balances(model, numbering, &self.motions, at.vdot, out2);
         joints::add_reactions(model, numbering, &self.gradients, at.lambda, out2);
+        self.loads.fill(S::zero());
+        loads::add_forces(model, numbering, &self.motions, at.time, &mut self.loads);
+        for (f, &load) in out2.iter_mut().zip(&self.loads) {
+            *f -= load;
+        }
         joints::values(model, numbering, &self.motions, out3);
         joints::rates_from_gradients(model, numbering, &self.gradients, at.v, out4);
         let scaled: [(&mut [S], S); 3] = [(out1, h), (out2, h * h), (out4, h)];
@@ -129,6 +139,8 @@ impl<'a, S: Scalar> Equations<'a, S> {
         let (f1, f2, f3, f4) = (y, v, lambda, mu);
         bodies::emit_kinematics(numbering, motions, at.qdot, (f1, y, v), (c, h), emit);
         bodies::emit_force_balance(model, numbering, motions, (f2, v), (c, h), emit);
+        let scales = (h * h, h);
+        loads::emit_jacobian(model, numbering, motions, at.time, (f2, y, v), scales, emit);
         emit_reaction_jacobian(model, numbering, motions, at.mu, (f1, y), h, emit);
         emit_reaction_jacobian(model, numbering, motions, at.lambda, (f2, y), h * h, emit);
         let one = S::one();
@@ -214,8 +226,9 @@ fn scale_parts(x: &mut [f64], parts: &[(usize, f64)]) {
 }
 
 impl Equations<'_, f64> {
-    /// Pulls the adjoint ψ (unscaled, of F1 … F4) back to the parameters of `cot`.
-    pub fn pull_back(&mut self, at: &Instant<f64>, psi: &[f64], cot: &mut Model<f64>) {
+    /// Pulls the adjoint ψ (unscaled, of F1 … F4) back to the parameters of `cot`; returns the
+    /// derivative of ψᵀF in time.
+    pub fn pull_back(&mut self, at: &Instant<f64>, psi: &[f64], cot: &mut Model<f64>) -> f64 {
         self.visit(at);
         let (model, numbering) = (self.model, self.numbering);
         let [_, f2, f3, f4] = self.starts();
@@ -234,6 +247,15 @@ impl Equations<'_, f64> {
                 &mut cot.gravity,
             );
         }
+        let minus: Vec<f64> = psi2.iter().map(|x| -x).collect();
+        let mut by_time = 0.0;
+        let mut out = LoadCotangent {
+            y: None,
+            v: None,
+            time: &mut by_time,
+            model: cot,
+        };
+        loads::pull_back(model, numbering, &self.motions, at.time, &minus, &mut out);
         let mut pull = |w: &[f64], cotangents: [Option<&[f64]>; 3]| {
             let mut motions = Vec::with_capacity(numbering.bodies());
             Motion::all(numbering, at.q, w, &mut motions);
@@ -247,5 +269,6 @@ impl Equations<'_, f64> {
         pull(psi1, [None, Some(at.mu), None]);
         pull(psi2, [None, Some(at.lambda), None]);
         pull(at.v, [Some(psi3), Some(psi4), None]);
+        by_time
     }
 }

@@ -80,7 +80,8 @@ pub fn march<S: SolveScalar>(
         let end = controller.end(run.grid.reached(), width);
         let k = run.grid.steps() + 1;
         let at = (k, duration.re() * end);
-        let made = solver.step(&past, h, at, &mut run.counts);
+        let start = duration * run.grid.reached();
+        let made = solver.step(&past, (start, h), at, &mut run.counts);
         let stages = match made {
             Ok(stages) => stages,
             Err(failure) if controller.give_up() => return Err(failure),
@@ -170,12 +171,15 @@ impl<S: SolveScalar> Solver<'_, S> {
     fn step(
         &mut self,
         past: &Past<S>,
-        h: S,
+        (start, h): (S, S),
         at: (usize, f64),
         counts: &mut trajectory::WorkCounts,
     ) -> Result<Vec<Stage<S>>, IntegrationFailure> {
         let Some(formula) = Formula::of_step(self.method, at.0) else {
             let mut stages = predict_stages(self.numbering, self.scheme, past, h);
+            for (stage, &c) in stages.iter_mut().zip(&self.scheme.nodes) {
+                stage.time = start + h * c;
+            }
             let (model, real, numbering) = (self.model, self.real, self.numbering);
             let (scheme, estimates) = (self.scheme, self.estimates);
             self.coupled
@@ -185,10 +189,11 @@ impl<S: SolveScalar> Solver<'_, S> {
         };
         if at.0 == 1 && remembers_start(self.method) {
             let scaled = |rates: &[S]| -> Vec<S> { rates.iter().map(|&x| x * h).collect() };
-            let start = (scaled(&past.from.qdot), scaled(&past.from.vdot));
-            self.memory = vec![start; memory_size(self.method)];
+            let first = (scaled(&past.from.qdot), scaled(&past.from.vdot));
+            self.memory = vec![first; memory_size(self.method)];
         }
         let mut stage = predict(self.numbering, past, h);
+        stage.time = start + h;
         // h ẏ = c Δ + Σ e_j m_j.
         let (mut qdot, mut vdot) = (vec![S::zero(); stage.q.len()], vec![S::zero(); stage.v.len()]);
         for (e, (mq, mv)) in formula.past.iter().zip(&self.memory) {
@@ -249,7 +254,7 @@ impl<S: SolveScalar> Solver<'_, S> {
         let (mut qdot, mut a) = (vec![0.0; start.q.len()], vec![0.0; start.v.len()]);
         let mut lambda = vec![0.0; start.lambda.len()];
         bodies::rates(numbering, &start.q, &start.v, &mut qdot);
-        field.stand(&start.q, &start.v);
+        field.stand(&start.q, &start.v, start.time);
         if field.factorise().is_err() {
             return f64::NAN;
         }

@@ -33,6 +33,8 @@ pub struct Stage<S> {
     pub qdot: Vec<S>,
     /// Rates v̇.
     pub vdot: Vec<S>,
+    /// Time (s).
+    pub time: S,
 }
 
 impl<S: Scalar> Stage<S> {
@@ -50,6 +52,7 @@ impl<S: Scalar> Stage<S> {
             mu: zeros(nc),
             qdot: zeros(nq),
             vdot: zeros(nv),
+            time: S::zero(),
         }
     }
 
@@ -62,6 +65,7 @@ impl<S: Scalar> Stage<S> {
             mu: &self.mu,
             qdot: &self.qdot,
             vdot: &self.vdot,
+            time: self.time,
         }
     }
 
@@ -92,6 +96,7 @@ impl<S: Scalar> Stage<S> {
             mu: part(&self.mu),
             qdot: part(&self.qdot),
             vdot: part(&self.vdot),
+            time: self.time.re(),
         }
     }
 }

@@ -135,16 +135,7 @@ impl Checker<'_> {
 
     fn joint(&mut self, pointer: &str, joint: &Joint) {
         let (between, place, axis) = joint.parts();
-        let list = join(pointer, "between");
-        for (k, name) in between.iter().enumerate() {
-            if name != GROUND {
-                self.body(&join(&list, k), name);
-            }
-        }
-        if between[0] == between[1] {
-            let found = format!("\"{}\" twice", between[0]);
-            self.fault(Finding::new(&list, found, "two different bodies"));
-        }
+        self.between(&join(pointer, "between"), between);
         let at = join(pointer, "at");
         match place {
             JointPlace::Named(text) => self.location(&at, text),

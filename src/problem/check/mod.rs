@@ -1,5 +1,6 @@
 //! What names and numbers of a document mean together: every fault that the schema cannot see.
 
+mod loads;
 mod mechanics;
 mod study;
 
@@ -19,6 +20,7 @@ pub(super) fn check(document: &Document, damage: &Damage) -> Vec<Finding> {
         findings: Vec::new(),
     };
     checker.mechanics();
+    checker.loads();
     checker.study();
     checker.findings
 }

@@ -7,7 +7,7 @@ use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join};
 use crate::problem::quantity::values;
 use crate::problem::scene::{GRAVITY, released};
-use crate::problem::schema::Objective;
+use crate::problem::schema::{Method, Objective};
 use crate::problem::schema::functions::{Clearance, Component, Function, Gate, Instant, Range};
 use crate::problem::schema::mechanics::Point;
 
@@ -47,8 +47,35 @@ impl Checker<'_> {
                 _ => {}
             }
         }
+        self.simulation();
         for (k, text) in document.plot.trace.iter().enumerate() {
             self.location(&join("/plot/trace", k), text);
+        }
+    }
+
+    /// Steps or a tolerance, and a method that can follow it.
+    fn simulation(&mut self) {
+        let simulation = &self.document.simulation;
+        if let (Some(_), Some(tolerance)) = (simulation.steps, simulation.tolerance) {
+            let expected = "either \"steps\" or \"tolerance\"";
+            let found = format!("the tolerance {tolerance} beside a number of steps");
+            self.fault(Finding::new("/simulation/tolerance", found, expected).of_key());
+        }
+        let (name, equal) = match &simulation.method {
+            Some(Method::Bdf { .. }) => ("bdf", true),
+            Some(Method::GeneralisedAlpha { .. }) => ("generalised_alpha", true),
+            Some(Method::Dop853 | Method::Radau { .. }) | None => ("", false),
+        };
+        if equal && simulation.steps.is_none() {
+            let found = format!("the method {name} without a number of steps");
+            let expected = "\"steps\": this method has steps of equal size";
+            let hint = "dop853 and radau choose their steps by a tolerance";
+            self.fault(Finding::new("/simulation/method", found, expected).hint(Some(hint.into())));
+        }
+        if let (true, Some(samples)) = (equal, simulation.samples) {
+            let found = format!("{samples} samples with the method {name}");
+            let expected = "none: this method is sampled at the ends of its steps";
+            self.fault(Finding::new("/simulation/samples", found, expected).of_key());
         }
     }
 
@@ -129,7 +156,7 @@ impl Checker<'_> {
     }
 
     /// Checks a body that moves and a point of it.
-    fn moving(&mut self, pointer: &str, body: &str, point: &Option<Point>) {
+    pub(super) fn moving(&mut self, pointer: &str, body: &str, point: &Option<Point>) {
         let place = join(pointer, "body");
         if body == GROUND {
             let expected = "the name of a body, as ground does not move";

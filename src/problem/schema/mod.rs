@@ -1,11 +1,13 @@
 //! The problem file as it is written: serde structures, whose documentation is the JSON Schema.
 
 pub mod functions;
+pub mod loads;
 pub mod mechanics;
 
 use super::quantity::{Quantity, Vector};
 use functions::Function;
 use indexmap::IndexMap;
+use loads::Load;
 use mechanics::{AssemblyVelocity, Body, Joint};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -14,7 +16,8 @@ use serde::Deserialize;
 pub const VERSION: u64 = 1;
 
 /// A multibody scene, what is asked of it and what may be designed. Units are SI, angles are in
-/// radians; the keys of bodies, joints, functions, variables and constraints are their names.
+/// radians; the keys of bodies, joints, loads, functions, variables and constraints are their
+/// names.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "flexbody problem")]
@@ -43,6 +46,9 @@ pub struct Document {
     /// Joints by name.
     #[serde(default)]
     pub joints: IndexMap<String, Joint>,
+    /// Loads by name: forces, torques, springs, dampers and friction.
+    #[serde(default)]
+    pub loads: IndexMap<String, Load>,
     /// How long and how finely the scene is simulated.
     pub simulation: Simulation,
     /// Functions of interest by name.
@@ -70,14 +76,30 @@ pub struct Simulation {
     /// Simulated time.
     #[schemars(extend("unit" = "s", "exclusiveMinimum" = 0))]
     pub duration: Quantity,
-    /// Number of time steps of equal size.
+    /// Number of time steps of equal size, instead of a tolerance.
     #[schemars(extend(
         "minimum" = 1,
         "maximum" = 10_000_000,
         "design_variable" = "a number of steps is a count, not a physical number"
     ))]
-    pub steps: usize,
-    /// Integration method, default BDF of order 2.
+    pub steps: Option<usize>,
+    /// Error allowed in a step, relative to the lengths and speeds of the scene; the steps follow
+    /// it. Default 1e-9 where neither this nor the steps are given.
+    #[schemars(extend(
+        "minimum" = 1e-14,
+        "maximum" = 0.1,
+        "design_variable" = "a tolerance is the method's, not a physical number"
+    ))]
+    pub tolerance: Option<f64>,
+    /// Number of equal intervals at whose ends the motion is sampled, for functions that look at the
+    /// whole motion and for figures. Default: the ends of the steps if these are given, else 1000.
+    #[schemars(extend(
+        "minimum" = 1,
+        "maximum" = 10_000_000,
+        "design_variable" = "a number of samples is a count, not a physical number"
+    ))]
+    pub samples: Option<usize>,
+    /// Integration method. Default: chosen by the scene, dop853 unless it is stiff, else radau.
     pub method: Option<Method>,
 }
 
@@ -85,16 +107,51 @@ pub struct Simulation {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Method {
+    /// Explicit Runge-Kutta method of order 8 with projection onto the joints: for scenes that are
+    /// not stiff.
+    Dop853,
+    /// Implicit Runge-Kutta method Radau IIA: for stiff scenes.
+    Radau {
+        /// Stages, 2 (order 3) or 3 (order 5).
+        #[schemars(extend(
+            "minimum" = 2,
+            "maximum" = 3,
+            "design_variable" = "a number of stages is a count, not a physical number"
+        ))]
+        stages: usize,
+    },
     /// Backward differentiation formula.
     Bdf {
-        /// Order, 1 or 2.
+        /// Order, 1 to 6.
         #[schemars(extend(
             "minimum" = 1,
-            "maximum" = 2,
+            "maximum" = 6,
             "design_variable" = "an order is a count, not a physical number"
         ))]
         order: usize,
+        /// How the first steps are made, default radau.
+        start: Option<Start>,
     },
+    /// Generalised-alpha method.
+    GeneralisedAlpha {
+        /// Spectral radius at infinite frequency.
+        #[schemars(extend(
+            "minimum" = 0.5,
+            "maximum" = 0.9,
+            "design_variable" = "a spectral radius is the method's, not a physical number"
+        ))]
+        radius: f64,
+    },
+}
+
+/// How a formula of several steps begins.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Start {
+    /// By Radau IIA, which keeps the order.
+    Radau,
+    /// By formulas of rising order, which caps the order of the whole at 2.
+    RisingOrder,
 }
 
 /// A design variable: one or several physical numbers of this file that share a value. It starts

@@ -81,6 +81,8 @@ macro_rules! faults {
     };
 }
 
+mod loads;
+
 faults! {
     a_misspelt_key: r#""mass": 3,"# => r#""masss": 3,"#;
     a_key_of_another_kind: r#""steps": 100"# => r#""steps": 100, "colour": "red""#;

@@ -1,0 +1,142 @@
+//! How a problem is integrated from design to design: the method is chosen once, and steps that
+//! follow the error are kept until it no longer suffices, so that functions are smooth in the
+//! design.
+
+use crate::functions::{Function, Reduction, Scene};
+use crate::integrate::{
+    Chosen, Grid, IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, simulate,
+    simulate_by,
+};
+use crate::problem::Problem;
+
+/// Samples of a motion whose steps follow the error.
+const SAMPLES: usize = 1000;
+/// Step error of kept steps, relative to the tolerance, at which they are chosen anew.
+const REFRESH: f64 = 10.0;
+
+/// The method and the steps that are in use.
+#[derive(Clone, Debug)]
+pub struct Integration {
+    method: Option<Method>,
+    spacing: Spacing,
+    samples: Samples,
+    /// Settings in use, once a design was simulated.
+    chosen: Option<(Settings, String)>,
+    keep_stages: bool,
+}
+
+/// A change of the steps in use.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refresh {
+    /// Name of the method.
+    pub method: String,
+    /// The new steps.
+    pub grid: Grid,
+    /// Why.
+    pub reason: String,
+}
+
+impl Integration {
+    /// What `problem` asks for. `history` is whether the whole motion is wanted whatever the
+    /// functions, `gradients` whether derivatives will be asked for.
+    pub fn new(problem: &Problem, scene: &Scene<f64>, history: bool, gradients: bool) -> Self {
+        let simulation = &problem.simulation;
+        let whole = history || scene.functions.iter().any(looks_at_the_whole);
+        let samples = match (simulation.samples, &simulation.spacing) {
+            (Some(samples), _) => Samples::Uniform(samples),
+            (None, Spacing::Steps(_)) => Samples::StepEnds,
+            (None, _) if whole => Samples::Uniform(SAMPLES),
+            (None, _) => Samples::Uniform(1),
+        };
+        Self {
+            method: simulation.method,
+            spacing: simulation.spacing.clone(),
+            samples,
+            chosen: None,
+            keep_stages: gradients,
+        }
+    }
+
+    /// The settings in use and why the method was chosen, once a design was simulated.
+    pub fn chosen(&self) -> Option<(&Settings, &str)> {
+        let (settings, reason) = self.chosen.as_ref()?;
+        Some((settings, reason))
+    }
+
+    /// Goes on with the steps of an earlier run.
+    pub fn restore(&mut self, method: Method, grid: Grid) {
+        let settings = Settings {
+            method,
+            spacing: Spacing::Frozen(grid),
+            ..self.wanted()
+        };
+        self.chosen = Some((settings, "as in the run that is resumed".into()));
+    }
+
+    fn wanted(&self) -> Settings {
+        Settings {
+            method: self.method.unwrap_or(Method::Dop853),
+            spacing: self.spacing.clone(),
+            samples: self.samples,
+            keep_stages: self.keep_stages,
+        }
+    }
+
+    /// Simulates a scene with the steps in use, and chooses them anew where they do not suffice.
+    ///
+    /// # Errors
+    /// If the simulation fails.
+    pub fn simulate(
+        &mut self,
+        scene: &Scene<f64>,
+    ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {
+        let why = match (&self.chosen, &self.spacing) {
+            (None, _) => "first design".into(),
+            (Some((settings, _)), Spacing::Tolerance(tolerance)) => {
+                match simulate(&scene.model, scene.duration, settings) {
+                    Ok(run) if run.step_error <= REFRESH * tolerance => return Ok((run, None)),
+                    Ok(run) => format!(
+                        "a step's error of {:.1e} exceeds {REFRESH} times the tolerance",
+                        run.step_error
+                    ),
+                    Err(failure) => failure.to_string(),
+                }
+            }
+            (Some((settings, _)), _) => {
+                match simulate(&scene.model, scene.duration, settings) {
+                    Err(failure @ IntegrationFailure::Stiff { .. }) if self.method.is_none() => {
+                        failure.to_string()
+                    }
+                    found => return Ok((found?, None)),
+                }
+            }
+        };
+        let Chosen {
+            run,
+            settings,
+            reason,
+        } = simulate_by(&scene.model, scene.duration, self.method, &self.wanted())?;
+        let changed = match &settings.spacing {
+            Spacing::Frozen(grid) => Some(Refresh {
+                method: settings.method.name(),
+                grid: grid.clone(),
+                reason: why,
+            }),
+            Spacing::Steps(_) | Spacing::Tolerance(_) => None,
+        };
+        self.chosen = Some((settings, reason));
+        Ok((run, changed))
+    }
+}
+
+/// Whether a function looks at more than the state at the end.
+pub(super) fn looks_at_the_whole(function: &Function<f64>) -> bool {
+    match function {
+        Function::Reduced { instant, reduction } => {
+            !matches!(reduction, Reduction::Final) || instant.watched_rotation().is_some()
+        }
+        Function::Clearance { release, .. } => {
+            matches!(release, crate::functions::Release::Best { .. })
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Which method a scene is integrated by, and which it had better not be.
+
+use super::settings::{Method, Settings, Spacing};
+use super::trajectory::Trajectory;
+use super::{IntegrationFailure, simulate};
+use crate::linalg::SolveScalar;
+use crate::model::load::LoadKind;
+use crate::model::Model;
+
+/// The method of scenes that are not stiff.
+pub const NON_STIFF: Method = Method::Dop853;
+/// The method of stiff scenes.
+pub const STIFF: Method = Method::Radau { stages: 3 };
+
+/// Ranges of ωh in which BDF of order 3, 4, 5, 6 amplifies undamped vibration.
+const AMPLIFIED: [(f64, f64); 4] = [(0.0, 1.94), (0.0, 4.71), (0.71, 9.39), (0.84, 17.6)];
+
+/// Damping ratio above which a vibration is stable, and ωh below which it grows too slowly to
+/// matter.
+const DAMPED: f64 = 0.3;
+const SLOW: f64 = 0.2;
+
+/// A run by the method that was asked for, or else by the one that suits the scene.
+#[derive(Clone, Debug)]
+pub struct Chosen<S> {
+    /// The motion.
+    pub run: Trajectory<S>,
+    /// Method and spacing that made it; chosen steps are frozen.
+    pub settings: Settings,
+    /// Why this method.
+    pub reason: String,
+}
+
+/// Simulates by `method`, or, without one, by the explicit method unless the scene proves stiff and
+/// by Radau IIA then.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_by<S: SolveScalar>(
+    model: &Model<S>,
+    duration: S,
+    method: Option<Method>,
+    settings: &Settings,
+) -> Result<Chosen<S>, IntegrationFailure> {
+    let with = |method: Method, reason: String| {
+        let mut settings = Settings {
+            method,
+            ..settings.clone()
+        };
+        let run = simulate(model, duration, &settings)?;
+        if let Spacing::Tolerance(_) = settings.spacing {
+            settings.spacing = Spacing::Frozen(run.grid.clone());
+        }
+        Ok(Chosen {
+            run,
+            settings,
+            reason,
+        })
+    };
+    if let Some(method) = method {
+        return with(method, "as the problem says".into());
+    }
+    match with(NON_STIFF, "the scene is rigid and not stiff".into()) {
+        Err(IntegrationFailure::Stiff { time, .. }) => {
+            let reason = format!("the scene is stiff: stability bounds explicit steps at t = {time:.4} s");
+            with(STIFF, reason)
+        }
+        Err(IntegrationFailure::NotFinite { time, .. } | IntegrationFailure::Projection { time, .. })
+            if matches!(settings.spacing, Spacing::Steps(_)) =>
+        {
+            let reason = format!("explicit steps of this size fail at t = {time:.4} s");
+            with(STIFF, reason)
+        }
+        found => found,
+    }
+}
+
+/// What is wrong with a method for a scene that takes steps of size h (s), if anything: BDF of order
+/// 3 and more amplifies undamped vibration with ωh in a range around one.
+pub fn warning(model: &Model<f64>, method: Method, h: f64) -> Option<String> {
+    let Method::Bdf { order, .. } = method else {
+        return None;
+    };
+    let (low, high) = *AMPLIFIED.get(order.checked_sub(3)?)?;
+    model.loads.iter().find_map(|load| {
+        let (omega, ratio) = vibration(model, &load.kind)?;
+        let z = omega * h;
+        (ratio < DAMPED && z > low.max(SLOW) && z < high).then(|| {
+            format!(
+                "bdf of order {order} amplifies undamped vibration with omega h between {low} and \
+                 {high}, and load \"{}\" vibrates with omega h = {z:.2} (omega = {omega:.3e} \
+                 rad/s); take radau, or bdf of order 2",
+                load.name
+            )
+        })
+    })
+}
+
+/// Angular frequency (rad/s) and damping ratio of the vibration of its bodies on a spring.
+fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
+    let (stiffness, damping, inverse) = match *load {
+        LoadKind::Spring {
+            body_a,
+            body_b,
+            stiffness,
+            damping,
+            ..
+        } => {
+            let bodies = [Some(body_a), body_b].into_iter().flatten();
+            let inverse: f64 = bodies.map(|body| 1.0 / model.bodies[body].mass).sum();
+            (stiffness, damping, inverse)
+        }
+        LoadKind::TorsionSpring {
+            joint,
+            stiffness,
+            damping,
+            ..
+        } => {
+            let joint = &model.joints[joint];
+            let about = |body: usize, axis: &crate::math::Vec3<f64>| {
+                1.0 / axis.dot(&(model.bodies[body].inertia * axis))
+            };
+            let a = about(joint.body_a, &joint.frame_a.axes[2]);
+            let b = joint.body_b.map(|body| about(body, &joint.frame_b.axes[2]));
+            (stiffness, damping, a + b.unwrap_or(0.0))
+        }
+        LoadKind::Force { .. }
+        | LoadKind::Torque { .. }
+        | LoadKind::Damping { .. }
+        | LoadKind::BallDamping { .. }
+        | LoadKind::Friction { .. } => return None,
+    };
+    let omega = (stiffness * inverse).sqrt();
+    (omega > 0.0).then(|| (omega, 0.5 * damping * omega / stiffness))
+}

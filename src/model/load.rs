@@ -1,0 +1,233 @@
+//! Loads: forces and torques on bodies, springs, dampers and friction.
+//!
+//! With m(t) a [`Course`], d = P_A − P_B the distance of two points, l = √(dᵀd), e the axis of a
+//! joint, φ the angle of its body A relative to body B about e, s = e · d its displacement, and
+//! w a width, each load acts on body A by
+//!
+//! ```text
+//! force              F = m(t) n              at a point; n in ground or in body axes
+//! torque             M = m(t) n              n in ground or in body axes
+//! spring             F = −(k x + k3 x³ + c l̇) d / l,    x = l − l0
+//! torsion spring     M = −(k x + c φ̇) e,                x = φ − φ0
+//! damping            M = −c φ̇ e   or   F = −c ṡ e
+//! ball damping       M = −c (ω_A − ω_B)
+//! friction           M = −μ tanh(φ̇ / w) e   or   F = −μ tanh(ṡ / w) e
+//! ```
+//!
+//! and by the opposite on body B, so that momentum is exchanged and never made. Forces and their
+//! derivatives are in `system::loads`.
+
+use super::course::Course;
+use crate::math::{Scalar, Vec3};
+
+/// A named load.
+#[derive(Clone, Debug)]
+pub struct Load<S> {
+    /// Name in the problem file.
+    pub name: String,
+    /// What acts.
+    pub kind: LoadKind<S>,
+}
+
+/// The axes that a force or torque keeps its direction in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// Those of ground.
+    Ground,
+    /// Those of the body that it acts on, which it turns with.
+    Body,
+}
+
+/// A motion that a joint allows along or about its axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Freedom {
+    /// Turning about the axis: the rate is φ̇ = e · (ω_A − ω_B).
+    Turn,
+    /// Sliding along the axis: the rate is that of e · (P_A − P_B).
+    Slide,
+}
+
+/// The kinds of load.
+#[derive(Clone, Debug)]
+pub enum LoadKind<S> {
+    /// A force at a point of a body.
+    Force {
+        /// The body.
+        body: usize,
+        /// The point, from the centre of mass in body axes (m).
+        point: Vec3<S>,
+        /// Direction n, used as it is.
+        direction: Vec3<S>,
+        /// What the direction is fixed in.
+        axes: Axes,
+        /// m(t) (N).
+        magnitude: Course<S>,
+    },
+    /// A torque on a body.
+    Torque {
+        /// The body.
+        body: usize,
+        /// Direction n, used as it is.
+        direction: Vec3<S>,
+        /// What the direction is fixed in.
+        axes: Axes,
+        /// m(t) (N m).
+        magnitude: Course<S>,
+    },
+    /// A spring with a damper between points of two bodies. The points must stay apart.
+    Spring {
+        /// Body A.
+        body_a: usize,
+        /// Body B; `None` is ground.
+        body_b: Option<usize>,
+        /// Point of A, from the centre of mass in body axes (m).
+        point_a: Vec3<S>,
+        /// Point of B likewise (ground axes from the origin if ground) (m).
+        point_b: Vec3<S>,
+        /// Length l0 without force (m).
+        rest_length: S,
+        /// Stiffness k (N/m).
+        stiffness: S,
+        /// Cubic stiffness k3 (N/m³).
+        cubic: S,
+        /// Damping c (N s/m).
+        damping: S,
+    },
+    /// A spring with a damper about the axis of a joint. Its angle x = φ − φ0 is taken in
+    /// (−π, π], so it is smooth in all positions but those half a turn from rest, where it jumps
+    /// by a turn.
+    TorsionSpring {
+        /// The joint.
+        joint: usize,
+        /// Angle φ0 without torque (rad).
+        rest_angle: S,
+        /// Stiffness k (N m/rad).
+        stiffness: S,
+        /// Damping c (N m s/rad).
+        damping: S,
+    },
+    /// Viscous damping along or about the axis of a joint.
+    Damping {
+        /// The joint.
+        joint: usize,
+        /// Which motion is damped.
+        freedom: Freedom,
+        /// c (N m s/rad or N s/m).
+        coefficient: S,
+    },
+    /// Viscous damping of all relative rotation of a joint's bodies.
+    BallDamping {
+        /// The joint.
+        joint: usize,
+        /// c (N m s/rad).
+        coefficient: S,
+    },
+    /// Coulomb friction of constant size along or about the axis of a joint, smooth about zero
+    /// rate.
+    Friction {
+        /// The joint.
+        joint: usize,
+        /// Which motion is opposed.
+        freedom: Freedom,
+        /// Size μ of the torque or force (N m or N).
+        size: S,
+        /// Rate w at which tanh 1 of it acts (rad/s or m/s).
+        width: S,
+    },
+}
+
+impl<S: Scalar> Load<S> {
+    /// The load with every parameter replaced by `f` of it.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Load<T> {
+        Load {
+            name: self.name.clone(),
+            kind: self.kind.map(f),
+        }
+    }
+}
+
+impl<S: Scalar> LoadKind<S> {
+    /// The load with every parameter replaced by `f` of it.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> LoadKind<T> {
+        match self {
+            LoadKind::Force {
+                body,
+                point,
+                direction,
+                axes,
+                magnitude,
+            } => LoadKind::Force {
+                body: *body,
+                point: point.map(&mut *f),
+                direction: direction.map(&mut *f),
+                axes: *axes,
+                magnitude: magnitude.map(f),
+            },
+            LoadKind::Torque {
+                body,
+                direction,
+                axes,
+                magnitude,
+            } => LoadKind::Torque {
+                body: *body,
+                direction: direction.map(&mut *f),
+                axes: *axes,
+                magnitude: magnitude.map(f),
+            },
+            LoadKind::Spring {
+                body_a,
+                body_b,
+                point_a,
+                point_b,
+                rest_length,
+                stiffness,
+                cubic,
+                damping,
+            } => LoadKind::Spring {
+                body_a: *body_a,
+                body_b: *body_b,
+                point_a: point_a.map(&mut *f),
+                point_b: point_b.map(&mut *f),
+                rest_length: f(*rest_length),
+                stiffness: f(*stiffness),
+                cubic: f(*cubic),
+                damping: f(*damping),
+            },
+            LoadKind::TorsionSpring {
+                joint,
+                rest_angle,
+                stiffness,
+                damping,
+            } => LoadKind::TorsionSpring {
+                joint: *joint,
+                rest_angle: f(*rest_angle),
+                stiffness: f(*stiffness),
+                damping: f(*damping),
+            },
+            LoadKind::Damping {
+                joint,
+                freedom,
+                coefficient,
+            } => LoadKind::Damping {
+                joint: *joint,
+                freedom: *freedom,
+                coefficient: f(*coefficient),
+            },
+            LoadKind::BallDamping { joint, coefficient } => LoadKind::BallDamping {
+                joint: *joint,
+                coefficient: f(*coefficient),
+            },
+            LoadKind::Friction {
+                joint,
+                freedom,
+                size,
+                width,
+            } => LoadKind::Friction {
+                joint: *joint,
+                freedom: *freedom,
+                size: f(*size),
+                width: f(*width),
+            },
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Loads.
+
+use super::Checker;
+use crate::model::JointKind;
+use crate::problem::fault::Finding;
+use crate::problem::placement::GROUND;
+use crate::problem::pointer::{advice, join};
+use crate::problem::schema::loads::{Course, Ends, Load};
+
+impl Checker<'_> {
+    pub(super) fn loads(&mut self) {
+        let document = self.document;
+        self.names("loads", document.loads.keys());
+        for (name, load) in &document.loads {
+            let pointer = join(&join("/loads", name), load.key());
+            self.load(&pointer, load);
+        }
+    }
+
+    fn load(&mut self, pointer: &str, load: &Load) {
+        use JointKind::{Planar, Prismatic, Revolute, Spherical};
+        match load {
+            Load::Force(force) => {
+                self.moving(pointer, &force.body, &force.point);
+                self.direction(&join(pointer, "direction"), &force.direction);
+                self.course(&join(pointer, "magnitude"), force.magnitude.parts());
+                if force.point.is_some() && force.at.is_some() {
+                    let finding = Finding::new(
+                        join(pointer, "at"),
+                        "\"at\" beside \"point\"",
+                        "one of them, as each says where the force acts",
+                    );
+                    self.fault(finding.of_key());
+                }
+            }
+            Load::Torque(torque) => {
+                self.moving(pointer, &torque.body, &None);
+                self.direction(&join(pointer, "direction"), &torque.direction);
+                self.course(&join(pointer, "magnitude"), torque.magnitude.parts());
+            }
+            Load::Spring(spring) => {
+                self.between(&join(pointer, "between"), &spring.between);
+                if let Ends::Each(pair) = &spring.at {
+                    let at = join(pointer, "at");
+                    self.point(&join(&at, "a"), &spring.between[0], &pair.a);
+                    self.point(&join(&at, "b"), &spring.between[1], &pair.b);
+                }
+            }
+            Load::TorsionSpring(spring) => {
+                self.loaded_joint(pointer, &spring.joint, &[Revolute, Planar]);
+            }
+            Load::Damping(damping) => {
+                self.loaded_joint(pointer, &damping.joint, &[Revolute, Prismatic, Spherical]);
+            }
+            Load::Friction(friction) => {
+                self.loaded_joint(pointer, &friction.joint, &[Revolute, Prismatic]);
+            }
+        }
+    }
+
+    /// Checks two bodies, one of which may be ground.
+    pub(super) fn between(&mut self, list: &str, between: &[String; 2]) {
+        for (k, name) in between.iter().enumerate() {
+            if name != GROUND {
+                self.body(&join(list, k), name);
+            }
+        }
+        if between[0] == between[1] {
+            let found = format!("\"{}\" twice", between[0]);
+            self.fault(Finding::new(list, found, "two different bodies"));
+        }
+    }
+
+    /// Checks the joint of a load, which has to be of one of these kinds.
+    fn loaded_joint(&mut self, pointer: &str, name: &str, kinds: &[JointKind]) {
+        let pointer = join(pointer, "joint");
+        let wanted = kinds.iter().map(|kind| kind.name()).collect::<Vec<_>>();
+        let expected = format!("the name of a joint that is {}", wanted.join(" or "));
+        match self.document.joints.get(name) {
+            Some(joint) if kinds.contains(&joint.kind()) => {}
+            Some(joint) => {
+                let found = format!("\"{name}\", which is {}", joint.kind().name());
+                self.fault(Finding::new(pointer, found, expected));
+            }
+            None if self.damage.holds("joints", name) => {}
+            None => {
+                let suitable = self.document.joints.iter();
+                let suitable = suitable.filter(|(_, joint)| kinds.contains(&joint.kind()));
+                let hint = advice(name, "such joints", suitable.map(|(name, _)| name.as_str()));
+                self.fault(Finding::new(pointer, format!("\"{name}\""), expected).hint(hint));
+            }
+        }
+    }
+
+    fn course(&mut self, pointer: &str, course: Course) {
+        let Course::Table(times, values) = course else {
+            return;
+        };
+        let table = join(pointer, "table");
+        if times.len() < 2 || times.len() != values.len() {
+            let found = format!("{} times and {} values", times.len(), values.len());
+            let expected = "as many values as times, and at least two of each";
+            self.fault(Finding::new(&table, found, expected));
+        }
+        if let Some(k) = (1..times.len()).find(|&k| times[k] <= times[k - 1]) {
+            let found = format!("{} after {}", times[k], times[k - 1]);
+            let place = join(&join(&table, "times"), k);
+            self.fault(Finding::new(place, found, "times that increase"));
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! Loads as they are written in a file.
+
+use super::mechanics::{Point, PointPair};
+use crate::problem::quantity::{Quantity, Vector};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// A force, torque, spring, damper or friction.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Load {
+    /// A force at a point of a body.
+    Force(Force),
+    /// A torque on a body.
+    Torque(Torque),
+    /// A spring with a damper between points of two bodies: tension k x + k3 x³ + c l̇ with
+    /// x = l − l0.
+    Spring(Spring),
+    /// A spring with a damper about the axis of a revolute or planar joint.
+    TorsionSpring(TorsionSpring),
+    /// Viscous damping in a revolute, prismatic or spherical joint.
+    Damping(Damping),
+    /// Coulomb friction in a revolute or prismatic joint: size times tanh(rate / width).
+    Friction(Friction),
+}
+
+/// A force at a point of a body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Force {
+    /// The body that it acts on.
+    pub body: String,
+    /// The point that it acts at, by name or in body axes; default the centre of mass.
+    pub point: Option<Point>,
+    /// The point in ground coordinates at the start, instead of `point`.
+    #[schemars(extend("unit" = "m"))]
+    pub at: Option<Vector>,
+    /// Its direction, of any length but zero.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+    /// The axes that the direction is given and fixed in; default those of ground.
+    #[serde(default)]
+    pub axes: Axes,
+    /// Its magnitude: a number, or a course in time.
+    pub magnitude: ForceCourse,
+}
+
+/// A torque on a body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Torque {
+    /// The body that it acts on.
+    pub body: String,
+    /// Its direction, of any length but zero.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+    /// The axes that the direction is given and fixed in; default those of ground.
+    #[serde(default)]
+    pub axes: Axes,
+    /// Its magnitude: a number, or a course in time.
+    pub magnitude: TorqueCourse,
+}
+
+/// The axes that a direction is fixed in.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Axes {
+    /// Those of ground.
+    #[default]
+    Ground,
+    /// Those of the body that it acts on.
+    Body,
+}
+
+/// A magnitude in its unit, and how it may vary with time.
+macro_rules! courses {
+    ($course:ident, $varying:ident, $what:literal, $unit:literal) => {
+        #[doc = concat!("Magnitude of a ", $what, ".")]
+        #[derive(Clone, Debug, Deserialize, JsonSchema)]
+        #[serde(untagged)]
+        pub enum $course {
+            /// The same at all times.
+            #[schemars(extend("unit" = $unit))]
+            Constant(Quantity),
+            /// A course in time.
+            Varying($varying),
+        }
+
+        #[doc = concat!("Course of a ", $what, " in time.")]
+        #[derive(Clone, Debug, Deserialize, JsonSchema)]
+        #[serde(rename_all = "snake_case", deny_unknown_fields)]
+        pub enum $varying {
+            /// amplitude · sin(2π frequency t + phase).
+            Harmonic {
+                /// Amplitude.
+                #[schemars(extend("unit" = $unit))]
+                amplitude: Quantity,
+                /// Frequency.
+                #[schemars(extend("unit" = "Hz"))]
+                frequency: Quantity,
+                /// Phase at t = 0, default 0.
+                #[serde(default = "nothing")]
+                #[schemars(extend("unit" = "rad"))]
+                phase: Quantity,
+            },
+            /// Smooth interpolation that does not overshoot, level at both ends and held beyond
+            /// them.
+            Table {
+                /// Instants, increasing.
+                #[schemars(extend(
+                    "unit" = "s",
+                    "design_variable" = "the instants of a table keep their order; design its values"
+                ))]
+                times: Vec<f64>,
+                /// Value at each instant.
+                #[schemars(extend("unit" = $unit))]
+                values: Vec<Quantity>,
+            },
+        }
+
+        impl $course {
+            /// Its course, whatever its unit.
+            pub fn parts(&self) -> Course<'_> {
+                match self {
+                    $course::Constant(value) => Course::Constant(value),
+                    $course::Varying($varying::Harmonic {
+                        amplitude,
+                        frequency,
+                        phase,
+                    }) => Course::Harmonic([amplitude, frequency, phase]),
+                    $course::Varying($varying::Table { times, values }) => {
+                        Course::Table(times, values)
+                    }
+                }
+            }
+        }
+    };
+}
+
+courses!(ForceCourse, VaryingForce, "force", "N");
+courses!(TorqueCourse, VaryingTorque, "torque", "N m");
+
+/// A course in time, whatever its unit.
+pub enum Course<'a> {
+    /// The same at all times.
+    Constant(&'a Quantity),
+    /// Amplitude, frequency and phase.
+    Harmonic([&'a Quantity; 3]),
+    /// Instants and values.
+    Table(&'a [f64], &'a [Quantity]),
+}
+
+/// The quantity 0.
+fn nothing() -> Quantity {
+    Quantity::fixed(0.0)
+}
+
+/// A spring with a damper between points of two bodies.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Spring {
+    /// The two bodies; one of them may be "ground".
+    pub between: [String; 2],
+    /// Its ends.
+    pub at: Ends,
+    /// Length without force.
+    #[schemars(extend("unit" = "m", "minimum" = 0))]
+    pub rest_length: Quantity,
+    /// Stiffness k.
+    #[schemars(extend("unit" = "N/m", "minimum" = 0))]
+    pub stiffness: Quantity,
+    /// Cubic stiffness k3, default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "N/m³"))]
+    pub cubic: Quantity,
+    /// Damping c, default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "N s/m", "minimum" = 0))]
+    pub damping: Quantity,
+}
+
+/// Ends of a spring.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Ends {
+    /// One point on each body.
+    Each(PointPair),
+    /// Ground coordinates of both at the start, in the order of the bodies.
+    #[schemars(extend("unit" = "m"))]
+    Ground([Vector; 2]),
+}
+
+/// A spring with a damper about the axis of a joint.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TorsionSpring {
+    /// Name of a revolute or planar joint.
+    pub joint: String,
+    /// Angle without torque, of the first body against the second (ground counts as the second)
+    /// about the axis, from where the bodies are placed; default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "rad"))]
+    pub rest_angle: Quantity,
+    /// Stiffness.
+    #[schemars(extend("unit" = "N m/rad", "minimum" = 0))]
+    pub stiffness: Quantity,
+    /// Damping, default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "N m s/rad", "minimum" = 0))]
+    pub damping: Quantity,
+}
+
+/// Viscous damping in a joint.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Damping {
+    /// Name of a revolute, prismatic or spherical joint.
+    pub joint: String,
+    /// Force or torque for a unit of rate.
+    #[schemars(extend("unit" = "N s/m or N m s/rad", "minimum" = 0))]
+    pub coefficient: Quantity,
+}
+
+/// Coulomb friction in a joint.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Friction {
+    /// Name of a revolute or prismatic joint.
+    pub joint: String,
+    /// Force or torque at rates well above the width.
+    #[schemars(extend("unit" = "N or N m", "minimum" = 0))]
+    pub size: Quantity,
+    /// Rate at which 76 % of it acts; smaller is sharper and needs finer steps.
+    #[schemars(extend("unit" = "m/s or rad/s", "exclusiveMinimum" = 0))]
+    pub width: Quantity,
+}
+
+impl Load {
+    /// Its key in the file.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Load::Force(_) => "force",
+            Load::Torque(_) => "torque",
+            Load::Spring(_) => "spring",
+            Load::TorsionSpring(_) => "torsion_spring",
+            Load::Damping(_) => "damping",
+            Load::Friction(_) => "friction",
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! The loads of a model in motion: generalised forces, their Jacobians, pull-backs and energy.
+//!
+//! A load is linear in the virtual velocities ψ that it is paired with: ψᵀf is its power at these
+//! velocities. [`power`] writes it down and [`pull`] its transposed derivative, once for each kind
+//! and for any scalar; forces, Jacobians and pull-backs are all made of these two, so that they
+//! cannot disagree.
+
+mod parameters;
+mod power;
+mod pull;
+
+use super::bodies::{Motion, add6, velocities_of};
+use super::constraint::Side;
+use super::initial;
+use super::joints::sides;
+use super::numbering::Numbering;
+use crate::linalg::Emit;
+use crate::math::{Scalar, Vec3};
+use crate::model::{Axes, Freedom, JointFrame, LoadKind, Model};
+use parameters::give_to_parameters;
+use pull::{Pulled, pull};
+
+/// Both bodies of a load, and where it acts on them.
+pub(super) struct Acting<'a, S> {
+    bodies: [Option<usize>; 2],
+    a: Side<'a, S>,
+    b: Side<'a, S>,
+}
+
+/// Calls `visit(number of the load, its kind, its bodies)` for every load.
+fn for_each_load<S: Scalar>(
+    model: &Model<S>,
+    motions: &[Motion<S>],
+    mut visit: impl FnMut(usize, &LoadKind<S>, &Acting<S>),
+) {
+    if model.loads.is_empty() {
+        return;
+    }
+    let (ground, nowhere) = (Motion::ground(), JointFrame::zero());
+    for (i, load) in model.loads.iter().enumerate() {
+        let at_point = |point: &Vec3<S>| JointFrame {
+            point: *point,
+            axes: nowhere.axes,
+        };
+        let (frame_a, frame_b);
+        let acting = match &load.kind {
+            LoadKind::Force { body, point, .. } => {
+                frame_a = at_point(point);
+                acting(motions, &ground, (*body, &frame_a), (None, &nowhere))
+            }
+            LoadKind::Torque { body, .. } => {
+                acting(motions, &ground, (*body, &nowhere), (None, &nowhere))
+            }
+            LoadKind::Spring {
+                body_a,
+                body_b,
+                point_a,
+                point_b,
+                ..
+            } => {
+                (frame_a, frame_b) = (at_point(point_a), at_point(point_b));
+                acting(motions, &ground, (*body_a, &frame_a), (*body_b, &frame_b))
+            }
+            LoadKind::TorsionSpring { joint, .. }
+            | LoadKind::Damping { joint, .. }
+            | LoadKind::BallDamping { joint, .. }
+            | LoadKind::Friction { joint, .. } => {
+                let joint = &model.joints[*joint];
+                let (a, b) = sides(joint, motions, &ground);
+                Acting {
+                    bodies: [Some(joint.body_a), joint.body_b],
+                    a,
+                    b,
+                }
+            }
+        };
+        visit(i, &load.kind, &acting);
+    }
+}
+
+fn acting<'a, S: Scalar>(
+    motions: &'a [Motion<S>],
+    ground: &'a Motion<S>,
+    (body_a, frame_a): (usize, &'a JointFrame<S>),
+    (body_b, frame_b): (Option<usize>, &'a JointFrame<S>),
+) -> Acting<'a, S> {
+    Acting {
+        bodies: [Some(body_a), body_b],
+        a: Side {
+            motion: &motions[body_a],
+            frame: frame_a,
+        },
+        b: Side {
+            motion: body_b.map_or(ground, |body| &motions[body]),
+            frame: frame_b,
+        },
+    }
+}
+
+/// Adds the generalised forces f of all loads (force in ground axes, torque in body axes about the
+/// centre of mass) to `out`, in velocity numbering.
+pub fn add_forces<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    motions: &[Motion<S>],
+    time: S,
+    out: &mut [S],
+) {
+    for_each_load(model, motions, |_, kind, at| {
+        let forces = power::forces(kind, at, time);
+        for (body, (force, torque)) in at.bodies.into_iter().zip(forces) {
+            let Some(body) = body else { continue };
+            add6(&mut out[numbering.velocity(body)..], &force, &torque);
+        }
+    });
+}
+
+/// Which 3 × 3 blocks the derivative of a load has, of (linear, angular) parts on both bodies.
+struct Blocks {
+    /// Forces and torques.
+    rows: [bool; 2],
+    /// Tangent positions.
+    y: [bool; 2],
+    /// Velocities.
+    v: [bool; 2],
+}
+
+fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
+    const NONE: [bool; 2] = [false, false];
+    const LINEAR: [bool; 2] = [true, false];
+    const ANGULAR: [bool; 2] = [false, true];
+    const BOTH: [bool; 2] = [true, true];
+    let of = |rows, y, v| Blocks { rows, y, v };
+    // A zero that no design moves leaves its columns out.
+    let damped = |c: &S, columns| if c.is_zero() { NONE } else { columns };
+    match kind {
+        LoadKind::Force { axes, .. } => match axes {
+            Axes::Ground => of(ANGULAR, ANGULAR, NONE),
+            Axes::Body => of(LINEAR, ANGULAR, NONE),
+        },
+        LoadKind::Torque { axes, .. } => match axes {
+            Axes::Ground => of(ANGULAR, ANGULAR, NONE),
+            Axes::Body => of(NONE, NONE, NONE),
+        },
+        LoadKind::Spring { damping, .. } => of(BOTH, BOTH, damped(damping, BOTH)),
+        LoadKind::TorsionSpring { damping, .. } => of(ANGULAR, ANGULAR, damped(damping, ANGULAR)),
+        LoadKind::BallDamping { .. } => of(ANGULAR, ANGULAR, ANGULAR),
+        LoadKind::Damping { freedom, .. } | LoadKind::Friction { freedom, .. } => match freedom {
+            Freedom::Turn => of(ANGULAR, ANGULAR, ANGULAR),
+            Freedom::Slide => of(BOTH, BOTH, BOTH),
+        },
+    }
+}
+
+/// Emits −∂f/∂y times `by_y_scale` at (`row`, `y`) and −∂f/∂v times `by_v_scale` at (`row`, `v`),
+/// all in velocity numbering; only the blocks that a load has.
+pub fn emit_jacobian<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    motions: &[Motion<S>],
+    time: S,
+    (row, y, v): (usize, usize, usize),
+    (by_y_scale, by_v_scale): (S, S),
+    emit: &mut dyn Emit<S>,
+) {
+    for_each_load(model, motions, |_, kind, at| {
+        let blocks = blocks(kind);
+        // One row of the Jacobian for each unit velocity of either body.
+        for side in 0..2 {
+            let Some(body) = at.bodies[side] else {
+                continue;
+            };
+            for component in 0..6 {
+                if !blocks.rows[component / 3] {
+                    continue;
+                }
+                let mut psi = [(Vec3::zeros(), Vec3::zeros()); 2];
+                let (linear, angular) = &mut psi[side];
+                [linear, angular][component / 3][component % 3] = S::one();
+                let pulled = pull(kind, at, time, &psi);
+                let row = row + numbering.velocity(body) + component;
+                for (body, by) in at.bodies.into_iter().zip([&pulled.a, &pulled.b]) {
+                    let Some(body) = body else { continue };
+                    let o = numbering.velocity(body);
+                    let columns = [
+                        (blocks.y, y, by_y_scale, [&by.position, &by.theta]),
+                        (blocks.v, v, by_v_scale, [&by.velocity, &by.omega]),
+                    ];
+                    for (wanted, start, scale, parts) in columns {
+                        for part in (0..2).filter(|&part| wanted[part]) {
+                            emit.add_row(row, start + o + 3 * part, &(parts[part] * -scale));
+                        }
+                    }
+                }
+            }
+        }
+    });
+}
+
+/// Where the pull-back of the loads is added to.
+pub struct LoadCotangent<'a> {
+    /// Tangent positions, velocity numbering; `None` if not wanted.
+    pub y: Option<&'a mut [f64]>,
+    /// Velocities; `None` if not wanted.
+    pub v: Option<&'a mut [f64]>,
+    /// Time.
+    pub time: &'a mut f64,
+    /// Parameters of the loads and the frames of their joints.
+    pub model: &'a mut Model<f64>,
+}
+
+/// Adds the derivatives of ψᵀf, f as in [`add_forces`], in tangent positions, velocities, time and
+/// parameters.
+pub fn pull_back(
+    model: &Model<f64>,
+    numbering: &Numbering,
+    motions: &[Motion<f64>],
+    time: f64,
+    psi: &[f64],
+    out: &mut LoadCotangent,
+) {
+    for_each_load(model, motions, |i, kind, at| {
+        let psi = at.bodies.map(|body| {
+            body.map_or((Vec3::zeros(), Vec3::zeros()), |body| {
+                velocities_of(&psi[numbering.velocity(body)..])
+            })
+        });
+        let pulled = pull(kind, at, time, &psi);
+        give_to_states(&pulled, at, numbering, (&mut out.y, &mut out.v));
+        give_to_parameters(kind, &pulled, (i, time), (out.model, out.time));
+    });
+}
+
+fn give_to_states(
+    pulled: &Pulled<f64>,
+    at: &Acting<f64>,
+    numbering: &Numbering,
+    (y, v): (&mut Option<&mut [f64]>, &mut Option<&mut [f64]>),
+) {
+    for (body, by) in at.bodies.into_iter().zip([&pulled.a, &pulled.b]) {
+        let Some(body) = body else { continue };
+        let o = numbering.velocity(body);
+        if let Some(y) = y.as_deref_mut() {
+            add6(&mut y[o..], &by.position, &by.theta);
+        }
+        if let Some(v) = v.as_deref_mut() {
+            add6(&mut v[o..], &by.velocity, &by.omega);
+        }
+    }
+}
+
+/// The first spring whose ends meet where the bodies are placed, if any.
+pub fn without_length(model: &Model<f64>) -> Option<&str> {
+    let (q, v) = initial::guess(model);
+    let mut motions = Vec::new();
+    Motion::all(&Numbering::new(model), &q, &v, &mut motions);
+    let mut found = None;
+    for_each_load(model, &motions, |i, kind, at| {
+        if let LoadKind::Spring { .. } = kind
+            && power::stretch(at).length == 0.0
+        {
+            found = found.or(Some(i));
+        }
+    });
+    found.map(|i| model.loads[i].name.as_str())
+}
+
+/// Potential energy of the springs, Σ ½ k x² + ¼ k3 x⁴ (J).
+pub fn potential<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> S {
+    let mut sum = S::zero();
+    for_each_load(model, motions, |_, kind, at| {
+        sum += power::potential(kind, at);
+    });
+    sum
+}
+
+/// Adds `weight` times the derivative of [`potential`] to tangent positions and parameters.
+pub fn pull_potential(
+    model: &Model<f64>,
+    numbering: &Numbering,
+    motions: &[Motion<f64>],
+    weight: f64,
+    y: &mut [f64],
+    cot: &mut Model<f64>,
+) {
+    for_each_load(model, motions, |i, kind, at| {
+        let Some(pulled) = pull::pull_potential(kind, at, weight) else {
+            return;
+        };
+        give_to_states(&pulled, at, numbering, (&mut Some(&mut *y), &mut None));
+        give_to_parameters(kind, &pulled, (i, 0.0), (cot, &mut 0.0));
+    });
+}

@@ -1,0 +1,109 @@
+//! From the derivatives of a load's power to the parameters that they are in.
+
+use super::pull::Pulled;
+use crate::model::{JointFrame, LoadKind, Model};
+
+/// Adds the derivatives in a load's parameters to their places in the cotangent of the model, and
+/// that in time.
+pub(super) fn give_to_parameters(
+    kind: &LoadKind<f64>,
+    pulled: &Pulled<f64>,
+    (load, now): (usize, f64),
+    (model, by_time): (&mut Model<f64>, &mut f64),
+) {
+    let [s0, s1, s2, s3] = pulled.scalars;
+    let own = &mut model.loads[load].kind;
+    match (kind, own) {
+        (
+            LoadKind::Force { magnitude, .. },
+            LoadKind::Force {
+                point,
+                direction,
+                magnitude: own,
+                ..
+            },
+        ) => {
+            *point += pulled.a.frame.point;
+            *direction += pulled.direction;
+            magnitude.pull_back(now, s0, own, by_time);
+        }
+        (
+            LoadKind::Torque { magnitude, .. },
+            LoadKind::Torque {
+                direction,
+                magnitude: own,
+                ..
+            },
+        ) => {
+            *direction += pulled.direction;
+            magnitude.pull_back(now, s0, own, by_time);
+        }
+        (
+            LoadKind::Spring { .. },
+            LoadKind::Spring {
+                point_a,
+                point_b,
+                rest_length,
+                stiffness,
+                cubic,
+                damping,
+                ..
+            },
+        ) => {
+            *point_a += pulled.a.frame.point;
+            *point_b += pulled.b.frame.point;
+            *rest_length += s0;
+            *stiffness += s1;
+            *cubic += s2;
+            *damping += s3;
+        }
+        (
+            LoadKind::TorsionSpring { joint, .. },
+            LoadKind::TorsionSpring {
+                rest_angle,
+                stiffness,
+                damping,
+                ..
+            },
+        ) => {
+            *rest_angle += s0;
+            *stiffness += s1;
+            *damping += s2;
+            give_to_joint(model, *joint, pulled);
+        }
+        (LoadKind::Damping { joint, .. }, LoadKind::Damping { coefficient, .. }) => {
+            *coefficient += s0;
+            give_to_joint(model, *joint, pulled);
+        }
+        (LoadKind::BallDamping { .. }, LoadKind::BallDamping { coefficient, .. }) => {
+            *coefficient += s0;
+        }
+        (LoadKind::Friction { joint, .. }, LoadKind::Friction { size, width, .. }) => {
+            *size += s0;
+            *width += s1;
+            give_to_joint(model, *joint, pulled);
+        }
+        (
+            LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::TorsionSpring { .. }
+            | LoadKind::Damping { .. }
+            | LoadKind::BallDamping { .. }
+            | LoadKind::Friction { .. },
+            _,
+        ) => unreachable!("a cotangent has the kind of its load"),
+    }
+}
+
+fn give_to_joint(model: &mut Model<f64>, joint: usize, pulled: &Pulled<f64>) {
+    let joint = &mut model.joints[joint];
+    let add = |own: &mut JointFrame<f64>, by: &JointFrame<f64>| {
+        own.point += by.point;
+        for k in 0..3 {
+            own.axes[k] += by.axes[k];
+        }
+    };
+    add(&mut joint.frame_a, &pulled.a.frame);
+    add(&mut joint.frame_b, &pulled.b.frame);
+}

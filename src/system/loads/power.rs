@@ -1,0 +1,192 @@
+//! The forces of each kind of load, and the energy of springs.
+
+use super::Acting;
+use crate::math::scalar::length;
+use crate::math::{Scalar, Vec3};
+use crate::model::{Axes, ConstraintRow, Freedom, LoadKind};
+use crate::system::constraint;
+use crate::system::marker::Jet;
+
+/// The row whose rate is that of a slider's displacement along its axis.
+pub(super) const SLIDE: ConstraintRow = ConstraintRow::Sliding { a: 2 };
+
+/// Force (ground axes) and torque (body axes, about the centre of mass) on body A and on body B.
+pub(super) fn forces<S: Scalar>(
+    kind: &LoadKind<S>,
+    at: &Acting<S>,
+    time: S,
+) -> [(Vec3<S>, Vec3<S>); 2] {
+    let none = (Vec3::zeros(), Vec3::zeros());
+    let (ra, rb) = (&at.a.motion.rotation, &at.b.motion.rotation);
+    let (sa, sb) = (&at.a.frame.point, &at.b.frame.point);
+    match kind {
+        LoadKind::Force {
+            direction,
+            axes,
+            magnitude,
+            ..
+        } => {
+            let n = direction * magnitude.value(time);
+            let on_a = match axes {
+                Axes::Ground => (n, sa.cross(&ra.tr_mul(&n))),
+                Axes::Body => (ra * n, sa.cross(&n)),
+            };
+            [on_a, none]
+        }
+        LoadKind::Torque {
+            direction,
+            axes,
+            magnitude,
+            ..
+        } => {
+            let n = direction * magnitude.value(time);
+            let torque = match axes {
+                Axes::Ground => ra.tr_mul(&n),
+                Axes::Body => n,
+            };
+            [(Vec3::zeros(), torque), none]
+        }
+        LoadKind::Spring {
+            rest_length,
+            stiffness,
+            cubic,
+            damping,
+            ..
+        } => {
+            let at = stretch(at);
+            let x = at.length - *rest_length;
+            let tension = x * (*stiffness + *cubic * x * x) + *damping * at.rate;
+            let f = at.direction * tension;
+            [
+                (-f, -sa.cross(&ra.tr_mul(&f))),
+                (f, sb.cross(&rb.tr_mul(&f))),
+            ]
+        }
+        LoadKind::TorsionSpring {
+            rest_angle,
+            stiffness,
+            damping,
+            ..
+        } => {
+            let torque = *stiffness * angle(at, *rest_angle) + *damping * turn_rate(at);
+            about_axis(at, -torque)
+        }
+        LoadKind::Damping {
+            freedom,
+            coefficient,
+            ..
+        } => along(at, *freedom, |rate| -(*coefficient * rate)),
+        LoadKind::Friction {
+            freedom,
+            size,
+            width,
+            ..
+        } => along(at, *freedom, |rate| -(*size * tanh(rate / *width))),
+        LoadKind::BallDamping { coefficient, .. } => {
+            let relative = ra * at.a.motion.omega - rb * at.b.motion.omega;
+            let torque = relative * *coefficient;
+            [
+                (Vec3::zeros(), -ra.tr_mul(&torque)),
+                (Vec3::zeros(), rb.tr_mul(&torque)),
+            ]
+        }
+    }
+}
+
+/// Potential energy of a load; zero if it is no spring.
+pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
+    match kind {
+        LoadKind::Spring {
+            rest_length,
+            stiffness,
+            cubic,
+            ..
+        } => {
+            let x = stretch(at).length - *rest_length;
+            let square = x * x;
+            square * (*stiffness * 0.5 + *cubic * square * 0.25)
+        }
+        LoadKind::TorsionSpring {
+            rest_angle,
+            stiffness,
+            ..
+        } => {
+            let x = angle(at, *rest_angle);
+            *stiffness * x * x * 0.5
+        }
+        LoadKind::Force { .. }
+        | LoadKind::Torque { .. }
+        | LoadKind::Damping { .. }
+        | LoadKind::BallDamping { .. }
+        | LoadKind::Friction { .. } => S::zero(),
+    }
+}
+
+/// Forces of the size `law(rate)` along or about the axis of a joint.
+fn along<S: Scalar>(
+    at: &Acting<S>,
+    freedom: Freedom,
+    law: impl Fn(S) -> S,
+) -> [(Vec3<S>, Vec3<S>); 2] {
+    match freedom {
+        Freedom::Turn => about_axis(at, law(turn_rate(at))),
+        Freedom::Slide => {
+            let size = law(constraint::rate(SLIDE, &at.a, &at.b));
+            let g = constraint::gradient(SLIDE, &at.a, &at.b);
+            [
+                (g.force * size, g.torque_a * size),
+                (g.force * -size, g.torque_b * size),
+            ]
+        }
+    }
+}
+
+fn about_axis<S: Scalar>(at: &Acting<S>, torque: S) -> [(Vec3<S>, Vec3<S>); 2] {
+    let e = at.a.frame.axes[2];
+    let in_b = at.b.motion.rotation.tr_mul(&(at.a.motion.rotation * e));
+    [(Vec3::zeros(), e * torque), (Vec3::zeros(), in_b * -torque)]
+}
+
+/// φ̇ = e · (ω_A − ω_B), e the third axis of the frame on A.
+pub(super) fn turn_rate<S: Scalar>(at: &Acting<S>) -> S {
+    let (a, b) = (at.a.motion, at.b.motion);
+    let e = &at.a.frame.axes[2];
+    e.dot(&a.omega) - (a.rotation * e).dot(&(b.rotation * b.omega))
+}
+
+/// The angle φ of frame A against frame B about the third axis, less `rest`, in (−π, π].
+pub(super) fn angle<S: Scalar>(at: &Acting<S>, rest: S) -> S {
+    let a1 = at.a.motion.rotation * at.a.frame.axes[0];
+    let [x, y] = [0, 1].map(|i| a1.dot(&(at.b.motion.rotation * at.b.frame.axes[i])));
+    let (s, c) = rest.sin_cos();
+    (y * c - x * s).atan2(x * c + y * s)
+}
+
+/// A spring's length, its rate and its direction from B to A.
+pub(super) struct Stretch<S> {
+    pub length: S,
+    pub rate: S,
+    pub direction: Vec3<S>,
+}
+
+pub(super) fn stretch<S: Scalar>(at: &Acting<S>) -> Stretch<S> {
+    let a = Jet::point(at.a.motion, &at.a.frame.point);
+    let b = Jet::point(at.b.motion, &at.b.frame.point);
+    let d = a.x - b.x;
+    let length = length(&d);
+    let direction = d / length;
+    Stretch {
+        length,
+        rate: direction.dot(&(a.rate - b.rate)),
+        direction,
+    }
+}
+
+/// Hyperbolic tangent.
+pub(super) fn tanh<S: Scalar>(x: S) -> S {
+    if x.re() < 0.0 {
+        return -tanh(-x);
+    }
+    let e = (x * -2.0).exp();
+    (S::one() - e) / (S::one() + e)
+}

@@ -1,0 +1,353 @@
+//! The transposed derivative of the power ψᵀf of each kind of load.
+
+use super::Acting;
+use super::power::{SLIDE, Stretch, angle, stretch, tanh, turn_rate};
+use crate::math::{Scalar, Vec3};
+use crate::model::{Axes, Freedom, LoadKind};
+use crate::system::bodies::Motion;
+use crate::system::constraint::{self, RowCotangent, Side, SideCotangent};
+use crate::system::marker::{self, Jet};
+
+/// Derivatives of a load's power (or energy).
+pub(super) struct Pulled<S> {
+    /// In the motion of body A, and in the point or frame that the load has there.
+    pub a: SideCotangent<S>,
+    /// The same for body B.
+    pub b: SideCotangent<S>,
+    /// In the direction of a force or torque.
+    pub direction: Vec3<S>,
+    /// In the scalars of the load, in the order of its definition; the first is that in the
+    /// magnitude of a force or torque.
+    pub scalars: [S; 4],
+}
+
+impl<S: Scalar> Pulled<S> {
+    fn zero() -> Self {
+        Self {
+            a: SideCotangent::zero(),
+            b: SideCotangent::zero(),
+            direction: Vec3::zeros(),
+            scalars: [S::zero(); 4],
+        }
+    }
+}
+
+/// Virtual velocities (linear in ground axes, angular in body axes) of body A and body B.
+type Virtual<S> = [(Vec3<S>, Vec3<S>); 2];
+
+/// The load's bodies where they are, moving with ψ.
+fn moving<S: Scalar>(at: &Acting<S>, psi: &Virtual<S>) -> [Motion<S>; 2] {
+    let with = |motion: &Motion<S>, (velocity, omega): (Vec3<S>, Vec3<S>)| Motion {
+        velocity,
+        omega,
+        ..*motion
+    };
+    [with(at.a.motion, psi[0]), with(at.b.motion, psi[1])]
+}
+
+/// Derivatives of ψᵀf.
+pub(super) fn pull<S: Scalar>(
+    kind: &LoadKind<S>,
+    at: &Acting<S>,
+    time: S,
+    psi: &Virtual<S>,
+) -> Pulled<S> {
+    let mut out = Pulled::zero();
+    let motions = moving(at, psi);
+    let virtually = Acting {
+        bodies: at.bodies,
+        a: Side {
+            motion: &motions[0],
+            frame: at.a.frame,
+        },
+        b: Side {
+            motion: &motions[1],
+            frame: at.b.frame,
+        },
+    };
+    match kind {
+        LoadKind::Force {
+            direction,
+            axes,
+            magnitude,
+            point,
+            ..
+        } => {
+            let m = magnitude.value(time);
+            let by = match axes {
+                Axes::Ground => {
+                    let rate = Jet::point(&motions[0], point).rate;
+                    pull_point(&virtually.a, [Vec3::zeros(), direction * m], &mut out.a);
+                    rate
+                }
+                Axes::Body => {
+                    let (linear, angular) = psi[0];
+                    let local = at.a.motion.rotation.tr_mul(&linear);
+                    out.a.theta += direction.cross(&local) * m;
+                    out.a.frame.point += direction.cross(&angular) * m;
+                    local + angular.cross(point)
+                }
+            };
+            out.direction = by * m;
+            out.scalars[0] = by.dot(direction);
+            // The virtual velocities are held.
+            (out.a.velocity, out.a.omega) = (Vec3::zeros(), Vec3::zeros());
+        }
+        LoadKind::Torque {
+            direction,
+            axes,
+            magnitude,
+            ..
+        } => {
+            let m = magnitude.value(time);
+            let omega = psi[0].1;
+            let by = match axes {
+                Axes::Ground => {
+                    let local = at.a.motion.rotation.tr_mul(direction);
+                    out.a.theta += omega.cross(&local) * m;
+                    at.a.motion.rotation * omega
+                }
+                Axes::Body => omega,
+            };
+            out.direction = by * m;
+            out.scalars[0] = by.dot(direction);
+        }
+        LoadKind::Spring {
+            rest_length,
+            stiffness,
+            cubic,
+            damping,
+            ..
+        } => {
+            let now = stretch(at);
+            let virtual_rate = stretch(&virtually).rate;
+            let x = now.length - *rest_length;
+            let tension = x * (*stiffness + *cubic * x * x) + *damping * now.rate;
+            // ψᵀf = −tension · (virtual rate).
+            let by_length = -(*stiffness + *cubic * x * x * 3.0) * virtual_rate;
+            pull_rate(&virtually, (S::zero(), -tension), &mut out);
+            hold_virtual(&mut out);
+            pull_rate(at, (by_length, -(*damping * virtual_rate)), &mut out);
+            out.scalars = [
+                -by_length,
+                -(x * virtual_rate),
+                -(x * x * x * virtual_rate),
+                -(now.rate * virtual_rate),
+            ];
+        }
+        LoadKind::TorsionSpring {
+            rest_angle,
+            stiffness,
+            damping,
+            ..
+        } => {
+            let (x, rate) = (angle(at, *rest_angle), turn_rate(at));
+            let virtual_rate = turn_rate(&virtually);
+            let torque = *stiffness * x + *damping * rate;
+            pull_turn(&virtually, -torque, &mut out);
+            hold_virtual(&mut out);
+            pull_turn(at, -(*damping * virtual_rate), &mut out);
+            pull_angle(at, -(*stiffness * virtual_rate), &mut out);
+            out.scalars[0] = *stiffness * virtual_rate;
+            out.scalars[1] = -(x * virtual_rate);
+            out.scalars[2] = -(rate * virtual_rate);
+        }
+        LoadKind::Damping {
+            freedom,
+            coefficient: c,
+            ..
+        } => {
+            let (rate, virtual_rate) = pull_along(
+                at,
+                &virtually,
+                *freedom,
+                |rate| (-(*c * rate), -*c),
+                &mut out,
+            );
+            out.scalars[0] = -(rate * virtual_rate);
+        }
+        LoadKind::Friction {
+            freedom,
+            size,
+            width,
+            ..
+        } => {
+            let law = |rate: S| {
+                let t = tanh(rate / *width);
+                (-(*size * t), -(*size * (S::one() - t * t) / *width))
+            };
+            let (rate, virtual_rate) = pull_along(at, &virtually, *freedom, law, &mut out);
+            let by_rate = law(rate).1;
+            out.scalars[0] = -(tanh(rate / *width) * virtual_rate);
+            out.scalars[1] = -(by_rate * virtual_rate * rate / *width);
+        }
+        LoadKind::BallDamping { coefficient, .. } => {
+            let (ra, rb) = (&at.a.motion.rotation, &at.b.motion.rotation);
+            let (wa, wb) = (at.a.motion.omega, at.b.motion.omega);
+            let (pa, pb) = (psi[0].1, psi[1].1);
+            // ψᵀf = −c X · Y of the relative angular velocities, real and virtual.
+            let (x, y) = (ra * wa - rb * wb, ra * pa - rb * pb);
+            let c = *coefficient;
+            out.scalars[0] = -x.dot(&y);
+            let (xa, ya) = (ra.tr_mul(&x), ra.tr_mul(&y));
+            out.a.theta = (wa.cross(&ya) + pa.cross(&xa)) * -c;
+            out.a.omega = ya * -c;
+            let (xb, yb) = (rb.tr_mul(&x), rb.tr_mul(&y));
+            out.b.theta = (wb.cross(&yb) + pb.cross(&xb)) * c;
+            out.b.omega = yb * c;
+        }
+    }
+    out
+}
+
+/// Derivatives of `weight` times a load's potential energy; `None` if it is no spring.
+pub(super) fn pull_potential<S: Scalar>(
+    kind: &LoadKind<S>,
+    at: &Acting<S>,
+    weight: S,
+) -> Option<Pulled<S>> {
+    let mut out = Pulled::zero();
+    match kind {
+        LoadKind::Spring {
+            rest_length,
+            stiffness,
+            cubic,
+            ..
+        } => {
+            let x = stretch(at).length - *rest_length;
+            let square = x * x;
+            let by_x = weight * x * (*stiffness + *cubic * square);
+            pull_rate(at, (by_x, S::zero()), &mut out);
+            out.scalars[0] = -by_x;
+            out.scalars[1] = weight * square * 0.5;
+            out.scalars[2] = weight * square * square * 0.25;
+        }
+        LoadKind::TorsionSpring {
+            rest_angle,
+            stiffness,
+            ..
+        } => {
+            let x = angle(at, *rest_angle);
+            pull_angle(at, weight * *stiffness * x, &mut out);
+            out.scalars[0] = -(weight * *stiffness * x);
+            out.scalars[1] = weight * x * x * 0.5;
+        }
+        LoadKind::Force { .. }
+        | LoadKind::Torque { .. }
+        | LoadKind::Damping { .. }
+        | LoadKind::BallDamping { .. }
+        | LoadKind::Friction { .. } => return None,
+    }
+    Some(out)
+}
+
+/// Forgets the derivatives in velocities: the virtual ones are held.
+fn hold_virtual<S: Scalar>(out: &mut Pulled<S>) {
+    for side in [&mut out.a, &mut out.b] {
+        (side.velocity, side.omega) = (Vec3::zeros(), Vec3::zeros());
+    }
+}
+
+/// Pulls the cotangents of a point's position and velocity back.
+fn pull_point<S: Scalar>(side: &Side<S>, [x, rate]: [Vec3<S>; 2], out: &mut SideCotangent<S>) {
+    let acceleration = Vec3::zeros();
+    let cot = Jet {
+        x,
+        rate,
+        acceleration,
+    };
+    let by = marker::pull_back(side.motion, &side.frame.point, &cot);
+    out.position += x;
+    out.velocity += rate;
+    out.theta += by.theta;
+    out.omega += by.omega;
+    out.frame.point += by.vector;
+}
+
+/// Pulls the cotangent of an axis back.
+fn pull_axis<S: Scalar>(side: &Side<S>, axis: usize, x: Vec3<S>, out: &mut SideCotangent<S>) {
+    let by = marker::pull_back(side.motion, &side.frame.axes[axis], &Jet::fixed(x));
+    out.theta += by.theta;
+    out.frame.axes[axis] += by.vector;
+}
+
+/// Pulls the cotangents of a spring's length and its rate back.
+fn pull_rate<S: Scalar>(at: &Acting<S>, (by_length, by_rate): (S, S), out: &mut Pulled<S>) {
+    let Stretch {
+        length, direction, ..
+    } = stretch(at);
+    let speed = |side: &Side<S>| Jet::point(side.motion, &side.frame.point).rate;
+    let apart = speed(&at.a) - speed(&at.b);
+    // The direction turns with the part of a displacement across it.
+    let across = apart - direction * direction.dot(&apart);
+    let x = direction * by_length + across * (by_rate / length);
+    let rate = direction * by_rate;
+    pull_point(&at.a, [x, rate], &mut out.a);
+    pull_point(&at.b, [-x, -rate], &mut out.b);
+}
+
+/// Pulls the cotangent of [`turn_rate`] back.
+fn pull_turn<S: Scalar>(at: &Acting<S>, cot: S, out: &mut Pulled<S>) {
+    let (a, b) = (at.a.motion, at.b.motion);
+    let e = at.a.frame.axes[2];
+    let omega_in_a = a.rotation.tr_mul(&(b.rotation * b.omega));
+    let e_in_b = b.rotation.tr_mul(&(a.rotation * e));
+    out.a.frame.axes[2] += (a.omega - omega_in_a) * cot;
+    out.a.omega += e * cot;
+    out.b.omega -= e_in_b * cot;
+    out.a.theta -= e.cross(&omega_in_a) * cot;
+    out.b.theta -= b.omega.cross(&e_in_b) * cot;
+}
+
+/// Pulls the cotangent of [`angle`] back to all but the angle at rest.
+fn pull_angle<S: Scalar>(at: &Acting<S>, cot: S, out: &mut Pulled<S>) {
+    let a1 = at.a.motion.rotation * at.a.frame.axes[0];
+    let [b1, b2] = [0, 1].map(|i| at.b.motion.rotation * at.b.frame.axes[i]);
+    let (x, y) = (a1.dot(&b1), a1.dot(&b2));
+    let scale = cot / (x * x + y * y);
+    let (by_x, by_y) = (-(y * scale), x * scale);
+    pull_axis(&at.a, 0, b1 * by_x + b2 * by_y, &mut out.a);
+    pull_axis(&at.b, 0, a1 * by_x, &mut out.b);
+    pull_axis(&at.b, 1, a1 * by_y, &mut out.b);
+}
+
+/// Pulls the power of a force `law(rate)` = (size, its derivative) along or about the axis of a
+/// joint back; returns the rate and the virtual rate.
+fn pull_along<S: Scalar>(
+    at: &Acting<S>,
+    virtually: &Acting<S>,
+    freedom: Freedom,
+    law: impl Fn(S) -> (S, S),
+    out: &mut Pulled<S>,
+) -> (S, S) {
+    match freedom {
+        Freedom::Turn => {
+            let (rate, virtual_rate) = (turn_rate(at), turn_rate(virtually));
+            let (size, by_rate) = law(rate);
+            pull_turn(virtually, size, out);
+            hold_virtual(out);
+            pull_turn(at, by_rate * virtual_rate, out);
+            (rate, virtual_rate)
+        }
+        Freedom::Slide => {
+            let rate = constraint::rate(SLIDE, &at.a, &at.b);
+            let virtual_rate = constraint::rate(SLIDE, &virtually.a, &virtually.b);
+            let (size, by_rate) = law(rate);
+            pull_slide(virtually, size, out);
+            hold_virtual(out);
+            pull_slide(at, by_rate * virtual_rate, out);
+            (rate, virtual_rate)
+        }
+    }
+}
+
+fn pull_slide<S: Scalar>(at: &Acting<S>, rate: S, out: &mut Pulled<S>) {
+    let cot = RowCotangent {
+        value: S::zero(),
+        rate,
+        acceleration: S::zero(),
+    };
+    let (by_a, by_b) = constraint::pull_back(&[SLIDE], |_| cot, &at.a, &at.b);
+    out.a.add(&by_a);
+    out.b.add(&by_b);
+}
