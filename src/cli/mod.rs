@@ -112,7 +112,14 @@ fn load(job: &Job) -> Result<crate::problem::Problem, Failure> {
         .map(|text| crate::problem::Override::parse(text))
         .collect::<Result<Vec<_>, _>>()
         .map_err(Failure::bad_input)?;
-    crate::problem::Problem::load(&job.problem, &overrides).map_err(Failure::bad_input)
+    let problem = crate::problem::Problem::load(&job.problem, &overrides);
+    let problem = problem.map_err(Failure::bad_input)?;
+    if !job.quiet {
+        for redundancy in &problem.redundant {
+            tell(&format!("{redundancy}\n"));
+        }
+    }
+    Ok(problem)
 }
 
 /// Reads a record from its file or its directory; also says which file that is.

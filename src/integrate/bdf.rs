@@ -8,7 +8,7 @@ use crate::linalg::SolveScalar;
 use crate::math::{Complex64, Scalar};
 use crate::model::Model;
 use crate::system::kkt::SaddlePoint;
-use crate::system::{Numbering, bodies, initial};
+use crate::system::{Numbering, bodies, initial, redundancy};
 use std::collections::VecDeque;
 
 /// Coefficients a_0 … a_m of ẋ_k ≈ (1/h) Σ a_i x_{k−i}.
@@ -97,6 +97,14 @@ fn march<S: SolveScalar>(
         increments.past(&b, h, &mut history);
         increments.predict(&run, k, &mut x);
         newton.solve(&mut x, &history, h, k, &mut counts)?;
+        if let Some(open) = redundancy::opened(model, &numbering, &x.q) {
+            return Err(IntegrationFailure::RedundancyLost {
+                joint: model.joints[open.joint].name.clone(),
+                gap: open.gap,
+                time: (h * k as f64).re(),
+                step: k,
+            });
+        }
         history.rates(&x.dq, &x.dv, &mut qdot, &mut vdot);
         run.q.extend_from_slice(&x.q);
         run.dq.extend_from_slice(&x.dq);

@@ -37,8 +37,23 @@ fn for_each_row<S: Scalar>(
     let ground = Motion::ground();
     for (j, joint) in model.joints.iter().enumerate() {
         let (a, b) = sides(joint, motions, &ground);
-        for (number, &row) in numbering.rows(j).zip(joint.kind.rows()) {
+        for (number, row) in numbering.rows(j).zip(joint.rows()) {
             visit(number, joint, row, &a, &b);
+        }
+    }
+}
+
+/// Calls `visit(joint number, row, side a, side b)` for every row that is left out.
+pub fn for_each_left_out<S: Scalar>(
+    model: &Model<S>,
+    motions: &[Motion<S>],
+    mut visit: impl FnMut(usize, ConstraintRow, &Side<S>, &Side<S>),
+) {
+    let ground = Motion::ground();
+    for (j, joint) in model.joints.iter().enumerate() {
+        for &row in &joint.left_out {
+            let (a, b) = sides(joint, motions, &ground);
+            visit(j, row, &a, &b);
         }
     }
 }
@@ -156,7 +171,7 @@ pub fn reaction_jacobian<S: Scalar>(
     let ground = Motion::ground();
     let (a, b) = sides(joint, motions, &ground);
     let mut out = ReactionJacobian::zero();
-    for (&row, &l) in joint.kind.rows().iter().zip(lambda) {
+    for (row, &l) in joint.rows().zip(lambda) {
         constraint::add_reaction_jacobian(row, l, &a, &b, &mut out);
     }
     out
@@ -202,7 +217,7 @@ pub fn pull_back(
     for (j, joint) in model.joints.iter().enumerate() {
         let (a, b) = sides(joint, motions, &ground);
         let (mut by_a, mut by_b) = (SideCotangent::zero(), SideCotangent::zero());
-        for (i, &row) in numbering.rows(j).zip(joint.kind.rows()) {
+        for (i, row) in numbering.rows(j).zip(joint.rows()) {
             let cot = RowCotangent {
                 value: at(0, i),
                 rate: at(1, i),

@@ -17,6 +17,7 @@ pub mod marker;
 pub mod numbering;
 pub mod observe;
 pub mod rank;
+pub mod redundancy;
 
 pub use bodies::Motion;
 pub use numbering::Numbering;
