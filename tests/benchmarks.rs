@@ -115,7 +115,7 @@ fn andrews_squeezer_velocities_and_multipliers() {
     let case = ("andrews_squeezer", 0.03, 30_000);
     assert_extrapolated(case, read, &rates, (1e-8, 1e-6));
     let multipliers = [
-        199.175_333_373_191_0,
+        199.175_333_373_191,
         -29.755_312_280_150_52,
         23.066_541_190_983_99,
         31.452_713_654_759_27,
