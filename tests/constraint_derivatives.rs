@@ -107,7 +107,7 @@ fn rates_by_positions() {
         let (motions, ground) = (case.motions(&case.q, &case.v), Motion::ground());
         let joint = &case.model.joints[0];
         let (a, b) = joints::sides(joint, &motions, &ground);
-        for (i, &row) in joint.kind.rows().iter().enumerate() {
+        for (i, row) in joint.rows().enumerate() {
             let (by_a, by_b) = rate_by_position(row, &a, &b);
             let mut given = vec![0.0; 12];
             bodies::add6(&mut given[6..], &by_a.position, &by_a.theta);

@@ -115,6 +115,11 @@ fn load(job: &Job) -> Result<Problem, Failure> {
         .collect::<Result<Vec<_>, _>>()
         .map_err(Failure::bad_input)?;
     let problem = Problem::load(&job.problem, &overrides).map_err(Failure::bad_input)?;
+    if !job.quiet {
+        for redundancy in &problem.redundant {
+            tell(&format!("{redundancy}\n"));
+        }
+    }
     let Some(accuracy) = job.accuracy else {
         return Ok(problem);
     };

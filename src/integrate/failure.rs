@@ -77,6 +77,21 @@ pub enum IntegrationFailure {
         /// The equation and the body or joint that it stands in.
         worst: String,
     },
+    /// A constraint that followed from the others at the start does not any more.
+    #[error(
+        "joint \"{joint}\" opens by {gap:.3e} at t = {time:.6e} s (step {step}): a row of it was left \
+         out, as it followed from the other joints at the start, and does not follow any more"
+    )]
+    RedundancyLost {
+        /// The joint.
+        joint: String,
+        /// |Φ| of the row (m or 1).
+        gap: f64,
+        /// Time of the step's end (s).
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+    },
     /// A body has mass or inertia that no solid has.
     #[error(
         "body \"{body}\" has no mass and inertia of a solid: mass and principal moments are \

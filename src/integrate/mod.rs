@@ -19,7 +19,7 @@ use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::kkt::SaddlePoint;
-use crate::system::{Numbering, initial};
+use crate::system::{Numbering, initial, redundancy};
 
 /// Integrates `model` over `duration` in real or, for complex-step derivatives, in complex
 /// numbers.
@@ -63,4 +63,22 @@ pub fn multipliers(model: &Model<f64>, run: &Trajectory<f64>, k: usize) -> Vec<f
         Err(_) => lambda.fill(f64::NAN),
     }
     lambda
+}
+
+/// Fails if a constraint that was left out has opened at the end `time` of step `step`.
+fn watch<S: SolveScalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    q: &[S],
+    (step, time): (usize, f64),
+) -> Result<(), IntegrationFailure> {
+    match redundancy::opened(model, numbering, q) {
+        None => Ok(()),
+        Some(open) => Err(IntegrationFailure::RedundancyLost {
+            joint: model.joints[open.joint].name.clone(),
+            gap: open.gap,
+            time,
+            step,
+        }),
+    }
 }

@@ -174,6 +174,16 @@ pub struct Joint<S> {
     pub frame_a: JointFrame<S>,
     /// Where the joint sits on body B.
     pub frame_b: JointFrame<S>,
+    /// Rows of the kind that are not imposed, as they follow from those of other joints.
+    pub left_out: Vec<ConstraintRow>,
+}
+
+impl<S> Joint<S> {
+    /// The rows that are imposed.
+    pub fn rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
+        let rows = self.kind.rows().iter().copied();
+        rows.filter(|row| !self.left_out.contains(row))
+    }
 }
 
 impl<S: Scalar> Joint<S> {
@@ -190,6 +200,7 @@ impl<S: Scalar> Joint<S> {
             body_b: self.body_b,
             frame_a: frame(&self.frame_a),
             frame_b: frame(&self.frame_b),
+            left_out: self.left_out.clone(),
         }
     }
 }

@@ -33,7 +33,9 @@ pub use variables::Variable;
 use crate::functions::Scene;
 use crate::integrate::{self, Spacing};
 use crate::math::Scalar;
+use crate::model::ConstraintRow;
 use crate::optimiser::Method;
+use crate::system::redundancy::Redundancy;
 use schema::Document;
 use std::path::Path;
 
@@ -135,6 +137,11 @@ pub struct Problem {
     written: Document,
     /// Order in which the bodies are placed.
     order: Vec<usize>,
+    /// Joints whose rows follow in part from other joints at the start design. Those rows are left
+    /// out at every design.
+    pub redundant: Vec<Redundancy>,
+    /// The rows that are left out, by joint.
+    left_out: Vec<Vec<ConstraintRow>>,
 }
 
 impl Problem {
@@ -180,7 +187,11 @@ impl Problem {
     /// The scene at the design `x`, analytic in `x`; one component per variable, each in the unit
     /// of its numbers.
     pub fn scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
-        scene::scene(&self.written, &self.order, x)
+        let mut scene = scene::scene(&self.written, &self.order, x);
+        for (joint, left_out) in scene.model.joints.iter_mut().zip(&self.left_out) {
+            joint.left_out.clone_from(left_out);
+        }
+        scene
     }
 
     /// How the motion of the design `x` is drawn.

@@ -16,7 +16,7 @@ use crate::integrate::{self, Spacing, Start};
 use crate::optimiser::Method;
 use crate::system::assembly::AssemblyFailure;
 use crate::system::kkt::SaddlePoint;
-use crate::system::{Numbering, initial, loads};
+use crate::system::{Numbering, initial, loads, redundancy};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::io::ErrorKind;
@@ -86,7 +86,14 @@ pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Pr
     let order = placement_order(&written).expect("a checked document has no circle of places");
     match deserialise(&sound) {
         Ok(written) => {
-            let problem = problem(document, written, order, variables);
+            let mut problem = problem(document, written, order, variables);
+            let mut model = problem.scene(&problem.start()).model;
+            problem.redundant = redundancy::leave_out(&mut model);
+            problem.left_out = model
+                .joints
+                .into_iter()
+                .map(|joint| joint.left_out)
+                .collect();
             match collapsed(&problem).or_else(|| unassembled(&problem)) {
                 Some(finding) => faults(vec![finding]),
                 None => Ok(problem),
@@ -124,8 +131,8 @@ fn unassembled(problem: &Problem) -> Option<Finding> {
         ),
         AssemblyFailure::Redundant { .. } => (
             "/joints".to_owned(),
-            "constraints that are independent of each other",
-            "leave one of the joints out, or replace a revolute joint by a spherical one",
+            "a placement at which the joints are independent, as they are beside it",
+            "place the bodies away from straight or folded positions",
         ),
         AssemblyFailure::WithoutInertia { .. } => (
             "/bodies".to_owned(),
@@ -225,6 +232,8 @@ fn problem(
         document,
         written,
         order,
+        redundant: Vec::new(),
+        left_out: Vec::new(),
     }
 }
 

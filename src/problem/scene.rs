@@ -139,6 +139,7 @@ fn joint<S: Scalar>(assembly: &Assembly<S>, name: &str, written: &WrittenJoint) 
         body_b: assembly.index(&between[b]),
         frame_a: frame(a),
         frame_b: frame(b),
+        left_out: Vec::new(),
     }
 }
 

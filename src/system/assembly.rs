@@ -5,6 +5,7 @@ use super::bodies::{self, Motion, positions_of, tangent_of_cotangent};
 use super::joints;
 use super::kkt::{BodyBlocks, SaddlePoint};
 use super::numbering::Numbering;
+use super::redundancy;
 use crate::linalg::SolveScalar;
 use crate::math::{Mat3, Scalar, Vec3, rotation};
 use crate::model::Model;
@@ -12,6 +13,9 @@ use crate::model::Model;
 const ITERATIONS: usize = 50;
 /// Gap relative to the length scale below which the joints count as closed.
 const CLOSED: f64 = 1e-13;
+
+/// Gap relative to the length scale up to which rows that are left out follow from the others.
+const FOLLOWS: f64 = 1e-9;
 
 /// Gap relative to the length scale up to which a singular start is put down to its constraints.
 const NEARLY_CLOSED: f64 = 0.05;
@@ -140,6 +144,7 @@ pub(super) fn assemble<S: SolveScalar>(
         let closed = gap <= CLOSED * scale.max(1.0) && moved <= 1e-10 * scale.max(1.0);
         if closed && closed_before {
             check_turned(model, &motions)?;
+            check_left_out(model, &motions, scale, iteration)?;
             return Ok((q, s, iteration));
         }
         closed_before = closed;
@@ -186,13 +191,34 @@ fn open<S: Scalar>(
             }
         })
         .unwrap_or(0);
-    let joint = &model.joints[numbering.joint_of_row(worst)];
-    let row = joint.kind.rows()[worst - numbering.rows(numbering.joint_of_row(worst)).start];
+    let number = numbering.joint_of_row(worst);
+    let joint = &model.joints[number];
+    let row = joint.rows().nth(worst - numbering.rows(number).start);
     AssemblyFailure::Open {
         joint: joint.name.clone(),
-        row: row.describe().to_string(),
+        row: row.map_or("row", |row| row.describe()).to_string(),
         gap: phi[worst].re().abs(),
         iterations,
+    }
+}
+
+/// Refuses positions at which rows that are left out do not follow from those that are imposed.
+fn check_left_out<S: Scalar>(
+    model: &Model<S>,
+    motions: &[Motion<S>],
+    scale: f64,
+    iterations: usize,
+) -> Result<(), AssemblyFailure> {
+    match redundancy::widest(model, motions) {
+        Some(widest) if widest.gap.is_nan() || widest.gap > FOLLOWS * scale.max(1.0) => {
+            Err(AssemblyFailure::Open {
+                joint: model.joints[widest.joint].name.clone(),
+                row: widest.row.describe().to_string(),
+                gap: widest.gap,
+                iterations,
+            })
+        }
+        _ => Ok(()),
     }
 }
 

@@ -54,7 +54,7 @@ struct Markers<S> {
 }
 
 impl<S: Scalar> Markers<S> {
-    fn of(rows: &[ConstraintRow], a: &Side<S>, b: &Side<S>) -> Self {
+    fn of(rows: impl Iterator<Item = ConstraintRow>, a: &Side<S>, b: &Side<S>) -> Self {
         let used = MarkersUsed::by(rows);
         let axis = |side: &Side<S>, used: bool, i: usize| match used {
             true => side.axis_jet(i),
@@ -88,14 +88,14 @@ struct MarkersUsed {
 }
 
 impl MarkersUsed {
-    fn by(rows: &[ConstraintRow]) -> Self {
+    fn by(rows: impl Iterator<Item = ConstraintRow>) -> Self {
         let mut used = Self {
             points: false,
             axes_a: [false; 3],
             axes_b: [false; 3],
         };
         for row in rows {
-            match *row {
+            match row {
                 Coincident(_) => used.points = true,
                 Perpendicular { a, b } => {
                     used.axes_a[a] = true;
@@ -129,14 +129,19 @@ pub fn value<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
 /// Rate G v of a row.
 pub fn rate<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
     let mut out = [S::zero()];
-    rates(&[row], a, b, &mut out);
+    rates(std::iter::once(row), a, b, &mut out);
     out[0]
 }
 
 /// Rates G v of the rows of a joint.
-pub fn rates<S: Scalar>(rows: &[ConstraintRow], a: &Side<S>, b: &Side<S>, out: &mut [S]) {
-    let markers = Markers::of(rows, a, b);
-    for (&row, out) in rows.iter().zip(out) {
+pub fn rates<S: Scalar>(
+    rows: impl Iterator<Item = ConstraintRow> + Clone,
+    a: &Side<S>,
+    b: &Side<S>,
+    out: &mut [S],
+) {
+    let markers = Markers::of(rows.clone(), a, b);
+    for (row, out) in rows.zip(out) {
         let (u, w) = markers.factors(row);
         *out = u.rate.dot(&w.x) + u.x.dot(&w.rate);
     }
@@ -144,9 +149,14 @@ pub fn rates<S: Scalar>(rows: &[ConstraintRow], a: &Side<S>, b: &Side<S>, out: &
 
 /// Second derivatives Φ̈ of the rows of a joint at the accelerations of the motions: the
 /// acceleration bias if these are zero.
-pub fn accelerations<S: Scalar>(rows: &[ConstraintRow], a: &Side<S>, b: &Side<S>, out: &mut [S]) {
-    let markers = Markers::of(rows, a, b);
-    for (&row, out) in rows.iter().zip(out) {
+pub fn accelerations<S: Scalar>(
+    rows: impl Iterator<Item = ConstraintRow> + Clone,
+    a: &Side<S>,
+    b: &Side<S>,
+    out: &mut [S],
+) {
+    let markers = Markers::of(rows.clone(), a, b);
+    for (row, out) in rows.zip(out) {
         let (u, w) = markers.factors(row);
         *out = match row {
             Coincident(k) => w.acceleration[k],
@@ -307,16 +317,16 @@ impl<S: Scalar> SideCotangent<S> {
 /// both bodies: the transposed derivative of [`value`], [`rates`] and [`accelerations`], the
 /// accelerations of the bodies held.
 pub fn pull_back<S: Scalar>(
-    rows: &[ConstraintRow],
+    rows: impl Iterator<Item = ConstraintRow> + Clone,
     cot: impl Fn(usize) -> RowCotangent<S>,
     a: &Side<S>,
     b: &Side<S>,
 ) -> (SideCotangent<S>, SideCotangent<S>) {
-    let markers = Markers::of(rows, a, b);
+    let markers = Markers::of(rows.clone(), a, b);
     let mut by_distance = Jet::zero();
     let mut by_axes_a = [Jet::zero(); 3];
     let mut by_axes_b = [Jet::zero(); 3];
-    for (i, &row) in rows.iter().enumerate() {
+    for (i, row) in rows.clone().enumerate() {
         let cot = cot(i);
         // Φ = u·w and its time derivatives are symmetric in the two factors.
         let by = |other: &Jet<S>| Jet {

@@ -42,6 +42,21 @@ fn for_each_joint<S: Scalar>(
     }
 }
 
+/// Calls `visit(joint number, row, side a, side b)` for every row that is left out.
+pub fn for_each_left_out<S: Scalar>(
+    model: &Model<S>,
+    motions: &[Motion<S>],
+    mut visit: impl FnMut(usize, ConstraintRow, &Side<S>, &Side<S>),
+) {
+    let ground = Motion::ground();
+    for (j, joint) in model.joints.iter().enumerate() {
+        for &row in &joint.left_out {
+            let (a, b) = sides(joint, motions, &ground);
+            visit(j, row, &a, &b);
+        }
+    }
+}
+
 /// Constraints Φ(q).
 pub fn values<S: Scalar>(
     model: &Model<S>,
@@ -50,7 +65,7 @@ pub fn values<S: Scalar>(
     out: &mut [S],
 ) {
     for_each_joint(model, numbering, motions, |numbers, joint, a, b| {
-        for (out, &row) in out[numbers].iter_mut().zip(joint.kind.rows()) {
+        for (out, row) in out[numbers].iter_mut().zip(joint.rows()) {
             *out = constraint::value(row, a, b);
         }
     });
@@ -85,7 +100,7 @@ pub fn rates<S: Scalar>(
     out: &mut [S],
 ) {
     for_each_joint(model, numbering, motions, |numbers, joint, a, b| {
-        constraint::rates(joint.kind.rows(), a, b, &mut out[numbers]);
+        constraint::rates(joint.rows(), a, b, &mut out[numbers]);
     });
 }
 
@@ -98,7 +113,7 @@ pub fn accelerations<S: Scalar>(
     out: &mut [S],
 ) {
     for_each_joint(model, numbering, motions, |numbers, joint, a, b| {
-        constraint::accelerations(joint.kind.rows(), a, b, &mut out[numbers]);
+        constraint::accelerations(joint.rows(), a, b, &mut out[numbers]);
     });
 }
 
@@ -111,7 +126,7 @@ pub fn gradients<S: Scalar>(
 ) {
     out.clear();
     for_each_joint(model, numbering, motions, |_, joint, a, b| {
-        out.extend(joint.kind.rows().iter().map(|&row| gradient(row, a, b)));
+        out.extend(joint.rows().map(|row| gradient(row, a, b)));
     });
 }
 
@@ -158,7 +173,7 @@ pub fn reaction_jacobian<S: Scalar>(
     let ground = Motion::ground();
     let (a, b) = sides(joint, motions, &ground);
     let mut out = ReactionJacobian::zero();
-    for (&row, &l) in joint.kind.rows().iter().zip(lambda) {
+    for (row, &l) in joint.rows().zip(lambda) {
         constraint::add_reaction_jacobian(row, l, &a, &b, &mut out);
     }
     out
@@ -175,7 +190,7 @@ pub fn rate_by_position<S: Scalar>(
         rate: S::one(),
         acceleration: S::zero(),
     };
-    constraint::pull_back(&[row], |_| unit, a, b)
+    constraint::pull_back(std::iter::once(row), |_| unit, a, b)
 }
 
 /// Where the pull-back of the constraints is added to.
@@ -207,7 +222,7 @@ pub fn pull_back(
             rate: at(1, first + i),
             acceleration: at(2, first + i),
         };
-        let (by_a, by_b) = constraint::pull_back(joint.kind.rows(), cot, &a, &b);
+        let (by_a, by_b) = constraint::pull_back(joint.rows(), cot, &a, &b);
         let bodies = [(Some(joint.body_a), &by_a), (joint.body_b, &by_b)];
         for (body, by) in bodies {
             let Some(body) = body else { continue };

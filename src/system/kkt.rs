@@ -19,7 +19,7 @@ pub fn emit_transposed_gradients<S: Scalar>(
     emit: &mut dyn Emit<S>,
 ) {
     for (j, joint) in model.joints.iter().enumerate() {
-        for (i, kind) in numbering.rows(j).zip(joint.kind.rows()) {
+        for (i, kind) in numbering.rows(j).zip(joint.rows()) {
             let (g, at) = (&gradients[i], row + numbering.velocity(joint.body_a));
             if let Some(k) = kind.ground_component() {
                 emit.add(at + k, column + i, scale);
@@ -74,12 +74,8 @@ pub fn emit_reaction_jacobian<S: Scalar>(
 ) {
     for (j, joint) in model.joints.iter().enumerate() {
         let k = joints::reaction_jacobian(joint, motions, &lambda[numbering.rows(j)]);
-        let slides = joint.kind.rows().iter().any(|kind| kind.follows_axis());
-        let turns = joint
-            .kind
-            .rows()
-            .iter()
-            .any(|kind| kind.couples_rotations());
+        let slides = joint.rows().any(|kind| kind.follows_axis());
+        let turns = joint.rows().any(|kind| kind.couples_rotations());
         let a = numbering.velocity(joint.body_a);
         let (ra, ca) = (row + a, column + a);
         emit.add_block(ra + 3, ca + 3, &(k.a_by_a * scale));

@@ -24,7 +24,7 @@ impl Numbering {
         Self {
             position: offsets(&mut model.bodies.iter().map(|_| 7)),
             velocity: offsets(&mut model.bodies.iter().map(|_| 6)),
-            constraint: offsets(&mut model.joints.iter().map(|joint| joint.kind.rows().len())),
+            constraint: offsets(&mut model.joints.iter().map(|joint| joint.rows().count())),
         }
     }
 

@@ -1,10 +1,11 @@
 //! Conserved quantities, constraint drift and joint reactions of a state.
 
 use super::bodies::{Motion, add6};
-use super::constraint::gradient;
+use super::constraint::{self, gradient};
 use super::joints;
 use super::loads;
 use super::numbering::Numbering;
+use super::redundancy::smallest_multipliers;
 use crate::math::Vec3;
 use crate::model::Model;
 
@@ -19,9 +20,9 @@ pub struct Observation {
     pub momentum: Vec3<f64>,
     /// Angular momentum about the origin, Σ (m r × ṙ + R J ω), ground axes (kg m²/s).
     pub angular_momentum: Vec3<f64>,
-    /// Largest |Φ| (m or 1).
+    /// Largest |Φ|, rows that are left out included (m or 1).
     pub position_drift: f64,
-    /// Largest |G v| (m/s or 1/s).
+    /// Largest |G v| likewise (m/s or 1/s).
     pub velocity_drift: f64,
 }
 
@@ -64,6 +65,11 @@ pub fn observe(model: &Model<f64>, numbering: &Numbering, q: &[f64], v: &[f64]) 
     seen.position_drift = largest(&rows);
     joints::rates(model, numbering, &motions, &mut rows);
     seen.velocity_drift = largest(&rows);
+    joints::for_each_left_out(model, &motions, |_, row, a, b| {
+        let (value, rate) = (constraint::value(row, a, b), constraint::rate(row, a, b));
+        seen.position_drift = largest(&[seen.position_drift, value]);
+        seen.velocity_drift = largest(&[seen.velocity_drift, rate]);
+    });
     seen
 }
 
@@ -76,6 +82,9 @@ fn largest(x: &[f64]) -> f64 {
 }
 
 /// Reactions of all joints in the state (q, λ), from −Gᵀλ.
+///
+/// Where rows are left out, as they follow from others, reactions are not unique: these are those
+/// of the smallest multipliers over all rows that move the bodies in the same way.
 pub fn reactions(
     model: &Model<f64>,
     numbering: &Numbering,
@@ -85,11 +94,30 @@ pub fn reactions(
     let at_rest = vec![0.0; numbering.velocities()];
     let mut motions = Vec::new();
     Motion::all(numbering, q, &at_rest, &mut motions);
+    let complete;
+    let (lambda, all_rows) = if model.joints.iter().all(|joint| joint.left_out.is_empty()) {
+        (lambda.to_vec(), numbering)
+    } else {
+        let mut model = model.clone();
+        let mut spread = Vec::new();
+        for (j, joint) in model.joints.iter_mut().enumerate() {
+            let mut imposed = lambda[numbering.rows(j)].iter();
+            let rows = joint.kind.rows().iter();
+            spread.extend(rows.map(|row| match joint.left_out.contains(row) {
+                true => 0.0,
+                false => *imposed.next().expect("an imposed row has a multiplier"),
+            }));
+            joint.left_out.clear();
+        }
+        complete = Numbering::new(&model);
+        let lambda = smallest_multipliers(&model, &complete, &motions, &spread);
+        (lambda, &complete)
+    };
     let ground = Motion::ground();
     let reaction = |(j, joint): (usize, &crate::model::Joint<f64>)| {
         let (a, b) = joints::sides(joint, &motions, &ground);
         let mut total = [0.0; 6];
-        for (&row, &l) in joint.kind.rows().iter().zip(&lambda[numbering.rows(j)]) {
+        for (&row, &l) in joint.kind.rows().iter().zip(&lambda[all_rows.rows(j)]) {
             let g = gradient(row, &a, &b);
             add6(&mut total, &(g.force * -l), &(g.torque_a * -l));
         }

@@ -121,9 +121,6 @@ faults! {
     an_impossible_assembly:
         r#""joints": {"# =>
         r#""joints": {"far": {"spherical": {"between": ["con_rod", "ground"], "at": {"a": [0, 0, 0], "b": [9, 0, 0]}}},"#;
-    a_joint_twice:
-        r#""joints": {"# =>
-        r#""joints": {"hinge": {"revolute": {"between": ["con_rod", "rod"], "at": [0, 0, 1], "axis": [0, 0, 1]}},"#;
     a_body_without_inertia_about_itself:
         r#"{"box": {"size": [2, 0.1, 0.1]}}"# => r#"{"rod": {"length": 2}}"#,
         r#"{"revolute": {"between": ["con_rod", "rod"], "at": "rod.tip", "axis": [0, 0, 1]}}"# =>

@@ -81,6 +81,7 @@ pub fn joint(
         }
     };
     Joint {
+        left_out: Vec::new(),
         name: name.into(),
         kind,
         body_a,

@@ -8,6 +8,7 @@ use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Place, place};
 use crate::integrate::settings::{Method, Settings};
 use crate::integrate::trajectory::{self, Trajectory};
+use crate::integrate::watch;
 use crate::linalg::SolveScalar;
 use crate::math::rotation;
 use crate::model::Model;
@@ -80,6 +81,7 @@ pub fn march<S: SolveScalar>(
             }
         }
         controller.accept();
+        watch(model, numbering, &to.q, (number, duration.re() * end))?;
         if stiffness.seen(&stepper, &scale, &to, h.re()) && controller.chooses() {
             return Err(IntegrationFailure::Stiff {
                 time: duration.re() * end,

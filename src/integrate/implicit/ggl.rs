@@ -152,7 +152,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         let ground = Motion::ground();
         for (j, joint) in model.joints.iter().enumerate() {
             let (a, b) = joints::sides(joint, motions, &ground);
-            for (i, &row) in numbering.rows(j).zip(joint.kind.rows()) {
+            for (i, row) in numbering.rows(j).zip(joint.rows()) {
                 let (by_a, by_b) = rate_by_position(row, &a, &b);
                 for (body, by) in [(Some(joint.body_a), by_a), (joint.body_b, by_b)] {
                     let Some(body) = body else { continue };

@@ -10,6 +10,7 @@ use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Place, place};
 use crate::integrate::settings::{Method, Samples, Settings};
 use crate::integrate::trajectory::{self, Trajectory};
+use crate::integrate::watch;
 use crate::linalg::SolveScalar;
 use crate::math::rotation;
 use crate::model::Model;
@@ -96,6 +97,7 @@ pub fn march<S: SolveScalar>(
             continue;
         }
         controller.accept();
+        watch(model, numbering, &stages[stages.len() - 1].q, at)?;
         solver.remember(&stages, k);
         run.grid.push(end);
         sample(&mut run, &scheme, &past.from, &stages, samples, &mut next);

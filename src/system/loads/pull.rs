@@ -347,7 +347,7 @@ fn pull_slide<S: Scalar>(at: &Acting<S>, rate: S, out: &mut Pulled<S>) {
         rate,
         acceleration: S::zero(),
     };
-    let (by_a, by_b) = constraint::pull_back(&[SLIDE], |_| cot, &at.a, &at.b);
+    let (by_a, by_b) = constraint::pull_back(std::iter::once(SLIDE), |_| cot, &at.a, &at.b);
     out.a.add(&by_a);
     out.b.add(&by_b);
 }

@@ -1,0 +1,370 @@
+//! Constraint rows that follow from the others in every position near the start: found by rank and
+//! left out, so that the equations that are solved have full rank.
+//!
+//! A row that depends on the others only where the bodies are placed marks a singular position, not
+//! a redundancy. So the rank is taken at the closed placement and at closed positions beside it,
+//! reached along motions that the joints allow, and what is left out is what depends on the rest
+//! at the position of the largest rank. Rows are kept by a pivoted Gram–Schmidt process on the rows
+//! of G: the first in the order of the joints whose part across the rows kept so far is not small
+//! against the largest such part.
+
+use super::assembly::length_scale;
+use super::bodies::{self, Motion};
+use super::constraint;
+use super::initial::guess;
+use super::joints;
+use super::numbering::Numbering;
+use crate::math::{Scalar, Vec3};
+use crate::model::{ConstraintRow, Model};
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+/// Part of a unit row across the others below which it follows from them.
+const DEPENDENT: f64 = 1e-9;
+/// Part of the largest such part that an earlier row is kept for.
+const PREFERRED: f64 = 0.1;
+/// Gap relative to the length scale at which the joints count as closed here.
+const CLOSED: f64 = 1e-12;
+/// Weight that keeps the equations of a closing step regular, against unit rows.
+const REGULAR: f64 = 1e-10;
+/// Gap relative to the length scale from which a row that is left out counts as open in a run.
+pub const OPENED: f64 = 1e-6;
+/// Closing steps.
+const ITERATIONS: usize = 50;
+/// Distances of the positions beside the placement, in units of the length scale and in radians.
+const BESIDE: [f64; 3] = [0.03, -0.02, 0.005];
+
+/// A joint some of whose rows follow from the other joints.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Redundancy {
+    /// The joint.
+    pub joint: String,
+    /// How many of its rows are left out.
+    pub left_out: usize,
+    /// How many rows it has.
+    pub rows: usize,
+}
+
+impl std::fmt::Display for Redundancy {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(
+            f,
+            "joint \"{}\": {} of {} rows follow from the others; the motion is exact, its reactions \
+             are not unique",
+            self.joint, self.left_out, self.rows
+        )
+    }
+}
+
+/// Leaves the redundant rows out of the joints of `model` and names them. Joints that cannot be
+/// closed are left as they are; assembly tells which.
+pub fn leave_out(model: &mut Model<f64>) -> Vec<Redundancy> {
+    for joint in &mut model.joints {
+        joint.left_out.clear();
+    }
+    let joints = in_loops(model);
+    if joints.is_empty() {
+        return Vec::new();
+    }
+    let Some(kept) = independent_rows(model, &joints) else {
+        return Vec::new();
+    };
+    let mut found = Vec::new();
+    let mut kept = kept.into_iter();
+    for &j in &joints {
+        let joint = &mut model.joints[j];
+        let rows = joint.kind.rows();
+        let out = rows.iter().zip(&mut kept).filter(|(_, kept)| !kept);
+        joint.left_out = out.map(|(row, _)| *row).collect();
+        if !joint.left_out.is_empty() {
+            found.push(Redundancy {
+                joint: joint.name.clone(),
+                left_out: joint.left_out.len(),
+                rows: rows.len(),
+            });
+        }
+    }
+    found
+}
+
+/// Joints that lie in loops of bodies and ground; in trees no row follows from others.
+fn in_loops<S>(model: &Model<S>) -> Vec<usize> {
+    let ground = model.bodies.len();
+    let ends = |j: usize| {
+        let joint = &model.joints[j];
+        [joint.body_a, joint.body_b.unwrap_or(ground)]
+    };
+    let mut left: Vec<usize> = (0..model.joints.len()).collect();
+    loop {
+        let mut degree = vec![0; ground + 1];
+        for body in left.iter().flat_map(|&j| ends(j)) {
+            degree[body] += 1;
+        }
+        let before = left.len();
+        left.retain(|&j| ends(j).into_iter().all(|body| degree[body] > 1));
+        if left.len() == before {
+            return left;
+        }
+    }
+}
+
+/// Which rows of the `joints`, in their order, to keep; `None` if they cannot be closed.
+fn independent_rows(model: &Model<f64>, joints: &[usize]) -> Option<Vec<bool>> {
+    let rows = Rows::new(model, joints);
+    let (q, _) = guess(model);
+    let placed = rows.close(q)?;
+    let mut best = rows.independent(&placed);
+    let count = |kept: &[bool]| kept.iter().filter(|kept| **kept).count();
+    if count(&best) == best.len() {
+        return Some(best);
+    }
+    for distance in BESIDE {
+        let Some(beside) = rows.beside(&placed, distance) else {
+            continue;
+        };
+        let kept = rows.independent(&beside);
+        if count(&kept) > count(&best) {
+            best = kept;
+        }
+    }
+    Some(best)
+}
+
+/// The rows of some joints of a model.
+struct Rows<'a> {
+    model: &'a Model<f64>,
+    numbering: Numbering,
+    joints: &'a [usize],
+    length: f64,
+}
+
+impl<'a> Rows<'a> {
+    fn new(model: &'a Model<f64>, joints: &'a [usize]) -> Self {
+        Self {
+            model,
+            numbering: Numbering::new(model),
+            joints,
+            length: length_scale(model),
+        }
+    }
+
+    fn motions(&self, q: &[f64]) -> Vec<Motion<f64>> {
+        let at_rest = vec![0.0; self.numbering.velocities()];
+        let mut motions = Vec::new();
+        Motion::all(&self.numbering, q, &at_rest, &mut motions);
+        motions
+    }
+
+    /// Constraint rows by number, in the order of the joints.
+    fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
+        self.joints.iter().flat_map(|&j| self.numbering.rows(j))
+    }
+
+    /// Unit rows of G, angles counted as arcs at the length scale, and what makes them so.
+    fn gradients(&self, q: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
+        let motions = self.motions(q);
+        let mut all = Vec::new();
+        joints::gradients(self.model, &self.numbering, &motions, &mut all);
+        let count = self.numbers().count();
+        let mut g = DMatrix::zeros(count, self.numbering.velocities());
+        let mut i = 0;
+        for &j in self.joints {
+            let joint = &self.model.joints[j];
+            for number in self.numbering.rows(j) {
+                let row = &all[number];
+                let a = self.numbering.velocity(joint.body_a);
+                let mut put = |at: usize, values: &Vec3<f64>, scale: f64| {
+                    for k in 0..3 {
+                        g[(i, at + k)] += values[k] * scale;
+                    }
+                };
+                put(a, &row.force, 1.0);
+                put(a + 3, &row.torque_a, 1.0 / self.length);
+                if let Some(b) = joint.body_b.map(|b| self.numbering.velocity(b)) {
+                    put(b, &row.force, -1.0);
+                    put(b + 3, &row.torque_b, 1.0 / self.length);
+                }
+                i += 1;
+            }
+        }
+        let scales: Vec<f64> = g.row_iter().map(|row| 1.0 / row.norm()).collect();
+        for (mut row, scale) in g.row_iter_mut().zip(&scales) {
+            row *= *scale;
+        }
+        (g, scales)
+    }
+
+    /// The closed position that Newton's method reaches from `q` by small steps.
+    fn close(&self, mut q: Vec<f64>) -> Option<Vec<f64>> {
+        let mut increment = vec![0.0; q.len()];
+        bodies::normalise(&self.numbering, &mut q, &mut increment);
+        let mut values = vec![0.0; self.numbering.constraints()];
+        let mut closed_before = false;
+        for _ in 0..ITERATIONS {
+            joints::values(self.model, &self.numbering, &self.motions(&q), &mut values);
+            let gap = self.numbers().fold(0.0_f64, |m, i| m.max(values[i].abs()));
+            let closed = gap <= CLOSED * self.length.max(1.0);
+            if closed && closed_before {
+                return Some(q);
+            }
+            closed_before = closed;
+            let (g, scales) = self.gradients(&q);
+            let open = self
+                .numbers()
+                .zip(&scales)
+                .map(|(i, scale)| -values[i] * scale);
+            let open = DVector::from_iterator(scales.len(), open);
+            let mut normal = &g * g.transpose();
+            for i in 0..scales.len() {
+                normal[(i, i)] += REGULAR;
+            }
+            let step = g.tr_mul(&normal.cholesky()?.solve(&open));
+            self.advance(&mut q, &step);
+        }
+        None
+    }
+
+    /// Moves q by a step whose angles are arcs at the length scale.
+    fn advance(&self, q: &mut [f64], step: &DVector<f64>) {
+        let arcs = step.iter().enumerate();
+        let step: Vec<f64> = arcs
+            .map(|(i, x)| if i % 6 < 3 { *x } else { x / self.length })
+            .collect();
+        let mut increment = vec![0.0; q.len()];
+        bodies::advance(&self.numbering, q, &mut increment, &step);
+    }
+
+    /// A closed position beside `q`, as far from it as asked for, along a motion that the joints
+    /// allow; `None` if they allow none.
+    fn beside(&self, q: &[f64], distance: f64) -> Option<Vec<f64>> {
+        let (g, _) = self.gradients(q);
+        // Any direction that no symmetry of a scene singles out.
+        let count = self.numbering.velocities();
+        let mut along = DVector::from_fn(count, |i, _| (1.0 + 1.7 * i as f64).sin());
+        let normal = &g * g.transpose() + DMatrix::identity(g.nrows(), g.nrows()) * REGULAR;
+        let factors = normal.cholesky()?;
+        // Twice, as the weight that keeps it regular leaves a little.
+        for _ in 0..2 {
+            along -= g.tr_mul(&factors.solve(&(&g * &along)));
+        }
+        let size = along.amax();
+        if size < 1e-6 {
+            return None;
+        }
+        let mut moved = q.to_vec();
+        self.advance(&mut moved, &(along * (distance * self.length / size)));
+        self.close(moved)
+    }
+
+    /// Which rows to keep at q so that those kept are independent and the others follow.
+    fn independent(&self, q: &[f64]) -> Vec<bool> {
+        let (mut g, _) = self.gradients(q);
+        let mut kept = vec![false; g.nrows()];
+        loop {
+            let sizes: Vec<f64> = g.row_iter().map(|row| row.norm()).collect();
+            let free = |i: &usize| !kept[*i];
+            let largest = (0..sizes.len())
+                .filter(free)
+                .map(|i| sizes[i])
+                .fold(0.0, f64::max);
+            if largest <= DEPENDENT {
+                return kept;
+            }
+            let first = (0..sizes.len())
+                .filter(free)
+                .find(|&i| sizes[i] >= PREFERRED * largest);
+            let Some(first) = first else { return kept };
+            kept[first] = true;
+            let pivot: RowDVector<f64> = g.row(first) / sizes[first];
+            for (i, mut row) in g.row_iter_mut().enumerate() {
+                if !kept[i] {
+                    let along = row.dot(&pivot);
+                    row -= &pivot * along;
+                }
+            }
+        }
+    }
+}
+
+/// A row that is left out, and how far it is open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Widest {
+    /// Its joint.
+    pub joint: usize,
+    /// The row.
+    pub row: ConstraintRow,
+    /// |Φ| (m or 1).
+    pub gap: f64,
+}
+
+/// The row that is open most among those that are left out; `None` if none is left out.
+pub fn widest<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> Option<Widest> {
+    let mut widest: Option<Widest> = None;
+    joints::for_each_left_out(model, motions, |joint, row, a, b| {
+        let gap = constraint::value(row, a, b).re().abs();
+        if widest.is_none_or(|most| gap > most.gap || gap.is_nan()) {
+            widest = Some(Widest { joint, row, gap });
+        }
+    });
+    widest
+}
+
+/// The row that is open by more than [`OPENED`] of the model's length scale at q, if one is.
+pub fn opened<S: Scalar>(model: &Model<S>, numbering: &Numbering, q: &[S]) -> Option<Widest> {
+    if model.joints.iter().all(|joint| joint.left_out.is_empty()) {
+        return None;
+    }
+    let mut motions = Vec::new();
+    let at_rest = vec![S::zero(); numbering.velocities()];
+    Motion::all(numbering, q, &at_rest, &mut motions);
+    let limit = OPENED * length_scale(model);
+    widest(model, &motions).filter(|widest| widest.gap.is_nan() || widest.gap > limit)
+}
+
+/// The multipliers of all rows, those left out included, with the smallest sum of squares that act
+/// as `lambda` does: the part of `lambda` in the range of G, by conjugate gradients on its normal
+/// equations (Björck 1996, *Numerical Methods for Least Squares Problems*, algorithm 7.4.1).
+///
+/// Each joint's rows follow each other in the order of its kind. `model` has all rows imposed,
+/// `numbering` numbers them and `motions` is where it is.
+pub fn smallest_multipliers(
+    model: &Model<f64>,
+    numbering: &Numbering,
+    motions: &[Motion<f64>],
+    lambda: &[f64],
+) -> Vec<f64> {
+    let mut gradients = Vec::new();
+    joints::gradients(model, numbering, motions, &mut gradients);
+    let transposed = |x: &[f64]| {
+        let mut out = vec![0.0; numbering.velocities()];
+        joints::add_reactions(model, numbering, &gradients, x, &mut out);
+        out
+    };
+    let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+    let mut rest = lambda.to_vec();
+    let mut slope = transposed(&rest);
+    let mut along = slope.clone();
+    let mut size = square(&slope);
+    let enough = size * 1e-28;
+    let mut image = vec![0.0; lambda.len()];
+    for _ in 0..4 * lambda.len() {
+        if size <= enough {
+            break;
+        }
+        joints::rates_from_gradients(model, numbering, &gradients, &along, &mut image);
+        let step = size / square(&image);
+        for (rest, image) in rest.iter_mut().zip(&image) {
+            *rest -= step * image;
+        }
+        slope = transposed(&rest);
+        let next = square(&slope);
+        for (along, slope) in along.iter_mut().zip(&slope) {
+            *along = slope + next / size * *along;
+        }
+        size = next;
+    }
+    lambda
+        .iter()
+        .zip(&rest)
+        .map(|(all, rest)| all - rest)
+        .collect()
+}

@@ -1,0 +1,257 @@
+//! Joints that repeat each other: what follows from the others is left out and named, the motion is
+//! that without it, and a singular position or joints that do not fit are told apart from it.
+
+use flexbody::driver::{check, simulate};
+use flexbody::integrate::IntegrationFailure;
+use flexbody::problem::{Override, Problem};
+use serde_json::{Value, json};
+use std::path::Path;
+
+fn problem(file: &Value) -> Problem {
+    Problem::parse(&file.to_string(), "redundant.json", &[])
+        .unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+fn left_out(problem: &Problem) -> Vec<(&str, usize)> {
+    let all = problem.redundant.iter();
+    all.map(|r| (r.joint.as_str(), r.left_out)).collect()
+}
+
+/// A door on hinges about the y axis at these heights, pushed and left to swing.
+fn door(hinges: &[f64]) -> Value {
+    let hinge = |y: &f64| {
+        (
+            format!("hinge at {y}"),
+            json!({"revolute": {"between": ["door", "ground"], "at": [0, y, 0], "axis": [0, 1, 0]}}),
+        )
+    };
+    json!({
+        "version": 1, "name": "door",
+        "bodies": {"door": {"shape": {"box": {"size": [1, 2, 0.04]}}, "mass": 30,
+                            "place": {"at": [0.5, 0, 0]},
+                            "velocity": {"linear": [0, 0, -1], "angular": [0, 2, 0]}}},
+        "joints": hinges.iter().map(hinge).collect::<serde_json::Map<_, _>>(),
+        "loads": {"closer": {"force": {"body": "door", "direction": [0, 0, 1], "axes": "body",
+                                       "magnitude": {"harmonic": {"amplitude": 3,
+                                                                  "frequency": 1}}}}},
+        "simulation": {"duration": 1, "steps": 200},
+        "functions": {"turn": {"final": {"rotation": {"body": "door", "axis": [0, 1, 0]}}}},
+        "variables": {"mass": {"path": "/bodies/door/mass", "lower": 1}}
+    })
+}
+
+#[test]
+fn a_door_on_three_hinges_moves_as_on_one() {
+    let (three, one) = (problem(&door(&[-0.8, 0.8, 0.1])), problem(&door(&[0.2])));
+    assert_eq!(left_out(&one), []);
+    assert_eq!(left_out(&three), [("hinge at 0.8", 5), ("hinge at 0.1", 5)]);
+    assert_eq!(
+        three.redundant[0].to_string(),
+        "joint \"hinge at 0.8\": 5 of 5 rows follow from the others; the motion is exact, its \
+         reactions are not unique"
+    );
+    let [a, b] = [&three, &one].map(|p| simulate(p, &p.start()).expect("runs"));
+    assert!((a.at.function(0).value - b.at.function(0).value).abs() < 1e-12);
+    assert!(a.constraint_drift().0 < 1e-12);
+    for derivative in check(&three, &three.start()).expect("runs") {
+        assert!(derivative.relative_difference() <= 1e-12, "{derivative:?}");
+    }
+}
+
+/// The smallest reactions over all rows carry the weight in equal parts, and together the same as
+/// one hinge does.
+#[test]
+fn reactions_of_a_door_on_two_hinges_are_shared() {
+    let (two, one) = (problem(&door(&[-0.8, 0.8])), problem(&door(&[0.0])));
+    let [a, b] = [&two, &one].map(|p| simulate(p, &p.start()).expect("runs"));
+    for k in [0, 57, 200] {
+        let (shared, whole) = (a.reactions(k), b.reactions(k)[0]);
+        let force = shared[0].force_ground + shared[1].force_ground;
+        assert!((force - whole.force_ground).amax() < 1e-8 * whole.force_ground.norm());
+        let lever =
+            |y: f64, f: nalgebra::Vector3<f64>| nalgebra::Vector3::new(0.0, y, 0.0).cross(&f);
+        let torque = shared[0].torque_ground
+            + shared[1].torque_ground
+            + lever(-0.8, shared[0].force_ground)
+            + lever(0.8, shared[1].force_ground);
+        assert!((torque - whole.torque_ground).amax() < 1e-8 * whole.torque_ground.norm());
+        // 30 kg · 9.81 m/s² in equal parts.
+        for reaction in &shared {
+            assert!((reaction.force_ground.y - 147.15).abs() < 1e-8);
+        }
+    }
+}
+
+/// A parallelogram of rods of 1 m and 1 kg, N cells wide, turned by `angle` from upright, its
+/// upper nodes moving to the right at 1 m/s (MBS benchmark library, A02).
+fn parallelograms(n: usize, angle: f64) -> Value {
+    let (mut bodies, mut joints) = (serde_json::Map::new(), serde_json::Map::new());
+    let half = std::f64::consts::FRAC_PI_2;
+    let hinge = |a: &str, b: &str, at: Value| json!({"revolute": {"between": [a, b], "at": at, "axis": [0, 0, 1]}});
+    let rod = |place: Value, velocity: Value| {
+        json!({"shape": {"box": {"size": [1, 0.05, 0.05]}}, "mass": 1,
+               "points": {"from": [-0.5, 0, 0], "to": [0.5, 0, 0]},
+               "place": place, "velocity": velocity})
+    };
+    let (s, c) = angle.sin_cos();
+    for i in 0..=n {
+        let name = format!("bar {i}");
+        let place = json!({"put": "from", "at": [i, 0, 0],
+                           "turn": {"axis": [0, 0, 1], "angle": half - angle}});
+        let velocity = json!({"linear": [0.5 * c, -0.5 * s, 0], "angular": [0, 0, -1]});
+        bodies.insert(name.clone(), rod(place, velocity));
+        joints.insert(format!("A{i}"), hinge(&name, "ground", json!([i, 0, 0])));
+    }
+    for i in 0..n {
+        let (left, right) = (format!("bar {i}"), format!("bar {}", i + 1));
+        let name = format!("coupler {i}");
+        let place = json!({"put": "from", "at": format!("{left}.to")});
+        bodies.insert(name.clone(), rod(place, json!({"linear": [c, -s, 0]})));
+        joints.insert(
+            format!("B{i}"),
+            hinge(&name, &left, json!(format!("{left}.to"))),
+        );
+        joints.insert(
+            format!("C{i}"),
+            hinge(&name, &right, json!(format!("{right}.to"))),
+        );
+    }
+    let x = json!({"position": {"body": "bar 0", "point": "to", "direction": [1, 0, 0]}});
+    json!({
+        "version": 1, "name": "parallelograms", "bodies": bodies, "joints": joints,
+        "simulation": {"duration": 0.6, "steps": 2400},
+        "functions": {"x": {"final": x}},
+        "variables": {
+            "mass": {"path": "/bodies/coupler 0/mass", "lower": 0.1},
+            "tilt": {"path": "/joints/C0/revolute/axis/0"}
+        }
+    })
+}
+
+/// θ(t) of [(N + 1)/3 + N] θ̈ = [(N + 1)/2 + N] g sin θ, θ(0) = 0, θ̇(0) = 1, by the classical
+/// Runge–Kutta method; the rods' thickness adds 0.05²/12 to (N + 1)/3.
+fn angle_of(n: usize, time: f64) -> f64 {
+    let n = n as f64;
+    let inertia = (n + 1.0) * (1.0 / 3.0 + 0.0025 / 12.0) + n;
+    let k = ((n + 1.0) / 2.0 + n) * 9.81 / inertia;
+    let steps = 20_000;
+    let h = time / f64::from(steps);
+    let (mut x, mut v) = (0.0_f64, 1.0_f64);
+    for _ in 0..steps {
+        let (a1, b1) = (v, k * x.sin());
+        let (a2, b2) = (v + 0.5 * h * b1, k * (x + 0.5 * h * a1).sin());
+        let (a3, b3) = (v + 0.5 * h * b2, k * (x + 0.5 * h * a2).sin());
+        let (a4, b4) = (v + h * b3, k * (x + h * a3).sin());
+        x += h * (a1 + 2.0 * a2 + 2.0 * a3 + a4) / 6.0;
+        v += h * (b1 + 2.0 * b2 + 2.0 * b3 + b4) / 6.0;
+    }
+    x
+}
+
+/// Three of the conditions out of the plane of each cell follow from the others; the motion is that
+/// of the one coordinate, to the error of BDF2 (2e-6 m), and its gradient exact.
+#[test]
+fn parallelograms_move_in_their_plane() {
+    for n in [1, 2, 5] {
+        let problem = problem(&parallelograms(n, 0.0));
+        let rows: usize = problem.redundant.iter().map(|r| r.left_out).sum();
+        assert_eq!(rows, 3 * n, "{:?}", problem.redundant);
+        let motion = simulate(&problem, &problem.start()).expect("runs");
+        let error = (motion.at.function(0).value - angle_of(n, 0.6).sin()).abs();
+        assert!(error < 2e-6, "{n}: {error:e}");
+        assert!(motion.constraint_drift().0 < 1e-11);
+    }
+    let mut file = parallelograms(2, 0.0);
+    file["simulation"]["steps"] = json!(300);
+    file["variables"] = json!({"mass": {"path": "/bodies/coupler 0/mass", "lower": 0.1}});
+    let problem = problem(&file);
+    for derivative in check(&problem, &problem.start()).expect("runs") {
+        assert!(derivative.relative_difference() <= 1e-12, "{derivative:?}");
+    }
+}
+
+/// A design that makes rows independent that were redundant at the start does not run on as if
+/// nothing had happened.
+#[test]
+fn a_design_that_breaks_the_redundancy_is_refused_by_name() {
+    let mut file = parallelograms(1, 0.3);
+    file["simulation"] = json!({"duration": 0.3, "steps": 300});
+    let problem = problem(&file);
+    let start = simulate(&problem, &[1.0, 0.0]);
+    assert!(start.is_ok(), "{:?}", start.err());
+    match simulate(&problem, &[1.0, 0.2]) {
+        Err(failure @ IntegrationFailure::RedundancyLost { .. }) => {
+            assert!(
+                failure.to_string().contains("does not follow any more"),
+                "{failure}"
+            );
+        }
+        other => panic!("{:?}", other.map(|run| run.constraint_drift())),
+    }
+}
+
+/// With all rods in a line one more row depends on the others, there alone: no redundancy.
+#[test]
+fn a_singular_position_is_no_redundancy() {
+    let half = std::f64::consts::FRAC_PI_2;
+    let file = parallelograms(1, half);
+    let fault = Problem::parse(&file.to_string(), "redundant.json", &[])
+        .expect_err("a singular position")
+        .to_string();
+    assert!(fault.contains("straight or folded positions"), "{fault}");
+    let beside = problem(&parallelograms(1, half - 1e-3));
+    let rows: usize = beside.redundant.iter().map(|r| r.left_out).sum();
+    assert_eq!(rows, 3);
+}
+
+#[test]
+fn joints_that_contradict_each_other_are_no_redundancy() {
+    let mut file = door(&[-0.8, 0.8]);
+    file["joints"]["hinge at 0.8"]["revolute"]["axis"] = json!({"body": "door", "axis": [0, 1, 0]});
+    assert_eq!(left_out(&problem(&file)), [("hinge at 0.8", 5)]);
+    file["joints"]["hinge at 0.8"]["revolute"]["at"] =
+        json!({"a": [-0.5, 0.8, 0], "b": [0, 0.9, 0]});
+    let fault = Problem::parse(&file.to_string(), "redundant.json", &[])
+        .expect_err("joints that do not fit")
+        .to_string();
+    assert!(fault.contains("cannot be assembled"), "{fault}");
+}
+
+/// A tree of bodies has nothing to leave out, however it stands.
+#[test]
+fn trees_are_not_searched() {
+    for name in ["trebuchet", "trebuchet_release_time", "triple_pendulum"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/{name}.json"));
+        let problem = Problem::load(&path, &[]).expect("no faults");
+        assert_eq!(problem.redundant, []);
+    }
+}
+
+/// Positions of P3 from an independent integration to 1e-10 of the one coordinate that the loop
+/// leaves (its energy error is 6e-14 J); BDF2 with 0.5 ms to 1e-5 m.
+#[test]
+fn bricards_mechanism() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/benchmarks/bricard.json");
+    for (duration, exact) in [
+        (1, [0.510_501_461_2, -1.649_167_599_4, 0.140_123_114_6]),
+        (2, [-0.969_340_344_8, -1.221_246_895_0, 0.754_278_010_8]),
+    ] {
+        let changes = [
+            format!("/simulation/duration={duration}"),
+            format!("/simulation/steps={}", 2000 * duration),
+        ];
+        let changes = changes.map(|text| Override::parse(&text).expect("an override"));
+        let problem = Problem::load(&path, &changes).expect("no faults");
+        let rows: usize = problem.redundant.iter().map(|r| r.left_out).sum();
+        assert_eq!(rows, 1, "{:?}", problem.redundant);
+        let motion = simulate(&problem, &[]).expect("runs");
+        for (f, exact) in exact.iter().enumerate() {
+            let found = motion.at.function(f).value;
+            assert!(
+                (found - exact).abs() < 1e-5,
+                "{duration} s: {found} against {exact}"
+            );
+        }
+        assert!(motion.constraint_drift().0 < 1e-10);
+    }
+}
