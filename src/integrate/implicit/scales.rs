@@ -10,7 +10,8 @@ const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 /// Length and gravity of a scene, which do not change during a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SceneScale {
-    length: f64,
+    /// Length scale (m).
+    pub length: f64,
     gravity: f64,
 }
 
@@ -32,12 +33,7 @@ impl SceneScale {
 
     /// The scales of a step of size `h` with the increments `dq`, `dv` to (q, v): never less than
     /// what gravity moves in a step, so that a model at rest is not judged by its noise.
-    pub fn step<S: Scalar>(
-        &self,
-        n: &Numbering,
-        [q, v, dq, dv]: [&[S]; 4],
-        h: f64,
-    ) -> Scales {
+    pub fn step<S: Scalar>(&self, n: &Numbering, [q, v, dq, dv]: [&[S]; 4], h: f64) -> Scales {
         let (mut shift, mut turn, mut place) = (0.0_f64, 0.0_f64, self.length);
         for body in 0..n.bodies() {
             let (dq, q) = (&dq[n.position(body)..], &q[n.position(body)..]);

@@ -4,7 +4,7 @@
 use super::Stage;
 use super::ggl::Equations;
 use super::radau::Scheme;
-use super::scales::{SceneScale, Scales};
+use super::scales::{Scales, SceneScale};
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::trajectory::WorkCounts;
 use crate::linalg::{SolveScalar, SparseLu, SparseMatrix};
@@ -14,8 +14,11 @@ use crate::system::{Numbering, bodies};
 
 /// Error left in the stages, relative to the largest increments in the step.
 const TOLERANCE: f64 = 1e-13;
-/// Relative change below which a stagnating iteration has reached round-off.
-const STAGNANT: f64 = 1e-9;
+/// Relative change below which a stagnating iteration has reached round-off: stiff forces magnify
+/// that of positions.
+const STAGNANT: f64 = 1e-7;
+/// Scaled residual, relative to the length scale, that is round-off.
+const ROUND_OFF: f64 = 1e-14;
 /// Contraction above which the matrices are renewed for the next step.
 const RENEW: f64 = 0.05;
 /// Contraction that is given up.
@@ -73,10 +76,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             held: SparseMatrix::new(pattern.clone()),
             unit: SparseMatrix::new(pattern.clone()),
             real_mode,
-            complex_mode: (
-                SparseMatrix::new(pattern.clone()),
-                SparseLu::new(&pattern),
-            ),
+            complex_mode: (SparseMatrix::new(pattern.clone()), SparseLu::new(&pattern)),
             factored: None,
             scale: SceneScale::of(model),
             residuals: vec![vec![S::zero(); n]; scheme.stages()],
@@ -102,7 +102,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         at: (usize, f64),
         counts: &mut WorkCounts,
     ) -> Result<(), IntegrationFailure> {
-        let kept = self.factored.is_some_and(|old| (old - h.re()).abs() < SAME_STEP * old);
+        let kept = self
+            .factored
+            .is_some_and(|old| (old - h.re()).abs() < SAME_STEP * old);
         if S::INFINITESIMAL || !kept {
             self.factorise(stages, h.re(), at, counts)?;
             return self.iterate(stages, h, at, counts);
@@ -145,8 +147,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             let slow = contraction.min(before) > DIVERGENT || contraction > 10.0;
             before = contraction;
             let remaining = size * (pair / (1.0 - pair.min(0.9))).min(1.0);
-            let noise = scales.round_off.max(STAGNANT);
-            let stagnant = iteration > 2 && contraction > 0.3 && size <= noise;
+            let stagnant = iteration > 2
+                && contraction > 0.3
+                && (size <= scales.round_off.max(STAGNANT) || self.is_round_off());
             if remaining <= TOLERANCE || stagnant {
                 if S::INFINITESIMAL {
                     for _ in 0..INFINITESIMAL_ITERATIONS {
@@ -169,6 +172,14 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         }
         self.factored = None;
         Err(self.stalled(stages, h, at))
+    }
+
+    /// Whether the residuals are round-off, however large the changes are that a nearly singular
+    /// matrix makes of it.
+    fn is_round_off(&self) -> bool {
+        let limit = ROUND_OFF * self.scale.length.max(1.0);
+        let all = self.residuals.iter().flatten();
+        all.fold(0.0, |m: f64, x| m.max(x.re().abs())) <= limit
     }
 
     /// One iteration; the size of the change.
@@ -211,8 +222,12 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             vdot.fill(S::zero());
             for (stage, &d) in stages.iter().zip(&self.scheme.rates[i]) {
                 let d = S::from(d) / h;
-                qdot.iter_mut().zip(&stage.dq).for_each(|(out, &z)| *out += d * z);
-                vdot.iter_mut().zip(&stage.dv).for_each(|(out, &z)| *out += d * z);
+                qdot.iter_mut()
+                    .zip(&stage.dq)
+                    .for_each(|(out, &z)| *out += d * z);
+                vdot.iter_mut()
+                    .zip(&stage.dv)
+                    .for_each(|(out, &z)| *out += d * z);
             }
             stages[i].qdot = qdot;
             stages[i].vdot = vdot;
@@ -320,8 +335,12 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         let mut dq: Vec<f64> = qdot.iter().map(|x| first * h * x).collect();
         let mut dv: Vec<f64> = vdot.iter().map(|x| first * h * x).collect();
         for (stage, e) in stages.iter().zip(weights) {
-            dq.iter_mut().zip(&stage.dq).for_each(|(out, z)| *out += e * z.re());
-            dv.iter_mut().zip(&stage.dv).for_each(|(out, z)| *out += e * z.re());
+            dq.iter_mut()
+                .zip(&stage.dq)
+                .for_each(|(out, z)| *out += e * z.re());
+            dv.iter_mut()
+                .zip(&stage.dv)
+                .for_each(|(out, z)| *out += e * z.re());
         }
         let end: Vec<f64> = stages[stages.len() - 1].q.iter().map(|x| x.re()).collect();
         self.real_rhs.fill(0.0);
