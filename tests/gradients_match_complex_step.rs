@@ -116,13 +116,22 @@ fn check(model: Model<f64>, duration: f64, settings: &Settings) {
             let difference = (given[i] - row[f]).abs();
             let relative = difference / row[f].abs().max(scale);
             if !(relative <= worst.0) {
-                let what = format!("function {f} parameter {i}: {} against {}", given[i], row[f]);
+                let what = format!(
+                    "function {f} parameter {i}: {} against {}",
+                    given[i], row[f]
+                );
                 worst = (relative, what);
             }
         }
     }
     println!("{}: {:.1e}", settings.method.name(), worst.0);
-    assert!(worst.0 <= 1e-12, "{}: {}, off by {:e}", settings.method.name(), worst.1, worst.0);
+    assert!(
+        worst.0 <= 1e-12,
+        "{}: {}, off by {:e}",
+        settings.method.name(),
+        worst.1,
+        worst.0
+    );
 }
 
 /// Derivatives [parameter][function] by the complex step, one run a parameter, and the motion that
@@ -139,7 +148,8 @@ fn complex_steps(scene: &Scene<f64>, settings: &Settings) -> (Vec<Vec<f64>>, Tra
             });
             let run = simulate(&moved.model, moved.duration, settings).expect("runs");
             let all = moved.functions.iter();
-            let by = |f: &Function<Complex64>| f.evaluate(&moved.model, &run).value.im / COMPLEX_STEP;
+            let by =
+                |f: &Function<Complex64>| f.evaluate(&moved.model, &run).value.im / COMPLEX_STEP;
             let found = all.map(by).collect();
             motion.get_or_insert_with(|| run.real());
             found
@@ -165,14 +175,28 @@ fn explicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
 /// Every implicit method, with steps of equal size and, where they can follow the error, on a frozen
 /// grid with samples between the ends of steps.
 fn implicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
-    let bdf = |order| Method::Bdf { order, start: Start::Radau };
-    let rising = |order| Method::Bdf { order, start: Start::RisingOrder };
+    let bdf = |order| Method::Bdf {
+        order,
+        start: Start::Radau,
+    };
+    let rising = |order| Method::Bdf {
+        order,
+        start: Start::RisingOrder,
+    };
     let radau = |stages| Method::Radau { stages };
     let mut all: Vec<Settings> = [
-        bdf(1), bdf(2), bdf(3), bdf(4), bdf(5), bdf(6), rising(2), rising(5),
+        bdf(1),
+        bdf(2),
+        bdf(3),
+        bdf(4),
+        bdf(5),
+        bdf(6),
+        rising(2),
+        rising(5),
         Method::GeneralisedAlpha { radius: 0.5 },
         Method::GeneralisedAlpha { radius: 0.8 },
-        radau(2), radau(3),
+        radau(2),
+        radau(3),
     ]
     .map(|method| Settings::steps(method, steps))
     .to_vec();

@@ -1,12 +1,12 @@
 //! One function on its way back: its cotangents at the samples and at the state that the march
 //! has reached, and its derivatives in the parameters so far.
 
+use crate::functions::Scene;
 use crate::functions::evaluate::Linearised;
 use crate::functions::measure::{Snapshot, SnapshotCotangent};
-use crate::functions::Scene;
 use crate::integrate::Trajectory;
-use crate::linalg::REFINED_SOLVES;
 use crate::integrate::{IntegrationFailure, WorkCounts};
+use crate::linalg::REFINED_SOLVES;
 use crate::system::initial;
 use crate::system::kkt::SaddlePoint;
 

@@ -66,7 +66,9 @@ pub fn estimate(
         }
     };
     let (coarse_gradients, fine_gradients) = (derivatives(at)?, derivatives(&fine)?);
-    let all = which.iter().zip(coarse_gradients.iter().zip(&fine_gradients));
+    let all = which
+        .iter()
+        .zip(coarse_gradients.iter().zip(&fine_gradients));
     Ok(all
         .map(|(&function, (coarse, finer))| {
             let order = match looks_at_the_whole(&at.scene.functions[function]) {
@@ -78,10 +80,7 @@ pub fn estimate(
                 value,
                 error: (value - fine).abs() * gain / (gain - 1.0),
             };
-            let value = compare(
-                at.function(function).value,
-                fine.function(function).value,
-            );
+            let value = compare(at.function(function).value, fine.function(function).value);
             let pairs = coarse.iter().zip(finer);
             FunctionError {
                 function,
@@ -142,9 +141,9 @@ impl Accuracy {
             true => "",
             false => ", which is all that can be reached",
         };
-        let tolerance = self
-            .tolerance
-            .map_or_else(String::new, |tolerance| format!(", tolerance {tolerance:.1e}"));
+        let tolerance = self.tolerance.map_or_else(String::new, |tolerance| {
+            format!(", tolerance {tolerance:.1e}")
+        });
         format!(
             "accuracy {asked:.1e}: {} steps{tolerance}; estimated relative error of the objective \
              at the start {:.1e}{missed}",

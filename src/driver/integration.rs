@@ -102,14 +102,12 @@ impl Integration {
                     Err(failure) => failure.to_string(),
                 }
             }
-            (Some((settings, _)), _) => {
-                match simulate(&scene.model, scene.duration, settings) {
-                    Err(failure @ IntegrationFailure::Stiff { .. }) if self.method.is_none() => {
-                        failure.to_string()
-                    }
-                    found => return Ok((found?, None)),
+            (Some((settings, _)), _) => match simulate(&scene.model, scene.duration, settings) {
+                Err(failure @ IntegrationFailure::Stiff { .. }) if self.method.is_none() => {
+                    failure.to_string()
                 }
-            }
+                found => return Ok((found?, None)),
+            },
         };
         let Chosen {
             run,

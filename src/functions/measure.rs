@@ -114,9 +114,7 @@ impl<S: Scalar> Instant<S> {
                 body,
                 point,
                 direction,
-            } => {
-                direction.dot(&Jet::point(&at.motion(*body), point).acceleration)
-            }
+            } => direction.dot(&Jet::point(&at.motion(*body), point).acceleration),
             Instant::Speed { body, point } => {
                 let velocity = at.motion(*body).point_velocity(point);
                 let square = velocity.dot(&velocity);

@@ -4,8 +4,8 @@ use super::settings::{Method, Settings, Spacing};
 use super::trajectory::Trajectory;
 use super::{IntegrationFailure, simulate};
 use crate::linalg::SolveScalar;
-use crate::model::load::LoadKind;
 use crate::model::Model;
+use crate::model::load::LoadKind;
 
 /// The method of scenes that are not stiff.
 pub const NON_STIFF: Method = Method::Dop853;
@@ -62,12 +62,14 @@ pub fn simulate_by<S: SolveScalar>(
     }
     match with(NON_STIFF, "the scene is rigid and not stiff".into()) {
         Err(IntegrationFailure::Stiff { time, .. }) => {
-            let reason = format!("the scene is stiff: stability bounds explicit steps at t = {time:.4} s");
+            let reason =
+                format!("the scene is stiff: stability bounds explicit steps at t = {time:.4} s");
             with(STIFF, reason)
         }
-        Err(IntegrationFailure::NotFinite { time, .. } | IntegrationFailure::Projection { time, .. })
-            if matches!(settings.spacing, Spacing::Steps(_)) =>
-        {
+        Err(
+            IntegrationFailure::NotFinite { time, .. }
+            | IntegrationFailure::Projection { time, .. },
+        ) if matches!(settings.spacing, Spacing::Steps(_)) => {
             let reason = format!("explicit steps of this size fail at t = {time:.4} s");
             with(STIFF, reason)
         }

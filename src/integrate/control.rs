@@ -73,13 +73,7 @@ impl Scale {
     }
 
     /// As [`Scale::square`] for a tangent change y of positions and h times one of velocities.
-    pub fn tangent_square(
-        &self,
-        y: &[f64],
-        hv: &[f64],
-        h: f64,
-        speeds: [f64; 2],
-    ) -> f64 {
+    pub fn tangent_square(&self, y: &[f64], hv: &[f64], h: f64, speeds: [f64; 2]) -> f64 {
         let part = |x: &[f64], scale: f64| -> f64 { x.iter().map(|x| (x / scale).powi(2)).sum() };
         let both = y.chunks_exact(6).zip(hv.chunks_exact(6));
         let sum: f64 = both
@@ -230,7 +224,11 @@ impl Controller {
                     self.factor = factor;
                     true
                 } else {
-                    *width *= if relative.is_finite() { factor.min(SAFETY) } else { SHRINK };
+                    *width *= if relative.is_finite() {
+                        factor.min(SAFETY)
+                    } else {
+                        SHRINK
+                    };
                     self.rejected = true;
                     false
                 }

@@ -1,8 +1,8 @@
 //! What a run leaves behind.
 
-use super::{explicit, implicit};
 use super::grid::{Grid, Place};
 use super::settings::{Method, Samples};
+use super::{explicit, implicit};
 use crate::math::{Complex64, Scalar};
 use crate::system::Numbering;
 use crate::system::initial::InitialState;

@@ -154,7 +154,9 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         joints::add_reactions(model, numbering, &self.gradients, &x[nv..], &mut out);
         let (_, lower) = out.split_at_mut(nv);
         joints::rates_from_gradients(model, numbering, &self.gradients, x, lower);
-        out.iter_mut().zip(rhs).for_each(|(out, &b)| *out = b - *out);
+        out.iter_mut()
+            .zip(rhs)
+            .for_each(|(out, &b)| *out = b - *out);
         out
     }
 
@@ -230,7 +232,14 @@ impl Accelerations<'_, f64> {
             time: &mut by_time,
             model: cot,
         };
-        loads::pull_back(model, numbering, &self.motions, self.time, &psi[..nv], &mut out);
+        loads::pull_back(
+            model,
+            numbering,
+            &self.motions,
+            self.time,
+            &psi[..nv],
+            &mut out,
+        );
         psi.iter_mut().for_each(|x| *x = -*x);
         for (i, body) in model.bodies.iter().enumerate() {
             let o = numbering.velocity(i);

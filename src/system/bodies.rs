@@ -254,7 +254,11 @@ pub fn add_unit_cotangent(numbering: &Numbering, q: &[f64], y: &[f64], out: &mut
         let o = numbering.position(body);
         let (_, p) = positions_of(&q[o..]);
         let (by_r, by_theta) = velocities_of(&y[numbering.velocity(body)..]);
-        add7(&mut out[o..], &by_r, &rotation::unit_pull_back(&p, &by_theta));
+        add7(
+            &mut out[o..],
+            &by_r,
+            &rotation::unit_pull_back(&p, &by_theta),
+        );
     }
 }
 

@@ -161,9 +161,7 @@ pub fn accelerations<S: Scalar>(
         *out = match row {
             Coincident(k) => w.acceleration[k],
             Perpendicular { .. } | Sliding { .. } => {
-                u.acceleration.dot(&w.x)
-                    + u.rate.dot(&w.rate) * 2.0
-                    + u.x.dot(&w.acceleration)
+                u.acceleration.dot(&w.x) + u.rate.dot(&w.rate) * 2.0 + u.x.dot(&w.acceleration)
             }
         };
     }

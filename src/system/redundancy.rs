@@ -16,7 +16,7 @@ use super::joints;
 use super::numbering::Numbering;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Model};
-use nalgebra::{DMatrix, DVector, RowDVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Part of a unit row across the others below which it follows from them.
 const DEPENDENT: f64 = 1e-9;
@@ -159,13 +159,14 @@ impl<'a> Rows<'a> {
         self.joints.iter().flat_map(|&j| self.numbering.rows(j))
     }
 
-    /// Unit rows of G, angles counted as arcs at the length scale, and what makes them so.
+    /// Unit rows of G as columns, angles counted as arcs at the length scale, and what makes them
+    /// so.
     fn gradients(&self, q: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
         let motions = self.motions(q);
         let mut all = Vec::new();
         joints::gradients(self.model, &self.numbering, &motions, &mut all);
         let count = self.numbers().count();
-        let mut g = DMatrix::zeros(count, self.numbering.velocities());
+        let mut g = DMatrix::zeros(self.numbering.velocities(), count);
         let mut i = 0;
         for &j in self.joints {
             let joint = &self.model.joints[j];
@@ -174,7 +175,7 @@ impl<'a> Rows<'a> {
                 let a = self.numbering.velocity(joint.body_a);
                 let mut put = |at: usize, values: &Vec3<f64>, scale: f64| {
                     for k in 0..3 {
-                        g[(i, at + k)] += values[k] * scale;
+                        g[(at + k, i)] += values[k] * scale;
                     }
                 };
                 put(a, &row.force, 1.0);
@@ -186,8 +187,8 @@ impl<'a> Rows<'a> {
                 i += 1;
             }
         }
-        let scales: Vec<f64> = g.row_iter().map(|row| 1.0 / row.norm()).collect();
-        for (mut row, scale) in g.row_iter_mut().zip(&scales) {
+        let scales: Vec<f64> = g.column_iter().map(|row| 1.0 / row.norm()).collect();
+        for (mut row, scale) in g.column_iter_mut().zip(&scales) {
             row *= *scale;
         }
         (g, scales)
@@ -213,11 +214,7 @@ impl<'a> Rows<'a> {
                 .zip(&scales)
                 .map(|(i, scale)| -values[i] * scale);
             let open = DVector::from_iterator(scales.len(), open);
-            let mut normal = &g * g.transpose();
-            for i in 0..scales.len() {
-                normal[(i, i)] += REGULAR;
-            }
-            let step = g.tr_mul(&normal.cholesky()?.solve(&open));
+            let step = &g * normal(&g)?.solve(&open);
             self.advance(&mut q, &step);
         }
         None
@@ -240,11 +237,10 @@ impl<'a> Rows<'a> {
         // Any direction that no symmetry of a scene singles out.
         let count = self.numbering.velocities();
         let mut along = DVector::from_fn(count, |i, _| (1.0 + 1.7 * i as f64).sin());
-        let normal = &g * g.transpose() + DMatrix::identity(g.nrows(), g.nrows()) * REGULAR;
-        let factors = normal.cholesky()?;
+        let factors = normal(&g)?;
         // Twice, as the weight that keeps it regular leaves a little.
         for _ in 0..2 {
-            along -= g.tr_mul(&factors.solve(&(&g * &along)));
+            along -= &g * factors.solve(&g.tr_mul(&along));
         }
         let size = along.amax();
         if size < 1e-6 {
@@ -258,9 +254,9 @@ impl<'a> Rows<'a> {
     /// Which rows to keep at q so that those kept are independent and the others follow.
     fn independent(&self, q: &[f64]) -> Vec<bool> {
         let (mut g, _) = self.gradients(q);
-        let mut kept = vec![false; g.nrows()];
+        let mut kept = vec![false; g.ncols()];
         loop {
-            let sizes: Vec<f64> = g.row_iter().map(|row| row.norm()).collect();
+            let sizes: Vec<f64> = g.column_iter().map(|row| row.norm()).collect();
             let free = |i: &usize| !kept[*i];
             let largest = (0..sizes.len())
                 .filter(free)
@@ -274,15 +270,23 @@ impl<'a> Rows<'a> {
                 .find(|&i| sizes[i] >= PREFERRED * largest);
             let Some(first) = first else { return kept };
             kept[first] = true;
-            let pivot: RowDVector<f64> = g.row(first) / sizes[first];
-            for (i, mut row) in g.row_iter_mut().enumerate() {
+            let pivot = g.column(first) / sizes[first];
+            for (i, mut row) in g.column_iter_mut().enumerate() {
                 if !kept[i] {
-                    let along = row.dot(&pivot);
-                    row -= &pivot * along;
+                    row.axpy(-row.dot(&pivot), &pivot, 1.0);
                 }
             }
         }
     }
+}
+
+/// Factors of G Gᵀ, kept regular where rows depend on each other; G by its transpose.
+fn normal(g: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
+    let mut product = g.tr_mul(g);
+    for i in 0..product.nrows() {
+        product[(i, i)] += REGULAR;
+    }
+    product.cholesky()
 }
 
 /// A row that is left out, and how far it is open.

@@ -63,10 +63,11 @@ pub(super) fn gradients(
         };
         let data = match &mut again {
             None => &tape.steps[n - 1],
-            Some(stepper) => repeat(stepper, (from, to), (run.duration, begin, h), dense).ok_or_else(|| {
-                let column = 0;
-                singular(SingularMatrix { column })
-            })?,
+            Some(stepper) => repeat(stepper, (from, to), (run.duration, begin, h), dense)
+                .ok_or_else(|| {
+                    let column = 0;
+                    singular(SingularMatrix { column })
+                })?,
         };
         for k in (first..=sample).rev() {
             for sweep in &mut sweeps {

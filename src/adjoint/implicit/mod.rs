@@ -74,7 +74,13 @@ pub(super) fn gradients(
         let found = match Formula::of_step(run.method, k) {
             Some(formula) => one
                 .get_or_insert_with(|| formula::Plan::new(model, numbering))
-                .step(&formula, &step[0], (h, width, end), &mut sweeps, &mut counts),
+                .step(
+                    &formula,
+                    &step[0],
+                    (h, width, end),
+                    &mut sweeps,
+                    &mut counts,
+                ),
             None => coupled
                 .get_or_insert_with(|| radau::Plan::new(model, numbering, &scheme))
                 .step(step, (h, width, end), &mut sweeps, &mut counts),

@@ -3,10 +3,10 @@
 use crate::adjoint::sensitivity::{Sensitivity, add_scaled, dot};
 use crate::functions::Scene;
 use crate::integrate::grid::Place;
+use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::formula::memory_size;
 use crate::integrate::implicit::march::dense;
 use crate::integrate::implicit::radau::Scheme;
-use crate::integrate::implicit::Stage;
 use crate::integrate::{Method, Trajectory};
 use crate::system::Numbering;
 use crate::system::bodies;
@@ -93,7 +93,12 @@ impl<'a> Sweep<'a> {
     /// Pulls the cotangent of the initial q̇ = T(q) v back to the initial state.
     pub fn pull_starting_rates(&mut self, numbering: &Numbering, start: &Stage<f64>) {
         let (q_bar, v_bar) = (&mut self.of.q, &mut self.of.v);
-        bodies::pull_rates(numbering, (&start.q, &start.v), &self.rates.0, (q_bar, v_bar));
+        bodies::pull_rates(
+            numbering,
+            (&start.q, &start.v),
+            &self.rates.0,
+            (q_bar, v_bar),
+        );
     }
 }
 

@@ -193,12 +193,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         bodies::rates(numbering, &node.q, &node.v, &mut data.qdot[q]);
     }
 
-    fn stage(
-        &mut self,
-        node: &Node<S>,
-        i: usize,
-        (start, h): (S, S),
-    ) -> Result<(), StepFailure> {
+    fn stage(&mut self, node: &Node<S>, i: usize, (start, h): (S, S)) -> Result<(), StepFailure> {
         let (q, v, c) = (span(&node.q, i), span(&node.v, i), span(&node.lambda, i));
         let data = &mut self.data;
         // The stages before i stand in front of it.

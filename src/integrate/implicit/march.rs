@@ -14,10 +14,10 @@ use crate::integrate::watch;
 use crate::linalg::SolveScalar;
 use crate::math::rotation;
 use crate::model::Model;
+use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
 use crate::system::bodies::{self, positions_of};
 use crate::system::initial::InitialState;
-use crate::system::Numbering;
 use std::collections::VecDeque;
 
 /// Stages of the Radau IIA method that starts a multistep formula.
@@ -42,8 +42,7 @@ pub fn march<S: SolveScalar>(
     };
     let scheme = Scheme::new(stages);
     let scale = Scale::of(model, numbering, &start, duration.re());
-    let mut controller =
-        Controller::new(&settings.spacing, stages + 1, &scale, duration.re());
+    let mut controller = Controller::new(&settings.spacing, stages + 1, &scale, duration.re());
     let estimates = controller.estimates() && method.is_adaptive();
     let mut solver = Solver {
         method,
@@ -197,7 +196,10 @@ impl<S: SolveScalar> Solver<'_, S> {
         let mut stage = predict(self.numbering, past, h);
         stage.time = start + h;
         // h ẏ = c Δ + Σ e_j m_j.
-        let (mut qdot, mut vdot) = (vec![S::zero(); stage.q.len()], vec![S::zero(); stage.v.len()]);
+        let (mut qdot, mut vdot) = (
+            vec![S::zero(); stage.q.len()],
+            vec![S::zero(); stage.v.len()],
+        );
         for (e, (mq, mv)) in formula.past.iter().zip(&self.memory) {
             let e = S::from(*e) / h;
             qdot.iter_mut().zip(mq).for_each(|(out, &m)| *out += e * m);
@@ -225,15 +227,18 @@ impl<S: SolveScalar> Solver<'_, S> {
             }
             return;
         };
-        let combine = |pick: fn(&(Vec<S>, Vec<S>)) -> &Vec<S>, delta: &[S], row: &(f64, Vec<f64>)| {
-            let mut out: Vec<S> = delta.iter().map(|&d| d * row.0).collect();
-            for (&f, m) in row.1.iter().zip(&self.memory) {
-                if f != 0.0 {
-                    out.iter_mut().zip(pick(m)).for_each(|(out, &m)| *out += m * f);
+        let combine =
+            |pick: fn(&(Vec<S>, Vec<S>)) -> &Vec<S>, delta: &[S], row: &(f64, Vec<f64>)| {
+                let mut out: Vec<S> = delta.iter().map(|&d| d * row.0).collect();
+                for (&f, m) in row.1.iter().zip(&self.memory) {
+                    if f != 0.0 {
+                        out.iter_mut()
+                            .zip(pick(m))
+                            .for_each(|(out, &m)| *out += m * f);
+                    }
                 }
-            }
-            out
-        };
+                out
+            };
         self.memory = formula
             .memory
             .iter()
@@ -316,12 +321,20 @@ pub fn dense<S: SolveScalar>(
     let (w, rate) = scheme.dense_weights(theta);
     let plain = scheme.stage_weights(theta);
     let mut out = from.clone();
-    for x in [&mut out.lambda, &mut out.mu, &mut out.vdot, &mut out.dq, &mut out.dv] {
+    for x in [
+        &mut out.lambda,
+        &mut out.mu,
+        &mut out.vdot,
+        &mut out.dq,
+        &mut out.dv,
+    ] {
         x.fill(S::zero());
     }
     for (i, stage) in stages.iter().enumerate() {
         let add = |out: &mut [S], weight: S, x: &[S]| {
-            out.iter_mut().zip(x).for_each(|(out, &x)| *out += weight * x);
+            out.iter_mut()
+                .zip(x)
+                .for_each(|(out, &x)| *out += weight * x);
         };
         add(&mut out.q, S::from(w[i]), &stage.dq);
         add(&mut out.dq, S::from(w[i]), &stage.dq);

@@ -1,7 +1,7 @@
 //! Newton's method for one implicit step, with the iteration matrix kept while it converges.
 
-use super::ggl::Equations;
 use super::Stage;
+use super::ggl::Equations;
 use super::scales::SceneScale;
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::trajectory::WorkCounts;
@@ -94,7 +94,9 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
     ) -> Result<(), IntegrationFailure> {
         let numbering = self.numbering;
         let nv = numbering.velocities();
-        let scales = self.scale.step(numbering, [&x.q, &x.v, &x.dq, &x.dv], h.re());
+        let scales = self
+            .scale
+            .step(numbering, [&x.q, &x.v, &x.dq, &x.dv], h.re());
         let mut previous = f64::INFINITY;
         let (mut polish, mut before) = (false, 0.0_f64);
         for iteration in 1..=ITERATIONS {

@@ -32,12 +32,7 @@ impl SceneScale {
 
     /// The scales of a step of size `h` with the increments `dq`, `dv` to (q, v): never less than
     /// what gravity moves in a step, so that a model at rest is not judged by its noise.
-    pub fn step<S: Scalar>(
-        &self,
-        n: &Numbering,
-        [q, v, dq, dv]: [&[S]; 4],
-        h: f64,
-    ) -> Scales {
+    pub fn step<S: Scalar>(&self, n: &Numbering, [q, v, dq, dv]: [&[S]; 4], h: f64) -> Scales {
         let (mut shift, mut turn, mut place) = (0.0_f64, 0.0_f64, self.length);
         for body in 0..n.bodies() {
             let (dq, q) = (&dq[n.position(body)..], &q[n.position(body)..]);

@@ -4,7 +4,7 @@
 use super::Stage;
 use super::ggl::Equations;
 use super::radau::Scheme;
-use super::scales::{SceneScale, Scales};
+use super::scales::{Scales, SceneScale};
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::trajectory::WorkCounts;
 use crate::linalg::{SolveScalar, SparseLu, SparseMatrix};
@@ -73,10 +73,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             held: SparseMatrix::new(pattern.clone()),
             unit: SparseMatrix::new(pattern.clone()),
             real_mode,
-            complex_mode: (
-                SparseMatrix::new(pattern.clone()),
-                SparseLu::new(&pattern),
-            ),
+            complex_mode: (SparseMatrix::new(pattern.clone()), SparseLu::new(&pattern)),
             factored: None,
             scale: SceneScale::of(model),
             residuals: vec![vec![S::zero(); n]; scheme.stages()],
@@ -102,7 +99,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         at: (usize, f64),
         counts: &mut WorkCounts,
     ) -> Result<(), IntegrationFailure> {
-        let kept = self.factored.is_some_and(|old| (old - h.re()).abs() < SAME_STEP * old);
+        let kept = self
+            .factored
+            .is_some_and(|old| (old - h.re()).abs() < SAME_STEP * old);
         if S::INFINITESIMAL || !kept {
             self.factorise(stages, h.re(), at, counts)?;
             return self.iterate(stages, h, at, counts);
@@ -211,8 +210,12 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             vdot.fill(S::zero());
             for (stage, &d) in stages.iter().zip(&self.scheme.rates[i]) {
                 let d = S::from(d) / h;
-                qdot.iter_mut().zip(&stage.dq).for_each(|(out, &z)| *out += d * z);
-                vdot.iter_mut().zip(&stage.dv).for_each(|(out, &z)| *out += d * z);
+                qdot.iter_mut()
+                    .zip(&stage.dq)
+                    .for_each(|(out, &z)| *out += d * z);
+                vdot.iter_mut()
+                    .zip(&stage.dv)
+                    .for_each(|(out, &z)| *out += d * z);
             }
             stages[i].qdot = qdot;
             stages[i].vdot = vdot;
@@ -320,8 +323,12 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         let mut dq: Vec<f64> = qdot.iter().map(|x| first * h * x).collect();
         let mut dv: Vec<f64> = vdot.iter().map(|x| first * h * x).collect();
         for (stage, e) in stages.iter().zip(weights) {
-            dq.iter_mut().zip(&stage.dq).for_each(|(out, z)| *out += e * z.re());
-            dv.iter_mut().zip(&stage.dv).for_each(|(out, z)| *out += e * z.re());
+            dq.iter_mut()
+                .zip(&stage.dq)
+                .for_each(|(out, z)| *out += e * z.re());
+            dv.iter_mut()
+                .zip(&stage.dv)
+                .for_each(|(out, z)| *out += e * z.re());
         }
         let end: Vec<f64> = stages[stages.len() - 1].q.iter().map(|x| x.re()).collect();
         self.real_rhs.fill(0.0);

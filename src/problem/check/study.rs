@@ -7,9 +7,9 @@ use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join};
 use crate::problem::quantity::values;
 use crate::problem::scene::{GRAVITY, released};
-use crate::problem::schema::{Method, Objective};
 use crate::problem::schema::functions::{Clearance, Component, Function, Gate, Instant, Range};
 use crate::problem::schema::mechanics::Point;
+use crate::problem::schema::{Method, Objective};
 
 /// Largest cosine between gravity and a direction that counts as horizontal.
 const HORIZONTAL: f64 = 1e-9;
