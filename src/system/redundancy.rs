@@ -86,6 +86,17 @@ pub fn leave_out(model: &mut Model<f64>) -> Vec<Redundancy> {
     found
 }
 
+/// Number of rows of the model that follow from the others, those that are left out included;
+/// `None` if its joints cannot be closed.
+pub fn redundant_rows(model: &Model<f64>) -> Option<usize> {
+    let mut model = model.clone();
+    for joint in &mut model.joints {
+        joint.left_out.clear();
+    }
+    let kept = independent_rows(&model, &in_loops(&model))?;
+    Some(kept.into_iter().filter(|kept| !kept).count())
+}
+
 /// Joints that lie in loops of bodies and ground; in trees no row follows from others.
 fn in_loops<S>(model: &Model<S>) -> Vec<usize> {
     let ground = model.bodies.len();
