@@ -293,7 +293,7 @@ impl<'a> Rows<'a> {
 
 /// Factors of G Gᵀ, kept regular where rows depend on each other; G by its transpose.
 fn normal(g: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
-    let mut product = g.tr_mul(g);
+    let mut product = g.transpose() * g;
     for i in 0..product.nrows() {
         product[(i, i)] += REGULAR;
     }
