@@ -2,8 +2,8 @@
 //! left out, so that the equations that are solved have full rank.
 //!
 //! A row that depends on the others only where the bodies are placed marks a singular position, not
-//! a redundancy. So the rank is taken at the closed placement and at closed positions beside it,
-//! reached along motions that the joints allow, and what is left out is what depends on the rest
+//! a redundancy. So the rank is taken at the closed placement and at a closed position beside it,
+//! reached along a motion that the joints allow, and what is left out is what depends on the rest
 //! at the position of the largest rank. Rows are kept by a pivoted Gram–Schmidt process on the rows
 //! of G: the first in the order of the joints whose part across the rows kept so far is not small
 //! against the largest such part.
@@ -30,7 +30,8 @@ const REGULAR: f64 = 1e-10;
 pub const OPENED: f64 = 1e-6;
 /// Closing steps.
 const ITERATIONS: usize = 50;
-/// Distances of the positions beside the placement, in units of the length scale and in radians.
+/// Distances of a position beside the placement that are tried, in units of the length scale and in
+/// radians.
 const BESIDE: [f64; 3] = [0.03, -0.02, 0.005];
 
 /// A joint some of whose rows follow from the other joints.
@@ -123,21 +124,20 @@ fn independent_rows(model: &Model<f64>, joints: &[usize]) -> Option<Vec<bool>> {
     let rows = Rows::new(model, joints);
     let (q, _) = guess(model);
     let placed = rows.close(q)?;
-    let mut best = rows.independent(&placed);
+    let there = rows.independent(&placed);
     let count = |kept: &[bool]| kept.iter().filter(|kept| **kept).count();
-    if count(&best) == best.len() {
-        return Some(best);
+    if count(&there) == there.len() {
+        return Some(there);
     }
-    for distance in BESIDE {
-        let Some(beside) = rows.beside(&placed, distance) else {
-            continue;
-        };
-        let kept = rows.independent(&beside);
-        if count(&kept) > count(&best) {
-            best = kept;
-        }
-    }
-    Some(best)
+    // Joints that allow no motion have no position beside the placement.
+    let beside = BESIDE
+        .iter()
+        .find_map(|&distance| rows.beside(&placed, distance));
+    let beside = beside.map(|q| rows.independent(&q));
+    Some(match beside {
+        Some(beside) if count(&beside) > count(&there) => beside,
+        _ => there,
+    })
 }
 
 /// The rows of some joints of a model.
