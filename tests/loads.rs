@@ -5,6 +5,12 @@ use flexbody::driver::{check, simulate};
 use flexbody::problem::Problem;
 use serde_json::{Value, json};
 
+/// Half a second by BDF2 from the first step on.
+fn bdf(steps: usize) -> Value {
+    let method = json!({"bdf": {"order": 2, "start": "rising_order"}});
+    json!({"duration": 0.5, "steps": steps, "method": method})
+}
+
 /// A slider on a rail, an arm hinged to it, a box hung from the arm by a ball joint.
 fn scene(load: &Value) -> Value {
     json!({
@@ -30,7 +36,7 @@ fn scene(load: &Value) -> Value {
             "ball": {"spherical": {"between": ["box", "arm"], "at": "arm.tip"}}
         },
         "loads": {"load": load},
-        "simulation": {"duration": 0.5, "steps": 100},
+        "simulation": bdf(100),
         "functions": {
             "place": {"final": {"position": {"body": "box", "point": "side",
                                              "direction": [0.6, 0.5, 0.4]}}},
@@ -67,11 +73,17 @@ fn numbers(value: &Value, at: &str, out: &mut Vec<String>) {
 }
 
 /// The duration, a length and an angle of the scene, and every number of the load: to 1e-12 of
-/// themselves, those that vanish to 1e-15 of the function's largest.
+/// themselves, or to 1e-14 of the function's largest, whose round-off reaches the small ones.
 fn assert_gradients(load: Value) {
-    let mut file = scene(&load);
+    assert_gradients_of(&json!({"load": load}), bdf(100));
+}
+
+fn assert_gradients_of(loads: &Value, simulation: Value) {
+    let mut file = scene(&json!({}));
+    file["loads"] = loads.clone();
+    file["simulation"] = simulation;
     let mut paths = Vec::new();
-    numbers(&load, "/loads/load", &mut paths);
+    numbers(loads, "/loads", &mut paths);
     for path in &paths {
         let start = file
             .pointer(path)
@@ -96,12 +108,12 @@ fn assert_gradients(load: Value) {
         let name = &problem.variables[derivative.variable].name;
         let exact = derivative.complex_step.abs();
         assert!(
-            difference <= 1e-12 * exact || difference <= 1e-15 * largest,
-            "{load}: {name}: {derivative:?}"
+            difference <= 1e-12 * exact || difference <= 1e-14 * largest,
+            "{loads}: {name}: {derivative:?}"
         );
     }
     // Every variable moves a function.
-    assert!(moved >= problem.variables.len(), "{load}: {moved}");
+    assert!(moved >= problem.variables.len(), "{loads}: {moved}");
 }
 
 #[test]
@@ -147,6 +159,43 @@ fn gradients_of_damping_and_friction() {
     }
     for joint in ["rail", "hinge"] {
         assert_gradients(json!({"friction": {"joint": joint, "size": 1.5, "width": 0.3}}));
+    }
+}
+
+/// All kinds of load at once by every method, with steps of equal size and with chosen ones: the
+/// explicit methods need forces alone, the implicit ones their Jacobians too.
+#[test]
+fn gradients_by_every_method() {
+    let loads = json!({
+        "force": {"force": {
+            "body": "box", "point": [0.1, 0.05, -0.1], "direction": [0.3, 0.9, 0.5], "axes": "body",
+            "magnitude": {"harmonic": {"amplitude": 4.0, "frequency": 1.7, "phase": 0.4}}}},
+        "torque": {"torque": {
+            "body": "box", "direction": [0.3, 0.9, 0.5],
+            "magnitude": {"table": {"times": [0, 0.1, 0.3, 0.6], "values": [1, 2.5, 3, 6]}}}},
+        "spring": {"spring": {
+            "between": ["box", "ground"], "at": {"a": "side", "b": [0.2, 0.7, 0.3]},
+            "rest_length": 0.6, "stiffness": 40, "cubic": 30, "damping": 0.8}},
+        "torsion": {"torsion_spring": {
+            "joint": "hinge", "rest_angle": 0.4, "stiffness": 12, "damping": 0.3}},
+        "damping": {"damping": {"joint": "ball", "coefficient": 0.2}},
+        "friction": {"friction": {"joint": "rail", "size": 1.5, "width": 0.3}}
+    });
+    let methods = [
+        json!("dop853"),
+        json!({"radau": {"stages": 2}}),
+        json!({"radau": {"stages": 3}}),
+        json!({"bdf": {"order": 2}}),
+        json!({"bdf": {"order": 3, "start": "rising_order"}}),
+        json!({"generalised_alpha": {"radius": 0.8}}),
+    ];
+    let fixed = methods
+        .iter()
+        .map(|m| json!({"duration": 0.5, "steps": 60, "method": m}));
+    let adaptive = methods[..3].iter();
+    let adaptive = adaptive.map(|m| json!({"duration": 0.5, "tolerance": 1e-7, "method": m}));
+    for simulation in fixed.chain(adaptive) {
+        assert_gradients_of(&loads, simulation);
     }
 }
 
@@ -283,7 +332,7 @@ fn simpson(f: impl Fn(f64) -> f64) -> f64 {
 fn springs_keep_energy_and_dampers_take_it() {
     let drift = |load: Value, steps: usize| {
         let mut file = scene(&load);
-        file["simulation"]["steps"] = json!(steps);
+        file["simulation"] = bdf(steps);
         let problem = Problem::parse(&file.to_string(), "loaded.json", &[])
             .unwrap_or_else(|faults| panic!("{faults}"));
         let start = problem.start();

@@ -6,6 +6,7 @@ use flexbody::integrate::IntegrationFailure;
 use flexbody::problem::{Override, Problem};
 use serde_json::{Value, json};
 use std::path::Path;
+use std::process::Command;
 
 fn problem(file: &Value) -> Problem {
     Problem::parse(&file.to_string(), "redundant.json", &[])
@@ -198,6 +199,10 @@ fn a_singular_position_is_no_redundancy() {
     let fault = Problem::parse(&file.to_string(), "redundant.json", &[])
         .expect_err("a singular position")
         .to_string();
+    assert!(
+        fault.contains("the placement is a singular position"),
+        "{fault}"
+    );
     assert!(fault.contains("straight or folded positions"), "{fault}");
     let beside = problem(&parallelograms(1, half - 1e-3));
     let rows: usize = beside.redundant.iter().map(|r| r.left_out).sum();
@@ -253,5 +258,57 @@ fn bricards_mechanism() {
             );
         }
         assert!(motion.constraint_drift().0 < 1e-10);
+    }
+}
+
+/// Rows of linkages through singular positions (MBS benchmark library, A02), by the explicit method
+/// with a tolerance of 1e-9: ten passages in 10 s, to 1e-6 of the exact motion of the one coordinate.
+#[test]
+fn linkages_pass_singular_positions_on_their_branch() {
+    for (n, exact) in [
+        (1, [0.478_385_057_8, 0.878_150_178_8]),
+        (2, [0.328_458_111_5, 0.944_518_538_2]),
+        (10, [0.204_353_561, 0.978_897_145_8]),
+        (40, [0.180_512_226_7, 0.983_572_740_6]),
+    ] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let path = path.join(format!("problems/benchmarks/four_bars_{n}.json"));
+        let problem = Problem::load(&path, &[]).expect("no faults");
+        let rows: usize = problem.redundant.iter().map(|r| r.left_out).sum();
+        assert_eq!(rows, 3 * n);
+        let motion = simulate(&problem, &[]).expect("runs");
+        for (f, exact) in exact.iter().enumerate() {
+            let found = motion.at.function(f).value;
+            assert!(
+                (found - exact).abs() <= 1e-6,
+                "{n}: {found} against {exact}"
+            );
+        }
+    }
+}
+
+/// The program says on its error stream which joints repeat others, unless it is to be quiet.
+#[test]
+fn the_program_names_redundant_joints() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/problems/benchmarks/four_bars_1.json"
+    );
+    let short = ["simulate", file, "--set", "/simulation/duration=0.01"];
+    for (more, expected) in [
+        (None, "joint \"C0\": 3 of 5 rows follow from the others; "),
+        (Some("--quiet"), ""),
+    ] {
+        let done = Command::new(env!("CARGO_BIN_EXE_optimize"))
+            .args(short)
+            .args(more)
+            .output()
+            .expect("the program runs");
+        let told = String::from_utf8(done.stderr).expect("UTF-8");
+        assert!(
+            done.status.success() && told.starts_with(expected),
+            "{told}"
+        );
+        assert_eq!(told.is_empty(), more.is_some(), "{told}");
     }
 }

@@ -129,10 +129,15 @@ fn unassembled(problem: &Problem) -> Option<Finding> {
             "axes that point the same way in both bodies",
             "place one of the bodies turned by 180 degrees",
         ),
-        AssemblyFailure::Redundant { .. } => (
+        AssemblyFailure::SingularPosition { .. } => (
             "/joints".to_owned(),
             "a placement at which the joints are independent, as they are beside it",
             "place the bodies away from straight or folded positions",
+        ),
+        AssemblyFailure::Redundant { .. } => (
+            "/joints".to_owned(),
+            "constraints that are independent of each other",
+            "leave one of the joints out, or replace a revolute joint by a spherical one",
         ),
         AssemblyFailure::WithoutInertia { .. } => (
             "/bodies".to_owned(),

@@ -57,6 +57,15 @@ pub enum AssemblyFailure {
         /// Names of the joints that they belong to.
         joints: String,
     },
+    /// Constraints follow from each other at this placement, though not beside it.
+    #[error(
+        "the placement is a singular position, in which the joints do not determine how the bodies \
+         move on: {joints}"
+    )]
+    SingularPosition {
+        /// Names of the joints whose constraints depend on each other.
+        joints: String,
+    },
     /// A motion that the joints allow has no inertia.
     #[error("bodies that can move without inertia: {bodies}")]
     WithoutInertia {

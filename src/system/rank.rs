@@ -4,6 +4,7 @@ use super::assembly::AssemblyFailure;
 use super::bodies::Motion;
 use super::joints;
 use super::numbering::Numbering;
+use super::redundancy::redundant_rows;
 use crate::math::Scalar;
 use crate::model::Model;
 use nalgebra::DMatrix;
@@ -63,14 +64,21 @@ pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
             }
         }
     }
+    let joints = if names.is_empty() {
+        "all".to_string()
+    } else {
+        names.join(", ")
+    };
+    // What is redundant beside this placement as well has been left out already, or not yet.
+    let model = model.map(&mut |x| x.re());
+    let left_out = model.joints.iter().map(|joint| joint.left_out.len()).sum();
+    if redundant_rows(&model) == Some(left_out) {
+        return AssemblyFailure::SingularPosition { joints };
+    }
     AssemblyFailure::Redundant {
         redundant: redundant.len() + extra,
         constraints: numbering.constraints(),
-        joints: if names.is_empty() {
-            "all".to_string()
-        } else {
-            names.join(", ")
-        },
+        joints,
     }
 }
 

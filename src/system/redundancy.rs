@@ -2,8 +2,8 @@
 //! left out, so that the equations that are solved have full rank.
 //!
 //! A row that depends on the others only where the bodies are placed marks a singular position, not
-//! a redundancy. So the rank is taken at the closed placement and at closed positions beside it,
-//! reached along motions that the joints allow, and what is left out is what depends on the rest
+//! a redundancy. So the rank is taken at the closed placement and at a closed position beside it,
+//! reached along a motion that the joints allow, and what is left out is what depends on the rest
 //! at the position of the largest rank. Rows are kept by a pivoted Gram–Schmidt process on the rows
 //! of G: the first in the order of the joints whose part across the rows kept so far is not small
 //! against the largest such part.
@@ -16,7 +16,7 @@ use super::joints;
 use super::numbering::Numbering;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Model};
-use nalgebra::{DMatrix, DVector, RowDVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Part of a unit row across the others below which it follows from them.
 const DEPENDENT: f64 = 1e-9;
@@ -30,7 +30,8 @@ const REGULAR: f64 = 1e-10;
 pub const OPENED: f64 = 1e-6;
 /// Closing steps.
 const ITERATIONS: usize = 50;
-/// Distances of the positions beside the placement, in units of the length scale and in radians.
+/// Distances of a position beside the placement that are tried, in units of the length scale and in
+/// radians.
 const BESIDE: [f64; 3] = [0.03, -0.02, 0.005];
 
 /// A joint some of whose rows follow from the other joints.
@@ -86,6 +87,17 @@ pub fn leave_out(model: &mut Model<f64>) -> Vec<Redundancy> {
     found
 }
 
+/// Number of rows of the model that follow from the others, those that are left out included;
+/// `None` if its joints cannot be closed.
+pub fn redundant_rows(model: &Model<f64>) -> Option<usize> {
+    let mut model = model.clone();
+    for joint in &mut model.joints {
+        joint.left_out.clear();
+    }
+    let kept = independent_rows(&model, &in_loops(&model))?;
+    Some(kept.into_iter().filter(|kept| !kept).count())
+}
+
 /// Joints that lie in loops of bodies and ground; in trees no row follows from others.
 fn in_loops<S>(model: &Model<S>) -> Vec<usize> {
     let ground = model.bodies.len();
@@ -112,21 +124,20 @@ fn independent_rows(model: &Model<f64>, joints: &[usize]) -> Option<Vec<bool>> {
     let rows = Rows::new(model, joints);
     let (q, _) = guess(model);
     let placed = rows.close(q)?;
-    let mut best = rows.independent(&placed);
+    let there = rows.independent(&placed);
     let count = |kept: &[bool]| kept.iter().filter(|kept| **kept).count();
-    if count(&best) == best.len() {
-        return Some(best);
+    if count(&there) == there.len() {
+        return Some(there);
     }
-    for distance in BESIDE {
-        let Some(beside) = rows.beside(&placed, distance) else {
-            continue;
-        };
-        let kept = rows.independent(&beside);
-        if count(&kept) > count(&best) {
-            best = kept;
-        }
-    }
-    Some(best)
+    // Joints that allow no motion have no position beside the placement.
+    let beside = BESIDE
+        .iter()
+        .find_map(|&distance| rows.beside(&placed, distance));
+    let beside = beside.map(|q| rows.independent(&q));
+    Some(match beside {
+        Some(beside) if count(&beside) > count(&there) => beside,
+        _ => there,
+    })
 }
 
 /// The rows of some joints of a model.
@@ -159,13 +170,14 @@ impl<'a> Rows<'a> {
         self.joints.iter().flat_map(|&j| self.numbering.rows(j))
     }
 
-    /// Unit rows of G, angles counted as arcs at the length scale, and what makes them so.
+    /// Unit rows of G as columns, angles counted as arcs at the length scale, and what makes them
+    /// so.
     fn gradients(&self, q: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
         let motions = self.motions(q);
         let mut all = Vec::new();
         joints::gradients(self.model, &self.numbering, &motions, &mut all);
         let count = self.numbers().count();
-        let mut g = DMatrix::zeros(count, self.numbering.velocities());
+        let mut g = DMatrix::zeros(self.numbering.velocities(), count);
         let mut i = 0;
         for &j in self.joints {
             let joint = &self.model.joints[j];
@@ -174,7 +186,7 @@ impl<'a> Rows<'a> {
                 let a = self.numbering.velocity(joint.body_a);
                 let mut put = |at: usize, values: &Vec3<f64>, scale: f64| {
                     for k in 0..3 {
-                        g[(i, at + k)] += values[k] * scale;
+                        g[(at + k, i)] += values[k] * scale;
                     }
                 };
                 put(a, &row.force, 1.0);
@@ -186,8 +198,8 @@ impl<'a> Rows<'a> {
                 i += 1;
             }
         }
-        let scales: Vec<f64> = g.row_iter().map(|row| 1.0 / row.norm()).collect();
-        for (mut row, scale) in g.row_iter_mut().zip(&scales) {
+        let scales: Vec<f64> = g.column_iter().map(|row| 1.0 / row.norm()).collect();
+        for (mut row, scale) in g.column_iter_mut().zip(&scales) {
             row *= *scale;
         }
         (g, scales)
@@ -213,11 +225,7 @@ impl<'a> Rows<'a> {
                 .zip(&scales)
                 .map(|(i, scale)| -values[i] * scale);
             let open = DVector::from_iterator(scales.len(), open);
-            let mut normal = &g * g.transpose();
-            for i in 0..scales.len() {
-                normal[(i, i)] += REGULAR;
-            }
-            let step = g.tr_mul(&normal.cholesky()?.solve(&open));
+            let step = &g * normal(&g)?.solve(&open);
             self.advance(&mut q, &step);
         }
         None
@@ -240,11 +248,10 @@ impl<'a> Rows<'a> {
         // Any direction that no symmetry of a scene singles out.
         let count = self.numbering.velocities();
         let mut along = DVector::from_fn(count, |i, _| (1.0 + 1.7 * i as f64).sin());
-        let normal = &g * g.transpose() + DMatrix::identity(g.nrows(), g.nrows()) * REGULAR;
-        let factors = normal.cholesky()?;
+        let factors = normal(&g)?;
         // Twice, as the weight that keeps it regular leaves a little.
         for _ in 0..2 {
-            along -= g.tr_mul(&factors.solve(&(&g * &along)));
+            along -= &g * factors.solve(&g.tr_mul(&along));
         }
         let size = along.amax();
         if size < 1e-6 {
@@ -258,9 +265,9 @@ impl<'a> Rows<'a> {
     /// Which rows to keep at q so that those kept are independent and the others follow.
     fn independent(&self, q: &[f64]) -> Vec<bool> {
         let (mut g, _) = self.gradients(q);
-        let mut kept = vec![false; g.nrows()];
+        let mut kept = vec![false; g.ncols()];
         loop {
-            let sizes: Vec<f64> = g.row_iter().map(|row| row.norm()).collect();
+            let sizes: Vec<f64> = g.column_iter().map(|row| row.norm()).collect();
             let free = |i: &usize| !kept[*i];
             let largest = (0..sizes.len())
                 .filter(free)
@@ -274,15 +281,23 @@ impl<'a> Rows<'a> {
                 .find(|&i| sizes[i] >= PREFERRED * largest);
             let Some(first) = first else { return kept };
             kept[first] = true;
-            let pivot: RowDVector<f64> = g.row(first) / sizes[first];
-            for (i, mut row) in g.row_iter_mut().enumerate() {
+            let pivot = g.column(first) / sizes[first];
+            for (i, mut row) in g.column_iter_mut().enumerate() {
                 if !kept[i] {
-                    let along = row.dot(&pivot);
-                    row -= &pivot * along;
+                    row.axpy(-row.dot(&pivot), &pivot, 1.0);
                 }
             }
         }
     }
+}
+
+/// Factors of G Gᵀ, kept regular where rows depend on each other; G by its transpose.
+fn normal(g: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
+    let mut product = g.transpose() * g;
+    for i in 0..product.nrows() {
+        product[(i, i)] += REGULAR;
+    }
+    product.cholesky()
 }
 
 /// A row that is left out, and how far it is open.
