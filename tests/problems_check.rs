@@ -6,7 +6,7 @@
 //! to what is stated. Coarse steps, at which Newton's method works hardest, are checked as well.
 
 use flexbody::driver::check;
-use flexbody::problem::{Override, Problem};
+use flexbody::problem::Problem;
 use std::path::Path;
 
 fn largest_difference(name: &str, simulation: &str) -> f64 {
@@ -53,7 +53,10 @@ fn at_full_size() {
     ] {
         let difference = largest_difference(name, simulation);
         println!("{name} {simulation}: {difference:e}");
-        assert!(difference <= tolerance, "{name} {simulation}: {difference:e}");
+        assert!(
+            difference <= tolerance,
+            "{name} {simulation}: {difference:e}"
+        );
     }
 }
 
@@ -61,7 +64,8 @@ fn at_full_size() {
 fn at_coarse_steps() {
     for name in ["trebuchet", "trebuchet_release_time", "triple_pendulum"] {
         for steps in [50, 150, 300] {
-            let simulation = format!(r#"{{"steps": {steps}, "method": {{"bdf": {{"order": 2}}}}}}"#);
+            let simulation =
+                format!(r#"{{"steps": {steps}, "method": {{"bdf": {{"order": 2}}}}}}"#);
             let difference = largest_difference(name, &simulation);
             assert!(
                 difference <= 2e-11,
