@@ -69,8 +69,10 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
             (problem, done)
         }
     };
-    if let Status::UndefinedStart { what } = &done.outcome.status {
-        return Err(Failure::new(NUMERICAL_FAILURE, what));
+    match &done.outcome.status {
+        Status::UndefinedStart { what } => return Err(Failure::new(NUMERICAL_FAILURE, what)),
+        Status::IllPosed { what } => return Err(Failure::bad_input(what)),
+        _ => {}
     }
     if course.second_order && done.outcome.converged() {
         done.optimum.second_order =

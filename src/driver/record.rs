@@ -25,6 +25,7 @@ fn verdict(status: &Status) -> (&'static str, String) {
                  and no small change reduces the violation"
             ),
         ),
+        Status::IllPosed { what } => ("ill_posed", format!("the problem makes no sense: {what}")),
         Status::Unbounded => ("unbounded", "the objective improves without bound".into()),
         Status::UndefinedStart { what } => (
             "undefined_start",

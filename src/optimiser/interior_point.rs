@@ -11,7 +11,7 @@ use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
 use super::trust_region::{Ending, Goal, TrustRegion};
-use super::verdict::{ScaledMultipliers, is_solved, kkt};
+use super::verdict::{ScaledMultipliers, UNIT, is_solved};
 
 /// Multipliers of bounds stay within this factor of μ/distance.
 const MULTIPLIER_BAND: f64 = 1e10;
@@ -125,7 +125,7 @@ impl InteriorPoint {
             if self.is_solved(program) {
                 return Ok(Ending::Reached);
             }
-            if self.is_unbounded(program) {
+            if program.is_unbounded(&self.at.point) {
                 return Ok(Ending::Unbounded);
             }
             if self.barrier.update(&self.at, &self.layout, &mut self.b) {
@@ -266,22 +266,18 @@ impl InteriorPoint {
         program.report(&self.at.point, &progress)
     }
 
-    fn is_solved(&self, program: &Program<'_>) -> bool {
+    fn is_solved(&mut self, program: &Program<'_>) -> bool {
         let scaled = self.optimality();
         if scaled > program.options.tolerance {
             return false;
         }
         let z = self.multipliers(program);
         let gap: f64 = self.at.products(&self.layout).iter().sum();
-        let residuals = kkt(program, &self.at.point, &self.at.slopes, &z, scaled);
-        is_solved(&residuals, program.options)
-            && gap <= 0.1 * program.options.tolerance * self.at.point.f.abs().max(0.1)
-    }
-
-    fn is_unbounded(&self, program: &Program<'_>) -> bool {
-        let f = self.at.point.f / program.scaling.objective;
-        f < program.options.unbounded_below
-            && program.worst_violation(&self.at.point.c).0 <= program.options.constraint_tolerance
+        let least = UNIT * program.typical_gradient() * program.scaling.objective;
+        let unit = self.at.point.f.abs().max(least);
+        let (point, slopes) = (&self.at.point, &self.at.slopes);
+        gap <= 0.1 * program.options.tolerance * unit
+            && is_solved(program, point, slopes, &z, scaled, &mut self.b)
     }
 
     /// What to do when the line search found no step: forget the quasi-Newton matrix if the point

@@ -3,6 +3,7 @@
 mod barrier;
 mod direction;
 mod elastic_qp;
+mod ending;
 mod filter;
 mod interior_point;
 mod iterate;
@@ -19,6 +20,7 @@ mod start;
 mod state;
 mod trust_region;
 mod verdict;
+mod well_posed;
 
 pub use nlp::{Evaluation, EvaluationFailure, Gradients, Nlp};
 pub use observer::{Observer, Phase, Row, Silent};

@@ -18,9 +18,12 @@ const FAILED_DESIGNS_KEPT: usize = 100;
 
 /// An objective whose gradient at the start is below `FLAT` is multiplied until it is `LIFTED`, lest
 /// a start on a plateau be taken for a solution.
-const FLAT: f64 = 1e-2;
-const LIFTED: f64 = 1e-2;
-const LARGEST_LIFT: f64 = 1e8;
+const FLAT: f64 = 1.0;
+const LIFTED: f64 = 1.0;
+const LARGEST_LIFT: f64 = 1e12;
+
+/// Points that count as the first ones of a run.
+const FIRST_POINTS: usize = 12;
 
 /// Values of the scaled functions at a scaled point.
 #[derive(Clone, Debug)]
@@ -35,6 +38,9 @@ pub(super) struct Point {
 pub(super) struct Slopes {
     pub g: DVector<f64>,
     pub a: DMatrix<f64>,
+    /// Derivatives in the fixed variables, in the user's units of these.
+    pub fixed_g: DVector<f64>,
+    pub fixed_a: DMatrix<f64>,
 }
 
 /// Why no value came back.
@@ -59,13 +65,21 @@ pub(super) struct Progress {
     pub phase: Phase,
 }
 
+/// Iterations and evaluations after which a method must end.
+#[derive(Clone, Copy, Debug)]
+struct Allowed {
+    iterations: usize,
+    evaluations: usize,
+}
+
 /// The scaled program.
 pub(super) struct Program<'a> {
     nlp: &'a mut dyn Nlp,
     observer: &'a mut dyn Observer,
     pub options: &'a Options,
-    /// Variables whose bounds differ.
+    /// Variables whose bounds differ, and those whose bounds coincide.
     pub free: Vec<usize>,
+    pub fixed: Vec<usize>,
     /// Rows that have at least one bound.
     pub rows: Vec<usize>,
     /// Bounds of the scaled variables and rows.
@@ -73,6 +87,8 @@ pub(super) struct Program<'a> {
     pub upper: DVector<f64>,
     pub row_lower: DVector<f64>,
     pub row_upper: DVector<f64>,
+    user_lower: Vec<f64>,
+    user_upper: Vec<f64>,
     user_row_lower: Vec<f64>,
     user_row_upper: Vec<f64>,
     template: Vec<f64>,
@@ -80,6 +96,10 @@ pub(super) struct Program<'a> {
     pub counts: Counts,
     pub failed: Vec<FailedDesign>,
     started: Instant,
+    /// Norms ‖∇f‖∞ of all points so far, in the units of the user.
+    gradient_norms: Vec<f64>,
+    /// Iterations and evaluations allowed to the method that runs.
+    allowed: Allowed,
     /// Best point reported: feasible with the least objective, or least infeasible.
     pub best: Option<Point>,
 }
@@ -94,7 +114,7 @@ impl<'a> Program<'a> {
         let (lower, upper) = nlp.variable_bounds();
         let (row_lower, row_upper) = nlp.constraint_bounds();
         let (n, m) = (nlp.variables(), nlp.constraints());
-        let free: Vec<usize> = (0..n).filter(|&i| lower[i] < upper[i]).collect();
+        let (free, fixed): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| lower[i] < upper[i]);
         let rows: Vec<usize> = (0..m)
             .filter(|&j| row_lower[j].is_finite() || row_upper[j].is_finite())
             .collect();
@@ -127,18 +147,26 @@ impl<'a> Program<'a> {
             upper: scaled(&upper),
             row_lower: pick(&row_lower, &rows),
             row_upper: pick(&row_upper, &rows),
+            user_lower: lower,
+            user_upper: upper,
             user_row_lower: row_lower,
             user_row_upper: row_upper,
             nlp,
             observer,
             options,
             free,
+            fixed,
             rows,
             template,
             scaling,
             counts: Counts::default(),
             failed: Vec::new(),
             started: Instant::now(),
+            gradient_norms: Vec::new(),
+            allowed: Allowed {
+                iterations: options.max_iterations,
+                evaluations: options.max_evaluations,
+            },
             best: None,
         }
     }
@@ -158,7 +186,8 @@ impl<'a> Program<'a> {
     pub fn to_user(&self, x: &DVector<f64>) -> Vec<f64> {
         let mut full = self.template.clone();
         for (k, &i) in self.free.iter().enumerate() {
-            full[i] = x[k] * self.scaling.variables[i];
+            let value = x[k] * self.scaling.variables[i];
+            full[i] = value.clamp(self.user_lower[i], self.user_upper[i]);
         }
         full
     }
@@ -189,18 +218,21 @@ impl<'a> Program<'a> {
     pub fn adopt_scaling(&mut self, saved: &Scaling, point: &mut Point, slopes: &mut Slopes) {
         self.scaling.objective = saved.objective;
         self.scaling.constraints.clone_from(&saved.constraints);
+        self.gradient_norms = vec![saved.typical_gradient];
         self.apply_scaling(point, slopes);
     }
 
     fn apply_scaling(&mut self, point: &mut Point, slopes: &mut Slopes) {
         point.f *= self.scaling.objective;
         slopes.g *= self.scaling.objective;
+        slopes.fixed_g *= self.scaling.objective;
         for (k, &j) in self.rows.iter().enumerate() {
             let factor = self.scaling.constraints[j];
             self.row_lower[k] *= factor;
             self.row_upper[k] *= factor;
             point.c[k] *= factor;
             slopes.a.row_mut(k).scale_mut(factor);
+            slopes.fixed_a.row_mut(k).scale_mut(factor);
         }
     }
 
@@ -240,7 +272,7 @@ impl<'a> Program<'a> {
         self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
         self.counts.evaluations += 1;
         if let Ok(e) = &result
-            && let Some(fault) = fault_of_evaluation(self.nlp, e)
+            && let Some(fault) = fault_of_evaluation(self.nlp, &self.rows, e)
         {
             result = Err(fault);
         }
@@ -268,7 +300,7 @@ impl<'a> Program<'a> {
         self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
         self.counts.gradients += 1;
         if let Ok(g) = &result
-            && let Some(fault) = fault_of_gradients(self.nlp, g)
+            && let Some(fault) = fault_of_gradients(self.nlp, &self.rows, g)
         {
             result = Err(fault);
         }
@@ -285,7 +317,19 @@ impl<'a> Program<'a> {
             let (j, i) = (rows[r], free[k]);
             jacobian[(j, i)] * scaling.constraints[j] * scaling.variables[i]
         });
-        Ok(Slopes { g, a })
+        let fixed = &self.fixed;
+        let fixed_g = fixed.iter().map(|&i| objective[i] * scaling.objective);
+        let slopes = Slopes {
+            fixed_g: DVector::from_iterator(fixed.len(), fixed_g),
+            fixed_a: DMatrix::from_fn(rows.len(), fixed.len(), |r, k| {
+                jacobian[(rows[r], fixed[k])] * scaling.constraints[rows[r]]
+            }),
+            g,
+            a,
+        };
+        let norm = free.iter().map(|&i| objective[i].abs()).fold(0.0, f64::max);
+        self.gradient_norms.push(norm);
+        Ok(slopes)
     }
 
     fn record(&mut self, x: Vec<f64>, failure: EvaluationFailure) -> Trouble {
@@ -300,7 +344,7 @@ impl<'a> Program<'a> {
     }
 
     fn check_limits(&self) -> Result<(), Trouble> {
-        if self.counts.evaluations >= self.options.max_evaluations {
+        if self.counts.evaluations >= self.allowed.evaluations {
             return Err(Trouble::Halt(Status::EvaluationLimit));
         }
         match self.options.max_seconds {
@@ -312,6 +356,40 @@ impl<'a> Program<'a> {
     /// Wall time since the start of the run (s).
     pub fn seconds(&self) -> f64 {
         self.started.elapsed().as_secs_f64()
+    }
+
+    /// Allows the method that runs the part `share` of all iterations and evaluations.
+    pub fn allow(&mut self, share: f64) {
+        let part = |all: usize| (share * all as f64).ceil() as usize;
+        self.allowed = Allowed {
+            iterations: part(self.options.max_iterations),
+            evaluations: part(self.options.max_evaluations),
+        };
+    }
+
+    /// The unit in which derivatives of the objective count as small, in the units of the user: the
+    /// upper third of ‖∇f‖∞ over the first points, or the median over all if that is larger. It
+    /// grows with the objective, neither a cliff nor a plateau at the start decides it, and a long
+    /// tail of points near the optimum does not lower it.
+    pub fn typical_gradient(&self) -> f64 {
+        let largest = |norms: &[f64], share: f64| {
+            let mut norms: Vec<f64> = norms.iter().copied().filter(|v| *v > 0.0).collect();
+            norms.sort_by(|a, b| b.total_cmp(a));
+            let place = (share * norms.len() as f64) as usize;
+            norms.get(place).copied().unwrap_or(0.0)
+        };
+        let all = &self.gradient_norms;
+        let early = largest(&all[..all.len().min(FIRST_POINTS)], 1.0 / 3.0);
+        let typical = early.max(largest(all, 0.5));
+        if typical > 0.0 { typical } else { 1.0 }
+    }
+
+    /// Whether the objective has fallen below all bounds at a feasible point: in the units of the
+    /// user, or in scaled ones where those are smaller.
+    pub fn is_unbounded(&self, point: &Point) -> bool {
+        let f = point.f.min(point.f / self.scaling.objective);
+        f < self.options.unbounded_below
+            && self.worst_violation(&point.c).0 <= self.options.constraint_tolerance
     }
 
     /// Largest violation of a row, in the units of the user, and the row's index there.
@@ -368,9 +446,8 @@ impl<'a> Program<'a> {
 
     /// Starts from the design `x` instead of that of the user.
     pub fn start_from(&mut self, x: &[f64]) {
-        let (lower, upper) = self.nlp.variable_bounds();
         for &i in &self.free {
-            self.template[i] = x[i].max(lower[i]).min(upper[i]);
+            self.template[i] = x[i].clamp(self.user_lower[i], self.user_upper[i]);
         }
     }
 
@@ -413,7 +490,7 @@ impl<'a> Program<'a> {
     /// Counts an iteration and checks the limits before it.
     pub fn next_iteration(&mut self) -> Result<(), Trouble> {
         self.check_limits()?;
-        if self.counts.iterations >= self.options.max_iterations {
+        if self.counts.iterations >= self.allowed.iterations {
             return Err(Trouble::Halt(Status::IterationLimit));
         }
         self.counts.iterations += 1;

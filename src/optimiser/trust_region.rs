@@ -10,7 +10,7 @@ use super::elastic_qp::{ElasticQp, QpData, QpStep};
 use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
-use super::verdict::{ScaledMultipliers, is_solved, kkt, scaled_residual};
+use super::verdict::{ScaledMultipliers, is_solved, scaled_residual};
 
 /// Share of the predicted reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-4;
@@ -112,7 +112,7 @@ impl TrustRegion {
         let mut failed = 0;
         let mut renewals = 0;
         loop {
-            if self.goal == Goal::Optimum && self.is_unbounded(program) {
+            if self.goal == Goal::Optimum && program.is_unbounded(&self.point) {
                 return Ok(Ending::Unbounded);
             }
             let Some(model) = self.solve_model(program) else {
@@ -226,23 +226,17 @@ impl TrustRegion {
         }
     }
 
-    fn is_unbounded(&self, program: &Program<'_>) -> bool {
-        let f = self.point.f / program.scaling.objective;
-        f < program.options.unbounded_below
-            && program.worst_violation(&self.point.c).0 <= program.options.constraint_tolerance
-    }
-
     /// Largest scaled residual of the optimality conditions.
     pub fn optimality(&self, program: &Program<'_>) -> f64 {
         let z = self.multipliers(program);
         scaled_residual(program, &self.point, &self.slopes, &z)
     }
 
-    fn is_optimal(&self, program: &Program<'_>) -> bool {
+    fn is_optimal(&mut self, program: &Program<'_>) -> bool {
         let z = self.multipliers(program);
         let scaled = self.optimality(program);
-        let residuals = kkt(program, &self.point, &self.slopes, &z, scaled);
-        is_solved(&residuals, program.options)
+        let (point, slopes) = (&self.point, &self.slopes);
+        is_solved(program, point, slopes, &z, scaled, &mut self.b)
     }
 
     /// Exact penalty function w f + Σ ν_j violation_j.
