@@ -9,7 +9,7 @@ use super::quasi_newton::QuasiNewton;
 use super::state::SavedState;
 use super::trust_region::Ending;
 use super::verdict::{
-    ScaledMultipliers, active, is_solved, kkt, scaled_residual, steepness, unit_of_forces, user_multipliers,
+    ScaledMultipliers, active, is_solved_at_end, kkt, scaled_residual, steepness, unit_of_forces, user_multipliers,
 };
 
 /// Where a method ended.
@@ -31,13 +31,12 @@ impl Finish {
 
     /// Whether the conditions hold, whatever the method thought of its end.
     pub fn is_solved(&self, program: &Program<'_>) -> bool {
-        is_solved(
+        is_solved_at_end(
             program,
             &self.point,
             &self.slopes,
             &self.multipliers,
             self.scaled,
-            &mut self.b.clone(),
         )
     }
 }

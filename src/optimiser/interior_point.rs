@@ -11,7 +11,7 @@ use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
 use super::trust_region::{Ending, Goal, TrustRegion};
-use super::verdict::{ScaledMultipliers, UNIT, is_solved};
+use super::verdict::{ScaledMultipliers, UNIT_OF_OBJECTIVE, is_solved};
 
 /// Multipliers of bounds stay within this factor of μ/distance.
 const MULTIPLIER_BAND: f64 = 1e10;
@@ -266,18 +266,18 @@ impl InteriorPoint {
         program.report(&self.at.point, &progress)
     }
 
-    fn is_solved(&mut self, program: &Program<'_>) -> bool {
+    fn is_solved(&self, program: &Program<'_>) -> bool {
         let scaled = self.optimality();
         if scaled > program.options.tolerance {
             return false;
         }
         let z = self.multipliers(program);
         let gap: f64 = self.at.products(&self.layout).iter().sum();
-        let least = UNIT * program.typical_gradient() * program.scaling.objective;
+        let least = UNIT_OF_OBJECTIVE * program.typical_gradient() * program.scaling.objective;
         let unit = self.at.point.f.abs().max(least);
         let (point, slopes) = (&self.at.point, &self.at.slopes);
         gap <= 0.1 * program.options.tolerance * unit
-            && is_solved(program, point, slopes, &z, scaled, &mut self.b)
+            && is_solved(program, point, slopes, &z, scaled)
     }
 
     /// What to do when the line search found no step: forget the quasi-Newton matrix if the point

@@ -72,7 +72,7 @@ pub struct Kkt {
     /// Sum of the products of multipliers and distances to their bounds, on either side, in units of
     /// the objective: to first order, how far the objective is from the least.
     pub complementarity: f64,
-    /// `complementarity` divided by |f| or, where that vanishes, by a tenth of the typical ‖∇f‖∞
+    /// `complementarity` divided by |f| or, where that vanishes, by a hundredth of the typical ‖∇f‖∞
     /// (a change of a variable by one).
     pub relative_complementarity: f64,
     /// Largest residual in the scaled units in which the iteration runs.
@@ -143,8 +143,8 @@ pub struct Scaling {
     pub variables: Vec<f64>,
     /// Norm ‖∇f‖∞ at the start, in the units of the user.
     pub objective_gradient: f64,
-    /// Typical ‖∇f‖∞ of the run, in the units of the user: the upper third over the first dozen of
-    /// points, or the median over all if that is larger.
+    /// Typical ‖∇f‖∞ of the run, in the units of the user: the third largest of the first dozen of
+    /// points, or the median of all if that is larger.
     #[serde(default)]
     pub typical_gradient: f64,
     /// Norm ‖∇c_j‖∞ of each row at the start, in the units of the user.

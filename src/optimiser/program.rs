@@ -98,6 +98,9 @@ pub(super) struct Program<'a> {
     started: Instant,
     /// Norms ‖∇f‖∞ of all points so far, in the units of the user.
     gradient_norms: Vec<f64>,
+    /// Point that was reported last, and the size of the last step between two such points.
+    reported: Option<DVector<f64>>,
+    pub last_step: f64,
     /// Iterations and evaluations allowed to the method that runs.
     allowed: Allowed,
     /// Best point reported: feasible with the least objective, or least infeasible.
@@ -163,6 +166,8 @@ impl<'a> Program<'a> {
             failed: Vec::new(),
             started: Instant::now(),
             gradient_norms: Vec::new(),
+            reported: None,
+            last_step: 0.0,
             allowed: Allowed {
                 iterations: options.max_iterations,
                 evaluations: options.max_evaluations,
@@ -368,19 +373,18 @@ impl<'a> Program<'a> {
     }
 
     /// The unit in which derivatives of the objective count as small, in the units of the user: the
-    /// upper third of ‖∇f‖∞ over the first points, or the median over all if that is larger. It
-    /// grows with the objective, neither a cliff nor a plateau at the start decides it, and a long
-    /// tail of points near the optimum does not lower it.
+    /// third largest ‖∇f‖∞ of the first dozen of points, or the median of all points if that is
+    /// larger. It grows with the objective, neither a cliff nor a plateau at the start decides it,
+    /// and a long tail of points near the optimum does not lower it.
     pub fn typical_gradient(&self) -> f64 {
-        let largest = |norms: &[f64], share: f64| {
+        let largest = |norms: &[f64], most: usize| {
             let mut norms: Vec<f64> = norms.iter().copied().filter(|v| *v > 0.0).collect();
             norms.sort_by(|a, b| b.total_cmp(a));
-            let place = (share * norms.len() as f64) as usize;
-            norms.get(place).copied().unwrap_or(0.0)
+            norms.get(most.min(norms.len() / 2)).copied().unwrap_or(0.0)
         };
         let all = &self.gradient_norms;
-        let early = largest(&all[..all.len().min(FIRST_POINTS)], 1.0 / 3.0);
-        let typical = early.max(largest(all, 0.5));
+        let early = largest(&all[..all.len().min(FIRST_POINTS)], 2);
+        let typical = early.max(largest(all, usize::MAX));
         if typical > 0.0 { typical } else { 1.0 }
     }
 
@@ -463,6 +467,11 @@ impl<'a> Program<'a> {
     /// Tells the observer of an iteration.
     pub fn report(&mut self, point: &Point, progress: &Progress) -> Result<(), Trouble> {
         self.keep_best(point);
+        if let Some(before) = self.reported.replace(point.x.clone())
+            && before != point.x
+        {
+            self.last_step = (before - &point.x).amax();
+        }
         let x = self.to_user(&point.x);
         let constraints = self.user_constraints(&point.c);
         let row = Row {

@@ -15,7 +15,7 @@ use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::start::{first_point, less_violated};
 use super::state::SavedState;
 use super::trust_region::{Ending, Goal, TrustRegion};
-use super::verdict::{ScaledMultipliers, is_solved, scaled_multipliers, scaled_residual};
+use super::verdict::{ScaledMultipliers, is_solved_at_end, scaled_multipliers, scaled_residual};
 use super::well_posed;
 
 /// Shares of iterations and evaluations after which [`Method::Auto`] leaves the interior point, and
@@ -267,7 +267,7 @@ fn interior_point(
         let y = if useless { &zero } else { &multipliers.y };
         let fitted = ScaledMultipliers::polished(program, &point, &slopes, y);
         let residual = scaled_residual(program, &point, &slopes, &fitted);
-        let solved = is_solved(program, &point, &slopes, &fitted, residual, &mut method.b);
+        let solved = is_solved_at_end(program, &point, &slopes, &fitted, residual);
         if useless || solved {
             (multipliers, scaled) = (fitted, residual);
         }

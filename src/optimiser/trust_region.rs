@@ -232,11 +232,11 @@ impl TrustRegion {
         scaled_residual(program, &self.point, &self.slopes, &z)
     }
 
-    fn is_optimal(&mut self, program: &Program<'_>) -> bool {
+    fn is_optimal(&self, program: &Program<'_>) -> bool {
         let z = self.multipliers(program);
         let scaled = self.optimality(program);
         let (point, slopes) = (&self.point, &self.slopes);
-        is_solved(program, point, slopes, &z, scaled, &mut self.b)
+        is_solved(program, point, slopes, &z, scaled)
     }
 
     /// Exact penalty function w f + Σ ν_j violation_j.

@@ -4,7 +4,6 @@ use nalgebra::{DMatrix, DVector};
 
 use super::outcome::{ActiveBound, Kkt, Multipliers, Side};
 use super::program::{Point, Program, Slopes};
-use super::quasi_newton::QuasiNewton;
 
 /// Multipliers of the scaled program: rows, then lower and upper bounds of the variables.
 #[derive(Clone, Debug)]
@@ -123,9 +122,10 @@ fn least_squares(
     Some(all)
 }
 
-/// Part of the typical gradient that is the unit of derivatives where the gradient vanishes, and of
-/// the objective where that does.
-pub(super) const UNIT: f64 = 0.1;
+/// Parts of the typical gradient that are the unit of forces where the gradient vanishes, and of the
+/// objective where that does.
+const UNIT: f64 = 0.1;
+pub(super) const UNIT_OF_OBJECTIVE: f64 = 0.01;
 
 /// The size of forces, in the units of the user: that of the gradient or, where it vanishes, of those
 /// at other points of the run.
@@ -171,7 +171,7 @@ pub(super) fn kkt(
             complementarity += z.y[k].abs() * distance.abs() / unit_f;
         }
     }
-    let least = UNIT * program.typical_gradient();
+    let least = UNIT_OF_OBJECTIVE * program.typical_gradient();
     Kkt {
         violation: program.worst_violation(&point.c).0,
         stationarity,
@@ -221,19 +221,36 @@ pub(super) fn scaled_residual(
     (force.amax().max(complementarity) / (size.max(100.0) / 100.0)).max(violation)
 }
 
-/// Longest Newton step, relative to max(1, ‖x‖∞), that may be left where forces are small only
-/// against those of other points of the run.
-const LONGEST_LEFT: f64 = 1e-3;
+/// Longest last step, relative to max(1, ‖x‖∞), where forces are small only against those of other
+/// points of the run: from a start on a cliff all later forces look small.
+const LONGEST_LAST: f64 = 0.1;
 
-/// Whether the residuals meet the tolerances and, where the gradient vanishes with them, the Newton
-/// step of `b` is short: a start on a cliff makes all later forces look small.
+/// Part of the gradient that the force on the variables must be, lest the gradient count as balanced
+/// by multipliers and as the only unit while the run can go on.
+const VANISHING: f64 = 0.1;
+
+/// Whether the residuals meet the tolerances; while multipliers balance the gradient, they must do so
+/// relative to it.
 pub(super) fn is_solved(
     program: &Program<'_>,
     point: &Point,
     slopes: &Slopes,
     z: &ScaledMultipliers,
     scaled: f64,
-    b: &mut QuasiNewton,
+) -> bool {
+    let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
+    let (left, gradient) = (force.amax(), slopes.g.amax());
+    let balanced = left <= VANISHING * gradient && left > program.options.tolerance * gradient;
+    !balanced && is_solved_at_end(program, point, slopes, z, scaled)
+}
+
+/// As [`is_solved`], at a point where no step makes progress.
+pub(super) fn is_solved_at_end(
+    program: &Program<'_>,
+    point: &Point,
+    slopes: &Slopes,
+    z: &ScaledMultipliers,
+    scaled: f64,
 ) -> bool {
     let options = program.options;
     let kkt = kkt(program, point, slopes, z, scaled);
@@ -249,12 +266,7 @@ pub(super) fn is_solved(
     if force.amax() <= options.tolerance * slopes.g.amax() {
         return true;
     }
-    let mut step = DMatrix::from_column_slice(force.len(), 1, force.as_slice());
-    match b.factor(&DVector::zeros(force.len())) {
-        Some(factor) => factor.solve_mut(&mut step),
-        None => return false,
-    }
-    step.amax() <= LONGEST_LEFT * point.x.amax().max(1.0)
+    program.last_step <= LONGEST_LAST * point.x.amax().max(1.0)
 }
 
 /// Multipliers in the units of the user; those of fixed variables balance the force on them.
