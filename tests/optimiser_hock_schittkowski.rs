@@ -49,7 +49,7 @@ fn assert_true_claim(problem: &mut Problem, outcome: &Outcome) {
     let (name, best) = (problem.name, problem.best);
     let found = Residuals::of(problem, outcome);
     assert!(found.violation <= 1e-6, "{name}: {found:?}");
-    assert!(found.stationarity <= 1e-6, "{name}: {found:?}");
+    assert!(found.stationarity <= 1e-5, "{name}: {found:?}");
     assert!(found.complementarity <= 1e-6, "{name}: {found:?}");
     assert!(found.signs, "{name}: {:?}", outcome.multipliers);
     let known = STATIONARY

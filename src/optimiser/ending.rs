@@ -9,7 +9,8 @@ use super::quasi_newton::QuasiNewton;
 use super::state::SavedState;
 use super::trust_region::Ending;
 use super::verdict::{
-    ScaledMultipliers, active, is_solved_at_end, kkt, scaled_residual, steepness, unit_of_forces, user_multipliers,
+    ScaledMultipliers, active, is_solved_at_end, kkt, scaled_residual, steepness, unit_of_forces,
+    user_multipliers,
 };
 
 /// Where a method ended.
@@ -26,7 +27,13 @@ pub(super) struct Finish {
 
 impl Finish {
     fn kkt(&self, program: &Program<'_>) -> Kkt {
-        kkt(program, &self.point, &self.slopes, &self.multipliers, self.scaled)
+        kkt(
+            program,
+            &self.point,
+            &self.slopes,
+            &self.multipliers,
+            self.scaled,
+        )
     }
 
     /// Whether the conditions hold, whatever the method thought of its end.
@@ -111,7 +118,11 @@ pub(super) fn unfinished(program: &Program<'_>, point: Point, slopes: Slopes) ->
     }
 }
 
-pub(super) fn status_of(program: &Program<'_>, result: Result<Ending, Trouble>, at: &Point) -> Status {
+pub(super) fn status_of(
+    program: &Program<'_>,
+    result: Result<Ending, Trouble>,
+    at: &Point,
+) -> Status {
     match result {
         Ok(Ending::Reached) => Status::Converged,
         Ok(Ending::Unbounded) => Status::Unbounded,
@@ -183,10 +194,16 @@ pub(super) fn outcome(program: &Program<'_>, finish: Finish, state: SavedState) 
     Outcome {
         status,
         objective: point.f / program.scaling.objective,
-        active_bounds: active(&x, (&lower, &upper), of_bound, (|_| 1.0, gradient), |i| nlp.variable_name(i)),
-        active_constraints: active(&constraints, (&row_lower, &row_upper), of_row, (|j: usize| steep[j], gradient), |j| {
-            nlp.constraint_name(j)
+        active_bounds: active(&x, (&lower, &upper), of_bound, (|_| 1.0, gradient), |i| {
+            nlp.variable_name(i)
         }),
+        active_constraints: active(
+            &constraints,
+            (&row_lower, &row_upper),
+            of_row,
+            (|j: usize| steep[j], gradient),
+            |j| nlp.constraint_name(j),
+        ),
         kkt,
         counts,
         failed_designs: program.failed.clone(),

@@ -40,12 +40,18 @@ pub(super) struct InteriorPoint {
     filter: Filter,
     theta_small: f64,
     short_steps: usize,
+    /// Variables on which nothing has depended so far: without barriers, so that they stay.
+    idle: Vec<usize>,
 }
 
 impl InteriorPoint {
     /// Starts from a strictly interior point; slacks keep the share `push` from their bounds.
     pub fn new(program: &Program<'_>, point: Point, slopes: Slopes, push: f64) -> InteriorPoint {
-        let layout = Layout::new(program);
+        let mut layout = Layout::new(program);
+        let idle: Vec<usize> = (0..layout.n).filter(|&k| slopes.is_idle(k)).collect();
+        for &k in &idle {
+            (layout.lower[k], layout.upper[k]) = (f64::NEG_INFINITY, f64::INFINITY);
+        }
         let options = program.options;
         let n = layout.n;
         let s = DVector::from_iterator(
@@ -77,6 +83,7 @@ impl InteriorPoint {
             filter: Filter::new(1e2 * theta.max(1.0)),
             theta_small: 1e-4 * theta.max(1.0),
             short_steps: 0,
+            idle,
             layout,
             at,
         }
@@ -122,6 +129,7 @@ impl InteriorPoint {
     pub fn run(&mut self, program: &mut Program<'_>) -> Result<Ending, Trouble> {
         let mut failures = 0;
         loop {
+            self.wake(program);
             if self.is_solved(program) {
                 return Ok(Ending::Reached);
             }
@@ -166,6 +174,24 @@ impl InteriorPoint {
                     }
                 }
             }
+        }
+    }
+
+    /// Gives barriers to the idle variables on which something depends at this point.
+    fn wake(&mut self, program: &Program<'_>) {
+        let slopes = &self.at.slopes;
+        let (idle, woken): (Vec<usize>, Vec<usize>) =
+            self.idle.iter().partition(|&&k| slopes.is_idle(k));
+        self.idle = idle;
+        for &k in &woken {
+            let x = self.at.point.x[k];
+            let (lower, upper) = (program.lower[k], program.upper[k]);
+            (self.layout.lower[k], self.layout.upper[k]) = (lower, upper);
+            (self.at.zl[k], self.at.zu[k]) =
+                (self.barrier.mu / (x - lower), self.barrier.mu / (upper - x));
+        }
+        if !woken.is_empty() {
+            self.filter.clear(self.theta());
         }
     }
 

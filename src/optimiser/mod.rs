@@ -15,6 +15,7 @@ mod options;
 mod outcome;
 mod program;
 mod quasi_newton;
+mod scaling;
 mod solve;
 mod start;
 mod state;

@@ -12,18 +12,10 @@ use super::nlp::{
 use super::observer::{Observer, Phase, Row};
 use super::options::Options;
 use super::outcome::{Counts, FailedDesign, Scaling, Status};
+use super::scaling::drop_rounding;
 
 /// Most designs kept of those at which an evaluation failed.
 const FAILED_DESIGNS_KEPT: usize = 100;
-
-/// An objective whose gradient at the start is below `FLAT` is multiplied until it is `LIFTED`, lest
-/// a start on a plateau be taken for a solution.
-const FLAT: f64 = 1.0;
-const LIFTED: f64 = 1.0;
-const LARGEST_LIFT: f64 = 1e12;
-
-/// Points that count as the first ones of a run.
-const FIRST_POINTS: usize = 12;
 
 /// Values of the scaled functions at a scaled point.
 #[derive(Clone, Debug)]
@@ -41,6 +33,13 @@ pub(super) struct Slopes {
     /// Derivatives in the fixed variables, in the user's units of these.
     pub fixed_g: DVector<f64>,
     pub fixed_a: DMatrix<f64>,
+}
+
+impl Slopes {
+    /// Whether neither objective nor rows depend on variable `k` here.
+    pub fn is_idle(&self, k: usize) -> bool {
+        self.g[k] == 0.0 && self.a.column(k).iter().all(|v| *v == 0.0)
+    }
 }
 
 /// Why no value came back.
@@ -97,7 +96,7 @@ pub(super) struct Program<'a> {
     pub failed: Vec<FailedDesign>,
     started: Instant,
     /// Norms ‖∇f‖∞ of all points so far, in the units of the user.
-    gradient_norms: Vec<f64>,
+    pub gradient_norms: Vec<f64>,
     /// Point that was reported last, and the size of the last step between two such points.
     reported: Option<DVector<f64>>,
     pub last_step: f64,
@@ -197,77 +196,6 @@ impl<'a> Program<'a> {
         full
     }
 
-    /// Sets the scale factors of functions from unscaled derivatives `slopes` and rescales both.
-    pub fn scale(&mut self, point: &mut Point, slopes: &mut Slopes) {
-        let limit = self.options.scaling_gradient;
-        let norm = slopes.g.amax();
-        self.scaling.objective = if norm > limit {
-            limit / norm
-        } else if norm > 0.0 && norm < FLAT {
-            (LIFTED / norm).min(LARGEST_LIFT)
-        } else {
-            1.0
-        };
-        for (k, &j) in self.rows.iter().enumerate() {
-            let norm = slopes.a.row(k).amax();
-            self.scaling.constraints[j] = if norm > limit {
-                (limit / norm).max(1e-8)
-            } else {
-                1.0
-            };
-        }
-        self.apply_scaling(point, slopes);
-    }
-
-    /// Uses scale factors of an earlier run.
-    pub fn adopt_scaling(&mut self, saved: &Scaling, point: &mut Point, slopes: &mut Slopes) {
-        self.scaling.objective = saved.objective;
-        self.scaling.constraints.clone_from(&saved.constraints);
-        self.gradient_norms = vec![saved.typical_gradient];
-        self.apply_scaling(point, slopes);
-    }
-
-    fn apply_scaling(&mut self, point: &mut Point, slopes: &mut Slopes) {
-        point.f *= self.scaling.objective;
-        slopes.g *= self.scaling.objective;
-        slopes.fixed_g *= self.scaling.objective;
-        for (k, &j) in self.rows.iter().enumerate() {
-            let factor = self.scaling.constraints[j];
-            self.row_lower[k] *= factor;
-            self.row_upper[k] *= factor;
-            point.c[k] *= factor;
-            slopes.a.row_mut(k).scale_mut(factor);
-            slopes.fixed_a.row_mut(k).scale_mut(factor);
-        }
-    }
-
-    /// Records gradients and zero rows and columns for the scaling report, before scaling.
-    pub fn survey(&mut self, slopes: &Slopes) {
-        let unit = |k: usize| self.scaling.variables[self.free[k]];
-        let in_user_units = |v: f64, k: usize| (v / unit(k)).abs();
-        let n = self.free.len();
-        self.scaling.objective_gradient = (0..n)
-            .map(|k| in_user_units(slopes.g[k], k))
-            .fold(0.0, f64::max);
-        self.scaling.constraint_gradients = vec![0.0; self.scaling.constraints.len()];
-        for (r, &j) in self.rows.iter().enumerate() {
-            let norm = (0..n)
-                .map(|k| in_user_units(slopes.a[(r, k)], k))
-                .fold(0.0, f64::max);
-            self.scaling.constraint_gradients[j] = norm;
-            if norm == 0.0 {
-                self.scaling.zero_rows.push(self.nlp.constraint_name(j));
-            }
-        }
-        for k in 0..n {
-            if slopes.g[k] == 0.0 && slopes.a.column(k).iter().all(|v| *v == 0.0) {
-                self.scaling
-                    .zero_columns
-                    .push(self.nlp.variable_name(self.free[k]));
-            }
-        }
-    }
-
     /// Values of the scaled functions at `x`.
     pub fn evaluate(&mut self, x: &DVector<f64>) -> Result<Point, Trouble> {
         self.check_limits()?;
@@ -317,11 +245,24 @@ impl<'a> Program<'a> {
         let g = free
             .iter()
             .map(|&i| objective[i] * scaling.objective * scaling.variables[i]);
-        let g = DVector::from_iterator(free.len(), g);
-        let a = DMatrix::from_fn(rows.len(), free.len(), |r, k| {
+        let mut g = DVector::from_iterator(free.len(), g);
+        let mut a = DMatrix::from_fn(rows.len(), free.len(), |r, k| {
             let (j, i) = (rows[r], free[k]);
             jacobian[(j, i)] * scaling.constraints[j] * scaling.variables[i]
         });
+        let norm = free.iter().map(|&i| objective[i].abs()).fold(0.0, f64::max);
+        let reach = DVector::from_fn(free.len(), |k, _| {
+            let width = self.upper[k] - self.lower[k];
+            let size = x[k].abs().max(1.0);
+            if width.is_finite() { width } else { size }
+        });
+        let typical = self.gradient_norms.iter().copied().fold(norm, f64::max);
+        drop_rounding(&mut g, &reach, typical * scaling.objective);
+        for r in 0..rows.len() {
+            let mut row = a.row(r).transpose();
+            drop_rounding(&mut row, &reach, 0.0);
+            a.row_mut(r).copy_from(&row.transpose());
+        }
         let fixed = &self.fixed;
         let fixed_g = fixed.iter().map(|&i| objective[i] * scaling.objective);
         let slopes = Slopes {
@@ -332,7 +273,6 @@ impl<'a> Program<'a> {
             g,
             a,
         };
-        let norm = free.iter().map(|&i| objective[i].abs()).fold(0.0, f64::max);
         self.gradient_norms.push(norm);
         Ok(slopes)
     }
@@ -370,22 +310,6 @@ impl<'a> Program<'a> {
             iterations: part(self.options.max_iterations),
             evaluations: part(self.options.max_evaluations),
         };
-    }
-
-    /// The unit in which derivatives of the objective count as small, in the units of the user: the
-    /// third largest ‖∇f‖∞ of the first dozen of points, or the median of all points if that is
-    /// larger. It grows with the objective, neither a cliff nor a plateau at the start decides it,
-    /// and a long tail of points near the optimum does not lower it.
-    pub fn typical_gradient(&self) -> f64 {
-        let largest = |norms: &[f64], most: usize| {
-            let mut norms: Vec<f64> = norms.iter().copied().filter(|v| *v > 0.0).collect();
-            norms.sort_by(|a, b| b.total_cmp(a));
-            norms.get(most.min(norms.len() / 2)).copied().unwrap_or(0.0)
-        };
-        let all = &self.gradient_norms;
-        let early = largest(&all[..all.len().min(FIRST_POINTS)], 2);
-        let typical = early.max(largest(all, usize::MAX));
-        if typical > 0.0 { typical } else { 1.0 }
     }
 
     /// Whether the objective has fallen below all bounds at a feasible point: in the units of the

@@ -170,9 +170,7 @@ fn attempt(
 ) -> Finish {
     let run = |program: &mut Program<'_>, (point, slopes), saved| match method {
         Method::TrustRegion => trust_region(program, point, slopes, saved),
-        Method::InteriorPoint | Method::Auto => {
-            interior_point(program, point, slopes, saved, push)
-        }
+        Method::InteriorPoint | Method::Auto => interior_point(program, point, slopes, saved, push),
     };
     let mut finish = run(program, first, saved);
     for _ in 0..ESCAPES {
@@ -213,6 +211,10 @@ fn auto(
         );
         if !hopeless || kept.is_solved(program) {
             break;
+        }
+        // The best point is where the rows cannot be improved.
+        if from_best && matches!(kept.status, Status::Infeasible { .. }) {
+            continue;
         }
         let place = match program.best.clone().filter(|_| from_best) {
             None => start.clone(),
@@ -329,4 +331,3 @@ fn trust_region(
         radius: method.radius,
     }
 }
-

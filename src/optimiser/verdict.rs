@@ -124,7 +124,7 @@ fn least_squares(
 
 /// Parts of the typical gradient that are the unit of forces where the gradient vanishes, and of the
 /// objective where that does.
-const UNIT: f64 = 0.1;
+const UNIT: f64 = 0.05;
 pub(super) const UNIT_OF_OBJECTIVE: f64 = 0.01;
 
 /// The size of forces, in the units of the user: that of the gradient or, where it vanishes, of those
@@ -241,7 +241,9 @@ pub(super) fn is_solved(
     let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
     let (left, gradient) = (force.amax(), slopes.g.amax());
     let balanced = left <= VANISHING * gradient && left > program.options.tolerance * gradient;
-    !balanced && is_solved_at_end(program, point, slopes, z, scaled)
+    let settled = left <= program.options.tolerance * gradient
+        || program.last_step <= LONGEST_LAST * point.x.amax().max(1.0);
+    settled && !balanced && is_solved_at_end(program, point, slopes, z, scaled)
 }
 
 /// As [`is_solved`], at a point where no step makes progress.
@@ -255,18 +257,10 @@ pub(super) fn is_solved_at_end(
     let options = program.options;
     let kkt = kkt(program, point, slopes, z, scaled);
     let within = |value: f64, limit: f64| value <= limit;
-    if !(within(kkt.violation, options.constraint_tolerance)
+    within(kkt.violation, options.constraint_tolerance)
         && within(kkt.relative_stationarity, options.tolerance)
         && within(kkt.relative_complementarity, 0.1 * options.tolerance)
-        && within(kkt.scaled, options.tolerance))
-    {
-        return false;
-    }
-    let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
-    if force.amax() <= options.tolerance * slopes.g.amax() {
-        return true;
-    }
-    program.last_step <= LONGEST_LAST * point.x.amax().max(1.0)
+        && within(kkt.scaled, options.tolerance)
 }
 
 /// Multipliers in the units of the user; those of fixed variables balance the force on them.

@@ -45,7 +45,10 @@ fn named(
     (lower, upper): (Vec<f64>, Vec<f64>),
 ) -> Vec<(String, f64, f64)> {
     let bounds = lower.into_iter().zip(upper);
-    names.zip(bounds).map(|(name, (l, u))| (name, l, u)).collect()
+    names
+        .zip(bounds)
+        .map(|(name, (l, u))| (name, l, u))
+        .collect()
 }
 
 fn fault_of_lengths(nlp: &dyn Nlp) -> Option<String> {
@@ -56,8 +59,16 @@ fn fault_of_lengths(nlp: &dyn Nlp) -> Option<String> {
         ("the start", nlp.start().len(), n),
         ("the list of lower bounds of variables", lower.len(), n),
         ("the list of upper bounds of variables", upper.len(), n),
-        ("the list of lower bounds of constraints", row_lower.len(), m),
-        ("the list of upper bounds of constraints", row_upper.len(), m),
+        (
+            "the list of lower bounds of constraints",
+            row_lower.len(),
+            m,
+        ),
+        (
+            "the list of upper bounds of constraints",
+            row_upper.len(),
+            m,
+        ),
     ];
     lists
         .iter()

@@ -41,7 +41,13 @@ impl Residuals {
             found.complementarity += product(zl, value - lower) + product(zu, upper - value);
         };
         for i in 0..x.len() {
-            bound(x[i], lower[i], upper[i], z.lower_bounds[i], z.upper_bounds[i]);
+            bound(
+                x[i],
+                lower[i],
+                upper[i],
+                z.lower_bounds[i],
+                z.upper_bounds[i],
+            );
         }
         for (j, &y) in z.constraints.iter().enumerate() {
             let (yl, yu) = ((-y).max(0.0), y.max(0.0));
@@ -54,6 +60,8 @@ impl Residuals {
             found.stationarity = found.stationarity.max(force.abs());
         }
         let gradient = slopes.objective.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+        // An objective that is constant has no unit.
+        let unit = if gradient == 0.0 { 1.0 } else { unit };
         found.stationarity /= gradient.max(unit);
         found.complementarity /= at.objective.abs().max(unit);
         found
