@@ -66,7 +66,7 @@ pub struct Kkt {
     pub violation: f64,
     /// Largest |∇f + Jᵀy − z_L + z_U|, in the units of the user.
     pub stationarity: f64,
-    /// `stationarity` divided by ‖∇f‖∞ or, where that vanishes, by a twentieth of its typical size
+    /// `stationarity` divided by ‖∇f‖∞ or, where that vanishes, by a tenth of its typical size
     /// in the run ([`Scaling::typical_gradient`]). Never divided by multipliers.
     pub relative_stationarity: f64,
     /// Sum of the products of multipliers and distances to their bounds, on either side, in units of

@@ -124,7 +124,7 @@ fn least_squares(
 
 /// Parts of the typical gradient that are the unit of forces where the gradient vanishes, and of the
 /// objective where that does.
-const UNIT: f64 = 0.05;
+const UNIT: f64 = 0.1;
 pub(super) const UNIT_OF_OBJECTIVE: f64 = 0.01;
 
 /// The size of forces, in the units of the user: that of the gradient or, where it vanishes, of those
@@ -225,12 +225,8 @@ pub(super) fn scaled_residual(
 /// points of the run: from a start on a cliff all later forces look small.
 const LONGEST_LAST: f64 = 0.1;
 
-/// Part of the gradient that the force on the variables must be, lest the gradient count as balanced
-/// by multipliers and as the only unit while the run can go on.
-const VANISHING: f64 = 0.1;
-
-/// Whether the residuals meet the tolerances; while multipliers balance the gradient, they must do so
-/// relative to it.
+/// Whether the residuals meet the tolerances and, unless the forces are small against the gradient at
+/// the point itself, the last step was short.
 pub(super) fn is_solved(
     program: &Program<'_>,
     point: &Point,
@@ -240,10 +236,9 @@ pub(super) fn is_solved(
 ) -> bool {
     let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
     let (left, gradient) = (force.amax(), slopes.g.amax());
-    let balanced = left <= VANISHING * gradient && left > program.options.tolerance * gradient;
     let settled = left <= program.options.tolerance * gradient
         || program.last_step <= LONGEST_LAST * point.x.amax().max(1.0);
-    settled && !balanced && is_solved_at_end(program, point, slopes, z, scaled)
+    settled && is_solved_at_end(program, point, slopes, z, scaled)
 }
 
 /// As [`is_solved`], at a point where no step makes progress.

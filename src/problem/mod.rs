@@ -76,6 +76,10 @@ pub struct OptimiserSettings {
     pub tolerance: Option<f64>,
     /// Largest number of iterations.
     pub iterations: Option<usize>,
+    /// Largest number of simulations.
+    pub evaluations: Option<usize>,
+    /// Longest wall time of the run (s).
+    pub seconds: Option<f64>,
 }
 
 /// A problem: a scene that depends on a design, what is asked of it, and how it is solved.

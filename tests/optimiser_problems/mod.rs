@@ -7,8 +7,6 @@ mod hs_061_086;
 mod hs_093_110;
 mod hs_111_119;
 pub mod problem;
-pub mod residuals;
-pub mod scaled;
 
 use problem::Problem;
 

@@ -15,11 +15,6 @@ pub struct Residuals {
 }
 
 impl Residuals {
-    /// With 1 as the unit.
-    pub fn of(problem: &mut dyn Nlp, outcome: &Outcome) -> Residuals {
-        Self::in_unit(problem, outcome, 1.0)
-    }
-
     pub fn in_unit(problem: &mut dyn Nlp, outcome: &Outcome, unit: f64) -> Residuals {
         let x = &outcome.x;
         let at = problem.evaluate(x).expect("is defined");

@@ -2,7 +2,7 @@
 
 use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
 
-use super::problem::Problem;
+use crate::optimiser_problems::problem::Problem;
 
 pub struct Scaled {
     pub inner: Problem,
