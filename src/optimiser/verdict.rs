@@ -225,8 +225,13 @@ pub(super) fn scaled_residual(
 /// points of the run: from a start on a cliff all later forces look small.
 const LONGEST_LAST: f64 = 0.1;
 
+/// Part of the typical gradient below which the gradient at a point counts as vanishing, and part of
+/// the gradient up to which the force left on the variables shows that multipliers balance it.
+const VANISHING: f64 = 1e-5;
+const BALANCED: f64 = 0.1;
+
 /// Whether the residuals meet the tolerances and, unless the forces are small against the gradient at
-/// the point itself, the last step was short.
+/// the point itself, the last step was short and no multipliers balance a gradient that stays.
 pub(super) fn is_solved(
     program: &Program<'_>,
     point: &Point,
@@ -238,7 +243,11 @@ pub(super) fn is_solved(
     let (left, gradient) = (force.amax(), slopes.g.amax());
     let settled = left <= program.options.tolerance * gradient
         || program.last_step <= LONGEST_LAST * point.x.amax().max(1.0);
-    settled && is_solved_at_end(program, point, slopes, z, scaled)
+    let typical = program.typical_gradient() * program.scaling.objective;
+    let balanced = left > program.options.tolerance * gradient
+        && left <= BALANCED * gradient
+        && gradient > VANISHING * typical;
+    settled && !balanced && is_solved_at_end(program, point, slopes, z, scaled)
 }
 
 /// As [`is_solved`], at a point where no step makes progress.
