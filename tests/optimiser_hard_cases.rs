@@ -199,7 +199,15 @@ fn two_hundred_variables_and_a_hundred_constraints_are_solved() {
         };
         solve(&mut hard::large(200), &options, &mut Silent)
     };
-    for outcome in [&interior, &trust, &limited] {
+    let split = {
+        let options = Options {
+            dense_limit: 0,
+            method: Method::TrustRegion,
+            ..Options::default()
+        };
+        solve(&mut hard::large(200), &options, &mut Silent)
+    };
+    for outcome in [&interior, &trust, &limited, &split] {
         assert!(
             outcome.converged(),
             "{:?} {:?}",

@@ -17,6 +17,7 @@ mod program;
 mod quasi_newton;
 mod scaling;
 mod solve;
+mod split_qp;
 mod start;
 mod state;
 mod trust_region;
