@@ -6,6 +6,8 @@ mod collected;
 mod faulty;
 #[path = "optimiser_problems/hard.rs"]
 mod hard;
+#[path = "optimiser_problems/least_squares.rs"]
+mod least_squares;
 mod optimiser_problems;
 
 use std::ops::ControlFlow;
@@ -337,12 +339,16 @@ fn limits_and_interruptions_are_named_and_every_row_is_a_number() {
 fn programs_of_other_collections_are_solved() {
     // The linearised rows of "WB" lead the trust region to a stationary point of the violation.
     for (method, unsolved) in [
-        (Method::InteriorPoint, vec![]),
-        (Method::TrustRegion, vec!["WB", "ROSEN50"]),
-        (Method::Auto, vec![]),
+        (Method::InteriorPoint, vec!["PENALTY2"]),
+        (
+            Method::TrustRegion,
+            vec!["WB", "ROSEN50", "BROWNBS", "POWELLBSLS"],
+        ),
+        (Method::Auto, vec!["PENALTY2"]),
     ] {
         let mut failed = Vec::new();
-        for problem in collected::collected() {
+        let least_squares = least_squares::least_squares();
+        for problem in collected::collected().into_iter().chain(least_squares) {
             let (name, best) = (problem.name, problem.best);
             let outcome = run(problem, method);
             let error = (outcome.objective - best).abs() / best.abs().max(1.0);
@@ -353,8 +359,9 @@ fn programs_of_other_collections_are_solved() {
                     "{name} {method:?}: {:?}",
                     outcome.kkt
                 );
+                let runs = if method == Method::Auto { 2 } else { 1 };
                 assert!(
-                    outcome.counts.evaluations <= 700,
+                    outcome.counts.evaluations <= runs * 700,
                     "{name}: {:?}",
                     outcome.counts
                 );

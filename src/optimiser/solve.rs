@@ -21,7 +21,7 @@ use super::well_posed;
 /// Shares of iterations and evaluations after which [`Method::Auto`] leaves the interior point, and
 /// the trust region that starts from its best point.
 const FIRST_SHARE: f64 = 0.5;
-const SECOND_SHARE: f64 = 0.8;
+const SECOND_SHARE: f64 = 0.55;
 
 /// How often a run goes on from a point beside one that seems infeasible.
 const ESCAPES: usize = 3;
