@@ -22,7 +22,9 @@ fn json_file(path: &str) -> Value {
 fn problem(function: &Value, duration: f64, steps: usize) -> Problem {
     let mut document = json_file("problems/trebuchet_release_time.json");
     document["functions"] = json!({ "f": function });
-    document["simulation"] = json!({"duration": duration, "steps": steps});
+    document["simulation"] = json!({
+        "duration": duration, "steps": steps, "method": {"bdf": {"order": 2}}
+    });
     document["variables"]["release time"]["upper"] = json!(3);
     let object = document.as_object_mut().expect("an object");
     object.remove("objective");

@@ -68,7 +68,8 @@ pub fn simulate_by<S: SolveScalar>(
         }
         Err(
             IntegrationFailure::NotFinite { time, .. }
-            | IntegrationFailure::Projection { time, .. },
+            | IntegrationFailure::Projection { time, .. }
+            | IntegrationFailure::Singular { time, .. },
         ) if matches!(settings.spacing, Spacing::Steps(_)) => {
             let reason = format!("explicit steps of this size fail at t = {time:.4} s");
             with(STIFF, reason)

@@ -120,7 +120,8 @@ fn the_trebuchet_has_the_masses_inertias_and_places_of_the_reference() {
     let sling = rotation::matrix(&scene.model.bodies[3].orientation);
     assert!(close(sling * Vec3::x(), [0.0, 1.0, 0.0]));
     assert_eq!(scene.duration, 2.0);
-    assert_eq!(problem.simulation.spacing, Spacing::Steps(2000));
+    assert_eq!(problem.simulation.spacing, Spacing::Tolerance(1e-9));
+    assert_eq!(problem.simulation.samples, Some(2000));
     assert_eq!(problem.start(), [400.0, 5.0, 40.0, 0.006, 0.01, 0.0]);
     assert_eq!(problem.variables[0].unit, "kg");
     assert_eq!(problem.variables[0].scale, 100.0);

@@ -65,7 +65,7 @@ fn simulate_prints_and_writes_only_where_it_is_told_to() {
     let at = scratch();
     let ran = expect(0, at.path(), &["simulate", HAMMER]);
     for word in [
-        "hammer: 0.6 s in 100 steps",
+        "hammer: 0.6 s by dop853 in 100 steps",
         "strike",
         "effort",
         "energy",

@@ -9,12 +9,12 @@ use crate::integrate::grid::{Place, place};
 use crate::integrate::settings::{Method, Settings};
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::watch;
-use crate::linalg::SolveScalar;
+use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::math::rotation;
 use crate::model::Model;
+use crate::system::Numbering;
 use crate::system::bodies::positions_of;
 use crate::system::initial::InitialState;
-use crate::system::{Numbering, rank};
 
 /// h |λ| beyond which an explicit step is at the border of its stability region (Hairer & Wanner
 /// 1996, section IV.2), and how many such steps make a scene stiff.
@@ -73,7 +73,7 @@ pub fn march<S: SolveScalar>(
             }
             Err(failure) if controller.give_up() => {
                 let time = duration.re() * end;
-                return Err(failed(failure, model, &from, time, number));
+                return Err(failed(failure, (model, numbering), (number, time)));
             }
             Err(_) => {
                 run.counts.rejected += 1;
@@ -89,8 +89,9 @@ pub fn march<S: SolveScalar>(
             });
         }
         run.grid.push(end);
-        sample(&mut run, &mut stepper, (&from, &to), settings, &mut next)
-            .map_err(|failure| failed(failure, model, &to, duration.re() * end, number))?;
+        sample(&mut run, &mut stepper, (&from, &to), settings, &mut next).map_err(|failure| {
+            failed(failure, (model, numbering), (number, duration.re() * end))
+        })?;
         let trajectory::Tape::Explicit(tape) = &mut run.tape else {
             unreachable!("the tape is that of the explicit method")
         };
@@ -163,18 +164,31 @@ fn error<S: SolveScalar>(stepper: &Stepper<S>, scale: &Scale, from: &Node<S>, h:
     }
 }
 
+/// The body or joint that an unknown of the index-1 equations belongs to.
+fn describe<S>(model: &Model<S>, numbering: &Numbering, singular: SingularMatrix) -> String {
+    let nv = numbering.velocities();
+    match singular.column {
+        i if i < nv => {
+            let body = &model.bodies[numbering.body_of_velocity(i)];
+            format!("the dynamics of body \"{}\"", body.name)
+        }
+        i => {
+            let joint = &model.joints[numbering.joint_of_row(i - nv)];
+            format!("the constraints of joint \"{}\"", joint.name)
+        }
+    }
+}
+
 fn failed<S: SolveScalar>(
     failure: StepFailure,
-    model: &Model<S>,
-    from: &Node<S>,
-    time: f64,
-    step: usize,
+    (model, numbering): (&Model<S>, &Numbering),
+    (step, time): (usize, f64),
 ) -> IntegrationFailure {
     match failure {
-        StepFailure::Singular(_) => IntegrationFailure::Singular {
+        StepFailure::Singular(singular) => IntegrationFailure::Singular {
             time,
             step,
-            place: rank::explain(model, &from.q).to_string(),
+            place: describe(model, numbering, singular),
         },
         StepFailure::Projection => IntegrationFailure::Projection { time, step },
         StepFailure::NotFinite => IntegrationFailure::NotFinite {
