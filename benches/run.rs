@@ -16,7 +16,9 @@ fn main() {
 }
 
 fn simulations() -> Vec<Case> {
-    NAMES.map(|name| Case::new(name, 1e-3)).into()
+    let implicit = NAMES.map(|name| Case::new(name, 1e-3));
+    let explicit = NAMES.map(|name| Case::explicit(name, 1e-8));
+    implicit.into_iter().chain(explicit).collect()
 }
 
 #[divan::bench(args = simulations(), sample_count = 20, sample_size = 1)]

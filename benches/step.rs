@@ -1,15 +1,17 @@
-//! The parts of one implicit step: residual, iteration matrix, factorisation, solves.
+//! The parts of one implicit step (residual, iteration matrix, factorisation, solves) and of one stage
+//! of the explicit method.
 //!
 //! `cargo bench --bench step`; read the column "fastest" on a shared machine.
 
 mod scenes;
 
 use divan::{Bencher, black_box};
-use flexbody::integrate::Trajectory;
-use flexbody::integrate::ggl::{Equations, Instant};
+use flexbody::integrate::implicit::Stage;
+use flexbody::integrate::implicit::ggl::{Equations, Instant};
+use flexbody::integrate::{Tape, Trajectory};
 use flexbody::linalg::{SparseLu, SparseMatrix};
 use flexbody::model::Model;
-use flexbody::system::bodies;
+use flexbody::system::accelerations::Accelerations;
 use scenes::{Case, NAMES};
 
 fn main() {
@@ -23,36 +25,26 @@ const H: f64 = 1e-3;
 struct Halted {
     model: Model<f64>,
     run: Trajectory<f64>,
-    k: usize,
-    qdot: Vec<f64>,
+    stage: Stage<f64>,
 }
 
 impl Halted {
     fn new(name: &'static str) -> Self {
         let case = Case::new(name, H);
         let run = case.simulate();
-        let k = run.steps / 2;
-        let mut qdot = vec![0.0; run.numbering.positions()];
-        bodies::rates(&run.numbering, run.q(k), run.v(k), &mut qdot);
+        let Tape::Implicit(tape) = &run.tape else {
+            unreachable!("BDF is an implicit method");
+        };
+        let stage = tape.steps[tape.steps.len() / 2][0].clone();
         Self {
             model: case.scene.model,
             run,
-            k,
-            qdot,
+            stage,
         }
     }
 
     fn instant(&self) -> Instant<'_, f64> {
-        let (run, k) = (&self.run, self.k);
-        Instant {
-            q: run.q(k),
-            v: run.v(k),
-            lambda: run.lambda(k),
-            mu: run.mu(k),
-            qdot: &self.qdot,
-            vdot: run.a(k),
-            time: run.time(k),
-        }
+        self.stage.instant()
     }
 
     fn equations(&self) -> Equations<'_, f64> {
@@ -100,6 +92,19 @@ fn factorisation(bencher: Bencher, name: &'static str) {
     let matrix = halted.matrix();
     let mut factors = SparseLu::new(&matrix.pattern);
     bencher.bench_local(|| factors.factorise(black_box(&matrix)));
+}
+
+/// Positions, constraint gradients, elimination and accelerations of one stage.
+#[divan::bench(args = NAMES)]
+fn explicit_stage(bencher: Bencher, name: &'static str) {
+    let Halted { model, run, stage } = Halted::new(name);
+    let mut field = Accelerations::new(&model, &run.numbering);
+    let (mut a, mut lambda) = (stage.vdot.clone(), stage.lambda.clone());
+    bencher.bench_local(|| {
+        field.stand(black_box(&stage.q), &stage.v, stage.time);
+        field.factorise().expect("regular");
+        field.accelerations(&mut a, &mut lambda);
+    });
 }
 
 #[divan::bench(args = NAMES)]

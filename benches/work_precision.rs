@@ -17,8 +17,9 @@ const RUNS: usize = 10;
 
 fn main() {
     println!(
-        "{:15} {:>8} {:>6} {:>9}  {:>9} {:>6} {:>6}  {:>9} {:>6}  {:>9} {:>6}",
+        "{:15} {:7} {:>8} {:>6} {:>9}  {:>9} {:>6} {:>6}  {:>9} {:>6}  {:>9} {:>6}",
         "scene",
+        "method",
         "unknowns",
         "steps",
         "error [m]",
@@ -33,6 +34,9 @@ fn main() {
     for name in NAMES {
         for h in [2e-3, 1e-3, 5e-4] {
             row(&Case::new(name, h));
+        }
+        for tolerance in [1e-5, 1e-7, 1e-9, 1e-11] {
+            row(&Case::explicit(name, tolerance));
         }
     }
     println!();
@@ -52,12 +56,13 @@ fn row(case: &Case) {
         })
     };
     let (one, three) = (gradient(&[0]), gradient(&[0, 1, 2]));
-    let per_step = |count: usize| count as f64 / run.steps as f64;
+    let per_step = |count: usize| count as f64 / run.grid.steps() as f64;
     println!(
-        "{:15} {:>8} {:>6} {:>9.1e}  {:>9.4} {:>6.2} {:>6.2}  {:>9.4} {:>6.2}  {:>9.4} {:>6.2}",
+        "{:15} {:7} {:>8} {:>6} {:>9.1e}  {:>9.5} {:>6.2} {:>6.2}  {:>9.5} {:>6.2}  {:>9.5} {:>6.2}",
         case.name,
+        run.method.name().replace(" with rising order", ""),
         2 * (run.numbering.velocities() + run.numbering.constraints()),
-        run.steps,
+        run.grid.steps(),
         case.error,
         forward,
         per_step(run.counts.newton_iterations),

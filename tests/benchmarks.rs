@@ -109,7 +109,7 @@ fn andrews_squeezer_velocities_and_multipliers() {
     ];
     let read = |motion: &Simulation| {
         let run = &motion.at.run;
-        let v = run.v(run.steps);
+        let v = run.v(run.last());
         v.chunks(6).map(|six| six[5]).collect()
     };
     let case = ("andrews_squeezer", 0.03, 30_000);
@@ -124,7 +124,7 @@ fn andrews_squeezer_velocities_and_multipliers() {
     ];
     let read = |motion: &Simulation| {
         let model = &motion.at.scene.model;
-        let reactions = motion.reactions(motion.at.run.steps);
+        let reactions = motion.reactions(motion.at.run.last());
         let at_e = model.joints.iter().zip(&reactions);
         let at_e = at_e.filter(|(joint, _)| joint.name.starts_with('E'));
         at_e.flat_map(|(_, reaction)| [-reaction.force_ground.x, -reaction.force_ground.y])
@@ -164,7 +164,7 @@ fn stiff_pendulum() {
     for row in rows.iter().map(row).skip(1) {
         let at = |motion: &Simulation, i: usize| {
             let run = &motion.at.run;
-            let k = (row[0] / run.h).round() as usize;
+            let k = (row[0] / run.duration * run.last() as f64).round() as usize;
             if i < 2 { run.q(k)[i] } else { run.v(k)[i - 2] }
         };
         for i in 0..4 {

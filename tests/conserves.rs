@@ -22,7 +22,7 @@ const DURATION: f64 = 2.0;
 fn observations(model: &Model<f64>, h: f64, order: usize) -> Vec<Observation> {
     let run = bdf(model, DURATION, h, order);
     assert!(velocity_correction(model, &run.initial) > 0.1);
-    (0..=run.steps)
+    (0..=run.last())
         .map(|k| observe(model, &run.numbering, run.q(k), run.v(k)))
         .collect()
 }
@@ -172,7 +172,7 @@ fn a_free_top_follows_the_exact_solution() {
     };
     let errors = [2e-3, 1e-3, 5e-4].map(|h| {
         let run = bdf(&model, DURATION, h, 2);
-        (0..=run.steps).fold(0.0_f64, |worst, k| {
+        (0..=run.last()).fold(0.0_f64, |worst, k| {
             let (q, t) = (run.q(k), run.time(k));
             let centre = body.position + body.velocity * t;
             assert!((Vec3::new(q[0], q[1], q[2]) - centre).norm() <= 1e-12);

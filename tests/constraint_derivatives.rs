@@ -7,7 +7,7 @@
 
 mod reference;
 
-use flexbody::integrate::ggl::{Equations, Instant};
+use flexbody::integrate::implicit::ggl::{Equations, Instant};
 use flexbody::linalg::{Pattern, SparseMatrix};
 use flexbody::math::{Complex64, Mat3, rotation};
 use flexbody::model::Model;

@@ -242,10 +242,7 @@ fn an_impossible_assembly_names_the_joint() {
         let text = failure.to_string();
         let start = format!("joint \"{joint}\" cannot be assembled: its ");
         assert!(text.starts_with(&start), "{text}");
-        let settings = Settings {
-            steps: 10,
-            method: Method::Bdf { order: 2 },
-        };
+        let settings = Settings::steps(Method::Dop853, 10);
         let told = simulate(&model, 1.0, &settings).expect_err("cannot be simulated");
         assert_eq!(told, IntegrationFailure::Assembly(failure));
     }

@@ -7,7 +7,7 @@
 
 mod reference;
 
-use flexbody::integrate::ggl::{Equations, Instant};
+use flexbody::integrate::implicit::ggl::{Equations, Instant};
 use flexbody::linalg::{Emit, SparseMatrix};
 use flexbody::math::scalar::COMPLEX_STEP;
 use flexbody::math::{Complex64, Scalar};

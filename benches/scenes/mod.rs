@@ -5,7 +5,7 @@
 pub mod reference;
 
 use flexbody::functions::{EnergyPart, Function, Instant, Reduction, Scene};
-use flexbody::integrate::{Method, Settings, Trajectory, simulate};
+use flexbody::integrate::{Method, Samples, Settings, Spacing, Trajectory, simulate};
 use flexbody::math::Vec3;
 use flexbody::problem::Problem;
 use serde_json::json;
@@ -26,6 +26,29 @@ pub struct Case {
 impl Case {
     /// The scene `name` with BDF2 and steps of `h` [s].
     pub fn new(name: &'static str, h: f64) -> Self {
+        let (_, instants) = reference::load(name);
+        let duration = instants.last().expect("a reference has instants").time;
+        let steps = (duration / h).round() as usize;
+        Self::with(name, Settings::steps(reference::rising(2), steps))
+    }
+
+    /// The scene `name` with the explicit method and steps that follow a tolerance, as an
+    /// optimisation keeps them.
+    pub fn explicit(name: &'static str, tolerance: f64) -> Self {
+        let (model, instants) = reference::load(name);
+        let duration = instants.last().expect("a reference has instants").time;
+        let mut settings = Settings {
+            method: Method::Dop853,
+            spacing: Spacing::Tolerance(tolerance),
+            samples: Samples::Uniform(1),
+            keep_stages: true,
+        };
+        let run = simulate(&model, duration, &settings).expect("the scene runs");
+        settings.spacing = Spacing::Frozen(run.grid);
+        Self::with(name, settings)
+    }
+
+    fn with(name: &'static str, settings: Settings) -> Self {
         let (model, instants) = reference::load(name);
         let duration = instants.last().expect("a reference has instants").time;
         let last = model.bodies.len() - 1;
@@ -43,10 +66,6 @@ impl Case {
             ),
             reduced(Instant::Energy(EnergyPart::Kinetic), Reduction::Integral),
         ];
-        let settings = Settings {
-            steps: (duration / h).round() as usize,
-            method: Method::Bdf { order: 2 },
-        };
         let mut case = Self {
             name,
             scene: Scene {
@@ -70,7 +89,9 @@ impl Case {
 impl fmt::Display for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, error, .. } = self;
-        write!(f, "{name}, {} steps: {error:.1e} m", self.settings.steps)
+        let steps = self.simulate().grid.steps();
+        let method = self.settings.method.name();
+        write!(f, "{name}, {method}, {steps} steps: {error:.1e} m")
     }
 }
 
@@ -83,7 +104,14 @@ pub fn trebuchet_problem() -> (Problem, f64) {
         json!({"ks": {"rho": 0.1, "of": {"speed": {"body": "stone"}}}});
     let problem = Problem::parse(&document.to_string(), "trebuchet.json", &[]).expect("no faults");
     let scene = problem.scene(&problem.start());
-    let run = simulate(&scene.model, scene.duration, &problem.settings).expect("the scene runs");
+    let simulation = &problem.simulation;
+    let settings = Settings {
+        method: simulation.method.unwrap_or(Method::Dop853),
+        spacing: simulation.spacing.clone(),
+        samples: Samples::Uniform(200),
+        keep_stages: false,
+    };
+    let run = simulate(&scene.model, scene.duration, &settings).expect("the scene runs");
     let (_, instants) = reference::load("trebuchet");
     let error = reference::motion_error(&run, &instants).0;
     (problem, error)

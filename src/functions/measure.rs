@@ -10,6 +10,9 @@ use crate::system::bodies::add6;
 use crate::system::marker::{self, Jet};
 use crate::system::{Motion, Numbering, loads};
 
+/// Speed below which a point is at rest (m/s), where the derivative of its speed is taken as zero.
+const REST: f64 = 1e-25;
+
 /// A model at one instant.
 #[derive(Clone, Copy)]
 pub struct Snapshot<'a, S> {
@@ -118,7 +121,7 @@ impl<S: Scalar> Instant<S> {
             Instant::Speed { body, point } => {
                 let velocity = at.motion(*body).point_velocity(point);
                 let square = velocity.dot(&velocity);
-                if square.re() > 0.0 {
+                if square.re() > REST * REST {
                     square.sqrt()
                 } else {
                     S::zero()
@@ -221,7 +224,7 @@ impl Instant<f64> {
             ) => {
                 let velocity = at.motion(*body).point_velocity(point);
                 let speed = velocity.norm();
-                if speed > 0.0 {
+                if speed > REST {
                     let by = velocity * (weight / speed);
                     *by_point += pull_point(at, *body, point, [ZERO, by, ZERO], out);
                 }

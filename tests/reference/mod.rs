@@ -7,7 +7,7 @@
 pub mod cases;
 pub mod models;
 
-use flexbody::integrate::{Trajectory, multipliers};
+use flexbody::integrate::{Method, Settings, Start, Trajectory, multipliers, simulate};
 use flexbody::math::{Mat3, Vec3};
 use flexbody::model::{JointKind, Model, RigidBody};
 use flexbody::system::observe::reactions;
@@ -130,6 +130,30 @@ fn model(scene: &Value) -> Model<f64> {
         joints,
         loads: Vec::new(),
     }
+}
+
+/// BDF of the given order with the start-up of rising order.
+pub fn rising(order: usize) -> Method {
+    Method::Bdf {
+        order,
+        start: Start::RisingOrder,
+    }
+}
+
+/// Runs a method with steps of size `h`, sampled at their ends.
+pub fn run(model: &Model<f64>, duration: f64, method: Method, h: f64) -> Trajectory<f64> {
+    let steps = (duration / h).round() as usize;
+    simulate(model, duration, &Settings::steps(method, steps)).expect("runs")
+}
+
+/// Runs BDF of order 1 or 2 with steps of size `h`.
+pub fn bdf(model: &Model<f64>, duration: f64, h: f64, order: usize) -> Trajectory<f64> {
+    run(model, duration, rising(order), h)
+}
+
+/// Observed order of an error that a step of half the size makes smaller.
+pub fn observed_order(coarse: f64, fine: f64) -> f64 {
+    (coarse / fine).log2()
 }
 
 /// Largest distance of a centre of mass from the reference [m], and largest difference of its

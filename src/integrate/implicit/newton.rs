@@ -15,6 +15,8 @@ use crate::system::Numbering;
 const TOLERANCE: f64 = 1e-13;
 /// Relative change below which a stagnating iteration has reached round-off as well.
 const STAGNANT: f64 = 1e-9;
+/// Scaled residual, relative to the length scale, that is round-off.
+const ROUND_OFF: f64 = 1e-14;
 /// Contraction above which the iteration matrix is renewed.
 const RENEW: f64 = 0.1;
 /// Steps of one iteration each after which the iteration matrix is renewed.
@@ -97,6 +99,8 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         let scales = self
             .scale
             .step(numbering, [&x.q, &x.v, &x.dq, &x.dv], h.re());
+        // What a nearly singular matrix magnifies to changes of any size.
+        let round_off = ROUND_OFF * self.scale.length.max(1.0);
         let mut previous = f64::INFINITY;
         let (mut polish, mut before) = (false, 0.0_f64);
         for iteration in 1..=ITERATIONS {
@@ -104,6 +108,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             let at = x.instant();
             self.equations.residual(&at, h, &mut self.residual);
             // A derivative converges with the exact matrix only.
+            let residual = (self.residual.iter()).fold(0.0, |m: f64, x| m.max(x.re().abs()));
             let fresh = S::INFINITESIMAL || self.factored != Some(history.c * h);
             if fresh {
                 let (equations, matrix) = (&mut self.equations, &mut self.matrix);
@@ -144,8 +149,9 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             let slow = contraction.max(before);
             let remaining = size * (slow / (1.0 - slow.min(0.9))).min(1.0);
             before = contraction;
-            let stagnant =
-                iteration > 2 && contraction > RENEW && size <= scales.round_off.max(STAGNANT);
+            let stagnant = iteration > 2
+                && contraction > RENEW
+                && (size <= scales.round_off.max(STAGNANT) || residual <= round_off);
             if polish || remaining <= TOLERANCE || stagnant {
                 if S::INFINITESIMAL && !polish {
                     polish = true;

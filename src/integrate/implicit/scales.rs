@@ -10,7 +10,8 @@ const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 /// Length and gravity of a scene, which do not change during a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SceneScale {
-    length: f64,
+    /// Length scale (m).
+    pub length: f64,
     gravity: f64,
 }
 

@@ -14,8 +14,11 @@ use crate::system::{Numbering, bodies};
 
 /// Error left in the stages, relative to the largest increments in the step.
 const TOLERANCE: f64 = 1e-13;
-/// Relative change below which a stagnating iteration has reached round-off.
-const STAGNANT: f64 = 1e-9;
+/// Relative change below which a stagnating iteration has reached round-off: stiff forces magnify
+/// that of positions.
+const STAGNANT: f64 = 1e-7;
+/// Scaled residual, relative to the length scale, that is round-off.
+const ROUND_OFF: f64 = 1e-14;
 /// Contraction above which the matrices are renewed for the next step.
 const RENEW: f64 = 0.05;
 /// Contraction that is given up.
@@ -144,8 +147,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             let slow = contraction.min(before) > DIVERGENT || contraction > 10.0;
             before = contraction;
             let remaining = size * (pair / (1.0 - pair.min(0.9))).min(1.0);
-            let noise = scales.round_off.max(STAGNANT);
-            let stagnant = iteration > 2 && contraction > 0.3 && size <= noise;
+            let stagnant = iteration > 2
+                && contraction > 0.3
+                && (size <= scales.round_off.max(STAGNANT) || self.is_round_off());
             if remaining <= TOLERANCE || stagnant {
                 if S::INFINITESIMAL {
                     for _ in 0..INFINITESIMAL_ITERATIONS {
@@ -168,6 +172,14 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         }
         self.factored = None;
         Err(self.stalled(stages, h, at))
+    }
+
+    /// Whether the residuals are round-off, however large the changes are that a nearly singular
+    /// matrix makes of it.
+    fn is_round_off(&self) -> bool {
+        let limit = ROUND_OFF * self.scale.length.max(1.0);
+        let all = self.residuals.iter().flatten();
+        all.fold(0.0, |m: f64, x| m.max(x.re().abs())) <= limit
     }
 
     /// One iteration; the size of the change.

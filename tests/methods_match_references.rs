@@ -42,19 +42,19 @@ fn energy_drift(model: &Model<f64>, run: &Trajectory<f64>) -> f64 {
         let seen = observe(model, &run.numbering, run.q(k), run.v(k));
         seen.kinetic + seen.potential
     };
-    (0..=run.steps).fold(0.0, |m: f64, k| m.max((energy(k) - energy(0)).abs()))
+    (0..=run.last()).fold(0.0, |m: f64, k| m.max((energy(k) - energy(0)).abs()))
 }
 
 /// Asserts that position and velocity constraints hold to 1e-10 (m, m/s, 1 or 1/s) throughout.
 fn assert_constraints_hold(model: &Model<f64>, run: &Trajectory<f64>) {
-    for k in 0..=run.steps {
+    for k in 0..=run.last() {
         let seen = observe(model, &run.numbering, run.q(k), run.v(k));
         let worst = seen.position_drift.max(seen.velocity_drift);
         assert!(
             worst <= 1e-10,
-            "{worst:e} at step {k} of {}, h = {}",
-            run.steps,
-            run.h
+            "{worst:e} at instant {k} of {} by {}",
+            run.last(),
+            run.method.name()
         );
     }
 }
