@@ -144,6 +144,7 @@ fn cases() -> Vec<Case> {
         Case::new(1000, Method::InteriorPoint, 500),
         Case::new(6, Method::TrustRegion, 500),
         Case::new(100, Method::TrustRegion, 500),
+        Case::new(1000, Method::TrustRegion, 5),
     ]
 }
 

@@ -103,6 +103,7 @@ fn optimum() -> Optimum {
             steps: 50_000,
             newton_iterations: 140_000,
             factorisations: 180_000,
+            quadratic_programs: 0,
             solves: 230_000,
         },
         warnings: vec!["the aggregate is coarse".into()],

@@ -1,5 +1,6 @@
 //! Exact gradients of functions of interest: the discrete adjoint of the integration.
 
+mod compensated;
 mod explicit;
 mod implicit;
 mod sensitivity;

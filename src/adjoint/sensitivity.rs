@@ -1,6 +1,7 @@
 //! One function on its way back: its cotangents at the samples and at the state that the march
 //! has reached, and its derivatives in the parameters so far.
 
+use super::compensated::Compensated;
 use crate::functions::Scene;
 use crate::functions::evaluate::Linearised;
 use crate::functions::measure::{Snapshot, SnapshotCotangent};
@@ -19,9 +20,9 @@ pub(super) struct Sensitivity<'a> {
     /// Derivative in the duration by way of the step sizes.
     pub by_duration: f64,
     /// Cotangent of the positions that the march has reached, in their seven coordinates.
-    pub q: Vec<f64>,
+    pub q: Compensated,
     /// Cotangent of the velocities there.
-    pub v: Vec<f64>,
+    pub v: Compensated,
     /// Partial derivatives at a sample: by tangent positions, velocities and accelerations.
     pub sample: [Vec<f64>; 3],
 }
@@ -35,8 +36,8 @@ impl<'a> Sensitivity<'a> {
             own,
             cot: scene.zero_cotangent(),
             by_duration: 0.0,
-            q: vec![0.0; nq],
-            v: vec![0.0; nv],
+            q: Compensated::zero(nq),
+            v: Compensated::zero(nv),
             sample: std::array::from_fn(|_| vec![0.0; nv]),
         }
     }

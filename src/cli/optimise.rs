@@ -7,7 +7,7 @@ use super::{
     DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, load, print, record, tell,
 };
 use crate::driver::{self, Journal, Optimisation, WarmStart, figures, journal};
-use crate::optimiser::Status;
+use crate::optimiser::{Counts, Status};
 use crate::problem::Problem;
 use crate::report::evaluations::{EvaluationLog, EvaluationRecord};
 use crate::report::{History, atomic_write, summary, write_all};
@@ -60,7 +60,13 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
                     directory.display()
                 ))
             })?;
-            several(&problem, &file, count as usize, &stopped, job.quiet)?
+            several(
+                &problem,
+                (&file, &directory),
+                count as usize,
+                &stopped,
+                job.quiet,
+            )?
         }
         None => {
             let resume = course.resume.as_deref();
@@ -69,8 +75,10 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
             (problem, done)
         }
     };
-    if let Status::UndefinedStart { what } = &done.outcome.status {
-        return Err(Failure::new(NUMERICAL_FAILURE, what));
+    match &done.outcome.status {
+        Status::UndefinedStart { what } => return Err(Failure::new(NUMERICAL_FAILURE, what)),
+        Status::IllPosed { what } => return Err(Failure::bad_input(what)),
+        _ => {}
     }
     if course.second_order && done.outcome.converged() {
         done.optimum.second_order =
@@ -98,6 +106,7 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
     let _ = std::fs::remove_file(directory.join(PARTIAL));
     if !job.quiet {
         print(&summary(&done.optimum))?;
+        tell(&times(&done.outcome.counts));
         tell(&format!("results in {}\n", directory.display()));
     }
     if let (true, Some(end)) = (job.error, &done.end) {
@@ -117,6 +126,21 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
             Ok(NOT_REACHED)
         }
     }
+}
+
+/// Where the wall time went; not a part of the record, which is the same for the same run.
+fn times(counts: &Counts) -> String {
+    let programs = match counts.quadratic_programs {
+        0 => String::new(),
+        n => format!(
+            ", {n} quadratic programs {:.3} s",
+            counts.quadratic_program_seconds
+        ),
+    };
+    format!(
+        "Time: {:.3} s, of it simulations and gradients {:.3} s{programs}\n",
+        counts.seconds, counts.evaluation_seconds
+    )
 }
 
 /// Refuses a problem that has nothing to optimise.
@@ -219,7 +243,8 @@ fn one(
     let journal = Journal::new(earlier, &mut record);
     let state = state.map(|warm| &warm.state);
     let done = driver::optimise(problem, file, state, journal, &mut progress);
-    match unwritable.into_inner() {
+    let synchronised = log.synchronise().err();
+    match unwritable.into_inner().or(synchronised) {
         Some(error) => Err(Failure::bad_input(error)),
         None => done.ok_or_else(|| Failure::bad_input("nothing to optimise")),
     }

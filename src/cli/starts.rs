@@ -2,13 +2,40 @@
 
 use super::{Failure, print};
 use crate::driver::multi_start::{self, LocalOptimum, Run};
-use crate::driver::{self, Optimisation};
+use crate::driver::{self, Optimisation, journal};
 use crate::problem::Problem;
+use crate::report::ReportError;
+use crate::report::evaluations::{EvaluationLog, EvaluationRecord};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
-/// Optimisations from several starts: the best one, after a table of the distinct optima.
+/// File of the evaluations of the run from start `k`, counted from 1.
+fn log_of(directory: &Path, k: usize) -> PathBuf {
+    directory.join(format!("evaluations.start_{k}.jsonl"))
+}
+
+/// Opens the file of evaluations of every start, and removes those of an earlier call with more.
+fn logs(
+    problem: &Problem,
+    starts: &[Vec<f64>],
+    directory: &Path,
+) -> Result<Vec<Mutex<EvaluationLog>>, ReportError> {
+    let mut stale = starts.len() + 1;
+    while std::fs::remove_file(log_of(directory, stale)).is_ok() {
+        stale += 1;
+    }
+    let open = |(k, start): (usize, &Vec<f64>)| {
+        let head = journal::head(&multi_start::started_at(problem, start));
+        EvaluationLog::create(&log_of(directory, k + 1), &head).map(Mutex::new)
+    };
+    starts.iter().enumerate().map(open).collect()
+}
+
+/// Optimisations from several starts: the best one, after a table of the distinct optima. Every
+/// evaluation is on the disk as soon as it is known, in a file for each start.
 pub fn several(
     problem: &Problem,
-    file: &str,
+    (file, directory): (&str, &Path),
     count: usize,
     stopped: &(dyn Fn() -> bool + Sync),
     quiet: bool,
@@ -19,7 +46,22 @@ pub fn several(
              \"upper\" for every variable: starts are spread between them"
         ))
     })?;
-    let mut runs = driver::multi_start(problem, file, &starts, stopped);
+    let logs = logs(problem, &starts, directory).map_err(Failure::bad_input)?;
+    let unwritable: Mutex<Option<ReportError>> = Mutex::new(None);
+    let has_failed = || unwritable.lock().is_ok_and(|error| error.is_some());
+    let record = |k: usize, evaluation: EvaluationRecord| {
+        let Ok(mut log) = logs[k].lock() else { return };
+        if let Err(error) = log.append(&evaluation)
+            && let Ok(mut first) = unwritable.lock()
+        {
+            first.get_or_insert(error);
+        }
+    };
+    let stopped = || stopped() || has_failed();
+    let mut runs = driver::multi_start(problem, file, &starts, &stopped, &record);
+    if let Ok(Some(error)) = unwritable.into_inner() {
+        return Err(Failure::bad_input(error));
+    }
     let optima = multi_start::distinct(problem, &runs);
     if !quiet {
         print(&table_of_optima(&runs, &optima))?;

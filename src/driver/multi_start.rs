@@ -3,6 +3,7 @@
 use super::journal::Journal;
 use super::optimise::{Optimisation, optimise};
 use crate::problem::{Problem, Sense};
+use crate::report::evaluations::EvaluationRecord;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
@@ -52,17 +53,27 @@ pub fn starts(problem: &Problem, count: usize) -> Result<Vec<Vec<f64>>, String> 
     Ok(std::iter::once(problem.start()).chain(spread).collect())
 }
 
+/// The problem with another start.
+pub fn started_at(problem: &Problem, start: &[f64]) -> Problem {
+    let mut problem = problem.clone();
+    problem.restart(start);
+    problem
+}
+
 /// Optimises from every start, in parallel; runs are in the order of the starts. `stopped` is
-/// asked after every iteration of every run.
+/// asked after every iteration of every run; `record` receives every evaluation with the number of
+/// its start, as soon as it is known.
 pub fn multi_start(
     problem: &Problem,
     file: &str,
     starts: &[Vec<f64>],
     stopped: &(dyn Fn() -> bool + Sync),
+    record: &(dyn Fn(usize, EvaluationRecord) + Sync),
 ) -> Vec<Run> {
-    let run = |start: &Vec<f64>| {
-        let mut problem = problem.clone();
-        problem.restart(start);
+    let run = |(k, start): (usize, &Vec<f64>)| {
+        let problem = started_at(problem, start);
+        let mut write = |evaluation| record(k, evaluation);
+        let journal = Journal::new(Vec::new(), &mut write);
         let mut progress = |_: &_| {
             if stopped() {
                 ControlFlow::Break(())
@@ -70,13 +81,13 @@ pub fn multi_start(
                 ControlFlow::Continue(())
             }
         };
-        let optimisation = optimise(&problem, file, None, Journal::default(), &mut progress)?;
+        let optimisation = optimise(&problem, file, None, journal, &mut progress)?;
         Some(Run {
             problem,
             optimisation,
         })
     };
-    starts.par_iter().filter_map(run).collect()
+    starts.par_iter().enumerate().filter_map(run).collect()
 }
 
 /// Distinct optima of the converged runs, best first.

@@ -45,6 +45,11 @@ pub fn optimise<'a>(
         .optimiser
         .iterations
         .unwrap_or(options.max_iterations);
+    options.max_evaluations = problem
+        .optimiser
+        .evaluations
+        .unwrap_or(options.max_evaluations);
+    options.max_seconds = problem.optimiser.seconds;
     let sign = program.sign();
     let mut recorder = Recorder {
         problem,

@@ -26,6 +26,7 @@ fn verdict(status: &Status) -> (&'static str, String) {
                  and no small change reduces the violation"
             ),
         ),
+        Status::IllPosed { what } => ("ill_posed", format!("the problem makes no sense: {what}")),
         Status::Unbounded => ("unbounded", "the objective improves without bound".into()),
         Status::UndefinedStart { what } => (
             "undefined_start",
@@ -164,6 +165,7 @@ pub(super) fn record(
             function_evaluations: outcome.counts.evaluations as u64,
             gradient_evaluations: outcome.counts.gradients as u64,
             failed_evaluations: outcome.counts.failures as u64,
+            quadratic_programs: outcome.counts.quadratic_programs as u64,
             steps: work.steps as u64,
             newton_iterations: work.newton_iterations as u64,
             factorisations: work.factorisations as u64,

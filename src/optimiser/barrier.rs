@@ -35,7 +35,7 @@ impl BarrierRule {
         let adaptive = options.barrier == Barrier::Adaptive;
         BarrierRule {
             mu: options.initial_barrier,
-            least: 1e-4 * options.tolerance,
+            least: 1e-6 * options.tolerance,
             free: adaptive,
             adaptive,
             history: Vec::new(),

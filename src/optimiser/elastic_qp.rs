@@ -10,6 +10,8 @@ use clarabel::solver::{
 use nalgebra::{DMatrix, DVector};
 
 use super::outcome::Counts;
+use super::quasi_newton::Spectrum;
+use super::split_qp;
 
 /// Tolerance asked of Clarabel, in scaled units.
 const TOLERANCE: f64 = 1e-10;
@@ -30,11 +32,39 @@ pub(super) struct ElasticQp {
     solver: Option<DefaultSolver<f64>>,
 }
 
+/// Positive definite matrix of a subproblem.
+pub(super) enum Hessian<'a> {
+    Dense(&'a DMatrix<f64>),
+    Split(Spectrum),
+}
+
+impl Hessian<'_> {
+    /// A bound on its entries.
+    fn amax(&self) -> f64 {
+        match self {
+            Hessian::Dense(b) => b.amax(),
+            Hessian::Split(b) => b.values.amax().max(b.sigma),
+        }
+    }
+
+    fn multiply(&self, d: &DVector<f64>) -> DVector<f64> {
+        match self {
+            Hessian::Dense(b) => *b * d,
+            Hessian::Split(b) => {
+                let mut part = b.vectors.tr_mul(d);
+                for (v, lambda) in part.iter_mut().zip(b.values.iter()) {
+                    *v *= lambda - b.sigma;
+                }
+                d * b.sigma + &b.vectors * part
+            }
+        }
+    }
+}
+
 /// Data of one subproblem.
 pub(super) struct QpData<'a> {
     pub g: &'a DVector<f64>,
-    /// Positive definite.
-    pub b: &'a DMatrix<f64>,
+    pub b: &'a Hessian<'a>,
     pub a: &'a DMatrix<f64>,
     /// Room c_U − c and c − c_L of every row; infinite where there is no bound.
     pub above: &'a DVector<f64>,
@@ -110,29 +140,37 @@ impl ElasticQp {
             .max(radius * data.b.amax())
             .max(1e-100);
         let norms = DVector::from_fn(m, |j, _| data.a.row(j).amax().max(1e-8));
-        let mut p = Vec::with_capacity(n * (n + 1) / 2 + m);
-        for k in 0..n {
-            p.extend((0..=k).map(|i| data.b[(i, k)] * radius / force));
-        }
+        let rhs = self.right_hand_side(data, &norms, radius);
         let q: Vec<f64> = (data.g.iter().map(|g| g / force))
             .chain((0..m).map(|j| data.penalty[j] * norms[j] / force))
             .collect();
         let values = self.row_values(data.a, &norms);
-        let rhs = self.right_hand_side(data, &norms, radius);
-        let solver = match self.solver.take() {
-            Some(mut solver) => {
-                solver.update_data(&p, &q, &values, &rhs).ok()?;
-                solver
+        let (status, t, z) = match data.b {
+            Hessian::Dense(b) => {
+                let mut p = Vec::with_capacity(n * (n + 1) / 2 + m);
+                for k in 0..n {
+                    p.extend((0..=k).map(|i| b[(i, k)] * radius / force));
+                }
+                let solver = match self.solver.take() {
+                    Some(mut solver) => {
+                        solver.update_data(&p, &q, &values, &rhs).ok()?;
+                        solver
+                    }
+                    None => self.new_solver(p, &q, values, &rhs)?,
+                };
+                let solver = self.solver.insert(solver);
+                solver.solve();
+                let found = &solver.solution;
+                (found.status, found.x.clone(), found.z.clone())
             }
-            None => self.new_solver(p, &q, values, &rhs)?,
+            Hessian::Split(b) => {
+                let rows = self.pattern(values);
+                split_qp::solve(&rows, b, radius / force, &q, &rhs)?
+            }
         };
-        let solver = self.solver.insert(solver);
-        solver.solve();
-        let status = solver.solution.status;
         if !matches!(status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
             return None;
         }
-        let (t, z) = (&solver.solution.x, &solver.solution.z);
         let mut y = DVector::zeros(m);
         let mut row = 0;
         for j in 0..m {
@@ -219,7 +257,14 @@ impl ElasticQp {
         }
         pointers.extend(std::iter::repeat_n(indices.len(), m));
         let p = CscMatrix::new(n + m, n + m, pointers, indices, p);
+        let a = self.pattern(values);
+        let cones = [NonnegativeConeT(a.m)];
+        DefaultSolver::new(&p, q, &a, rhs, &cones, settings()?).ok()
+    }
 
+    /// The constraint matrix with the given values, of which zeros are kept.
+    fn pattern(&self, values: Vec<f64>) -> CscMatrix<f64> {
+        let (n, m) = (self.n, self.has_lower.len());
         let sides = |j: usize| usize::from(self.has_upper[j]) + usize::from(self.has_lower[j]);
         let bounded: usize = (0..m).map(sides).sum();
         let total = bounded + m + 2 * n;
@@ -237,23 +282,26 @@ impl ElasticQp {
             pointers.push(indices.len());
             first += sides(j);
         }
-        let a = CscMatrix::new(total, n + m, pointers, indices, values);
-        let settings: DefaultSettings<f64> = DefaultSettingsBuilder::default()
-            .verbose(false)
-            .presolve_enable(false)
-            .max_iter(100)
-            .tol_gap_abs(TOLERANCE)
-            .tol_gap_rel(TOLERANCE)
-            .tol_feas(TOLERANCE)
-            .build()
-            .ok()?;
-        DefaultSolver::new(&p, q, &a, rhs, &[NonnegativeConeT(total)], settings).ok()
+        CscMatrix::new(total, n + m, pointers, indices, values)
     }
+}
+
+/// Settings of Clarabel.
+pub(super) fn settings() -> Option<DefaultSettings<f64>> {
+    DefaultSettingsBuilder::default()
+        .verbose(false)
+        .presolve_enable(false)
+        .max_iter(100)
+        .tol_gap_abs(TOLERANCE)
+        .tol_gap_rel(TOLERANCE)
+        .tol_feas(TOLERANCE)
+        .build()
+        .ok()
 }
 
 /// Whether the force g + B d + Aᵀy on every variable inside its box is small, 0 ≤ |y| ≤ ν.
 fn is_stationary(data: &QpData<'_>, d: &DVector<f64>, y: &DVector<f64>, force: f64) -> bool {
-    let residual = data.g + data.b * d + data.a.tr_mul(y);
+    let residual = data.g + data.b.multiply(d) + data.a.tr_mul(y);
     let size = data.upper.amax().max(data.lower.amax());
     let balanced = (0..d.len()).all(|i| {
         let r = residual[i];

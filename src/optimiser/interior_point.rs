@@ -11,7 +11,7 @@ use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
 use super::trust_region::{Ending, Goal, TrustRegion};
-use super::verdict::{ScaledMultipliers, is_solved, kkt};
+use super::verdict::{ScaledMultipliers, UNIT_OF_OBJECTIVE, is_solved};
 
 /// Multipliers of bounds stay within this factor of μ/distance.
 const MULTIPLIER_BAND: f64 = 1e10;
@@ -40,12 +40,18 @@ pub(super) struct InteriorPoint {
     filter: Filter,
     theta_small: f64,
     short_steps: usize,
+    /// Variables on which nothing has depended so far: without barriers, so that they stay.
+    idle: Vec<usize>,
 }
 
 impl InteriorPoint {
     /// Starts from a strictly interior point; slacks keep the share `push` from their bounds.
     pub fn new(program: &Program<'_>, point: Point, slopes: Slopes, push: f64) -> InteriorPoint {
-        let layout = Layout::new(program);
+        let mut layout = Layout::new(program);
+        let idle: Vec<usize> = (0..layout.n).filter(|&k| slopes.is_idle(k)).collect();
+        for &k in &idle {
+            (layout.lower[k], layout.upper[k]) = (f64::NEG_INFINITY, f64::INFINITY);
+        }
         let options = program.options;
         let n = layout.n;
         let s = DVector::from_iterator(
@@ -77,6 +83,7 @@ impl InteriorPoint {
             filter: Filter::new(1e2 * theta.max(1.0)),
             theta_small: 1e-4 * theta.max(1.0),
             short_steps: 0,
+            idle,
             layout,
             at,
         }
@@ -122,10 +129,11 @@ impl InteriorPoint {
     pub fn run(&mut self, program: &mut Program<'_>) -> Result<Ending, Trouble> {
         let mut failures = 0;
         loop {
+            self.wake(program);
             if self.is_solved(program) {
                 return Ok(Ending::Reached);
             }
-            if self.is_unbounded(program) {
+            if program.is_unbounded(&self.at.point) {
                 return Ok(Ending::Unbounded);
             }
             if self.barrier.update(&self.at, &self.layout, &mut self.b) {
@@ -166,6 +174,24 @@ impl InteriorPoint {
                     }
                 }
             }
+        }
+    }
+
+    /// Gives barriers to the idle variables on which something depends at this point.
+    fn wake(&mut self, program: &Program<'_>) {
+        let slopes = &self.at.slopes;
+        let (idle, woken): (Vec<usize>, Vec<usize>) =
+            self.idle.iter().partition(|&&k| slopes.is_idle(k));
+        self.idle = idle;
+        for &k in &woken {
+            let x = self.at.point.x[k];
+            let (lower, upper) = (program.lower[k], program.upper[k]);
+            (self.layout.lower[k], self.layout.upper[k]) = (lower, upper);
+            (self.at.zl[k], self.at.zu[k]) =
+                (self.barrier.mu / (x - lower), self.barrier.mu / (upper - x));
+        }
+        if !woken.is_empty() {
+            self.filter.clear(self.theta());
         }
     }
 
@@ -273,15 +299,11 @@ impl InteriorPoint {
         }
         let z = self.multipliers(program);
         let gap: f64 = self.at.products(&self.layout).iter().sum();
-        let residuals = kkt(program, &self.at.point, &self.at.slopes, &z, scaled);
-        is_solved(&residuals, program.options)
-            && gap <= 0.1 * program.options.tolerance * self.at.point.f.abs().max(0.1)
-    }
-
-    fn is_unbounded(&self, program: &Program<'_>) -> bool {
-        let f = self.at.point.f / program.scaling.objective;
-        f < program.options.unbounded_below
-            && program.worst_violation(&self.at.point.c).0 <= program.options.constraint_tolerance
+        let least = UNIT_OF_OBJECTIVE * program.typical_gradient() * program.scaling.objective;
+        let unit = self.at.point.f.abs().max(least);
+        let (point, slopes) = (&self.at.point, &self.at.slopes);
+        gap <= 0.1 * program.options.tolerance * unit
+            && is_solved(program, point, slopes, &z, scaled)
     }
 
     /// What to do when the line search found no step: forget the quasi-Newton matrix if the point

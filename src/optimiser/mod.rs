@@ -3,6 +3,7 @@
 mod barrier;
 mod direction;
 mod elastic_qp;
+mod ending;
 mod filter;
 mod interior_point;
 mod iterate;
@@ -14,11 +15,14 @@ mod options;
 mod outcome;
 mod program;
 mod quasi_newton;
+mod scaling;
 mod solve;
+mod split_qp;
 mod start;
 mod state;
 mod trust_region;
 mod verdict;
+mod well_posed;
 
 pub use nlp::{Evaluation, EvaluationFailure, Gradients, Nlp};
 pub use observer::{Observer, Phase, Row, Silent};

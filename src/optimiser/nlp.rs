@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 /// A smooth nonlinear program, minimise f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///
-/// A row with c_L = c_U is an equality; an infinite bound is absent. Only first derivatives are
+/// A row with c_L = c_U is an equality; an infinite bound is absent, and a row without bounds is not
+/// looked at, whatever its values are. Only first derivatives are
 /// asked for, and always at a point that was evaluated last or shortly before.
 pub trait Nlp {
     /// Number of variables n.
@@ -75,8 +76,13 @@ pub struct EvaluationFailure {
     pub reason: String,
 }
 
-/// Finds the first value that is not finite or the first length that is wrong.
-pub(super) fn fault_of_evaluation(nlp: &dyn Nlp, e: &Evaluation) -> Option<EvaluationFailure> {
+/// Finds the first value that is not finite, among the objective and `rows`, or the first length that
+/// is wrong.
+pub(super) fn fault_of_evaluation(
+    nlp: &dyn Nlp,
+    rows: &[usize],
+    e: &Evaluation,
+) -> Option<EvaluationFailure> {
     if e.constraints.len() != nlp.constraints() {
         return Some(wrong_length(
             "constraints",
@@ -87,12 +93,16 @@ pub(super) fn fault_of_evaluation(nlp: &dyn Nlp, e: &Evaluation) -> Option<Evalu
     if !e.objective.is_finite() {
         return Some(not_finite("the objective".into(), e.objective));
     }
-    let j = e.constraints.iter().position(|c| !c.is_finite())?;
+    let j = *rows.iter().find(|&&j| !e.constraints[j].is_finite())?;
     Some(not_finite(nlp.constraint_name(j), e.constraints[j]))
 }
 
 /// As [`fault_of_evaluation`], for derivatives.
-pub(super) fn fault_of_gradients(nlp: &dyn Nlp, g: &Gradients) -> Option<EvaluationFailure> {
+pub(super) fn fault_of_gradients(
+    nlp: &dyn Nlp,
+    rows: &[usize],
+    g: &Gradients,
+) -> Option<EvaluationFailure> {
     let (n, m) = (nlp.variables(), nlp.constraints());
     if g.objective.len() != n {
         return Some(wrong_length(
@@ -112,7 +122,7 @@ pub(super) fn fault_of_gradients(nlp: &dyn Nlp, g: &Gradients) -> Option<Evaluat
         return Some(not_finite(what, g.objective[i]));
     }
     for i in 0..n {
-        for j in 0..m {
+        for &j in rows {
             let value = g.jacobian[(j, i)];
             if !value.is_finite() {
                 let (row, column) = (nlp.constraint_name(j), nlp.variable_name(i));

@@ -11,12 +11,18 @@ pub enum Status {
     /// The point satisfies the first-order conditions to the tolerances, in scaled units and in
     /// those of the user.
     Converged,
-    /// The point is a stationary point of the constraint violation and not feasible.
+    /// The point is a stationary point of the constraint violation and not feasible, or bounds of a
+    /// constraint or variable cross.
     Infeasible {
-        /// Name of the constraint that is violated most.
+        /// Name of the constraint that is violated most, or of that whose bounds cross.
         constraint: String,
-        /// Its violation at the point, in its own units.
+        /// Its violation at the point, in its own units; half the distance of bounds that cross.
         violation: f64,
+    },
+    /// The program or the options make no sense; nothing was evaluated.
+    IllPosed {
+        /// What is wrong, by name.
+        what: String,
     },
     /// The objective falls below every bound along feasible points.
     Unbounded,
@@ -60,12 +66,14 @@ pub struct Kkt {
     pub violation: f64,
     /// Largest |∇f + Jᵀy − z_L + z_U|, in the units of the user.
     pub stationarity: f64,
-    /// `stationarity` divided by max(1, ‖∇f‖∞, largest term of Jᵀy).
+    /// `stationarity` divided by ‖∇f‖∞ or, where that vanishes, by a tenth of its typical size
+    /// in the run ([`Scaling::typical_gradient`]). Never divided by multipliers.
     pub relative_stationarity: f64,
     /// Sum of the products of multipliers and distances to their bounds, on either side, in units of
     /// the objective: to first order, how far the objective is from the least.
     pub complementarity: f64,
-    /// `complementarity` divided by max(1, |f|).
+    /// `complementarity` divided by |f| or, where that vanishes, by a hundredth of the typical ‖∇f‖∞
+    /// (a change of a variable by one).
     pub relative_complementarity: f64,
     /// Largest residual in the scaled units in which the iteration runs.
     pub scaled: f64,
@@ -135,6 +143,10 @@ pub struct Scaling {
     pub variables: Vec<f64>,
     /// Norm ‖∇f‖∞ at the start, in the units of the user.
     pub objective_gradient: f64,
+    /// Typical ‖∇f‖∞ of the run, in the units of the user: the third largest of the first dozen of
+    /// points, or the median of all if that is larger.
+    #[serde(default)]
+    pub typical_gradient: f64,
     /// Norm ‖∇c_j‖∞ of each row at the start, in the units of the user.
     pub constraint_gradients: Vec<f64>,
     /// Constraints whose gradient is zero at the start, by name.

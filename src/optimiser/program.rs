@@ -12,15 +12,10 @@ use super::nlp::{
 use super::observer::{Observer, Phase, Row};
 use super::options::Options;
 use super::outcome::{Counts, FailedDesign, Scaling, Status};
+use super::scaling::drop_rounding;
 
 /// Most designs kept of those at which an evaluation failed.
 const FAILED_DESIGNS_KEPT: usize = 100;
-
-/// An objective whose gradient at the start is below `FLAT` is multiplied until it is `LIFTED`, lest
-/// a start on a plateau be taken for a solution.
-const FLAT: f64 = 1e-2;
-const LIFTED: f64 = 1e-2;
-const LARGEST_LIFT: f64 = 1e8;
 
 /// Values of the scaled functions at a scaled point.
 #[derive(Clone, Debug)]
@@ -35,6 +30,16 @@ pub(super) struct Point {
 pub(super) struct Slopes {
     pub g: DVector<f64>,
     pub a: DMatrix<f64>,
+    /// Derivatives in the fixed variables, in the user's units of these.
+    pub fixed_g: DVector<f64>,
+    pub fixed_a: DMatrix<f64>,
+}
+
+impl Slopes {
+    /// Whether neither objective nor rows depend on variable `k` here.
+    pub fn is_idle(&self, k: usize) -> bool {
+        self.g[k] == 0.0 && self.a.column(k).iter().all(|v| *v == 0.0)
+    }
 }
 
 /// Why no value came back.
@@ -59,13 +64,21 @@ pub(super) struct Progress {
     pub phase: Phase,
 }
 
+/// Iterations and evaluations after which a method must end.
+#[derive(Clone, Copy, Debug)]
+struct Allowed {
+    iterations: usize,
+    evaluations: usize,
+}
+
 /// The scaled program.
 pub(super) struct Program<'a> {
     nlp: &'a mut dyn Nlp,
     observer: &'a mut dyn Observer,
     pub options: &'a Options,
-    /// Variables whose bounds differ.
+    /// Variables whose bounds differ, and those whose bounds coincide.
     pub free: Vec<usize>,
+    pub fixed: Vec<usize>,
     /// Rows that have at least one bound.
     pub rows: Vec<usize>,
     /// Bounds of the scaled variables and rows.
@@ -73,6 +86,8 @@ pub(super) struct Program<'a> {
     pub upper: DVector<f64>,
     pub row_lower: DVector<f64>,
     pub row_upper: DVector<f64>,
+    user_lower: Vec<f64>,
+    user_upper: Vec<f64>,
     user_row_lower: Vec<f64>,
     user_row_upper: Vec<f64>,
     template: Vec<f64>,
@@ -80,6 +95,13 @@ pub(super) struct Program<'a> {
     pub counts: Counts,
     pub failed: Vec<FailedDesign>,
     started: Instant,
+    /// Norms ‖∇f‖∞ of all points so far, in the units of the user.
+    pub gradient_norms: Vec<f64>,
+    /// Point that was reported last, and the size of the last step between two such points.
+    reported: Option<DVector<f64>>,
+    pub last_step: f64,
+    /// Iterations and evaluations allowed to the method that runs.
+    allowed: Allowed,
     /// Best point reported: feasible with the least objective, or least infeasible.
     pub best: Option<Point>,
 }
@@ -94,7 +116,7 @@ impl<'a> Program<'a> {
         let (lower, upper) = nlp.variable_bounds();
         let (row_lower, row_upper) = nlp.constraint_bounds();
         let (n, m) = (nlp.variables(), nlp.constraints());
-        let free: Vec<usize> = (0..n).filter(|&i| lower[i] < upper[i]).collect();
+        let (free, fixed): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| lower[i] < upper[i]);
         let rows: Vec<usize> = (0..m)
             .filter(|&j| row_lower[j].is_finite() || row_upper[j].is_finite())
             .collect();
@@ -127,18 +149,28 @@ impl<'a> Program<'a> {
             upper: scaled(&upper),
             row_lower: pick(&row_lower, &rows),
             row_upper: pick(&row_upper, &rows),
+            user_lower: lower,
+            user_upper: upper,
             user_row_lower: row_lower,
             user_row_upper: row_upper,
             nlp,
             observer,
             options,
             free,
+            fixed,
             rows,
             template,
             scaling,
             counts: Counts::default(),
             failed: Vec::new(),
             started: Instant::now(),
+            gradient_norms: Vec::new(),
+            reported: None,
+            last_step: 0.0,
+            allowed: Allowed {
+                iterations: options.max_iterations,
+                evaluations: options.max_evaluations,
+            },
             best: None,
         }
     }
@@ -158,77 +190,10 @@ impl<'a> Program<'a> {
     pub fn to_user(&self, x: &DVector<f64>) -> Vec<f64> {
         let mut full = self.template.clone();
         for (k, &i) in self.free.iter().enumerate() {
-            full[i] = x[k] * self.scaling.variables[i];
+            let value = x[k] * self.scaling.variables[i];
+            full[i] = value.clamp(self.user_lower[i], self.user_upper[i]);
         }
         full
-    }
-
-    /// Sets the scale factors of functions from unscaled derivatives `slopes` and rescales both.
-    pub fn scale(&mut self, point: &mut Point, slopes: &mut Slopes) {
-        let limit = self.options.scaling_gradient;
-        let norm = slopes.g.amax();
-        self.scaling.objective = if norm > limit {
-            limit / norm
-        } else if norm > 0.0 && norm < FLAT {
-            (LIFTED / norm).min(LARGEST_LIFT)
-        } else {
-            1.0
-        };
-        for (k, &j) in self.rows.iter().enumerate() {
-            let norm = slopes.a.row(k).amax();
-            self.scaling.constraints[j] = if norm > limit {
-                (limit / norm).max(1e-8)
-            } else {
-                1.0
-            };
-        }
-        self.apply_scaling(point, slopes);
-    }
-
-    /// Uses scale factors of an earlier run.
-    pub fn adopt_scaling(&mut self, saved: &Scaling, point: &mut Point, slopes: &mut Slopes) {
-        self.scaling.objective = saved.objective;
-        self.scaling.constraints.clone_from(&saved.constraints);
-        self.apply_scaling(point, slopes);
-    }
-
-    fn apply_scaling(&mut self, point: &mut Point, slopes: &mut Slopes) {
-        point.f *= self.scaling.objective;
-        slopes.g *= self.scaling.objective;
-        for (k, &j) in self.rows.iter().enumerate() {
-            let factor = self.scaling.constraints[j];
-            self.row_lower[k] *= factor;
-            self.row_upper[k] *= factor;
-            point.c[k] *= factor;
-            slopes.a.row_mut(k).scale_mut(factor);
-        }
-    }
-
-    /// Records gradients and zero rows and columns for the scaling report, before scaling.
-    pub fn survey(&mut self, slopes: &Slopes) {
-        let unit = |k: usize| self.scaling.variables[self.free[k]];
-        let in_user_units = |v: f64, k: usize| (v / unit(k)).abs();
-        let n = self.free.len();
-        self.scaling.objective_gradient = (0..n)
-            .map(|k| in_user_units(slopes.g[k], k))
-            .fold(0.0, f64::max);
-        self.scaling.constraint_gradients = vec![0.0; self.scaling.constraints.len()];
-        for (r, &j) in self.rows.iter().enumerate() {
-            let norm = (0..n)
-                .map(|k| in_user_units(slopes.a[(r, k)], k))
-                .fold(0.0, f64::max);
-            self.scaling.constraint_gradients[j] = norm;
-            if norm == 0.0 {
-                self.scaling.zero_rows.push(self.nlp.constraint_name(j));
-            }
-        }
-        for k in 0..n {
-            if slopes.g[k] == 0.0 && slopes.a.column(k).iter().all(|v| *v == 0.0) {
-                self.scaling
-                    .zero_columns
-                    .push(self.nlp.variable_name(self.free[k]));
-            }
-        }
     }
 
     /// Values of the scaled functions at `x`.
@@ -240,7 +205,7 @@ impl<'a> Program<'a> {
         self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
         self.counts.evaluations += 1;
         if let Ok(e) = &result
-            && let Some(fault) = fault_of_evaluation(self.nlp, e)
+            && let Some(fault) = fault_of_evaluation(self.nlp, &self.rows, e)
         {
             result = Err(fault);
         }
@@ -268,7 +233,7 @@ impl<'a> Program<'a> {
         self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
         self.counts.gradients += 1;
         if let Ok(g) = &result
-            && let Some(fault) = fault_of_gradients(self.nlp, g)
+            && let Some(fault) = fault_of_gradients(self.nlp, &self.rows, g)
         {
             result = Err(fault);
         }
@@ -280,12 +245,36 @@ impl<'a> Program<'a> {
         let g = free
             .iter()
             .map(|&i| objective[i] * scaling.objective * scaling.variables[i]);
-        let g = DVector::from_iterator(free.len(), g);
-        let a = DMatrix::from_fn(rows.len(), free.len(), |r, k| {
+        let mut g = DVector::from_iterator(free.len(), g);
+        let mut a = DMatrix::from_fn(rows.len(), free.len(), |r, k| {
             let (j, i) = (rows[r], free[k]);
             jacobian[(j, i)] * scaling.constraints[j] * scaling.variables[i]
         });
-        Ok(Slopes { g, a })
+        let norm = free.iter().map(|&i| objective[i].abs()).fold(0.0, f64::max);
+        let reach = DVector::from_fn(free.len(), |k, _| {
+            let width = self.upper[k] - self.lower[k];
+            let size = x[k].abs().max(1.0);
+            if width.is_finite() { width } else { size }
+        });
+        let typical = self.gradient_norms.iter().copied().fold(norm, f64::max);
+        drop_rounding(&mut g, &reach, typical * scaling.objective);
+        for r in 0..rows.len() {
+            let mut row = a.row(r).transpose();
+            drop_rounding(&mut row, &reach, 0.0);
+            a.row_mut(r).copy_from(&row.transpose());
+        }
+        let fixed = &self.fixed;
+        let fixed_g = fixed.iter().map(|&i| objective[i] * scaling.objective);
+        let slopes = Slopes {
+            fixed_g: DVector::from_iterator(fixed.len(), fixed_g),
+            fixed_a: DMatrix::from_fn(rows.len(), fixed.len(), |r, k| {
+                jacobian[(rows[r], fixed[k])] * scaling.constraints[rows[r]]
+            }),
+            g,
+            a,
+        };
+        self.gradient_norms.push(norm);
+        Ok(slopes)
     }
 
     fn record(&mut self, x: Vec<f64>, failure: EvaluationFailure) -> Trouble {
@@ -300,7 +289,7 @@ impl<'a> Program<'a> {
     }
 
     fn check_limits(&self) -> Result<(), Trouble> {
-        if self.counts.evaluations >= self.options.max_evaluations {
+        if self.counts.evaluations >= self.allowed.evaluations {
             return Err(Trouble::Halt(Status::EvaluationLimit));
         }
         match self.options.max_seconds {
@@ -312,6 +301,23 @@ impl<'a> Program<'a> {
     /// Wall time since the start of the run (s).
     pub fn seconds(&self) -> f64 {
         self.started.elapsed().as_secs_f64()
+    }
+
+    /// Allows the method that runs the part `share` of all iterations and evaluations.
+    pub fn allow(&mut self, share: f64) {
+        let part = |all: usize| (share * all as f64).ceil() as usize;
+        self.allowed = Allowed {
+            iterations: part(self.options.max_iterations),
+            evaluations: part(self.options.max_evaluations),
+        };
+    }
+
+    /// Whether the objective has fallen below all bounds at a feasible point: in the units of the
+    /// user, or in scaled ones where those are smaller.
+    pub fn is_unbounded(&self, point: &Point) -> bool {
+        let f = point.f.min(point.f / self.scaling.objective);
+        f < self.options.unbounded_below
+            && self.worst_violation(&point.c).0 <= self.options.constraint_tolerance
     }
 
     /// Largest violation of a row, in the units of the user, and the row's index there.
@@ -368,9 +374,8 @@ impl<'a> Program<'a> {
 
     /// Starts from the design `x` instead of that of the user.
     pub fn start_from(&mut self, x: &[f64]) {
-        let (lower, upper) = self.nlp.variable_bounds();
         for &i in &self.free {
-            self.template[i] = x[i].max(lower[i]).min(upper[i]);
+            self.template[i] = x[i].clamp(self.user_lower[i], self.user_upper[i]);
         }
     }
 
@@ -386,6 +391,11 @@ impl<'a> Program<'a> {
     /// Tells the observer of an iteration.
     pub fn report(&mut self, point: &Point, progress: &Progress) -> Result<(), Trouble> {
         self.keep_best(point);
+        if let Some(before) = self.reported.replace(point.x.clone())
+            && before != point.x
+        {
+            self.last_step = (before - &point.x).amax();
+        }
         let x = self.to_user(&point.x);
         let constraints = self.user_constraints(&point.c);
         let row = Row {
@@ -413,7 +423,7 @@ impl<'a> Program<'a> {
     /// Counts an iteration and checks the limits before it.
     pub fn next_iteration(&mut self) -> Result<(), Trouble> {
         self.check_limits()?;
-        if self.counts.iterations >= self.options.max_iterations {
+        if self.counts.iterations >= self.allowed.iterations {
             return Err(Trouble::Halt(Status::IterationLimit));
         }
         self.counts.iterations += 1;

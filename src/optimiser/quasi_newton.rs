@@ -40,6 +40,17 @@ struct Pair {
     y: DVector<f64>,
 }
 
+/// B = σ I + W diag(λ − σ) Wᵀ with orthonormal columns W.
+pub(super) struct Spectrum {
+    pub sigma: f64,
+    pub vectors: DMatrix<f64>,
+    /// λ, positive.
+    pub values: DVector<f64>,
+}
+
+/// Least eigenvalue kept, relative to σ.
+const LEAST_EIGENVALUE: f64 = 1e-10;
+
 /// B + diag(d), ready to be solved with.
 pub(super) enum Factor {
     Dense(Cholesky<f64, Dyn>),
@@ -121,6 +132,39 @@ impl QuasiNewton {
             self.pairs.remove(0);
         }
         self.matrix = None;
+    }
+
+    /// Whether B is kept as a dense matrix.
+    pub(super) fn is_dense(&self) -> bool {
+        self.dense
+    }
+
+    /// B by the eigenvalues that differ from σ, and their eigenvectors.
+    pub(super) fn spectrum(&self) -> Spectrum {
+        let none = Spectrum {
+            sigma: self.sigma,
+            vectors: DMatrix::zeros(self.n, 0),
+            values: DVector::zeros(0),
+        };
+        if self.pairs.is_empty() {
+            return none;
+        }
+        let (u, middle) = self.compact();
+        let (q, r) = u.qr().unpack();
+        let Some(inner) = middle.lu().solve(&r.transpose()) else {
+            return none;
+        };
+        let mut core = -(r * inner);
+        for i in 0..core.nrows() {
+            core[(i, i)] += self.sigma;
+        }
+        let eigen = ((&core + core.transpose()) * 0.5).symmetric_eigen();
+        let least = LEAST_EIGENVALUE * self.sigma;
+        Spectrum {
+            sigma: self.sigma,
+            vectors: q * eigen.eigenvectors,
+            values: eigen.eigenvalues.map(|v| v.max(least)),
+        }
     }
 
     /// B as a dense matrix.

@@ -2,20 +2,29 @@
 
 use nalgebra::DVector;
 
+use super::ending::{
+    Finish, best_of, outcome, state_of, status_of, unfinished, untried, without_freedom,
+    without_values,
+};
 use super::interior_point::InteriorPoint;
 use super::nlp::Nlp;
 use super::observer::{Observer, Phase};
 use super::options::{Method, Options};
-use super::outcome::{Kkt, Outcome, Status};
+use super::outcome::{Outcome, Status};
 use super::program::{Point, Program, Progress, Slopes, Trouble};
-use super::quasi_newton::QuasiNewton;
-use super::start::first_point;
+use super::start::{first_point, less_violated};
 use super::state::SavedState;
 use super::trust_region::{Ending, Goal, TrustRegion};
-use super::verdict::{
-    ScaledMultipliers, active, is_solved, kkt, scaled_multipliers, scaled_residual,
-    user_multipliers,
-};
+use super::verdict::{ScaledMultipliers, is_solved_at_end, scaled_multipliers, scaled_residual};
+use super::well_posed;
+
+/// Shares of iterations and evaluations after which [`Method::Auto`] leaves the interior point, and
+/// the trust region that starts from its best point.
+const FIRST_SHARE: f64 = 0.5;
+const SECOND_SHARE: f64 = 0.55;
+
+/// How often a run goes on from a point beside one that seems infeasible.
+const ESCAPES: usize = 3;
 
 /// How often the trust-region method looks for a feasible point where the penalties fail.
 const FEASIBILITY_PHASES: usize = 2;
@@ -77,24 +86,15 @@ pub fn resume(
     run(nlp, options, observer, Some(saved))
 }
 
-/// Where a method ended.
-struct Finish {
-    status: Status,
-    point: Point,
-    slopes: Slopes,
-    multipliers: ScaledMultipliers,
-    scaled: f64,
-    b: QuasiNewton,
-    barrier: f64,
-    radius: f64,
-}
-
 fn run(
     nlp: &mut dyn Nlp,
     options: &Options,
     observer: &mut dyn Observer,
     saved: Option<&SavedState>,
 ) -> Outcome {
+    if let Some(status) = well_posed::fault(nlp, options) {
+        return untried(nlp, status);
+    }
     let mut program = Program::new(nlp, options, observer);
     let fits = |s: &&SavedState| {
         s.scaling.constraints.len() == program.scaling.constraints.len()
@@ -143,17 +143,15 @@ fn run(
         },
     };
     let interrupted = program.report(&point, &progress).is_err();
-    let finish = match options.method {
-        _ if interrupted => unfinished(&program, point, slopes),
-        Method::InteriorPoint => interior_point(&mut program, point, slopes, saved, push),
-        Method::TrustRegion => trust_region(&mut program, point, slopes, saved),
-        Method::Auto => {
-            let first = interior_point(&mut program, point, slopes, saved, push);
-            if first.status == Status::Stalled {
-                trust_region(&mut program, first.point, first.slopes, None)
-            } else {
-                first
-            }
+    let finish = if interrupted {
+        unfinished(&program, point, slopes)
+    } else if program.free.is_empty() {
+        without_freedom(&program, point, slopes)
+    } else {
+        let first = (point, slopes);
+        match options.method {
+            Method::Auto => auto(&mut program, first, saved, push),
+            method => attempt(&mut program, method, first, saved, push),
         }
     };
     let state = state_of(&program, &finish);
@@ -161,38 +159,82 @@ fn run(
     outcome(&program, finish, state)
 }
 
-/// Replaces the point of a run that did not converge by a better one it passed through.
-fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
-    let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. });
-    let limit = program.options.constraint_tolerance;
-    // What a violation within the tolerance gains is not counted.
-    let y = &finish.multipliers.y;
-    let value = |p: &Point| {
-        p.f + (0..p.c.len())
-            .map(|k| y[k].abs() * program.row_violation(&p.c, k))
-            .sum::<f64>()
+/// Runs one method, and again from a point that violates the rows less where it ends at one that
+/// first derivatives alone make look infeasible.
+fn attempt(
+    program: &mut Program<'_>,
+    method: Method,
+    first: (Point, Slopes),
+    saved: Option<&SavedState>,
+    push: f64,
+) -> Finish {
+    let run = |program: &mut Program<'_>, (point, slopes), saved| match method {
+        Method::TrustRegion => trust_region(program, point, slopes, saved),
+        Method::InteriorPoint | Method::Auto => interior_point(program, point, slopes, saved, push),
     };
-    let rank = |p: &Point| (program.worst_violation(&p.c).0.max(limit), value(p));
-    let found = program.best.clone().filter(|best| {
-        let (new, old) = (rank(best), rank(&finish.point));
-        !settled && (new.0 < old.0 || (new.0 == old.0 && new.1 < old.1))
-    });
-    let Some(point) = found else {
-        return finish;
-    };
-    let Ok(slopes) = program.gradients(&point.x) else {
-        return finish;
-    };
-    let y = &finish.multipliers.y;
-    let multipliers = ScaledMultipliers::polished(program, &point, &slopes, y);
-    let scaled = scaled_residual(program, &point, &slopes, &multipliers);
-    Finish {
-        point,
-        slopes,
-        multipliers,
-        scaled,
-        ..finish
+    let mut finish = run(program, first, saved);
+    for _ in 0..ESCAPES {
+        if !matches!(finish.status, Status::Infeasible { .. }) {
+            break;
+        }
+        match less_violated(program, &finish.point) {
+            Ok(Some(point)) => finish = run(program, point, None),
+            Ok(None) | Err(Trouble::Failed(_)) => break,
+            Err(Trouble::Halt(status)) => {
+                finish.status = status;
+                break;
+            }
+        }
     }
+    finish
+}
+
+/// The interior point within its share of the work; where it does not converge, the trust region
+/// from the best point it passed through, then from the start.
+fn auto(
+    program: &mut Program<'_>,
+    first: (Point, Slopes),
+    saved: Option<&SavedState>,
+    push: f64,
+) -> Finish {
+    program.allow(FIRST_SHARE);
+    let start = first.clone();
+    let mut kept = attempt(program, Method::InteriorPoint, first, saved, push);
+    program.allow(1.0);
+    for (from_best, share) in [(true, SECOND_SHARE), (false, 1.0)] {
+        let hopeless = matches!(
+            kept.status,
+            Status::Stalled
+                | Status::IterationLimit
+                | Status::EvaluationLimit
+                | Status::Infeasible { .. }
+        );
+        if !hopeless || kept.is_solved(program) {
+            break;
+        }
+        // The best point is where the rows cannot be improved.
+        if from_best && matches!(kept.status, Status::Infeasible { .. }) {
+            continue;
+        }
+        let place = match program.best.clone().filter(|_| from_best) {
+            None => start.clone(),
+            Some(best) => match program.gradients(&best.x) {
+                Ok(slopes) => (best, slopes),
+                Err(_) => continue,
+            },
+        };
+        program.allow(share);
+        let next = attempt(program, Method::TrustRegion, place, None, push);
+        // A verdict is worth more than having found none.
+        let undecided = matches!(
+            next.status,
+            Status::Stalled | Status::IterationLimit | Status::EvaluationLimit
+        ) && !next.is_solved(program);
+        if !(undecided && matches!(kept.status, Status::Infeasible { .. })) {
+            kept = next;
+        }
+    }
+    kept
 }
 
 fn interior_point(
@@ -227,8 +269,8 @@ fn interior_point(
         let y = if useless { &zero } else { &multipliers.y };
         let fitted = ScaledMultipliers::polished(program, &point, &slopes, y);
         let residual = scaled_residual(program, &point, &slopes, &fitted);
-        let residuals = kkt(program, &point, &slopes, &fitted, residual);
-        if useless || is_solved(&residuals, program.options) {
+        let solved = is_solved_at_end(program, &point, &slopes, &fitted, residual);
+        if useless || solved {
             (multipliers, scaled) = (fitted, residual);
         }
     }
@@ -287,124 +329,5 @@ fn trust_region(
         b: method.b,
         barrier: program.options.initial_barrier,
         radius: method.radius,
-    }
-}
-
-/// The start, where the observer asked to stop at once.
-fn unfinished(program: &Program<'_>, point: Point, slopes: Slopes) -> Finish {
-    let y = DVector::zeros(point.c.len());
-    let multipliers = ScaledMultipliers::from_rows(program, &point, &slopes, y);
-    let options = program.options;
-    Finish {
-        status: Status::Interrupted,
-        b: QuasiNewton::new(point.x.len(), options.dense_limit, options.memory),
-        scaled: scaled_residual(program, &point, &slopes, &multipliers),
-        multipliers,
-        point,
-        slopes,
-        barrier: options.initial_barrier,
-        radius: options.initial_radius,
-    }
-}
-
-fn status_of(program: &Program<'_>, result: Result<Ending, Trouble>, at: &Point) -> Status {
-    match result {
-        Ok(Ending::Reached) => Status::Converged,
-        Ok(Ending::Unbounded) => Status::Unbounded,
-        Ok(Ending::Infeasible) => {
-            let (violation, j) = program.worst_violation(&at.c);
-            Status::Infeasible {
-                constraint: program.constraint_name(j),
-                violation,
-            }
-        }
-        Ok(Ending::Stalled) | Err(Trouble::Failed(_)) => Status::Stalled,
-        Err(Trouble::Halt(status)) => status,
-    }
-}
-
-/// State at the last point, which need not be the best.
-fn state_of(program: &Program<'_>, finish: &Finish) -> SavedState {
-    SavedState {
-        x: program.to_user(&finish.point.x),
-        multipliers: user_multipliers(program, &finish.multipliers),
-        scaling: program.scaling.clone(),
-        quasi_newton: finish.b.stored(),
-        barrier: finish.barrier,
-        radius: finish.radius,
-    }
-}
-
-fn outcome(program: &Program<'_>, finish: Finish, state: SavedState) -> Outcome {
-    let Finish {
-        mut status,
-        point,
-        slopes,
-        multipliers,
-        scaled,
-        ..
-    } = finish;
-    let kkt = kkt(program, &point, &slopes, &multipliers, scaled);
-    // A method that can go no further has converged if the conditions hold all the same.
-    if matches!(status, Status::Converged | Status::Stalled) {
-        let solved = is_solved(&kkt, program.options);
-        status = if solved {
-            Status::Converged
-        } else {
-            Status::Stalled
-        };
-    }
-    let x = program.to_user(&point.x);
-    let mut constraints = vec![0.0; program.scaling.constraints.len()];
-    for (k, &j) in program.rows.iter().enumerate() {
-        constraints[j] = point.c[k] / program.scaling.constraints[j];
-    }
-    let user = user_multipliers(program, &multipliers);
-    let nlp = program.nlp();
-    let (lower, upper) = nlp.variable_bounds();
-    let (row_lower, row_upper) = nlp.constraint_bounds();
-    let of_bound = |i: usize| (user.lower_bounds[i], user.upper_bounds[i]);
-    let of_row = |j: usize| {
-        (
-            (-user.constraints[j]).max(0.0),
-            user.constraints[j].max(0.0),
-        )
-    };
-    let mut counts = program.counts;
-    counts.seconds = program.seconds();
-    Outcome {
-        status,
-        objective: point.f / program.scaling.objective,
-        active_bounds: active(&x, (&lower, &upper), of_bound, |i| nlp.variable_name(i)),
-        active_constraints: active(&constraints, (&row_lower, &row_upper), of_row, |j| {
-            nlp.constraint_name(j)
-        }),
-        kkt,
-        counts,
-        failed_designs: program.failed.clone(),
-        scaling: program.scaling.clone(),
-        state: Some(state),
-        constraints,
-        multipliers: user,
-        x,
-    }
-}
-
-fn without_values(program: &Program<'_>, status: Status) -> Outcome {
-    let mut counts = program.counts;
-    counts.seconds = program.seconds();
-    Outcome {
-        status,
-        x: program.to_user(&program.start()),
-        objective: f64::NAN,
-        constraints: vec![f64::NAN; program.scaling.constraints.len()],
-        multipliers: Default::default(),
-        kkt: Kkt::default(),
-        active_bounds: Vec::new(),
-        active_constraints: Vec::new(),
-        counts,
-        failed_designs: program.failed.clone(),
-        scaling: program.scaling.clone(),
-        state: None,
     }
 }

@@ -10,6 +10,11 @@ use super::program::{Point, Program, Slopes, Trouble};
 /// Starts tried where the functions are not defined.
 const START_TRIALS: usize = 12;
 
+/// Points tried beside one that seems infeasible, and the part of its violation that one of them must
+/// be below.
+const ESCAPE_TRIALS: usize = 6;
+const LESS: f64 = 0.99;
+
 /// Evaluates the start, moved into the interior of the bounds, or points near it.
 pub(super) fn first_point(
     program: &mut Program<'_>,
@@ -35,6 +40,28 @@ pub(super) fn first_point(
         reason: "no trial".into(),
     };
     Err(Trouble::Failed(first_failure.unwrap_or(missing)))
+}
+
+/// A point near `at`, with its slopes, that violates the rows clearly less: where the violation has a
+/// maximum or a saddle, its derivatives vanish but it can be reduced.
+pub(super) fn less_violated(
+    program: &mut Program<'_>,
+    at: &Point,
+) -> Result<Option<(Point, Slopes)>, Trouble> {
+    let now = program.total_violation(&at.c);
+    for trial in 1..=ESCAPE_TRIALS {
+        let x = perturbed(program, &at.x, trial, program.options.bound_push);
+        let point = match program.evaluate(&x) {
+            Ok(point) => point,
+            Err(Trouble::Failed(_)) => continue,
+            Err(halt) => return Err(halt),
+        };
+        if program.total_violation(&point.c) < LESS * now {
+            let slopes = program.gradients(&x)?;
+            return Ok(Some((point, slopes)));
+        }
+    }
+    Ok(None)
 }
 
 /// The start for `trial` 0, then points at growing distances in alternating directions.

@@ -6,11 +6,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::elastic_qp::{ElasticQp, QpData, QpStep};
+use super::elastic_qp::{ElasticQp, Hessian, QpData, QpStep};
 use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
-use super::quasi_newton::QuasiNewton;
-use super::verdict::{ScaledMultipliers, is_solved, kkt, scaled_residual};
+use super::quasi_newton::{QuasiNewton, Spectrum};
+use super::verdict::{ScaledMultipliers, is_solved, scaled_residual};
 
 /// Share of the predicted reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-4;
@@ -75,7 +75,7 @@ impl TrustRegion {
         let (n, m) = (point.x.len(), point.c.len());
         let options = program.options;
         let point_size = point.x.amax().max(1.0);
-        let mut b = QuasiNewton::new(n, usize::MAX, options.memory);
+        let mut b = QuasiNewton::new(n, options.dense_limit, options.memory);
         if goal == Goal::Feasibility {
             b.set_scale(1e-4 * slopes.a.amax().max(1e-8));
         }
@@ -112,7 +112,7 @@ impl TrustRegion {
         let mut failed = 0;
         let mut renewals = 0;
         loop {
-            if self.goal == Goal::Optimum && self.is_unbounded(program) {
+            if self.goal == Goal::Optimum && program.is_unbounded(&self.point) {
                 return Ok(Ending::Unbounded);
             }
             let Some(model) = self.solve_model(program) else {
@@ -226,12 +226,6 @@ impl TrustRegion {
         }
     }
 
-    fn is_unbounded(&self, program: &Program<'_>) -> bool {
-        let f = self.point.f / program.scaling.objective;
-        f < program.options.unbounded_below
-            && program.worst_violation(&self.point.c).0 <= program.options.constraint_tolerance
-    }
-
     /// Largest scaled residual of the optimality conditions.
     pub fn optimality(&self, program: &Program<'_>) -> f64 {
         let z = self.multipliers(program);
@@ -241,8 +235,8 @@ impl TrustRegion {
     fn is_optimal(&self, program: &Program<'_>) -> bool {
         let z = self.multipliers(program);
         let scaled = self.optimality(program);
-        let residuals = kkt(program, &self.point, &self.slopes, &z, scaled);
-        is_solved(&residuals, program.options)
+        let (point, slopes) = (&self.point, &self.slopes);
+        is_solved(program, point, slopes, &z, scaled)
     }
 
     /// Exact penalty function w f + Σ ν_j violation_j.
@@ -328,21 +322,26 @@ impl TrustRegion {
         let upper = DVector::from_fn(x.len(), |i, _| {
             (keep * (program.upper[i] - x[i])).clamp(0.0, radius)
         });
-        let scaled_b: DMatrix<f64>;
-        let b = self.b.dense();
-        let b = if weight == self_weight(self.goal) {
-            b
-        } else {
-            scaled_b = DMatrix::from_diagonal_element(
-                x.len(),
-                x.len(),
-                1e-4 * self.slopes.a.amax() / radius.max(1e-8),
-            );
-            &scaled_b
+        let n = x.len();
+        let steering = 1e-4 * self.slopes.a.amax() / radius.max(1e-8);
+        let of_steering = weight != self_weight(self.goal);
+        let diagonal: DMatrix<f64>;
+        let b = match (self.b.is_dense(), of_steering) {
+            (true, false) => Hessian::Dense(self.b.dense()),
+            (true, true) => {
+                diagonal = DMatrix::from_diagonal_element(n, n, steering);
+                Hessian::Dense(&diagonal)
+            }
+            (false, false) => Hessian::Split(self.b.spectrum()),
+            (false, true) => Hessian::Split(Spectrum {
+                sigma: steering,
+                vectors: DMatrix::zeros(n, 0),
+                values: DVector::zeros(0),
+            }),
         };
         let data = QpData {
             g: &(&self.slopes.g * weight),
-            b,
+            b: &b,
             a: &self.slopes.a,
             above: &(&program.row_upper - c),
             below: &(c - &program.row_lower),

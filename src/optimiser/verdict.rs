@@ -2,7 +2,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::options::Options;
 use super::outcome::{ActiveBound, Kkt, Multipliers, Side};
 use super::program::{Point, Program, Slopes};
 
@@ -123,9 +122,20 @@ fn least_squares(
     Some(all)
 }
 
-/// Largest ratio of the terms of Jᵀy and ∇f by which the residual is divided: multipliers that
-/// grow without limit, because constraints are dependent, must not hide it.
-const LARGEST_FORCE: f64 = 1e3;
+/// Parts of the typical gradient that are the unit of forces where the gradient vanishes, and of the
+/// objective where that does.
+const UNIT: f64 = 0.1;
+pub(super) const UNIT_OF_OBJECTIVE: f64 = 0.01;
+
+/// The size of forces, in the units of the user: that of the gradient or, where it vanishes, of those
+/// at other points of the run.
+pub(super) fn unit_of_forces(program: &Program<'_>, slopes: &Slopes) -> f64 {
+    let gradient = program.free.iter().zip(slopes.g.iter());
+    let gradient = gradient
+        .map(|(&i, g)| (g / (program.scaling.objective * program.scaling.variables[i])).abs())
+        .fold(0.0, f64::max);
+    gradient.max(UNIT * program.typical_gradient())
+}
 
 /// Residuals at a point; `scaled` is left to the caller.
 pub(super) fn kkt(
@@ -137,16 +147,12 @@ pub(super) fn kkt(
 ) -> Kkt {
     let unit_f = program.scaling.objective;
     let force = slopes.a.tr_mul(&z.y);
-    let (mut stationarity, mut size, mut gradient) = (0.0_f64, 1.0_f64, 1.0_f64);
+    let mut stationarity = 0.0_f64;
     let mut complementarity = 0.0_f64;
     for (i, &user) in program.free.iter().enumerate() {
         let unit = unit_f * program.scaling.variables[user];
         let residual = slopes.g[i] + force[i] - z.zl[i] + z.zu[i];
         stationarity = stationarity.max(residual.abs() / unit);
-        gradient = gradient.max(slopes.g[i].abs() / unit);
-        for k in 0..z.y.len() {
-            size = size.max((slopes.a[(k, i)] * z.y[k]).abs() / unit);
-        }
         let mut product = |multiplier: f64, distance: f64| {
             if multiplier > 0.0 {
                 complementarity += multiplier * distance.max(0.0) / unit_f;
@@ -165,12 +171,13 @@ pub(super) fn kkt(
             complementarity += z.y[k].abs() * distance.abs() / unit_f;
         }
     }
+    let least = UNIT_OF_OBJECTIVE * program.typical_gradient();
     Kkt {
         violation: program.worst_violation(&point.c).0,
         stationarity,
-        relative_stationarity: stationarity / size.clamp(gradient, LARGEST_FORCE * gradient),
+        relative_stationarity: stationarity / unit_of_forces(program, slopes),
         complementarity,
-        relative_complementarity: complementarity / (point.f / unit_f).abs().max(1.0),
+        relative_complementarity: complementarity / (point.f / unit_f).abs().max(least),
         scaled,
     }
 }
@@ -214,8 +221,45 @@ pub(super) fn scaled_residual(
     (force.amax().max(complementarity) / (size.max(100.0) / 100.0)).max(violation)
 }
 
-/// Whether `kkt` meets the tolerances.
-pub(super) fn is_solved(kkt: &Kkt, options: &Options) -> bool {
+/// Longest last step, relative to max(1, ‖x‖∞), where forces are small only against those of other
+/// points of the run: from a start on a cliff all later forces look small.
+const LONGEST_LAST: f64 = 0.1;
+
+/// Part of the typical gradient below which the gradient at a point counts as vanishing, and part of
+/// the gradient up to which the force left on the variables shows that multipliers balance it.
+const VANISHING: f64 = 1e-5;
+const BALANCED: f64 = 0.1;
+
+/// Whether the residuals meet the tolerances and, unless the forces are small against the gradient at
+/// the point itself, the last step was short and no multipliers balance a gradient that stays.
+pub(super) fn is_solved(
+    program: &Program<'_>,
+    point: &Point,
+    slopes: &Slopes,
+    z: &ScaledMultipliers,
+    scaled: f64,
+) -> bool {
+    let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
+    let (left, gradient) = (force.amax(), slopes.g.amax());
+    let settled = left <= program.options.tolerance * gradient
+        || program.last_step <= LONGEST_LAST * point.x.amax().max(1.0);
+    let typical = program.typical_gradient() * program.scaling.objective;
+    let balanced = left > program.options.tolerance * gradient
+        && left <= BALANCED * gradient
+        && gradient > VANISHING * typical;
+    settled && !balanced && is_solved_at_end(program, point, slopes, z, scaled)
+}
+
+/// As [`is_solved`], at a point where no step makes progress.
+pub(super) fn is_solved_at_end(
+    program: &Program<'_>,
+    point: &Point,
+    slopes: &Slopes,
+    z: &ScaledMultipliers,
+    scaled: f64,
+) -> bool {
+    let options = program.options;
+    let kkt = kkt(program, point, slopes, z, scaled);
     let within = |value: f64, limit: f64| value <= limit;
     within(kkt.violation, options.constraint_tolerance)
         && within(kkt.relative_stationarity, options.tolerance)
@@ -223,8 +267,12 @@ pub(super) fn is_solved(kkt: &Kkt, options: &Options) -> bool {
         && within(kkt.scaled, options.tolerance)
 }
 
-/// Multipliers in the units of the user.
-pub(super) fn user_multipliers(program: &Program<'_>, z: &ScaledMultipliers) -> Multipliers {
+/// Multipliers in the units of the user; those of fixed variables balance the force on them.
+pub(super) fn user_multipliers(
+    program: &Program<'_>,
+    slopes: &Slopes,
+    z: &ScaledMultipliers,
+) -> Multipliers {
     let unit_f = program.scaling.objective;
     let (n, m) = (
         program.scaling.variables.len(),
@@ -239,6 +287,11 @@ pub(super) fn user_multipliers(program: &Program<'_>, z: &ScaledMultipliers) -> 
         let unit = unit_f * program.scaling.variables[i];
         lower_bounds[i] = z.zl[k] / unit;
         upper_bounds[i] = z.zu[k] / unit;
+    }
+    let force = &slopes.fixed_g + slopes.fixed_a.tr_mul(&z.y);
+    for (k, &i) in program.fixed.iter().enumerate() {
+        lower_bounds[i] = (force[k] / unit_f).max(0.0);
+        upper_bounds[i] = (-force[k] / unit_f).max(0.0);
     }
     Multipliers {
         constraints,
@@ -263,22 +316,38 @@ pub(super) fn scaled_multipliers(program: &Program<'_>, user: &Multipliers) -> S
     }
 }
 
-/// Entries whose distance to a bound is small against their multiplier, or smaller than 1e-6 of
-/// max(1, |bound|).
+/// Norms ‖∇c_j‖∞ of all rows, in the units of the user, no less than 1e-300.
+pub(super) fn steepness(program: &Program<'_>, slopes: &Slopes) -> Vec<f64> {
+    let mut all = vec![1e-300; program.scaling.constraints.len()];
+    for (k, &j) in program.rows.iter().enumerate() {
+        for (column, &i) in program.free.iter().enumerate() {
+            let unit = program.scaling.constraints[j] * program.scaling.variables[i];
+            all[j] = (slopes.a[(k, column)] / unit).abs().max(all[j]);
+        }
+    }
+    all
+}
+
+/// Entries that are active: their distance to a bound, as a distance in the variables, is less than
+/// 1e-6 of max(1, |bound|), or small against their force as a part of `gradient`. One unit of a
+/// variable changes entry i by `steepness(i)`.
 pub(super) fn active(
     values: &[f64],
     bounds: (&[f64], &[f64]),
     multipliers: impl Fn(usize) -> (f64, f64),
+    (steepness, gradient): (impl Fn(usize) -> f64, f64),
     name: impl Fn(usize) -> String,
 ) -> Vec<ActiveBound> {
     let mut found = Vec::new();
     for i in 0..values.len() {
         let (l, u) = (bounds.0[i], bounds.1[i]);
         let (zl, zu) = multipliers(i);
+        let steep = steepness(i);
         let close = |distance: f64, bound: f64, z: f64| {
+            let (far, near) = (distance / steep, bound.abs().max(1.0));
             bound.is_finite()
-                && (distance <= 1e-6 * bound.abs().max(1.0) || distance <= 1e-3 * z)
-                && (z > 0.0 || distance <= 1e-9 * bound.abs().max(1.0))
+                && (distance.min(far) <= 1e-6 * near || far <= 1e-3 * z * steep / gradient)
+                && (z > 0.0 || distance <= 1e-9 * near)
         };
         let (side, multiplier) = if l == u {
             (Side::Equal, zl.max(zu))

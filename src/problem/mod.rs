@@ -79,6 +79,10 @@ pub struct OptimiserSettings {
     pub tolerance: Option<f64>,
     /// Largest number of iterations.
     pub iterations: Option<usize>,
+    /// Largest number of simulations.
+    pub evaluations: Option<usize>,
+    /// Longest wall time of the run (s).
+    pub seconds: Option<f64>,
 }
 
 /// How a scene is integrated, as far as the file says.

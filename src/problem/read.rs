@@ -231,6 +231,8 @@ fn problem(
                 }),
                 tolerance: optimiser.tolerance,
                 iterations: optimiser.iterations,
+                evaluations: optimiser.evaluations,
+                seconds: optimiser.seconds,
             },
         ),
         hash: hash.iter().map(|byte| format!("{byte:02x}")).collect(),

@@ -1,11 +1,16 @@
 //! Every evaluation of an optimisation, `evaluations.jsonl`: one JSON document a line, written as
-//! soon as it is known, so that a run that is killed loses the evaluation under way and no other.
+//! soon as it is known, so that a run that is killed loses the evaluation under way and no other. If
+//! the machine fails, the evaluations of the last second may be lost too.
 
 use super::{ReportError, read_text, write_all};
 use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Longest time for which evaluations are left to the operating system.
+const SYNCHRONISE: Duration = Duration::from_secs(1);
 
 /// What the evaluations belong to: the first line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,6 +83,7 @@ impl EvaluationRecord {
 pub struct EvaluationLog {
     path: PathBuf,
     file: File,
+    synchronised: Instant,
 }
 
 impl EvaluationLog {
@@ -153,6 +159,7 @@ impl EvaluationLog {
         let file = OpenOptions::new().append(true).open(path);
         Ok(Self {
             path: path.to_path_buf(),
+            synchronised: Instant::now(),
             file: file.map_err(|source| ReportError::Write {
                 path: path.to_path_buf(),
                 source,
@@ -160,7 +167,8 @@ impl EvaluationLog {
         })
     }
 
-    /// Appends an evaluation, in one piece.
+    /// Appends an evaluation, in one piece: the operating system has it when this returns, and the
+    /// disk has it if the last time that the file was synchronised is more than a second ago.
     ///
     /// # Errors
     /// [`ReportError::Write`] with the path.
@@ -168,6 +176,21 @@ impl EvaluationLog {
         let line = serde_json::to_string(record)? + "\n";
         self.file
             .write_all(line.as_bytes())
+            .map_err(|source| self.unwritable(source))?;
+        if self.synchronised.elapsed() >= SYNCHRONISE {
+            self.synchronise()?;
+        }
+        Ok(())
+    }
+
+    /// Waits until the disk has all evaluations.
+    ///
+    /// # Errors
+    /// [`ReportError::Write`] with the path.
+    pub fn synchronise(&mut self) -> Result<(), ReportError> {
+        self.synchronised = Instant::now();
+        self.file
+            .sync_data()
             .map_err(|source| self.unwritable(source))
     }
 

@@ -34,7 +34,19 @@ pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), ReportError> {
         .iter()
         .map(|(path, bytes)| prepare(path, bytes))
         .collect::<Result<_, _>>()?;
-    prepared.into_iter().try_for_each(finish)
+    prepared.into_iter().try_for_each(finish)?;
+    // The names are on the disk only when the directories are.
+    #[cfg(unix)]
+    for (path, _) in files {
+        let directory = directory(path);
+        std::fs::File::open(directory)
+            .and_then(|opened| opened.sync_all())
+            .map_err(|source| ReportError::Write {
+                path: directory.to_path_buf(),
+                source,
+            })?;
+    }
+    Ok(())
 }
 
 /// A complete file that still has a temporary name; dropping it removes it.

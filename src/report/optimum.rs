@@ -220,6 +220,9 @@ pub struct Counts {
     pub gradient_evaluations: u64,
     /// Simulations that failed and shortened a step.
     pub failed_evaluations: u64,
+    /// Quadratic programs solved by the trust region.
+    #[serde(default)]
+    pub quadratic_programs: u64,
     /// Time steps of all simulations.
     pub steps: u64,
     /// Newton iterations of all time steps.
@@ -232,12 +235,13 @@ pub struct Counts {
 
 impl Counts {
     /// All counts with their names, in order.
-    pub fn named(&self) -> [(&'static str, u64); 8] {
+    pub fn named(&self) -> [(&'static str, u64); 9] {
         [
             ("iterations", self.iterations),
             ("function evaluations", self.function_evaluations),
             ("gradient evaluations", self.gradient_evaluations),
             ("failed evaluations", self.failed_evaluations),
+            ("quadratic programs", self.quadratic_programs),
             ("time steps", self.steps),
             ("Newton iterations", self.newton_iterations),
             ("factorisations", self.factorisations),

@@ -115,3 +115,39 @@ fn a_start_from_another_optimum_is_warm() {
         ran.err
     );
 }
+
+#[test]
+fn limits_of_the_file_end_the_run_by_name() {
+    let at = scratch();
+    for (setting, status) in [
+        ("/optimiser={\"evaluations\": 3}", "evaluation_limit"),
+        ("/optimiser={\"seconds\": 1e-3}", "time_limit"),
+        ("/optimiser={\"iterations\": 2}", "iteration_limit"),
+    ] {
+        let arguments = [HAMMER, "--set", setting, "--output", "out", "--quiet"];
+        let ran = expect(1, at.path(), &arguments);
+        assert!(ran.err.contains("limit"), "{}", ran.err);
+        let record = json(&read(&at.path().join("out/optimum.json")));
+        assert_eq!(record["status"], status);
+    }
+    for setting in [
+        "/optimiser={\"evaluations\": 0}",
+        "/optimiser={\"seconds\": 0}",
+    ] {
+        let ran = expect(2, at.path(), &[HAMMER, "--set", setting]);
+        assert!(ran.err.contains("/optimiser/"), "{}", ran.err);
+    }
+}
+
+/// The share of the quadratic programs is told, and their number recorded.
+#[test]
+fn the_time_of_the_quadratic_programs_is_told() {
+    let at = scratch();
+    let method = "/optimiser={\"method\": \"trust_region\"}";
+    let ran = expect(0, at.path(), &[HAMMER, "--set", method, "--output", "out"]);
+    let line = ran.err.lines().find(|line| line.starts_with("Time: "));
+    let line = line.unwrap_or_else(|| panic!("{}", ran.err));
+    assert!(line.contains(" quadratic programs "), "{line}");
+    let record = json(&read(&at.path().join("out/optimum.json")));
+    assert!(record["counts"]["quadratic_programs"].as_u64() > Some(0));
+}

@@ -40,7 +40,7 @@ fn a_killed_run_resumes_to_the_same_optimum_and_repeats_no_evaluation() {
     let duration = begun.elapsed();
     let whole = at.path().join("whole");
     let evaluations = read(&whole.join("evaluations.jsonl"));
-    let mut resumed = 0;
+    let mut begun_anew = 0;
     for k in 0..20 {
         let output = format!("killed_{k}");
         let directory = at.path().join(&output);
@@ -50,12 +50,19 @@ fn a_killed_run_resumes_to_the_same_optimum_and_repeats_no_evaluation() {
         std::thread::sleep(duration.mul_f64(moment));
         run.kill().expect("is killed or has ended");
         run.wait().expect("has ended");
-        let Ok(left) = std::fs::read_to_string(directory.join("evaluations.jsonl")) else {
-            continue;
+        let left = std::fs::read_to_string(directory.join("evaluations.jsonl"));
+        // Killed before its first evaluation, it has lost none, and begins anew.
+        let arguments = match &left {
+            Ok(_) => [TREBUCHET, "--set", STEPS, "--resume", &output, "--quiet"],
+            Err(_) => {
+                assert!(!directory.join("optimum.json").exists());
+                begun_anew += 1;
+                [TREBUCHET, "--set", STEPS, "--output", &output, "--quiet"]
+            }
         };
+        let left = left.unwrap_or_default();
         let kept = &left[..left.rfind('\n').map_or(0, |end| end + 1)];
         assert!(evaluations.starts_with(kept), "moment {k}");
-        let arguments = [TREBUCHET, "--set", STEPS, "--resume", &output, "--quiet"];
         expect(0, at.path(), &arguments);
         // The same evaluations in the same order, none of them twice.
         assert_eq!(
@@ -64,11 +71,10 @@ fn a_killed_run_resumes_to_the_same_optimum_and_repeats_no_evaluation() {
             "moment {k}"
         );
         assert_eq!(optimum(&directory), optimum(&whole), "moment {k}");
-        resumed += 1;
     }
     assert!(
-        resumed >= 15,
-        "only {resumed} runs had begun when they were killed"
+        begun_anew <= 5,
+        "{begun_anew} runs had no evaluation when they were killed"
     );
 }
 
@@ -124,4 +130,50 @@ fn a_run_that_has_ended_is_resumed_without_a_simulation() {
     assert_eq!(read(&at.path().join("out/evaluations.jsonl")), evaluations);
     let record = json(&read(&at.path().join("out/optimum.json")));
     assert_eq!(record["counts"]["steps"], 0);
+}
+
+/// The record is there before the first evaluation is.
+#[test]
+fn a_run_without_an_evaluation_can_be_resumed() {
+    let at = scratch();
+    expect(0, at.path(), &[HAMMER, "--output", "out", "--quiet"]);
+    let path = at.path().join("out/evaluations.jsonl");
+    let whole = read(&path);
+    let head = whole.lines().next().expect("a head").to_owned() + "\n";
+    std::fs::write(&path, head).expect("is written");
+    expect(0, at.path(), &[HAMMER, "--resume", "out", "--quiet"]);
+    assert_eq!(read(&path), whole);
+}
+
+/// Every start has its own record; those of an earlier call with more starts are gone.
+#[test]
+fn every_start_keeps_its_evaluations() {
+    let at = scratch();
+    let log = |k: usize| at.path().join(format!("out/evaluations.start_{k}.jsonl"));
+    let problem = crate::program::changed(at.path(), "bounded.json", |document| {
+        for (_, variable) in document["variables"].as_object_mut().expect("variables") {
+            for side in ["lower", "upper"] {
+                assert!(variable[side].is_number(), "{variable}");
+            }
+        }
+    });
+    let starts = |n: &str| {
+        let arguments = [&problem, "--starts", n, "--output", "out", "--quiet"];
+        expect(0, at.path(), &arguments);
+    };
+    starts("3");
+    let mut beginnings = Vec::new();
+    for k in 1..=3 {
+        let text = read(&log(k));
+        let head = json(text.lines().next().expect("a head"));
+        beginnings.push(head["start"].clone());
+        let first = json(text.lines().nth(1).expect("an evaluation"));
+        assert!(first["values"].is_array(), "{first}");
+        assert!(text.lines().count() > 5);
+    }
+    assert!(beginnings[0] != beginnings[1] && beginnings[1] != beginnings[2]);
+    starts("2");
+    assert!(log(2).exists() && !log(3).exists());
+    let ran = expect(2, at.path(), &[HAMMER, "--resume", "out"]);
+    assert!(ran.err.contains("evaluations.jsonl"), "{}", ran.err);
 }

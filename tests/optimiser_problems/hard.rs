@@ -22,13 +22,6 @@ pub fn complementarity() -> Problem {
     .rows(1, 0, |x| vec![-(x[0] * x[1])])
 }
 
-/// The optimum has no multipliers (Kuhn & Tucker 1951).
-pub fn kuhn_tucker() -> Problem {
-    Problem::new("Kuhn–Tucker", &[0.0, 0.5], -1.0, |x| -x[0])
-        .all_within(0.0, INF)
-        .rows(1, 0, |x| vec![(1.0 - x[0]).powi(3) - x[1]])
-}
-
 /// At the optimum both rows have the gradient (1, −1) or a multiple of it.
 pub fn rank_deficient() -> Problem {
     Problem::new("rank deficient", &[3.0, -1.0], 0.5, |x| {

@@ -123,8 +123,8 @@ pub(super) fn gradients(
         sweep.sample(scene, run, 0, None);
         sweep.node_rates(numbering, start);
         let mut y = vec![0.0; start.v.len()];
-        bodies::tangent_of_cotangent(numbering, &start.q, &sweep.of.q, &mut y);
-        let (v, a) = (sweep.of.v.clone(), sweep.node.1.clone());
+        bodies::tangent_of_cotangent(numbering, &start.q, &sweep.of.q.value, &mut y);
+        let (v, a) = (sweep.of.v.value.clone(), sweep.node.1.clone());
         sweep
             .of
             .finish(scene, run, &mut saddle, (&y, &v, &a), &mut counts)?;

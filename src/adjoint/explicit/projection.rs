@@ -6,7 +6,7 @@ use crate::integrate::explicit::{Node, StepData};
 use crate::math::{Vec3, rotation};
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
-use crate::system::bodies::{self, add7, positions_of, velocities_of};
+use crate::system::bodies::{self, positions_of, velocities_of};
 
 /// Pulls the cotangents of the projected state (`sweep.of`) back to the state before the
 /// projection; `field` stands at the projected state and is factorised. `scratch` receives
@@ -20,17 +20,21 @@ pub(super) fn pull_back(
 ) {
     let numbering = field.numbering;
     let nv = to.v.len();
+    let nq = to.q.len();
     let Sensitivity { q, v, cot, .. } = &mut sweep.of;
     let cot = &mut cot.model;
     let mut y = vec![0.0; nv];
-    bodies::tangent_of_cotangent(numbering, &to.q, q, &mut y);
+    bodies::tangent_of_cotangent(numbering, &to.q, &q.value, &mut y);
 
-    // M δ + Gᵀσ = 0, G (v~ + δ) = 0.
-    let mut psi = v.to_vec();
+    // M δ + Gᵀσ = 0, G (v~ + δ) = 0: the cotangent loses its part Gᵀχ, which is as small as the
+    // step.
+    let mut psi = v.value.clone();
     psi.resize(nv + to.lambda.len(), 0.0);
     field.solve(&mut psi);
-    bodies::mass_product(field.model, numbering, &psi[..nv], v);
     psi.iter_mut().for_each(|x| *x = -*x);
+    let mut reaction = vec![0.0; nv];
+    field.add_reactions(&psi[nv..], &mut reaction);
+    v.add(1.0, &reaction);
     for (i, body) in cot.bodies.iter_mut().enumerate() {
         let o = numbering.velocity(i);
         let (psi_r, psi_theta) = velocities_of(&psi[o..]);
@@ -38,12 +42,14 @@ pub(super) fn pull_back(
         body.mass += psi_r.dot(&d_r);
         body.inertia += psi_theta * d_theta.transpose();
     }
-    field.pull_rate(&psi[..nv], &data.sigma, &mut y, cot);
-    field.pull_rate(&to.v, &psi[nv..], &mut y, cot);
+    let mut more = vec![0.0; nv];
+    field.pull_rate(&psi[..nv], &data.sigma, &mut more, cot);
+    field.pull_rate(&to.v, &psi[nv..], &mut more, cot);
+    y.iter_mut().zip(&more).for_each(|(y, &m)| *y += m);
 
     // M T⁺ (q − q~) + Gᵀs = 0, Φ(q) = 0: its matrix differs from the factorised one by terms of
     // the size of the correction, which one step of refinement takes in.
-    let mut psi = y.clone();
+    let mut psi = y;
     psi.resize(nv + to.lambda.len(), 0.0);
     field.solve(&mut psi);
     let mut rest = vec![0.0; nv];
@@ -56,14 +62,18 @@ pub(super) fn pull_back(
         let turned = rotation::rate_product(&p, &rotation::rate_transposed(&raw, &w)) - w;
         bodies::add6(&mut rest[u..], &Vec3::zeros(), &turned);
     }
+    // M ψ = ȳ − Gᵀχ − Xᵀψ: what the cotangent loses beside ȳ.
+    more.iter_mut().zip(&rest).for_each(|(m, &x)| *m -= x);
     rest.resize(psi.len(), 0.0);
     field.solve(&mut rest);
     psi.iter_mut().zip(&rest).for_each(|(x, &d)| *x = d - *x);
+    field.add_reactions(&psi[nv..], &mut more);
     let mut unused = vec![0.0; nv];
     field.pull_rate(&psi[..nv], &data.s, &mut unused, cot);
     field.pull_constraints(&psi[nv..], &mut unused, cot);
-    q.fill(0.0);
-    for (i, body) in field.model.bodies.iter().enumerate() {
+    let mut change = vec![0.0; nq];
+    bodies::rates_cotangent(numbering, &to.q, &more, &mut change);
+    for i in 0..numbering.bodies() {
         let (o, u) = (numbering.position(i), numbering.velocity(i));
         let (r, p) = positions_of(&to.q[o..]);
         let (r_raw, p_raw) = positions_of(&data.q_raw[o..]);
@@ -72,11 +82,11 @@ pub(super) fn pull_back(
         let turned: Vec3<f64> = rotation::angular_velocity(&p, &away);
         cot.bodies[i].mass += psi_r.dot(&(r - r_raw));
         cot.bodies[i].inertia += psi_theta * turned.transpose();
-        let w = body.inertia.tr_mul(&psi_theta) * -2.0;
-        add7(
-            &mut q[o..],
-            &(psi_r * -body.mass),
-            &rotation::rate_transposed(&p, &w),
-        );
+        // The projected Euler parameters are of unit length whatever the cotangent along them.
+        let radial: f64 = (0..4).map(|k| p[k] * q.value[o + 3 + k]).sum();
+        for k in 0..4 {
+            change[o + 3 + k] -= radial * p[k];
+        }
     }
+    q.add(1.0, &change);
 }

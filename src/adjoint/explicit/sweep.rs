@@ -22,7 +22,7 @@ pub(super) struct Sweep<'a> {
     /// Cotangents of q̇ and v̇ at the stages.
     qdot: Vec<f64>,
     a: Vec<f64>,
-    /// Cotangents of the node before the step.
+    /// What the step adds to the cotangents on the way to the node before it.
     before: (Vec<f64>, Vec<f64>),
 }
 
@@ -79,8 +79,8 @@ impl<'a> Sweep<'a> {
             }
             _ => {
                 bodies::rates_cotangent(numbering, run.q(k), y, &mut q);
-                add_scaled(&mut self.of.q, 1.0, &q);
-                add_scaled(&mut self.of.v, 1.0, v);
+                self.of.q.add(1.0, &q);
+                self.of.v.add(1.0, v);
                 add_scaled(&mut self.node.1, 1.0, a);
             }
         }
@@ -118,7 +118,7 @@ impl<'a> Sweep<'a> {
         width: f64,
         data: &StepData<f64>,
     ) {
-        let (nq, nv) = (self.of.q.len(), self.of.v.len());
+        let (nq, nv) = (self.before.0.len(), self.before.1.len());
         let q = row(&self.qdot, nq, i).to_vec();
         let v = row(&self.a, nv, i).to_vec();
         add_scaled(&mut self.before.0, 1.0, &q);
@@ -156,41 +156,39 @@ impl<'a> Sweep<'a> {
         self.node_rates(field.numbering, to);
         if self.node.1.iter().any(|&x| x != 0.0) {
             let mut y = vec![0.0; nv];
-            let Sensitivity {
-                q,
-                v,
-                cot,
-                by_duration,
-                ..
-            } = &mut self.of;
+            let (mut q, mut v) = (vec![0.0; nq], vec![0.0; nv]);
             let found = (&to.a[..], &to.lambda[..]);
-            let by_time = field.pull_back(found, &self.node.1, (&mut y, v), &mut cot.model);
-            *by_duration += fraction * by_time;
-            bodies::add_unit_cotangent(field.numbering, &to.q, &y, q);
+            let cot = &mut self.of.cot.model;
+            let by_time = field.pull_back(found, &self.node.1, (&mut y, &mut v), cot);
+            self.of.by_duration += fraction * by_time;
+            bodies::add_unit_cotangent(field.numbering, &to.q, &y, &mut q);
+            self.of.q.add(1.0, &q);
+            self.of.v.add(1.0, &v);
         }
     }
 
     /// Pulls the cotangent of q̇ at the node back to its state.
     pub fn node_rates(&mut self, numbering: &Numbering, to: &Node<f64>) {
-        let Sensitivity { q, v, .. } = &mut self.of;
-        bodies::pull_rates(numbering, (&to.q, &to.v), &self.node.0, (q, v));
+        let (mut q, mut v) = (vec![0.0; to.q.len()], vec![0.0; to.v.len()]);
+        let bars = (&mut q[..], &mut v[..]);
+        bodies::pull_rates(numbering, (&to.q, &to.v), &self.node.0, bars);
+        self.of.q.add(1.0, &q);
+        self.of.v.add(1.0, &v);
     }
 
     /// Hands the cotangents of the unprojected end on to the stages and to the node before.
     pub fn end(&mut self, h: f64, width: f64, data: &StepData<f64>) {
-        let (q, v) = (self.of.q.clone(), self.of.v.clone());
-        add_scaled(&mut self.before.0, 1.0, &q);
-        add_scaled(&mut self.before.1, 1.0, &v);
+        let (q, v) = (self.of.q.value.clone(), self.of.v.value.clone());
         self.hand_on(B, (&q, &v), h, width, data);
     }
 
     /// Moves to the node before the step.
     pub fn leave_step(&mut self) {
-        std::mem::swap(&mut self.of.q, &mut self.before.0);
-        std::mem::swap(&mut self.of.v, &mut self.before.1);
+        self.of.q.add(1.0, &self.before.0);
+        self.of.v.add(1.0, &self.before.1);
         self.before.0.fill(0.0);
         self.before.1.fill(0.0);
-        let (nq, nv) = (self.of.q.len(), self.of.v.len());
+        let (nq, nv) = (self.before.0.len(), self.before.1.len());
         self.node.0.copy_from_slice(&self.qdot[..nq]);
         self.node.1.copy_from_slice(&self.a[..nv]);
         self.qdot.fill(0.0);

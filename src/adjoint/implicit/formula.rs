@@ -1,6 +1,6 @@
 //! A step of a formula, backwards.
 
-use super::sweep::{Sweep, add, rates_of, work, zero};
+use super::sweep::{Sweep, add, move_back, rates_of, work, zero};
 use crate::integrate::WorkCounts;
 use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::formula::Formula;
@@ -15,6 +15,8 @@ pub(super) struct Plan<'a> {
     numbering: &'a Numbering,
     equations: Equations<'a, f64>,
     matrix: SparseMatrix<f64>,
+    /// The matrix with the rates held.
+    held: SparseMatrix<f64>,
     factors: SparseLu<f64>,
 }
 
@@ -27,6 +29,7 @@ impl<'a> Plan<'a> {
             numbering,
             equations,
             factors: SparseLu::new(&pattern),
+            held: SparseMatrix::new(pattern.clone()),
             matrix: SparseMatrix::new(pattern),
         }
     }
@@ -47,6 +50,8 @@ impl<'a> Plan<'a> {
         let equations = &mut self.equations;
         self.matrix
             .assemble(|emit| equations.jacobian(&at, h, c, emit));
+        self.held
+            .assemble(|emit| equations.jacobian(&at, h, 0.0, emit));
         self.factors.factorise(&self.matrix)?;
         counts.factorisations += 1;
         for sweep in sweeps {
@@ -56,7 +61,7 @@ impl<'a> Plan<'a> {
             for ((f, _), later) in formula.memory.iter().zip(&sweep.memory) {
                 add(&mut by_increment, *f, later);
             }
-            let mut total = (sweep.of.q.clone(), sweep.of.v.clone());
+            let mut total = (sweep.of.q.value.clone(), sweep.of.v.value.clone());
             add(&mut total, 1.0, &by_increment);
             let mut psi = vec![0.0; equations.order()];
             bodies::tangent_of_cotangent(numbering, &stage.q, &total.0, &mut psi[..nv]);
@@ -65,13 +70,16 @@ impl<'a> Plan<'a> {
             equations.scale_columns(h, &mut psi);
             self.factors
                 .solve_transposed_refined(&self.matrix, &mut psi);
+            let mut change = self.held.multiply_transposed(&psi);
+            equations.unscale_columns(h, &mut change);
             equations.scale_rows(h, &mut psi);
             counts.solves += REFINED_SOLVES;
             let by_time = equations.pull_back(&at, &psi, &mut sweep.of.cot.model);
             sweep.of.by_duration += end * by_time;
 
             let own = rates_of(model, numbering, &stage.q, &psi);
-            add(&mut by_increment, c, &own);
+            add(&mut total, c, &own);
+            move_back(&mut sweep.of, numbering, stage, &change, &total.0);
             add(&mut sweep.rates, 1.0, &own);
             sweep.of.by_duration -= width * work(&sweep.rates, stage) / h;
             let earlier = (0..sweep.memory.len()).map(|j| {
@@ -84,12 +92,6 @@ impl<'a> Plan<'a> {
             });
             sweep.memory = earlier.collect();
             sweep.rates = zero(&own);
-            for (out, x) in sweep.of.q.iter_mut().zip(&by_increment.0) {
-                *out = -x;
-            }
-            for (out, x) in sweep.of.v.iter_mut().zip(&by_increment.1) {
-                *out = -x;
-            }
         }
         Ok(())
     }

@@ -103,8 +103,8 @@ pub(super) fn gradients(
         sweep.sample(scene, run, 0, (&scheme, start, &[]), 0.0);
         let mut y = vec![0.0; start.v.len()];
         sweep.pull_starting_rates(numbering, start);
-        bodies::tangent_of_cotangent(numbering, &start.q, &sweep.of.q, &mut y);
-        let (v, a) = (sweep.of.v.clone(), sweep.rates.1.clone());
+        bodies::tangent_of_cotangent(numbering, &start.q, &sweep.of.q.value, &mut y);
+        let (v, a) = (sweep.of.v.value.clone(), sweep.rates.1.clone());
         sweep
             .of
             .finish(scene, run, &mut saddle, (&y, &v, &a), &mut counts)?;

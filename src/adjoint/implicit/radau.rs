@@ -1,6 +1,6 @@
 //! A step of Radau IIA, backwards: the coupled system of all stages.
 
-use super::sweep::{Pair, Sweep, add, rates_of, work, zero};
+use super::sweep::{Pair, Sweep, add, move_back, rates_of, work, zero};
 use crate::integrate::WorkCounts;
 use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::ggl::Equations;
@@ -16,6 +16,8 @@ pub(super) struct Plan<'a> {
     scheme: &'a Scheme,
     equations: Equations<'a, f64>,
     matrix: SparseMatrix<f64>,
+    /// The matrix of one stage with the rates held.
+    held: SparseMatrix<f64>,
     factors: SparseLu<f64>,
 }
 
@@ -23,6 +25,7 @@ impl<'a> Plan<'a> {
     pub fn new(model: &'a Model<f64>, numbering: &'a Numbering, scheme: &'a Scheme) -> Self {
         let mut equations = Equations::new(model, numbering);
         let zeros = vec![Stage::zero(numbering); scheme.stages()];
+        let held = SparseMatrix::new(equations.pattern(&zeros[0].instant()));
         let order = scheme.stages() * equations.order();
         let pattern = Pattern::record(order, |emit: &mut dyn Emit<f64>| {
             emit_stages(&mut equations, scheme, &zeros, 1.0, emit);
@@ -33,6 +36,7 @@ impl<'a> Plan<'a> {
             scheme,
             equations,
             factors: SparseLu::new(&pattern),
+            held,
             matrix: SparseMatrix::new(pattern),
         }
     }
@@ -67,7 +71,8 @@ impl<'a> Plan<'a> {
             for (j, (stage, by)) in stages.iter().zip(&by).enumerate() {
                 let mut total = by.clone();
                 if j == last {
-                    add(&mut total, 1.0, &(sweep.of.q.clone(), sweep.of.v.clone()));
+                    let end = (sweep.of.q.value.clone(), sweep.of.v.value.clone());
+                    add(&mut total, 1.0, &end);
                 }
                 let part = &mut psi[j * n..(j + 1) * n];
                 bodies::tangent_of_cotangent(numbering, &stage.q, &total.0, &mut part[..nv]);
@@ -79,8 +84,15 @@ impl<'a> Plan<'a> {
                 .solve_transposed_refined(&self.matrix, &mut psi);
             counts.solves += REFINED_SOLVES;
             let mut slope = 0.0;
+            let mut changes = Vec::with_capacity(stages.len());
             for (i, stage) in stages.iter().enumerate() {
                 let part = &mut psi[i * n..(i + 1) * n];
+                let at = stage.instant();
+                self.held
+                    .assemble(|emit| equations.jacobian(&at, h, 0.0, emit));
+                let mut change = self.held.multiply_transposed(part);
+                equations.unscale_columns(h, &mut change);
+                changes.push(change);
                 equations.scale_rows(h, part);
                 let cot = &mut sweep.of.cot.model;
                 let by_time = equations.pull_back(&stage.instant(), part, cot);
@@ -91,11 +103,17 @@ impl<'a> Plan<'a> {
             }
             slope += work(&sweep.rates, &stages[last]);
             sweep.of.by_duration -= width * slope / h;
-            let mut start = std::mem::replace(&mut sweep.before, zero(&by[0]));
-            for by in &by {
-                add(&mut start, -1.0, by);
+            add(
+                &mut by[last],
+                1.0,
+                &(sweep.of.q.value.clone(), sweep.of.v.value.clone()),
+            );
+            for ((stage, change), total) in stages.iter().zip(&changes).zip(&by) {
+                move_back(&mut sweep.of, numbering, stage, change, &total.0);
             }
-            (sweep.of.q, sweep.of.v) = start;
+            let before = std::mem::replace(&mut sweep.before, zero(&by[0]));
+            sweep.of.q.add(1.0, &before.0);
+            sweep.of.v.add(1.0, &before.1);
             sweep.rates = zero(&by[0]);
             sweep.increments = by.iter().map(zero).collect();
         }

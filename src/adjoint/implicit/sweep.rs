@@ -31,7 +31,7 @@ pub(super) struct Sweep<'a> {
 
 impl<'a> Sweep<'a> {
     pub fn new(of: Sensitivity<'a>, method: Method, stages: usize) -> Self {
-        let zero = || (vec![0.0; of.q.len()], vec![0.0; of.v.len()]);
+        let zero = || (vec![0.0; of.q.value.len()], vec![0.0; of.v.value.len()]);
         Self {
             rates: zero(),
             memory: (0..memory_size(method)).map(|_| zero()).collect(),
@@ -74,8 +74,8 @@ impl<'a> Sweep<'a> {
             }
             Place::Node(_) => {
                 bodies::rates_cotangent(numbering, run.q(k), y, &mut q);
-                add_scaled(&mut self.of.q, 1.0, &q);
-                add_scaled(&mut self.of.v, 1.0, v);
+                self.of.q.add(1.0, &q);
+                self.of.v.add(1.0, v);
                 add_scaled(&mut self.rates.1, 1.0, a);
             }
         }
@@ -92,7 +92,7 @@ impl<'a> Sweep<'a> {
 
     /// Pulls the cotangent of the initial q̇ = T(q) v back to the initial state.
     pub fn pull_starting_rates(&mut self, numbering: &Numbering, start: &Stage<f64>) {
-        let (q_bar, v_bar) = (&mut self.of.q, &mut self.of.v);
+        let (q_bar, v_bar) = (&mut self.of.q.value, &mut self.of.v.value);
         bodies::pull_rates(
             numbering,
             (&start.q, &start.v),
@@ -100,6 +100,33 @@ impl<'a> Sweep<'a> {
             (q_bar, v_bar),
         );
     }
+}
+
+/// Moves the cotangent of a state from the end of a step to its start. What the equations of a
+/// stage say of it, F_yᵀψ (`change`, tangent positions and velocities), is as small as the step and
+/// is added as such; the part of `total` (the cotangent of the stage's positions, with those of
+/// its increment and rates) along the Euler parameters, which the equations do not see, is taken
+/// from it directly.
+pub(super) fn move_back(
+    of: &mut Sensitivity,
+    numbering: &Numbering,
+    stage: &Stage<f64>,
+    change: &[f64],
+    total: &[f64],
+) {
+    let nv = numbering.velocities();
+    let mut q = vec![0.0; stage.q.len()];
+    bodies::rates_cotangent(numbering, &stage.q, &change[..nv], &mut q);
+    for body in 0..numbering.bodies() {
+        let o = numbering.position(body) + 3;
+        let (p, along) = (&stage.q[o..o + 4], &total[o..o + 4]);
+        let radial = dot(p, along);
+        for k in 0..4 {
+            q[o + k] -= radial * p[k];
+        }
+    }
+    of.q.add(1.0, &q);
+    of.v.add(1.0, &change[nv..2 * nv]);
 }
 
 /// Cotangents of the rates of a stage from its adjoint: (P(q)ᵀ ψ_1, Mᵀ ψ_2).

@@ -188,6 +188,11 @@ impl<'a, S: Scalar> Equations<'a, S> {
         scale_parts(b, &[(v, 1.0 / h), (lambda, 1.0 / (h * h)), (mu, 1.0 / h)]);
     }
 
+    /// The inverse of [`Equations::scale_columns`].
+    pub fn unscale_columns(&self, h: f64, b: &mut [f64]) {
+        self.scale_columns(1.0 / h, b);
+    }
+
     /// See [`Equations::scale_columns`].
     pub fn scale_rows(&self, h: f64, psi: &mut [f64]) {
         let [_, f2, f3, f4] = self.starts();
@@ -195,11 +200,6 @@ impl<'a, S: Scalar> Equations<'a, S> {
             *x *= h;
         }
         scale_parts(psi, &[(f2, h * h), (f3, 1.0), (f4, h)]);
-    }
-
-    /// The inverse of [`Equations::scale_rows`].
-    pub fn unscale_rows(&self, h: f64, psi: &mut [f64]) {
-        self.scale_rows(1.0 / h, psi);
     }
 
     /// The body or joint that an equation (or unknown) belongs to, for messages.

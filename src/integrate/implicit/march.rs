@@ -211,9 +211,18 @@ impl<S: SolveScalar> Solver<'_, S> {
             vdot,
         };
         let (model, numbering) = (self.model, self.numbering);
-        self.one
-            .get_or_insert_with(|| Newton::new(model, numbering))
-            .solve(&mut stage, &history, h, at, counts)?;
+        let newton = self
+            .one
+            .get_or_insert_with(|| Newton::new(model, numbering));
+        newton
+            .solve(&mut stage, &history, h, at, counts)
+            .or_else(|_| {
+                // An extrapolation over steps that are large for the motion may lead astray.
+                stage = taylor(numbering, &past.from, h);
+                stage.time = start + h;
+                newton.forget();
+                newton.solve(&mut stage, &history, h, at, counts)
+            })?;
         Ok(vec![stage])
     }
 

@@ -81,6 +81,11 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         }
     }
 
+    /// Forgets the kept factors.
+    pub fn forget(&mut self) {
+        self.factored = None;
+    }
+
     /// Solves the equations of step `step` of size `h`, which ends at `time`, starting from and ending
     /// in `x`.
     ///

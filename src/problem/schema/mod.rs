@@ -232,6 +232,18 @@ pub struct Optimiser {
         "design_variable" = "a number of iterations is a count, not a physical number"
     ))]
     pub iterations: Option<usize>,
+    /// Largest number of simulations.
+    #[schemars(extend(
+        "minimum" = 1,
+        "design_variable" = "a number of simulations is a count, not a physical number"
+    ))]
+    pub evaluations: Option<usize>,
+    /// Longest wall time of the run [s].
+    #[schemars(extend(
+        "exclusiveMinimum" = 0,
+        "design_variable" = "a limit of the run is the optimiser's, not a physical number"
+    ))]
+    pub seconds: Option<f64>,
 }
 
 /// How the motion is drawn.

@@ -1,0 +1,246 @@
+//! Where a method ended, and the outcome made of it.
+
+use nalgebra::DVector;
+
+use super::nlp::Nlp;
+use super::outcome::{Counts, Kkt, Outcome, Scaling, Status};
+use super::program::{Point, Program, Slopes, Trouble};
+use super::quasi_newton::QuasiNewton;
+use super::state::SavedState;
+use super::trust_region::Ending;
+use super::verdict::{
+    ScaledMultipliers, active, is_solved_at_end, kkt, scaled_residual, steepness, unit_of_forces,
+    user_multipliers,
+};
+
+/// Where a method ended.
+pub(super) struct Finish {
+    pub status: Status,
+    pub point: Point,
+    pub slopes: Slopes,
+    pub multipliers: ScaledMultipliers,
+    pub scaled: f64,
+    pub b: QuasiNewton,
+    pub barrier: f64,
+    pub radius: f64,
+}
+
+impl Finish {
+    fn kkt(&self, program: &Program<'_>) -> Kkt {
+        kkt(
+            program,
+            &self.point,
+            &self.slopes,
+            &self.multipliers,
+            self.scaled,
+        )
+    }
+
+    /// Whether the conditions hold, whatever the method thought of its end.
+    pub fn is_solved(&self, program: &Program<'_>) -> bool {
+        is_solved_at_end(
+            program,
+            &self.point,
+            &self.slopes,
+            &self.multipliers,
+            self.scaled,
+        )
+    }
+}
+
+/// Replaces the point of a run that did not converge by a better one it passed through.
+pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
+    let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. })
+        || finish.status == Status::Stalled && finish.is_solved(program);
+    let limit = program.options.constraint_tolerance;
+    // What a violation within the tolerance gains is not counted.
+    let y = &finish.multipliers.y;
+    let value = |p: &Point| {
+        p.f + (0..p.c.len())
+            .map(|k| y[k].abs() * program.row_violation(&p.c, k))
+            .sum::<f64>()
+    };
+    let rank = |p: &Point| (program.worst_violation(&p.c).0.max(limit), value(p));
+    let found = program.best.clone().filter(|best| {
+        let (new, old) = (rank(best), rank(&finish.point));
+        !settled && (new.0 < old.0 || (new.0 == old.0 && new.1 < old.1))
+    });
+    let Some(point) = found else {
+        return finish;
+    };
+    let Ok(slopes) = program.gradients(&point.x) else {
+        return finish;
+    };
+    let y = &finish.multipliers.y;
+    let multipliers = ScaledMultipliers::polished(program, &point, &slopes, y);
+    let scaled = scaled_residual(program, &point, &slopes, &multipliers);
+    Finish {
+        point,
+        slopes,
+        multipliers,
+        scaled,
+        ..finish
+    }
+}
+
+/// The only point there is, where all variables are fixed.
+pub(super) fn without_freedom(program: &Program<'_>, point: Point, slopes: Slopes) -> Finish {
+    let (violation, j) = program.worst_violation(&point.c);
+    let feasible = violation <= program.options.constraint_tolerance;
+    let status = if feasible {
+        Status::Converged
+    } else {
+        Status::Infeasible {
+            constraint: program.constraint_name(j),
+            violation,
+        }
+    };
+    Finish {
+        status,
+        ..unfinished(program, point, slopes)
+    }
+}
+
+/// The start, where the observer asked to stop at once.
+pub(super) fn unfinished(program: &Program<'_>, point: Point, slopes: Slopes) -> Finish {
+    let y = DVector::zeros(point.c.len());
+    let multipliers = ScaledMultipliers::from_rows(program, &point, &slopes, y);
+    let options = program.options;
+    Finish {
+        status: Status::Interrupted,
+        b: QuasiNewton::new(point.x.len(), options.dense_limit, options.memory),
+        scaled: scaled_residual(program, &point, &slopes, &multipliers),
+        multipliers,
+        point,
+        slopes,
+        barrier: options.initial_barrier,
+        radius: options.initial_radius,
+    }
+}
+
+pub(super) fn status_of(
+    program: &Program<'_>,
+    result: Result<Ending, Trouble>,
+    at: &Point,
+) -> Status {
+    match result {
+        Ok(Ending::Reached) => Status::Converged,
+        Ok(Ending::Unbounded) => Status::Unbounded,
+        Ok(Ending::Infeasible) => {
+            let (violation, j) = program.worst_violation(&at.c);
+            Status::Infeasible {
+                constraint: program.constraint_name(j),
+                violation,
+            }
+        }
+        Ok(Ending::Stalled) | Err(Trouble::Failed(_)) => Status::Stalled,
+        Err(Trouble::Halt(status)) => status,
+    }
+}
+
+/// State at the last point, which need not be the best.
+pub(super) fn state_of(program: &Program<'_>, finish: &Finish) -> SavedState {
+    SavedState {
+        x: program.to_user(&finish.point.x),
+        multipliers: user_multipliers(program, &finish.slopes, &finish.multipliers),
+        scaling: Scaling {
+            typical_gradient: program.typical_gradient(),
+            ..program.scaling.clone()
+        },
+        quasi_newton: finish.b.stored(),
+        barrier: finish.barrier,
+        radius: finish.radius,
+    }
+}
+
+pub(super) fn outcome(program: &Program<'_>, finish: Finish, state: SavedState) -> Outcome {
+    let kkt = finish.kkt(program);
+    let solved = finish.is_solved(program);
+    let Finish {
+        mut status,
+        point,
+        slopes,
+        multipliers,
+        ..
+    } = finish;
+    // A method that can go no further has converged if the conditions hold all the same.
+    if matches!(status, Status::Converged | Status::Stalled) {
+        status = if solved {
+            Status::Converged
+        } else {
+            Status::Stalled
+        };
+    }
+    let x = program.to_user(&point.x);
+    let mut constraints = vec![0.0; program.scaling.constraints.len()];
+    for (k, &j) in program.rows.iter().enumerate() {
+        constraints[j] = point.c[k] / program.scaling.constraints[j];
+    }
+    let user = user_multipliers(program, &slopes, &multipliers);
+    let nlp = program.nlp();
+    let (lower, upper) = nlp.variable_bounds();
+    let (row_lower, row_upper) = nlp.constraint_bounds();
+    let of_bound = |i: usize| (user.lower_bounds[i], user.upper_bounds[i]);
+    let of_row = |j: usize| {
+        (
+            (-user.constraints[j]).max(0.0),
+            user.constraints[j].max(0.0),
+        )
+    };
+    let gradient = unit_of_forces(program, &slopes);
+    let steep = steepness(program, &slopes);
+    let mut counts = program.counts;
+    counts.seconds = program.seconds();
+    Outcome {
+        status,
+        objective: point.f / program.scaling.objective,
+        active_bounds: active(&x, (&lower, &upper), of_bound, (|_| 1.0, gradient), |i| {
+            nlp.variable_name(i)
+        }),
+        active_constraints: active(
+            &constraints,
+            (&row_lower, &row_upper),
+            of_row,
+            (|j: usize| steep[j], gradient),
+            |j| nlp.constraint_name(j),
+        ),
+        kkt,
+        counts,
+        failed_designs: program.failed.clone(),
+        scaling: state.scaling.clone(),
+        state: Some(state),
+        constraints,
+        multipliers: user,
+        x,
+    }
+}
+
+pub(super) fn without_values(program: &Program<'_>, status: Status) -> Outcome {
+    let mut counts = program.counts;
+    counts.seconds = program.seconds();
+    Outcome {
+        x: program.to_user(&program.start()),
+        counts,
+        failed_designs: program.failed.clone(),
+        scaling: program.scaling.clone(),
+        ..untried(program.nlp(), status)
+    }
+}
+
+/// The end of a run in which nothing was evaluated.
+pub(super) fn untried(nlp: &dyn Nlp, status: Status) -> Outcome {
+    Outcome {
+        status,
+        x: nlp.start(),
+        objective: f64::NAN,
+        constraints: vec![f64::NAN; nlp.constraints()],
+        multipliers: Default::default(),
+        kkt: Kkt::default(),
+        active_bounds: Vec::new(),
+        active_constraints: Vec::new(),
+        counts: Counts::default(),
+        failed_designs: Vec::new(),
+        scaling: Scaling::default(),
+        state: None,
+    }
+}
