@@ -139,7 +139,7 @@ fn pull_backs_of_constraints() {
             [true; 3],
         ] {
             let picked = |k: usize| wanted[k].then_some(parts[k]);
-            let cotangents = [picked(0), picked(1), picked(2)];
+            let cotangents = [picked(0), picked(1), picked(2), None];
             let weights: Vec<f64> = (0..3 * rows)
                 .map(|i| if wanted[i / rows] { cot[i] } else { 0.0 })
                 .collect();
@@ -169,6 +169,34 @@ fn pull_backs_of_constraints() {
             let given = parameters(&by_model);
             case.assert(&format!("pull-back {wanted:?} to frames"), &given, &exact);
         }
+    }
+}
+
+/// The virtual rate of a motion is the rate of one with the virtual velocities.
+#[test]
+fn pull_backs_of_virtual_rates() {
+    for mut case in cases() {
+        let cot = case.numbers.list(case.numbering.constraints());
+        let w = case.numbers.list(12);
+        let pull = |motions: &[_], cotangents| {
+            let (mut y, mut by_model) = (vec![0.0; 12], case.model.map(&mut |_| 0.0));
+            let mut out = JointCotangent {
+                y: Some(&mut y),
+                v: None,
+                model: &mut by_model,
+            };
+            joints::pull_back(&case.model, &case.numbering, motions, cotangents, &mut out);
+            y.extend(parameters(&by_model));
+            y
+        };
+        let mut motions = case.motions(&case.q, &case.v);
+        for (body, motion) in motions.iter_mut().enumerate() {
+            *motion = motion.virtually(&w[case.numbering.velocity(body)..]);
+        }
+        let given = pull(&motions, [None, None, None, Some(&cot[..])]);
+        let moving = case.motions(&case.q, &w);
+        let exact = pull(&moving, [None, Some(&cot[..]), None, None]);
+        case.assert("pull-back of virtual rates", &given, &exact);
     }
 }
 

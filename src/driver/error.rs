@@ -94,9 +94,7 @@ pub fn estimate(
 /// The settings of a run with every step cut in two and twice the samples.
 fn halved(run: &Trajectory<f64>) -> Settings {
     let instants = run.last();
-    let samples = if instants == run.grid.steps() && !run.method.is_adaptive() {
-        Samples::StepEnds
-    } else if run.instants == run.grid.ends() {
+    let samples = if run.instants == run.grid.ends() {
         Samples::StepEnds
     } else if instants == 1 {
         Samples::Uniform(1)

@@ -133,6 +133,7 @@ pub fn pull_back(
         x: position,
         rate: velocity,
         acceleration: Vec3::zeros(),
+        virtual_rate: Vec3::zeros(),
     };
     FlightCotangent {
         position,

@@ -276,6 +276,7 @@ fn pull_point(
             x,
             rate,
             acceleration,
+            virtual_rate: ZERO,
         },
     );
     let o = at.numbering.velocity(body);

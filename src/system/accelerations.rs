@@ -26,6 +26,8 @@ pub struct Accelerations<'a, S> {
     /// Motions of the bodies where the solver stands.
     pub motions: Vec<Motion<S>>,
     gradients: Vec<RowGradient<S>>,
+    /// Motions with accelerations and virtual velocities, for the pull-back.
+    moving: Vec<Motion<S>>,
     /// Time where the solver stands (s).
     time: S,
     solver: Solver<S>,
@@ -54,6 +56,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             numbering,
             motions: Vec::new(),
             gradients: Vec::new(),
+            moving: Vec::new(),
             time: S::zero(),
             solver,
             rhs: vec![S::zero(); numbering.velocities() + numbering.constraints()],
@@ -258,17 +261,20 @@ impl Accelerations<'_, f64> {
                 v[o + 3 + k] += by_omega[k];
             }
         }
-        self.pull_rate(&psi[..nv], lambda, y, cot);
-        let accelerated: Vec<Motion<f64>> = (self.motions.iter().enumerate())
-            .map(|(i, motion)| motion.accelerated(&a[numbering.velocity(i)..]))
-            .collect();
+        // χᵀ (G a + bias) and λᵀ G ψ in one pass.
+        let moving = self.motions.iter().enumerate().map(|(i, motion)| {
+            let o = numbering.velocity(i);
+            motion.accelerated(&a[o..]).virtually(&psi[o..])
+        });
+        self.moving.clear();
+        self.moving.extend(moving);
         let mut out = JointCotangent {
             y: Some(y),
             v: Some(v),
             model: cot,
         };
-        let cotangents = [None, None, Some(&psi[nv..])];
-        joints::pull_back(model, numbering, &accelerated, cotangents, &mut out);
+        let cotangents = [None, None, Some(&psi[nv..]), Some(lambda)];
+        joints::pull_back(model, numbering, &self.moving, cotangents, &mut out);
         self.rhs = psi;
         by_time
     }
@@ -289,7 +295,7 @@ impl Accelerations<'_, f64> {
             v: None,
             model: cot,
         };
-        let cotangents = [None, Some(lambda), None];
+        let cotangents = [None, Some(lambda), None, None];
         joints::pull_back(self.model, self.numbering, &moving, cotangents, &mut out);
     }
 
@@ -300,7 +306,7 @@ impl Accelerations<'_, f64> {
             v: None,
             model: cot,
         };
-        let cotangents = [Some(chi), None, None];
+        let cotangents = [Some(chi), None, None, None];
         let motions = &self.motions;
         joints::pull_back(self.model, self.numbering, motions, cotangents, &mut out);
     }

@@ -31,6 +31,10 @@ pub struct Motion<S> {
     pub acceleration: Vec3<S>,
     /// Angular acceleration ω̇, body axes (rad/s²); zero unless set likewise.
     pub alpha: Vec3<S>,
+    /// Virtual velocity, ground axes; zero unless set by [`Motion::virtually`].
+    pub virtual_velocity: Vec3<S>,
+    /// Virtual angular velocity, body axes; zero unless set likewise.
+    pub virtual_omega: Vec3<S>,
 }
 
 impl<S: Scalar> Motion<S> {
@@ -45,6 +49,8 @@ impl<S: Scalar> Motion<S> {
             omega: Vec3::zeros(),
             acceleration: Vec3::zeros(),
             alpha: Vec3::zeros(),
+            virtual_velocity: Vec3::zeros(),
+            virtual_omega: Vec3::zeros(),
         }
     }
 
@@ -61,12 +67,20 @@ impl<S: Scalar> Motion<S> {
             omega,
             acceleration: Vec3::zeros(),
             alpha: Vec3::zeros(),
+            virtual_velocity: Vec3::zeros(),
+            virtual_omega: Vec3::zeros(),
         }
     }
 
     /// The same motion with the accelerations that six coordinates give.
     pub fn accelerated(mut self, a: &[S]) -> Self {
         (self.acceleration, self.alpha) = velocities_of(a);
+        self
+    }
+
+    /// The same motion with the virtual velocities that six coordinates give.
+    pub fn virtually(mut self, w: &[S]) -> Self {
+        (self.virtual_velocity, self.virtual_omega) = velocities_of(w);
         self
     }
 
@@ -91,6 +105,8 @@ impl<S: Scalar> Motion<S> {
                 omega,
                 acceleration: Vec3::zeros(),
                 alpha: Vec3::zeros(),
+                virtual_velocity: Vec3::zeros(),
+                virtual_omega: Vec3::zeros(),
             }
         }));
     }

@@ -328,15 +328,20 @@ pub fn pull_back<S: Scalar>(
         let cot = cot(i);
         // Φ = u·w and its time derivatives are symmetric in the two factors.
         let by = |other: &Jet<S>| Jet {
-            x: other.x * cot.value + other.rate * cot.rate + other.acceleration * cot.acceleration,
+            x: other.x * cot.value
+                + other.rate * cot.rate
+                + other.acceleration * cot.acceleration
+                + other.virtual_rate * cot.virtual_rate,
             rate: other.x * cot.rate + other.rate * (cot.acceleration * 2.0),
             acceleration: other.x * cot.acceleration,
+            virtual_rate: other.x * cot.virtual_rate,
         };
         match row {
             Coincident(k) => {
                 by_distance.x[k] += cot.value;
                 by_distance.rate[k] += cot.rate;
                 by_distance.acceleration[k] += cot.acceleration;
+                by_distance.virtual_rate[k] += cot.virtual_rate;
             }
             Perpendicular { a: i, b: j } => {
                 by_axes_a[i].add(&by(&markers.axes_b[j]));
@@ -365,7 +370,7 @@ pub fn pull_back<S: Scalar>(
     (out_a, out_b)
 }
 
-/// Cotangents of a row's value, rate and second derivative.
+/// Cotangents of a row's value, rate, second derivative and virtual rate.
 #[derive(Clone, Copy, Debug)]
 pub struct RowCotangent<S> {
     /// Of Φ.
@@ -374,6 +379,8 @@ pub struct RowCotangent<S> {
     pub rate: S,
     /// Of Φ̈.
     pub acceleration: S,
+    /// Of the rate G w that the virtual velocities w make.
+    pub virtual_rate: S,
 }
 
 impl<S: Scalar> SideCotangent<S> {

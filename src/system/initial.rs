@@ -162,7 +162,13 @@ pub fn pull_back(
             v: None,
             model: cot,
         };
-        joints::pull_back(model, numbering, &at, [None, Some(lambda), None], &mut out);
+        joints::pull_back(
+            model,
+            numbering,
+            &at,
+            [None, Some(lambda), None, None],
+            &mut out,
+        );
     };
 
     if a_bar.iter().any(|&x| x != 0.0) {
@@ -207,7 +213,7 @@ pub fn pull_back(
             model,
             numbering,
             &motions,
-            [None, None, Some(&chi)],
+            [None, None, Some(&chi), None],
             &mut out,
         );
     }
@@ -240,7 +246,7 @@ pub fn pull_back(
         model,
         numbering,
         &motions,
-        [Some(&chi), None, None],
+        [Some(&chi), None, None, None],
         &mut out,
     );
 

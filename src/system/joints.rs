@@ -189,6 +189,7 @@ pub fn rate_by_position<S: Scalar>(
         value: S::zero(),
         rate: S::one(),
         acceleration: S::zero(),
+        virtual_rate: S::zero(),
     };
     constraint::pull_back(std::iter::once(row), |_| unit, a, b)
 }
@@ -203,13 +204,14 @@ pub struct JointCotangent<'a> {
     pub model: &'a mut Model<f64>,
 }
 
-/// Pulls cotangents of the values, rates and second derivatives of all rows (in this order, each
-/// optional) back to tangent positions, velocities and joint frames, the accelerations held.
+/// Pulls cotangents of the values, rates, second derivatives and virtual rates of all rows (in this
+/// order, each optional) back to tangent positions, velocities and joint frames, the accelerations
+/// and virtual velocities held.
 pub fn pull_back(
     model: &Model<f64>,
     numbering: &Numbering,
     motions: &[Motion<f64>],
-    cotangents: [Option<&[f64]>; 3],
+    cotangents: [Option<&[f64]>; 4],
     out: &mut JointCotangent,
 ) {
     let ground = Motion::ground();
@@ -221,6 +223,7 @@ pub fn pull_back(
             value: at(0, first + i),
             rate: at(1, first + i),
             acceleration: at(2, first + i),
+            virtual_rate: at(3, first + i),
         };
         let (by_a, by_b) = constraint::pull_back(joint.rows(), cot, &a, &b);
         let bodies = [(Some(joint.body_a), &by_a), (joint.body_b, &by_b)];

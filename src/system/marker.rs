@@ -8,7 +8,7 @@
 use super::bodies::Motion;
 use crate::math::{Scalar, Vec3};
 
-/// Value, velocity and acceleration of a marker, in ground axes.
+/// Value, velocity, acceleration and virtual velocity of a marker, in ground axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Jet<S> {
     /// Value.
@@ -17,6 +17,8 @@ pub struct Jet<S> {
     pub rate: Vec3<S>,
     /// Second derivative in time, at the accelerations of the motion.
     pub acceleration: Vec3<S>,
+    /// Rate that the virtual velocities of the motion make.
+    pub virtual_rate: Vec3<S>,
 }
 
 impl<S: Scalar> Jet<S> {
@@ -31,6 +33,7 @@ impl<S: Scalar> Jet<S> {
             x,
             rate: Vec3::zeros(),
             acceleration: Vec3::zeros(),
+            virtual_rate: Vec3::zeros(),
         }
     }
 
@@ -42,6 +45,7 @@ impl<S: Scalar> Jet<S> {
             x: r * e,
             rate: r * turned,
             acceleration: r * (w.cross(&turned) + motion.alpha.cross(e)),
+            virtual_rate: r * motion.virtual_omega.cross(e),
         }
     }
 
@@ -51,6 +55,7 @@ impl<S: Scalar> Jet<S> {
         jet.x += motion.position;
         jet.rate += motion.velocity;
         jet.acceleration += motion.acceleration;
+        jet.virtual_rate += motion.virtual_velocity;
         jet
     }
 
@@ -60,6 +65,7 @@ impl<S: Scalar> Jet<S> {
             x: self.x - other.x,
             rate: self.rate - other.rate,
             acceleration: self.acceleration - other.acceleration,
+            virtual_rate: self.virtual_rate - other.virtual_rate,
         }
     }
 
@@ -68,6 +74,7 @@ impl<S: Scalar> Jet<S> {
         self.x += other.x;
         self.rate += other.rate;
         self.acceleration += other.acceleration;
+        self.virtual_rate += other.virtual_rate;
     }
 }
 
@@ -85,19 +92,25 @@ pub struct MarkerCotangent<S> {
     pub vector: Vec3<S>,
 }
 
-/// Pulls the cotangent of a jet back: the transposed derivative of [`Jet::direction`].
+/// Pulls the cotangent of a jet back: the transposed derivative of [`Jet::direction`], the virtual
+/// velocities held.
 pub fn pull_back<S: Scalar>(motion: &Motion<S>, e: &Vec3<S>, cot: &Jet<S>) -> MarkerCotangent<S> {
     let (r, w) = (&motion.rotation, &motion.omega);
     let (x, rate) = (r.tr_mul(&cot.x), r.tr_mul(&cot.rate));
     let second = r.tr_mul(&cot.acceleration);
+    let virtually = r.tr_mul(&cot.virtual_rate);
     let turned = w.cross(e);
     let by_turned = rate + second.cross(w);
     MarkerCotangent {
         theta: e.cross(&x)
             + turned.cross(&rate)
-            + (w.cross(&turned) + motion.alpha.cross(e)).cross(&second),
+            + (w.cross(&turned) + motion.alpha.cross(e)).cross(&second)
+            + motion.virtual_omega.cross(e).cross(&virtually),
         omega: e.cross(&by_turned) + turned.cross(&second),
         alpha: e.cross(&second),
-        vector: x + by_turned.cross(w) + second.cross(&motion.alpha),
+        vector: x
+            + by_turned.cross(w)
+            + second.cross(&motion.alpha)
+            + virtually.cross(&motion.virtual_omega),
     }
 }

@@ -282,7 +282,7 @@ fn decompose<S: Scalar>(a: &mut [[S; 6]; 6], n: usize) -> Result<(), usize> {
             pivot -= row[k] * l;
             row[k] = l;
         }
-        if !(pivot.re() > SINGULAR * before) || !pivot.is_finite() {
+        if pivot.re() <= SINGULAR * before || !pivot.is_finite() {
             return Err(j);
         }
         a[j] = row;

@@ -261,7 +261,14 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             self.residual.iter_mut().for_each(|x| *x = -*x);
             field.solve(&mut self.residual);
             let (step, ds) = self.residual.split_at(nv);
-            let size = step.iter().fold(0.0_f64, |m, x| m.max(x.re().abs())) / self.length;
+            let size = step.chunks_exact(6).fold(0.0_f64, |m, six| {
+                let part = |x: &[S]| x.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
+                // A comparison with NaN keeps the other number: look at all of them.
+                match six.iter().all(|x| x.is_finite()) {
+                    true => m.max(part(&six[..3]) / self.length).max(part(&six[3..])),
+                    false => f64::INFINITY,
+                }
+            });
             if !size.is_finite() {
                 return Err(StepFailure::NotFinite);
             }

@@ -27,7 +27,7 @@ impl Formula {
     /// h ẏ = Σ_{j=1..m} ∇ʲy / j (Gear 1971), and ∇ʲy = Σ_l (−1)ˡ C(j−1, l) Δ_{k−l}.
     fn bdf(order: usize, kept: usize) -> Self {
         let weight = |l: usize| -> f64 {
-            let sign = if l % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if l.is_multiple_of(2) { 1.0 } else { -1.0 };
             (l + 1..=order)
                 .map(|j| sign * binomial(j - 1, l) / j as f64)
                 .sum()

@@ -256,19 +256,26 @@ impl Equations<'_, f64> {
             model: cot,
         };
         loads::pull_back(model, numbering, &self.motions, at.time, &minus, &mut out);
-        let mut pull = |w: &[f64], cotangents: [Option<&[f64]>; 3]| {
-            let mut motions = Vec::with_capacity(numbering.bodies());
-            Motion::all(numbering, at.q, w, &mut motions);
+        let mut pull = |motions: &[Motion<f64>], cotangents: [Option<&[f64]>; 4]| {
             let mut out = JointCotangent {
                 y: None,
                 v: None,
                 model: cot,
             };
-            joints::pull_back(model, numbering, &motions, cotangents, &mut out);
+            joints::pull_back(model, numbering, motions, cotangents, &mut out);
         };
-        pull(psi1, [None, Some(at.mu), None]);
-        pull(psi2, [None, Some(at.lambda), None]);
-        pull(at.v, [Some(psi3), Some(psi4), None]);
+        // λᵀ G ψ_2 beside Φ and G v, and μᵀ G ψ_1 unless the motion needs no μ.
+        let virtually = |psi: &[f64]| -> Vec<Motion<f64>> {
+            let at = |(i, motion): (usize, &Motion<f64>)| {
+                motion.virtually(&psi[numbering.velocity(i)..])
+            };
+            self.motions.iter().enumerate().map(at).collect()
+        };
+        let cotangents = [Some(psi3), Some(psi4), None, Some(at.lambda)];
+        pull(&virtually(psi2), cotangents);
+        if at.mu.iter().any(|&x| x != 0.0) {
+            pull(&virtually(psi1), [None, None, None, Some(at.mu)]);
+        }
         by_time
     }
 }

@@ -149,6 +149,9 @@ struct Past<S> {
     recent: VecDeque<Stage<S>>,
 }
 
+/// Something of the positions and of the velocities.
+type Pair<S> = (Vec<S>, Vec<S>);
+
 /// Makes the steps of a method.
 struct Solver<'a, S> {
     method: Method,
@@ -164,7 +167,7 @@ struct Solver<'a, S> {
     /// True rates at the start of a step, for the error estimate.
     field: Option<Accelerations<'a, f64>>,
     /// Memory of a formula, pairs of (q, v) vectors.
-    memory: Vec<(Vec<S>, Vec<S>)>,
+    memory: Vec<Pair<S>>,
 }
 
 impl<S: SolveScalar> Solver<'_, S> {
@@ -236,18 +239,17 @@ impl<S: SolveScalar> Solver<'_, S> {
             }
             return;
         };
-        let combine =
-            |pick: fn(&(Vec<S>, Vec<S>)) -> &Vec<S>, delta: &[S], row: &(f64, Vec<f64>)| {
-                let mut out: Vec<S> = delta.iter().map(|&d| d * row.0).collect();
-                for (&f, m) in row.1.iter().zip(&self.memory) {
-                    if f != 0.0 {
-                        out.iter_mut()
-                            .zip(pick(m))
-                            .for_each(|(out, &m)| *out += m * f);
-                    }
+        let combine = |pick: fn(&Pair<S>) -> &Vec<S>, delta: &[S], row: &(f64, Vec<f64>)| {
+            let mut out: Vec<S> = delta.iter().map(|&d| d * row.0).collect();
+            for (&f, m) in row.1.iter().zip(&self.memory) {
+                if f != 0.0 {
+                    out.iter_mut()
+                        .zip(pick(m))
+                        .for_each(|(out, &m)| *out += m * f);
                 }
-                out
-            };
+            }
+            out
+        };
         self.memory = formula
             .memory
             .iter()
@@ -372,10 +374,10 @@ fn predict_stages<S: SolveScalar>(
             let mut far = dense(scheme, &past.from, stages, *before, theta);
             // The polynomial starts where the last step did.
             for (x, d) in [(&mut far.q, &last.dq), (&mut far.dq, &last.dq)] {
-                x.iter_mut().zip(d).for_each(|(x, &d)| *x = *x - d);
+                x.iter_mut().zip(d).for_each(|(x, &d)| *x -= d);
             }
             for (x, d) in [(&mut far.v, &last.dv), (&mut far.dv, &last.dv)] {
-                x.iter_mut().zip(d).for_each(|(x, &d)| *x = *x - d);
+                x.iter_mut().zip(d).for_each(|(x, &d)| *x -= d);
             }
             bodies::normalise(numbering, &mut far.q, &mut far.dq);
             far

@@ -378,7 +378,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         for (stage, residual) in stages.iter().zip(&mut self.residuals) {
             self.equations.residual(&stage.instant(), h, residual);
             for (row, x) in residual.iter().enumerate() {
-                if !(x.re().abs() <= largest) {
+                if x.re().abs() > largest || x.re().is_nan() {
                     (worst, largest) = (row, x.re().abs());
                 }
             }

@@ -255,6 +255,7 @@ fn pull_point<S: Scalar>(side: &Side<S>, [x, rate]: [Vec3<S>; 2], out: &mut Side
         x,
         rate,
         acceleration,
+        virtual_rate: Vec3::zeros(),
     };
     let by = marker::pull_back(side.motion, &side.frame.point, &cot);
     out.position += x;
@@ -346,6 +347,7 @@ fn pull_slide<S: Scalar>(at: &Acting<S>, rate: S, out: &mut Pulled<S>) {
         value: S::zero(),
         rate,
         acceleration: S::zero(),
+        virtual_rate: S::zero(),
     };
     let (by_a, by_b) = constraint::pull_back(std::iter::once(SLIDE), |_| cot, &at.a, &at.b);
     out.a.add(&by_a);
