@@ -11,6 +11,7 @@
 //! | [`optimum`] | the end of an optimisation, `optimum.json` |
 //! | [`mod@compare`] | an optimum against a committed baseline |
 //! | [`mod@summary`] | the text that a person reads at the end |
+//! | [`work_precision`] | error against run time, `work_precision.csv` and `orders.csv` |
 //! | [`plots`] | figures as SVG |
 
 pub mod compare;
@@ -24,6 +25,7 @@ pub mod optimum;
 pub mod plots;
 pub mod summary;
 mod table;
+pub mod work_precision;
 
 pub use compare::{Comparison, Tolerances, compare};
 pub use error::ReportError;
@@ -31,3 +33,4 @@ pub use files::{atomic_write, read_text, write_all};
 pub use history::{Column, History, HistoryRow};
 pub use optimum::Optimum;
 pub use summary::summary;
+pub use work_precision::{MethodOrder, PrecisionRow, WorkPrecision};
