@@ -106,7 +106,7 @@ pub struct Measurement {
     #[command(flatten)]
     pub job: Job,
     /// CPU time that the runs of one method with equal steps, or with chosen ones, may take (s).
-    #[arg(long, default_value_t = 6.0, value_parser = positive)]
+    #[arg(long, default_value_t = 8.0, value_parser = positive)]
     pub seconds: f64,
     /// Runs of which the fastest counts, after one that does not.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]

@@ -102,7 +102,7 @@ const CLEAR: f64 = 10.0;
 /// The part of an error that the next one is at least if it does not fall any more.
 const IDLE: f64 = 0.7;
 /// Most halvings that an order is the median of: the finest ones.
-const HALVINGS: usize = 4;
+const HALVINGS: usize = 3;
 
 impl WorkPrecision {
     /// The rows as CSV.
