@@ -20,7 +20,9 @@ const BDF2: Method = Method::Bdf {
 const TRUSTED: (f64, f64) = (0.3, 3.0);
 
 fn load(file: &str, change: impl FnOnce(&mut Value)) -> Problem {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems").join(file);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("problems")
+        .join(file);
     let text = std::fs::read_to_string(path).expect("a problem file");
     let mut document: Value = serde_json::from_str(&text).expect("is JSON");
     change(&mut document);
@@ -84,15 +86,16 @@ fn exact(problem: &Problem) -> Vec<Vec<Exact>> {
         all.iter().map(|&f| value(f)).collect::<Vec<_>>()
     };
     let (coarse, fine) = (
-        values(Spacing::Frozen(once), 20_000),
-        values(Spacing::Frozen(twice), 40_000),
+        values(Spacing::Frozen(once), 10_000),
+        values(Spacing::Frozen(twice), 20_000),
     );
     let pair = |(a, b): (&(f64, f64), &(f64, f64))| Exact {
         value: b.0,
         doubt: (a.0 - b.0).abs() + 1e-13 * b.1,
     };
     let rows = coarse.iter().zip(&fine);
-    rows.map(|(a, b)| a.iter().zip(b).map(pair).collect()).collect()
+    rows.map(|(a, b)| a.iter().zip(b).map(pair).collect())
+        .collect()
 }
 
 /// Ratios of estimated to true errors, those of functions and those of derivatives, and how many
@@ -152,85 +155,102 @@ fn line(all: &[(String, f64)]) -> String {
     }
 }
 
-/// Prints the settings' ratios and asserts that those of the functions' values can be trusted in
-/// `asserted` of them.
-fn judge(problem: &Problem, steps: [(Method, [usize; 3]); 3], asserted: &[(Method, Spacing)]) {
+/// Prints the settings' ratios and asserts that all those of the functions' values can be trusted, and
+/// this share of those of the derivatives.
+fn judge(problem: &Problem, settings: &[(Method, Spacing)], share: f64) {
     let exact = exact(problem);
-    let tolerances = [1e-5, 1e-6, 1e-7, 1e-8, 1e-9].map(Spacing::Tolerance);
-    let mut all: Vec<(Method, Spacing)> = Vec::new();
-    for (method, counts) in steps {
-        if method.is_adaptive() {
-            all.extend(tolerances.iter().map(|spacing| (method, spacing.clone())));
-        }
-        all.extend(counts.map(|count| (method, Spacing::Steps(count))));
-    }
-    let wanted = |setting: &(Method, Spacing)| asserted.contains(setting);
-    assert_eq!(all.iter().filter(|setting| wanted(setting)).count(), asserted.len());
-    let mut wrong = Vec::new();
-    for setting in &all {
-        let found = ratios(problem, &exact, setting.0, setting.1.clone());
+    let (mut wrong, mut derivatives) = (Vec::new(), Vec::new());
+    for (method, spacing) in settings {
+        let found = ratios(problem, &exact, *method, spacing.clone());
         println!(
-            "{} | {} {:?} | {} | {} | {}",
+            "{} | {} {spacing:?} | {} | {} | {}",
             problem.name,
-            setting.0.name(),
-            setting.1,
+            method.name(),
             line(&found.functions),
             line(&found.derivatives),
             found.left_out
         );
-        if wanted(setting) {
-            assert!(!found.functions.is_empty(), "{setting:?}: all at round-off");
-            let bad = found.functions.into_iter().filter(|(_, ratio)| !trusted(*ratio));
-            wrong.extend(bad.map(|(name, ratio)| (setting.clone(), name, ratio)));
+        let setting = format!("{} {spacing:?}", method.name());
+        let bad = found.functions.iter().filter(|(_, ratio)| !trusted(*ratio));
+        wrong.extend(bad.map(|(name, ratio)| format!("{setting}: {name} {ratio:.3}")));
+        derivatives.extend(found.derivatives);
+        if settings.len() <= 4 {
+            assert!(!found.functions.is_empty(), "{setting}: all at round-off");
         }
     }
     assert!(wrong.is_empty(), "{wrong:?}");
+    let good = derivatives
+        .iter()
+        .filter(|(_, ratio)| trusted(*ratio))
+        .count();
+    println!(
+        "{} | derivatives {good} of {}",
+        problem.name,
+        derivatives.len()
+    );
+    assert!(
+        good as f64 >= share * derivatives.len() as f64,
+        "{good} of {}",
+        derivatives.len()
+    );
+}
+
+fn tolerance(method: Method, tolerance: f64) -> (Method, Spacing) {
+    (method, Spacing::Tolerance(tolerance))
+}
+
+fn steps(method: Method, steps: usize) -> (Method, Spacing) {
+    (method, Spacing::Steps(steps))
 }
 
 #[test]
 fn estimates_are_right_on_the_triple_pendulum() {
-    judge(
-        &triple_pendulum(),
-        [
-            (Method::Dop853, [160, 240, 320]),
-            (RADAU3, [320, 640, 1280]),
-            (BDF2, [2500, 5000, 10_000]),
-        ],
-        &[
-            (Method::Dop853, Spacing::Tolerance(1e-7)),
-            (RADAU3, Spacing::Tolerance(1e-7)),
-        ],
-    );
+    let settings = [
+        tolerance(Method::Dop853, 1e-6),
+        tolerance(RADAU3, 1e-6),
+        steps(BDF2, 5000),
+    ];
+    judge(&triple_pendulum(), &settings, 0.95);
 }
 
 #[test]
 fn estimates_are_right_on_the_trebuchet() {
-    judge(
-        &trebuchet(),
-        [
-            (Method::Dop853, [100, 200, 400]),
-            (RADAU3, [200, 400, 800]),
-            (BDF2, [1000, 2000, 4000]),
-        ],
-        &[
-            (Method::Dop853, Spacing::Tolerance(1e-7)),
-            (RADAU3, Spacing::Tolerance(1e-7)),
-        ],
-    );
+    let settings = [
+        tolerance(Method::Dop853, 1e-7),
+        tolerance(RADAU3, 1e-6),
+        steps(BDF2, 2000),
+    ];
+    judge(&trebuchet(), &settings, 1.0);
 }
 
 #[test]
 fn estimates_are_right_on_andrews_squeezer() {
-    judge(
-        &andrews(),
-        [
-            (Method::Dop853, [100, 200, 400]),
-            (RADAU3, [200, 400, 800]),
-            (BDF2, [2000, 4000, 8000]),
-        ],
-        &[
-            (Method::Dop853, Spacing::Tolerance(1e-7)),
-            (RADAU3, Spacing::Tolerance(1e-7)),
-        ],
-    );
+    let settings = [
+        tolerance(Method::Dop853, 1e-6),
+        tolerance(RADAU3, 1e-6),
+        steps(BDF2, 4000),
+    ];
+    judge(&andrews(), &settings, 1.0);
+}
+
+/// The table of the documentation.
+#[test]
+#[ignore = "takes a minute"]
+fn estimates_are_right_over_a_wide_range() {
+    let range = |counts: [[usize; 3]; 3]| {
+        let mut all = Vec::new();
+        for (method, counts) in [Method::Dop853, RADAU3, BDF2].into_iter().zip(counts) {
+            if method.is_adaptive() {
+                all.extend([1e-5, 1e-6, 1e-7, 1e-8, 1e-9].map(|tol| tolerance(method, tol)));
+            }
+            all.extend(counts.map(|count| steps(method, count)));
+        }
+        all
+    };
+    let wide = range([[160, 240, 320], [320, 640, 1280], [2500, 5000, 10_000]]);
+    judge(&triple_pendulum(), &wide, 0.95);
+    let wide = range([[50, 70, 100], [200, 400, 800], [1000, 2000, 4000]]);
+    judge(&trebuchet(), &wide, 0.95);
+    let wide = range([[40, 60, 80], [200, 400, 800], [2000, 4000, 8000]]);
+    judge(&andrews(), &wide, 0.95);
 }

@@ -22,7 +22,14 @@ const PENDULUM: &str = r#"{
 fn measure(directory: &Path, problem: &str, arguments: &[&str]) -> Output {
     std::fs::write(directory.join("pendulum.json"), problem).expect("is written");
     Command::new(env!("CARGO_BIN_EXE_optimize"))
-        .args(["work-precision", "pendulum.json", "--seconds", "0.25", "--runs", "1"])
+        .args([
+            "work-precision",
+            "pendulum.json",
+            "--seconds",
+            "0.25",
+            "--runs",
+            "1",
+        ])
         .args(arguments)
         .current_dir(directory)
         .output()
@@ -42,7 +49,9 @@ struct Table {
 impl Table {
     fn read(path: &Path) -> Self {
         let text = std::fs::read_to_string(path).expect("a file");
-        let mut rows = text.lines().map(|line| line.split(',').map(str::to_owned).collect());
+        let mut rows = text
+            .lines()
+            .map(|line| line.split(',').map(str::to_owned).collect());
         Self {
             header: rows.next().expect("a header"),
             rows: rows.collect(),
@@ -50,13 +59,18 @@ impl Table {
     }
 
     fn cell<'a>(&self, row: &'a [String], column: &str) -> &'a str {
-        let at = self.header.iter().position(|name| name == column).expect("a column");
+        let at = self
+            .header
+            .iter()
+            .position(|name| name == column)
+            .expect("a column");
         &row[at]
     }
 
     fn number(&self, row: &[String], column: &str) -> f64 {
         let cell = self.cell(row, column);
-        cell.parse().unwrap_or_else(|_| panic!("{column}: {cell:?}"))
+        cell.parse()
+            .unwrap_or_else(|_| panic!("{column}: {cell:?}"))
     }
 }
 
@@ -96,7 +110,10 @@ fn all_methods_are_measured_with_their_orders() {
             .copied()
             .partition(|row| table.cell(row, "tolerance").is_empty());
         assert!(equal.len() >= 4, "{method}: {} rows", equal.len());
-        assert_eq!(chosen.is_empty(), !["dop853", "radau2", "radau3"].contains(&method));
+        assert_eq!(
+            chosen.is_empty(),
+            !["dop853", "radau2", "radau3"].contains(&method)
+        );
         for row in &rows {
             for column in ["steps", "factorisations", "solves", "cpu_seconds"] {
                 assert!(table.number(row, column) > 0.0, "{method}: {column}");
@@ -115,7 +132,10 @@ fn all_methods_are_measured_with_their_orders() {
             for column in ["error", "gradient_error"] {
                 let errors = [coarse, fine].map(|row| table.number(row, column));
                 let clear = errors[0] < 1e-2 && errors[0] > 1e-9;
-                assert!(!clear || errors[1] < errors[0], "{method}: {column} {errors:?}");
+                assert!(
+                    !clear || errors[1] < errors[0],
+                    "{method}: {column} {errors:?}"
+                );
             }
         }
         let (first, last) = (equal[0], equal[equal.len() - 1]);
@@ -132,14 +152,22 @@ fn all_methods_are_measured_with_their_orders() {
             "bdf2" | "radau2" | "generalised-alpha 0.8" | "bdf5 with rising order" => {
                 assert!((observed - formal).abs() <= 0.3, "{method}: {observed}");
                 let gradient = orders.number(row, "observed_gradient_order");
-                assert!((gradient - formal).abs() <= 0.3, "{method}: gradient {gradient}");
+                assert!(
+                    (gradient - formal).abs() <= 0.3,
+                    "{method}: gradient {gradient}"
+                );
             }
             _ => {}
         }
     }
     assert_eq!(orders.rows.len(), METHODS.len());
     let figure = std::fs::read_to_string(results.join("work_precision.svg")).expect("a figure");
-    for part in ["positions at the end", "gradient of", "generalised-alpha 0.8", "radau3"] {
+    for part in [
+        "positions at the end",
+        "gradient of",
+        "generalised-alpha 0.8",
+        "radau3",
+    ] {
         assert!(figure.contains(part), "{part}");
     }
 }
@@ -148,15 +176,27 @@ fn all_methods_are_measured_with_their_orders() {
 #[test]
 fn a_file_can_be_the_reference() {
     let directory = tempfile::tempdir().expect("a directory");
-    let (head, _) = PENDULUM.split_once(",\n    \"variables\"").expect("variables");
+    let (head, _) = PENDULUM
+        .split_once(",\n    \"variables\"")
+        .expect("variables");
     let problem = format!("{head}\n}}");
     let table = directory.path().join("positions.csv");
     // Half a metre to the side of where the bar ends.
     std::fs::write(&table, "time,body,x,y,z\n1,bar,0,0,0\n2,bar,0,0,0\n").expect("is written");
-    let arguments = ["--reference", "positions.csv", "--output", "found", "--quiet"];
+    let arguments = [
+        "--reference",
+        "positions.csv",
+        "--output",
+        "found",
+        "--quiet",
+    ];
     let done = measure(directory.path(), &problem, &arguments);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
-    assert!(done.stdout.is_empty() && done.stderr.is_empty(), "{}", text(&done.stderr));
+    assert!(
+        done.stdout.is_empty() && done.stderr.is_empty(),
+        "{}",
+        text(&done.stderr)
+    );
     let table = Table::read(&directory.path().join("found/work_precision.csv"));
     for row in &table.rows {
         // The centre of mass stays half a metre from the hinge.
@@ -166,7 +206,11 @@ fn a_file_can_be_the_reference() {
         assert_eq!(table.cell(row, "gradient_cpu_seconds"), "");
     }
     let summary = std::fs::read_to_string(directory.path().join("found/summary.txt"));
-    assert!(summary.expect("a summary").contains("against positions.csv"));
+    assert!(
+        summary
+            .expect("a summary")
+            .contains("against positions.csv")
+    );
 }
 
 #[test]
@@ -177,7 +221,10 @@ fn bad_input_is_refused_with_the_reason() {
     for (arguments, part) in [
         (["--function", "depth"], "width, height"),
         (["--reference", "none.csv"], "cannot read none.csv"),
-        (["--reference", "short.csv"], "short.csv:2: found rows up to 1 s"),
+        (
+            ["--reference", "short.csv"],
+            "short.csv:2: found rows up to 1 s",
+        ),
         (["--seconds", "0"], "positive"),
         (["--runs", "0"], "1..=1000"),
         (["--error", "--quiet"], "found --error"),

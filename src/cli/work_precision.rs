@@ -4,7 +4,7 @@ use super::arguments::{Job, Measurement};
 use super::{DONE, Failure, load, print, tell};
 use crate::driver::work_precision::{Plan, work_precision};
 use crate::problem::Problem;
-use crate::report::work_precision::positions_from_csv;
+use crate::report::positions::positions_from_csv;
 use crate::report::{PrecisionRow, plots, read_text, write_all};
 use std::path::{Path, PathBuf};
 
@@ -26,8 +26,8 @@ pub fn measure(asked: &Measurement) -> Result<u8, Failure> {
             tell(&line(row));
         }
     };
-    let measured = work_precision(&problem, &problem.start(), &plan, &mut seen)
-        .map_err(Failure::numerical)?;
+    let measured =
+        work_precision(&problem, &problem.start(), &plan, &mut seen).map_err(Failure::numerical)?;
     let figure = plots::work_precision(&measured).map_err(Failure::numerical)?;
     let files: Vec<(PathBuf, Vec<u8>)> = [
         ("work_precision.csv", measured.to_csv()),

@@ -11,6 +11,7 @@
 //! | [`optimum`] | the end of an optimisation, `optimum.json` |
 //! | [`mod@compare`] | an optimum against a committed baseline |
 //! | [`mod@summary`] | the text that a person reads at the end |
+//! | [`positions`] | tables of reference positions |
 //! | [`work_precision`] | error against run time, `work_precision.csv` and `orders.csv` |
 //! | [`plots`] | figures as SVG |
 
@@ -23,6 +24,7 @@ pub mod history;
 mod number;
 pub mod optimum;
 pub mod plots;
+pub mod positions;
 pub mod summary;
 mod table;
 pub mod work_precision;

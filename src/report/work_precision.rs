@@ -1,12 +1,10 @@
-//! Error against run time: the rows of a measurement, the orders of convergence that they show, and
-//! tables of reference positions.
+//! Error against run time: the rows of a measurement, the orders of convergence that they
+//! show.
 
-use super::ReportError;
 use super::csv;
 use super::number::significant;
 use super::table::render;
 use crate::integrate::WorkCounts;
-use std::path::Path;
 
 /// What one method does with one step size or tolerance.
 #[derive(Clone, Debug, PartialEq)]
@@ -225,7 +223,9 @@ impl WorkPrecision {
             let own = own.filter(|row| row.tolerance.is_some() == adaptive);
             let cheapest = |goal: &f64| {
                 let good = own.clone().filter(|row| row.error <= *goal);
-                let least = good.map(|row| row.cpu_seconds).fold(f64::INFINITY, f64::min);
+                let least = good
+                    .map(|row| row.cpu_seconds)
+                    .fold(f64::INFINITY, f64::min);
                 match least.is_finite() {
                     true => significant(1e3 * least, 3),
                     false => "-".into(),
@@ -237,14 +237,24 @@ impl WorkPrecision {
         };
         text += &render(&headings, &kinds.iter().map(line).collect::<Vec<_>>());
         text += "\norders of convergence with equal steps\n";
-        let headings = ["method", ">formal", ">observed", ">halvings", ">gradient", ">halvings"];
+        let headings = [
+            "method",
+            ">formal",
+            ">observed",
+            ">halvings",
+            ">gradient",
+            ">halvings",
+        ];
         let line = |order: MethodOrder| {
             let [position, halvings] = cells(order.position);
             let [gradient, more] = cells(order.gradient);
             let formal = order.formal.to_string();
             vec![order.method, formal, position, halvings, gradient, more]
         };
-        text += &render(&headings, &self.orders().into_iter().map(line).collect::<Vec<_>>());
+        text += &render(
+            &headings,
+            &self.orders().into_iter().map(line).collect::<Vec<_>>(),
+        );
         if !self.notes.is_empty() {
             text += "\nnotes\n";
         }
@@ -265,10 +275,13 @@ fn cells(order: Option<(f64, usize)>) -> [String; 2] {
 /// Median of log(e_k / e_{k+1}) / log(h_k / h_{k+1}) over the finest halvings with errors that are
 /// small beside `size` and clear of `floor` and of where they do not fall any more.
 fn observed(errors: &[(f64, f64)], size: f64, floor: f64) -> Option<(f64, usize)> {
-    let idle = errors.windows(2).any(|pair| {
-        pair[1].1 > IDLE * pair[0].1 && pair[1].1 < ASYMPTOTIC * 1e-3 * size
-    });
-    let least = errors.iter().map(|pair| pair.1).fold(f64::INFINITY, f64::min);
+    let idle = errors
+        .windows(2)
+        .any(|pair| pair[1].1 > IDLE * pair[0].1 && pair[1].1 < ASYMPTOTIC * 1e-3 * size);
+    let least = errors
+        .iter()
+        .map(|pair| pair.1)
+        .fold(f64::INFINITY, f64::min);
     let floor = CLEAR * floor.max(if idle { least } else { 0.0 });
     let mut orders: Vec<f64> = errors
         .windows(2)
@@ -283,78 +296,6 @@ fn observed(errors: &[(f64, f64)], size: f64, floor: f64) -> Option<(f64, usize)
         _ if n % 2 == 1 => Some((orders[half], n)),
         _ => Some((0.5 * (orders[half - 1] + orders[half]), n)),
     }
-}
-
-/// Reads a table of positions, `time,body,x,y,z` (s and m), and gives those of the instant `end` by
-/// index of the body among `bodies`.
-///
-/// # Errors
-/// [`ReportError::Positions`] with the line if the table is not that, names another body, names one
-/// twice or has no row at the end.
-pub fn positions_from_csv(
-    path: &Path,
-    text: &str,
-    bodies: &[String],
-    end: f64,
-) -> Result<Vec<(usize, [f64; 3])>, ReportError> {
-    let fault = |line: usize, found: String, expected: String| ReportError::Positions {
-        path: path.to_path_buf(),
-        line,
-        found,
-        expected,
-    };
-    const HEADER: [&str; 5] = ["time", "body", "x", "y", "z"];
-    let records = csv::parse(text).map_err(|bad| {
-        fault(bad.line, "a quote out of place".into(), "quotes as in RFC 4180".into())
-    })?;
-    let (found, line) = match records.first() {
-        Some(header) if header.fields == HEADER => (None, 1),
-        Some(header) => (Some(header.fields.join(",")), header.line),
-        None => (Some("an empty file".into()), 1),
-    };
-    if let Some(found) = found {
-        return Err(fault(line, found, HEADER.join(",")));
-    }
-    let mut all: Vec<(usize, [f64; 3])> = Vec::new();
-    let mut latest = f64::NEG_INFINITY;
-    for record in &records[1..] {
-        let [time, name, place @ ..] = record.fields.as_slice() else {
-            return Err(fault(record.line, "too few fields".into(), "five fields".into()));
-        };
-        if place.len() != 3 {
-            let found = format!("{} fields", record.fields.len());
-            return Err(fault(record.line, found, "five fields".into()));
-        }
-        let number = |text: &String| match text.trim().parse::<f64>() {
-            Ok(x) if x.is_finite() => Ok(x),
-            _ => Err(fault(record.line, format!("{text:?}"), "a finite number".into())),
-        };
-        let time = number(time)?;
-        let place = [number(&place[0])?, number(&place[1])?, number(&place[2])?];
-        let Some(body) = bodies.iter().position(|body| body == name.trim()) else {
-            let expected = format!("one of the bodies {}", bodies.join(", "));
-            return Err(fault(record.line, format!("{name:?}"), expected));
-        };
-        latest = latest.max(time);
-        if (time - end).abs() > 1e-9 * end {
-            continue;
-        }
-        if all.iter().any(|(known, _)| *known == body) {
-            let found = format!("{name:?} at {end} s once more");
-            return Err(fault(record.line, found, "one row for each body and instant".into()));
-        }
-        all.push((body, place));
-    }
-    if all.is_empty() {
-        let line = records[records.len() - 1].line;
-        let found = match latest.is_finite() {
-            true => format!("rows up to {latest} s"),
-            false => "no rows".into(),
-        };
-        let expected = format!("rows at {end} s, where the motion ends");
-        return Err(fault(line, found, expected));
-    }
-    Ok(all)
 }
 
 #[cfg(test)]
@@ -373,26 +314,5 @@ mod tests {
         assert_eq!(halvings, 2);
         assert!((order - 4.0).abs() < 1e-12, "{order}");
         assert_eq!(observed(&pairs[4..], 1.0, 0.0), None);
-    }
-
-    #[test]
-    fn positions_are_read_at_the_end_by_body() {
-        let bodies = ["arm".to_owned(), "bob".to_owned()];
-        let read = |text: &str| positions_from_csv(Path::new("p.csv"), text, &bodies, 2.0);
-        let good = "time,body,x,y,z\n1,arm,0,0,0\n2,bob,1,2,3\n2,arm,4,5,6\n";
-        let found = read(good).expect("is a table");
-        assert_eq!(found, [(1, [1.0, 2.0, 3.0]), (0, [4.0, 5.0, 6.0])]);
-        for (text, part) in [
-            ("", "empty file"),
-            ("t,x\n", "time,body,x,y,z"),
-            ("time,body,x,y,z\n2,leg,0,0,0\n", "arm, bob"),
-            ("time,body,x,y,z\n2,arm,0,0\n", "five fields"),
-            ("time,body,x,y,z\n2,arm,0,0,far\n", "finite number"),
-            ("time,body,x,y,z\n1,arm,0,0,0\n", "rows at 2 s"),
-            ("time,body,x,y,z\n2,arm,0,0,0\n2,arm,0,0,0\n", "once more"),
-        ] {
-            let fault = read(text).expect_err("is no table").to_string();
-            assert!(fault.contains(part) && fault.starts_with("p.csv:"), "{fault}");
-        }
     }
 }

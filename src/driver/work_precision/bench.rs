@@ -115,7 +115,9 @@ impl<'a> Bench<'a> {
                     black_box(found);
                 })
             })?);
-            row.gradient_error = self.gradient(run)?.map(|found| gradient_error(&found, exact));
+            row.gradient_error = self
+                .gradient(run)?
+                .map(|found| gradient_error(&found, exact));
         }
         Ok(row)
     }

@@ -155,7 +155,9 @@ impl Measurement<'_> {
             if start - begin + DEARER * last > self.plan.seconds {
                 break;
             }
-            let found = self.bench.row((method, &spacing), self.reference, self.plan.runs);
+            let found = self
+                .bench
+                .row((method, &spacing), self.reference, self.plan.runs);
             last = cpu_seconds() - start;
             let row = match found {
                 Ok(row) => row,
@@ -173,7 +175,8 @@ impl Measurement<'_> {
             }
             if !(row.error <= self.length) {
                 let text = format!("{:.1e} m off at the end", row.error);
-                self.notes.push(format!("{}, {}: {text}", method.name(), describe(&spacing)));
+                self.notes
+                    .push(format!("{}, {}: {text}", method.name(), describe(&spacing)));
                 continue;
             }
             let stagnant = row.error < STAGNANT.0 * self.length && row.error > STAGNANT.1 * best;
@@ -191,7 +194,8 @@ impl Measurement<'_> {
                 Some((last, _)) if last != first => format!(" to {last}"),
                 _ => String::new(),
             };
-            self.notes.push(format!("{name}, {first}{others}: {failure}"));
+            self.notes
+                .push(format!("{name}, {first}{others}: {failure}"));
         }
         self.notes.extend(warning);
     }

@@ -3,7 +3,9 @@
 use super::Plan;
 use super::bench::Bench;
 use crate::integrate::choice::{NON_STIFF, STIFF};
-use crate::integrate::{IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, simulate};
+use crate::integrate::{
+    IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, simulate,
+};
 use crate::problem::Problem;
 
 /// Tolerance of the explicit reference.
@@ -42,7 +44,11 @@ struct Candidate {
 ///
 /// # Errors
 /// If no run reaches the end.
-pub fn reference(problem: &Problem, x: &[f64], plan: &Plan) -> Result<Reference, IntegrationFailure> {
+pub fn reference(
+    problem: &Problem,
+    x: &[f64],
+    plan: &Plan,
+) -> Result<Reference, IntegrationFailure> {
     let bench = Bench::new(problem, x, plan.function);
     let implicit = |tolerances: &[f64]| {
         let mut found = candidate(&bench, STIFF, tolerances[0]);
@@ -73,7 +79,11 @@ pub fn reference(problem: &Problem, x: &[f64], plan: &Plan) -> Result<Reference,
         Some(check) => {
             let away = distance(&positions, &check.positions);
             // What looser steps err by bounds what tight ones do.
-            difference = if difference.is_nan() { away } else { difference };
+            difference = if difference.is_nan() {
+                away
+            } else {
+                difference
+            };
             description += &format!("; {} is {away:.1e} m away", check.name);
             if let (Some(a), Some(b)) = (&best.gradient, &check.gradient) {
                 let away = gradient_error(b, a);
@@ -153,5 +163,11 @@ pub fn gradient_error(found: &[f64], exact: &[f64]) -> f64 {
 
 /// The largest number; NaN if there is one.
 fn largest(all: impl Iterator<Item = f64>) -> f64 {
-    all.fold(0.0, |m, x| if x.is_nan() || m.is_nan() { f64::NAN } else { m.max(x) })
+    all.fold(0.0, |m, x| {
+        if x.is_nan() || m.is_nan() {
+            f64::NAN
+        } else {
+            m.max(x)
+        }
+    })
 }

@@ -65,7 +65,13 @@ pub fn work_precision(measured: &WorkPrecision) -> Result<String, ReportError> {
     let mut canvas = Canvas::new(width, top + HEIGHT + BELOW + 4.0);
     legend.draw(&mut canvas, MARGIN, MARGIN);
     for (i, (title, label_y, label_x, pick)) in parts.into_iter().enumerate() {
-        let points = || measured.rows.iter().filter_map(|row| pick(row)).filter(drawable);
+        let points = || {
+            measured
+                .rows
+                .iter()
+                .filter_map(|row| pick(row))
+                .filter(drawable)
+        };
         let y = Axis::logarithmic(points().map(|point| point.1), 14, label_y);
         let x = Axis::logarithmic(points().map(|point| point.0), 10, label_x);
         let room = room_left([&y]) + 4.0;
@@ -98,9 +104,8 @@ fn curves(rows: &[PrecisionRow]) -> Vec<Curve<'_>> {
     let mut all: Vec<Curve> = Vec::new();
     for row in rows {
         let adaptive = row.tolerance.is_some();
-        let same = |curve: &&mut Curve| {
-            curve.rows[0].method == row.method && curve.adaptive == adaptive
-        };
+        let same =
+            |curve: &&mut Curve| curve.rows[0].method == row.method && curve.adaptive == adaptive;
         match all.iter_mut().find(same) {
             Some(curve) => curve.rows.push(row),
             None => {
