@@ -99,7 +99,7 @@ const ASYMPTOTIC: f64 = 3e-3;
 const CLEAR: f64 = 10.0;
 /// The part of an error that the next one is at least if it does not fall any more.
 const IDLE: f64 = 0.7;
-/// Most halvings that an order is the median of: the finest ones.
+/// Halvings that an order is the median of: the finest ones.
 const HALVINGS: usize = 3;
 
 impl WorkPrecision {
@@ -273,7 +273,8 @@ fn cells(order: Option<(f64, usize)>) -> [String; 2] {
 }
 
 /// Median of log(e_k / e_{k+1}) / log(h_k / h_{k+1}) over the finest halvings with errors that are
-/// small beside `size` and clear of `floor` and of where they do not fall any more.
+/// small beside `size` and clear of `floor` and of where they do not fall any more; the finest one
+/// where there are not enough for a median.
 fn observed(errors: &[(f64, f64)], size: f64, floor: f64) -> Option<(f64, usize)> {
     let idle = errors
         .windows(2)
@@ -289,13 +290,9 @@ fn observed(errors: &[(f64, f64)], size: f64, floor: f64) -> Option<(f64, usize)
         .map(|pair| (pair[0].1 / pair[1].1).ln() / (pair[0].0 / pair[1].0).ln())
         .collect();
     orders.drain(..orders.len().saturating_sub(HALVINGS));
+    let (n, last) = (orders.len(), *orders.last()?);
     orders.sort_by(f64::total_cmp);
-    let (n, half) = (orders.len(), orders.len() / 2);
-    match n {
-        0 => None,
-        _ if n % 2 == 1 => Some((orders[half], n)),
-        _ => Some((0.5 * (orders[half - 1] + orders[half]), n)),
-    }
+    Some((if n < HALVINGS { last } else { orders[n / 2] }, n))
 }
 
 #[cfg(test)]
