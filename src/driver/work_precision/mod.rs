@@ -10,7 +10,7 @@ mod bench;
 mod clock;
 mod reference;
 
-use crate::integrate::choice::{self, STIFF};
+use crate::integrate::choice::{self, NON_STIFF, STIFF};
 use crate::integrate::{IntegrationFailure, Method, Settings, Spacing, Start, simulate};
 use crate::problem::Problem;
 use crate::report::{PrecisionRow, WorkPrecision};
@@ -75,8 +75,9 @@ pub fn work_precision(
         function,
         ..plan.clone()
     };
-    let reference = reference::reference(problem, x, &plan)?;
     let bench = Bench::new(problem, x, function);
+    let (stiff, usual) = usual(&bench)?;
+    let reference = reference::reference(&bench, &plan, stiff)?;
     let mut measurement = Measurement {
         length: assembly::length_scale(&bench.scene.model),
         plan: &plan,
@@ -86,7 +87,7 @@ pub fn work_precision(
         notes: Vec::new(),
         seen,
     };
-    let fewest = measurement.fewest(problem)?;
+    let fewest = fewest(problem, usual);
     for method in methods() {
         if method.is_adaptive() {
             let tolerances = TOLERANCES.map(|decade| Spacing::Tolerance(10_f64.powi(-decade)));
@@ -108,6 +109,38 @@ pub fn work_precision(
     })
 }
 
+/// Whether the explicit method refuses the scene, and the steps of a usual tolerance by the method that
+/// suits it.
+fn usual(bench: &Bench) -> Result<(bool, usize), IntegrationFailure> {
+    let (model, duration) = (&bench.scene.model, bench.scene.duration);
+    let steps = |method| {
+        let settings = Settings {
+            spacing: Spacing::Tolerance(USUAL),
+            ..Settings::steps(method, 1)
+        };
+        simulate(model, duration, &settings).map(|run| run.grid.steps())
+    };
+    match steps(NON_STIFF) {
+        Err(IntegrationFailure::Stiff { .. }) => Ok((true, steps(STIFF)?)),
+        found => Ok((false, found?)),
+    }
+}
+
+/// The number of equal steps that halvings start from: half of those that a usual tolerance needs,
+/// and a power of two part of those that the problem asks for, if it does.
+fn fewest(problem: &Problem, usual: usize) -> usize {
+    let half = (usual / 2).max(FEWEST);
+    match problem.simulation.spacing {
+        Spacing::Steps(mut steps) => {
+            while steps.is_multiple_of(2) && steps >= 2 * half {
+                steps /= 2;
+            }
+            steps
+        }
+        _ => FEWEST << (half / FEWEST).ilog2(),
+    }
+}
+
 /// A measurement under way.
 struct Measurement<'a> {
     plan: &'a Plan,
@@ -120,31 +153,6 @@ struct Measurement<'a> {
 }
 
 impl Measurement<'_> {
-    /// The number of equal steps that halvings start from: half of those that a usual tolerance
-    /// needs, and a power of two part of those that the problem asks for, if it does.
-    fn fewest(&self, problem: &Problem) -> Result<usize, IntegrationFailure> {
-        let method = match self.reference.stiff {
-            true => STIFF,
-            false => choice::NON_STIFF,
-        };
-        let settings = Settings {
-            spacing: Spacing::Tolerance(USUAL),
-            ..Settings::steps(method, 1)
-        };
-        let scene = &self.bench.scene;
-        let usual = simulate(&scene.model, scene.duration, &settings)?;
-        let half = (usual.grid.steps() / 2).max(FEWEST);
-        Ok(match problem.simulation.spacing {
-            Spacing::Steps(mut steps) => {
-                while steps.is_multiple_of(2) && steps >= 2 * half {
-                    steps /= 2;
-                }
-                steps
-            }
-            _ => FEWEST << (half / FEWEST).ilog2(),
-        })
-    }
-
     /// Adds the rows of one method with one spacing after the other.
     fn series(&mut self, method: Method, spacings: impl Iterator<Item = Spacing>) {
         let begin = cpu_seconds();

@@ -6,7 +6,6 @@ use crate::integrate::choice::{NON_STIFF, STIFF};
 use crate::integrate::{
     IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, simulate,
 };
-use crate::problem::Problem;
 
 /// Tolerance of the explicit reference.
 const EXPLICIT: f64 = 1e-13;
@@ -27,8 +26,6 @@ pub struct Reference {
     pub difference: f64,
     /// Where positions and gradient come from and how far they are from an independent run.
     pub description: String,
-    /// Whether the explicit method refused the scene.
-    pub stiff: bool,
 }
 
 /// One run that could be the reference.
@@ -38,32 +35,29 @@ struct Candidate {
     gradient: Option<Vec<f64>>,
 }
 
-/// The reference of `problem` at `x`: a file's positions if the plan has some, and a run at tight
-/// tolerance by the method that suits the scene; both are compared with a run by another method, or,
-/// if the scene is stiff, by the same one with a looser tolerance.
+/// The reference: a file's positions if the plan has some, and a run at tight tolerance by the method
+/// that suits the scene. Both are compared with a run by another method or, if the scene is stiff, by
+/// the same one with a looser tolerance.
 ///
 /// # Errors
 /// If no run reaches the end.
-pub fn reference(
-    problem: &Problem,
-    x: &[f64],
-    plan: &Plan,
-) -> Result<Reference, IntegrationFailure> {
-    let bench = Bench::new(problem, x, plan.function);
+pub fn reference(bench: &Bench, plan: &Plan, stiff: bool) -> Result<Reference, IntegrationFailure> {
     let implicit = |tolerances: &[f64]| {
-        let mut found = candidate(&bench, STIFF, tolerances[0]);
+        let mut found = candidate(bench, STIFF, tolerances[0]);
         for &tolerance in &tolerances[1..] {
-            found = found.or_else(|_| candidate(&bench, STIFF, tolerance));
+            found = found.or_else(|_| candidate(bench, STIFF, tolerance));
         }
         found
     };
-    let (best, check, stiff) = match candidate(&bench, NON_STIFF, EXPLICIT) {
-        Ok(best) => (best, implicit(&IMPLICIT).ok(), false),
-        Err(IntegrationFailure::Stiff { .. }) => {
+    let (best, check) = match stiff {
+        false => (
+            candidate(bench, NON_STIFF, EXPLICIT)?,
+            implicit(&IMPLICIT).ok(),
+        ),
+        true => {
             let looser = IMPLICIT.map(|tolerance| LOOSER * tolerance);
-            (implicit(&IMPLICIT)?, implicit(&looser).ok(), true)
+            (implicit(&IMPLICIT)?, implicit(&looser).ok())
         }
-        Err(failure) => return Err(failure),
     };
     let own: Vec<_> = best.positions.iter().copied().enumerate().collect();
     let mut description = best.name.clone();
@@ -97,7 +91,6 @@ pub fn reference(
         gradient: best.gradient,
         difference,
         description,
-        stiff,
     })
 }
 
@@ -113,7 +106,7 @@ fn candidate(
             true => Samples::Uniform(SAMPLES),
             false => Samples::Uniform(1),
         },
-        keep_stages: true,
+        keep_stages: false,
     };
     let (model, duration) = (&bench.scene.model, bench.scene.duration);
     let chosen = simulate(model, duration, &settings)?;
