@@ -48,6 +48,8 @@ pub struct WorkPrecision {
     pub reference: String,
     /// Doubt about the reference (m); NaN if nothing is known of it.
     pub floor: f64,
+    /// Relative doubt about the reference's gradient; NaN if nothing is known of it.
+    pub gradient_floor: f64,
     /// Length of the scene (m); rows with a larger error are left out.
     pub length: f64,
     /// Rows by method, from large steps to small ones.
@@ -99,6 +101,8 @@ const ASYMPTOTIC: f64 = 3e-3;
 const CLEAR: f64 = 10.0;
 /// The part of an error that the next one is at least if it does not fall any more.
 const IDLE: f64 = 0.7;
+/// Part of the asymptotic range in which an error that does not fall is one of round-off.
+const STAGNANT: f64 = 1e-3;
 /// Halvings that an order is the median of: the finest ones.
 const HALVINGS: usize = 3;
 
@@ -159,7 +163,7 @@ impl WorkPrecision {
                 method: name.to_owned(),
                 formal: rows[0].order,
                 position: observed(&errors(|row| Some(row.error)), self.length, self.floor),
-                gradient: observed(&errors(|row| row.gradient_error), 1.0, 0.0),
+                gradient: observed(&errors(|row| row.gradient_error), 1.0, self.gradient_floor),
             }
         };
         names.into_iter().map(order).collect()
@@ -276,16 +280,19 @@ fn cells(order: Option<(f64, usize)>) -> [String; 2] {
 /// small beside `size` and clear of `floor` and of where they do not fall any more; the finest one
 /// where there are not enough for a median.
 fn observed(errors: &[(f64, f64)], size: f64, floor: f64) -> Option<(f64, usize)> {
-    let idle = errors
-        .windows(2)
-        .any(|pair| pair[1].1 > IDLE * pair[0].1 && pair[1].1 < ASYMPTOTIC * 1e-3 * size);
-    let least = errors
-        .iter()
-        .map(|pair| pair.1)
-        .fold(f64::INFINITY, f64::min);
-    let floor = CLEAR * floor.max(if idle { least } else { 0.0 });
+    let idle = |pair: &[(f64, f64)]| {
+        pair[1].1 > IDLE * pair[0].1 && pair[1].1 < STAGNANT * ASYMPTOTIC * size
+    };
+    let falls = errors.windows(2).position(idle).unwrap_or(errors.len());
+    let least = match errors.get(falls) {
+        Some((_, error)) => *error,
+        None => 0.0,
+    };
+    // A NaN, for a reference without a check, is no floor.
+    let floor = CLEAR * least.max(floor);
     let mut orders: Vec<f64> = errors
         .windows(2)
+        .take(falls)
         .filter(|pair| pair[0].1 < ASYMPTOTIC * size && pair[1].1 > floor)
         .map(|pair| (pair[0].1 / pair[1].1).ln() / (pair[0].0 / pair[1].0).ln())
         .collect();
@@ -310,6 +317,6 @@ mod tests {
         let (order, halvings) = observed(&pairs, 1.0, 0.0).expect("some halvings are clear");
         assert_eq!(halvings, 2);
         assert!((order - 4.0).abs() < 1e-12, "{order}");
-        assert_eq!(observed(&pairs[4..], 1.0, 0.0), None);
+        assert_eq!(observed(&pairs[4..], 1.0, self.gradient_floor), None);
     }
 }

@@ -103,6 +103,7 @@ pub fn work_precision(
         function: function.map(|f| problem.function_names[f].clone()),
         length: measurement.length,
         floor: reference.difference,
+        gradient_floor: reference.gradient_difference,
         reference: reference.description,
         rows,
         notes,
