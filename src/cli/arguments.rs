@@ -50,8 +50,8 @@ pub struct Course {
 pub struct Job {
     /// Problem file (JSON).
     pub problem: PathBuf,
-    /// Directory for the results [default: results/<name of the problem>; `simulate` writes
-    /// files only if this is given].
+    /// Directory for the results [default: results/<name of the problem>, for `work-precision`
+    /// results/work-precision/<name>; `simulate` writes files only if this is given].
     #[arg(long, short)]
     pub output: Option<PathBuf>,
     /// No progress and no summary.
@@ -85,6 +85,9 @@ pub enum Command {
         #[arg(long, default_value_t = 1e-10, value_parser = positive)]
         tolerance: f64,
     },
+    /// Measure error against run time for all methods, orders, steps and tolerances; writes
+    /// work_precision.csv, orders.csv and work_precision.svg.
+    WorkPrecision(Measurement),
     /// Compare two records of optimal designs; exit code 1 if they differ beyond tolerance.
     Compare(Comparison),
     /// Draw the figures of a result directory again from its record.
@@ -94,6 +97,27 @@ pub enum Command {
     },
     /// Print the JSON Schema of problem files.
     Schema,
+}
+
+/// What `work-precision` measures.
+#[derive(Args, Debug)]
+pub struct Measurement {
+    /// The problem.
+    #[command(flatten)]
+    pub job: Job,
+    /// CPU time that the runs of one method with equal steps, or with chosen ones, may take (s).
+    #[arg(long, default_value_t = 8.0, value_parser = positive)]
+    pub seconds: f64,
+    /// Runs of which the fastest counts, after one that does not.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub runs: u32,
+    /// Table of exact positions (CSV: time,body,x,y,z in s and m); the rows at the end of the
+    /// motion are compared. Without it a run at tight tolerance is the reference.
+    #[arg(long, value_name = "FILE")]
+    pub reference: Option<PathBuf>,
+    /// Function whose gradient is judged [default: the objective, or the first function].
+    #[arg(long, value_name = "NAME")]
+    pub function: Option<String>,
 }
 
 /// Two records.

@@ -6,6 +6,7 @@ mod optimise;
 mod progress;
 mod simulate;
 mod starts;
+mod work_precision;
 
 use crate::driver::error;
 use crate::problem::{Override, Problem};
@@ -71,6 +72,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let done = match arguments.command {
         Some(Command::Simulate(job)) => simulate::simulate(&job),
         Some(Command::Check { job, tolerance }) => simulate::check(&job, tolerance),
+        Some(Command::WorkPrecision(asked)) => work_precision::measure(&asked),
         Some(Command::Compare(files)) => compare::compare(&files),
         Some(Command::Plot { directory }) => compare::plot(&directory),
         Some(Command::Schema) => compare::schema(),

@@ -1,14 +1,16 @@
 //! The discretisation error of functions and gradients, by cutting every step in two.
 //!
-//! With f_h the value on the steps in use and f_{h/2} that on steps of half the size, of a method of
+//! With f_{h,n} the value on the steps in use and n samples, f_{h/2,2n} that on steps of half the size
+//! and twice the samples, and f_{h/2,n} that of the same run at every second sample, of a method of
 //! order m,
 //!
 //! ```text
-//! f_h − f ≈ (f_h − f_{h/2}) 2ᵐ / (2ᵐ − 1)
+//! f_{h,n} − f ≈ (f_{h,n} − f_{h/2,n}) 2ᵐ / (2ᵐ − 1) + (f_{h/2,n} − f_{h/2,2n}) 2² / (2² − 1)
 //! ```
 //!
-//! (Richardson). Samples are doubled as well, so that the error of sums over the motion, of order
-//! 2, is seen; the smaller order is taken.
+//! (Richardson): the first term is the error of the steps, the second that of sums over the motion,
+//! which are of order 2. Where a function looks at the end alone there is no second term. Told apart,
+//! the two may be of any size and sign.
 
 use super::evaluate::Evaluated;
 use super::integration::{Integration, looks_at_the_whole};
@@ -54,41 +56,52 @@ pub fn estimate(
     gradients: bool,
 ) -> Result<Vec<FunctionError>, IntegrationFailure> {
     let run = simulate(&at.scene.model, at.scene.duration, &halved(&at.run))?;
-    let fine = Evaluated {
+    let mut fine = Evaluated {
         x: at.x.clone(),
         scene: at.scene.clone(),
         run,
     };
-    let derivatives = |of: &Evaluated| -> Result<Vec<Vec<f64>>, IntegrationFailure> {
-        match gradients {
-            true => Ok(of.gradients(problem, which)?.0),
-            false => Ok(vec![Vec::new(); which.len()]),
+    let numbers = |of: &Evaluated, which: &[usize]| -> Result<Vec<Vec<f64>>, IntegrationFailure> {
+        let mut all: Vec<Vec<f64>> = which.iter().map(|&f| vec![of.function(f).value]).collect();
+        if gradients && !which.is_empty() {
+            let (found, _) = of.gradients(problem, which)?;
+            all.iter_mut()
+                .zip(found)
+                .for_each(|(row, gradient)| row.extend(gradient));
         }
+        Ok(all)
     };
-    let (coarse_gradients, fine_gradients) = (derivatives(at)?, derivatives(&fine)?);
-    let all = which
-        .iter()
-        .zip(coarse_gradients.iter().zip(&fine_gradients));
-    Ok(all
-        .map(|(&function, (coarse, finer))| {
-            let order = match looks_at_the_whole(&at.scene.functions[function]) {
-                true => at.run.method.order().min(SUMS),
-                false => at.run.method.order(),
-            };
-            let gain = 2.0_f64.powi(order as i32);
-            let compare = |value: f64, fine: f64| Estimate {
-                value,
-                error: (value - fine).abs() * gain / (gain - 1.0),
-            };
-            let value = compare(at.function(function).value, fine.function(function).value);
-            let pairs = coarse.iter().zip(finer);
-            FunctionError {
-                function,
-                value,
-                gradient: pairs.map(|(&value, &fine)| compare(value, fine)).collect(),
-            }
-        })
-        .collect())
+    let (coarse, finer) = (numbers(at, which)?, numbers(&fine, which)?);
+    let sums = |f: &usize| looks_at_the_whole(&at.scene.functions[*f]);
+    let summed: Vec<usize> = which.iter().copied().filter(sums).collect();
+    let doubled = fine.run.last() == 2 * at.run.last();
+    if doubled {
+        thin(&mut fine.run);
+    }
+    let mut thinner = numbers(&fine, &summed)?.into_iter();
+    let [steps, samples] = [at.run.method.order(), SUMS].map(|order| {
+        let gain = 2.0_f64.powi(order as i32);
+        gain / (gain - 1.0)
+    });
+    let mut all = Vec::new();
+    for ((&function, coarse), finer) in which.iter().zip(coarse).zip(finer) {
+        let thinner = match summed.contains(&function) {
+            true => thinner.next().unwrap_or_else(|| finer.clone()),
+            false => finer.clone(),
+        };
+        let estimate = |((&h, &thin), &fine): ((&f64, &f64), &f64)| Estimate {
+            value: h,
+            error: ((h - thin) * steps + (thin - fine) * samples).abs(),
+        };
+        let numbers = coarse.iter().zip(&thinner).zip(&finer);
+        let mut estimates: Vec<Estimate> = numbers.map(estimate).collect();
+        all.push(FunctionError {
+            function,
+            value: estimates.remove(0),
+            gradient: estimates,
+        });
+    }
+    Ok(all)
 }
 
 /// The settings of a run with every step cut in two and twice the samples.
@@ -107,6 +120,25 @@ fn halved(run: &Trajectory<f64>) -> Settings {
         samples,
         keep_stages: false,
     }
+}
+
+/// Leaves every second sample of a run.
+fn thin(run: &mut Trajectory<f64>) {
+    let nc = match run.lambda.is_empty() {
+        true => 0,
+        false => run.numbering.constraints(),
+    };
+    let (nq, nv) = (run.numbering.positions(), run.numbering.velocities());
+    let rows = |all: &[f64], width: usize| -> Vec<f64> {
+        let rows = all.chunks_exact(width.max(1)).step_by(2);
+        rows.flatten().copied().collect()
+    };
+    run.q = rows(&run.q, nq);
+    run.v = rows(&run.v, nv);
+    run.a = rows(&run.a, nv);
+    run.lambda = rows(&run.lambda, nc);
+    run.instants = run.instants.iter().copied().step_by(2).collect();
+    run.places = run.places.iter().copied().step_by(2).collect();
 }
 
 /// Steps that reach an accuracy, and what they cost.

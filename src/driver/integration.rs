@@ -63,6 +63,11 @@ impl Integration {
         Some((settings, reason))
     }
 
+    /// Where the motion is sampled.
+    pub fn samples(&self) -> Samples {
+        self.samples
+    }
+
     /// Goes on with the steps of an earlier run.
     pub fn restore(&mut self, method: Method, grid: Grid) {
         let settings = Settings {

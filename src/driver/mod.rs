@@ -1,4 +1,5 @@
-//! What the program does with a problem: simulate it, check its gradients, optimise it.
+//! What the program does with a problem: simulate it, check its gradients, optimise it, measure
+//! the methods on it.
 
 pub mod check;
 pub mod error;
@@ -12,6 +13,7 @@ mod record;
 pub mod second_order;
 pub mod simulate;
 pub mod warm_start;
+pub mod work_precision;
 
 pub use check::{CheckedDerivative, check};
 pub use evaluate::{Evaluated, Evaluator};
@@ -21,3 +23,4 @@ pub use optimise::{Optimisation, optimise};
 pub use second_order::second_order;
 pub use simulate::{Simulation, simulate};
 pub use warm_start::WarmStart;
+pub use work_precision::work_precision;

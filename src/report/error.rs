@@ -43,6 +43,18 @@ pub enum ReportError {
         /// What should stand there.
         expected: String,
     },
+    /// A table of reference positions is not what it should be.
+    #[error("{}:{line}: found {found}, expected {expected}", path.display())]
+    Positions {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from one.
+        line: usize,
+        /// What stands there.
+        found: String,
+        /// What should stand there.
+        expected: String,
+    },
     /// An optimum is not the JSON document that it should be.
     #[error("optimum: {0}")]
     Optimum(#[from] serde_json::Error),

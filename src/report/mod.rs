@@ -11,6 +11,8 @@
 //! | [`optimum`] | the end of an optimisation, `optimum.json` |
 //! | [`mod@compare`] | an optimum against a committed baseline |
 //! | [`mod@summary`] | the text that a person reads at the end |
+//! | [`positions`] | tables of reference positions |
+//! | [`work_precision`] | error against run time, `work_precision.csv` and `orders.csv` |
 //! | [`plots`] | figures as SVG |
 
 pub mod compare;
@@ -22,8 +24,10 @@ pub mod history;
 mod number;
 pub mod optimum;
 pub mod plots;
+pub mod positions;
 pub mod summary;
 mod table;
+pub mod work_precision;
 
 pub use compare::{Comparison, Tolerances, compare};
 pub use error::ReportError;
@@ -31,3 +35,4 @@ pub use files::{atomic_write, read_text, write_all};
 pub use history::{Column, History, HistoryRow};
 pub use optimum::Optimum;
 pub use summary::summary;
+pub use work_precision::{MethodOrder, PrecisionRow, WorkPrecision};

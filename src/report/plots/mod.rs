@@ -9,7 +9,9 @@ mod convergence;
 mod energy;
 mod motion;
 mod panel;
+mod work_precision;
 
 pub use convergence::convergence;
 pub use energy::{EnergyRun, energy};
 pub use motion::{Barrier, BodyMotion, Flight, Motion, Scenery, motion};
+pub use work_precision::work_precision;

@@ -1,0 +1,102 @@
+//! `optimize work-precision`.
+
+use super::arguments::{Job, Measurement};
+use super::{DONE, Failure, load, print, tell};
+use crate::driver::work_precision::{Plan, work_precision};
+use crate::problem::Problem;
+use crate::report::positions::positions_from_csv;
+use crate::report::{PrecisionRow, plots, read_text, write_all};
+use std::path::{Path, PathBuf};
+
+/// Measures all methods on the start of a problem and writes what it finds.
+pub fn measure(asked: &Measurement) -> Result<u8, Failure> {
+    let job: &Job = &asked.job;
+    if job.error {
+        let what = "found --error, expected none: optimize work-precision measures errors itself";
+        return Err(Failure::bad_input(what));
+    }
+    let problem = load(job)?;
+    let plan = plan(asked, &problem)?;
+    let directory = match &job.output {
+        Some(directory) => directory.clone(),
+        None => Path::new("results/work-precision").join(&problem.name),
+    };
+    let mut seen = |row: &PrecisionRow| {
+        if !job.quiet {
+            tell(&line(row));
+        }
+    };
+    let measured =
+        work_precision(&problem, &problem.start(), &plan, &mut seen).map_err(Failure::numerical)?;
+    let figure = plots::work_precision(&measured).map_err(Failure::numerical)?;
+    let files: Vec<(PathBuf, Vec<u8>)> = [
+        ("work_precision.csv", measured.to_csv()),
+        ("orders.csv", measured.orders_csv()),
+        ("summary.txt", measured.text()),
+        ("work_precision.svg", figure),
+    ]
+    .into_iter()
+    .map(|(name, text)| (directory.join(name), text.into_bytes()))
+    .collect();
+    write_all(&files).map_err(Failure::bad_input)?;
+    if !job.quiet {
+        print(&measured.text())?;
+        tell(&format!("results in {}\n", directory.display()));
+    }
+    Ok(DONE)
+}
+
+fn plan(asked: &Measurement, problem: &Problem) -> Result<Plan, Failure> {
+    let function = match &asked.function {
+        Some(name) => {
+            let Some(index) = problem.function_names.iter().position(|own| own == name) else {
+                return Err(Failure::bad_input(format!(
+                    "found --function {name:?}, expected one of the functions {}",
+                    problem.function_names.join(", ")
+                )));
+            };
+            Some(index)
+        }
+        None => match problem.objective {
+            Some(objective) => Some(objective.function),
+            None => (!problem.function_names.is_empty()).then_some(0),
+        },
+    };
+    let reference = match &asked.reference {
+        Some(path) => {
+            let text = read_text(path).map_err(Failure::bad_input)?;
+            let scene = problem.scene::<f64>(&problem.start());
+            let names = scene.model.bodies.iter().map(|body| body.name.clone());
+            let names: Vec<String> = names.collect();
+            let positions = positions_from_csv(path, &text, &names, scene.duration)
+                .map_err(Failure::bad_input)?;
+            let file = path.file_name().unwrap_or(path.as_os_str());
+            Some((file.to_string_lossy().into_owned(), positions))
+        }
+        None => None,
+    };
+    Ok(Plan {
+        seconds: asked.seconds,
+        runs: asked.runs as usize,
+        function,
+        reference,
+    })
+}
+
+fn line(row: &PrecisionRow) -> String {
+    let spacing = match (row.step, row.tolerance) {
+        (Some(step), _) => format!("h = {step:.3e} s"),
+        (None, Some(tolerance)) => format!("tol = {tolerance:.0e}"),
+        (None, None) => String::new(),
+    };
+    let gradient = row
+        .gradient_error
+        .map_or_else(String::new, |error| format!("  gradient {error:.1e}"));
+    format!(
+        "{:22} {spacing:16} {:>8} steps  {:>9.3} ms  error {:.1e} m{gradient}\n",
+        row.method,
+        row.counts.steps,
+        1e3 * row.cpu_seconds,
+        row.error
+    )
+}

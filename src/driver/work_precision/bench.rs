@@ -1,0 +1,146 @@
+//! One run of a work-precision measurement: its error, its drift, its work and its time.
+
+use super::clock::fastest;
+use super::reference::{Reference, distance, gradient_error, positions};
+use crate::adjoint;
+use crate::driver::integration::{Integration, looks_at_the_whole};
+use crate::driver::{Evaluated, Simulation};
+use crate::functions::Scene;
+use crate::integrate::{
+    IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, simulate,
+};
+use crate::problem::Problem;
+use crate::report::PrecisionRow;
+use crate::system::observe::observe;
+use std::hint::black_box;
+
+/// The scene that is run again and again.
+pub struct Bench<'a> {
+    problem: &'a Problem,
+    x: &'a [f64],
+    /// The scene at the design x.
+    pub scene: Scene<f64>,
+    function: Option<usize>,
+}
+
+impl<'a> Bench<'a> {
+    /// The scene of `problem` at `x`; gradients are those of `function`.
+    pub fn new(problem: &'a Problem, x: &'a [f64], function: Option<usize>) -> Self {
+        Self {
+            scene: problem.scene(x),
+            problem,
+            x,
+            function,
+        }
+    }
+
+    /// Whether the function sums over the motion, so that its gradient needs samples of it.
+    pub fn sums(&self) -> bool {
+        self.function
+            .is_some_and(|f| looks_at_the_whole(&self.scene.functions[f]))
+    }
+
+    /// Gradient of the function in the design variables.
+    ///
+    /// # Errors
+    /// If a step's equations are singular.
+    pub fn gradient(&self, run: Trajectory<f64>) -> Result<Option<Vec<f64>>, IntegrationFailure> {
+        let Some(function) = self.function else {
+            return Ok(None);
+        };
+        let (mut found, _) = self.at(run).gradients(self.problem, &[function])?;
+        Ok(found.pop())
+    }
+
+    /// The row of the runs by `method` with `spacing`; times are the least of `runs`.
+    ///
+    /// # Errors
+    /// If a simulation or a gradient fails.
+    pub fn row(
+        &self,
+        (method, spacing): (Method, &Spacing),
+        reference: &Reference,
+        runs: usize,
+    ) -> Result<PrecisionRow, IntegrationFailure> {
+        let settings = |samples, keep_stages| Settings {
+            method,
+            spacing: spacing.clone(),
+            samples,
+            keep_stages,
+        };
+        let (model, duration) = (&self.scene.model, self.scene.duration);
+        let with_gradient = reference.gradient.is_some();
+        let history = simulate(model, duration, &settings(Samples::StepEnds, with_gradient))?;
+        let error = distance(&reference.positions, &positions(&history));
+        let counts = history.counts;
+        let summed = self.sums() && matches!(spacing, Spacing::Tolerance(_));
+        let (drift, history) = self.drift(history);
+
+        let bare = settings(Samples::Uniform(1), false);
+        let cpu_seconds = fastest(runs, || {
+            simulate(model, duration, &bare).map(|run| {
+                black_box(run);
+            })
+        })?;
+        let mut row = PrecisionRow {
+            method: method.name(),
+            order: method.order(),
+            step: None,
+            tolerance: None,
+            error,
+            gradient_error: None,
+            energy_drift: drift[0],
+            position_drift: drift[1],
+            velocity_drift: drift[2],
+            counts,
+            cpu_seconds,
+            gradient_cpu_seconds: None,
+        };
+        match spacing {
+            Spacing::Steps(steps) => row.step = Some(duration / *steps as f64),
+            Spacing::Tolerance(tolerance) => row.tolerance = Some(*tolerance),
+            Spacing::Frozen(_) => {}
+        }
+        if let (Some(exact), Some(function)) = (&reference.gradient, self.function) {
+            let run = match summed {
+                // As an optimisation samples it.
+                true => {
+                    let samples = Integration::new(self.problem, &self.scene, true, true).samples();
+                    simulate(model, duration, &settings(samples, true))?
+                }
+                false => history,
+            };
+            row.gradient_cpu_seconds = Some(fastest(runs, || {
+                adjoint::gradients(&self.scene, &run, &[function]).map(|found| {
+                    black_box(found);
+                })
+            })?);
+            row.gradient_error = self
+                .gradient(run)?
+                .map(|found| gradient_error(&found, exact));
+        }
+        Ok(row)
+    }
+
+    /// Largest drift of energy (J), position and velocity constraints over a run.
+    fn drift(&self, run: Trajectory<f64>) -> ([f64; 3], Trajectory<f64>) {
+        let model = &self.scene.model;
+        let observations = (0..=run.last())
+            .map(|k| observe(model, &run.numbering, run.q(k), run.v(k)))
+            .collect();
+        let seen = Simulation {
+            at: self.at(run),
+            observations,
+        };
+        let (position, velocity) = seen.constraint_drift();
+        ([seen.energy_drift(), position, velocity], seen.at.run)
+    }
+
+    fn at(&self, run: Trajectory<f64>) -> Evaluated {
+        Evaluated {
+            x: self.x.to_vec(),
+            scene: self.scene.clone(),
+            run,
+        }
+    }
+}

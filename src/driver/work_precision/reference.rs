@@ -1,0 +1,173 @@
+//! What the runs of a work-precision measurement are compared with.
+
+use super::Plan;
+use super::bench::Bench;
+use crate::integrate::choice::{NON_STIFF, STIFF};
+use crate::integrate::{
+    IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, simulate,
+};
+
+/// Tolerance of the explicit reference.
+const EXPLICIT: f64 = 1e-13;
+/// Tolerances of the implicit reference, of which the first that can be kept is taken.
+const IMPLICIT: [f64; 3] = [1e-11, 1e-10, 1e-9];
+/// How much looser the run is that the reference of a stiff scene is checked by.
+const LOOSER: f64 = 10.0;
+/// Samples of the reference for functions that sum over the motion.
+const SAMPLES: usize = 20_000;
+
+/// Positions at the end and a gradient that count as exact.
+pub struct Reference {
+    /// Centres of mass at the end by body (m).
+    pub positions: Vec<(usize, [f64; 3])>,
+    /// Gradient of the function in question.
+    pub gradient: Option<Vec<f64>>,
+    /// Distance of the positions from those of an independent run (m); NaN if there is none.
+    pub difference: f64,
+    /// The same of the gradient, relative.
+    pub gradient_difference: f64,
+    /// Where positions and gradient come from and how far they are from an independent run.
+    pub description: String,
+}
+
+/// One run that could be the reference.
+struct Candidate {
+    name: String,
+    tolerance: f64,
+    positions: Vec<[f64; 3]>,
+    gradient: Option<Vec<f64>>,
+}
+
+/// The reference: a file's positions if the plan has some, and a run at tight tolerance by the method
+/// that suits the scene. Both are compared with a run by another method or, if the scene is stiff, by
+/// the same one with a looser tolerance.
+///
+/// # Errors
+/// If no run reaches the end.
+pub fn reference(bench: &Bench, plan: &Plan, stiff: bool) -> Result<Reference, IntegrationFailure> {
+    let implicit = |tolerances: &[f64]| {
+        let mut found = candidate(bench, STIFF, tolerances[0]);
+        for &tolerance in &tolerances[1..] {
+            found = found.or_else(|_| candidate(bench, STIFF, tolerance));
+        }
+        found
+    };
+    let (best, check) = match stiff {
+        false => {
+            let best = candidate(bench, NON_STIFF, EXPLICIT)?;
+            (best, implicit(&IMPLICIT).ok())
+        }
+        true => {
+            let best = implicit(&IMPLICIT)?;
+            let check = candidate(bench, STIFF, LOOSER * best.tolerance).ok();
+            (best, check)
+        }
+    };
+    let own: Vec<_> = best.positions.iter().copied().enumerate().collect();
+    let mut description = best.name.clone();
+    let (positions, mut difference) = match &plan.reference {
+        Some((file, positions)) => {
+            let difference = distance(positions, &best.positions);
+            description = format!("{file}; {} is {difference:.1e} m away", best.name);
+            (positions.clone(), difference)
+        }
+        None => (own, f64::NAN),
+    };
+    let mut gradient_difference = f64::NAN;
+    match &check {
+        Some(check) => {
+            let away = distance(&positions, &check.positions);
+            // What looser steps err by bounds what tight ones do.
+            difference = if difference.is_nan() {
+                away
+            } else {
+                difference
+            };
+            description += &format!("; {} is {away:.1e} m away", check.name);
+            if let (Some(a), Some(b)) = (&best.gradient, &check.gradient) {
+                gradient_difference = gradient_error(b, a);
+                description += &format!(", its gradient {gradient_difference:.1e} off relatively");
+            }
+        }
+        None => description += "; no other method reached the end to check it",
+    }
+    Ok(Reference {
+        positions,
+        gradient: best.gradient,
+        difference,
+        gradient_difference,
+        description,
+    })
+}
+
+fn candidate(
+    bench: &Bench,
+    method: Method,
+    tolerance: f64,
+) -> Result<Candidate, IntegrationFailure> {
+    let settings = Settings {
+        method,
+        spacing: Spacing::Tolerance(tolerance),
+        samples: match bench.sums() {
+            true => Samples::Uniform(SAMPLES),
+            false => Samples::Uniform(1),
+        },
+        keep_stages: false,
+    };
+    let (model, duration) = (&bench.scene.model, bench.scene.duration);
+    let chosen = simulate(model, duration, &settings)?;
+    // Halves of its steps err less by two to the power of the order.
+    let halves = Settings {
+        spacing: Spacing::Frozen(chosen.grid.halved()),
+        ..settings
+    };
+    drop(chosen);
+    let run = simulate(model, duration, &halves)?;
+    Ok(Candidate {
+        name: format!(
+            "{} with halves of the steps of tolerance {tolerance:.0e} ({} steps)",
+            method.name(),
+            run.grid.steps()
+        ),
+        tolerance,
+        positions: positions(&run),
+        gradient: bench.gradient(run)?,
+    })
+}
+
+/// Centres of mass at the end of a run (m).
+pub fn positions(run: &Trajectory<f64>) -> Vec<[f64; 3]> {
+    let q = run.q(run.last());
+    let place = |body: usize| {
+        let at = run.numbering.position(body);
+        [q[at], q[at + 1], q[at + 2]]
+    };
+    (0..run.numbering.bodies()).map(place).collect()
+}
+
+/// Largest distance of a body from where it should be (m); NaN if one is nowhere.
+pub fn distance(exact: &[(usize, [f64; 3])], found: &[[f64; 3]]) -> f64 {
+    let away = |(body, exact): &(usize, [f64; 3])| -> f64 {
+        let found = &found[*body];
+        let square: f64 = exact.iter().zip(found).map(|(a, b)| (a - b).powi(2)).sum();
+        square.sqrt()
+    };
+    largest(exact.iter().map(away))
+}
+
+/// Largest difference of two gradients relative to the largest component of the exact one.
+pub fn gradient_error(found: &[f64], exact: &[f64]) -> f64 {
+    let size = largest(exact.iter().map(|x| x.abs()));
+    largest(exact.iter().zip(found).map(|(a, b)| (a - b).abs())) / size
+}
+
+/// The largest number; NaN if there is one.
+fn largest(all: impl Iterator<Item = f64>) -> f64 {
+    all.fold(0.0, |m, x| {
+        if x.is_nan() || m.is_nan() {
+            f64::NAN
+        } else {
+            m.max(x)
+        }
+    })
+}

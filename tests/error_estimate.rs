@@ -1,0 +1,256 @@
+//! The estimated discretisation errors of functions and gradients against the true ones.
+//!
+//! The true value is that of dop853 with halves of the steps of tolerance 1e-13; the same run with
+//! those steps cut in two once more says how far it can be trusted. A number is left out where its
+//! true error is not ten times that doubt, which includes 1e-13 of its size: it is at round-off.
+
+use flexbody::driver::Evaluated;
+use flexbody::driver::error::estimate;
+use flexbody::integrate::{Method, Samples, Settings, Spacing, Start, simulate};
+use flexbody::problem::Problem;
+use serde_json::{Value, json};
+use std::path::Path;
+
+const RADAU3: Method = Method::Radau { stages: 3 };
+const BDF2: Method = Method::Bdf {
+    order: 2,
+    start: Start::Radau,
+};
+/// Ratio of estimate to true error, at least and at most.
+const TRUSTED: (f64, f64) = (0.3, 3.0);
+
+fn load(file: &str, change: impl FnOnce(&mut Value)) -> Problem {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("problems")
+        .join(file);
+    let text = std::fs::read_to_string(path).expect("a problem file");
+    let mut document: Value = serde_json::from_str(&text).expect("is JSON");
+    change(&mut document);
+    Problem::parse(&document.to_string(), file, &[]).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+fn triple_pendulum() -> Problem {
+    load("triple_pendulum.json", |_| {})
+}
+
+fn trebuchet() -> Problem {
+    load("trebuchet_release_time.json", |_| {})
+}
+
+fn andrews() -> Problem {
+    load("benchmarks/andrews_squeezer.json", |document| {
+        document["variables"] = json!({
+            "drive torque": {"path": "/loads/motor/torque/magnitude", "lower": 0.01, "upper": 0.1},
+            "stiffness": {"path": "/loads/spring/spring/stiffness", "lower": 1000, "upper": 9000},
+            "mass of K3": {"path": "/bodies/K3/mass", "lower": 0.01, "upper": 0.05},
+            "duration": {"path": "/simulation/duration", "lower": 0.01, "upper": 0.05}
+        });
+    })
+}
+
+/// A function or one of its derivatives: value and doubt.
+struct Exact {
+    value: f64,
+    doubt: f64,
+}
+
+/// Every function and then its derivatives, in the order of the file.
+fn exact(problem: &Problem) -> Vec<Vec<Exact>> {
+    let x = problem.start();
+    let scene = problem.scene::<f64>(&x);
+    let all: Vec<usize> = (0..scene.functions.len()).collect();
+    let (model, duration) = (&scene.model, scene.duration);
+    let settings = |spacing, samples| Settings {
+        method: Method::Dop853,
+        spacing,
+        samples: Samples::Uniform(samples),
+        keep_stages: true,
+    };
+    let chosen = simulate(model, duration, &settings(Spacing::Tolerance(1e-13), 1)).expect("runs");
+    let once = chosen.grid.halved();
+    let twice = once.halved();
+    let values = |spacing, samples| {
+        let run = simulate(model, duration, &settings(spacing, samples)).expect("runs");
+        let at = Evaluated {
+            x: x.clone(),
+            scene: scene.clone(),
+            run,
+        };
+        let (found, _) = at.derivatives(problem, &all).expect("regular");
+        let value = |f: usize| {
+            let value = at.function(f).value;
+            let mut row = vec![(value, value.abs())];
+            row.extend(found[f].iter().map(|d| (d.value, d.terms)));
+            row
+        };
+        all.iter().map(|&f| value(f)).collect::<Vec<_>>()
+    };
+    let (coarse, fine) = (
+        values(Spacing::Frozen(once), 10_000),
+        values(Spacing::Frozen(twice), 20_000),
+    );
+    let pair = |(a, b): (&(f64, f64), &(f64, f64))| Exact {
+        value: b.0,
+        doubt: (a.0 - b.0).abs() + 1e-13 * b.1,
+    };
+    let rows = coarse.iter().zip(&fine);
+    rows.map(|(a, b)| a.iter().zip(b).map(pair).collect())
+        .collect()
+}
+
+/// Ratios of estimated to true errors, those of functions and those of derivatives, and how many
+/// were left out.
+struct Ratios {
+    functions: Vec<(String, f64)>,
+    derivatives: Vec<(String, f64)>,
+    left_out: usize,
+}
+
+fn ratios(problem: &Problem, exact: &[Vec<Exact>], method: Method, spacing: Spacing) -> Ratios {
+    let mut problem = problem.clone();
+    problem.simulation.method = Some(method);
+    problem.simulation.spacing = spacing;
+    let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+    let all: Vec<usize> = (0..exact.len()).collect();
+    let found = estimate(&problem, &at, &all, true).expect("runs");
+    let mut ratios = Ratios {
+        functions: Vec::new(),
+        derivatives: Vec::new(),
+        left_out: 0,
+    };
+    for (found, exact) in found.iter().zip(exact) {
+        let function = &problem.function_names[found.function];
+        let estimates = std::iter::once(&found.value).chain(&found.gradient);
+        for (i, (estimate, exact)) in estimates.zip(exact).enumerate() {
+            let true_error = (estimate.value - exact.value).abs();
+            if true_error <= 10.0 * exact.doubt {
+                ratios.left_out += 1;
+                continue;
+            }
+            let ratio = estimate.error / true_error;
+            match i {
+                0 => ratios.functions.push((function.clone(), ratio)),
+                i => {
+                    let name = format!("{function} by {}", problem.variables[i - 1].name);
+                    ratios.derivatives.push((name, ratio));
+                }
+            }
+        }
+    }
+    ratios
+}
+
+fn trusted(ratio: f64) -> bool {
+    (TRUSTED.0..=TRUSTED.1).contains(&ratio)
+}
+
+/// One line of the table: how many are trusted, and the worst.
+fn line(all: &[(String, f64)]) -> String {
+    let good = all.iter().filter(|(_, ratio)| trusted(*ratio)).count();
+    let far = |ratio: f64| ratio.ln().abs();
+    let worst = all.iter().max_by(|a, b| far(a.1).total_cmp(&far(b.1)));
+    match worst {
+        Some((name, ratio)) => format!("{good}/{} worst {ratio:.2} ({name})", all.len()),
+        None => "none".into(),
+    }
+}
+
+/// Prints the settings' ratios and asserts that all those of the functions' values can be trusted, and
+/// this share of those of the derivatives.
+fn judge(problem: &Problem, settings: &[(Method, Spacing)], share: f64) {
+    let exact = exact(problem);
+    let (mut wrong, mut derivatives) = (Vec::new(), Vec::new());
+    for (method, spacing) in settings {
+        let found = ratios(problem, &exact, *method, spacing.clone());
+        println!(
+            "{} | {} {spacing:?} | {} | {} | {}",
+            problem.name,
+            method.name(),
+            line(&found.functions),
+            line(&found.derivatives),
+            found.left_out
+        );
+        let setting = format!("{} {spacing:?}", method.name());
+        let bad = found.functions.iter().filter(|(_, ratio)| !trusted(*ratio));
+        wrong.extend(bad.map(|(name, ratio)| format!("{setting}: {name} {ratio:.3}")));
+        derivatives.extend(found.derivatives);
+        if settings.len() <= 4 {
+            assert!(!found.functions.is_empty(), "{setting}: all at round-off");
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+    let good = derivatives
+        .iter()
+        .filter(|(_, ratio)| trusted(*ratio))
+        .count();
+    println!(
+        "{} | derivatives {good} of {}",
+        problem.name,
+        derivatives.len()
+    );
+    assert!(
+        good as f64 >= share * derivatives.len() as f64,
+        "{good} of {}",
+        derivatives.len()
+    );
+}
+
+fn tolerance(method: Method, tolerance: f64) -> (Method, Spacing) {
+    (method, Spacing::Tolerance(tolerance))
+}
+
+fn steps(method: Method, steps: usize) -> (Method, Spacing) {
+    (method, Spacing::Steps(steps))
+}
+
+#[test]
+fn estimates_are_right_on_the_triple_pendulum() {
+    let settings = [
+        tolerance(Method::Dop853, 1e-6),
+        tolerance(RADAU3, 1e-6),
+        steps(BDF2, 5000),
+    ];
+    judge(&triple_pendulum(), &settings, 0.95);
+}
+
+#[test]
+fn estimates_are_right_on_the_trebuchet() {
+    let settings = [
+        tolerance(Method::Dop853, 1e-7),
+        tolerance(RADAU3, 1e-6),
+        steps(BDF2, 2000),
+    ];
+    judge(&trebuchet(), &settings, 1.0);
+}
+
+#[test]
+fn estimates_are_right_on_andrews_squeezer() {
+    let settings = [
+        tolerance(Method::Dop853, 1e-6),
+        tolerance(RADAU3, 1e-6),
+        steps(BDF2, 4000),
+    ];
+    judge(&andrews(), &settings, 1.0);
+}
+
+/// The table of the documentation.
+#[test]
+#[ignore = "takes a minute"]
+fn estimates_are_right_over_a_wide_range() {
+    let range = |counts: [[usize; 3]; 3]| {
+        let mut all = Vec::new();
+        for (method, counts) in [Method::Dop853, RADAU3, BDF2].into_iter().zip(counts) {
+            if method.is_adaptive() {
+                all.extend([1e-5, 1e-6, 1e-7, 1e-8, 1e-9].map(|tol| tolerance(method, tol)));
+            }
+            all.extend(counts.map(|count| steps(method, count)));
+        }
+        all
+    };
+    let wide = range([[160, 240, 320], [320, 640, 1280], [2500, 5000, 10_000]]);
+    judge(&triple_pendulum(), &wide, 0.95);
+    let wide = range([[50, 70, 100], [200, 400, 800], [1000, 2000, 4000]]);
+    judge(&trebuchet(), &wide, 0.95);
+    let wide = range([[40, 60, 80], [200, 400, 800], [2000, 4000, 8000]]);
+    judge(&andrews(), &wide, 0.95);
+}
