@@ -25,7 +25,8 @@ fn a_rigid_scene_is_integrated_explicitly() {
     assert_eq!(motion.at.run.counts.newton_iterations, 0);
 }
 
-/// A spring of 1e5 rad/s makes explicit steps 1e-5 s long; Radau IIA takes those of the slow swing.
+/// A spring of 1e5 rad/s bounds explicit steps by 6e-5 s, 50 000 for 3 s; Radau IIA needs a
+/// thirtieth.
 #[test]
 fn a_stiff_scene_hands_over_by_itself() {
     let path =
@@ -42,7 +43,7 @@ fn a_stiff_scene_hands_over_by_itself() {
         motion.reason
     );
     assert!(
-        motion.at.run.grid.steps() < 1000,
+        motion.at.run.grid.steps() < 3000,
         "{}",
         motion.at.run.grid.steps()
     );
@@ -103,7 +104,11 @@ fn steps_are_kept_until_they_do_not_suffice() {
     let far = [500.0, 8.0, 30.0, 0.004, 0.02, -0.3, 1.8];
     let (at, changed) = Evaluated::with(&mut integration, &problem, &far).expect("runs");
     let changed = changed.expect("steps that suffice");
-    assert!(changed.reason.contains("exceeds"), "{}", changed.reason);
+    let why = &changed.reason;
+    assert!(
+        why.contains("exceeds") || why.contains("too large"),
+        "{why}"
+    );
     assert_eq!(integration.refreshes, 1);
     assert!(at.run.step_error <= 1e-6);
     let Some((settings, _)) = integration.chosen() else {
