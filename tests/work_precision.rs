@@ -185,7 +185,7 @@ fn a_file_can_be_the_reference() {
         .expect("variables");
     let problem = format!("{head}\n}}");
     let table = directory.path().join("positions.csv");
-    // Half a metre to the side of where the bar ends.
+    // The hinge, half a metre from the centre of mass.
     std::fs::write(&table, "time,body,x,y,z\n1,bar,0,0,0\n2,bar,0,0,0\n").expect("is written");
     let arguments = "--reference positions.csv --output found --quiet --seconds 0.1 --runs 1";
     let arguments: Vec<&str> = arguments.split(' ').collect();
