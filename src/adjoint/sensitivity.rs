@@ -8,8 +8,8 @@ use crate::functions::measure::{Snapshot, SnapshotCotangent};
 use crate::integrate::Trajectory;
 use crate::integrate::{IntegrationFailure, WorkCounts};
 use crate::linalg::REFINED_SOLVES;
-use crate::system::initial;
 use crate::system::kkt::SaddlePoint;
+use crate::system::{bodies, initial};
 
 /// One function on its way back.
 pub(super) struct Sensitivity<'a> {
@@ -64,9 +64,9 @@ impl<'a> Sensitivity<'a> {
         true
     }
 
-    /// Pulls the cotangents of the initial state (tangent positions, velocities, accelerations)
-    /// back to the parameters, and adds what is left: derivatives in the duration and in
-    /// parameters that no instant depends on.
+    /// Pulls the cotangents of the initial state and of the initial accelerations (`a`) back to the
+    /// parameters, and adds what is left: derivatives in the duration and in parameters that no
+    /// instant depends on.
     ///
     /// # Errors
     /// If the equations of the initial state are singular.
@@ -75,17 +75,19 @@ impl<'a> Sensitivity<'a> {
         scene: &Scene<f64>,
         run: &Trajectory<f64>,
         saddle: &mut SaddlePoint<f64>,
-        bars: (&[f64], &[f64], &[f64]),
+        a: &[f64],
         counts: &mut WorkCounts,
     ) -> Result<(), IntegrationFailure> {
         let before = saddle.factorisations;
+        let mut y = vec![0.0; a.len()];
+        bodies::tangent_of_cotangent(&run.numbering, &run.initial.q, &self.q.value, &mut y);
         let cot = &mut self.cot;
         initial::pull_back(
             &scene.model,
             &run.numbering,
             saddle,
             &run.initial,
-            bars,
+            (&y, &self.v.value, a),
             &mut cot.model,
         )?;
         counts.factorisations += saddle.factorisations - before;

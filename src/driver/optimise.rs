@@ -63,7 +63,6 @@ pub fn optimise<'a>(
     };
     let history = recorder.history;
     let counts = program.counts;
-    let integration = program.integration.clone();
     let start = simulate(problem, &problem.start()).ok();
     let end = simulate(problem, &unscaled(problem, &outcome.x)).ok();
     let optimum = record(
@@ -71,7 +70,7 @@ pub fn optimise<'a>(
         file,
         &outcome,
         sign,
-        (counts, &integration),
+        counts,
         [start.as_ref(), end.as_ref()],
     );
     Some(Optimisation {

@@ -2,9 +2,8 @@
 
 use super::error;
 use super::evaluate::unscaled;
-use super::integration::Integration;
 use super::simulate::Simulation;
-use crate::integrate::{Spacing, WorkCounts};
+use crate::integrate::WorkCounts;
 use crate::optimiser::{self, Outcome, Status};
 use crate::problem::{Problem, Sense};
 use crate::report::optimum as report;
@@ -56,7 +55,7 @@ pub(super) fn record(
     file: &str,
     outcome: &Outcome,
     sign: f64,
-    (work, integration): (WorkCounts, &Integration),
+    work: WorkCounts,
     ends: [Option<&Simulation>; 2],
 ) -> Optimum {
     let (status, sentence) = verdict(&outcome.status);
@@ -163,18 +162,11 @@ pub(super) fn record(
         },
         scaling: scaling_record(problem, outcome),
         second_order: None,
-        integration: integration
-            .chosen()
-            .map(|(settings, reason)| report::Integration {
-                method: settings.method.name(),
-                reason: reason.into(),
-                steps: match &settings.spacing {
-                    Spacing::Steps(steps) => *steps as u64,
-                    Spacing::Frozen(grid) => grid.steps() as u64,
-                    Spacing::Tolerance(_) => 0,
-                },
-                refreshes: integration.refreshes as u64,
-            }),
+        integration: ends[1].map(|end| report::Integration {
+            method: end.at.run.method.name(),
+            reason: end.reason.clone(),
+            steps: end.at.run.grid.steps() as u64,
+        }),
         counts: Counts {
             iterations: outcome.counts.iterations as u64,
             function_evaluations: outcome.counts.evaluations as u64,

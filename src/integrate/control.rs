@@ -11,6 +11,8 @@ use crate::system::{Numbering, assembly};
 const SAFETY: f64 = 0.9;
 const SHRINK: f64 = 0.2;
 const GROW: f64 = 6.0;
+/// Steps that are tried near a singular position, relative to the one that failed.
+const LEAPS: [f64; 8] = [0.7, 1.3, 0.5, 1.8, 0.3, 2.5, 0.15, 4.0];
 /// Smallest step, as a part of the duration.
 const SMALLEST: f64 = 1e-12;
 /// Most steps and tries of an adaptive run.
@@ -112,6 +114,8 @@ pub struct Controller {
     /// Factor for the step to come.
     factor: f64,
     rejected: bool,
+    /// Width of the step that could not be made, and how many others were tried since.
+    leap: Option<(f64, usize)>,
     latest: f64,
     largest: f64,
     /// Tries so far.
@@ -154,6 +158,7 @@ impl Controller {
             estimates: !matches!(spacing, Spacing::Steps(_)),
             factor: 1.0,
             rejected: false,
+            leap: None,
             latest: 0.0,
             largest: 0.0,
             tries: 0,
@@ -194,7 +199,9 @@ impl Controller {
                 } else if *width > 0.5 * rest {
                     *width = 0.5 * rest;
                 }
-                Some(*width)
+                // The width that the ends of the steps tell, so that kept steps repeat it exactly.
+                let width = *width;
+                Some(self.end(reached, width) - reached)
             }
         }
     }
@@ -238,6 +245,7 @@ impl Controller {
 
     /// Records that the step was made.
     pub fn accept(&mut self) {
+        self.leap = None;
         self.largest = self.largest.max(self.latest);
         self.rejected = false;
         match &mut self.plan {
@@ -246,12 +254,18 @@ impl Controller {
         }
     }
 
-    /// Whether a step that could not be made is the end; otherwise a smaller one is tried.
-    pub fn give_up(&mut self) -> bool {
+    /// Whether a step that could not be made is the end; otherwise another is tried: a smaller one
+    /// or, near a `singular` position, which it may leap over, one of another size first.
+    pub fn give_up(&mut self, singular: bool) -> bool {
         match &mut self.plan {
             Plan::Given { .. } => true,
             Plan::Chosen { width, .. } => {
-                *width *= SHRINK;
+                let (from, tried) = self.leap.get_or_insert((*width, 0));
+                match LEAPS.get(*tried).filter(|_| singular) {
+                    Some(leap) => *width = *from * leap,
+                    None => *width *= SHRINK,
+                }
+                *tried += 1;
                 self.rejected = true;
                 *width < SMALLEST
             }

@@ -219,10 +219,8 @@ pub struct Integration {
     pub method: String,
     /// Why it was chosen.
     pub reason: String,
-    /// Number of steps at the end.
+    /// Number of steps of the motion at the end.
     pub steps: u64,
-    /// How often the steps were chosen anew because they did not suffice for a design any more.
-    pub refreshes: u64,
 }
 
 /// Work done.

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 const TREBUCHET: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/trebuchet.json");
 /// A tenth of the steps: the work of the optimiser is the same.
-const STEPS: &str = "/simulation/steps=200";
+const STEPS: &str = "/simulation/samples=300";
 
 fn start(directory: &Path, output: &str) -> Child {
     Command::new(env!("CARGO_BIN_EXE_optimize"))

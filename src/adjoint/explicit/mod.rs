@@ -26,7 +26,6 @@ use crate::integrate::grid::Place;
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
 use crate::linalg::SingularMatrix;
 use crate::system::accelerations::Accelerations;
-use crate::system::bodies;
 use crate::system::kkt::SaddlePoint;
 use crate::system::rank;
 use sweep::Sweep;
@@ -122,12 +121,8 @@ pub(super) fn gradients(
     for sweep in &mut sweeps {
         sweep.sample(scene, run, 0, None);
         sweep.node_rates(numbering, start);
-        let mut y = vec![0.0; start.v.len()];
-        bodies::tangent_of_cotangent(numbering, &start.q, &sweep.of.q.value, &mut y);
-        let (v, a) = (sweep.of.v.value.clone(), sweep.node.1.clone());
-        sweep
-            .of
-            .finish(scene, run, &mut saddle, (&y, &v, &a), &mut counts)?;
+        let Sweep { of, node, .. } = sweep;
+        of.finish(scene, run, &mut saddle, &node.1, &mut counts)?;
     }
     Ok(AdjointRun {
         gradients: sweeps.into_iter().map(|sweep| sweep.of.cot).collect(),

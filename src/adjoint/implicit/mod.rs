@@ -34,7 +34,6 @@ use crate::integrate::implicit::formula::{Formula, remembers_start};
 use crate::integrate::implicit::radau::Scheme;
 use crate::integrate::{IntegrationFailure, Method, Trajectory, WorkCounts};
 use crate::linalg::SingularMatrix;
-use crate::system::bodies;
 use crate::system::kkt::SaddlePoint;
 use sweep::Sweep;
 
@@ -101,13 +100,9 @@ pub(super) fn gradients(
     let start = &tape.start;
     for sweep in &mut sweeps {
         sweep.sample(scene, run, 0, (&scheme, start, &[]), 0.0);
-        let mut y = vec![0.0; start.v.len()];
         sweep.pull_starting_rates(numbering, start);
-        bodies::tangent_of_cotangent(numbering, &start.q, &sweep.of.q.value, &mut y);
-        let (v, a) = (sweep.of.v.value.clone(), sweep.rates.1.clone());
-        sweep
-            .of
-            .finish(scene, run, &mut saddle, (&y, &v, &a), &mut counts)?;
+        let Sweep { of, rates, .. } = sweep;
+        of.finish(scene, run, &mut saddle, &rates.1, &mut counts)?;
     }
     Ok(AdjointRun {
         gradients: sweeps.into_iter().map(|sweep| sweep.of.cot).collect(),

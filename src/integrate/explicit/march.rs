@@ -71,7 +71,7 @@ pub fn march<S: SolveScalar>(
                 run.counts.rejected += 1;
                 continue;
             }
-            Err(failure) if controller.give_up() => {
+            Err(failure) if controller.give_up(failure != StepFailure::NotFinite) => {
                 let time = duration.re() * end;
                 return Err(failed(failure, (model, numbering), (number, time)));
             }

@@ -13,6 +13,9 @@ const ITERATIONS: usize = 12;
 /// What the iterations may leave of the projection, relative to the length scale.
 const REMAINDER: f64 = 1e-16;
 
+/// Largest |Φ| that is round-off, relative to the length scale.
+const CLOSED: f64 = 2e-15;
+
 /// State at the end of a step, with its accelerations.
 #[derive(Clone, Debug)]
 pub struct Node<S> {
@@ -253,6 +256,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             }
             let (upper, lower) = self.residual.split_at_mut(nv);
             field.constraints(lower);
+            let gap = lower.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
             upper.fill(S::zero());
             if iteration > 0 {
                 metric(field.model, numbering, q, &data.q_raw, upper);
@@ -277,7 +281,10 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             if iteration > 0 && before > 0.0 {
                 contraction = (size / before).max(1e-3);
             }
-            if size * contraction <= REMAINDER || (size <= 1e-13 && contraction > 0.3) {
+            // Near a singular position round-off moves the nearest point, not the gap.
+            let closed = iteration >= 3 && gap <= CLOSED * self.length.max(1.0);
+            let stagnant = size <= 1e-13 && contraction > 0.3;
+            if size * contraction <= REMAINDER || stagnant || closed {
                 settled += 1;
             }
             before = size;

@@ -85,7 +85,7 @@ pub fn march<S: SolveScalar>(
         let made = solver.step(&past, (start, h), at, &mut run.counts);
         let stages = match made {
             Ok(stages) => stages,
-            Err(failure) if controller.give_up() => return Err(failure),
+            Err(failure) if controller.give_up(false) => return Err(failure),
             Err(_) => {
                 run.counts.rejected += 1;
                 continue;
