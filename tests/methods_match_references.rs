@@ -1,5 +1,5 @@
-//! BDF against trajectories of independent codes: error, order, constraints, reactions, energy
-//! and work.
+//! All methods against trajectories of independent codes: error, order, constraints, reactions,
+//! energy and work.
 //!
 //! The scenes are a trebuchet of five bodies (2 s), a triple pendulum in space (3 s) and a chain
 //! of sixteen bars (1 s); how their references were made, and how accurate they are, stands in
@@ -7,10 +7,10 @@
 
 mod reference;
 
-use flexbody::integrate::Trajectory;
+use flexbody::integrate::{Method, Samples, Settings, Spacing, Start, Trajectory, simulate};
 use flexbody::model::Model;
 use flexbody::system::observe::observe;
-use reference::{Instant, bdf, motion_error, observed_order, reaction_error};
+use reference::{Instant, bdf, motion_error, observed_order, reaction_error, rising};
 
 /// A scene, its duration [s] and the largest of three step sizes [s], each half of the one
 /// before, at which errors are in their asymptotic range.
@@ -135,8 +135,8 @@ fn constraints_hold_at_coarse_steps() {
 fn work_is_as_counted() {
     for (name, duration, newton, factorisations) in [
         ("trebuchet", 2.0, 10784, 305),
-        ("triple_pendulum", 3.0, 15482, 412),
-        ("chain_16", 1.0, 5174, 106),
+        ("triple_pendulum", 3.0, 15482, 390),
+        ("chain_16", 1.0, 5174, 96),
     ] {
         let (model, _) = reference::load(name);
         let counts = bdf(&model, duration, 1e-3, 2).counts;
@@ -152,4 +152,120 @@ fn work_is_as_counted() {
             );
         }
     }
+}
+
+/// Observed orders of all methods on the trebuchet over 2 s, from the errors with so many steps and
+/// twice as many: those of theory, but for the paper's start-up of rising order, which caps BDF5 at 2.
+/// Gains at the finest step that is measured are required, so that no error before its asymptotic
+/// range counts.
+#[test]
+fn every_method_has_its_order() {
+    let (model, instants) = reference::load("trebuchet");
+    let bdf = |order| Method::Bdf {
+        order,
+        start: Start::Radau,
+    };
+    for (method, steps, order, within) in [
+        (Method::Dop853, 100, 8.0, 1.0),
+        (Method::Radau { stages: 2 }, 800, 3.0, 0.1),
+        (Method::Radau { stages: 3 }, 800, 5.0, 0.1),
+        (bdf(1), 3200, 1.0, 0.1),
+        (bdf(2), 800, 2.0, 0.1),
+        (bdf(3), 800, 3.0, 0.1),
+        (bdf(4), 1600, 4.0, 0.25),
+        (bdf(5), 1600, 5.0, 0.1),
+        (bdf(6), 800, 6.0, 0.35),
+        (rising(5), 800, 2.0, 0.1),
+        (Method::GeneralisedAlpha { radius: 0.8 }, 800, 2.0, 0.1),
+    ] {
+        let error = |steps| {
+            let settings = Settings::steps(method, steps);
+            let run = simulate(&model, 2.0, &settings).expect("runs");
+            motion_error(&run, &instants).0
+        };
+        let observed = observed_order(error(steps), error(2 * steps));
+        assert!(
+            (observed - order).abs() <= within,
+            "{}: order {observed:.3}",
+            method.name()
+        );
+    }
+}
+
+/// Steps that follow a tolerance: errors of the explicit method and of Radau IIA, and their work as
+/// counted, within 5 %.
+#[test]
+fn steps_follow_the_tolerance_at_the_work_that_was_counted() {
+    let radau = Method::Radau { stages: 3 };
+    for (name, duration, method, tolerance, error, work) in [
+        ("trebuchet", 2.0, Method::Dop853, 1e-7, 1e-6, (66, 0, 1104)),
+        (
+            "trebuchet",
+            2.0,
+            Method::Dop853,
+            1e-10,
+            1e-9,
+            (161, 0, 2552),
+        ),
+        (
+            "triple_pendulum",
+            3.0,
+            Method::Dop853,
+            1e-9,
+            1e-6,
+            (128, 0, 1969),
+        ),
+        (
+            "triple_pendulum",
+            3.0,
+            Method::Dop853,
+            1e-10,
+            1e-7,
+            (168, 0, 2537),
+        ),
+        ("chain_16", 1.0, Method::Dop853, 1e-9, 1e-9, (41, 0, 540)),
+        ("trebuchet", 2.0, radau, 1e-6, 1e-6, (246, 1910, 819)),
+    ] {
+        let (model, instants) = reference::load(name);
+        let settings = Settings {
+            method,
+            spacing: Spacing::Tolerance(tolerance),
+            samples: Samples::Uniform(1),
+            keep_stages: false,
+        };
+        let run = simulate(&model, duration, &settings).expect("runs");
+        let found = motion_error(&run, &instants).0;
+        let what = format!("{name} by {} at {tolerance:e}", method.name());
+        assert!(found <= error, "{what}: {found:e} m");
+        let counts = run.counts;
+        let (steps, newton, factorisations) = work;
+        for (what_of, found, expected) in [
+            ("steps", counts.steps, steps),
+            ("Newton iterations", counts.newton_iterations, newton),
+            ("factorisations", counts.factorisations, factorisations),
+        ] {
+            let off = (found as f64 - f64::from(expected)).abs();
+            assert!(
+                off <= 0.05 * f64::from(expected),
+                "{what}: {found} {what_of}, counted {expected}"
+            );
+        }
+    }
+}
+
+/// The triple pendulum over 10 s, which is chaotic, keeps its energy.
+#[test]
+fn energy_of_a_chaotic_motion() {
+    let (model, _) = reference::load("triple_pendulum");
+    let settings = Settings {
+        method: Method::Dop853,
+        spacing: Spacing::Tolerance(1e-9),
+        samples: Samples::StepEnds,
+        keep_stages: false,
+    };
+    let run = simulate(&model, 10.0, &settings).expect("runs");
+    let drift = energy_drift(&model, &run);
+    assert!(drift <= 1e-6, "{drift:e} J");
+    assert!(run.counts.factorisations < 9000, "{:?}", run.counts);
+    assert_constraints_hold(&model, &run);
 }

@@ -95,6 +95,7 @@ fn optimum() -> Optimum {
         },
         scaling: Scaling::default(),
         second_order: None,
+        integration: None,
         counts: Counts {
             iterations: 21,
             function_evaluations: 25,

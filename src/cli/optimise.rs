@@ -9,7 +9,7 @@ use super::{
 use crate::driver::{self, Journal, Optimisation, WarmStart, figures, journal};
 use crate::optimiser::{Counts, Status};
 use crate::problem::Problem;
-use crate::report::evaluations::{EvaluationLog, EvaluationRecord};
+use crate::report::evaluations::{EvaluationLog, EvaluationRecord, Found};
 use crate::report::{History, atomic_write, summary, write_all};
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -220,6 +220,13 @@ fn one(
     .map_err(Failure::bad_input)?;
     let unwritable = RefCell::new(None);
     let mut record = |evaluation: EvaluationRecord| {
+        if let (false, Found::Steps(steps)) = (quiet, &evaluation.found) {
+            let count = steps.ends.len().saturating_sub(1);
+            tell(&format!(
+                "{count} steps by {}: {}\n",
+                steps.method, steps.reason
+            ));
+        }
         if let Err(error) = log.append(&evaluation) {
             unwritable.borrow_mut().get_or_insert(error);
         }

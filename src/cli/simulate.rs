@@ -43,15 +43,20 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     let run = &simulation.at.run;
     let counts = run.counts;
     let mut text = format!(
-        "{}: {} s by {} in {} steps ({} evaluations, {} Newton iterations, {} factorisations)\n",
+        "{}: {} s by {} in {} steps ({} evaluations, {} Newton iterations, {} factorisations)\n  \
+         method: {}\n",
         problem.name,
         run.duration,
         run.method.name(),
         run.grid.steps(),
         counts.evaluations,
         counts.newton_iterations,
-        counts.factorisations
+        counts.factorisations,
+        simulation.reason
     );
+    if let Some(warning) = &simulation.warning {
+        let _ = writeln!(text, "  warning: {warning}");
+    }
     let width = problem
         .function_names
         .iter()

@@ -4,8 +4,8 @@
 
 use crate::functions::{Function, Reduction, Scene};
 use crate::integrate::{
-    Chosen, Grid, IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, simulate,
-    simulate_by,
+    Chosen, Grid, IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, choice,
+    simulate, simulate_by,
 };
 use crate::problem::Problem;
 
@@ -22,6 +22,8 @@ pub struct Integration {
     samples: Samples,
     /// Settings in use, once a design was simulated.
     chosen: Option<(Settings, String)>,
+    /// How often the steps were chosen anew.
+    pub refreshes: usize,
     keep_stages: bool,
 }
 
@@ -53,6 +55,7 @@ impl Integration {
             spacing: simulation.spacing.clone(),
             samples,
             chosen: None,
+            refreshes: 0,
             keep_stages: gradients,
         }
     }
@@ -76,6 +79,13 @@ impl Integration {
             ..self.wanted()
         };
         self.chosen = Some((settings, "as in the run that is resumed".into()));
+    }
+
+    /// What is wrong with the method in use for a scene whose steps it made, if anything.
+    pub fn warning(&self, scene: &Scene<f64>, run: &Trajectory<f64>) -> Option<String> {
+        let widest = (1..=run.grid.steps()).map(|k| run.grid.width(k));
+        let h = run.duration * widest.fold(0.0, f64::max);
+        choice::warning(&scene.model, run.method, h)
     }
 
     fn wanted(&self) -> Settings {
@@ -127,6 +137,7 @@ impl Integration {
             }),
             Spacing::Steps(_) | Spacing::Tolerance(_) => None,
         };
+        self.refreshes += usize::from(self.chosen.is_some());
         self.chosen = Some((settings, reason));
         Ok((run, changed))
     }

@@ -63,6 +63,7 @@ pub fn optimise<'a>(
     };
     let history = recorder.history;
     let counts = program.counts;
+    let integration = program.integration.clone();
     let start = simulate(problem, &problem.start()).ok();
     let end = simulate(problem, &unscaled(problem, &outcome.x)).ok();
     let optimum = record(
@@ -70,7 +71,7 @@ pub fn optimise<'a>(
         file,
         &outcome,
         sign,
-        counts,
+        (counts, &integration),
         [start.as_ref(), end.as_ref()],
     );
     Some(Optimisation {

@@ -2,10 +2,12 @@
 
 use super::error;
 use super::evaluate::unscaled;
+use super::integration::Integration;
 use super::simulate::Simulation;
-use crate::integrate::WorkCounts;
+use crate::integrate::{Spacing, WorkCounts};
 use crate::optimiser::{self, Outcome, Status};
 use crate::problem::{Problem, Sense};
+use crate::report::optimum as report;
 use crate::report::optimum::{
     Activity, ConstraintValue, Counts, DesignValue, Kkt, KktResiduals, Multipliers, Objective,
     Optimum, ProblemRecord, RowScaling, Scaling, Sense as RecordedSense, Side,
@@ -54,7 +56,7 @@ pub(super) fn record(
     file: &str,
     outcome: &Outcome,
     sign: f64,
-    work: WorkCounts,
+    (work, integration): (WorkCounts, &Integration),
     ends: [Option<&Simulation>; 2],
 ) -> Optimum {
     let (status, sentence) = verdict(&outcome.status);
@@ -98,6 +100,7 @@ pub(super) fn record(
             problem.function_names[objective.function], end.peak_sharpness
         ));
     }
+    warnings.extend(ends[1].and_then(|end| end.warning.clone()));
     let scaling = &outcome.scaling;
     let zero = |names: &[String], what: &str| {
         (!names.is_empty()).then(|| format!("{what} at the start: {}", names.join(", ")))
@@ -160,6 +163,18 @@ pub(super) fn record(
         },
         scaling: scaling_record(problem, outcome),
         second_order: None,
+        integration: integration
+            .chosen()
+            .map(|(settings, reason)| report::Integration {
+                method: settings.method.name(),
+                reason: reason.into(),
+                steps: match &settings.spacing {
+                    Spacing::Steps(steps) => *steps as u64,
+                    Spacing::Frozen(grid) => grid.steps() as u64,
+                    Spacing::Tolerance(_) => 0,
+                },
+                refreshes: integration.refreshes as u64,
+            }),
         counts: Counts {
             iterations: outcome.counts.iterations as u64,
             function_evaluations: outcome.counts.evaluations as u64,

@@ -1,6 +1,7 @@
 //! A simulation and what it is judged by.
 
 use super::evaluate::Evaluated;
+use super::integration::Integration;
 use crate::integrate::{IntegrationFailure, multipliers};
 use crate::problem::Problem;
 use crate::system::observe::{Observation, Reaction, observe, reactions};
@@ -11,6 +12,10 @@ pub struct Simulation {
     pub at: Evaluated,
     /// Energy, momentum and drift at every instant.
     pub observations: Vec<Observation>,
+    /// Why the method was chosen.
+    pub reason: String,
+    /// What is wrong with the method for this scene, if anything.
+    pub warning: Option<String>,
 }
 
 /// Simulates the design `x` of `problem`.
@@ -18,12 +23,20 @@ pub struct Simulation {
 /// # Errors
 /// If the simulation fails.
 pub fn simulate(problem: &Problem, x: &[f64]) -> Result<Simulation, IntegrationFailure> {
-    let at = Evaluated::new(problem, x)?;
+    let mut integration = Integration::new(problem, &problem.scene(x), true, false);
+    let (at, _) = Evaluated::with(&mut integration, problem, x)?;
+    let warning = integration.warning(&at.scene, &at.run);
+    let reason = integration.chosen().map_or("", |(_, reason)| reason).into();
     let (model, run) = (&at.scene.model, &at.run);
     let observations = (0..=run.last())
         .map(|k| observe(model, &run.numbering, run.q(k), run.v(k)))
         .collect();
-    Ok(Simulation { at, observations })
+    Ok(Simulation {
+        at,
+        observations,
+        reason,
+        warning,
+    })
 }
 
 impl Simulation {

@@ -34,6 +34,9 @@ pub struct Optimum {
     /// Curvature at the optimum, if it was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub second_order: Option<SecondOrder>,
+    /// How the motion was integrated at the end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub integration: Option<Integration>,
     /// Work done.
     pub counts: Counts,
     /// What the user should know before believing the result.
@@ -206,6 +209,20 @@ pub struct SecondOrder {
     pub eigenvalues: Vec<f64>,
     /// Estimated error of its entries.
     pub uncertainty: f64,
+}
+
+/// How the motion was integrated.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Integration {
+    /// Name of the method.
+    pub method: String,
+    /// Why it was chosen.
+    pub reason: String,
+    /// Number of steps at the end.
+    pub steps: u64,
+    /// How often the steps were chosen anew because they did not suffice for a design any more.
+    pub refreshes: u64,
 }
 
 /// Work done.

@@ -4,6 +4,9 @@ use super::ReportError;
 use super::csv;
 use std::path::Path;
 
+/// Positions of centres of mass (m) by index of the body.
+pub type Positions = Vec<(usize, [f64; 3])>;
+
 /// Reads a table of positions, `time,body,x,y,z` (s and m), and gives those of the instant `end` by
 /// index of the body among `bodies`.
 ///
@@ -15,7 +18,7 @@ pub fn positions_from_csv(
     text: &str,
     bodies: &[String],
     end: f64,
-) -> Result<Vec<(usize, [f64; 3])>, ReportError> {
+) -> Result<Positions, ReportError> {
     let fault = |line: usize, found: String, expected: String| ReportError::Positions {
         path: path.to_path_buf(),
         line,
@@ -38,7 +41,7 @@ pub fn positions_from_csv(
     if let Some(found) = found {
         return Err(fault(line, found, HEADER.join(",")));
     }
-    let mut all: Vec<(usize, [f64; 3])> = Vec::new();
+    let mut all: Positions = Vec::new();
     let mut latest = f64::NEG_INFINITY;
     for record in &records[1..] {
         let [time, name, place @ ..] = record.fields.as_slice() else {

@@ -68,6 +68,17 @@ fn objective(optimum: &Optimum) -> String {
             significant(error, 2),
         ));
     }
+    if let Some(integration) = &optimum.integration {
+        let refreshed = match integration.refreshes {
+            0 => String::new(),
+            1 => ", chosen anew once".into(),
+            n => format!(", chosen anew {n} times"),
+        };
+        text.push_str(&format!(
+            "  by {} in {} steps{refreshed} ({})\n",
+            integration.method, integration.steps, integration.reason
+        ));
+    }
     text
 }
 

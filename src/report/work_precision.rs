@@ -317,6 +317,6 @@ mod tests {
         let (order, halvings) = observed(&pairs, 1.0, 0.0).expect("some halvings are clear");
         assert_eq!(halvings, 2);
         assert!((order - 4.0).abs() < 1e-12, "{order}");
-        assert_eq!(observed(&pairs[4..], 1.0, self.gradient_floor), None);
+        assert_eq!(observed(&pairs[4..], 1.0, 0.0), None);
     }
 }

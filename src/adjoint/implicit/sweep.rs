@@ -5,7 +5,7 @@ use crate::functions::Scene;
 use crate::integrate::grid::Place;
 use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::formula::memory_size;
-use crate::integrate::implicit::march::dense;
+use crate::integrate::implicit::predict::dense;
 use crate::integrate::implicit::radau::Scheme;
 use crate::integrate::{Method, Trajectory};
 use crate::system::Numbering;

@@ -131,6 +131,8 @@ impl<'a> Bench<'a> {
         let seen = Simulation {
             at: self.at(run),
             observations,
+            reason: String::new(),
+            warning: None,
         };
         let (position, velocity) = seen.constraint_drift();
         ([seen.energy_drift(), position, velocity], seen.at.run)

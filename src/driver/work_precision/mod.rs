@@ -13,6 +13,7 @@ mod reference;
 use crate::integrate::choice::{self, NON_STIFF, STIFF};
 use crate::integrate::{IntegrationFailure, Method, Settings, Spacing, Start, simulate};
 use crate::problem::Problem;
+use crate::report::positions::Positions;
 use crate::report::{PrecisionRow, WorkPrecision};
 use crate::system::assembly;
 use bench::Bench;
@@ -29,7 +30,7 @@ pub struct Plan {
     /// Function whose gradient is judged, by index.
     pub function: Option<usize>,
     /// Name of a file and its positions by body at the end (m), instead of those of a run.
-    pub reference: Option<(String, Vec<(usize, [f64; 3])>)>,
+    pub reference: Option<(String, Positions)>,
 }
 
 /// Decades of the tolerances.
@@ -182,7 +183,7 @@ impl Measurement<'_> {
             if let (Some(step), None) = (row.step, &warning) {
                 warning = choice::warning(&self.bench.scene.model, method, step);
             }
-            if !(row.error <= self.length) {
+            if row.error.is_nan() || row.error > self.length {
                 let text = format!("{:.1e} m off at the end", row.error);
                 self.notes
                     .push(format!("{}, {}: {text}", method.name(), describe(&spacing)));

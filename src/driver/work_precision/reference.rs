@@ -6,6 +6,7 @@ use crate::integrate::choice::{NON_STIFF, STIFF};
 use crate::integrate::{
     IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, simulate,
 };
+use crate::report::positions::Positions;
 
 /// Tolerance of the explicit reference.
 const EXPLICIT: f64 = 1e-13;
@@ -19,7 +20,7 @@ const SAMPLES: usize = 20_000;
 /// Positions at the end and a gradient that count as exact.
 pub struct Reference {
     /// Centres of mass at the end by body (m).
-    pub positions: Vec<(usize, [f64; 3])>,
+    pub positions: Positions,
     /// Gradient of the function in question.
     pub gradient: Option<Vec<f64>>,
     /// Distance of the positions from those of an independent run (m); NaN if there is none.

@@ -5,6 +5,7 @@ pub mod formula;
 pub mod ggl;
 pub mod march;
 pub mod newton;
+pub mod predict;
 pub mod radau;
 mod scales;
 pub mod stage_newton;

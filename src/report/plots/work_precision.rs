@@ -65,13 +65,7 @@ pub fn work_precision(measured: &WorkPrecision) -> Result<String, ReportError> {
     let mut canvas = Canvas::new(width, top + HEIGHT + BELOW + 4.0);
     legend.draw(&mut canvas, MARGIN, MARGIN);
     for (i, (title, label_y, label_x, pick)) in parts.into_iter().enumerate() {
-        let points = || {
-            measured
-                .rows
-                .iter()
-                .filter_map(|row| pick(row))
-                .filter(drawable)
-        };
+        let points = || measured.rows.iter().filter_map(pick).filter(drawable);
         let y = Axis::logarithmic(points().map(|point| point.1), 14, label_y);
         let x = Axis::logarithmic(points().map(|point| point.0), 10, label_x);
         let room = room_left([&y]) + 4.0;

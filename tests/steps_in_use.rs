@@ -1,0 +1,118 @@
+//! The method that a scene chooses, the steps that are kept from design to design, and what is said of
+//! both.
+
+use flexbody::driver::evaluate::Evaluated;
+use flexbody::driver::integration::Integration;
+use flexbody::driver::simulate;
+use flexbody::integrate::{Method, Spacing};
+use flexbody::problem::{Override, Problem};
+use std::path::Path;
+
+fn load(name: &str, changes: &[&str]) -> Problem {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/{name}.json"));
+    let parse = |text: &&str| Override::parse(text).expect("an override");
+    let changes: Vec<Override> = changes.iter().map(parse).collect();
+    Problem::load(&path, &changes).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+#[test]
+fn a_rigid_scene_is_integrated_explicitly() {
+    let problem = load("trebuchet_release_time", &[]);
+    let motion = simulate(&problem, &problem.start()).expect("runs");
+    assert_eq!(motion.at.run.method, Method::Dop853);
+    assert!(motion.reason.contains("not stiff"), "{}", motion.reason);
+    assert_eq!(motion.warning, None);
+    assert_eq!(motion.at.run.counts.newton_iterations, 0);
+}
+
+/// A spring of 1e5 rad/s bounds explicit steps by 6e-5 s, 50 000 for 3 s; Radau IIA needs a
+/// thirtieth.
+#[test]
+fn a_stiff_scene_hands_over_by_itself() {
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/benchmarks/stiff_pendulum.json");
+    let text = std::fs::read_to_string(path).expect("a problem");
+    let mut document: serde_json::Value = serde_json::from_str(&text).expect("valid JSON");
+    document["simulation"] = serde_json::json!({"duration": 3, "tolerance": 1e-7});
+    let problem = Problem::parse(&document.to_string(), "stiff.json", &[]).expect("no faults");
+    let motion = simulate(&problem, &problem.start()).expect("runs");
+    assert_eq!(motion.at.run.method, Method::Radau { stages: 3 });
+    assert!(
+        motion.reason.contains("the scene is stiff"),
+        "{}",
+        motion.reason
+    );
+    assert!(
+        motion.at.run.grid.steps() < 3000,
+        "{}",
+        motion.at.run.grid.steps()
+    );
+
+    document["simulation"]["method"] = serde_json::json!("dop853");
+    let problem = Problem::parse(&document.to_string(), "stiff.json", &[]).expect("no faults");
+    let failure = simulate(&problem, &problem.start())
+        .map(|_| ())
+        .expect_err("is refused");
+    let told = failure.to_string();
+    assert!(told.contains("stiff") && told.contains("radau"), "{told}");
+}
+
+/// BDF of order 3 and more is warned of by name where it amplifies an undamped spring.
+#[test]
+fn an_unstable_formula_is_told() {
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/benchmarks/stiff_pendulum.json");
+    let text = std::fs::read_to_string(path).expect("a problem");
+    let mut document: serde_json::Value = serde_json::from_str(&text).expect("valid JSON");
+    document["loads"]["spring"]["spring"]["stiffness"] = serde_json::json!(1e6);
+    for (order, told) in [(2, false), (3, true), (4, true), (5, true)] {
+        document["simulation"] = serde_json::json!({
+            "duration": 0.3, "steps": 300, "method": {"bdf": {"order": order}}
+        });
+        let problem = Problem::parse(&document.to_string(), "stiff.json", &[]).expect("no faults");
+        let motion = simulate(&problem, &problem.start()).expect("runs");
+        assert_eq!(motion.warning.is_some(), told, "order {order}");
+        if let Some(warning) = motion.warning {
+            assert!(
+                warning.contains("\"spring\"") && warning.contains("bdf"),
+                "{warning}"
+            );
+        }
+    }
+}
+
+/// Steps stay as they are for designs near the first, stretched to the duration, and are chosen anew
+/// where they no longer suffice.
+#[test]
+fn steps_are_kept_until_they_do_not_suffice() {
+    let problem = load("trebuchet_release_time", &["/simulation/tolerance=1e-6"]);
+    let start = problem.start();
+    let mut integration = Integration::new(&problem, &problem.scene(&start), false, false);
+    let mut ends = Vec::new();
+    for (moved, refreshed) in [(0.0, true), (1e-3, false), (-2e-3, false)] {
+        let mut x = start.clone();
+        x[6] += moved;
+        let (at, changed) = Evaluated::with(&mut integration, &problem, &x).expect("runs");
+        assert_eq!(changed.is_some(), refreshed, "{moved}");
+        assert_eq!(at.run.duration, x[6]);
+        ends.push(at.run.grid.ends().to_vec());
+    }
+    assert_eq!(ends[0], ends[1]);
+    assert_eq!(ends[0], ends[2]);
+    assert_eq!(integration.refreshes, 0);
+    // A throw of another shape: a light sling, released late.
+    let far = [500.0, 8.0, 30.0, 0.004, 0.02, -0.3, 1.8];
+    let (at, changed) = Evaluated::with(&mut integration, &problem, &far).expect("runs");
+    let changed = changed.expect("steps that suffice");
+    let why = &changed.reason;
+    assert!(
+        why.contains("exceeds") || why.contains("too large"),
+        "{why}"
+    );
+    assert_eq!(integration.refreshes, 1);
+    assert!(at.run.step_error <= 1e-6);
+    let Some((settings, _)) = integration.chosen() else {
+        panic!("a design was simulated");
+    };
+    assert_eq!(settings.spacing, Spacing::Frozen(at.run.grid.clone()));
+}
