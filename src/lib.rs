@@ -1,6 +1,6 @@
 //! Design of flexible multibody systems by gradient.
 //!
-//! A problem file describes bodies, joints, design variables, functions, an objective and
+//! A problem file describes bodies, joints, loads, design variables, functions, an objective and
 //! constraints; it becomes a scene, the scene a motion, the motion values, and the adjoint of the
 //! motion their gradients, with which an interior-point method finds the best design.
 //!
@@ -33,15 +33,15 @@
 //! |---|---|
 //! | [`math`] | scalars (real, complex, dual), rotations, smooth maxima |
 //! | [`linalg`] | static sparsity patterns, sparse LU |
-//! | [`model`] | bodies, joints, gravity: parameters and nothing that moves |
-//! | [`system`] | kinematics, dynamics, constraints with all derivatives; consistent starts |
-//! | [`integrate`] | the equations that a method solves, Newton's method, the march |
+//! | [`model`] | bodies, joints, loads, gravity: parameters and nothing that moves |
+//! | [`system`] | kinematics, dynamics, constraints, loads with all derivatives; consistent starts |
+//! | [`integrate`] | the methods, explicit and implicit; their equations, steps and trajectories |
 //! | [`functions`] | functions of interest and their derivatives |
-//! | [`adjoint`] | the backward march |
+//! | [`adjoint`] | exact gradients: the backward march through each method |
 //! | [`optimiser`] | nonlinear programs; knows nothing of mechanics |
 //! | [`problem`] | the problem file: faults, schema, the map from a design to a scene |
-//! | [`report`] | records, comparison, figures, text |
-//! | [`driver`] | simulate, check, optimise |
+//! | [`report`] | records, comparison, tables, figures, text |
+//! | [`driver`] | simulate, check, optimise; estimate errors, measure methods |
 //! | [`cli`] | the command line |
 
 pub mod adjoint;
