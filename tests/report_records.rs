@@ -358,7 +358,7 @@ trebuchet: Converged to the tolerance 1e-6.
 
 Maximised range: 546.507 → 849.8985 m (+55.5 %)
   the true maximum is 867.7 m, the aggregate differs from it by -17.8 m
-  accurate to about 0.003 m (estimated error of the time steps)
+  accurate to about 0.003 m (estimated error of steps and samples)
 
   variable       start      optimum  unit  bounds      active
   counterweight    400          500  kg    300 … 500   at its upper bound

@@ -94,8 +94,8 @@ pub(super) fn record(
         && end.peak_sharpness > 1.0
     {
         warnings.push(format!(
-            "the peak of \"{}\" is narrower than a step (rho x curvature x h^2 = {:.1}): refine \
-             the steps or lower rho",
+            "the peak of \"{}\" is narrower than the distance of samples (rho x curvature x h^2 \
+             = {:.1}): take more samples or lower rho",
             problem.function_names[objective.function], end.peak_sharpness
         ));
     }

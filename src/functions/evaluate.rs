@@ -17,8 +17,8 @@ pub struct Evaluated<S> {
     pub value: S,
     /// For an aggregate: the largest sampled value and its time (s).
     pub maximum: Option<(f64, f64)>,
-    /// For an aggregate: ρ κ h² with κ the curvature at the peak; above about one the step is too
-    /// coarse to resolve the peak that ρ asks for.
+    /// For an aggregate: ρ κ h² with κ the curvature at the peak and h the distance of the samples;
+    /// above about one these are too coarse to resolve the peak that ρ asks for.
     pub peak_sharpness: f64,
 }
 

@@ -12,7 +12,7 @@ pub enum Reduction {
     Integral,
     /// Integral Kreisselmeier–Steinhauser function
     /// g_m + (1/ρ) ln[(1/T) ∫ exp(ρ (g − g_m)) dt], a smooth lower bound of the maximum that
-    /// does not move when the step is refined (Kennedy & Hicken 2015, eq. 10).
+    /// does not move when the samples are refined (Kennedy & Hicken 2015, eq. 10).
     Ks {
         /// Aggregation parameter ρ, in 1/unit of g; larger is closer to the maximum.
         rho: f64,

@@ -31,8 +31,8 @@ pub struct Chosen<S> {
     pub reason: String,
 }
 
-/// Simulates by `method`, or, without one, by the explicit method unless the scene proves stiff and
-/// by Radau IIA then.
+/// Simulates by `method`, or, without one, by the explicit method; by Radau IIA if the scene proves
+/// stiff, or if explicit steps of equal size fail.
 ///
 /// # Errors
 /// As [`simulate`].

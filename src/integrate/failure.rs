@@ -38,7 +38,7 @@ pub enum IntegrationFailure {
     /// The positions could not be brought back onto the constraints.
     #[error(
         "the joints could not be closed again at t = {time:.6e} s (step {step}): the step is too \
-         large for the motion"
+         large for the motion, or the mechanism is at a singular position"
     )]
     Projection {
         /// Time of the step's end (s).

@@ -112,7 +112,8 @@ pub enum Samples {
     /// The ends of the steps.
     StepEnds,
     /// This many intervals of equal size; between the ends of steps by the method's own
-    /// polynomial.
+    /// polynomial. Formulas of one stage are sampled at the ends of their steps whatever is asked
+    /// for.
     Uniform(usize),
 }
 

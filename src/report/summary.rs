@@ -64,7 +64,7 @@ fn objective(optimum: &Optimum) -> String {
     }
     if let Some(error) = objective.estimated_error {
         text.push_str(&format!(
-            "  accurate to about {}{unit} (estimated error of the time steps)\n",
+            "  accurate to about {}{unit} (estimated error of steps and samples)\n",
             significant(error, 2),
         ));
     }

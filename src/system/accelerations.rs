@@ -1,7 +1,7 @@
 //! Accelerations and multipliers of a state, from the index-1 equations
 //!
 //! ```text
-//! M v̇ + G(q)ᵀ λ = f(q, v),        G(q) v̇ = γ(q, v)
+//! M v̇ + G(q)ᵀ λ = f(q, v, t),        G(q) v̇ = γ(q, v)
 //! ```
 //!
 //! and the projections that use the same matrix [M Gᵀ; G 0].

@@ -1,4 +1,5 @@
-//! Bodies in motion: kinematics q̇ = T(q) v and dynamics M v̇ = f(q, v), with their derivatives.
+//! Bodies in motion: kinematics q̇ = T(q) v and dynamics M v̇ = f(v) under gravity alone, with their
+//! derivatives; other forces are in `loads`.
 //!
 //! Rigid body, reference point at the centre of mass, ω and torques in body axes:
 //!

@@ -1,7 +1,7 @@
 //! The mechanical system: what integrators assemble their equations from.
 //!
 //! States are positions q (per body r, p) and velocities v (per body ṙ in ground axes, ω in body
-//! axes), with the kinematics q̇ = T(q) v, the dynamics M(q) v̇ = f(q, v) − G(q)ᵀ λ and the
+//! axes), with the kinematics q̇ = T(q) v, the dynamics M v̇ = f(q, v, t) − G(q)ᵀ λ and the
 //! constraints Φ(q) = 0, G = Φ_q T. Small changes of position are taken in the tangent,
 //! δq = T(q) δy, so the Euler parameters stay of unit length and need no multiplier.
 //! Nothing here knows how time is discretised.

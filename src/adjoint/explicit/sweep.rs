@@ -86,8 +86,8 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Pulls the cotangents of stage i back to its state, where `field` stands, and leaves them in
-    /// `of.sample`'s place of the stage (see [`Sweep::spread`]).
+    /// Pulls the cotangents of the derivatives at stage i back to its state, where `field` stands, and
+    /// puts them in their place (see [`Sweep::spread`]).
     pub fn stage(
         &mut self,
         i: usize,

@@ -6,7 +6,7 @@ use super::{StepData, Tape};
 use crate::integrate::control::{Controller, Scale};
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Place, place};
-use crate::integrate::settings::{Method, Settings};
+use crate::integrate::settings::{Method, Settings, Spacing};
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::watch;
 use crate::linalg::{SingularMatrix, SolveScalar};
@@ -48,6 +48,8 @@ pub fn march<S: SolveScalar>(
     let mut run = Trajectory::start(numbering.clone(), Method::Dop853, duration, start, tape);
     let mut controller = Controller::new(&settings.spacing, ORDER, &scale, duration.re());
     let mut stiffness = Stiffness::default();
+    // Kept steps were found good where they were chosen, and are judged by their error.
+    let watched = !matches!(settings.spacing, Spacing::Frozen(_));
     let (mut from, mut to) = (node.clone(), node);
     let mut next = 1;
     while let Some(width) = controller.next(run.grid.reached()) {
@@ -82,7 +84,7 @@ pub fn march<S: SolveScalar>(
         }
         controller.accept();
         watch(model, numbering, &to.q, (number, duration.re() * end))?;
-        if stiffness.seen(&stepper, &scale, &to, h.re()) && controller.chooses() {
+        if stiffness.seen(&stepper, &scale, &to, h.re()) && watched {
             return Err(IntegrationFailure::Stiff {
                 time: duration.re() * end,
                 step: number,

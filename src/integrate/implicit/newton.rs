@@ -26,7 +26,7 @@ const ITERATIONS: usize = 25;
 /// How rates follow from increments in this step: q̇ = c dq + `qdot`, v̇ = c dv + `vdot`.
 #[derive(Clone, Debug)]
 pub struct History<S> {
-    /// c = a0 / h.
+    /// c, the formula's lead coefficient divided by h.
     pub c: S,
     /// History part of q̇.
     pub qdot: Vec<S>,

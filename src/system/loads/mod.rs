@@ -1,7 +1,7 @@
 //! The loads of a model in motion: generalised forces, their Jacobians, pull-backs and energy.
 //!
 //! A load is linear in the virtual velocities ψ that it is paired with: ψᵀf is its power at these
-//! velocities. `power.rs` writes it down and `pull.rs` its transposed derivative, once for each kind
+//! velocities. `power.rs` writes the forces down and `pull.rs` the transposed derivative of the power, once for each kind
 //! and for any scalar; forces, Jacobians and pull-backs are all made of these two, so that they
 //! cannot disagree.
 
