@@ -269,8 +269,12 @@ pub fn pull_rates(
 pub fn add_unit_cotangent(numbering: &Numbering, q: &[f64], y: &[f64], out: &mut [f64]) {
     for body in 0..numbering.bodies() {
         let o = numbering.position(body);
+        let six = &y[numbering.velocity(body)..][..6];
+        if six.iter().all(|&x| x == 0.0) {
+            continue;
+        }
         let (_, p) = positions_of(&q[o..]);
-        let (by_r, by_theta) = velocities_of(&y[numbering.velocity(body)..]);
+        let (by_r, by_theta) = velocities_of(six);
         add7(
             &mut out[o..],
             &by_r,

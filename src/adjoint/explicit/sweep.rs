@@ -10,6 +10,7 @@ use crate::integrate::grid::Place;
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
 use crate::system::bodies;
+use std::ops::Range;
 
 /// One function with its cotangents of the stages.
 pub(super) struct Sweep<'a> {
@@ -59,23 +60,37 @@ impl<'a> Sweep<'a> {
             (Place::Inside { step, theta }, Some((data, from))) => {
                 let width = run.grid.width(step);
                 let h = run.duration * width;
-                let [raw, ..] = data.dense(from, h, theta);
+                // A function looks at few bodies: what lies between the first and the last.
+                let bodies = touched_bodies(numbering, [y, v, a]);
+                let (from_q, to_q) = (
+                    numbering.position(bodies.start),
+                    numbering.position(bodies.end),
+                );
+                let (from_v, to_v) = (
+                    numbering.velocity(bodies.start),
+                    numbering.velocity(bodies.end),
+                );
+                let (in_q, in_v) = (from_q..to_q, from_v..to_v);
+                let raw = data.dense_positions(from, h, theta, in_q.clone());
                 bodies::add_unit_cotangent(numbering, &raw, y, &mut q);
+                let (q, v, a) = (&q[in_q.clone()], &v[in_v.clone()], &a[in_v.clone()]);
                 let (w, rate) = dense_weights(theta);
                 for i in 0..ALL {
                     if w[i] == 0.0 && rate[i] == 0.0 {
                         continue;
                     }
                     self.touched[i] = true;
-                    add_scaled(row_mut(&mut self.qdot, nq, i), h * w[i], &q);
-                    let by_a = row_mut(&mut self.a, nv, i);
+                    let by_q = &mut row_mut(&mut self.qdot, nq, i)[in_q.clone()];
+                    add_scaled(by_q, h * w[i], q);
+                    let by_a = &mut row_mut(&mut self.a, nv, i)[in_v.clone()];
                     add_scaled(by_a, h * w[i], v);
                     add_scaled(by_a, rate[i], a);
-                    let slope = dot(&q, row(&data.qdot, nq, i)) + dot(v, row(&data.a, nv, i));
+                    let slope = dot(q, &row(&data.qdot, nq, i)[in_q.clone()])
+                        + dot(v, &row(&data.a, nv, i)[in_v.clone()]);
                     self.of.by_duration += width * w[i] * slope;
                 }
-                add_scaled(&mut self.before.0, 1.0, &q);
-                add_scaled(&mut self.before.1, 1.0, v);
+                add_scaled(&mut self.before.0[in_q], 1.0, q);
+                add_scaled(&mut self.before.1[in_v], 1.0, v);
             }
             _ => {
                 bodies::rates_cotangent(numbering, run.q(k), y, &mut q);
@@ -195,6 +210,19 @@ impl<'a> Sweep<'a> {
         self.a.fill(0.0);
         self.touched = [false; ALL];
     }
+}
+
+/// Bodies from the first to the last that have a cotangent.
+fn touched_bodies(numbering: &Numbering, cotangents: [&[f64]; 3]) -> Range<usize> {
+    let touched = |body: &usize| {
+        let o = numbering.velocity(*body);
+        cotangents
+            .iter()
+            .any(|all| all[o..o + 6].iter().any(|&x| x != 0.0))
+    };
+    let first = (0..numbering.bodies()).find(touched).unwrap_or(0);
+    let last = (first..numbering.bodies()).rfind(touched);
+    first..last.map_or(first, |last| last + 1)
 }
 
 fn row_mut(rows: &mut [f64], width: usize, i: usize) -> &mut [f64] {

@@ -94,6 +94,29 @@ impl<S: SolveScalar> StepData<S> {
     }
 }
 
+impl StepData<f64> {
+    /// The positions of [`StepData::dense`] in `range`, zeros elsewhere.
+    pub fn dense_positions(
+        &self,
+        node: &Node<f64>,
+        h: f64,
+        theta: f64,
+        range: std::ops::Range<usize>,
+    ) -> Vec<f64> {
+        let (w, _) = dense_weights(theta);
+        let nq = node.q.len();
+        let mut out = vec![0.0; nq];
+        out[range.clone()].copy_from_slice(&node.q[range.clone()]);
+        for (i, w) in w.iter().enumerate() {
+            let row = &self.qdot[i * nq..(i + 1) * nq];
+            for (out, x) in out[range.clone()].iter_mut().zip(&row[range.clone()]) {
+                *out += h * w * x;
+            }
+        }
+        out
+    }
+}
+
 /// Adds `scale` times row i of `rows`, which are as long as `out`.
 fn add_row<S: SolveScalar>(out: &mut [S], scale: S, rows: &[S], i: usize) {
     let row = &rows[i * out.len()..(i + 1) * out.len()];
