@@ -55,7 +55,9 @@ pub fn estimate(
     which: &[usize],
     gradients: bool,
 ) -> Result<Vec<FunctionError>, IntegrationFailure> {
-    let run = simulate(&at.scene.model, at.scene.duration, &halved(&at.run))?;
+    let sums = |f: &usize| looks_at_the_whole(&at.scene.functions[*f]);
+    let finer = halved(&at.run, which.iter().any(sums));
+    let run = simulate(&at.scene.model, at.scene.duration, &finer)?;
     let mut fine = Evaluated {
         x: at.x.clone(),
         scene: at.scene.clone(),
@@ -72,7 +74,6 @@ pub fn estimate(
         Ok(all)
     };
     let (coarse, finer) = (numbers(at, which)?, numbers(&fine, which)?);
-    let sums = |f: &usize| looks_at_the_whole(&at.scene.functions[*f]);
     let summed: Vec<usize> = which.iter().copied().filter(sums).collect();
     let doubled = fine.run.last() == 2 * at.run.last();
     if doubled {
@@ -105,11 +106,11 @@ pub fn estimate(
 }
 
 /// The settings of a run with every step cut in two and twice the samples.
-fn halved(run: &Trajectory<f64>) -> Settings {
+fn halved(run: &Trajectory<f64>, summed: bool) -> Settings {
     let instants = run.last();
     let samples = if run.instants == run.grid.ends() {
         Samples::StepEnds
-    } else if instants == 1 {
+    } else if instants == 1 && !summed {
         Samples::Uniform(1)
     } else {
         Samples::Uniform(2 * instants)

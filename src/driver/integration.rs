@@ -71,6 +71,17 @@ impl Integration {
         self.samples
     }
 
+    /// Samples the whole motion from now on, for figures; functions that look at the end only do not
+    /// change by it.
+    pub fn see_whole(&mut self) {
+        if self.samples == Samples::Uniform(1) {
+            self.samples = Samples::Uniform(SAMPLES);
+            if let Some((settings, _)) = &mut self.chosen {
+                settings.samples = self.samples;
+            }
+        }
+    }
+
     /// Goes on with the steps of an earlier run.
     pub fn restore(&mut self, method: Method, grid: Grid) {
         let settings = Settings {
@@ -78,7 +89,8 @@ impl Integration {
             spacing: Spacing::Frozen(grid),
             ..self.wanted()
         };
-        self.chosen = Some((settings, "as in the run that is resumed".into()));
+        let reason = choice::reason(self.method.is_some(), method);
+        self.chosen = Some((settings, reason.into()));
     }
 
     /// What is wrong with the method in use for a scene whose steps it made, if anything.

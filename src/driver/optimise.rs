@@ -3,7 +3,7 @@
 use super::evaluate::{Evaluator, unscaled};
 use super::journal::Journal;
 use super::record::record;
-use super::simulate::{Simulation, simulate};
+use super::simulate::{Simulation, simulate, simulate_with};
 use crate::optimiser::{self, Observer, Options, Outcome, Phase, Row, SavedState};
 use crate::problem::Problem;
 use crate::report::history::{Column, History, HistoryRow};
@@ -64,7 +64,14 @@ pub fn optimise<'a>(
     let history = recorder.history;
     let counts = program.counts;
     let start = simulate(problem, &problem.start()).ok();
-    let end = simulate(problem, &unscaled(problem, &outcome.x)).ok();
+    // With the steps that its values were found with.
+    program.integration.see_whole();
+    let end = simulate_with(
+        &mut program.integration,
+        problem,
+        &unscaled(problem, &outcome.x),
+    )
+    .ok();
     let optimum = record(
         problem,
         file,

@@ -24,7 +24,19 @@ pub struct Simulation {
 /// If the simulation fails.
 pub fn simulate(problem: &Problem, x: &[f64]) -> Result<Simulation, IntegrationFailure> {
     let mut integration = Integration::new(problem, &problem.scene(x), true, false);
-    let (at, _) = Evaluated::with(&mut integration, problem, x)?;
+    simulate_with(&mut integration, problem, x)
+}
+
+/// Simulates the design `x` of `problem` with the steps in use.
+///
+/// # Errors
+/// If the simulation fails.
+pub fn simulate_with(
+    integration: &mut Integration,
+    problem: &Problem,
+    x: &[f64],
+) -> Result<Simulation, IntegrationFailure> {
+    let (at, _) = Evaluated::with(integration, problem, x)?;
     let warning = integration.warning(&at.scene, &at.run);
     let reason = integration.chosen().map_or("", |(_, reason)| reason).into();
     let (model, run) = (&at.scene.model, &at.run);

@@ -4,8 +4,9 @@ use super::settings::{Method, Settings, Spacing};
 use super::trajectory::Trajectory;
 use super::{IntegrationFailure, simulate};
 use crate::linalg::SolveScalar;
-use crate::model::Model;
+use crate::math::Vec3;
 use crate::model::load::LoadKind;
+use crate::model::{Model, RigidBody};
 
 /// The method of scenes that are not stiff.
 pub const NON_STIFF: Method = Method::Dop853;
@@ -58,14 +59,10 @@ pub fn simulate_by<S: SolveScalar>(
         })
     };
     if let Some(method) = method {
-        return with(method, "as the problem says".into());
+        return with(method, reason(true, method).into());
     }
-    match with(NON_STIFF, "the scene is rigid and not stiff".into()) {
-        Err(IntegrationFailure::Stiff { time, .. }) => {
-            let reason =
-                format!("the scene is stiff: stability bounds explicit steps at t = {time:.4} s");
-            with(STIFF, reason)
-        }
+    match with(NON_STIFF, reason(false, NON_STIFF).into()) {
+        Err(IntegrationFailure::Stiff { .. }) => with(STIFF, reason(false, STIFF).into()),
         Err(
             IntegrationFailure::NotFinite { time, .. }
             | IntegrationFailure::Projection { time, .. }
@@ -75,6 +72,15 @@ pub fn simulate_by<S: SolveScalar>(
             with(STIFF, reason)
         }
         found => found,
+    }
+}
+
+/// Why a method is in use: the problem says so, or the scene's stiffness.
+pub fn reason(given: bool, method: Method) -> &'static str {
+    match method {
+        _ if given => "as the problem says",
+        Method::Dop853 => "the scene is rigid and not stiff",
+        _ => "the scene is stiff: stability, not accuracy, bounds explicit steps",
     }
 }
 
@@ -99,19 +105,31 @@ pub fn warning(model: &Model<f64>, method: Method, h: f64) -> Option<String> {
     })
 }
 
-/// Angular frequency (rad/s) and damping ratio of the vibration of its bodies on a spring.
+/// Largest acceleration of a point of a free body by a unit force there (1/kg).
+fn mobility(body: &RigidBody<f64>, point: &Vec3<f64>) -> f64 {
+    let least = body.inertia.symmetric_eigenvalues().min();
+    let turning = point.norm_squared() / least;
+    1.0 / body.mass + if turning.is_finite() { turning } else { 0.0 }
+}
+
+/// Angular frequency (rad/s), at most, and damping ratio of the vibration of its bodies on a spring.
 fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
     let (stiffness, damping, inverse) = match *load {
         LoadKind::Spring {
             body_a,
             body_b,
+            point_a,
+            point_b,
             stiffness,
             damping,
             ..
         } => {
-            let bodies = [Some(body_a), body_b].into_iter().flatten();
-            let inverse: f64 = bodies.map(|body| 1.0 / model.bodies[body].mass).sum();
-            (stiffness, damping, inverse)
+            let ends = [(Some(body_a), point_a), (body_b, point_b)];
+            let inverse = ends.into_iter().map(|(body, point)| match body {
+                Some(body) => mobility(&model.bodies[body], &point),
+                None => 0.0,
+            });
+            (stiffness, damping, inverse.sum())
         }
         LoadKind::TorsionSpring {
             joint,
@@ -120,7 +138,7 @@ fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
             ..
         } => {
             let joint = &model.joints[joint];
-            let about = |body: usize, axis: &crate::math::Vec3<f64>| {
+            let about = |body: usize, axis: &Vec3<f64>| {
                 1.0 / axis.dot(&(model.bodies[body].inertia * axis))
             };
             let a = about(joint.body_a, &joint.frame_a.axes[2]);

@@ -4,6 +4,7 @@ use super::grid::Grid;
 use super::settings::Spacing;
 use crate::math::Scalar;
 use crate::model::Model;
+use crate::model::course::Course;
 use crate::system::initial::InitialState;
 use crate::system::{Numbering, assembly};
 
@@ -104,6 +105,29 @@ fn largest<S: Scalar>(x: &[S]) -> f64 {
     x.iter().fold(0.0, |m, x| m.max(x.re().abs()))
 }
 
+/// Part of a period of the fastest harmonic load that a step may take.
+const PART_OF_PERIOD: f64 = 0.25;
+
+/// What the loads of a model say of the steps: fractions of the duration at which steps must end,
+/// ascending, and their largest width.
+fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64>, f64) {
+    let mut stops = Vec::new();
+    let mut widest = 1.0_f64;
+    for course in model.loads.iter().filter_map(|load| load.kind.course()) {
+        match course {
+            Course::Constant(_) => {}
+            Course::Harmonic { frequency, .. } => {
+                let period = 1.0 / frequency.re().abs();
+                widest = widest.min(PART_OF_PERIOD * period / duration);
+            }
+            Course::Table { times, .. } => stops.extend(times.iter().map(|t| t.re() / duration)),
+        }
+    }
+    stops.retain(|&at| at > 0.0 && at < 1.0);
+    stops.sort_by(f64::total_cmp);
+    (stops, widest.max(SMALLEST * 10.0))
+}
+
 /// Gives the width of one step after the other, in fractions of the duration.
 #[derive(Clone, Debug)]
 pub struct Controller {
@@ -114,6 +138,11 @@ pub struct Controller {
     /// Factor for the step to come.
     factor: f64,
     rejected: bool,
+    /// Ends that chosen steps must not step over, and the largest width (see [`load_steps`]).
+    stops: Vec<f64>,
+    widest: f64,
+    /// Width that was wanted where a stop cut the step.
+    uncut: Option<f64>,
     /// Width of the step that could not be made, and how many others were tried since.
     leap: Option<(f64, usize)>,
     latest: f64,
@@ -132,7 +161,13 @@ enum Plan {
 
 impl Controller {
     /// A controller for a method whose steps have an error of the given order.
-    pub fn new(spacing: &Spacing, order: usize, scale: &Scale, duration: f64) -> Self {
+    pub fn new<S: Scalar>(
+        spacing: &Spacing,
+        order: usize,
+        scale: &Scale,
+        (model, duration): (&Model<S>, f64),
+    ) -> Self {
+        let (stops, widest) = load_steps(model, duration);
         let plan = match spacing {
             Spacing::Steps(steps) => Plan::Given {
                 grid: Grid::uniform(*steps),
@@ -158,6 +193,9 @@ impl Controller {
             estimates: !matches!(spacing, Spacing::Steps(_)),
             factor: 1.0,
             rejected: false,
+            stops,
+            widest,
+            uncut: None,
             leap: None,
             latest: 0.0,
             largest: 0.0,
@@ -193,6 +231,12 @@ impl Controller {
                     return None;
                 }
                 self.tries += 1;
+                *width = width.min(self.widest);
+                let next = self.stops.iter().find(|&&at| at > reached + SMALLEST);
+                if let Some(at) = next.filter(|&&at| at < reached + *width) {
+                    self.uncut.get_or_insert(*width);
+                    *width = at - reached;
+                }
                 // Two equal steps rather than a whole one and a remainder.
                 if *width >= rest * (1.0 - 1e-10) {
                     *width = rest;
@@ -231,6 +275,7 @@ impl Controller {
                     self.factor = factor;
                     true
                 } else {
+                    self.uncut = None;
                     *width *= if relative.is_finite() {
                         factor.min(SAFETY)
                     } else {
@@ -250,7 +295,11 @@ impl Controller {
         self.rejected = false;
         match &mut self.plan {
             Plan::Given { next, .. } => *next += 1,
-            Plan::Chosen { width, .. } => *width *= self.factor,
+            Plan::Chosen { width, .. } => {
+                // A step that was cut short says little of the next one.
+                let wanted = self.uncut.take().unwrap_or(0.0);
+                *width = (*width * self.factor).max(wanted * self.factor.min(1.0));
+            }
         }
     }
 

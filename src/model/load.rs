@@ -147,6 +147,20 @@ impl<S: Scalar> Load<S> {
 }
 
 impl<S: Scalar> LoadKind<S> {
+    /// How the load changes in time, if it does.
+    pub fn course(&self) -> Option<&Course<S>> {
+        match self {
+            LoadKind::Force { magnitude, .. } | LoadKind::Torque { magnitude, .. } => {
+                Some(magnitude)
+            }
+            LoadKind::Spring { .. }
+            | LoadKind::TorsionSpring { .. }
+            | LoadKind::Damping { .. }
+            | LoadKind::BallDamping { .. }
+            | LoadKind::Friction { .. } => None,
+        }
+    }
+
     /// The load with every parameter replaced by `f` of it.
     pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> LoadKind<T> {
         match self {

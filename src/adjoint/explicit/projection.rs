@@ -8,6 +8,9 @@ use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::bodies::{self, positions_of, velocities_of};
 
+/// Most steps of refinement; a correction as large as a millionth needs two.
+const REFINEMENTS: usize = 40;
+
 /// Pulls the cotangents of the projected state (`sweep.of`) back to the state before the
 /// projection; `field` stands at the projected state and is factorised. `scratch` receives
 /// derivatives that are of no use.
@@ -47,26 +50,35 @@ pub(super) fn pull_back(
     field.pull_rate(&to.v, &psi[nv..], &mut more, cot);
     y.iter_mut().zip(&more).for_each(|(y, &m)| *y += m);
 
-    // M T⁺ (q − q~) + Gᵀs = 0, Φ(q) = 0: its matrix differs from the factorised one by terms of
-    // the size of the correction, which one step of refinement takes in.
+    // M T⁺ (q − q~) + Gᵀs = 0, Φ(q) = 0: its matrix differs from the factorised one by terms X of
+    // the size of the correction, which iterative refinement takes in.
     let mut psi = y;
     psi.resize(nv + to.lambda.len(), 0.0);
     field.solve(&mut psi);
+    let first = psi.clone();
     let mut rest = vec![0.0; nv];
-    field.pull_rate(&psi[..nv], &data.s, &mut rest, scratch);
-    for (i, body) in field.model.bodies.iter().enumerate() {
-        let (o, u) = (numbering.position(i), numbering.velocity(i));
-        let (_, p) = positions_of(&to.q[o..]);
-        let (_, raw) = positions_of(&data.q_raw[o..]);
-        let w = body.inertia.tr_mul(&velocities_of(&psi[u..]).1);
-        let turned = rotation::rate_product(&p, &rotation::rate_transposed(&raw, &w)) - w;
-        bodies::add6(&mut rest[u..], &Vec3::zeros(), &turned);
+    let mut before = f64::INFINITY;
+    for _ in 0..REFINEMENTS {
+        rest = difference(field, data, to, &psi[..nv], scratch);
+        let mut change = rest.clone();
+        change.resize(psi.len(), 0.0);
+        field.solve(&mut change);
+        // ψ = K⁻¹ (ȳ − Xᵀψ).
+        let refined = first.iter().zip(&change).map(|(&x, &d)| x - d);
+        let (mut moved, mut size) = (0.0_f64, 0.0_f64);
+        for (x, new) in psi.iter_mut().zip(refined) {
+            moved = moved.max((new - *x).abs());
+            size = size.max(new.abs());
+            *x = new;
+        }
+        if moved <= f64::EPSILON * size || moved >= before {
+            break;
+        }
+        before = moved;
     }
     // M ψ = ȳ − Gᵀχ − Xᵀψ: what the cotangent loses beside ȳ.
     more.iter_mut().zip(&rest).for_each(|(m, &x)| *m -= x);
-    rest.resize(psi.len(), 0.0);
-    field.solve(&mut rest);
-    psi.iter_mut().zip(&rest).for_each(|(x, &d)| *x = d - *x);
+    psi.iter_mut().for_each(|x| *x = -*x);
     field.add_reactions(&psi[nv..], &mut more);
     let mut unused = vec![0.0; nv];
     field.pull_rate(&psi[..nv], &data.s, &mut unused, cot);
@@ -89,4 +101,27 @@ pub(super) fn pull_back(
         }
     }
     q.add(1.0, &change);
+}
+
+/// Xᵀψ: the derivative of the position projection's equations in the projected positions, without
+/// the mass matrix, transposed.
+fn difference(
+    field: &Accelerations<f64>,
+    data: &StepData<f64>,
+    to: &Node<f64>,
+    psi: &[f64],
+    scratch: &mut Model<f64>,
+) -> Vec<f64> {
+    let numbering = field.numbering;
+    let mut out = vec![0.0; psi.len()];
+    field.pull_rate(psi, &data.s, &mut out, scratch);
+    for (i, body) in field.model.bodies.iter().enumerate() {
+        let (o, u) = (numbering.position(i), numbering.velocity(i));
+        let (_, p) = positions_of(&to.q[o..]);
+        let (_, raw) = positions_of(&data.q_raw[o..]);
+        let w = body.inertia.tr_mul(&velocities_of(&psi[u..]).1);
+        let turned = rotation::rate_product(&p, &rotation::rate_transposed(&raw, &w)) - w;
+        bodies::add6(&mut out[u..], &Vec3::zeros(), &turned);
+    }
+    out
 }

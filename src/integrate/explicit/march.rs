@@ -19,6 +19,8 @@ use crate::system::initial::InitialState;
 /// h |λ| beyond which an explicit step is at the border of its stability region (Hairer & Wanner
 /// 1996, section IV.2), and how many such steps make a scene stiff.
 const STIFF: (f64, usize) = (6.1, 15);
+/// Difference of states, relative to their scale, that may be round-off.
+const NOISE: f64 = 1e-13;
 /// Steps within the stability region after which a suspicion is dropped.
 const NOT_STIFF: usize = 6;
 
@@ -46,7 +48,7 @@ pub fn march<S: SolveScalar>(
     });
     let scale = Scale::of(model, numbering, &start, duration.re());
     let mut run = Trajectory::start(numbering.clone(), Method::Dop853, duration, start, tape);
-    let mut controller = Controller::new(&settings.spacing, ORDER, &scale, duration.re());
+    let mut controller = Controller::new(&settings.spacing, ORDER, &scale, (model, duration.re()));
     let mut stiffness = Stiffness::default();
     // Kept steps were found good where they were chosen, and are judged by their error.
     let watched = !matches!(settings.spacing, Spacing::Frozen(_));
@@ -240,7 +242,8 @@ impl Stiffness {
             &away(&to.a, &data.a, nv),
             speeds,
         );
-        if dy > 0.0 && h * (df / dy).sqrt() > STIFF.0 {
+        // Round-off compared with round-off says nothing.
+        if dy > NOISE * NOISE && h * (df / dy).sqrt() > STIFF.0 {
             self.innocent = 0;
             self.suspicious += 1;
         } else {

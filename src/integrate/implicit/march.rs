@@ -43,7 +43,12 @@ pub fn march<S: SolveScalar>(
     };
     let scheme = Scheme::new(stages);
     let scale = Scale::of(model, numbering, &start, duration.re());
-    let mut controller = Controller::new(&settings.spacing, stages + 1, &scale, duration.re());
+    let mut controller = Controller::new(
+        &settings.spacing,
+        stages + 1,
+        &scale,
+        (model, duration.re()),
+    );
     let estimates = controller.estimates() && method.is_adaptive();
     let mut solver = Solver {
         method,

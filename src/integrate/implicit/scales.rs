@@ -75,7 +75,8 @@ impl Scales {
                 for part in 0..2 {
                     let change = largest(&six[3 * part..3 * part + 3]) * scale;
                     let [increment, value] = self.parts[half + part];
-                    if change > ROUND_OFF * value.max(increment) {
+                    // What has no size at all is judged by nothing.
+                    if increment.max(value) > 0.0 && change > ROUND_OFF * value.max(increment) {
                         size = size.max(change / increment.max(ROUND_OFF * value));
                     }
                 }

@@ -164,7 +164,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             }
             if iteration > 1 {
                 slowest = slowest.max(contraction);
-                if slow {
+                if slow && !self.is_round_off() {
                     break;
                 }
             }
