@@ -143,8 +143,8 @@ impl<'a> Evaluator<'a> {
         let objective = problem.objective?;
         let scene = problem.scene(&problem.start());
         let mut integration = Integration::new(problem, &scene, false, true);
-        if let Some((method, grid)) = journal.steps() {
-            integration.restore(method, grid);
+        if let Some((method, grid, times)) = journal.steps() {
+            integration.restore(method, grid, times);
         }
         let sign = match objective.sense {
             Sense::Minimise => 1.0,

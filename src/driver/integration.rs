@@ -82,8 +82,9 @@ impl Integration {
         }
     }
 
-    /// Goes on with the steps of an earlier run.
-    pub fn restore(&mut self, method: Method, grid: Grid) {
+    /// Goes on with the steps of an earlier run, which chose them so many times.
+    pub fn restore(&mut self, method: Method, grid: Grid, times: usize) {
+        self.refreshes = times.saturating_sub(1);
         let settings = Settings {
             method,
             spacing: Spacing::Frozen(grid),

@@ -15,8 +15,8 @@ use std::collections::HashMap;
 pub struct Journal<'a> {
     /// By whether they are gradients, and by the bits of the design.
     known: HashMap<(bool, Vec<u64>), Found>,
-    /// Steps in use at the end of the earlier run.
-    steps: Option<StepsInUse>,
+    /// Steps in use at the end of the earlier run, and how often it chose them.
+    steps: Option<(StepsInUse, usize)>,
     record: Option<&'a mut dyn FnMut(EvaluationRecord)>,
 }
 
@@ -26,10 +26,13 @@ impl<'a> Journal<'a> {
         earlier: Vec<EvaluationRecord>,
         record: &'a mut dyn FnMut(EvaluationRecord),
     ) -> Self {
-        let steps = earlier.iter().rev().find_map(|record| match &record.found {
+        let chosen = |record: &EvaluationRecord| match &record.found {
             Found::Steps(steps) => Some(steps.clone()),
             _ => None,
-        });
+        };
+        let times = earlier.iter().filter_map(chosen).count();
+        let steps = earlier.iter().rev().find_map(chosen);
+        let steps = steps.map(|steps| (steps, times));
         let known = earlier
             .into_iter()
             .filter(|record| !matches!(record.found, Found::Steps(_)))
@@ -45,11 +48,11 @@ impl<'a> Journal<'a> {
         }
     }
 
-    /// Method and steps in use at the end of the earlier run.
-    pub fn steps(&self) -> Option<(Method, Grid)> {
-        let steps = self.steps.as_ref()?;
+    /// Method and steps in use at the end of the earlier run, and how often it chose them.
+    pub fn steps(&self) -> Option<(Method, Grid, usize)> {
+        let (steps, times) = self.steps.as_ref()?;
         let method = Method::adaptive(&steps.method)?;
-        Some((method, Grid::from_ends(steps.ends.clone())?))
+        Some((method, Grid::from_ends(steps.ends.clone())?, *times))
     }
 
     /// Values at a design: known, or found by `evaluate` and recorded.

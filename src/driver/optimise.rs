@@ -65,6 +65,7 @@ pub fn optimise<'a>(
     let counts = program.counts;
     let start = simulate(problem, &problem.start()).ok();
     // With the steps that its values were found with.
+    let refreshes = program.integration.refreshes;
     program.integration.see_whole();
     let end = simulate_with(
         &mut program.integration,
@@ -77,7 +78,7 @@ pub fn optimise<'a>(
         file,
         &outcome,
         sign,
-        counts,
+        (counts, refreshes),
         [start.as_ref(), end.as_ref()],
     );
     Some(Optimisation {

@@ -55,7 +55,7 @@ pub(super) fn record(
     file: &str,
     outcome: &Outcome,
     sign: f64,
-    work: WorkCounts,
+    (work, refreshes): (WorkCounts, usize),
     ends: [Option<&Simulation>; 2],
 ) -> Optimum {
     let (status, sentence) = verdict(&outcome.status);
@@ -166,6 +166,7 @@ pub(super) fn record(
             method: end.at.run.method.name(),
             reason: end.reason.clone(),
             steps: end.at.run.grid.steps() as u64,
+            refreshes: refreshes as u64,
         }),
         counts: Counts {
             iterations: outcome.counts.iterations as u64,

@@ -221,6 +221,8 @@ pub struct Integration {
     pub reason: String,
     /// Number of steps of the motion at the end.
     pub steps: u64,
+    /// How often the steps were chosen anew because they did not suffice for a design any more.
+    pub refreshes: u64,
 }
 
 /// Work done.

@@ -69,8 +69,13 @@ fn objective(optimum: &Optimum) -> String {
         ));
     }
     if let Some(integration) = &optimum.integration {
+        let refreshed = match integration.refreshes {
+            0 => String::new(),
+            1 => ", chosen anew once".into(),
+            n => format!(", chosen anew {n} times"),
+        };
         text.push_str(&format!(
-            "  by {} in {} steps ({})\n",
+            "  by {} in {} steps{refreshed} ({})\n",
             integration.method, integration.steps, integration.reason
         ));
     }
