@@ -116,3 +116,22 @@ fn steps_are_kept_until_they_do_not_suffice() {
     };
     assert_eq!(settings.spacing, Spacing::Frozen(at.run.grid.clone()));
 }
+
+/// A blow of 1 N s that lasts 0.2 of 10 s, to a body at rest, is met though nothing announces it.
+#[test]
+fn a_short_load_is_not_stepped_over() {
+    let file = serde_json::json!({
+        "version": 1, "name": "blow", "gravity": [0, 0, 0],
+        "bodies": {"ball": {"shape": {"sphere": {"radius": 0.1}}, "mass": 1}},
+        "loads": {"blow": {"force": {
+            "body": "ball", "direction": [1, 0, 0],
+            "magnitude": {"table": {"times": [5, 5.1, 5.2], "values": [0, 10, 0]}}
+        }}},
+        "simulation": {"duration": 10},
+        "functions": {"x": {"final": {"position": {"body": "ball", "direction": [1, 0, 0]}}}}
+    });
+    let problem = Problem::parse(&file.to_string(), "blow.json", &[]).expect("no faults");
+    let motion = simulate(&problem, &[]).expect("runs");
+    let x = motion.at.function(0).value;
+    assert!((x - 4.9).abs() < 1e-12, "{x}");
+}
