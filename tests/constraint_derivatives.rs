@@ -314,12 +314,7 @@ fn pull_back_of_the_stabilised_equations() {
 fn pull_back_of_the_initial_conditions() {
     for mut case in cases() {
         // Close the joint, and open it a little.
-        let joint = &case.model.joints[0];
-        let at = (joint.name.as_str(), joint.kind);
-        let between = (joint.body_a, joint.body_b);
-        let (point, axis) = (case.numbers.vector(), case.numbers.vector());
-        case.model.joints[0] =
-            reference::models::joint(&case.model.bodies, at, between, &point, &axis);
+        case.close_joint();
         case.model.bodies[1].position += case.numbers.vector() * 0.05;
         let turned = case.numbers.vector() * 0.1;
         let p = case.model.bodies[1].orientation;

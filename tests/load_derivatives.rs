@@ -320,12 +320,7 @@ fn equations_of_a_step() {
 #[test]
 fn initial_accelerations() {
     for mut case in cases() {
-        let joint = &case.model.joints[0];
-        let at = (joint.name.as_str(), joint.kind);
-        let between = (joint.body_a, joint.body_b);
-        let (point, axis) = (case.numbers.vector(), case.numbers.vector());
-        case.model.joints[0] =
-            reference::models::joint(&case.model.bodies, at, between, &point, &axis);
+        case.close_joint();
         let numbering = &case.numbering;
         let mut saddle = SaddlePoint::new(&case.model, numbering);
         let state = initial::solve(&case.model, numbering, &mut saddle).expect("is consistent");

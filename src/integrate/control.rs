@@ -203,22 +203,9 @@ impl Controller {
         }
     }
 
-    /// Whether the controller chooses the steps.
-    pub fn chooses(&self) -> bool {
-        matches!(self.plan, Plan::Chosen { .. })
-    }
-
     /// Whether the error of steps is of interest: they follow it, or are kept as long as it is small.
     pub fn estimates(&self) -> bool {
         self.estimates
-    }
-
-    /// Grid of the steps to come, if it is given.
-    pub fn given(&self) -> Option<&Grid> {
-        match &self.plan {
-            Plan::Given { grid, .. } => Some(grid),
-            Plan::Chosen { .. } => None,
-        }
     }
 
     /// Width of the step from `reached`, or `None` at the end or if the steps became too small.

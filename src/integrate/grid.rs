@@ -89,6 +89,16 @@ pub enum Place {
     },
 }
 
+impl Place {
+    /// The step that the sample belongs to: the one that it stands in or at the end of; 0 for the
+    /// start.
+    pub fn step(&self) -> usize {
+        match *self {
+            Place::Node(step) | Place::Inside { step, .. } => step,
+        }
+    }
+}
+
 /// Where the fraction `at` in (τ_{k−1}, τ_k] stands in step k of the grid.
 pub fn place(grid: &Grid, k: usize, at: f64) -> Place {
     let (start, end) = (grid.ends[k - 1], grid.ends[k]);

@@ -20,6 +20,7 @@ use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::kkt::SaddlePoint;
 use crate::system::{Numbering, initial, redundancy};
+use control::Controller;
 
 /// Integrates `model` over `duration` in real or, for complex-step derivatives, in complex
 /// numbers.
@@ -63,6 +64,22 @@ pub fn multipliers(model: &Model<f64>, run: &Trajectory<f64>, k: usize) -> Vec<f
         Err(_) => lambda.fill(f64::NAN),
     }
     lambda
+}
+
+/// Ends the march of `run` over the steps of `controller`.
+fn close<S: SolveScalar>(
+    run: &mut Trajectory<S>,
+    controller: &Controller,
+) -> Result<(), IntegrationFailure> {
+    if controller.too_small() {
+        return Err(IntegrationFailure::StepTooSmall {
+            time: run.duration.re() * run.grid.reached(),
+            step: run.grid.steps() + 1,
+        });
+    }
+    run.step_error = controller.largest_error();
+    run.counts.steps = run.grid.steps();
+    Ok(())
 }
 
 /// Fails if a constraint that was left out has opened at the end `time` of step `step`.

@@ -174,6 +174,15 @@ pub fn normalise<S: Scalar>(numbering: &Numbering, q: &mut [S], increment: &mut 
     }
 }
 
+/// Replaces the Euler parameters in `q` by p / |p|.
+pub fn bring_to_unit<S: Scalar>(numbering: &Numbering, q: &mut [S]) {
+    for body in 0..numbering.bodies() {
+        let o = numbering.position(body);
+        let p = rotation::unit(&positions_of(&q[o..]).1);
+        q[o + 3..o + 7].copy_from_slice(&p);
+    }
+}
+
 /// Rates of the positions, q̇ = T(q) v.
 pub fn rates<S: Scalar>(numbering: &Numbering, q: &[S], v: &[S], out: &mut [S]) {
     for body in 0..numbering.bodies() {

@@ -55,6 +55,15 @@ pub fn case(kind: JointKind, body_b: Option<usize>, seed: u64) -> Case {
 }
 
 impl Case {
+    /// Puts the joint at a random place with a random axis, closed.
+    pub fn close_joint(&mut self) {
+        let joint = &self.model.joints[0];
+        let at = (joint.name.as_str(), joint.kind);
+        let between = (joint.body_a, joint.body_b);
+        let (point, axis) = (self.numbers.vector(), self.numbers.vector());
+        self.model.joints[0] = super::models::joint(&self.model.bodies, at, between, &point, &axis);
+    }
+
     /// Asserts the tolerance for a list of derivatives.
     pub fn assert(&self, what: &str, given: &[f64], exact: &[f64]) {
         assert_eq!(given.len(), exact.len());

@@ -20,14 +20,14 @@ mod sweep;
 use super::AdjointRun;
 use super::sensitivity::Sensitivity;
 use crate::functions::Scene;
+use crate::integrate::explicit::march::failed;
+use crate::integrate::explicit::step::StepFailure;
 use crate::integrate::explicit::tableau::{A, ALL, C, END, STAGES};
 use crate::integrate::explicit::{Node, StepData, Stepper, Tape};
 use crate::integrate::grid::Place;
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
-use crate::linalg::SingularMatrix;
 use crate::system::accelerations::Accelerations;
 use crate::system::kkt::SaddlePoint;
-use crate::system::rank;
 use sweep::Sweep;
 
 /// See [`super::gradients`].
@@ -55,18 +55,14 @@ pub(super) fn gradients(
         let first = first_sample(run, n, sample);
         let inside = |place: &Place| matches!(place, Place::Inside { .. });
         let dense = run.places[first..=sample].iter().any(inside);
-        let singular = |_| IntegrationFailure::Singular {
-            time: run.duration * run.grid.ends()[n],
-            step: n,
-            place: rank::explain(model, &to.q).to_string(),
-        };
+        let failed = |failure| failed(failure, (model, numbering), (n, run.duration * end));
+        let singular = |singular| failed(StepFailure::Singular(singular));
         let data = match &mut again {
             None => &tape.steps[n - 1],
-            Some(stepper) => repeat(stepper, (from, to), (run.duration, begin, h), dense)
-                .ok_or_else(|| {
-                    let column = 0;
-                    singular(SingularMatrix { column })
-                })?,
+            Some(stepper) => {
+                let times = (run.duration, begin, h);
+                repeat(stepper, (from, to), times, dense).map_err(failed)?
+            }
         };
         for k in (first..=sample).rev() {
             for sweep in &mut sweeps {
@@ -85,8 +81,8 @@ pub(super) fn gradients(
             field.factorise()?;
             let found = (row(&data.a, nv, i), row(&data.lambda, nc, i));
             for sweep in sweeps {
-                sweep.stage(i, field, (q, v, fraction), found);
-                sweep.spread(i, A[i], h, run.grid.width(n), data);
+                let (q, v) = sweep.stage(i, field, (q, v, fraction), found);
+                sweep.spread(A[i], (&q, &v), h, run.grid.width(n), data);
             }
             Ok(())
         };
@@ -132,12 +128,8 @@ pub(super) fn gradients(
 
 /// The first of the samples up to `last` that stand in step n.
 fn first_sample(run: &Trajectory<f64>, n: usize, last: usize) -> usize {
-    let stands = |place: &Place| match *place {
-        Place::Node(k) => k == n,
-        Place::Inside { step, .. } => step == n,
-    };
     let earlier = run.places[..=last].iter().rev();
-    last + 1 - earlier.take_while(|place| stands(place)).count()
+    last + 1 - earlier.take_while(|place| place.step() == n).count()
 }
 
 /// Makes a step whose stages were not kept once more.
@@ -146,15 +138,15 @@ fn repeat<'s>(
     (from, to): (&Node<f64>, &Node<f64>),
     (duration, begin, h): (f64, f64, f64),
     dense: bool,
-) -> Option<&'s StepData<f64>> {
+) -> Result<&'s StepData<f64>, StepFailure> {
     let mut end = to.clone();
     let start = duration * begin;
-    stepper.stages(from, (start, h)).ok()?;
-    stepper.finish(&mut end, start + h).ok()?;
+    stepper.stages(from, (start, h))?;
+    stepper.finish(&mut end, start + h)?;
     if dense {
-        stepper.dense_stages((from, to), (start, h)).ok()?;
+        stepper.dense_stages((from, to), (start, h))?;
     }
-    Some(&stepper.data)
+    Ok(&stepper.data)
 }
 
 fn row(rows: &[f64], width: usize, i: usize) -> &[f64] {

@@ -71,10 +71,10 @@ impl<'a> Sweep<'a> {
                     numbering.velocity(bodies.end),
                 );
                 let (in_q, in_v) = (from_q..to_q, from_v..to_v);
-                let raw = data.dense_positions(from, h, theta, in_q.clone());
+                let (w, rate) = dense_weights(theta);
+                let raw = data.positions(from, h, &w, in_q.clone());
                 bodies::add_unit_cotangent(numbering, &raw, y, &mut q);
                 let (q, v, a) = (&q[in_q.clone()], &v[in_v.clone()], &a[in_v.clone()]);
-                let (w, rate) = dense_weights(theta);
                 for i in 0..ALL {
                     if w[i] == 0.0 && rate[i] == 0.0 {
                         continue;
@@ -101,15 +101,15 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Pulls the cotangents of the derivatives at stage i back to its state, where `field` stands, and
-    /// puts them in their place (see [`Sweep::spread`]).
+    /// Pulls the cotangents of the derivatives at stage i back to its state (returned), where `field`
+    /// stands.
     pub fn stage(
         &mut self,
         i: usize,
         field: &mut Accelerations<f64>,
         (q, v, fraction): (&[f64], &[f64], f64),
         found: (&[f64], &[f64]),
-    ) {
+    ) -> (Vec<f64>, Vec<f64>) {
         let numbering = field.numbering;
         let (nq, nv) = (q.len(), v.len());
         let (qdot_bar, a_bar) = (row(&self.qdot, nq, i), row(&self.a, nv, i));
@@ -119,26 +119,22 @@ impl<'a> Sweep<'a> {
         let by_time = field.pull_back(found, a_bar, (&mut y, &mut v_bar), cot);
         self.of.by_duration += fraction * by_time;
         bodies::add_unit_cotangent(numbering, q, &y, &mut q_bar);
-        row_mut(&mut self.qdot, nq, i).copy_from_slice(&q_bar);
-        row_mut(&mut self.a, nv, i).copy_from_slice(&v_bar);
+        (q_bar, v_bar)
     }
 
-    /// Hands the cotangents of stage i's state on to the stages that it was made of and to the node
+    /// Hands the cotangents of a stage's state on to the stages that it was made of and to the node
     /// before the step.
     pub fn spread(
         &mut self,
-        i: usize,
         weights: &[(usize, f64)],
+        (q, v): (&[f64], &[f64]),
         h: f64,
         width: f64,
         data: &StepData<f64>,
     ) {
-        let (nq, nv) = (self.before.0.len(), self.before.1.len());
-        let q = row(&self.qdot, nq, i).to_vec();
-        let v = row(&self.a, nv, i).to_vec();
-        add_scaled(&mut self.before.0, 1.0, &q);
-        add_scaled(&mut self.before.1, 1.0, &v);
-        self.hand_on(weights, (&q, &v), h, width, data);
+        add_scaled(&mut self.before.0, 1.0, q);
+        add_scaled(&mut self.before.1, 1.0, v);
+        self.hand_on(weights, (q, v), h, width, data);
     }
 
     fn hand_on(

@@ -5,7 +5,7 @@ use crate::integrate::WorkCounts;
 use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::formula::Formula;
 use crate::integrate::implicit::ggl::Equations;
-use crate::linalg::{REFINED_SOLVES, SingularMatrix, SparseLu, SparseMatrix};
+use crate::linalg::{REFINED_SOLVES, SparseLu, SparseMatrix};
 use crate::model::Model;
 use crate::system::{Numbering, bodies};
 
@@ -35,6 +35,9 @@ impl<'a> Plan<'a> {
     }
 
     /// Moves all functions from the end of the step to its start.
+    ///
+    /// # Errors
+    /// What the equations are singular in.
     pub fn step(
         &mut self,
         formula: &Formula,
@@ -42,7 +45,7 @@ impl<'a> Plan<'a> {
         (h, width, end): (f64, f64, f64),
         sweeps: &mut [Sweep],
         counts: &mut WorkCounts,
-    ) -> Result<(), SingularMatrix> {
+    ) -> Result<(), String> {
         let (model, numbering) = (self.model, self.numbering);
         let nv = numbering.velocities();
         let at = stage.instant();
@@ -52,7 +55,9 @@ impl<'a> Plan<'a> {
             .assemble(|emit| equations.jacobian(&at, h, c, emit));
         self.held
             .assemble(|emit| equations.jacobian(&at, h, 0.0, emit));
-        self.factors.factorise(&self.matrix)?;
+        self.factors
+            .factorise(&self.matrix)
+            .map_err(|singular| equations.describe(singular.column))?;
         counts.factorisations += 1;
         for sweep in sweeps {
             // By the increment Δ: the rates' and the memory's part.

@@ -28,12 +28,10 @@ mod sweep;
 use super::AdjointRun;
 use super::sensitivity::Sensitivity;
 use crate::functions::Scene;
-use crate::integrate::grid::Place;
 use crate::integrate::implicit::Tape;
 use crate::integrate::implicit::formula::{Formula, remembers_start};
 use crate::integrate::implicit::radau::Scheme;
-use crate::integrate::{IntegrationFailure, Method, Trajectory, WorkCounts};
-use crate::linalg::SingularMatrix;
+use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
 use crate::system::kkt::SaddlePoint;
 use sweep::Sweep;
 
@@ -45,11 +43,8 @@ pub(super) fn gradients(
     which: &[usize],
 ) -> Result<AdjointRun, IntegrationFailure> {
     let (model, numbering) = (&scene.model, &run.numbering);
-    let stages = match run.method {
-        Method::Radau { stages } => stages,
-        _ => 3,
-    };
-    let scheme = Scheme::new(stages);
+    let scheme = Scheme::of(run.method);
+    let stages = scheme.stages();
     let new = |&own: &usize| Sweep::new(Sensitivity::new(scene, run, own), run.method, stages);
     let mut sweeps: Vec<Sweep> = which.iter().map(new).collect();
     let mut one = None;
@@ -64,7 +59,7 @@ pub(super) fn gradients(
             _ => &tape.steps[k - 2][tape.steps[k - 2].len() - 1],
         };
         let step = &tape.steps[k - 1];
-        while stands_in(&run.places[sample], k) {
+        while run.places[sample].step() == k {
             for sweep in &mut sweeps {
                 sweep.sample(scene, run, sample, (&scheme, from, step), width);
             }
@@ -84,10 +79,10 @@ pub(super) fn gradients(
                 .get_or_insert_with(|| radau::Plan::new(model, numbering, &scheme))
                 .step(step, (h, width, end), &mut sweeps, &mut counts),
         };
-        found.map_err(|SingularMatrix { column }| IntegrationFailure::Singular {
+        found.map_err(|place| IntegrationFailure::Singular {
             time: run.duration * run.grid.ends()[k],
             step: k,
-            place: format!("unknown {column}"),
+            place,
         })?;
         if k == 1 && remembers_start(run.method) {
             for sweep in &mut sweeps {
@@ -108,11 +103,4 @@ pub(super) fn gradients(
         gradients: sweeps.into_iter().map(|sweep| sweep.of.cot).collect(),
         counts,
     })
-}
-
-fn stands_in(place: &Place, k: usize) -> bool {
-    match *place {
-        Place::Node(n) => n == k,
-        Place::Inside { step, .. } => step == k,
-    }
 }

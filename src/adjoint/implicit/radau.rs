@@ -5,7 +5,7 @@ use crate::integrate::WorkCounts;
 use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::ggl::Equations;
 use crate::integrate::implicit::radau::Scheme;
-use crate::linalg::{Emit, Pattern, REFINED_SOLVES, SingularMatrix, SparseLu, SparseMatrix};
+use crate::linalg::{Emit, Pattern, REFINED_SOLVES, SparseLu, SparseMatrix};
 use crate::model::Model;
 use crate::system::{Numbering, bodies};
 
@@ -42,19 +42,24 @@ impl<'a> Plan<'a> {
     }
 
     /// Moves all functions from the end of the step to its start.
+    ///
+    /// # Errors
+    /// What the equations are singular in.
     pub fn step(
         &mut self,
         stages: &[Stage<f64>],
         (h, width, end): (f64, f64, f64),
         sweeps: &mut [Sweep],
         counts: &mut WorkCounts,
-    ) -> Result<(), SingularMatrix> {
+    ) -> Result<(), String> {
         let (model, numbering, scheme) = (self.model, self.numbering, self.scheme);
         let (nv, n) = (numbering.velocities(), self.equations.order());
         let equations = &mut self.equations;
         self.matrix
             .assemble(|emit| emit_stages(equations, scheme, stages, h, emit));
-        self.factors.factorise(&self.matrix)?;
+        self.factors
+            .factorise(&self.matrix)
+            .map_err(|singular| equations.describe(singular.column % n))?;
         counts.factorisations += 1;
         let last = stages.len() - 1;
         for sweep in sweeps {

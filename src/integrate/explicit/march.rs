@@ -8,12 +8,11 @@ use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Place, place};
 use crate::integrate::settings::{Method, Settings, Spacing};
 use crate::integrate::trajectory::{self, Trajectory};
-use crate::integrate::watch;
+use crate::integrate::{close, watch};
 use crate::linalg::{SingularMatrix, SolveScalar};
-use crate::math::rotation;
 use crate::model::Model;
 use crate::system::Numbering;
-use crate::system::bodies::positions_of;
+use crate::system::bodies;
 use crate::system::initial::InitialState;
 
 /// h |λ| beyond which an explicit step is at the border of its stability region (Hairer & Wanner
@@ -105,14 +104,7 @@ pub fn march<S: SolveScalar>(
         }
         std::mem::swap(&mut from, &mut to);
     }
-    if controller.too_small() {
-        return Err(IntegrationFailure::StepTooSmall {
-            time: duration.re() * run.grid.reached(),
-            step: run.grid.steps() + 1,
-        });
-    }
-    run.step_error = controller.largest_error();
-    run.counts.steps = run.grid.steps();
+    close(&mut run, &controller)?;
     run.counts.factorisations += stepper.field.factorisations;
     run.counts.solves += stepper.field.solves;
     Ok(run)
@@ -139,11 +131,7 @@ fn sample<S: SolveScalar>(
                     run.counts.evaluations += super::tableau::ALL - super::tableau::END - 1;
                 }
                 let [mut q, v, a] = stepper.data.dense(from, h, theta);
-                for body in 0..run.numbering.bodies() {
-                    let o = run.numbering.position(body);
-                    let p = rotation::unit(&positions_of(&q[o..]).1);
-                    q[o + 3..o + 7].copy_from_slice(&p);
-                }
+                bodies::bring_to_unit(&run.numbering, &mut q);
                 run.push(at, place, [&q, &v, &a, &[]]);
             }
         }
@@ -183,7 +171,8 @@ fn describe<S>(model: &Model<S>, numbering: &Numbering, singular: SingularMatrix
     }
 }
 
-fn failed<S: SolveScalar>(
+/// What a step that could not be made is told as, with its number and the time of its end.
+pub fn failed<S: SolveScalar>(
     failure: StepFailure,
     (model, numbering): (&Model<S>, &Numbering),
     (step, time): (usize, f64),
@@ -235,7 +224,7 @@ impl Stiffness {
             speeds,
         );
         let mut rates = vec![S::zero(); nq];
-        crate::system::bodies::rates(numbering, &to.q, &to.v, &mut rates);
+        bodies::rates(numbering, &to.q, &to.v, &mut rates);
         let df = scale.square(
             numbering,
             &away(&rates, &data.qdot, nq),

@@ -95,15 +95,14 @@ impl<S: SolveScalar> StepData<S> {
 }
 
 impl StepData<f64> {
-    /// The positions of [`StepData::dense`] in `range`, zeros elsewhere.
-    pub fn dense_positions(
+    /// The positions of [`StepData::dense`] in `range`, zeros elsewhere, by its weights `w`.
+    pub fn positions(
         &self,
         node: &Node<f64>,
         h: f64,
-        theta: f64,
+        w: &[f64; ALL],
         range: std::ops::Range<usize>,
     ) -> Vec<f64> {
-        let (w, _) = dense_weights(theta);
         let nq = node.q.len();
         let mut out = vec![0.0; nq];
         out[range.clone()].copy_from_slice(&node.q[range.clone()]);

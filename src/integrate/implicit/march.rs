@@ -11,18 +11,14 @@ use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Place, place};
 use crate::integrate::settings::{Method, Samples, Settings};
 use crate::integrate::trajectory::{self, Trajectory};
-use crate::integrate::watch;
+use crate::integrate::{close, watch};
 use crate::linalg::SolveScalar;
-use crate::math::rotation;
 use crate::model::Model;
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
-use crate::system::bodies::{self, positions_of};
+use crate::system::bodies;
 use crate::system::initial::InitialState;
 use std::collections::VecDeque;
-
-/// Stages of the Radau IIA method that starts a multistep formula.
-const STARTING_STAGES: usize = 3;
 
 /// Integrates from a consistent start.
 ///
@@ -37,15 +33,11 @@ pub fn march<S: SolveScalar>(
 ) -> Result<Trajectory<S>, IntegrationFailure> {
     let method = settings.method;
     let real: Model<f64> = model.map(&mut |x| x.re());
-    let stages = match method {
-        Method::Radau { stages } => stages,
-        _ => STARTING_STAGES,
-    };
-    let scheme = Scheme::new(stages);
+    let scheme = Scheme::of(method);
     let scale = Scale::of(model, numbering, &start, duration.re());
     let mut controller = Controller::new(
         &settings.spacing,
-        stages + 1,
+        scheme.stages() + 1,
         &scale,
         (model, duration.re()),
     );
@@ -58,7 +50,6 @@ pub fn march<S: SolveScalar>(
         coupled: None,
         model,
         real: &real,
-        estimates,
         field: estimates.then(|| Accelerations::new(&real, numbering)),
         memory: Vec::new(),
     };
@@ -121,14 +112,7 @@ pub fn march<S: SolveScalar>(
         };
         tape.steps.push(stages);
     }
-    if controller.too_small() {
-        return Err(IntegrationFailure::StepTooSmall {
-            time: duration.re() * run.grid.reached(),
-            step: run.grid.steps() + 1,
-        });
-    }
-    run.step_error = controller.largest_error();
-    run.counts.steps = run.grid.steps();
+    close(&mut run, &controller)?;
     if let Some(field) = &solver.field {
         run.counts.factorisations += field.factorisations;
         run.counts.solves += field.solves;
@@ -157,7 +141,6 @@ struct Solver<'a, S> {
     real: &'a Model<f64>,
     numbering: &'a Numbering,
     scheme: &'a Scheme,
-    estimates: bool,
     /// Newton's method for formulas, once it is needed.
     one: Option<Newton<'a, S>>,
     /// Newton's method for Radau IIA, once it is needed.
@@ -183,7 +166,7 @@ impl<S: SolveScalar> Solver<'_, S> {
                 stage.time = start + h * c;
             }
             let (model, real, numbering) = (self.model, self.real, self.numbering);
-            let (scheme, estimates) = (self.scheme, self.estimates);
+            let (scheme, estimates) = (self.scheme, self.field.is_some());
             self.coupled
                 .get_or_insert_with(|| StageNewton::new(model, real, numbering, scheme, estimates))
                 .solve(&mut stages, h, at, counts)?;
@@ -303,11 +286,7 @@ fn sample<S: SolveScalar>(
             Place::Node(_) => run.push(at, place, [&last.q, &last.v, &last.vdot, &last.lambda]),
             Place::Inside { theta, .. } => {
                 let mut inside = dense(scheme, from, stages, h, theta);
-                for body in 0..run.numbering.bodies() {
-                    let o = run.numbering.position(body);
-                    let p = rotation::unit(&positions_of(&inside.q[o..]).1);
-                    inside.q[o + 3..o + 7].copy_from_slice(&p);
-                }
+                bodies::bring_to_unit(&run.numbering, &mut inside.q);
                 let Stage {
                     q, v, vdot, lambda, ..
                 } = &inside;

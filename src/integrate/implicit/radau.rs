@@ -5,8 +5,12 @@
 //! y_{n+1} = y_n + Z_s. The eigenvectors of D split the linear systems of Newton's method into a
 //! real one (3 stages only) and a complex one.
 
+use crate::integrate::settings::Method;
 use crate::math::Complex64;
 use nalgebra::{DMatrix, DVector};
+
+/// Stages of the method that a formula of several steps begins with.
+const STARTING_STAGES: usize = 3;
 
 /// Coefficients of a method.
 #[derive(Clone, Debug)]
@@ -40,6 +44,16 @@ impl Mode {
 }
 
 impl Scheme {
+    /// The method that makes the steps, or those that a formula of several steps begins with.
+    pub fn of(method: Method) -> Self {
+        match method {
+            Method::Radau { stages } => Self::new(stages),
+            Method::Dop853 | Method::Bdf { .. } | Method::GeneralisedAlpha { .. } => {
+                Self::new(STARTING_STAGES)
+            }
+        }
+    }
+
     /// The method of 2 or 3 stages.
     ///
     /// # Panics

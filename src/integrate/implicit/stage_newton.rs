@@ -86,11 +86,6 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         }
     }
 
-    /// Forgets the kept factors.
-    pub fn forget(&mut self) {
-        self.factored = None;
-    }
-
     /// Solves the stage equations of a step of size `h`, starting from and ending in `stages`.
     ///
     /// # Errors
