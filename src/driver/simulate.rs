@@ -41,7 +41,7 @@ pub fn simulate_with(
     let reason = integration.chosen().map_or("", |(_, reason)| reason).into();
     let (model, run) = (&at.scene.model, &at.run);
     let observations = (0..=run.last())
-        .map(|k| observe(model, &run.numbering, run.q(k), run.v(k)))
+        .map(|k| observe(model, &run.numbering, (run.q(k), run.v(k)), run.time(k)))
         .collect();
     Ok(Simulation {
         at,
@@ -73,6 +73,6 @@ impl Simulation {
     pub fn reactions(&self, k: usize) -> Vec<Reaction> {
         let (model, run) = (&self.at.scene.model, &self.at.run);
         let lambda = multipliers(model, run, k);
-        reactions(model, &run.numbering, run.q(k), &lambda)
+        reactions(model, &run.numbering, (run.q(k), &lambda), run.time(k))
     }
 }

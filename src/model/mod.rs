@@ -6,13 +6,15 @@
 //! every parameter's place then holds the derivative of a function with respect to it.
 
 pub mod course;
+pub mod drive;
 pub mod joint;
 pub mod load;
 pub mod rigid_body;
 
 pub use course::Course;
-pub use joint::{ConstraintRow, Joint, JointFrame, JointKind};
-pub use load::{Axes, Freedom, Load, LoadKind};
+pub use drive::{Drive, MotionCourse};
+pub use joint::{ConstraintRow, Freedom, Joint, JointFrame, JointKind};
+pub use load::{Axes, Load, LoadKind};
 pub use rigid_body::RigidBody;
 
 use crate::math::{Scalar, Vec3};

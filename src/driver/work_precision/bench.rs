@@ -126,7 +126,7 @@ impl<'a> Bench<'a> {
     fn drift(&self, run: Trajectory<f64>) -> ([f64; 3], Trajectory<f64>) {
         let model = &self.scene.model;
         let observations = (0..=run.last())
-            .map(|k| observe(model, &run.numbering, run.q(k), run.v(k)))
+            .map(|k| observe(model, &run.numbering, (run.q(k), run.v(k)), run.time(k)))
             .collect();
         let seen = Simulation {
             at: self.at(run),
