@@ -13,8 +13,9 @@
 //! the two may be of any size and sign.
 
 use super::evaluate::Evaluated;
+use super::event;
 use super::integration::{Integration, looks_at_the_whole};
-use crate::integrate::{IntegrationFailure, Samples, Settings, Spacing, Trajectory, simulate};
+use crate::integrate::{IntegrationFailure, Samples, Settings, Spacing, Trajectory};
 use crate::problem::Problem;
 
 /// Order of the trapezoidal rule, by which functions sum over the motion.
@@ -57,12 +58,10 @@ pub fn estimate(
 ) -> Result<Vec<FunctionError>, IntegrationFailure> {
     let sums = |f: &usize| looks_at_the_whole(&at.scene.functions[*f]);
     let finer = halved(&at.run, which.iter().any(sums));
-    let run = simulate(&at.scene.model, at.scene.duration, &finer)?;
-    let mut fine = Evaluated {
-        x: at.x.clone(),
-        scene: at.scene.clone(),
-        run,
-    };
+    let mut scene = at.scene.clone();
+    let run = event::settle(&mut scene, &finer, at.run.duration)?;
+    let x = at.x.clone();
+    let mut fine = Evaluated { x, scene, run };
     let numbers = |of: &Evaluated, which: &[usize]| -> Result<Vec<Vec<f64>>, IntegrationFailure> {
         let mut all: Vec<Vec<f64>> = which.iter().map(|&f| vec![of.function(f).value]).collect();
         if gradients && !which.is_empty() {

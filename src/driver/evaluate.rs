@@ -40,14 +40,14 @@ impl Evaluated {
         problem: &Problem,
         x: &[f64],
     ) -> Result<(Self, Option<Refresh>), IntegrationFailure> {
-        let scene = problem.scene::<f64>(x);
+        let mut scene = problem.scene::<f64>(x);
         let not_solid = |body: &&RigidBody<f64>| !body.is_solid();
         if let Some(body) = scene.model.bodies.iter().find(not_solid) {
             return Err(IntegrationFailure::Unphysical {
                 body: body.name.clone(),
             });
         }
-        let (run, refresh) = integration.simulate(&scene)?;
+        let (run, refresh) = integration.simulate(&mut scene)?;
         let x = x.to_vec();
         Ok((Self { x, scene, run }, refresh))
     }
@@ -80,7 +80,20 @@ impl Evaluated {
         problem: &Problem,
         which: &[usize],
     ) -> Result<(Vec<Vec<Derivative>>, WorkCounts), IntegrationFailure> {
-        let adjoint = adjoint::gradients(&self.scene, &self.run, which)?;
+        let adjoint = match &self.scene.until {
+            Some(_) if !which.is_empty() => {
+                let with_event: Vec<usize> =
+                    which.iter().copied().chain([self.scene.event()]).collect();
+                let mut found = adjoint::gradients(&self.scene, &self.run, &with_event)?;
+                let event = found.gradients.pop();
+                for gradient in &mut found.gradients {
+                    *gradient =
+                        along_event(gradient, event.as_ref().expect("the event was asked for"));
+                }
+                found
+            }
+            _ => adjoint::gradients(&self.scene, &self.run, which)?,
+        };
         let by_parameters: Vec<Vec<f64>> =
             adjoint.gradients.iter().map(Scene::parameters).collect();
         let mut all = vec![Vec::with_capacity(self.x.len()); which.len()];
@@ -97,6 +110,22 @@ impl Evaluated {
         }
         Ok((all, adjoint.counts))
     }
+}
+
+/// The derivative of a function where the event moves with the parameters: ∂f − (∂f/∂T) (∂g − ∂c) /
+/// (∂g/∂T).
+fn along_event(function: &Scene<f64>, event: &Scene<f64>) -> Scene<f64> {
+    let ratio = function.duration / event.duration;
+    let mut event = event.clone();
+    if let Some(until) = &mut event.until {
+        until.value = -1.0;
+    }
+    let by_event = event.parameters();
+    let mut next = by_event.into_iter();
+    let mut out = function.map(&mut |f| f - ratio * next.next().expect("scenes of one shape"));
+    // The duration is none of the design's any more.
+    out.duration = 0.0;
+    out
 }
 
 /// A derivative in a variable: the sum over the parameters of the scene that it moves.

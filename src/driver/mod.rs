@@ -4,6 +4,7 @@
 pub mod check;
 pub mod error;
 pub mod evaluate;
+pub mod event;
 pub mod figures;
 pub mod integration;
 pub mod journal;

@@ -124,6 +124,7 @@ pub struct BodyBlocks<S> {
 pub struct SaddlePoint<S> {
     matrix: SparseMatrix<S>,
     factors: SparseLu<S>,
+    gradients: Vec<RowGradient<S>>,
     /// Number of factorisations so far.
     pub factorisations: usize,
 }
@@ -148,6 +149,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
         Self {
             matrix: SparseMatrix::new(pattern),
             factors,
+            gradients,
             factorisations: 0,
         }
     }
@@ -164,8 +166,8 @@ impl<S: SolveScalar> SaddlePoint<S> {
         multipliers: &[S],
         block: impl Fn(usize) -> BodyBlocks<S>,
     ) -> Result<(), SingularMatrix> {
-        let mut gradients = Vec::with_capacity(numbering.constraints());
-        joints::gradients(model, numbering, at, &mut gradients);
+        let gradients = &mut self.gradients;
+        joints::gradients(model, numbering, at, gradients);
         self.matrix.assemble(|emit| {
             emit_saddle_point(model, numbering, at, &gradients, multipliers, block, emit);
         });

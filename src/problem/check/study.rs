@@ -56,6 +56,9 @@ impl Checker<'_> {
     /// Steps or a tolerance, and a method that can follow it.
     fn simulation(&mut self) {
         let simulation = &self.document.simulation;
+        if let Some(until) = &simulation.until {
+            self.instant("/simulation/until/measure", &until.measure);
+        }
         if let (Some(_), Some(tolerance)) = (simulation.steps, simulation.tolerance) {
             let expected = "either \"steps\" or \"tolerance\"";
             let found = format!("the tolerance {tolerance} beside a number of steps");
