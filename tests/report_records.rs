@@ -21,6 +21,8 @@ fn history() -> History {
         regularisation: 0.0,
         line_search_trials: 1,
         phase: "normal".into(),
+        steps: Some(158),
+        refreshes: Some(1),
         design: vec![400.0, -0.0],
         constraints: vec![-2.76],
     };
