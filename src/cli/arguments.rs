@@ -66,8 +66,8 @@ pub struct Job {
     /// second simulation with steps of half the size.
     #[arg(long)]
     pub error: bool,
-    /// Refines the steps until the estimated error of the objective at the start, relative to it, is
-    /// below this.
+    /// Refines the steps or the samples, whichever err too much, until the estimated error of the
+    /// objective at the start, relative to it, is below this. Never coarser than the file asks.
     #[arg(long, value_name = "ERROR", value_parser = positive)]
     pub accuracy: Option<f64>,
 }

@@ -68,6 +68,15 @@ pub fn second_order(
     let x = DVector::from_column_slice(&outcome.x);
     let Active { free, rows, weak } = active(problem, outcome, &mut program)?;
     let basis = null_space(&rows);
+    let names = weak.iter().map(|weak| weak.name.clone()).collect();
+    if basis.ncols() == 0 {
+        return Ok(Some(SecondOrder {
+            eigenvalues: Vec::new(),
+            uncertainty: 0.0,
+            curvature: Curvature::NoFreeDirection,
+            weakly_active: names,
+        }));
+    }
     let (lower, upper) = program.variable_bounds();
     let narrowest = free.iter().map(|&i| (upper[i] - lower[i]) / 4.0);
     let step = narrowest.fold(STEP, f64::min);
@@ -112,7 +121,7 @@ pub fn second_order(
         eigenvalues,
         uncertainty,
         curvature,
-        weakly_active: weak.into_iter().map(|weak| weak.name).collect(),
+        weakly_active: names,
     }))
 }
 
@@ -191,9 +200,6 @@ fn judge(
     basis: &DMatrix<f64>,
     weak: &[Weak],
 ) -> Curvature {
-    if basis.ncols() == 0 {
-        return Curvature::NoFreeDirection;
-    }
     let eigen = hessian.clone().symmetric_eigen();
     let of = |k: usize| eigen.eigenvalues[k];
     if eigen.eigenvalues.iter().all(|&value| value > uncertainty) {
@@ -287,9 +293,6 @@ mod tests {
         assert_eq!(verdict([1.0, 0.0, 0.0, 1e-4], &half), Curvature::Flat);
         // Along the face x = 0 it falls both ways.
         assert_eq!(verdict([1.0, 0.0, 0.0, -1.0], &half), Curvature::NoOptimum);
-        let none = DMatrix::zeros(2, 0);
-        let vertex = judge(&DMatrix::zeros(0, 0), 0.0, &none, &quarter);
-        assert_eq!(vertex, Curvature::NoFreeDirection);
     }
 
     #[test]
