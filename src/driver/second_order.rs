@@ -1,8 +1,8 @@
 //! Whether an optimum is a minimum of second order: the curvature of the Lagrangian along the
 //! directions that the active bounds and constraints leave free.
 //!
-//! A bound or constraint whose multiplier is zero within the accuracy of the optimum holds the design
-//! by no force: it is weakly active. Feasible directions of no first-order change then form a cone,
+//! A bound or constraint whose multiplier is zero, or next to it, holds the design by no force: it is
+//! weakly active. Feasible directions of no first-order change then form a cone,
 //! {d : a·d = 0 for what is strictly active, a·d ≥ 0 for what is weakly active}. With H = ∇²L the
 //! optimum is strict if dᵀHd > 0 on the span of the cone, and is none if dᵀHd < 0 for a d of the cone;
 //! what lies between is not decided (Nocedal & Wright 2006, theorems 12.5 and 12.6).
@@ -20,15 +20,18 @@ use nalgebra::{DMatrix, DVector};
 const STEP: f64 = 1e-4;
 /// Eigenvalues of AᵀA for the active rows A, each of unit length, below this count as zero.
 const NEGLIGIBLE: f64 = 1e-10;
-/// Multipliers below this part of the objective's gradient hold nothing.
-const WEAK: f64 = 1e-5;
+/// Multipliers below this part of the objective's gradient may hold nothing: the curvature tells.
+const WEAK: f64 = 1e-3;
 /// Largest part of a unit direction by which it may leave a bound and count as along it.
 const ALONG: f64 = 1e-6;
 
-/// A bound or constraint without force: its name, and its gradient, which points inwards.
+/// A bound or constraint next to without force.
 struct Weak {
     name: String,
+    /// Its gradient, of unit length, which points inwards.
     inwards: DVector<f64>,
+    /// By how much the objective rises for a unit inwards.
+    force: f64,
 }
 
 /// What is active, in the free variables.
@@ -68,15 +71,6 @@ pub fn second_order(
     let x = DVector::from_column_slice(&outcome.x);
     let Active { free, rows, weak } = active(problem, outcome, &mut program)?;
     let basis = null_space(&rows);
-    let names = weak.iter().map(|weak| weak.name.clone()).collect();
-    if basis.ncols() == 0 {
-        return Ok(Some(SecondOrder {
-            eigenvalues: Vec::new(),
-            uncertainty: 0.0,
-            curvature: Curvature::NoFreeDirection,
-            weakly_active: names,
-        }));
-    }
     let (lower, upper) = program.variable_bounds();
     let narrowest = free.iter().map(|&i| (upper[i] - lower[i]) / 4.0);
     let step = narrowest.fold(STEP, f64::min);
@@ -113,15 +107,29 @@ pub fn second_order(
     let transposed = hessian.transpose();
     let asymmetry = (&hessian - &transposed).amax() * 0.5;
     let uncertainty = (&hessian - &coarse).amax().max(asymmetry);
-    let hessian = (hessian + transposed) * 0.5;
-    let curvature = judge(&hessian, uncertainty, &basis, &weak);
-    let mut eigenvalues: Vec<f64> = hessian.symmetric_eigenvalues().iter().copied().collect();
+    let reduced = Reduced {
+        hessian: (hessian + transposed) * 0.5,
+        uncertainty,
+        basis,
+        weak,
+    }
+    .held();
+    let curvature = reduced.judge();
+    let mut eigenvalues: Vec<f64> = match curvature {
+        Curvature::NoFreeDirection => Vec::new(),
+        _ => reduced
+            .hessian
+            .symmetric_eigenvalues()
+            .iter()
+            .copied()
+            .collect(),
+    };
     eigenvalues.sort_by(f64::total_cmp);
     Ok(Some(SecondOrder {
         eigenvalues,
         uncertainty,
         curvature,
-        weakly_active: names,
+        weakly_active: reduced.weak.into_iter().map(|weak| weak.name).collect(),
     }))
 }
 
@@ -134,8 +142,10 @@ fn active(
     let n = outcome.x.len();
     let slopes = program.gradients(&outcome.x)?;
     let steepest = DVector::from_column_slice(&slopes.objective).amax();
-    // Where the gradient vanishes, multipliers are judged as the optimiser judges them.
-    let force = WEAK * steepest.max(0.1 * outcome.scaling.typical_gradient);
+    // Where the gradient vanishes, a tenth of its size elsewhere takes its place.
+    let scaling = &outcome.scaling;
+    let elsewhere = scaling.typical_gradient.max(scaling.objective_gradient);
+    let force = WEAK * steepest.max(0.1 * elsewhere);
     let (lower, upper) = program.variable_bounds();
     let mut free = Vec::new();
     let mut touched = Vec::new();
@@ -156,12 +166,13 @@ fn active(
             if multiplier > force {
                 continue;
             }
-            touched.push((free.len(), inwards, name.clone()));
+            touched.push((free.len(), inwards, multiplier, name.clone()));
         }
         free.push(i);
     }
-    let unit = |(c, sign, name): (usize, f64, String)| Weak {
+    let unit = |(c, sign, force, name): (usize, f64, f64, String)| Weak {
         name,
+        force,
         inwards: DVector::from_fn(free.len(), |r, _| if r == c { sign } else { 0.0 }),
     };
     let mut weak: Vec<Weak> = touched.into_iter().map(unit).collect();
@@ -181,6 +192,7 @@ fn active(
                 let length = inner.norm().max(f64::MIN_POSITIVE);
                 weak.push(Weak {
                     name: constraint.name.clone(),
+                    force: bound.multiplier * length,
                     inwards: inner * (sign / length),
                 });
             }
@@ -193,44 +205,87 @@ fn active(
     Ok(Active { free, rows, weak })
 }
 
-/// The verdict on the reduced Hessian of the directions `basis`.
-fn judge(
-    hessian: &DMatrix<f64>,
+/// The Hessian of the directions `basis`, which `weak` may bound.
+struct Reduced {
+    hessian: DMatrix<f64>,
     uncertainty: f64,
-    basis: &DMatrix<f64>,
-    weak: &[Weak],
-) -> Curvature {
-    let eigen = hessian.clone().symmetric_eigen();
-    let of = |k: usize| eigen.eigenvalues[k];
-    if eigen.eigenvalues.iter().all(|&value| value > uncertainty) {
-        return Curvature::StrictOptimum;
-    }
-    // An eigenvector may be followed either way: it is in the cone if one of the two is.
-    let inside = |d: &DVector<f64>| {
-        let along = |sign: f64| weak.iter().all(|w| sign * w.inwards.dot(d) >= -ALONG);
-        along(1.0) || along(-1.0)
-    };
-    let falling = |k: usize| of(k) < -uncertainty;
-    let (mut falls, mut outside) = (false, false);
-    for k in (0..eigen.eigenvalues.len()).filter(|&k| falling(k)) {
-        match inside(&(basis * eigen.eigenvectors.column(k))) {
-            true => falls = true,
-            false => outside = true,
+    basis: DMatrix<f64>,
+    weak: Vec<Weak>,
+}
+
+impl Reduced {
+    /// Without the directions along which a force, small as it is, outweighs the curvature over the
+    /// length of the differences: there the optimum is held all the same.
+    fn held(self) -> Self {
+        let k = self.basis.ncols();
+        let (mut rows, mut weak) = (Vec::new(), Vec::new());
+        for bound in self.weak {
+            let across = self.basis.tr_mul(&bound.inwards);
+            let part = across.norm();
+            if part <= ALONG {
+                continue;
+            }
+            let curvature = (&self.hessian * &across).dot(&across) / (part * part);
+            if bound.force * part > STEP * curvature.abs().max(self.uncertainty) {
+                rows.push(across.transpose());
+            } else {
+                weak.push(bound);
+            }
+        }
+        let free = match rows.is_empty() {
+            true => DMatrix::identity(k, k),
+            false => null_space(&DMatrix::from_rows(&rows)),
+        };
+        Self {
+            hessian: free.tr_mul(&self.hessian) * &free,
+            basis: self.basis * free,
+            weak,
+            ..self
         }
     }
-    // The face of the cone along which all that is weakly active stays active.
-    let faces = DMatrix::from_fn(weak.len(), basis.ncols(), |r, c| {
-        weak[r].inwards.dot(&basis.column(c))
-    });
-    let face = null_space(&faces);
-    if face.ncols() > 0 {
-        let least = (face.tr_mul(hessian) * &face).symmetric_eigenvalues().min();
-        falls |= least < -uncertainty;
+
+    fn judge(&self) -> Curvature {
+        if self.basis.ncols() == 0 {
+            return Curvature::NoFreeDirection;
+        }
+        let eigen = self.hessian.clone().symmetric_eigen();
+        let values = &eigen.eigenvalues;
+        if values.iter().all(|&value| value > self.uncertainty) {
+            return Curvature::StrictOptimum;
+        }
+        let falling = |k: &usize| values[*k] < -self.uncertainty;
+        let (mut falls, mut outside) = (false, false);
+        for k in (0..values.len()).filter(falling) {
+            match self.admits(&(&self.basis * eigen.eigenvectors.column(k)), values[k]) {
+                true => falls = true,
+                false => outside = true,
+            }
+        }
+        // The face of the cone along which all that is weakly active stays active.
+        let faces = DMatrix::from_fn(self.weak.len(), self.basis.ncols(), |r, c| {
+            self.weak[r].inwards.dot(&self.basis.column(c))
+        });
+        let face = null_space(&faces);
+        if face.ncols() > 0 {
+            let along = face.tr_mul(&self.hessian) * &face;
+            falls |= along.symmetric_eigenvalues().min() < -self.uncertainty;
+        }
+        match (falls, outside) {
+            (true, _) => Curvature::NoOptimum,
+            (false, true) => Curvature::NotDecided,
+            (false, false) => Curvature::Flat,
+        }
     }
-    match (falls, outside) {
-        (true, _) => Curvature::NoOptimum,
-        (false, true) => Curvature::NotDecided,
-        (false, false) => Curvature::Flat,
+
+    /// Whether a direction of negative curvature, followed either way, is in the cone, and what little
+    /// force there is gives way within the length of the differences.
+    fn admits(&self, direction: &DVector<f64>, curvature: f64) -> bool {
+        let along = |sign: f64| {
+            let part = |w: &Weak| sign * w.inwards.dot(direction);
+            let rise: f64 = self.weak.iter().map(|w| w.force * part(w)).sum();
+            self.weak.iter().all(|w| part(w) >= -ALONG) && rise <= -curvature * STEP
+        };
+        along(1.0) || along(-1.0)
     }
 }
 
@@ -264,35 +319,58 @@ fn null_space(rows: &DMatrix<f64>) -> DMatrix<f64> {
 mod tests {
     use super::*;
 
-    fn weak(inwards: &[f64]) -> Weak {
+    fn weak(inwards: [f64; 2], force: f64) -> Weak {
         Weak {
             name: String::new(),
-            inwards: DVector::from_column_slice(inwards),
+            inwards: DVector::from_column_slice(&inwards),
+            force,
+        }
+    }
+
+    fn reduced(hessian: [f64; 4], weak: Vec<Weak>) -> Reduced {
+        Reduced {
+            hessian: DMatrix::from_row_slice(2, 2, &hessian),
+            uncertainty: 1e-3,
+            basis: DMatrix::identity(2, 2),
+            weak,
         }
     }
 
     /// f = ½ xᵀHx at 0: over the plane, over x ≥ 0, over x, y ≥ 0.
     #[test]
     fn a_cone_is_judged_by_its_own_directions() {
-        let basis = DMatrix::identity(2, 2);
-        let verdict = |h: [f64; 4], weak: &[Weak]| {
-            judge(&DMatrix::from_row_slice(2, 2, &h), 1e-3, &basis, weak)
-        };
+        let verdict = |hessian, weak| reduced(hessian, weak).judge();
+        let half = || vec![weak([1.0, 0.0], 0.0)];
+        let quarter = || vec![weak([1.0, 0.0], 0.0), weak([0.0, 1.0], 0.0)];
         let bowl = [1.0, 0.0, 0.0, 2.0];
         // Falls along (1, 1), rises along (1, -1); and the other way.
         let (within, across) = ([0.0, -1.0, -1.0, 0.0], [0.0, 1.0, 1.0, 0.0]);
-        let half = [weak(&[1.0, 0.0])];
-        let quarter = [weak(&[1.0, 0.0]), weak(&[0.0, 1.0])];
-        assert_eq!(verdict(bowl, &quarter), Curvature::StrictOptimum);
-        assert_eq!(verdict(within, &[]), Curvature::NoOptimum);
-        assert_eq!(verdict(within, &quarter), Curvature::NoOptimum);
-        assert_eq!(verdict(across, &[]), Curvature::NoOptimum);
-        assert_eq!(verdict(across, &half), Curvature::NoOptimum);
+        assert_eq!(verdict(bowl, quarter()), Curvature::StrictOptimum);
+        assert_eq!(verdict(within, vec![]), Curvature::NoOptimum);
+        assert_eq!(verdict(within, quarter()), Curvature::NoOptimum);
+        assert_eq!(verdict(across, vec![]), Curvature::NoOptimum);
+        assert_eq!(verdict(across, half()), Curvature::NoOptimum);
         // xy over x, y ≥ 0 is a minimum, but not by what its eigenvectors say.
-        assert_eq!(verdict(across, &quarter), Curvature::NotDecided);
-        assert_eq!(verdict([1.0, 0.0, 0.0, 1e-4], &half), Curvature::Flat);
+        assert_eq!(verdict(across, quarter()), Curvature::NotDecided);
+        assert_eq!(verdict([1.0, 0.0, 0.0, 1e-4], half()), Curvature::Flat);
         // Along the face x = 0 it falls both ways.
-        assert_eq!(verdict([1.0, 0.0, 0.0, -1.0], &half), Curvature::NoOptimum);
+        assert_eq!(verdict([1.0, 0.0, 0.0, -1.0], half()), Curvature::NoOptimum);
+    }
+
+    /// A force along x that outweighs the curvature over the differences, and one that does not.
+    #[test]
+    fn a_small_force_holds_what_curves_less() {
+        for (force, curvature) in [
+            (1e-3, Curvature::StrictOptimum),
+            (1e-5, Curvature::NoOptimum),
+        ] {
+            let found = reduced([-1.0, 0.0, 0.0, 1.0], vec![weak([1.0, 0.0], force)]).held();
+            assert_eq!(found.judge(), curvature, "{force}");
+            assert_eq!(found.weak.len(), usize::from(force < 1e-4));
+        }
+        let held = vec![weak([1.0, 0.0], 1.0), weak([0.0, 1.0], 1.0)];
+        let vertex = reduced([1.0, 0.0, 0.0, 1.0], held).held();
+        assert_eq!(vertex.judge(), Curvature::NoFreeDirection);
     }
 
     #[test]

@@ -211,8 +211,8 @@ pub struct SecondOrder {
     pub uncertainty: f64,
     /// What follows.
     pub curvature: Curvature,
-    /// Variables at a bound, and constraints, that are active without force: their multiplier is zero
-    /// within the accuracy of the optimum, and the eigenvalues are those with them left free.
+    /// Variables at a bound, and constraints, that are active without force: their multiplier is zero or
+    /// next to it, and the eigenvalues are those with them left free.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub weakly_active: Vec<String>,
 }
@@ -229,7 +229,7 @@ pub enum Curvature {
     NoOptimum,
     /// The curvature is zero within its error along some direction, and negative along none.
     Flat,
-    /// The curvature is negative, but along directions that leave weakly active bounds.
+    /// The curvature is negative, but only where weakly active bounds stand against it.
     NotDecided,
 }
 

@@ -164,7 +164,7 @@ fn curvature(second: &SecondOrder) -> String {
         Curvature::NoOptimum => "no local optimum: it improves along a free direction",
         Curvature::Flat => "flat within the accuracy of the differences",
         Curvature::NotDecided => {
-            "not decided: it would improve across bounds that are active without force"
+            "not decided: the curvature is negative only where bounds without force stand against it"
         }
     };
     let mut text = format!("Second order: {verdict}");
