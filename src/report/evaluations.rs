@@ -326,7 +326,8 @@ mod tests {
         let bytes = std::fs::read(&path).expect("is read");
         let ends = (1..=bytes.len()).filter(|&k| bytes[k - 1] == b'\n');
         let ends: Vec<usize> = ends.collect();
-        let around = |cut: &usize| cut % 11 == 0 || ends.iter().any(|end| end.abs_diff(*cut) < 2);
+        let around =
+            |cut: &usize| cut.is_multiple_of(11) || ends.iter().any(|end| end.abs_diff(*cut) < 2);
         for cut in (0..=bytes.len()).filter(around) {
             std::fs::write(&path, &bytes[..cut]).expect("is cut");
             let found = Earlier::read(&path, &head("a", 5)).expect("is read");
