@@ -196,8 +196,8 @@ impl<'a> Evaluator<'a> {
             return;
         }
         self.choice = choice;
-        if let (Some(k), Some((method, grid))) = (choice, self.journal.steps()) {
-            self.integration.restore(method, grid, k);
+        if let Some((method, grid, refreshes)) = self.journal.steps() {
+            self.integration.restore(method, grid, refreshes);
         }
     }
 

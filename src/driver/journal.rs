@@ -23,9 +23,16 @@ pub struct Journal<'a> {
     /// that were in use then.
     known: HashMap<(bool, Vec<u64>), (Found, Option<usize>)>,
     /// All choices of steps, and the one that the evaluations so far have led to.
-    choices: Vec<StepsInUse>,
+    choices: Vec<Choice>,
     in_use: Option<usize>,
     record: Option<Box<dyn FnMut(EvaluationRecord) + 'a>>,
+}
+
+/// Steps that were chosen, or taken up again.
+struct Choice {
+    steps: StepsInUse,
+    /// How many others had been chosen before they were for the first time.
+    refreshes: usize,
 }
 
 impl<'a> Journal<'a> {
@@ -37,7 +44,7 @@ impl<'a> Journal<'a> {
         };
         for EvaluationRecord { design, found } in earlier {
             match found {
-                Found::Steps(steps) => journal.choices.push(steps),
+                Found::Steps(steps) => journal.choose(steps),
                 found => {
                     let of_gradients = matches!(found, Found::Gradients(_) | Found::NoGradients(_));
                     let steps = journal.choices.len().checked_sub(1);
@@ -54,11 +61,23 @@ impl<'a> Journal<'a> {
         self.in_use
     }
 
-    /// Method and steps of the choice in use.
-    pub fn steps(&self) -> Option<(Method, Grid)> {
-        let steps = &self.choices[self.in_use?];
+    /// Method and steps of the choice in use, and how often others had been chosen before it.
+    pub fn steps(&self) -> Option<(Method, Grid, usize)> {
+        let Choice { steps, refreshes } = &self.choices[self.in_use?];
         let method = Method::adaptive(&steps.method)?;
-        Some((method, Grid::from_ends(steps.ends.clone())?))
+        Some((method, Grid::from_ends(steps.ends.clone())?, *refreshes))
+    }
+
+    fn choose(&mut self, steps: StepsInUse) {
+        let same = |c: &&Choice| c.steps.method == steps.method && c.steps.ends == steps.ends;
+        let refreshes = match self.choices.iter().find(same) {
+            Some(known) => known.refreshes,
+            None => {
+                let next = self.choices.iter().map(|c| c.refreshes + 1).max();
+                next.unwrap_or(0)
+            }
+        };
+        self.choices.push(Choice { steps, refreshes });
     }
 
     /// Values at a design: known, or found by `evaluate` and recorded.
@@ -127,8 +146,10 @@ impl<'a> Journal<'a> {
         self.write(design, found);
     }
 
-    /// Writes a change of the steps in use, before what was found with them.
+    /// Writes a change of the steps in use, before what was found with them. Where an earlier run went
+    /// on to other steps than these, that they are in use again is a change too.
     fn refreshed(&mut self, design: &[f64], refresh: Option<Refresh>) {
+        let left = |k: &usize| k + 1 < self.choices.len();
         if let Some(Refresh {
             method,
             grid,
@@ -141,10 +162,20 @@ impl<'a> Journal<'a> {
                 reason,
                 ends,
             };
-            self.choices.push(steps.clone());
-            self.in_use = Some(self.choices.len() - 1);
-            self.write(design, Found::Steps(steps));
+            self.take(design, steps);
+        } else if let Some(k) = self.in_use.filter(left) {
+            let steps = StepsInUse {
+                reason: "as before".into(),
+                ..self.choices[k].steps.clone()
+            };
+            self.take(design, steps);
         }
+    }
+
+    fn take(&mut self, design: &[f64], steps: StepsInUse) {
+        self.choose(steps.clone());
+        self.in_use = Some(self.choices.len() - 1);
+        self.write(design, Found::Steps(steps));
     }
 
     fn write(&mut self, design: &[f64], found: Found) {
@@ -181,4 +212,68 @@ pub fn head(problem: &Problem) -> Head {
 /// A design to the last bit.
 pub(super) fn bits(design: &[f64]) -> Vec<u64> {
     design.iter().map(|x| x.to_bits()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn steps(ends: &[f64]) -> EvaluationRecord {
+        EvaluationRecord {
+            design: vec![0.0],
+            found: Found::Steps(StepsInUse {
+                method: "dop853".into(),
+                reason: "first design".into(),
+                ends: ends.to_vec(),
+            }),
+        }
+    }
+
+    fn value(x: f64) -> EvaluationRecord {
+        EvaluationRecord {
+            design: vec![x],
+            found: Found::Values(vec![x]),
+        }
+    }
+
+    /// A run that leaves the course of the earlier one goes on with the steps of that time, and its
+    /// record says so.
+    #[test]
+    fn steps_are_those_of_the_last_known_evaluation() {
+        let (coarse, fine) = ([0.0, 1.0], [0.0, 0.5, 1.0]);
+        let earlier = vec![steps(&coarse), value(1.0), steps(&fine), value(2.0)];
+        let mut written = Vec::new();
+        let mut journal = Journal::new(earlier.clone(), |record| written.push(record));
+        let never = |_: &mut Option<Refresh>| -> Result<Vec<f64>, String> { panic!("is known") };
+        assert!(journal.steps().is_none());
+        assert_eq!(journal.values(&[1.0], never), Ok(vec![1.0]));
+        let in_use = |journal: &Journal<'_>| {
+            let (_, grid, refreshes) = journal.steps().expect("chosen");
+            (grid.ends().to_vec(), refreshes)
+        };
+        assert_eq!(in_use(&journal), (coarse.to_vec(), 0));
+        for x in [3.0, 4.0] {
+            assert_eq!(journal.values(&[x], |_| Ok(vec![x])), Ok(vec![x]));
+            // No design is evaluated twice.
+            assert_eq!(journal.values(&[x], never), Ok(vec![x]));
+        }
+        assert_eq!(in_use(&journal), (coarse.to_vec(), 0));
+        // Evaluations of before do not bring older steps back, later ones bring none.
+        assert_eq!(journal.values(&[2.0], never), Ok(vec![2.0]));
+        assert_eq!(in_use(&journal), (coarse.to_vec(), 0));
+        drop(journal);
+        let mut again = steps(&coarse);
+        again.design = vec![3.0];
+        if let Found::Steps(steps) = &mut again.found {
+            steps.reason = "as before".into();
+        }
+        assert_eq!(written, [again, value(3.0), value(4.0)]);
+        // Read back, the record says the same of all evaluations.
+        let all = [earlier, written].concat();
+        let mut journal = Journal::new(all, |_| {});
+        for (x, ends, refreshes) in [(1.0, &coarse[..], 0), (2.0, &fine, 1), (4.0, &coarse, 0)] {
+            assert_eq!(journal.values(&[x], never), Ok(vec![x]));
+            assert_eq!(in_use(&journal), (ends.to_vec(), refreshes));
+        }
+    }
 }
