@@ -272,7 +272,7 @@ fn an_accuracy_is_reached_by_what_lacks_it() {
         problem.simulation.spacing = Spacing::Steps(1000);
         problem.simulation.samples = None;
     };
-    let found = reached("trebuchet.json", 1e-4, &bdf);
+    let found = reached("trebuchet.json", 1e-5, &bdf);
     assert!(
         matches!(found.spacing, Some(Spacing::Steps(more)) if more > 1000),
         "{found:?}"
