@@ -4,6 +4,7 @@ mod arguments;
 mod compare;
 mod optimise;
 mod progress;
+mod records;
 mod simulate;
 mod starts;
 mod work_precision;

@@ -1,7 +1,7 @@
 //! Functions and gradients of a problem at a design: one simulation, one backward march.
 
 use super::integration::{Integration, Refresh};
-use super::journal::Journal;
+use super::journal::{Journal, bits};
 use crate::adjoint;
 use crate::functions::{Scene, evaluate};
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
@@ -10,6 +10,9 @@ use crate::model::RigidBody;
 use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
 use crate::problem::{Problem, Sense};
 use nalgebra::DMatrix;
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::rc::Rc;
 
 /// A design that was simulated.
 pub struct Evaluated {
@@ -152,6 +155,18 @@ fn parameter_derivatives(problem: &Problem, x: &[f64], i: usize) -> Vec<f64> {
         .collect()
 }
 
+/// The steps that the functions of a design were found with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JudgedOn {
+    /// Number of steps.
+    pub steps: Option<usize>,
+    /// How often they had been chosen anew.
+    pub refreshes: usize,
+}
+
+/// The steps of every design that was evaluated, by its bits; shared with who observes the run.
+pub type Judgements = Rc<RefCell<HashMap<Vec<u64>, JudgedOn>>>;
+
 /// The problem as a nonlinear program. Keeps the last simulated design, so that a gradient where
 /// the functions were just evaluated costs the backward march only.
 pub struct Evaluator<'a> {
@@ -162,6 +177,10 @@ pub struct Evaluator<'a> {
     /// The steps in use.
     pub integration: Integration,
     journal: Journal<'a>,
+    /// Which choice of steps of the journal `integration` goes by.
+    choice: Option<usize>,
+    /// What the functions of each design were found with.
+    pub judgements: Judgements,
     /// Work of all simulations and gradients so far.
     pub counts: WorkCounts,
 }
@@ -171,10 +190,6 @@ impl<'a> Evaluator<'a> {
     pub fn new(problem: &'a Problem, journal: Journal<'a>) -> Option<Self> {
         let objective = problem.objective?;
         let scene = problem.scene(&problem.start());
-        let mut integration = Integration::new(problem, &scene, false, true);
-        if let Some((method, grid, times)) = journal.steps() {
-            integration.restore(method, grid, times);
-        }
         let sign = match objective.sense {
             Sense::Minimise => 1.0,
             Sense::Maximise => -1.0,
@@ -184,8 +199,10 @@ impl<'a> Evaluator<'a> {
             objective: objective.function,
             sign,
             last: None,
-            integration,
+            integration: Integration::new(problem, &scene, false, true),
             journal,
+            choice: None,
+            judgements: Judgements::default(),
             counts: WorkCounts::default(),
         })
     }
@@ -199,6 +216,18 @@ impl<'a> Evaluator<'a> {
     fn functions(&self) -> Vec<usize> {
         let constraints = self.problem.constraints.iter().map(|c| c.function);
         std::iter::once(self.objective).chain(constraints).collect()
+    }
+
+    /// Takes the steps that the journal has come to.
+    fn follow(&mut self) {
+        let choice = self.journal.choice();
+        if choice == self.choice {
+            return;
+        }
+        self.choice = choice;
+        if let Some((method, grid, refreshes)) = self.journal.steps() {
+            self.integration.restore(method, grid, refreshes);
+        }
     }
 
     fn failure(&self, reason: String) -> EvaluationFailure {
@@ -280,6 +309,14 @@ impl Nlp for Evaluator<'_> {
             let at = at(last, steps, counts, problem, &x).map_err(|failure| failure.to_string())?;
             Ok(functions.iter().map(|&f| at.function(f).value).collect())
         });
+        self.follow();
+        let judged = JudgedOn {
+            steps: self.integration.steps(),
+            refreshes: self.integration.refreshes,
+        };
+        let mut judgements = self.judgements.borrow_mut();
+        judgements.entry(bits(&x)).or_insert(judged);
+        drop(judgements);
         let values = found.map_err(|reason| self.failure(reason))?;
         Ok(Evaluation {
             objective: self.sign * values[0],
@@ -301,6 +338,7 @@ impl Nlp for Evaluator<'_> {
             *counts += work;
             Ok(gradients)
         });
+        self.follow();
         let gradients = found.map_err(|reason| self.failure(reason))?;
         let scaled = |f: usize, i: usize| gradients[f][i] * problem.variables[i].scale;
         let n = x.len();

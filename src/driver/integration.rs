@@ -71,6 +71,16 @@ impl Integration {
         Some((settings, reason))
     }
 
+    /// Number of steps of the motion, once it is known.
+    pub fn steps(&self) -> Option<usize> {
+        let spacing = self.chosen.as_ref().map(|(settings, _)| &settings.spacing);
+        match spacing.unwrap_or(&self.spacing) {
+            Spacing::Steps(steps) => Some(*steps),
+            Spacing::Frozen(grid) => Some(grid.steps()),
+            Spacing::Tolerance(_) => None,
+        }
+    }
+
     /// Where the motion is sampled.
     pub fn samples(&self) -> Samples {
         self.samples
@@ -87,9 +97,9 @@ impl Integration {
         }
     }
 
-    /// Goes on with the steps of an earlier run, which chose them so many times.
-    pub fn restore(&mut self, method: Method, grid: Grid, times: usize) {
-        self.refreshes = times.saturating_sub(1);
+    /// Goes on with steps that were chosen before, after so many others.
+    pub fn restore(&mut self, method: Method, grid: Grid, refreshes: usize) {
+        self.refreshes = refreshes;
         let settings = Settings {
             method,
             spacing: Spacing::Frozen(grid),

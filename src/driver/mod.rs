@@ -20,7 +20,7 @@ pub use check::{CheckedDerivative, check};
 pub use evaluate::{Evaluated, Evaluator};
 pub use journal::Journal;
 pub use multi_start::multi_start;
-pub use optimise::{Optimisation, optimise};
+pub use optimise::{Optimisation, Solved, optimise, solve};
 pub use second_order::second_order;
 pub use simulate::{Simulation, simulate};
 pub use warm_start::WarmStart;

@@ -21,7 +21,8 @@ impl<S: Copy, const N: usize> Rows<S, N> {
         }
     }
 
-    fn width(&self) -> usize {
+    /// Number of numbers in a record.
+    pub fn width(&self) -> usize {
         self.lengths.iter().sum()
     }
 
@@ -42,14 +43,10 @@ impl<S: Copy, const N: usize> Rows<S, N> {
         self.count += 1;
     }
 
-    /// Number of records.
-    pub fn len(&self) -> usize {
-        self.count
-    }
-
-    /// True if there is no record.
-    pub fn is_empty(&self) -> bool {
-        self.count == 0
+    /// Gives all records and their memory up.
+    pub fn clear(&mut self) {
+        self.data = Vec::new();
+        self.count = 0;
     }
 
     /// Number of numbers in all records.

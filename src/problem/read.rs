@@ -299,6 +299,7 @@ fn problem(
                 iterations: optimiser.iterations,
                 evaluations: optimiser.evaluations,
                 seconds: optimiser.seconds,
+                unbounded_below: optimiser.unbounded_below,
             },
         ),
         hash: hash.iter().map(|byte| format!("{byte:02x}")).collect(),

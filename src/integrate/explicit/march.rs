@@ -40,7 +40,7 @@ pub fn march<S: SolveScalar>(
         a: start.a.clone(),
         lambda: start.lambda.clone(),
     };
-    let mut tape = Tape::new(numbering);
+    let mut tape = Tape::new(numbering, settings.keep_stages);
     tape.push(node.view());
     let tape = trajectory::Tape::Explicit(tape);
     let scale = Scale::of(model, numbering, &start, duration.re());
@@ -105,9 +105,7 @@ pub fn march<S: SolveScalar>(
             unreachable!("the tape is that of the explicit method")
         };
         tape.push(to.view());
-        if settings.keep_stages {
-            tape.keep(stepper.data.view());
-        }
+        tape.keep(stepper.data.view());
         std::mem::swap(&mut from, &mut to);
     }
     close(&mut run, &controller)?;
@@ -129,7 +127,7 @@ fn reserve<S: SolveScalar>(run: &mut Trajectory<S>, settings: &Settings) {
     };
     run.reserve(steps, samples);
     if let trajectory::Tape::Explicit(tape) = &mut run.tape {
-        tape.reserve(steps, settings.keep_stages);
+        tape.reserve(steps);
     }
 }
 

@@ -18,6 +18,10 @@ use super::rows::Rows;
 use crate::math::Complex64;
 use crate::system::Numbering;
 
+/// Numbers of stages that are kept at most (256 MB in `f64`); of longer histories the stages are made
+/// again.
+const KEPT: usize = 1 << 25;
+
 /// What the adjoint needs: the node that each step starts from, and the stages of each step if
 /// they were kept.
 #[derive(Clone, Debug)]
@@ -26,22 +30,26 @@ pub struct Tape<S> {
     steps: Rows<S, 10>,
     /// Whether the stages of the dense output of each kept step were computed.
     dense: Vec<bool>,
+    /// Whether stages are still kept.
+    keeping: bool,
 }
 
 impl<S: Copy> Tape<S> {
-    /// An empty tape.
-    pub fn new(numbering: &Numbering) -> Self {
+    /// An empty tape, which keeps stages if `keeping` and as far as memory allows.
+    pub fn new(numbering: &Numbering, keeping: bool) -> Self {
         Self {
             nodes: Rows::new(Node::<&[S]>::lengths(numbering)),
             steps: Rows::new(StepData::<&[S]>::lengths(numbering)),
             dense: Vec::new(),
+            keeping,
         }
     }
 
     /// Makes room for so many steps, and for their stages if these are kept.
-    pub fn reserve(&mut self, steps: usize, keep_stages: bool) {
+    pub fn reserve(&mut self, steps: usize) {
         self.nodes.reserve(steps);
-        if keep_stages {
+        self.keeping &= steps * self.steps.width() <= KEPT;
+        if self.keeping {
             self.steps.reserve(steps);
             self.dense.reserve(steps);
         }
@@ -52,15 +60,22 @@ impl<S: Copy> Tape<S> {
         self.nodes.push([node.q, node.v, node.a, node.lambda]);
     }
 
-    /// Keeps the stages of a step.
+    /// Keeps the stages of a step, if all are kept.
     pub fn keep(&mut self, step: StepData<&[S]>) {
-        self.steps.push(step.parts());
-        self.dense.push(step.dense);
+        if self.keeping && self.steps.numbers() + self.steps.width() > KEPT {
+            self.keeping = false;
+            self.steps.clear();
+            self.dense = Vec::new();
+        }
+        if self.keeping {
+            self.steps.push(step.parts());
+            self.dense.push(step.dense);
+        }
     }
 
     /// Whether stages were kept.
     pub fn keeps_stages(&self) -> bool {
-        !self.steps.is_empty()
+        self.keeping
     }
 
     /// Node n of 0 … N.
@@ -87,6 +102,7 @@ impl Tape<Complex64> {
             nodes: self.nodes.real(),
             steps: self.steps.real(),
             dense: self.dense.clone(),
+            keeping: self.keeping,
         }
     }
 }

@@ -48,6 +48,14 @@ impl Checker<'_> {
             }
         }
         self.simulation();
+        let optimiser = document.optimiser.as_ref();
+        if let Some(floor) = optimiser.and_then(|optimiser| optimiser.unbounded_below)
+            && floor >= 0.0
+        {
+            let expected = "a number below zero, far below any objective that makes sense";
+            let pointer = "/optimiser/unbounded_below";
+            self.fault(Finding::new(pointer, floor.to_string(), expected));
+        }
         for (k, text) in document.plot.trace.iter().enumerate() {
             self.location(&join("/plot/trace", k), text);
         }

@@ -264,6 +264,13 @@ pub struct Optimiser {
         "design_variable" = "a limit of the run is the optimiser's, not a physical number"
     ))]
     pub seconds: Option<f64>,
+    /// Value, below zero, that the minimised objective may not fall below: if it does, the problem is
+    /// called unbounded. An objective that is maximised is judged by its negative. Default -1e20.
+    #[schemars(extend(
+        "exclusiveMaximum" = 0,
+        "design_variable" = "a limit of the run is the optimiser's, not a physical number"
+    ))]
+    pub unbounded_below: Option<f64>,
 }
 
 /// How the motion is drawn.
