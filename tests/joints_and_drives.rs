@@ -377,6 +377,33 @@ fn machine(turn: Value, slide: Value, simulation: Value) -> Value {
     })
 }
 
+/// A nut on a cylindrical joint comes to rest by damping, along and about the axis apart.
+#[test]
+fn damping_acts_on_one_motion_of_a_cylindrical_joint() {
+    let file = json!({
+        "version": 1, "name": "nut", "gravity": [0, 0, 0],
+        "bodies": {"nut": {"mass": 2, "inertia": {"xx": 0.3, "yy": 0.5, "zz": 0.4},
+                           "velocity": {"linear": [0, 1, 0], "angular": [0, 3, 0]}}},
+        "joints": {"rail": {"cylindrical": {"between": ["nut", "ground"], "at": [0, 0, 0],
+                                            "axis": [0, 1, 0]}}},
+        "loads": {
+            "brake": {"damping": {"joint": "rail", "motion": "slide", "coefficient": 1.6}},
+            "bearing": {"damping": {"joint": "rail", "coefficient": 0.2}}
+        },
+        "simulation": {"duration": 0.7, "tolerance": 1e-12},
+        "functions": {
+            "speed": component("velocity", "nut", [0.0, 1.0, 0.0]),
+            "angle": {"final": {"rotation": {"body": "nut", "axis": [0, 1, 0]}}}
+        }
+    });
+    let (along, about): (f64, f64) = (1.6 / 2.0, 0.2 / 0.5);
+    let exact = [
+        (-along * 0.7).exp(),
+        3.0 / about * (1.0 - (-about * 0.7).exp()),
+    ];
+    agree("damping", &values(&file), &exact, 1e-11);
+}
+
 #[test]
 fn gradients_of_explicit_steps() {
     let table = json!({"table": {"times": [0, 0.1, 0.25, 0.4, 0.6],

@@ -4,9 +4,9 @@ use super::placement::{Assembly, GROUND};
 use super::scene::unit;
 use super::schema::Document;
 use super::schema::joints::Joint;
-use super::schema::loads::{Axes as WrittenAxes, Course as Written, Load as WrittenLoad};
+use super::schema::loads::{Axes as WrittenAxes, Course as Written, Load as WrittenLoad, Motion};
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, Course, Freedom, JointKind, Load, LoadKind};
+use crate::model::{Axes, Course, Freedom, Load, LoadKind};
 
 /// The loads of a checked document, in its order.
 pub fn loads<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Load<S>> {
@@ -80,7 +80,7 @@ fn kind<S: Scalar>(
         WrittenLoad::Damping(damping) => {
             let (joint, written) = joint(document, &damping.joint);
             let coefficient = get(&damping.coefficient);
-            match freedom(written) {
+            match freedom(written, damping.motion) {
                 Some(freedom) => LoadKind::Damping {
                     joint,
                     freedom,
@@ -93,7 +93,7 @@ fn kind<S: Scalar>(
             let (joint, written) = joint(document, &friction.joint);
             LoadKind::Friction {
                 joint,
-                freedom: freedom(written)
+                freedom: freedom(written, friction.motion)
                     .expect("joints with friction are checked when a problem is read"),
                 size: get(&friction.size),
                 width: get(&friction.width),
@@ -133,16 +133,19 @@ fn joint<'a>(document: &'a Document, name: &str) -> (usize, &'a Joint) {
     (index, joint)
 }
 
-/// The one freedom of a joint along or about its axis; `None` if it has several.
-pub fn freedom(joint: &Joint) -> Option<Freedom> {
-    match joint.kind() {
-        JointKind::Revolute => Some(Freedom::Turn),
-        JointKind::Prismatic => Some(Freedom::Slide),
-        JointKind::Spherical
-        | JointKind::Planar
-        | JointKind::Cylindrical
-        | JointKind::Universal
-        | JointKind::Rod
-        | JointKind::Weld => None,
+/// The motion of a joint along or about its axis that a load acts on: the one named, else the first;
+/// `None` if it has none.
+fn freedom(joint: &Joint, motion: Option<Motion>) -> Option<Freedom> {
+    match motion {
+        Some(motion) => Some(named(motion)),
+        None => joint.kind().freedoms().first().copied(),
+    }
+}
+
+/// The motion that a name in the file stands for.
+pub fn named(motion: Motion) -> Freedom {
+    match motion {
+        Motion::Turn => Freedom::Turn,
+        Motion::Slide => Freedom::Slide,
     }
 }

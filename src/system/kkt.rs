@@ -169,7 +169,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
         let gradients = &mut self.gradients;
         joints::gradients(model, numbering, at, gradients);
         self.matrix.assemble(|emit| {
-            emit_saddle_point(model, numbering, at, &gradients, multipliers, block, emit);
+            emit_saddle_point(model, numbering, at, gradients, multipliers, block, emit);
         });
         self.factorisations += 1;
         self.factors.factorise(&self.matrix)

@@ -3,11 +3,12 @@
 use super::Checker;
 use crate::model::JointKind;
 use crate::problem::fault::Finding;
+use crate::problem::loads::named;
 use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join};
 use crate::problem::quantity::Quantity;
 use crate::problem::schema::joints::Ends;
-use crate::problem::schema::loads::{Course, Load};
+use crate::problem::schema::loads::{Course, Load, Motion};
 
 impl Checker<'_> {
     pub(super) fn loads(&mut self) {
@@ -20,7 +21,7 @@ impl Checker<'_> {
     }
 
     fn load(&mut self, pointer: &str, load: &Load) {
-        use JointKind::{Cylindrical, Planar, Prismatic, Revolute, Spherical};
+        use JointKind::{Cylindrical, Planar, Prismatic, Revolute, Spherical, Universal};
         match load {
             Load::Force(force) => {
                 self.moving(pointer, &force.body, &force.point);
@@ -50,10 +51,15 @@ impl Checker<'_> {
                 self.loaded_joint(pointer, &spring.joint, &[Revolute, Planar, Cylindrical]);
             }
             Load::Damping(damping) => {
-                self.loaded_joint(pointer, &damping.joint, &[Revolute, Prismatic, Spherical]);
+                let balls = [Spherical, Universal];
+                let kinds = [&[Revolute, Prismatic, Cylindrical, Planar], &balls[..]].concat();
+                self.loaded_joint(pointer, &damping.joint, &kinds);
+                self.joint_motion(pointer, &damping.joint, damping.motion);
             }
             Load::Friction(friction) => {
-                self.loaded_joint(pointer, &friction.joint, &[Revolute, Prismatic]);
+                let kinds = [Revolute, Prismatic, Cylindrical, Planar];
+                self.loaded_joint(pointer, &friction.joint, &kinds);
+                self.joint_motion(pointer, &friction.joint, friction.motion);
             }
         }
     }
@@ -89,6 +95,19 @@ impl Checker<'_> {
                 let hint = advice(name, "such joints", suitable.map(|(name, _)| name.as_str()));
                 self.fault(Finding::new(pointer, format!("\"{name}\""), expected).hint(hint));
             }
+        }
+    }
+
+    /// Checks that a joint allows the motion that a load acts on.
+    fn joint_motion(&mut self, pointer: &str, joint: &str, motion: Option<Motion>) {
+        let (Some(joint), Some(motion)) = (self.document.joints.get(joint), motion) else {
+            return;
+        };
+        if !joint.kind().freedoms().contains(&named(motion)) {
+            let found = format!("{motion:?}").to_lowercase();
+            let found = format!("\"{found}\" of a joint that is {}", joint.kind().name());
+            let expected = "a motion about or along its axis that the joint allows";
+            self.fault(Finding::new(join(pointer, "motion"), found, expected));
         }
     }
 

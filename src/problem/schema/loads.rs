@@ -19,9 +19,9 @@ pub enum Load {
     Spring(Spring),
     /// A spring with a damper about the axis of a revolute or planar joint.
     TorsionSpring(TorsionSpring),
-    /// Viscous damping in a revolute, prismatic or spherical joint.
+    /// Viscous damping in a joint.
     Damping(Damping),
-    /// Coulomb friction in a revolute or prismatic joint: size times tanh(rate / width).
+    /// Coulomb friction in a joint: size times tanh(rate / width).
     Friction(Friction),
 }
 
@@ -200,12 +200,24 @@ pub struct TorsionSpring {
     pub damping: Quantity,
 }
 
+/// A motion of a joint.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Motion {
+    /// Turning about its axis.
+    Turn,
+    /// Sliding along its axis.
+    Slide,
+}
+
 /// Viscous damping in a joint.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Damping {
-    /// Name of a revolute, prismatic or spherical joint.
+    /// Name of a revolute, prismatic, cylindrical, planar, spherical or universal joint.
     pub joint: String,
+    /// Which motion of a cylindrical joint; default turning.
+    pub motion: Option<Motion>,
     /// Force or torque for a unit of rate.
     #[schemars(extend("unit" = "N s/m or N m s/rad", "minimum" = 0))]
     pub coefficient: Quantity,
@@ -215,8 +227,10 @@ pub struct Damping {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Friction {
-    /// Name of a revolute or prismatic joint.
+    /// Name of a revolute, prismatic, cylindrical or planar joint.
     pub joint: String,
+    /// Which motion of a cylindrical joint; default turning.
+    pub motion: Option<Motion>,
     /// Force or torque at rates well above the width.
     #[schemars(extend("unit" = "N or N m", "minimum" = 0))]
     pub size: Quantity,
