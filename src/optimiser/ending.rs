@@ -20,12 +20,19 @@ pub(super) struct Finish {
     pub slopes: Slopes,
     pub multipliers: ScaledMultipliers,
     pub scaled: f64,
+    /// Scale of the objective to which all this belongs.
+    pub scale: f64,
     pub b: QuasiNewton,
     pub barrier: f64,
     pub radius: f64,
 }
 
 impl Finish {
+    /// Brings the program back to the scale in which this was found.
+    pub fn restore_scale(&self, program: &mut Program<'_>) {
+        program.rescale(self.scale / program.scaling.objective);
+    }
+
     fn kkt(&self, program: &Program<'_>) -> Kkt {
         kkt(
             program,
@@ -110,6 +117,7 @@ pub(super) fn unfinished(program: &Program<'_>, point: Point, slopes: Slopes) ->
         status: Status::Interrupted,
         b: QuasiNewton::new(point.x.len(), options.dense_limit, options.memory),
         scaled: scaled_residual(program, &point, &slopes, &multipliers),
+        scale: program.scaling.objective,
         multipliers,
         point,
         slopes,
@@ -133,7 +141,7 @@ pub(super) fn status_of(
                 violation,
             }
         }
-        Ok(Ending::Stalled) | Err(Trouble::Failed(_)) => Status::Stalled,
+        Ok(Ending::Stalled | Ending::Misscaled) | Err(Trouble::Failed(_)) => Status::Stalled,
         Err(Trouble::Halt(status)) => status,
     }
 }

@@ -88,6 +88,22 @@ impl QuasiNewton {
         }
     }
 
+    /// `factor` B.
+    pub(super) fn times(&self, factor: f64) -> QuasiNewton {
+        let mut b = self.stored();
+        b.sigma *= factor;
+        for pair in &mut b.pairs {
+            pair.y *= factor;
+        }
+        b
+    }
+
+    /// Curvature sᵀy/sᵀs of the newest pair, if there is one.
+    pub(super) fn newest_curvature(&self) -> Option<f64> {
+        let pair = self.pairs.last()?;
+        Some(pair.s.dot(&pair.y) / pair.s.norm_squared())
+    }
+
     /// Sets the scale σ that B has without pairs.
     pub(super) fn set_scale(&mut self, sigma: f64) {
         self.sigma = sigma;

@@ -11,6 +11,9 @@ const FLAT: f64 = 1.0;
 const LIFTED: f64 = 1.0;
 const LARGEST_LIFT: f64 = 1e12;
 
+/// Least factor by which a scale is changed on the way.
+const WORTHWHILE: f64 = 10.0;
+
 /// Points that count as the first ones of a run.
 const FIRST_POINTS: usize = 12;
 
@@ -47,6 +50,23 @@ impl Program<'_> {
         // So many that later points cannot lower it.
         self.gradient_norms = vec![saved.typical_gradient; LARGEST_LEFT_OUT + 1];
         self.apply_scaling(point, slopes);
+    }
+
+    /// Factor by which the scale of the objective has to change to suit a point of gradient `g` and
+    /// curvature `curvature`, both scaled, at which the run has arrived; `None` if it suits.
+    pub fn better_scale(&self, point: &Point, g: &DVector<f64>, curvature: f64) -> Option<f64> {
+        let size = point.x.amax().max(1.0);
+        let limit = self.options.scaling_gradient / g.amax().max(curvature * size);
+        let factor = limit.min(1.0 / self.scaling.objective);
+        (factor.is_finite() && factor >= WORTHWHILE).then_some(factor)
+    }
+
+    /// Multiplies the scale of the objective by `factor`.
+    pub fn rescale(&mut self, factor: f64) {
+        self.scaling.objective *= factor;
+        if let Some(best) = &mut self.best {
+            best.f *= factor;
+        }
     }
 
     fn apply_scaling(&mut self, point: &mut Point, slopes: &mut Slopes) {

@@ -198,7 +198,7 @@ fn auto(
     push: f64,
 ) -> Finish {
     program.allow(FIRST_SHARE);
-    let start = first.clone();
+    let (start, scale) = (first.clone(), program.scaling.objective);
     let mut kept = attempt(program, Method::InteriorPoint, first, saved, push);
     program.allow(1.0);
     for (from_best, share) in [(true, SECOND_SHARE), (false, 1.0)] {
@@ -216,6 +216,7 @@ fn auto(
         if from_best && matches!(kept.status, Status::Infeasible { .. }) {
             continue;
         }
+        program.rescale(scale / program.scaling.objective);
         let place = match program.best.clone().filter(|_| from_best) {
             None => start.clone(),
             Some(best) => match program.gradients(&best.x) {
@@ -233,6 +234,7 @@ fn auto(
         if !(undecided && matches!(kept.status, Status::Infeasible { .. })) {
             kept = next;
         }
+        kept.restore_scale(program);
     }
     kept
 }
@@ -249,7 +251,27 @@ fn interior_point(
         let multipliers = scaled_multipliers(program, &saved.multipliers);
         method.adopt(&multipliers, saved.quasi_newton.clone(), saved.barrier);
     }
-    let result = method.run(program);
+    let mut result = method.run(program);
+    while let Ok(Ending::Misscaled | Ending::Stalled) = result
+        && let Some(factor) = method.better_scale(program)
+    {
+        let z = method.multipliers(program).times(factor);
+        let (b, mu) = (method.b.times(factor), method.barrier.mu * factor);
+        let mut point = method.at.point.clone();
+        program.rescale(factor);
+        point.f *= factor;
+        // Small derivatives were lost beside the large ones of the start.
+        let slopes = match program.gradients(&point.x) {
+            Ok(slopes) => slopes,
+            Err(trouble) => {
+                result = Err(trouble);
+                break;
+            }
+        };
+        method = InteriorPoint::new(program, point, slopes, RESUMED_PUSH);
+        method.adopt(&z, b, mu.min(program.options.initial_barrier));
+        result = method.run(program);
+    }
     let status = status_of(program, result, &method.at.point);
     let mut multipliers = method.multipliers(program);
     let mut scaled = method.optimality();
@@ -278,6 +300,7 @@ fn interior_point(
         status,
         multipliers,
         scaled,
+        scale: program.scaling.objective,
         point,
         slopes,
         b: method.b,
@@ -300,7 +323,7 @@ fn trust_region(
         }
         method.radius = saved.radius;
     }
-    let mut result = method.run(program, |_, _| false);
+    let mut result = optimise(program, &mut method);
     for _ in 0..FEASIBILITY_PHASES {
         let limit = program.options.constraint_tolerance;
         let stuck = matches!(result, Ok(Ending::Stalled | Ending::Infeasible));
@@ -317,17 +340,34 @@ fn trust_region(
         if !matches!(result, Ok(Ending::Reached)) {
             break;
         }
-        result = method.run(program, |_, _| false);
+        result = optimise(program, &mut method);
     }
     let status = status_of(program, result, &method.point);
     Finish {
         status,
         multipliers: method.multipliers(program),
         scaled: method.optimality(program),
+        scale: program.scaling.objective,
         point: method.point,
         slopes: method.slopes,
         b: method.b,
         barrier: program.options.initial_barrier,
         radius: method.radius,
+    }
+}
+
+/// Runs the trust region, and again in better units where those of the start do not suit its end.
+fn optimise(program: &mut Program<'_>, method: &mut TrustRegion) -> Result<Ending, Trouble> {
+    loop {
+        let ending = method.run(program, |_, _| false)?;
+        if !matches!(ending, Ending::Misscaled | Ending::Stalled) {
+            return Ok(ending);
+        }
+        let Some(factor) = method.better_scale(program) else {
+            return Ok(ending);
+        };
+        program.rescale(factor);
+        let slopes = program.gradients(&method.point.x)?;
+        method.rescale(factor, slopes);
     }
 }

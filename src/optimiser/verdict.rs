@@ -73,6 +73,14 @@ impl ScaledMultipliers {
         }
     }
 
+    /// Multipliers of the program whose objective is multiplied by `factor`.
+    pub fn times(mut self, factor: f64) -> Self {
+        self.y *= factor;
+        self.zl *= factor;
+        self.zu *= factor;
+        self
+    }
+
     /// Sets to zero what has the wrong sign for the bounds that a row has.
     pub fn clip(&mut self, program: &Program<'_>) {
         for k in 0..self.y.len() {
@@ -130,11 +138,15 @@ pub(super) const UNIT_OF_OBJECTIVE: f64 = 0.01;
 /// The size of forces, in the units of the user: that of the gradient or, where it vanishes, of those
 /// at other points of the run.
 pub(super) fn unit_of_forces(program: &Program<'_>, slopes: &Slopes) -> f64 {
+    gradient_norm(program, slopes).max(UNIT * program.typical_gradient())
+}
+
+/// Norm ‖∇f‖∞ in the units of the user.
+pub(super) fn gradient_norm(program: &Program<'_>, slopes: &Slopes) -> f64 {
     let gradient = program.free.iter().zip(slopes.g.iter());
-    let gradient = gradient
+    gradient
         .map(|(&i, g)| (g / (program.scaling.objective * program.scaling.variables[i])).abs())
-        .fold(0.0, f64::max);
-    gradient.max(UNIT * program.typical_gradient())
+        .fold(0.0, f64::max)
 }
 
 /// Residuals at a point; `scaled` is left to the caller.
@@ -230,15 +242,26 @@ const LONGEST_LAST: f64 = 0.1;
 const VANISHING: f64 = 1e-5;
 const BALANCED: f64 = 0.1;
 
-/// Whether the residuals meet the tolerances and, unless the forces are small against the gradient at
-/// the point itself, the last step was short and no multipliers balance a gradient that stays.
-pub(super) fn is_solved(
+/// What the residuals at a point say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// They are too large.
+    Unsolved,
+    /// They are small in scaled units and against the gradients of the run alone.
+    SolvedInScaledUnits,
+    /// They meet the tolerances in the units of the user as well.
+    Solved,
+}
+
+/// Judges a point. Unless the forces are small against the gradient at the point itself, the last step
+/// must have been short and no multipliers balance a gradient that stays.
+pub(super) fn judge(
     program: &Program<'_>,
     point: &Point,
     slopes: &Slopes,
     z: &ScaledMultipliers,
     scaled: f64,
-) -> bool {
+) -> Verdict {
     let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
     let (left, gradient) = (force.amax(), slopes.g.amax());
     let settled = left <= program.options.tolerance * gradient
@@ -247,10 +270,42 @@ pub(super) fn is_solved(
     let balanced = left > program.options.tolerance * gradient
         && left <= BALANCED * gradient
         && gradient > VANISHING * typical;
-    settled && !balanced && is_solved_at_end(program, point, slopes, z, scaled)
+    let kkt = kkt(program, point, slopes, z, scaled);
+    if balanced || !settled || !is_solved_in_scaled_units(program, &kkt) {
+        Verdict::Unsolved
+    } else if is_solved_in_user_units(program, point, slopes, &kkt) {
+        Verdict::Solved
+    } else {
+        Verdict::SolvedInScaledUnits
+    }
 }
 
-/// As [`is_solved`], at a point where no step makes progress.
+/// Whether the residuals meet the tolerances in scaled units and relative to the gradients of the run.
+pub(super) fn is_solved_in_scaled_units(program: &Program<'_>, kkt: &Kkt) -> bool {
+    let options = program.options;
+    let within = |value: f64, limit: f64| value <= limit;
+    within(kkt.violation, options.constraint_tolerance)
+        && within(kkt.relative_stationarity, options.tolerance)
+        && within(kkt.relative_complementarity, 0.1 * options.tolerance)
+        && within(kkt.scaled, options.tolerance)
+}
+
+/// Whether the residuals meet the tolerances in the units of the user: they are absolute, or relative
+/// to gradient and objective at the point itself, and know nothing of other points.
+pub(super) fn is_solved_in_user_units(
+    program: &Program<'_>,
+    point: &Point,
+    slopes: &Slopes,
+    kkt: &Kkt,
+) -> bool {
+    let tolerance = program.options.tolerance;
+    let f = point.f / program.scaling.objective;
+    kkt.violation <= program.options.constraint_tolerance
+        && kkt.stationarity <= tolerance * gradient_norm(program, slopes).max(1.0)
+        && kkt.complementarity <= tolerance * f.abs().max(1.0)
+}
+
+/// As [`judge`] says [`Verdict::Solved`], at a point where no step makes progress.
 pub(super) fn is_solved_at_end(
     program: &Program<'_>,
     point: &Point,
@@ -258,13 +313,9 @@ pub(super) fn is_solved_at_end(
     z: &ScaledMultipliers,
     scaled: f64,
 ) -> bool {
-    let options = program.options;
     let kkt = kkt(program, point, slopes, z, scaled);
-    let within = |value: f64, limit: f64| value <= limit;
-    within(kkt.violation, options.constraint_tolerance)
-        && within(kkt.relative_stationarity, options.tolerance)
-        && within(kkt.relative_complementarity, 0.1 * options.tolerance)
-        && within(kkt.scaled, options.tolerance)
+    is_solved_in_scaled_units(program, &kkt)
+        && is_solved_in_user_units(program, point, slopes, &kkt)
 }
 
 /// Multipliers in the units of the user; those of fixed variables balance the force on them.
