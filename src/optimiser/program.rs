@@ -17,9 +17,6 @@ use super::scaling::drop_rounding;
 /// Most designs kept of those at which an evaluation failed.
 const FAILED_DESIGNS_KEPT: usize = 100;
 
-/// Gradients, the last ones, against which rounding is judged.
-const LAST_GRADIENTS: usize = 3;
-
 /// Values of the scaled functions at a scaled point.
 #[derive(Clone, Debug)]
 pub(super) struct Point {
@@ -259,12 +256,10 @@ impl<'a> Program<'a> {
             let size = x[k].abs().max(1.0);
             if width.is_finite() { width } else { size }
         });
-        let last = self.gradient_norms.iter().rev().take(LAST_GRADIENTS);
-        let typical = last.copied().fold(norm, f64::max);
-        drop_rounding(&mut g, &reach, typical * scaling.objective);
+        drop_rounding(&mut g, &reach);
         for r in 0..rows.len() {
             let mut row = a.row(r).transpose();
-            drop_rounding(&mut row, &reach, 0.0);
+            drop_rounding(&mut row, &reach);
             a.row_mut(r).copy_from(&row.transpose());
         }
         let fixed = &self.fixed;

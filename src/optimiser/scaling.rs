@@ -118,7 +118,7 @@ impl Program<'_> {
         let largest = |norms: &[f64], most: usize| {
             let mut norms: Vec<f64> = norms.iter().copied().filter(|v| *v > 0.0).collect();
             norms.sort_by(|a, b| b.total_cmp(a));
-            norms.get(most.min(norms.len() / 2)).copied().unwrap_or(0.0)
+            norms.get(most.min(norms.len().saturating_sub(1) / 2)).copied().unwrap_or(0.0)
         };
         let all = &self.gradient_norms;
         let early = largest(&all[..all.len().min(FIRST_POINTS)], LARGEST_LEFT_OUT);
@@ -128,9 +128,9 @@ impl Program<'_> {
 }
 
 /// Sets derivatives to zero that are nothing but rounding: over the `reach` of its variable each
-/// changes the function by less than the rounding of its largest change, or of `least`.
-pub(super) fn drop_rounding(slopes: &mut DVector<f64>, reach: &DVector<f64>, least: f64) {
-    let largest = slopes.component_mul(reach).amax().max(least);
+/// changes the function by less than the rounding of its largest change.
+pub(super) fn drop_rounding(slopes: &mut DVector<f64>, reach: &DVector<f64>) {
+    let largest = slopes.component_mul(reach).amax();
     for (slope, reach) in slopes.iter_mut().zip(reach.iter()) {
         if slope.abs() * reach <= f64::EPSILON * largest {
             *slope = 0.0;
