@@ -95,11 +95,8 @@ pub(super) struct Program<'a> {
     pub counts: Counts,
     pub failed: Vec<FailedDesign>,
     started: Instant,
-    /// Norms ‖∇f‖∞ of all points so far, in the units of the user.
+    /// Norms ‖∇f‖∞ of all points so far, in the units of the user; a point in succession counts once.
     pub gradient_norms: Vec<f64>,
-    /// Point that was reported last, and the size of the last step between two such points.
-    reported: Option<DVector<f64>>,
-    pub last_step: f64,
     /// Iterations and evaluations allowed to the method that runs.
     allowed: Allowed,
     /// Best point reported: feasible with the least objective, or least infeasible.
@@ -165,8 +162,6 @@ impl<'a> Program<'a> {
             failed: Vec::new(),
             started: Instant::now(),
             gradient_norms: Vec::new(),
-            reported: None,
-            last_step: 0.0,
             allowed: Allowed {
                 iterations: options.max_iterations,
                 evaluations: options.max_evaluations,
@@ -272,7 +267,9 @@ impl<'a> Program<'a> {
             g,
             a,
         };
-        self.gradient_norms.push(norm);
+        if self.gradient_norms.last() != Some(&norm) {
+            self.gradient_norms.push(norm);
+        }
         Ok(slopes)
     }
 
@@ -390,11 +387,6 @@ impl<'a> Program<'a> {
     /// Tells the observer of an iteration.
     pub fn report(&mut self, point: &Point, progress: &Progress) -> Result<(), Trouble> {
         self.keep_best(point);
-        if let Some(before) = self.reported.replace(point.x.clone())
-            && before != point.x
-        {
-            self.last_step = (before - &point.x).amax();
-        }
         let x = self.to_user(&point.x);
         let constraints = self.user_constraints(&point.c);
         let row = Row {

@@ -233,10 +233,6 @@ pub(super) fn scaled_residual(
     (force.amax().max(complementarity) / (size.max(100.0) / 100.0)).max(violation)
 }
 
-/// Longest last step, relative to max(1, ‖x‖∞), where forces are small only against those of other
-/// points of the run: from a start on a cliff all later forces look small.
-const LONGEST_LAST: f64 = 0.1;
-
 /// Part of the typical gradient below which the gradient at a point counts as vanishing, and part of
 /// the gradient up to which the force left on the variables shows that multipliers balance it.
 const VANISHING: f64 = 1e-5;
@@ -253,8 +249,8 @@ pub(super) enum Verdict {
     Solved,
 }
 
-/// Judges a point. Unless the forces are small against the gradient at the point itself, the last step
-/// must have been short and no multipliers balance a gradient that stays.
+/// Judges a point. Unless the forces are small against the gradient at the point itself, no multipliers
+/// may balance a gradient that stays.
 pub(super) fn judge(
     program: &Program<'_>,
     point: &Point,
@@ -264,14 +260,12 @@ pub(super) fn judge(
 ) -> Verdict {
     let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
     let (left, gradient) = (force.amax(), slopes.g.amax());
-    let settled = left <= program.options.tolerance * gradient
-        || program.last_step <= LONGEST_LAST * point.x.amax().max(1.0);
     let typical = program.typical_gradient() * program.scaling.objective;
     let balanced = left > program.options.tolerance * gradient
         && left <= BALANCED * gradient
         && gradient > VANISHING * typical;
     let kkt = kkt(program, point, slopes, z, scaled);
-    if balanced || !settled || !is_solved_in_scaled_units(program, &kkt) {
+    if balanced || !is_solved_in_scaled_units(program, &kkt) {
         Verdict::Unsolved
     } else if is_solved_in_user_units(program, point, slopes, &kkt) {
         Verdict::Solved
