@@ -9,9 +9,12 @@ use super::quasi_newton::QuasiNewton;
 use super::state::SavedState;
 use super::trust_region::Ending;
 use super::verdict::{
-    ScaledMultipliers, active, is_solved_at_end, kkt, scaled_residual, steepness, unit_of_forces,
+    ScaledMultipliers, active, is_at_precision, is_solved_at_end, kkt, scaled_residual, steepness, unit_of_forces,
     user_multipliers,
 };
+
+/// Step, relative to max(1, ‖x‖∞), after which an objective that can fall further must have fallen.
+const NEARBY: f64 = 1e-6;
 
 /// Where a method ended.
 pub(super) struct Finish {
@@ -43,6 +46,40 @@ impl Finish {
         )
     }
 
+    /// The same, called [`Status::AtPrecision`] where a stall is due to rounding.
+    pub fn with_precision(mut self, program: &mut Program<'_>) -> Finish {
+        let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
+        if self.status == Status::Stalled
+            && !self.is_solved(program)
+            && is_at_precision(program, point, slopes, z, &mut self.b)
+            && !self.falls_nearby(program)
+        {
+            self.status = Status::AtPrecision;
+        }
+        self
+    }
+
+    /// Whether the Lagrangian falls along its steepest descent, a small step away from the point or,
+    /// where this cannot be evaluated, perhaps.
+    fn falls_nearby(&self, program: &mut Program<'_>) -> bool {
+        let (z, x) = (&self.multipliers, &self.point.x);
+        let bounds = &z.zu - &z.zl;
+        let force = &self.slopes.g + self.slopes.a.tr_mul(&z.y) + &bounds;
+        let length = NEARBY * x.amax().max(1.0) / force.amax();
+        let moved = DVector::from_fn(x.len(), |i, _| {
+            (x[i] - length * force[i]).clamp(program.lower[i], program.upper[i])
+        });
+        let Ok(trial) = program.evaluate(&moved) else {
+            return true;
+        };
+        let terms = [
+            trial.f - self.point.f,
+            z.y.dot(&(&trial.c - &self.point.c)),
+            bounds.dot(&(&moved - x)),
+        ];
+        terms.iter().sum::<f64>() < -10.0 * f64::EPSILON * self.point.f.abs()
+    }
+
     /// Whether the conditions hold, whatever the method thought of its end.
     pub fn is_solved(&self, program: &Program<'_>) -> bool {
         is_solved_at_end(
@@ -57,8 +94,10 @@ impl Finish {
 
 /// Replaces the point of a run that did not converge by a better one it passed through.
 pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
-    let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. })
-        || finish.status == Status::Stalled && finish.is_solved(program);
+    let settled = matches!(
+        finish.status,
+        Status::Converged | Status::AtPrecision | Status::Infeasible { .. }
+    ) || finish.status == Status::Stalled && finish.is_solved(program);
     let limit = program.options.constraint_tolerance;
     // What a violation within the tolerance gains is not counted.
     let y = &finish.multipliers.y;

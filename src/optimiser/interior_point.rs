@@ -11,7 +11,7 @@ use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
 use super::trust_region::{Ending, Goal, TrustRegion};
-use super::verdict::{ScaledMultipliers, UNIT_OF_OBJECTIVE, Verdict, judge};
+use super::verdict::{ScaledMultipliers, UNIT_OF_OBJECTIVE, Verdict, is_at_precision, judge};
 
 /// Multipliers of bounds stay within this factor of μ/distance.
 const MULTIPLIER_BAND: f64 = 1e10;
@@ -27,6 +27,9 @@ const SHORT_TRIALS: usize = 7;
 const LONGEST_CRAWL: usize = 4;
 const CRAWLING: f64 = 1e-4;
 const LEAVE_CRAWL: f64 = 0.1;
+
+/// Steps in succession whose gain is lost in rounding that are still tried.
+const LOST_STEPS: usize = 4;
 
 /// Times that entries are made stiffer in one iteration.
 const STIFFENINGS: usize = 8;
@@ -128,6 +131,7 @@ impl InteriorPoint {
     /// Iterates until the run ends.
     pub fn run(&mut self, program: &mut Program<'_>) -> Result<Ending, Trouble> {
         let mut failures = 0;
+        let mut lost = 0;
         loop {
             self.wake(program);
             match self.verdict(program) {
@@ -136,6 +140,10 @@ impl InteriorPoint {
                     return Ok(Ending::Misscaled);
                 }
                 Verdict::SolvedInScaledUnits | Verdict::Unsolved => {}
+            }
+            lost = if self.is_at_precision(program) { lost + 1 } else { 0 };
+            if lost > LOST_STEPS {
+                return Ok(Ending::Stalled);
             }
             if program.is_unbounded(&self.at.point) {
                 return Ok(Ending::Unbounded);
@@ -300,6 +308,12 @@ impl InteriorPoint {
     pub fn better_scale(&self, program: &Program<'_>) -> Option<f64> {
         let curvature = self.b.newest_curvature().unwrap_or(0.0);
         program.better_scale(&self.at.point, &self.at.slopes.g, curvature)
+    }
+
+    fn is_at_precision(&mut self, program: &Program<'_>) -> bool {
+        let z = self.multipliers(program);
+        let (point, slopes) = (&self.at.point, &self.at.slopes);
+        is_at_precision(program, point, slopes, &z, &mut self.b)
     }
 
     fn verdict(&self, program: &Program<'_>) -> Verdict {

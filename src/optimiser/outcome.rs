@@ -11,6 +11,10 @@ pub enum Status {
     /// The point satisfies the first-order conditions to the tolerances, in scaled units and in
     /// those of the user.
     Converged,
+    /// The tolerances are out of reach in the units of the user: the residuals are small against the
+    /// gradients of the run, and what the quasi-Newton model still promises to gain is below the
+    /// rounding of the objective.
+    AtPrecision,
     /// The point is a stationary point of the constraint violation and not feasible, or bounds of a
     /// constraint or variable cross.
     Infeasible {

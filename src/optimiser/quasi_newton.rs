@@ -235,6 +235,13 @@ impl QuasiNewton {
         (u, middle)
     }
 
+    /// B⁻¹ `force`; `None` if rounding has destroyed the definiteness of B.
+    pub(super) fn newton_step(&mut self, force: &DVector<f64>) -> Option<DVector<f64>> {
+        let mut step = DMatrix::from_column_slice(self.n, 1, force.as_slice());
+        self.factor(&DVector::zeros(self.n))?.solve_mut(&mut step);
+        Some(step.column(0).into_owned())
+    }
+
     /// Factors B + diag(`d`), d ≥ 0; `None` if rounding has destroyed its definiteness.
     pub(super) fn factor(&mut self, d: &DVector<f64>) -> Option<Factor> {
         if self.dense {

@@ -307,6 +307,7 @@ fn interior_point(
         barrier: method.barrier.mu,
         radius: program.options.initial_radius,
     }
+    .with_precision(program)
 }
 
 fn trust_region(
@@ -354,6 +355,7 @@ fn trust_region(
         barrier: program.options.initial_barrier,
         radius: method.radius,
     }
+    .with_precision(program)
 }
 
 /// Runs the trust region, and again in better units where those of the start do not suit its end.

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::outcome::{ActiveBound, Kkt, Multipliers, Side};
 use super::program::{Point, Program, Slopes};
+use super::quasi_newton::QuasiNewton;
 
 /// Multipliers of the scaled program: rows, then lower and upper bounds of the variables.
 #[derive(Clone, Debug)]
@@ -238,6 +239,9 @@ pub(super) fn scaled_residual(
 const VANISHING: f64 = 1e-5;
 const BALANCED: f64 = 0.1;
 
+/// Rounding errors of x that are its last digits.
+const LAST_DIGITS: f64 = 10.0;
+
 /// What the residuals at a point say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
@@ -297,6 +301,27 @@ pub(super) fn is_solved_in_user_units(
     kkt.violation <= program.options.constraint_tolerance
         && kkt.stationarity <= tolerance * gradient_norm(program, slopes).max(1.0)
         && kkt.complementarity <= tolerance * f.abs().max(1.0)
+}
+
+/// Whether nothing is left to gain that the objective could show: relative to the gradients of the run
+/// the residuals meet the tolerances, and the step −B⁻¹∇L gains less than the rounding of f or changes
+/// only the last digits of x.
+pub(super) fn is_at_precision(
+    program: &Program<'_>,
+    point: &Point,
+    slopes: &Slopes,
+    z: &ScaledMultipliers,
+    b: &mut QuasiNewton,
+) -> bool {
+    let kkt = kkt(program, point, slopes, z, 0.0);
+    if !is_solved_in_scaled_units(program, &kkt) {
+        return false;
+    }
+    let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
+    b.newton_step(&force).is_some_and(|step| {
+        0.5 * step.dot(&force) <= f64::EPSILON * point.f.abs()
+            || step.amax() <= LAST_DIGITS * f64::EPSILON * point.x.amax()
+    })
 }
 
 /// As [`judge`] says [`Verdict::Solved`], at a point where no step makes progress.
