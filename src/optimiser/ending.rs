@@ -211,12 +211,12 @@ pub(super) fn outcome(program: &Program<'_>, finish: Finish, state: SavedState) 
         ..
     } = finish;
     // A method that can go no further has converged if the conditions hold all the same.
-    if matches!(status, Status::Converged | Status::Stalled) {
-        status = if solved {
-            Status::Converged
-        } else {
-            Status::Stalled
-        };
+    match status {
+        Status::Stalled | Status::IterationLimit | Status::EvaluationLimit if solved => {
+            status = Status::Converged;
+        }
+        Status::Converged if !solved => status = Status::Stalled,
+        _ => {}
     }
     let x = program.to_user(&point.x);
     let mut constraints = vec![0.0; program.scaling.constraints.len()];

@@ -43,7 +43,8 @@ pub struct Options {
     pub max_evaluations: usize,
     /// Wall time allowed (s) (default unlimited).
     pub max_seconds: Option<f64>,
-    /// An objective below this, at a feasible point, is called unbounded (default −1e20).
+    /// An objective f that changes by this part of max(1, |f|) from the first point to a feasible one
+    /// is called unbounded (default −1e20).
     pub unbounded_below: f64,
     /// Largest gradient, at the start, that is left unscaled (default 100).
     pub scaling_gradient: f64,

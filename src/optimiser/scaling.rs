@@ -43,12 +43,10 @@ impl Program<'_> {
         self.apply_scaling(point, slopes);
     }
 
-    /// Uses scale factors of an earlier run.
+    /// Uses scale factors of an earlier run, whose gradients say nothing of this one.
     pub fn adopt_scaling(&mut self, saved: &Scaling, point: &mut Point, slopes: &mut Slopes) {
         self.scaling.objective = saved.objective;
         self.scaling.constraints.clone_from(&saved.constraints);
-        // So many that later points cannot lower it.
-        self.gradient_norms = vec![saved.typical_gradient; LARGEST_LEFT_OUT + 1];
         self.apply_scaling(point, slopes);
     }
 

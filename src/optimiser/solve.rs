@@ -18,10 +18,10 @@ use super::trust_region::{Ending, Goal, TrustRegion};
 use super::verdict::{ScaledMultipliers, is_solved_at_end, scaled_multipliers, scaled_residual};
 use super::well_posed;
 
-/// Shares of iterations and evaluations after which [`Method::Auto`] leaves the interior point, and
-/// the trust region that starts from its best point.
+/// Shares of iterations and evaluations after which [`Method::Auto`] leaves the interior point, and the
+/// trust region that starts from its best point; the trust region from the start has the rest.
 const FIRST_SHARE: f64 = 0.5;
-const SECOND_SHARE: f64 = 0.55;
+const SECOND_SHARE: f64 = 0.75;
 
 /// How often a run goes on from a point beside one that seems infeasible.
 const ESCAPES: usize = 3;
