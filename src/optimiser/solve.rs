@@ -12,7 +12,7 @@ use super::observer::{Observer, Phase};
 use super::options::{Method, Options};
 use super::outcome::{Outcome, Status};
 use super::program::{Point, Program, Progress, Slopes, Trouble};
-use super::start::{first_point, less_violated};
+use super::start::{Around, first_point, look_around};
 use super::state::SavedState;
 use super::trust_region::{Ending, Goal, TrustRegion};
 use super::verdict::{ScaledMultipliers, is_solved_at_end, scaled_multipliers, scaled_residual};
@@ -177,9 +177,13 @@ fn attempt(
         if !matches!(finish.status, Status::Infeasible { .. }) {
             break;
         }
-        match less_violated(program, &finish.point) {
-            Ok(Some(point)) => finish = run(program, point, None),
-            Ok(None) | Err(Trouble::Failed(_)) => break,
+        match look_around(program, &finish.point) {
+            Ok(Around::Less(point, slopes)) => finish = run(program, (point, slopes), None),
+            Ok(Around::Flat) => {
+                finish.status = Status::Stalled;
+                break;
+            }
+            Ok(Around::More) | Err(Trouble::Failed(_)) => break,
             Err(Trouble::Halt(status)) => {
                 finish.status = status;
                 break;

@@ -145,7 +145,8 @@ impl TrustRegion {
             } else {
                 0
             };
-            let negligible = model.predicted <= 0.0 || lost > LOST_STEPS;
+            let stays = self.inside(program, &model.step.d) == self.point.x;
+            let negligible = model.predicted <= 0.0 || stays || lost > LOST_STEPS;
             if negligible || self.radius < tiny {
                 if renewals == RENEWALS || self.b.is_empty() {
                     return Ok(self.end(program));
