@@ -1,7 +1,7 @@
 //! A start from where another optimisation ended.
 
 use crate::optimiser::{Outcome, SavedState};
-use crate::problem::Problem;
+use crate::problem::{Problem, Sense};
 use serde::{Deserialize, Serialize};
 
 /// The optimiser's state at the end of a run, and what it belongs to: `state.json`.
@@ -12,6 +12,9 @@ pub struct WarmStart {
     variables: Vec<(String, f64)>,
     /// Names of the constraints.
     constraints: Vec<String>,
+    /// Name of the function that is the objective, and whether it is maximised.
+    #[serde(default)]
+    objective: Option<(String, bool)>,
     /// Point, multipliers, quasi-Newton matrix and barrier parameter.
     pub state: SavedState,
 }
@@ -22,43 +25,19 @@ impl WarmStart {
         Some(Self {
             variables: variables(problem),
             constraints: constraints(problem),
+            objective: objective(problem),
             state: outcome.state.clone()?,
         })
     }
 
-    /// Whether the state can be used for `problem`: same variables, scales and constraints, and
-    /// undamaged.
+    /// Whether the state can be used for `problem`: same variables, scales, constraints and objective,
+    /// and undamaged.
     pub fn fits(&self, problem: &Problem) -> bool {
+        let (n, m) = (self.variables.len(), self.constraints.len());
         self.variables == variables(problem)
             && self.constraints == constraints(problem)
-            && self.is_sound()
-    }
-
-    /// Whether lengths agree, and what has to be positive is.
-    fn is_sound(&self) -> bool {
-        let (n, m) = (self.variables.len(), self.constraints.len());
-        let SavedState {
-            x,
-            multipliers,
-            scaling,
-            barrier,
-            radius,
-            ..
-        } = &self.state;
-        let lengths = [
-            (x.len(), n),
-            (multipliers.lower_bounds.len(), n),
-            (multipliers.upper_bounds.len(), n),
-            (scaling.variables.len(), n),
-            (multipliers.constraints.len(), m),
-            (scaling.constraints.len(), m),
-        ];
-        let scales = scaling.constraints.iter().chain(&scaling.variables);
-        let positive = |x: &f64| x.is_finite() && *x > 0.0;
-        lengths.iter().all(|(found, expected)| found == expected)
-            && scales
-                .chain([barrier, radius, &scaling.objective])
-                .all(positive)
+            && self.objective == objective(problem)
+            && self.state.fault(n, m).is_none()
     }
 }
 
@@ -69,4 +48,10 @@ fn variables(problem: &Problem) -> Vec<(String, f64)> {
 
 fn constraints(problem: &Problem) -> Vec<String> {
     problem.constraints.iter().map(|c| c.name.clone()).collect()
+}
+
+fn objective(problem: &Problem) -> Option<(String, bool)> {
+    let objective = problem.objective?;
+    let name = problem.function_names[objective.function].clone();
+    Some((name, objective.sense == Sense::Maximise))
 }

@@ -9,8 +9,8 @@ use super::quasi_newton::QuasiNewton;
 use super::state::SavedState;
 use super::trust_region::Ending;
 use super::verdict::{
-    ScaledMultipliers, active, is_at_precision, is_solved_at_end, kkt, scaled_residual, steepness, unit_of_forces,
-    user_multipliers,
+    ScaledMultipliers, active, is_at_precision, is_solved_at_end, kkt, scaled_residual, steepness,
+    unit_of_forces, user_multipliers,
 };
 
 /// Step, relative to max(1, ‖x‖∞), after which an objective that can fall further must have fallen.
@@ -189,6 +189,7 @@ pub(super) fn status_of(
 pub(super) fn state_of(program: &Program<'_>, finish: &Finish) -> SavedState {
     SavedState {
         x: program.to_user(&finish.point.x),
+        objective: finish.point.f / program.scaling.objective,
         multipliers: user_multipliers(program, &finish.slopes, &finish.multipliers),
         scaling: Scaling {
             typical_gradient: program.typical_gradient(),

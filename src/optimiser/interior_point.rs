@@ -141,7 +141,11 @@ impl InteriorPoint {
                 }
                 Verdict::SolvedInScaledUnits | Verdict::Unsolved => {}
             }
-            lost = if self.is_at_precision(program) { lost + 1 } else { 0 };
+            lost = if self.is_at_precision(program) {
+                lost + 1
+            } else {
+                0
+            };
             if lost > LOST_STEPS {
                 return Ok(Ending::Stalled);
             }

@@ -110,8 +110,7 @@ impl LineSearch<'_> {
         let mut trials = 0;
         let resolved = self.least_resolved_step(&direction);
         loop {
-            let goes_on =
-                alpha >= least && alpha > VANISHED * longest && alpha > resolved;
+            let goes_on = alpha >= least && alpha > VANISHED * longest && alpha > resolved;
             if (!goes_on || trials >= SOFT_TRIALS)
                 && let Some(point) = first.take()
                 && let Some((point, slopes, s)) =
@@ -214,9 +213,15 @@ impl LineSearch<'_> {
     /// Step length below which no variable changes.
     fn least_resolved_step(&self, direction: &Direction) -> f64 {
         let moves = direction.x.iter().zip(self.at.point.x.iter());
-        let lengths = moves.filter(|(d, _)| **d != 0.0).map(|(d, x)| (x / d).abs());
+        let lengths = moves
+            .filter(|(d, _)| **d != 0.0)
+            .map(|(d, x)| (x / d).abs());
         let slacks = direction.s.iter().zip(self.at.s.iter());
-        let lengths = lengths.chain(slacks.filter(|(d, _)| **d != 0.0).map(|(d, s)| (s / d).abs()));
+        let lengths = lengths.chain(
+            slacks
+                .filter(|(d, _)| **d != 0.0)
+                .map(|(d, s)| (s / d).abs()),
+        );
         RESOLUTION * lengths.fold(f64::INFINITY, f64::min)
     }
 

@@ -110,6 +110,28 @@ impl QuasiNewton {
         self.matrix = None;
     }
 
+    /// What is wrong with a matrix that was read, for a program of at most `variables` free variables.
+    pub(super) fn fault(&self, variables: usize) -> Option<String> {
+        if self.n > variables {
+            let n = self.n;
+            return Some(format!(
+                "the quasi-Newton matrix is of order {n} instead of {variables}"
+            ));
+        }
+        if !(self.sigma.is_finite() && self.sigma > 0.0) {
+            return Some(format!(
+                "the scale of the quasi-Newton matrix is {}",
+                self.sigma
+            ));
+        }
+        let all_finite = |v: &DVector<f64>| v.len() == self.n && v.iter().all(|x| x.is_finite());
+        let bad = |p: &Pair| !(all_finite(&p.s) && all_finite(&p.y) && p.s.dot(&p.y) > 0.0);
+        let k = self.pairs.iter().position(bad)?;
+        Some(format!(
+            "pair {k} of the quasi-Newton matrix has a wrong length, an infinite entry or no curvature"
+        ))
+    }
+
     /// Order of the matrix.
     pub(super) fn order(&self) -> usize {
         self.n

@@ -45,7 +45,8 @@ pub(super) fn refine(data: &QpData<'_>, found: &QpStep) -> Option<QpStep> {
         let (above, below) = (data.above[j] - reached[j], data.below[j] + reached[j]);
         let y = found.y[j];
         let norm = data.a.row(j).amax().max(1e-100);
-        let pushes = |room: f64| y.abs() * norm * norm * radius > room * force.max(f64::MIN_POSITIVE);
+        let pushes =
+            |room: f64| y.abs() * norm * norm * radius > room * force.max(f64::MIN_POSITIVE);
         if y.abs() >= HELD * data.penalty[j] {
             return None;
         } else if data.above[j] == -data.below[j] || (y > 0.0 && pushes(above)) {
@@ -93,13 +94,7 @@ pub(super) fn refine(data: &QpData<'_>, found: &QpStep) -> Option<QpStep> {
 
 /// Whether `refined` is near `found`, in the box, satisfies all rows, and has multipliers of the right
 /// signs.
-fn is_valid(
-    data: &QpData<'_>,
-    found: &QpStep,
-    refined: &QpStep,
-    radius: f64,
-    force: f64,
-) -> bool {
+fn is_valid(data: &QpData<'_>, found: &QpStep, refined: &QpStep, radius: f64, force: f64) -> bool {
     let QpStep { d, y } = refined;
     let residual = data.g + data.b.multiply(d) + data.a.tr_mul(y);
     let reached = data.a * d;

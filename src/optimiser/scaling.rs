@@ -43,8 +43,10 @@ impl Program<'_> {
         self.apply_scaling(point, slopes);
     }
 
-    /// Uses scale factors of an earlier run, whose gradients say nothing of this one.
+    /// Uses scale factors and typical gradient of an earlier run on the same objective.
     pub fn adopt_scaling(&mut self, saved: &Scaling, point: &mut Point, slopes: &mut Slopes) {
+        // So many that later points cannot lower it.
+        self.gradient_norms = vec![saved.typical_gradient; LARGEST_LEFT_OUT + 1];
         self.scaling.objective = saved.objective;
         self.scaling.constraints.clone_from(&saved.constraints);
         self.apply_scaling(point, slopes);
@@ -116,7 +118,10 @@ impl Program<'_> {
         let largest = |norms: &[f64], most: usize| {
             let mut norms: Vec<f64> = norms.iter().copied().filter(|v| *v > 0.0).collect();
             norms.sort_by(|a, b| b.total_cmp(a));
-            norms.get(most.min(norms.len().saturating_sub(1) / 2)).copied().unwrap_or(0.0)
+            norms
+                .get(most.min(norms.len().saturating_sub(1) / 2))
+                .copied()
+                .unwrap_or(0.0)
         };
         let all = &self.gradient_norms;
         let early = largest(&all[..all.len().min(FIRST_POINTS)], LARGEST_LEFT_OUT);

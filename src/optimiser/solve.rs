@@ -75,8 +75,9 @@ pub fn solve(nlp: &mut dyn Nlp, options: &Options, observer: &mut dyn Observer) 
 
 /// As [`solve`], continuing from the point, multipliers and quasi-Newton matrix of an earlier run.
 ///
-/// A state that does not fit the program, because the number of variables or constraints has
-/// changed, gives its point as far as it goes and is ignored otherwise.
+/// A state of a program with other numbers of variables or constraints is ignored, that of another
+/// objective gives its point alone, and a damaged one ([`SavedState::fault`]) ends the run as
+/// [`Status::IllPosed`].
 pub fn resume(
     nlp: &mut dyn Nlp,
     options: &Options,
@@ -95,12 +96,13 @@ fn run(
     if let Some(status) = well_posed::fault(nlp, options) {
         return untried(nlp, status);
     }
+    let (n, m) = (nlp.variables(), nlp.constraints());
+    let saved = saved.filter(|s| s.x.len() == n && s.scaling.constraints.len() == m);
+    if let Some(fault) = saved.and_then(|s| s.fault(n, m)) {
+        let what = format!("the saved state is damaged: {fault}");
+        return untried(nlp, Status::IllPosed { what });
+    }
     let mut program = Program::new(nlp, options, observer);
-    let fits = |s: &&SavedState| {
-        s.scaling.constraints.len() == program.scaling.constraints.len()
-            && s.x.len() == program.scaling.variables.len()
-    };
-    let saved = saved.filter(fits);
     if let Some(saved) = saved {
         program.start_from(&saved.x);
     }
@@ -122,6 +124,7 @@ fn run(
         }
     };
     program.survey(&slopes);
+    let saved = saved.filter(|s| s.is_of(point.f));
     match saved {
         Some(saved) => program.adopt_scaling(&saved.scaling, &mut point, &mut slopes),
         None => program.scale(&mut point, &mut slopes),

@@ -62,7 +62,13 @@ pub(super) fn look_around(program: &mut Program<'_>, at: &Point) -> Result<Aroun
     let now = program.total_violation(&at.c);
     let mut largest = 0.0_f64;
     for trial in 1..=ESCAPE_TRIALS {
-        let x = perturbed(program, &at.x, trial, program.options.bound_push, REACHES[trial - 1]);
+        let x = perturbed(
+            program,
+            &at.x,
+            trial,
+            program.options.bound_push,
+            REACHES[trial - 1],
+        );
         let point = match program.evaluate(&x) {
             Ok(point) => point,
             Err(Trouble::Failed(_)) => continue,

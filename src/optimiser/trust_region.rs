@@ -259,9 +259,7 @@ impl TrustRegion {
         let scaled = self.optimality(program);
         match judge(program, &self.point, &self.slopes, &z, scaled) {
             Verdict::Solved => Some(Ending::Reached),
-            Verdict::SolvedInScaledUnits => {
-                self.better_scale(program).map(|_| Ending::Misscaled)
-            }
+            Verdict::SolvedInScaledUnits => self.better_scale(program).map(|_| Ending::Misscaled),
             Verdict::Unsolved => None,
         }
     }
