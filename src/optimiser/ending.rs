@@ -9,8 +9,8 @@ use super::quasi_newton::QuasiNewton;
 use super::state::SavedState;
 use super::trust_region::Ending;
 use super::verdict::{
-    ScaledMultipliers, active, is_at_precision, is_solved_at_end, kkt, scaled_residual, steepness,
-    unit_of_forces, user_multipliers,
+    ScaledMultipliers, active, is_at_precision, is_solved_at_end, is_solved_in_user_units, kkt,
+    scaled_residual, steepness, unit_of_forces, user_multipliers,
 };
 
 /// Step, relative to max(1, ‖x‖∞), after which an objective that can fall further must have fallen.
@@ -23,6 +23,8 @@ pub(super) struct Finish {
     pub slopes: Slopes,
     pub multipliers: ScaledMultipliers,
     pub scaled: f64,
+    /// Whether the conditions hold in the units of the user and no fall was found nearby.
+    pub confirmed: bool,
     /// Scale of the objective to which all this belongs.
     pub scale: f64,
     pub b: QuasiNewton,
@@ -46,15 +48,25 @@ impl Finish {
         )
     }
 
-    /// The same, called [`Status::AtPrecision`] where a stall is due to rounding.
-    pub fn with_precision(mut self, program: &mut Program<'_>) -> Finish {
+    /// The same, called [`Status::Converged`] where a stall is at a point that satisfies the conditions
+    /// in the units of the user, and [`Status::AtPrecision`] where it is due to rounding; at neither
+    /// may the Lagrangian fall nearby.
+    pub fn with_stall_named(mut self, program: &mut Program<'_>) -> Finish {
+        if self.status != Status::Stalled || self.is_solved(program) {
+            return self;
+        }
         let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
-        if self.status == Status::Stalled
-            && !self.is_solved(program)
-            && is_at_precision(program, point, slopes, z, &mut self.b)
+        let kkt = self.kkt(program);
+        // Multipliers that grow without limit show in their products even where forces vanish.
+        let holds = kkt.relative_complementarity <= program.options.tolerance
+            && is_solved_in_user_units(program, point, slopes, &kkt);
+        if (holds || is_at_precision(program, point, slopes, z, &mut self.b))
             && !self.falls_nearby(program)
         {
-            self.status = Status::AtPrecision;
+            self.confirmed = holds;
+            if !holds {
+                self.status = Status::AtPrecision;
+            }
         }
         self
     }
@@ -82,13 +94,14 @@ impl Finish {
 
     /// Whether the conditions hold, whatever the method thought of its end.
     pub fn is_solved(&self, program: &Program<'_>) -> bool {
-        is_solved_at_end(
-            program,
-            &self.point,
-            &self.slopes,
-            &self.multipliers,
-            self.scaled,
-        )
+        self.confirmed
+            || is_solved_at_end(
+                program,
+                &self.point,
+                &self.slopes,
+                &self.multipliers,
+                self.scaled,
+            )
     }
 }
 
@@ -156,6 +169,7 @@ pub(super) fn unfinished(program: &Program<'_>, point: Point, slopes: Slopes) ->
         status: Status::Interrupted,
         b: QuasiNewton::new(point.x.len(), options.dense_limit, options.memory),
         scaled: scaled_residual(program, &point, &slopes, &multipliers),
+        confirmed: false,
         scale: program.scaling.objective,
         multipliers,
         point,

@@ -307,6 +307,7 @@ fn interior_point(
         status,
         multipliers,
         scaled,
+        confirmed: false,
         scale: program.scaling.objective,
         point,
         slopes,
@@ -314,7 +315,7 @@ fn interior_point(
         barrier: method.barrier.mu,
         radius: program.options.initial_radius,
     }
-    .with_precision(program)
+    .with_stall_named(program)
 }
 
 fn trust_region(
@@ -355,6 +356,7 @@ fn trust_region(
         status,
         multipliers: method.multipliers(program),
         scaled: method.optimality(program),
+        confirmed: false,
         scale: program.scaling.objective,
         point: method.point,
         slopes: method.slopes,
@@ -362,7 +364,7 @@ fn trust_region(
         barrier: program.options.initial_barrier,
         radius: method.radius,
     }
-    .with_precision(program)
+    .with_stall_named(program)
 }
 
 /// Runs the trust region, and again in better units where those of the start do not suit its end.
