@@ -32,8 +32,9 @@ pub enum Barrier {
 pub struct Options {
     /// Algorithm (default interior point).
     pub method: Method,
-    /// Largest scaled KKT residual of a solution, and the largest relative residual in the units
-    /// of the user (default 1e-6).
+    /// Largest KKT residual of a solution (default 1e-6): in scaled units; relative to the gradients of
+    /// the run; and in the units of the user relative to max(1, ‖∇f‖∞) and, for the sum of the
+    /// products of multipliers and distances, to max(1, |f|).
     pub tolerance: f64,
     /// Largest violation of a constraint of a solution, in the units of the user (default 1e-6).
     pub constraint_tolerance: f64,

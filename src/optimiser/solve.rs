@@ -181,7 +181,7 @@ fn attempt(
             break;
         }
         match look_around(program, &finish.point) {
-            Ok(Around::Less(point, slopes)) => finish = run(program, (point, slopes), None),
+            Ok(Around::Less(first)) => finish = run(program, *first, None),
             Ok(Around::Flat) => {
                 finish.status = Status::Stalled;
                 break;

@@ -49,7 +49,7 @@ pub(super) fn first_point(
 /// How the violation changes around a point at which its derivatives show no way down.
 pub(super) enum Around {
     /// It is clearly less at this point: that was a maximum, a saddle or one minimum of several.
-    Less(Point, Slopes),
+    Less(Box<(Point, Slopes)>),
     /// It changes nowhere: derivatives say nothing.
     Flat,
     /// It rises.
@@ -77,7 +77,7 @@ pub(super) fn look_around(program: &mut Program<'_>, at: &Point) -> Result<Aroun
         let change = program.total_violation(&point.c) - now;
         if change < -LESS * now {
             let slopes = program.gradients(&x)?;
-            return Ok(Around::Less(point, slopes));
+            return Ok(Around::Less(Box::new((point, slopes))));
         }
         largest = largest.max(change.abs());
     }
