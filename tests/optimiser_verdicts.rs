@@ -10,6 +10,7 @@ mod scaled;
 use flexbody::optimiser::{Method, Options, Outcome, Silent, Status, solve};
 use least_squares::least_squares;
 use optimiser_problems::dual::Dual;
+use optimiser_problems::hock_schittkowski;
 use optimiser_problems::problem::{INF, Problem};
 use scaled::Scaled;
 
@@ -24,6 +25,19 @@ fn with(method: Method) -> Options {
 
 fn run(mut problem: Problem, method: Method) -> Outcome {
     solve(&mut problem, &with(method), &mut Silent)
+}
+
+/// All of these have a least value and feasible points.
+#[test]
+fn published_programs_are_neither_unbounded_nor_infeasible() {
+    for method in METHODS {
+        for problem in hock_schittkowski() {
+            let name = problem.name;
+            let status = run(problem, method).status;
+            let wrong = matches!(status, Status::Unbounded | Status::Infeasible { .. });
+            assert!(!wrong, "{name} {method:?}: {status:?}");
+        }
+    }
 }
 
 /// A large constant, a small curvature or a start on a plateau do not make an objective unbounded.
