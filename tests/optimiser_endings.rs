@@ -7,7 +7,7 @@ mod residuals;
 #[path = "optimiser_problems/scaled.rs"]
 mod scaled;
 
-use flexbody::optimiser::{Method, Options, Outcome, Side, Silent, Status, solve};
+use flexbody::optimiser::{Kkt, Method, Options, Outcome, Side, Silent, Status, solve};
 use optimiser_problems::hock_schittkowski;
 use optimiser_problems::problem::{INF, Problem};
 use residuals::Residuals;
@@ -124,7 +124,7 @@ fn the_unit_of_the_objective_does_not_matter() {
             assert!(outcome.objective <= 1e-9 * factor, "{context}");
             assert!((outcome.x[0] - 1.0).abs() <= 1e-4, "{context}");
             assert!(outcome.counts.evaluations <= 80, "{:?}", outcome.counts);
-            // Twice the value is far from optimal, and so is its residual.
+            // Before the end one of the residuals is too large.
             let mut problem = Scaled {
                 inner: rosenbrock(),
                 factor,
@@ -139,7 +139,13 @@ fn the_unit_of_the_objective_does_not_matter() {
                 Status::IterationLimit,
                 "{factor:e} {method:?}"
             );
-            assert!(early.kkt.relative_stationarity > 1e-6, "{context}");
+            let Kkt {
+                stationarity,
+                relative_stationarity,
+                ..
+            } = early.kkt;
+            let worst = stationarity.max(relative_stationarity);
+            assert!(worst > 1e-6, "{context} {:?}", early.kkt);
         }
     }
 }
@@ -190,10 +196,8 @@ fn a_start_on_a_cliff_does_not_loosen_the_conditions() {
             method,
         );
         let near = (outcome.objective - 0.5).abs() <= 1e-6;
-        assert!(near || !outcome.converged(), "{method:?}: {outcome:?}");
-        if method != Method::InteriorPoint {
-            assert!(outcome.converged(), "{method:?}: {:?}", outcome.status);
-        }
+        assert!(near, "{method:?}: {outcome:?}");
+        assert!(outcome.converged(), "{method:?}: {:?}", outcome.status);
     }
 }
 

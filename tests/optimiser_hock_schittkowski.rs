@@ -15,10 +15,11 @@ use optimiser_problems::problem::Problem;
 use residuals::Residuals;
 
 /// Objectives of stationary points that are not global minima, at which a method may end.
-const STATIONARY: [(&str, f64); 9] = [
+const STATIONARY: [(&str, f64); 10] = [
     ("HS2", 4.941229318),
     ("HS16", 23.14466091),
     ("HS20", 40.19873024),
+    ("HS33", -4.0),
     ("HS55", 6.666666667),
     ("HS59", -6.749505269),
     ("HS97", 4.071246356),

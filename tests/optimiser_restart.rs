@@ -6,7 +6,9 @@ mod recorded;
 
 use std::ops::ControlFlow;
 
-use flexbody::optimiser::{Method, Observer, Options, Row, SavedState, Silent, resume, solve};
+use flexbody::optimiser::{
+    Method, Observer, Options, Row, SavedState, Silent, Status, resume, solve,
+};
 use optimiser_problems::hock_schittkowski;
 use optimiser_problems::problem::Problem;
 use recorded::Recorded;
@@ -111,4 +113,103 @@ fn optimum_is_confirmed_at_once() {
             );
         }
     }
+}
+
+fn rosenbrock(factor: f64) -> Problem {
+    Problem::new("Rosenbrock", &[-1.2, 1.0], 0.0, move |x| {
+        factor * (100.0 * (x[1] - x[0].powi(2)).powi(2) + (1.0 - x[0]).powi(2))
+    })
+}
+
+/// The gradients of 1e8 times an objective must not make those of the objective look small.
+#[test]
+fn the_state_of_another_objective_claims_nothing() {
+    for method in METHODS {
+        let options = Options {
+            method,
+            ..Options::default()
+        };
+        let whole = solve(&mut rosenbrock(1e8), &options, &mut Silent);
+        for stop in 1..whole.counts.iterations {
+            let part = solve(&mut rosenbrock(1e8), &options, &mut StopAfter(stop));
+            let state = part.state.expect("an interrupted run has a state");
+            for factor in [1.0, 1e-4, 1e4] {
+                let end = resume(&mut rosenbrock(factor), &options, &mut Silent, &state);
+                let context = format!("{factor:e} {method:?} {stop}: {:?}", end.status);
+                assert!(end.converged(), "{context}");
+                let value = end.objective / factor;
+                assert!(value <= 1e-9, "{context} {value:e}");
+            }
+        }
+    }
+}
+
+/// What a damaged file may hold is refused by name, before anything is evaluated.
+#[test]
+fn damaged_states_are_refused_by_name() {
+    let options = Options::default();
+    let whole = solve(&mut problem("HS71"), &options, &mut StopAfter(5));
+    let state = serde_json::to_value(whole.state.expect("it has a state")).expect("is finite");
+    let damages: [(&str, serde_json::Value, &str); 10] = [
+        (
+            "/multipliers/lower_bounds",
+            serde_json::json!([1.0]),
+            "lower bounds",
+        ),
+        (
+            "/multipliers/upper_bounds",
+            serde_json::json!([]),
+            "upper bounds",
+        ),
+        ("/multipliers/constraints", serde_json::json!([1.0]), "rows"),
+        (
+            "/scaling/variables",
+            serde_json::json!([1.0]),
+            "scales of variables",
+        ),
+        ("/scaling/constraints/0", serde_json::json!(-1.0), "scale"),
+        (
+            "/scaling/objective",
+            serde_json::json!(0.0),
+            "scale of the objective",
+        ),
+        (
+            "/quasi_newton/pairs/0/s",
+            serde_json::json!([1.0]),
+            "pair 0",
+        ),
+        (
+            "/quasi_newton/sigma",
+            serde_json::json!(-1.0),
+            "quasi-Newton",
+        ),
+        ("/barrier", serde_json::json!(-1.0), "barrier"),
+        ("/radius", serde_json::json!(0.0), "radius"),
+    ];
+    for (place, value, part) in damages {
+        let mut damaged = state.clone();
+        *damaged.pointer_mut(place).expect(place) = value;
+        let damaged: SavedState = serde_json::from_value(damaged).expect("is read");
+        let fault = damaged.fault(4, 2).expect(place);
+        assert!(fault.contains(part), "{place}: {fault}");
+        for method in METHODS {
+            let options = Options {
+                method,
+                ..Options::default()
+            };
+            let end = resume(&mut problem("HS71"), &options, &mut Silent, &damaged);
+            match end.status {
+                Status::IllPosed { what } => assert!(what.contains(part), "{what}"),
+                other => panic!("{place}: {other:?}"),
+            }
+            assert_eq!(end.counts.evaluations, 0);
+        }
+    }
+    let mut nowhere: SavedState = serde_json::from_value(state).expect("is read");
+    assert_eq!(nowhere.fault(4, 2), None);
+    nowhere.x[0] = f64::NAN;
+    assert!(nowhere.fault(4, 2).is_some());
+    nowhere.x[0] = 1.0;
+    nowhere.barrier = f64::INFINITY;
+    assert!(nowhere.fault(4, 2).is_some());
 }

@@ -17,6 +17,12 @@ use indexmap::IndexMap;
 fn verdict(status: &Status) -> (&'static str, String) {
     match status {
         Status::Converged => ("converged", "the optimality conditions hold".into()),
+        Status::AtPrecision => (
+            "at_precision",
+            "what could still be gained is below the rounding of the objective, \
+             but the optimality conditions do not hold to the tolerance"
+                .into(),
+        ),
         Status::Infeasible {
             constraint,
             violation,

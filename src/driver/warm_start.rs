@@ -1,7 +1,7 @@
 //! A start from where another optimisation ended.
 
 use crate::optimiser::{Outcome, SavedState};
-use crate::problem::Problem;
+use crate::problem::{Problem, Sense};
 use serde::{Deserialize, Serialize};
 
 /// The optimiser's state at the end of a run, and what it belongs to: `state.json`.
@@ -12,6 +12,9 @@ pub struct WarmStart {
     variables: Vec<(String, f64)>,
     /// Names of the constraints.
     constraints: Vec<String>,
+    /// Name of the function that is the objective, and whether it is maximised.
+    #[serde(default)]
+    objective: Option<(String, bool)>,
     /// Point, multipliers, quasi-Newton matrix and barrier parameter.
     pub state: SavedState,
 }
@@ -22,43 +25,19 @@ impl WarmStart {
         Some(Self {
             variables: variables(problem),
             constraints: constraints(problem),
+            objective: objective(problem),
             state: outcome.state.clone()?,
         })
     }
 
-    /// Whether the state can be used for `problem`: same variables, scales and constraints, and
-    /// undamaged.
+    /// Whether the state can be used for `problem`: same variables, scales, constraints and objective,
+    /// and undamaged.
     pub fn fits(&self, problem: &Problem) -> bool {
+        let (n, m) = (self.variables.len(), self.constraints.len());
         self.variables == variables(problem)
             && self.constraints == constraints(problem)
-            && self.is_sound()
-    }
-
-    /// Whether lengths agree, and what has to be positive is.
-    fn is_sound(&self) -> bool {
-        let (n, m) = (self.variables.len(), self.constraints.len());
-        let SavedState {
-            x,
-            multipliers,
-            scaling,
-            barrier,
-            radius,
-            ..
-        } = &self.state;
-        let lengths = [
-            (x.len(), n),
-            (multipliers.lower_bounds.len(), n),
-            (multipliers.upper_bounds.len(), n),
-            (scaling.variables.len(), n),
-            (multipliers.constraints.len(), m),
-            (scaling.constraints.len(), m),
-        ];
-        let scales = scaling.constraints.iter().chain(&scaling.variables);
-        let positive = |x: &f64| x.is_finite() && *x > 0.0;
-        lengths.iter().all(|(found, expected)| found == expected)
-            && scales
-                .chain([barrier, radius, &scaling.objective])
-                .all(positive)
+            && self.objective == objective(problem)
+            && self.state.fault(n, m).is_none()
     }
 }
 
@@ -69,4 +48,75 @@ fn variables(problem: &Problem) -> Vec<(String, f64)> {
 
 fn constraints(problem: &Problem) -> Vec<String> {
     problem.constraints.iter().map(|c| c.name.clone()).collect()
+}
+
+fn objective(problem: &Problem) -> Option<(String, bool)> {
+    let objective = problem.objective?;
+    let name = problem.function_names[objective.function].clone();
+    Some((name, objective.sense == Sense::Maximise))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problem(objective: &str) -> Problem {
+        let text = format!(
+            r#"{{
+                "version": 1, "name": "pendulum",
+                "bodies": {{"bar": {{"shape": {{"box": {{"size": [1, 0.1, 0.1]}}}}, "mass": 1,
+                    "points": {{"end": [-0.5, 0, 0]}}, "place": {{"put": "end", "at": [0, 0, 0]}}}}}},
+                "joints": {{"hinge": {{"revolute": {{"between": ["bar", "ground"], "at": [0, 0, 0],
+                    "axis": [0, 0, 1]}}}}}},
+                "simulation": {{"duration": 0.5, "steps": 100}},
+                "functions": {{
+                    "height": {{"final": {{"position": {{"body": "bar", "direction": [0, 1, 0]}}}}}},
+                    "reach": {{"final": {{"position": {{"body": "bar", "direction": [1, 0, 0]}}}}}}}},
+                "variables": {{"gravity": {{"path": "/gravity/1", "lower": -20, "upper": -1}}}},
+                "gravity": [0, -9.81, 0],
+                "objective": {objective}
+            }}"#
+        );
+        Problem::parse(&text, "pendulum.json", &[]).expect("no faults")
+    }
+
+    fn state() -> SavedState {
+        let state = serde_json::json!({
+            "x": [0.5],
+            "objective": 1.0,
+            "multipliers": {"constraints": [], "lower_bounds": [0.0], "upper_bounds": [0.0]},
+            "scaling": {
+                "objective": 1.0, "constraints": [], "variables": [1.0], "objective_gradient": 1.0,
+                "typical_gradient": 1.0, "constraint_gradients": [], "zero_rows": [],
+                "zero_columns": []
+            },
+            "quasi_newton": {
+                "n": 1, "dense": true, "memory": 200, "sigma": 1.0,
+                "pairs": [{"s": [1.0], "y": [2.0]}], "skipped": 0
+            },
+            "barrier": 0.1,
+            "radius": 1.0
+        });
+        serde_json::from_value(state).expect("a state")
+    }
+
+    #[test]
+    fn a_state_fits_its_own_objective_alone() {
+        let lowest = problem(r#"{"minimise": "height"}"#);
+        let warm = WarmStart {
+            variables: variables(&lowest),
+            constraints: constraints(&lowest),
+            objective: objective(&lowest),
+            state: state(),
+        };
+        assert!(warm.fits(&lowest));
+        assert!(!warm.fits(&problem(r#"{"maximise": "height"}"#)));
+        assert!(!warm.fits(&problem(r#"{"minimise": "reach"}"#)));
+        let mut damaged = warm.clone();
+        damaged.state.barrier = f64::NAN;
+        assert!(!damaged.fits(&lowest));
+        let mut damaged = warm;
+        damaged.state.multipliers.lower_bounds.clear();
+        assert!(!damaged.fits(&lowest));
+    }
 }

@@ -11,6 +11,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::outcome::Counts;
 use super::quasi_newton::Spectrum;
+use super::refined_qp::refine;
 use super::split_qp;
 
 /// Tolerance asked of Clarabel, in scaled units.
@@ -40,14 +41,14 @@ pub(super) enum Hessian<'a> {
 
 impl Hessian<'_> {
     /// A bound on its entries.
-    fn amax(&self) -> f64 {
+    pub(super) fn amax(&self) -> f64 {
         match self {
             Hessian::Dense(b) => b.amax(),
             Hessian::Split(b) => b.values.amax().max(b.sigma),
         }
     }
 
-    fn multiply(&self, d: &DVector<f64>) -> DVector<f64> {
+    pub(super) fn multiply(&self, d: &DVector<f64>) -> DVector<f64> {
         match self {
             Hessian::Dense(b) => *b * d,
             Hessian::Split(b) => {
@@ -95,9 +96,14 @@ impl ElasticQp {
         }
     }
 
-    /// Solves the subproblem, and once more in a smaller box if its step is short; `None` if
-    /// Clarabel fails or its answer does not satisfy the optimality conditions.
+    /// Solves the subproblem, once more in a smaller box if its step is short, and the equations of
+    /// what is active; `None` if Clarabel fails or its answer does not satisfy the optimality conditions.
     pub fn solve(&mut self, data: &QpData<'_>, counts: &mut Counts) -> Option<QpStep> {
+        let found = self.solve_in_boxes(data, counts)?;
+        Some(refine(data, &found).unwrap_or(found))
+    }
+
+    fn solve_in_boxes(&mut self, data: &QpData<'_>, counts: &mut Counts) -> Option<QpStep> {
         let coarse = self.solve_once(data, counts)?;
         let size = coarse.d.amax();
         let radius = data.upper.amax().max(data.lower.amax());

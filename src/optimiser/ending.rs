@@ -9,9 +9,12 @@ use super::quasi_newton::QuasiNewton;
 use super::state::SavedState;
 use super::trust_region::Ending;
 use super::verdict::{
-    ScaledMultipliers, active, is_solved_at_end, kkt, scaled_residual, steepness, unit_of_forces,
-    user_multipliers,
+    ScaledMultipliers, active, is_at_precision, is_solved_at_end, is_solved_in_user_units, kkt,
+    scaled_residual, steepness, unit_of_forces, user_multipliers,
 };
+
+/// Step, relative to max(1, ‖x‖∞), after which an objective that can fall further must have fallen.
+const NEARBY: f64 = 1e-6;
 
 /// Where a method ended.
 pub(super) struct Finish {
@@ -20,12 +23,21 @@ pub(super) struct Finish {
     pub slopes: Slopes,
     pub multipliers: ScaledMultipliers,
     pub scaled: f64,
+    /// Whether the conditions hold in the units of the user and no fall was found nearby.
+    pub confirmed: bool,
+    /// Scale of the objective to which all this belongs.
+    pub scale: f64,
     pub b: QuasiNewton,
     pub barrier: f64,
     pub radius: f64,
 }
 
 impl Finish {
+    /// Brings the program back to the scale in which this was found.
+    pub fn restore_scale(&self, program: &mut Program<'_>) {
+        program.rescale(self.scale / program.scaling.objective);
+    }
+
     fn kkt(&self, program: &Program<'_>) -> Kkt {
         kkt(
             program,
@@ -36,22 +48,69 @@ impl Finish {
         )
     }
 
+    /// The same, called [`Status::Converged`] where a stall is at a point that satisfies the conditions
+    /// in the units of the user, and [`Status::AtPrecision`] where it is due to rounding; at neither
+    /// may the Lagrangian fall nearby.
+    pub fn with_stall_named(mut self, program: &mut Program<'_>) -> Finish {
+        if self.status != Status::Stalled || self.is_solved(program) {
+            return self;
+        }
+        let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
+        let kkt = self.kkt(program);
+        // Multipliers that grow without limit show in their products even where forces vanish.
+        let holds = kkt.relative_complementarity <= program.options.tolerance
+            && is_solved_in_user_units(program, point, slopes, &kkt);
+        if (holds || is_at_precision(program, point, slopes, z, &mut self.b))
+            && !self.falls_nearby(program)
+        {
+            self.confirmed = holds;
+            if !holds {
+                self.status = Status::AtPrecision;
+            }
+        }
+        self
+    }
+
+    /// Whether the Lagrangian falls along its steepest descent, a small step away from the point or,
+    /// where this cannot be evaluated, perhaps.
+    fn falls_nearby(&self, program: &mut Program<'_>) -> bool {
+        let (z, x) = (&self.multipliers, &self.point.x);
+        let bounds = &z.zu - &z.zl;
+        let force = &self.slopes.g + self.slopes.a.tr_mul(&z.y) + &bounds;
+        let length = NEARBY * x.amax().max(1.0) / force.amax();
+        let moved = DVector::from_fn(x.len(), |i, _| {
+            (x[i] - length * force[i]).clamp(program.lower[i], program.upper[i])
+        });
+        let Ok(trial) = program.evaluate(&moved) else {
+            return true;
+        };
+        let terms = [
+            trial.f - self.point.f,
+            z.y.dot(&(&trial.c - &self.point.c)),
+            bounds.dot(&(&moved - x)),
+        ];
+        terms.iter().sum::<f64>() < -10.0 * f64::EPSILON * self.point.f.abs()
+    }
+
     /// Whether the conditions hold, whatever the method thought of its end.
     pub fn is_solved(&self, program: &Program<'_>) -> bool {
-        is_solved_at_end(
-            program,
-            &self.point,
-            &self.slopes,
-            &self.multipliers,
-            self.scaled,
-        )
+        self.confirmed
+            || is_solved_at_end(
+                program,
+                &self.point,
+                &self.slopes,
+                &self.multipliers,
+                self.scaled,
+            )
     }
 }
 
 /// Replaces the point of a run that did not converge by a better one it passed through.
 pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
-    let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. })
-        || finish.status == Status::Stalled && finish.is_solved(program);
+    let settled = matches!(
+        finish.status,
+        Status::Converged | Status::AtPrecision | Status::Infeasible { .. }
+    ) || finish.status == Status::Stalled && finish.is_solved(program);
     let limit = program.options.constraint_tolerance;
     // What a violation within the tolerance gains is not counted.
     let y = &finish.multipliers.y;
@@ -110,6 +169,8 @@ pub(super) fn unfinished(program: &Program<'_>, point: Point, slopes: Slopes) ->
         status: Status::Interrupted,
         b: QuasiNewton::new(point.x.len(), options.dense_limit, options.memory),
         scaled: scaled_residual(program, &point, &slopes, &multipliers),
+        confirmed: false,
+        scale: program.scaling.objective,
         multipliers,
         point,
         slopes,
@@ -133,7 +194,7 @@ pub(super) fn status_of(
                 violation,
             }
         }
-        Ok(Ending::Stalled) | Err(Trouble::Failed(_)) => Status::Stalled,
+        Ok(Ending::Stalled | Ending::Misscaled) | Err(Trouble::Failed(_)) => Status::Stalled,
         Err(Trouble::Halt(status)) => status,
     }
 }
@@ -142,6 +203,7 @@ pub(super) fn status_of(
 pub(super) fn state_of(program: &Program<'_>, finish: &Finish) -> SavedState {
     SavedState {
         x: program.to_user(&finish.point.x),
+        objective: finish.point.f / program.scaling.objective,
         multipliers: user_multipliers(program, &finish.slopes, &finish.multipliers),
         scaling: Scaling {
             typical_gradient: program.typical_gradient(),
@@ -164,12 +226,12 @@ pub(super) fn outcome(program: &Program<'_>, finish: Finish, state: SavedState) 
         ..
     } = finish;
     // A method that can go no further has converged if the conditions hold all the same.
-    if matches!(status, Status::Converged | Status::Stalled) {
-        status = if solved {
-            Status::Converged
-        } else {
-            Status::Stalled
-        };
+    match status {
+        Status::Stalled | Status::IterationLimit | Status::EvaluationLimit if solved => {
+            status = Status::Converged;
+        }
+        Status::Converged if !solved => status = Status::Stalled,
+        _ => {}
     }
     let x = program.to_user(&point.x);
     let mut constraints = vec![0.0; program.scaling.constraints.len()];

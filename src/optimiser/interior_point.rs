@@ -11,7 +11,7 @@ use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
 use super::trust_region::{Ending, Goal, TrustRegion};
-use super::verdict::{ScaledMultipliers, UNIT_OF_OBJECTIVE, is_solved};
+use super::verdict::{ScaledMultipliers, UNIT_OF_OBJECTIVE, Verdict, is_at_precision, judge};
 
 /// Multipliers of bounds stay within this factor of μ/distance.
 const MULTIPLIER_BAND: f64 = 1e10;
@@ -27,6 +27,9 @@ const SHORT_TRIALS: usize = 7;
 const LONGEST_CRAWL: usize = 4;
 const CRAWLING: f64 = 1e-4;
 const LEAVE_CRAWL: f64 = 0.1;
+
+/// Steps in succession whose gain is lost in rounding that are still tried.
+const LOST_STEPS: usize = 4;
 
 /// Times that entries are made stiffer in one iteration.
 const STIFFENINGS: usize = 8;
@@ -128,10 +131,23 @@ impl InteriorPoint {
     /// Iterates until the run ends.
     pub fn run(&mut self, program: &mut Program<'_>) -> Result<Ending, Trouble> {
         let mut failures = 0;
+        let mut lost = 0;
         loop {
             self.wake(program);
-            if self.is_solved(program) {
-                return Ok(Ending::Reached);
+            match self.verdict(program) {
+                Verdict::Solved => return Ok(Ending::Reached),
+                Verdict::SolvedInScaledUnits if self.better_scale(program).is_some() => {
+                    return Ok(Ending::Misscaled);
+                }
+                Verdict::SolvedInScaledUnits | Verdict::Unsolved => {}
+            }
+            lost = if self.is_at_precision(program) {
+                lost + 1
+            } else {
+                0
+            };
+            if lost > LOST_STEPS {
+                return Ok(Ending::Stalled);
             }
             if program.is_unbounded(&self.at.point) {
                 return Ok(Ending::Unbounded);
@@ -292,18 +308,32 @@ impl InteriorPoint {
         program.report(&self.at.point, &progress)
     }
 
-    fn is_solved(&self, program: &Program<'_>) -> bool {
+    /// Factor by which the objective should be scaled further, if any.
+    pub fn better_scale(&self, program: &Program<'_>) -> Option<f64> {
+        let curvature = self.b.newest_curvature().unwrap_or(0.0);
+        program.better_scale(&self.at.point, &self.at.slopes.g, curvature)
+    }
+
+    fn is_at_precision(&mut self, program: &Program<'_>) -> bool {
+        let z = self.multipliers(program);
+        let (point, slopes) = (&self.at.point, &self.at.slopes);
+        is_at_precision(program, point, slopes, &z, &mut self.b)
+    }
+
+    fn verdict(&self, program: &Program<'_>) -> Verdict {
         let scaled = self.optimality();
         if scaled > program.options.tolerance {
-            return false;
+            return Verdict::Unsolved;
         }
         let z = self.multipliers(program);
         let gap: f64 = self.at.products(&self.layout).iter().sum();
         let least = UNIT_OF_OBJECTIVE * program.typical_gradient() * program.scaling.objective;
         let unit = self.at.point.f.abs().max(least);
         let (point, slopes) = (&self.at.point, &self.at.slopes);
-        gap <= 0.1 * program.options.tolerance * unit
-            && is_solved(program, point, slopes, &z, scaled)
+        if gap > 0.1 * program.options.tolerance * unit {
+            return Verdict::Unsolved;
+        }
+        judge(program, point, slopes, &z, scaled)
     }
 
     /// What to do when the line search found no step: forget the quasi-Newton matrix if the point

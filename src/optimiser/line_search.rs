@@ -51,6 +51,9 @@ pub(super) struct Accepted {
     pub trials: usize,
 }
 
+/// Relative change of a variable that is not lost in rounding.
+const RESOLUTION: f64 = 1e-16;
+
 /// Data of one search.
 pub(super) struct LineSearch<'s> {
     pub layout: &'s Layout,
@@ -105,10 +108,9 @@ impl LineSearch<'_> {
         let least = self.least_step(&here).min(1e-3 * longest);
         let mut alpha = longest;
         let mut trials = 0;
-        let resolved = 1e-16 * self.at.point.x.amax();
+        let resolved = self.least_resolved_step(&direction);
         loop {
-            let goes_on =
-                alpha >= least && alpha > VANISHED * longest && alpha * direction.size() > resolved;
+            let goes_on = alpha >= least && alpha > VANISHED * longest && alpha > resolved;
             if (!goes_on || trials >= SOFT_TRIALS)
                 && let Some(point) = first.take()
                 && let Some((point, slopes, s)) =
@@ -206,6 +208,21 @@ impl LineSearch<'_> {
         moved.estimate_multipliers(self.layout, f64::INFINITY);
         let after = moved.residuals(self.layout, self.mu);
         Ok((after.largest() <= SOFT_GAIN * before.largest()).then_some((point, slopes, s)))
+    }
+
+    /// Step length below which no variable changes.
+    fn least_resolved_step(&self, direction: &Direction) -> f64 {
+        let moves = direction.x.iter().zip(self.at.point.x.iter());
+        let lengths = moves
+            .filter(|(d, _)| **d != 0.0)
+            .map(|(d, x)| (x / d).abs());
+        let slacks = direction.s.iter().zip(self.at.s.iter());
+        let lengths = lengths.chain(
+            slacks
+                .filter(|(d, _)| **d != 0.0)
+                .map(|(d, s)| (s / d).abs()),
+        );
+        RESOLUTION * lengths.fold(f64::INFINITY, f64::min)
     }
 
     fn slope(&self, direction: &Direction) -> f64 {

@@ -15,6 +15,7 @@ mod options;
 mod outcome;
 mod program;
 mod quasi_newton;
+mod refined_qp;
 mod scaling;
 mod solve;
 mod split_qp;

@@ -32,8 +32,9 @@ pub enum Barrier {
 pub struct Options {
     /// Algorithm (default interior point).
     pub method: Method,
-    /// Largest scaled KKT residual of a solution, and the largest relative residual in the units
-    /// of the user (default 1e-6).
+    /// Largest KKT residual of a solution (default 1e-6): in scaled units; relative to the gradients of
+    /// the run; and in the units of the user relative to max(1, ‖∇f‖∞) and, for the sum of the
+    /// products of multipliers and distances, to max(1, |f|).
     pub tolerance: f64,
     /// Largest violation of a constraint of a solution, in the units of the user (default 1e-6).
     pub constraint_tolerance: f64,
@@ -43,7 +44,8 @@ pub struct Options {
     pub max_evaluations: usize,
     /// Wall time allowed (s) (default unlimited).
     pub max_seconds: Option<f64>,
-    /// An objective below this, at a feasible point, is called unbounded (default −1e20).
+    /// An objective f that changes by this part of max(1, |f|) from the first point to a feasible one
+    /// is called unbounded (default −1e20).
     pub unbounded_below: f64,
     /// Largest gradient, at the start, that is left unscaled (default 100).
     pub scaling_gradient: f64,

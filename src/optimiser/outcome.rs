@@ -8,9 +8,13 @@ use super::state::SavedState;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// The point satisfies the first-order conditions to the tolerances, in scaled units and in
-    /// those of the user.
+    /// The point satisfies the first-order conditions to the tolerances in the units of the user
+    /// ([`Options::tolerance`](super::Options::tolerance)).
     Converged,
+    /// The tolerances are out of reach in the units of the user: the residuals are small against the
+    /// gradients of the run, and what the quasi-Newton model still promises to gain is below the
+    /// rounding of the objective.
+    AtPrecision,
     /// The point is a stationary point of the constraint violation and not feasible, or bounds of a
     /// constraint or variable cross.
     Infeasible {
@@ -132,7 +136,7 @@ pub enum Side {
     Equal,
 }
 
-/// Scale factors chosen at the start, and what looks suspicious in the derivatives there.
+/// Scale factors, of the constraints as chosen at the start, and what looks suspicious in the derivatives there.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scaling {
     /// Factor of the objective.

@@ -17,6 +17,10 @@ use super::scaling::drop_rounding;
 /// Most designs kept of those at which an evaluation failed.
 const FAILED_DESIGNS_KEPT: usize = 100;
 
+/// Distance from the first point, relative to its size, at which a fall in scaled units shows that the
+/// objective has no bound.
+const FAR: f64 = 1e6;
+
 /// Values of the scaled functions at a scaled point.
 #[derive(Clone, Debug)]
 pub(super) struct Point {
@@ -95,13 +99,12 @@ pub(super) struct Program<'a> {
     pub counts: Counts,
     pub failed: Vec<FailedDesign>,
     started: Instant,
-    /// Norms ‖∇f‖∞ of all points so far, in the units of the user.
+    /// Norms ‖∇f‖∞ of all points so far, in the units of the user; a point in succession counts once.
     pub gradient_norms: Vec<f64>,
-    /// Point that was reported last, and the size of the last step between two such points.
-    reported: Option<DVector<f64>>,
-    pub last_step: f64,
     /// Iterations and evaluations allowed to the method that runs.
     allowed: Allowed,
+    /// First point reported, and its objective in the units of the user.
+    first: Option<(DVector<f64>, f64)>,
     /// Best point reported: feasible with the least objective, or least infeasible.
     pub best: Option<Point>,
 }
@@ -165,12 +168,11 @@ impl<'a> Program<'a> {
             failed: Vec::new(),
             started: Instant::now(),
             gradient_norms: Vec::new(),
-            reported: None,
-            last_step: 0.0,
             allowed: Allowed {
                 iterations: options.max_iterations,
                 evaluations: options.max_evaluations,
             },
+            first: None,
             best: None,
         }
     }
@@ -256,11 +258,10 @@ impl<'a> Program<'a> {
             let size = x[k].abs().max(1.0);
             if width.is_finite() { width } else { size }
         });
-        let typical = self.gradient_norms.iter().copied().fold(norm, f64::max);
-        drop_rounding(&mut g, &reach, typical * scaling.objective);
+        drop_rounding(&mut g, &reach);
         for r in 0..rows.len() {
             let mut row = a.row(r).transpose();
-            drop_rounding(&mut row, &reach, 0.0);
+            drop_rounding(&mut row, &reach);
             a.row_mut(r).copy_from(&row.transpose());
         }
         let fixed = &self.fixed;
@@ -273,7 +274,9 @@ impl<'a> Program<'a> {
             g,
             a,
         };
-        self.gradient_norms.push(norm);
+        if self.gradient_norms.last() != Some(&norm) {
+            self.gradient_norms.push(norm);
+        }
         Ok(slopes)
     }
 
@@ -312,11 +315,17 @@ impl<'a> Program<'a> {
         };
     }
 
-    /// Whether the objective has fallen below all bounds at a feasible point: in the units of the
-    /// user, or in scaled ones where those are smaller.
+    /// Whether the objective has fallen without bound from the first point to a feasible one: in the
+    /// units of the user or, very far from the first point, in scaled ones where those are smaller.
     pub fn is_unbounded(&self, point: &Point) -> bool {
-        let f = point.f.min(point.f / self.scaling.objective);
-        f < self.options.unbounded_below
+        let Some((x, f)) = &self.first else {
+            return false;
+        };
+        let fall = point.f / self.scaling.objective - f;
+        let is_far = (&point.x - x).amax() > FAR * x.amax().max(1.0);
+        let limit = self.options.unbounded_below;
+        let smallest = fall * self.scaling.objective;
+        (fall < limit * f.abs().max(1.0) || is_far && smallest < limit)
             && self.worst_violation(&point.c).0 <= self.options.constraint_tolerance
     }
 
@@ -391,16 +400,13 @@ impl<'a> Program<'a> {
     /// Tells the observer of an iteration.
     pub fn report(&mut self, point: &Point, progress: &Progress) -> Result<(), Trouble> {
         self.keep_best(point);
-        if let Some(before) = self.reported.replace(point.x.clone())
-            && before != point.x
-        {
-            self.last_step = (before - &point.x).amax();
-        }
+        let f = point.f / self.scaling.objective;
+        self.first.get_or_insert_with(|| (point.x.clone(), f));
         let x = self.to_user(&point.x);
         let constraints = self.user_constraints(&point.c);
         let row = Row {
             iteration: self.counts.iterations,
-            objective: point.f / self.scaling.objective,
+            objective: f,
             infeasibility: self.worst_violation(&point.c).0,
             optimality: progress.optimality,
             barrier: progress.barrier,

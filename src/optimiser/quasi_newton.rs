@@ -88,10 +88,48 @@ impl QuasiNewton {
         }
     }
 
+    /// `factor` B.
+    pub(super) fn times(&self, factor: f64) -> QuasiNewton {
+        let mut b = self.stored();
+        b.sigma *= factor;
+        for pair in &mut b.pairs {
+            pair.y *= factor;
+        }
+        b
+    }
+
+    /// Curvature sᵀy/sᵀs of the newest pair, if there is one.
+    pub(super) fn newest_curvature(&self) -> Option<f64> {
+        let pair = self.pairs.last()?;
+        Some(pair.s.dot(&pair.y) / pair.s.norm_squared())
+    }
+
     /// Sets the scale σ that B has without pairs.
     pub(super) fn set_scale(&mut self, sigma: f64) {
         self.sigma = sigma;
         self.matrix = None;
+    }
+
+    /// What is wrong with a matrix that was read, for a program of at most `variables` free variables.
+    pub(super) fn fault(&self, variables: usize) -> Option<String> {
+        if self.n > variables {
+            let n = self.n;
+            return Some(format!(
+                "the quasi-Newton matrix is of order {n} instead of {variables}"
+            ));
+        }
+        if !(self.sigma.is_finite() && self.sigma > 0.0) {
+            return Some(format!(
+                "the scale of the quasi-Newton matrix is {}",
+                self.sigma
+            ));
+        }
+        let all_finite = |v: &DVector<f64>| v.len() == self.n && v.iter().all(|x| x.is_finite());
+        let bad = |p: &Pair| !(all_finite(&p.s) && all_finite(&p.y) && p.s.dot(&p.y) > 0.0);
+        let k = self.pairs.iter().position(bad)?;
+        Some(format!(
+            "pair {k} of the quasi-Newton matrix has a wrong length, an infinite entry or no curvature"
+        ))
     }
 
     /// Order of the matrix.
@@ -217,6 +255,13 @@ impl QuasiNewton {
             middle[(k + i, k + i)] = -self.pairs[i].s.dot(&self.pairs[i].y);
         }
         (u, middle)
+    }
+
+    /// B⁻¹ `force`; `None` if rounding has destroyed the definiteness of B.
+    pub(super) fn newton_step(&mut self, force: &DVector<f64>) -> Option<DVector<f64>> {
+        let mut step = DMatrix::from_column_slice(self.n, 1, force.as_slice());
+        self.factor(&DVector::zeros(self.n))?.solve_mut(&mut step);
+        Some(step.column(0).into_owned())
     }
 
     /// Factors B + diag(`d`), d ≥ 0; `None` if rounding has destroyed its definiteness.

@@ -11,6 +11,9 @@ const FLAT: f64 = 1.0;
 const LIFTED: f64 = 1.0;
 const LARGEST_LIFT: f64 = 1e12;
 
+/// Least factor by which a scale is changed on the way.
+const WORTHWHILE: f64 = 10.0;
+
 /// Points that count as the first ones of a run.
 const FIRST_POINTS: usize = 12;
 
@@ -40,13 +43,30 @@ impl Program<'_> {
         self.apply_scaling(point, slopes);
     }
 
-    /// Uses scale factors of an earlier run.
+    /// Uses scale factors and typical gradient of an earlier run on the same objective.
     pub fn adopt_scaling(&mut self, saved: &Scaling, point: &mut Point, slopes: &mut Slopes) {
-        self.scaling.objective = saved.objective;
-        self.scaling.constraints.clone_from(&saved.constraints);
         // So many that later points cannot lower it.
         self.gradient_norms = vec![saved.typical_gradient; LARGEST_LEFT_OUT + 1];
+        self.scaling.objective = saved.objective;
+        self.scaling.constraints.clone_from(&saved.constraints);
         self.apply_scaling(point, slopes);
+    }
+
+    /// Factor by which the scale of the objective has to change to suit a point of gradient `g` and
+    /// curvature `curvature`, both scaled, at which the run has arrived; `None` if it suits.
+    pub fn better_scale(&self, point: &Point, g: &DVector<f64>, curvature: f64) -> Option<f64> {
+        let size = point.x.amax().max(1.0);
+        let limit = self.options.scaling_gradient / g.amax().max(curvature * size);
+        let factor = limit.min(1.0 / self.scaling.objective);
+        (factor.is_finite() && factor >= WORTHWHILE).then_some(factor)
+    }
+
+    /// Multiplies the scale of the objective by `factor`.
+    pub fn rescale(&mut self, factor: f64) {
+        self.scaling.objective *= factor;
+        if let Some(best) = &mut self.best {
+            best.f *= factor;
+        }
     }
 
     fn apply_scaling(&mut self, point: &mut Point, slopes: &mut Slopes) {
@@ -98,7 +118,10 @@ impl Program<'_> {
         let largest = |norms: &[f64], most: usize| {
             let mut norms: Vec<f64> = norms.iter().copied().filter(|v| *v > 0.0).collect();
             norms.sort_by(|a, b| b.total_cmp(a));
-            norms.get(most.min(norms.len() / 2)).copied().unwrap_or(0.0)
+            norms
+                .get(most.min(norms.len().saturating_sub(1) / 2))
+                .copied()
+                .unwrap_or(0.0)
         };
         let all = &self.gradient_norms;
         let early = largest(&all[..all.len().min(FIRST_POINTS)], LARGEST_LEFT_OUT);
@@ -108,9 +131,9 @@ impl Program<'_> {
 }
 
 /// Sets derivatives to zero that are nothing but rounding: over the `reach` of its variable each
-/// changes the function by less than the rounding of its largest change, or of `least`.
-pub(super) fn drop_rounding(slopes: &mut DVector<f64>, reach: &DVector<f64>, least: f64) {
-    let largest = slopes.component_mul(reach).amax().max(least);
+/// changes the function by less than the rounding of its largest change.
+pub(super) fn drop_rounding(slopes: &mut DVector<f64>, reach: &DVector<f64>) {
+    let largest = slopes.component_mul(reach).amax();
     for (slope, reach) in slopes.iter_mut().zip(reach.iter()) {
         if slope.abs() * reach <= f64::EPSILON * largest {
             *slope = 0.0;

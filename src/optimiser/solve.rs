@@ -12,16 +12,16 @@ use super::observer::{Observer, Phase};
 use super::options::{Method, Options};
 use super::outcome::{Outcome, Status};
 use super::program::{Point, Program, Progress, Slopes, Trouble};
-use super::start::{first_point, less_violated};
+use super::start::{Around, first_point, look_around};
 use super::state::SavedState;
 use super::trust_region::{Ending, Goal, TrustRegion};
 use super::verdict::{ScaledMultipliers, is_solved_at_end, scaled_multipliers, scaled_residual};
 use super::well_posed;
 
-/// Shares of iterations and evaluations after which [`Method::Auto`] leaves the interior point, and
-/// the trust region that starts from its best point.
+/// Shares of iterations and evaluations after which [`Method::Auto`] leaves the interior point, and the
+/// trust region that starts from its best point; the trust region from the start has the rest.
 const FIRST_SHARE: f64 = 0.5;
-const SECOND_SHARE: f64 = 0.55;
+const SECOND_SHARE: f64 = 0.75;
 
 /// How often a run goes on from a point beside one that seems infeasible.
 const ESCAPES: usize = 3;
@@ -75,8 +75,9 @@ pub fn solve(nlp: &mut dyn Nlp, options: &Options, observer: &mut dyn Observer) 
 
 /// As [`solve`], continuing from the point, multipliers and quasi-Newton matrix of an earlier run.
 ///
-/// A state that does not fit the program, because the number of variables or constraints has
-/// changed, gives its point as far as it goes and is ignored otherwise.
+/// A state of a program with other numbers of variables or constraints is ignored, that of another
+/// objective gives its point alone, and a damaged one ([`SavedState::fault`]) ends the run as
+/// [`Status::IllPosed`].
 pub fn resume(
     nlp: &mut dyn Nlp,
     options: &Options,
@@ -95,12 +96,13 @@ fn run(
     if let Some(status) = well_posed::fault(nlp, options) {
         return untried(nlp, status);
     }
+    let (n, m) = (nlp.variables(), nlp.constraints());
+    let saved = saved.filter(|s| s.x.len() == n && s.scaling.constraints.len() == m);
+    if let Some(fault) = saved.and_then(|s| s.fault(n, m)) {
+        let what = format!("the saved state is damaged: {fault}");
+        return untried(nlp, Status::IllPosed { what });
+    }
     let mut program = Program::new(nlp, options, observer);
-    let fits = |s: &&SavedState| {
-        s.scaling.constraints.len() == program.scaling.constraints.len()
-            && s.x.len() == program.scaling.variables.len()
-    };
-    let saved = saved.filter(fits);
     if let Some(saved) = saved {
         program.start_from(&saved.x);
     }
@@ -122,6 +124,7 @@ fn run(
         }
     };
     program.survey(&slopes);
+    let saved = saved.filter(|s| s.is_of(point.f));
     match saved {
         Some(saved) => program.adopt_scaling(&saved.scaling, &mut point, &mut slopes),
         None => program.scale(&mut point, &mut slopes),
@@ -177,9 +180,13 @@ fn attempt(
         if !matches!(finish.status, Status::Infeasible { .. }) {
             break;
         }
-        match less_violated(program, &finish.point) {
-            Ok(Some(point)) => finish = run(program, point, None),
-            Ok(None) | Err(Trouble::Failed(_)) => break,
+        match look_around(program, &finish.point) {
+            Ok(Around::Less(first)) => finish = run(program, *first, None),
+            Ok(Around::Flat) => {
+                finish.status = Status::Stalled;
+                break;
+            }
+            Ok(Around::More) | Err(Trouble::Failed(_)) => break,
             Err(Trouble::Halt(status)) => {
                 finish.status = status;
                 break;
@@ -198,7 +205,7 @@ fn auto(
     push: f64,
 ) -> Finish {
     program.allow(FIRST_SHARE);
-    let start = first.clone();
+    let (start, scale) = (first.clone(), program.scaling.objective);
     let mut kept = attempt(program, Method::InteriorPoint, first, saved, push);
     program.allow(1.0);
     for (from_best, share) in [(true, SECOND_SHARE), (false, 1.0)] {
@@ -216,6 +223,7 @@ fn auto(
         if from_best && matches!(kept.status, Status::Infeasible { .. }) {
             continue;
         }
+        program.rescale(scale / program.scaling.objective);
         let place = match program.best.clone().filter(|_| from_best) {
             None => start.clone(),
             Some(best) => match program.gradients(&best.x) {
@@ -233,6 +241,7 @@ fn auto(
         if !(undecided && matches!(kept.status, Status::Infeasible { .. })) {
             kept = next;
         }
+        kept.restore_scale(program);
     }
     kept
 }
@@ -249,7 +258,27 @@ fn interior_point(
         let multipliers = scaled_multipliers(program, &saved.multipliers);
         method.adopt(&multipliers, saved.quasi_newton.clone(), saved.barrier);
     }
-    let result = method.run(program);
+    let mut result = method.run(program);
+    while let Ok(Ending::Misscaled | Ending::Stalled) = result
+        && let Some(factor) = method.better_scale(program)
+    {
+        let z = method.multipliers(program).times(factor);
+        let (b, mu) = (method.b.times(factor), method.barrier.mu * factor);
+        let mut point = method.at.point.clone();
+        program.rescale(factor);
+        point.f *= factor;
+        // Small derivatives were lost beside the large ones of the start.
+        let slopes = match program.gradients(&point.x) {
+            Ok(slopes) => slopes,
+            Err(trouble) => {
+                result = Err(trouble);
+                break;
+            }
+        };
+        method = InteriorPoint::new(program, point, slopes, RESUMED_PUSH);
+        method.adopt(&z, b, mu.min(program.options.initial_barrier));
+        result = method.run(program);
+    }
     let status = status_of(program, result, &method.at.point);
     let mut multipliers = method.multipliers(program);
     let mut scaled = method.optimality();
@@ -278,12 +307,15 @@ fn interior_point(
         status,
         multipliers,
         scaled,
+        confirmed: false,
+        scale: program.scaling.objective,
         point,
         slopes,
         b: method.b,
         barrier: method.barrier.mu,
         radius: program.options.initial_radius,
     }
+    .with_stall_named(program)
 }
 
 fn trust_region(
@@ -300,7 +332,7 @@ fn trust_region(
         }
         method.radius = saved.radius;
     }
-    let mut result = method.run(program, |_, _| false);
+    let mut result = optimise(program, &mut method);
     for _ in 0..FEASIBILITY_PHASES {
         let limit = program.options.constraint_tolerance;
         let stuck = matches!(result, Ok(Ending::Stalled | Ending::Infeasible));
@@ -317,17 +349,36 @@ fn trust_region(
         if !matches!(result, Ok(Ending::Reached)) {
             break;
         }
-        result = method.run(program, |_, _| false);
+        result = optimise(program, &mut method);
     }
     let status = status_of(program, result, &method.point);
     Finish {
         status,
         multipliers: method.multipliers(program),
         scaled: method.optimality(program),
+        confirmed: false,
+        scale: program.scaling.objective,
         point: method.point,
         slopes: method.slopes,
         b: method.b,
         barrier: program.options.initial_barrier,
         radius: method.radius,
+    }
+    .with_stall_named(program)
+}
+
+/// Runs the trust region, and again in better units where those of the start do not suit its end.
+fn optimise(program: &mut Program<'_>, method: &mut TrustRegion) -> Result<Ending, Trouble> {
+    loop {
+        let ending = method.run(program, |_, _| false)?;
+        if !matches!(ending, Ending::Misscaled | Ending::Stalled) {
+            return Ok(ending);
+        }
+        let Some(factor) = method.better_scale(program) else {
+            return Ok(ending);
+        };
+        program.rescale(factor);
+        let slopes = program.gradients(&method.point.x)?;
+        method.rescale(factor, slopes);
     }
 }

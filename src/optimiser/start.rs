@@ -10,10 +10,14 @@ use super::program::{Point, Program, Slopes, Trouble};
 /// Starts tried where the functions are not defined.
 const START_TRIALS: usize = 12;
 
-/// Points tried beside one that seems infeasible, and the part of its violation that one of them must
-/// be below.
-const ESCAPE_TRIALS: usize = 6;
-const LESS: f64 = 0.99;
+/// Points tried beside one that seems infeasible, and their distances where no bounds give a measure,
+/// relative to the size of the point.
+const ESCAPE_TRIALS: usize = REACHES.len();
+const REACHES: [f64; 6] = [0.2, 1.0, 5.0, 0.5, 50.0, 500.0];
+
+/// Part of the violation by which it must be less beside a point, and up to which it is unchanged.
+const LESS: f64 = 1e-6;
+const UNCHANGED: f64 = 1e-12;
 
 /// Evaluates the start, moved into the interior of the bounds, or points near it.
 pub(super) fn first_point(
@@ -23,7 +27,7 @@ pub(super) fn first_point(
     let start = program.start();
     let mut first_failure: Option<EvaluationFailure> = None;
     for trial in 0..START_TRIALS {
-        let x = perturbed(program, &start, trial, push);
+        let x = perturbed(program, &start, trial, push, (trial as f64 / 6.0).min(1.0));
         let tried = program
             .evaluate(&x)
             .and_then(|p| program.gradients(&x).map(|s| (p, s)));
@@ -42,30 +46,57 @@ pub(super) fn first_point(
     Err(Trouble::Failed(first_failure.unwrap_or(missing)))
 }
 
-/// A point near `at`, with its slopes, that violates the rows clearly less: where the violation has a
-/// maximum or a saddle, its derivatives vanish but it can be reduced.
-pub(super) fn less_violated(
-    program: &mut Program<'_>,
-    at: &Point,
-) -> Result<Option<(Point, Slopes)>, Trouble> {
+/// How the violation changes around a point at which its derivatives show no way down.
+pub(super) enum Around {
+    /// It is clearly less at this point: that was a maximum, a saddle or one minimum of several.
+    Less(Box<(Point, Slopes)>),
+    /// It changes nowhere: derivatives say nothing.
+    Flat,
+    /// It rises.
+    More,
+}
+
+/// Looks at points around `at`, near and far: at a maximum, a saddle or on a plateau of the violation
+/// its derivatives vanish too.
+pub(super) fn look_around(program: &mut Program<'_>, at: &Point) -> Result<Around, Trouble> {
     let now = program.total_violation(&at.c);
+    let mut largest = 0.0_f64;
     for trial in 1..=ESCAPE_TRIALS {
-        let x = perturbed(program, &at.x, trial, program.options.bound_push);
+        let x = perturbed(
+            program,
+            &at.x,
+            trial,
+            program.options.bound_push,
+            REACHES[trial - 1],
+        );
         let point = match program.evaluate(&x) {
             Ok(point) => point,
             Err(Trouble::Failed(_)) => continue,
             Err(halt) => return Err(halt),
         };
-        if program.total_violation(&point.c) < LESS * now {
+        let change = program.total_violation(&point.c) - now;
+        if change < -LESS * now {
             let slopes = program.gradients(&x)?;
-            return Ok(Some((point, slopes)));
+            return Ok(Around::Less(Box::new((point, slopes))));
         }
+        largest = largest.max(change.abs());
     }
-    Ok(None)
+    Ok(if largest <= UNCHANGED * now {
+        Around::Flat
+    } else {
+        Around::More
+    })
 }
 
-/// The start for `trial` 0, then points at growing distances in alternating directions.
-fn perturbed(program: &Program<'_>, start: &DVector<f64>, trial: usize, push: f64) -> DVector<f64> {
+/// The start for `trial` 0, then points in changing directions, up to the part `part` of the distance
+/// of two bounds or of the size of the start away.
+fn perturbed(
+    program: &Program<'_>,
+    start: &DVector<f64>,
+    trial: usize,
+    push: f64,
+    part: f64,
+) -> DVector<f64> {
     let options = program.options;
     DVector::from_fn(start.len(), |i, _| {
         let (l, u) = (program.lower[i], program.upper[i]);
@@ -74,15 +105,11 @@ fn perturbed(program: &Program<'_>, start: &DVector<f64>, trial: usize, push: f6
         // Weyl sequence: spreads the directions without a random generator.
         let phase = ((trial * (i + 1)) as f64 * 0.618_033_988_749_895).fract() - 0.5;
         let reach = if width.is_finite() {
-            width
+            width * part.min(1.0)
         } else {
-            start[i].abs().max(1.0)
+            start[i].abs().max(1.0) * part
         };
-        let shift = if trial == 0 {
-            0.0
-        } else {
-            reach * phase * (trial as f64 / 6.0).min(1.0)
-        };
+        let shift = if trial == 0 { 0.0 } else { reach * phase };
         let mut x = start[i] + shift;
         if options.method != Method::TrustRegion || trial > 0 {
             x = if l.is_finite() {

@@ -5,11 +5,17 @@ use serde::{Deserialize, Serialize};
 use super::outcome::{Multipliers, Scaling};
 use super::quasi_newton::QuasiNewton;
 
+/// Relative difference of two values of the same objective at almost the same point.
+const SAME: f64 = 1e-6;
+
 /// State of the solver, in a form that can be stored.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SavedState {
     /// Point, in the units of the user.
     pub x: Vec<f64>,
+    /// Objective there: where a program has another value, the state belongs to another objective.
+    #[serde(default)]
+    pub objective: f64,
     /// Multipliers, in the units of the user.
     pub multipliers: Multipliers,
     /// Scale factors that belong to the quasi-Newton matrix.
@@ -20,4 +26,59 @@ pub struct SavedState {
     pub barrier: f64,
     /// Radius of the trust region.
     pub radius: f64,
+}
+
+impl SavedState {
+    /// What makes the state useless for a program of `variables` variables and `constraints` rows:
+    /// lengths that disagree or numbers that are out of range, by name; `None` if nothing does.
+    #[must_use]
+    pub fn fault(&self, variables: usize, constraints: usize) -> Option<String> {
+        let (z, scaling) = (&self.multipliers, &self.scaling);
+        let lists: [(&str, &[f64], usize); 6] = [
+            ("the point", &self.x, variables),
+            (
+                "the multipliers of lower bounds",
+                &z.lower_bounds,
+                variables,
+            ),
+            (
+                "the multipliers of upper bounds",
+                &z.upper_bounds,
+                variables,
+            ),
+            ("the multipliers of rows", &z.constraints, constraints),
+            ("the scales of variables", &scaling.variables, variables),
+            ("the scales of rows", &scaling.constraints, constraints),
+        ];
+        for (name, list, expected) in lists {
+            if list.len() != expected {
+                let found = list.len();
+                return Some(format!("{name} have {found} entries instead of {expected}"));
+            }
+            if let Some(value) = list.iter().find(|v| !v.is_finite()) {
+                return Some(format!("{name} contain {value}"));
+            }
+        }
+        let scales = scaling.variables.iter().chain(&scaling.constraints);
+        if let Some(value) = scales.copied().find(|v| *v <= 0.0) {
+            return Some(format!("a scale is {value}"));
+        }
+        let positive = [
+            ("the scale of the objective", scaling.objective),
+            ("the barrier parameter", self.barrier),
+            ("the radius of the trust region", self.radius),
+        ];
+        if let Some((name, value)) = positive.iter().find(|(_, v)| !(v.is_finite() && *v > 0.0)) {
+            return Some(format!("{name} is {value}"));
+        }
+        if !self.objective.is_finite() {
+            return Some(format!("the objective is {}", self.objective));
+        }
+        self.quasi_newton.fault(variables)
+    }
+
+    /// Whether `objective`, found at the start of a run from here, is the one of this state.
+    pub(super) fn is_of(&self, objective: f64) -> bool {
+        (objective - self.objective).abs() <= SAME * objective.abs().max(self.objective.abs())
+    }
 }

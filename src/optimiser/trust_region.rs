@@ -10,7 +10,7 @@ use super::elastic_qp::{ElasticQp, Hessian, QpData, QpStep};
 use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::{QuasiNewton, Spectrum};
-use super::verdict::{ScaledMultipliers, is_solved, scaled_residual};
+use super::verdict::{ScaledMultipliers, Verdict, judge, scaled_residual};
 
 /// Share of the predicted reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-4;
@@ -49,6 +49,8 @@ pub(super) enum Ending {
     Unbounded,
     /// No step is accepted although the radius is tiny.
     Stalled,
+    /// The conditions hold in scaled units that do not suit the point.
+    Misscaled,
 }
 
 /// State of the iteration.
@@ -91,6 +93,15 @@ impl TrustRegion {
         }
     }
 
+    /// Goes on with an objective multiplied by `factor` and slopes of that.
+    pub fn rescale(&mut self, factor: f64, slopes: Slopes) {
+        self.point.f *= factor;
+        self.slopes = slopes;
+        self.b = self.b.times(factor);
+        self.y *= factor;
+        self.penalty *= factor;
+    }
+
     fn weight(&self) -> f64 {
         if self.goal == Goal::Optimum { 1.0 } else { 0.0 }
     }
@@ -124,8 +135,8 @@ impl TrustRegion {
                 continue;
             };
             self.y.copy_from(&model.step.y);
-            if self.goal == Goal::Optimum && self.is_optimal(program) {
-                return Ok(Ending::Reached);
+            if let Some(ending) = self.settled(program) {
+                return Ok(ending);
             }
             let size = model.step.d.amax();
             let rounding = f64::EPSILON * self.merit(program, &self.point).abs().max(1e-8);
@@ -134,7 +145,8 @@ impl TrustRegion {
             } else {
                 0
             };
-            let negligible = model.predicted <= 0.0 || lost > LOST_STEPS;
+            let stays = self.inside(program, &model.step.d) == self.point.x;
+            let negligible = model.predicted <= 0.0 || stays || lost > LOST_STEPS;
             if negligible || self.radius < tiny {
                 if renewals == RENEWALS || self.b.is_empty() {
                     return Ok(self.end(program));
@@ -197,8 +209,8 @@ impl TrustRegion {
             if ratio > ACCEPT && reached(program, &self.point) {
                 return Ok(Ending::Reached);
             }
-            if self.goal == Goal::Optimum && self.is_optimal(program) {
-                return Ok(Ending::Reached);
+            if let Some(ending) = self.settled(program) {
+                return Ok(ending);
             }
         }
     }
@@ -232,11 +244,24 @@ impl TrustRegion {
         scaled_residual(program, &self.point, &self.slopes, &z)
     }
 
-    fn is_optimal(&self, program: &Program<'_>) -> bool {
+    /// Factor by which the objective should be scaled further, if any.
+    pub fn better_scale(&self, program: &Program<'_>) -> Option<f64> {
+        let curvature = self.b.newest_curvature().unwrap_or(0.0);
+        program.better_scale(&self.point, &self.slopes.g, curvature)
+    }
+
+    /// The ending of a run that has nothing left to do.
+    fn settled(&self, program: &Program<'_>) -> Option<Ending> {
+        if self.goal == Goal::Feasibility {
+            return None;
+        }
         let z = self.multipliers(program);
         let scaled = self.optimality(program);
-        let (point, slopes) = (&self.point, &self.slopes);
-        is_solved(program, point, slopes, &z, scaled)
+        match judge(program, &self.point, &self.slopes, &z, scaled) {
+            Verdict::Solved => Some(Ending::Reached),
+            Verdict::SolvedInScaledUnits => self.better_scale(program).map(|_| Ending::Misscaled),
+            Verdict::Unsolved => None,
+        }
     }
 
     /// Exact penalty function w f + Σ ν_j violation_j.

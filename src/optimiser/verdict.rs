@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::outcome::{ActiveBound, Kkt, Multipliers, Side};
 use super::program::{Point, Program, Slopes};
+use super::quasi_newton::QuasiNewton;
 
 /// Multipliers of the scaled program: rows, then lower and upper bounds of the variables.
 #[derive(Clone, Debug)]
@@ -73,6 +74,14 @@ impl ScaledMultipliers {
         }
     }
 
+    /// Multipliers of the program whose objective is multiplied by `factor`.
+    pub fn times(mut self, factor: f64) -> Self {
+        self.y *= factor;
+        self.zl *= factor;
+        self.zu *= factor;
+        self
+    }
+
     /// Sets to zero what has the wrong sign for the bounds that a row has.
     pub fn clip(&mut self, program: &Program<'_>) {
         for k in 0..self.y.len() {
@@ -130,11 +139,15 @@ pub(super) const UNIT_OF_OBJECTIVE: f64 = 0.01;
 /// The size of forces, in the units of the user: that of the gradient or, where it vanishes, of those
 /// at other points of the run.
 pub(super) fn unit_of_forces(program: &Program<'_>, slopes: &Slopes) -> f64 {
+    gradient_norm(program, slopes).max(UNIT * program.typical_gradient())
+}
+
+/// Norm ‖∇f‖∞ in the units of the user.
+pub(super) fn gradient_norm(program: &Program<'_>, slopes: &Slopes) -> f64 {
     let gradient = program.free.iter().zip(slopes.g.iter());
-    let gradient = gradient
+    gradient
         .map(|(&i, g)| (g / (program.scaling.objective * program.scaling.variables[i])).abs())
-        .fold(0.0, f64::max);
-    gradient.max(UNIT * program.typical_gradient())
+        .fold(0.0, f64::max)
 }
 
 /// Residuals at a point; `scaled` is left to the caller.
@@ -221,36 +234,97 @@ pub(super) fn scaled_residual(
     (force.amax().max(complementarity) / (size.max(100.0) / 100.0)).max(violation)
 }
 
-/// Longest last step, relative to max(1, ‖x‖∞), where forces are small only against those of other
-/// points of the run: from a start on a cliff all later forces look small.
-const LONGEST_LAST: f64 = 0.1;
-
 /// Part of the typical gradient below which the gradient at a point counts as vanishing, and part of
 /// the gradient up to which the force left on the variables shows that multipliers balance it.
 const VANISHING: f64 = 1e-5;
 const BALANCED: f64 = 0.1;
 
-/// Whether the residuals meet the tolerances and, unless the forces are small against the gradient at
-/// the point itself, the last step was short and no multipliers balance a gradient that stays.
-pub(super) fn is_solved(
+/// Rounding errors of x that are its last digits.
+const LAST_DIGITS: f64 = 10.0;
+
+/// What the residuals at a point say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// They are too large.
+    Unsolved,
+    /// They are small in scaled units and against the gradients of the run alone.
+    SolvedInScaledUnits,
+    /// They meet the tolerances in the units of the user as well.
+    Solved,
+}
+
+/// Judges a point. Unless the forces are small against the gradient at the point itself, no multipliers
+/// may balance a gradient that stays.
+pub(super) fn judge(
     program: &Program<'_>,
     point: &Point,
     slopes: &Slopes,
     z: &ScaledMultipliers,
     scaled: f64,
-) -> bool {
+) -> Verdict {
     let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
     let (left, gradient) = (force.amax(), slopes.g.amax());
-    let settled = left <= program.options.tolerance * gradient
-        || program.last_step <= LONGEST_LAST * point.x.amax().max(1.0);
     let typical = program.typical_gradient() * program.scaling.objective;
     let balanced = left > program.options.tolerance * gradient
         && left <= BALANCED * gradient
         && gradient > VANISHING * typical;
-    settled && !balanced && is_solved_at_end(program, point, slopes, z, scaled)
+    let kkt = kkt(program, point, slopes, z, scaled);
+    if balanced || !is_solved_in_scaled_units(program, &kkt) {
+        Verdict::Unsolved
+    } else if is_solved_in_user_units(program, point, slopes, &kkt) {
+        Verdict::Solved
+    } else {
+        Verdict::SolvedInScaledUnits
+    }
 }
 
-/// As [`is_solved`], at a point where no step makes progress.
+/// Whether the residuals meet the tolerances in scaled units and relative to the gradients of the run.
+pub(super) fn is_solved_in_scaled_units(program: &Program<'_>, kkt: &Kkt) -> bool {
+    let options = program.options;
+    let within = |value: f64, limit: f64| value <= limit;
+    within(kkt.violation, options.constraint_tolerance)
+        && within(kkt.relative_stationarity, options.tolerance)
+        && within(kkt.relative_complementarity, 0.1 * options.tolerance)
+        && within(kkt.scaled, options.tolerance)
+}
+
+/// Whether the residuals meet the tolerances in the units of the user: they are absolute, or relative
+/// to gradient and objective at the point itself, and know nothing of other points.
+pub(super) fn is_solved_in_user_units(
+    program: &Program<'_>,
+    point: &Point,
+    slopes: &Slopes,
+    kkt: &Kkt,
+) -> bool {
+    let tolerance = program.options.tolerance;
+    let f = point.f / program.scaling.objective;
+    kkt.violation <= program.options.constraint_tolerance
+        && kkt.stationarity <= tolerance * gradient_norm(program, slopes).max(1.0)
+        && kkt.complementarity <= tolerance * f.abs().max(1.0)
+}
+
+/// Whether nothing is left to gain that the objective could show: relative to the gradients of the run
+/// the residuals meet the tolerances, and the step −B⁻¹∇L gains less than the rounding of f or changes
+/// only the last digits of x.
+pub(super) fn is_at_precision(
+    program: &Program<'_>,
+    point: &Point,
+    slopes: &Slopes,
+    z: &ScaledMultipliers,
+    b: &mut QuasiNewton,
+) -> bool {
+    let kkt = kkt(program, point, slopes, z, 0.0);
+    if !is_solved_in_scaled_units(program, &kkt) {
+        return false;
+    }
+    let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
+    b.newton_step(&force).is_some_and(|step| {
+        0.5 * step.dot(&force) <= f64::EPSILON * point.f.abs()
+            || step.amax() <= LAST_DIGITS * f64::EPSILON * point.x.amax()
+    })
+}
+
+/// As [`judge`] says [`Verdict::Solved`], at a point where no step makes progress.
 pub(super) fn is_solved_at_end(
     program: &Program<'_>,
     point: &Point,
@@ -258,13 +332,9 @@ pub(super) fn is_solved_at_end(
     z: &ScaledMultipliers,
     scaled: f64,
 ) -> bool {
-    let options = program.options;
     let kkt = kkt(program, point, slopes, z, scaled);
-    let within = |value: f64, limit: f64| value <= limit;
-    within(kkt.violation, options.constraint_tolerance)
-        && within(kkt.relative_stationarity, options.tolerance)
-        && within(kkt.relative_complementarity, 0.1 * options.tolerance)
-        && within(kkt.scaled, options.tolerance)
+    is_solved_in_scaled_units(program, &kkt)
+        && is_solved_in_user_units(program, point, slopes, &kkt)
 }
 
 /// Multipliers in the units of the user; those of fixed variables balance the force on them.
