@@ -1,5 +1,5 @@
 //! The time loop of the explicit method allocates nothing, forwards and backwards: runs of n and of
-//! 2 n kept steps make the same number of allocations, as their history is given room before.
+//! 2 n kept steps make as many allocations, as their history is given room before.
 
 use dhat::HeapStats;
 use flexbody::adjoint::gradients;
@@ -61,7 +61,7 @@ fn steps_allocate_nothing() {
         let scene = scene(path);
         for keep_stages in [true, false] {
             let [few, many] = [40, 80].map(|n| of_steps(&scene, duration, n, keep_stages));
-            assert_eq!(few[0], many[0], "{path}: forwards");
+            assert!(many[0] <= few[0], "{path}: forwards {few:?}, {many:?}");
             // The vectors that are used again grow until each has had its largest size.
             let more = many[1].saturating_sub(few[1]);
             assert!(more <= GROWTH, "{path}: backwards {few:?}, {many:?}");

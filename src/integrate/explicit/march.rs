@@ -1,7 +1,8 @@
 //! The march of the explicit method over given or chosen steps.
 
 use super::Tape;
-use super::step::{Node, StepFailure, Stepper};
+use super::record::{Node, NodeView};
+use super::step::{StepFailure, Stepper};
 use super::tableau::{ORDER, STAGES};
 use crate::integrate::control::{Controller, Scale};
 use crate::integrate::failure::IntegrationFailure;
@@ -135,7 +136,7 @@ fn reserve<S: SolveScalar>(run: &mut Trajectory<S>, settings: &Settings) {
 fn sample<S: SolveScalar>(
     run: &mut Trajectory<S>,
     stepper: &mut Stepper<S>,
-    (from, to): (Node<&[S]>, Node<&[S]>),
+    (from, to): (NodeView<S>, NodeView<S>),
     settings: &Settings,
     next: &mut usize,
 ) -> Result<(), StepFailure> {
@@ -161,7 +162,7 @@ fn sample<S: SolveScalar>(
 
 /// Estimated error of a step relative to the scene's scale (Hairer, Nørsett & Wanner 1993,
 /// eq. II.10.17): |e5|² / √(|e5|² + 0.01 |e3|²).
-fn error<S: SolveScalar>(stepper: &mut Stepper<S>, scale: &Scale, from: Node<&[S]>, h: S) -> f64 {
+fn error<S: SolveScalar>(stepper: &mut Stepper<S>, scale: &Scale, from: NodeView<S>, h: S) -> f64 {
     let numbering = stepper.field.numbering;
     let speeds = scale.speeds(numbering, from.v, &stepper.data.v_raw);
     let [e5, e3] = stepper.errors(h, |q, v| scale.square(numbering, q, v, speeds));
@@ -222,7 +223,7 @@ impl Stiffness {
         &mut self,
         stepper: &mut Stepper<S>,
         scale: &Scale,
-        to: Node<&[S]>,
+        to: NodeView<S>,
         h: f64,
     ) -> bool {
         let numbering = stepper.field.numbering;

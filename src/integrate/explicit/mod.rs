@@ -9,10 +9,12 @@
 //! (Hairer & Wanner 1996, *Solving Ordinary Differential Equations II*, section VII.2.)
 
 pub mod march;
+pub mod record;
 pub mod step;
 pub mod tableau;
 
-pub use step::{Node, NodeView, StepData, StepView, Stepper};
+pub use record::{Node, NodeView, StepData, StepView};
+pub use step::Stepper;
 
 use super::rows::Rows;
 use crate::math::Complex64;

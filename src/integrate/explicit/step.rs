@@ -1,6 +1,7 @@
-//! One step of DOP853: stages, projection, dense output.
+//! One step of DOP853: stages, projection, error.
 
-use super::tableau::{A, ALL, B, C, E3, E5, END, STAGES, dense_weights};
+use super::record::{Node, NodeView, StepData, add_row};
+use super::tableau::{A, ALL, B, C, E3, E5, END, STAGES};
 use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::math::{Vec3, rotation};
 use crate::model::Model;
@@ -15,188 +16,6 @@ const REMAINDER: f64 = 1e-16;
 
 /// Largest |Φ| that is round-off, relative to the length scale.
 const CLOSED: f64 = 2e-15;
-
-/// State at the end of a step, with its accelerations; V is a vector or a slice.
-#[derive(Clone, Copy, Debug)]
-pub struct Node<V> {
-    /// Positions.
-    pub q: V,
-    /// Velocities.
-    pub v: V,
-    /// Accelerations.
-    pub a: V,
-    /// Multipliers λ.
-    pub lambda: V,
-}
-
-/// A view of a node.
-pub type NodeView<'a, S> = Node<&'a [S]>;
-/// A view of a step.
-pub type StepView<'a, S> = StepData<&'a [S]>;
-
-impl<V> Node<V> {
-    /// Lengths of its vectors.
-    pub fn lengths(numbering: &Numbering) -> [usize; 4] {
-        let (nq, nv) = (numbering.positions(), numbering.velocities());
-        [nq, nv, nv, numbering.constraints()]
-    }
-}
-
-impl<S> Node<Vec<S>> {
-    /// A view of it.
-    pub fn view(&self) -> Node<&[S]> {
-        Node {
-            q: &self.q,
-            v: &self.v,
-            a: &self.a,
-            lambda: &self.lambda,
-        }
-    }
-}
-
-/// Everything that a step computed; stage i stands in row i of `q`, `v`, `qdot`, `a`, `lambda`. V is
-/// a vector or a slice.
-#[derive(Clone, Copy, Debug)]
-pub struct StepData<V> {
-    /// Positions of the stages; their Euler parameters are not of unit length.
-    pub q: V,
-    /// Velocities of the stages.
-    pub v: V,
-    /// Rates q̇ = T(q) v.
-    pub qdot: V,
-    /// Accelerations.
-    pub a: V,
-    /// Multipliers λ.
-    pub lambda: V,
-    /// Positions before the projection.
-    pub q_raw: V,
-    /// Velocities before the projection.
-    pub v_raw: V,
-    /// Multipliers s of the position projection.
-    pub s: V,
-    /// Correction of the velocities.
-    pub delta: V,
-    /// Multipliers σ of the velocity projection.
-    pub sigma: V,
-    /// Whether the stages of the dense output were computed.
-    pub dense: bool,
-}
-
-impl<V> StepData<V> {
-    /// Lengths of its vectors.
-    pub fn lengths(numbering: &Numbering) -> [usize; 10] {
-        let (nq, nv) = (numbering.positions(), numbering.velocities());
-        let nc = numbering.constraints();
-        let rows = [nq, nv, nq, nv, nc].map(|n| ALL * n);
-        let [a, b, c, d, e] = rows;
-        [a, b, c, d, e, nq, nv, nc, nv, nc]
-    }
-
-    /// The step with these vectors.
-    pub fn of_parts(parts: [V; 10], dense: bool) -> Self {
-        let [q, v, qdot, a, lambda, q_raw, v_raw, s, delta, sigma] = parts;
-        Self {
-            q,
-            v,
-            qdot,
-            a,
-            lambda,
-            q_raw,
-            v_raw,
-            s,
-            delta,
-            sigma,
-            dense,
-        }
-    }
-
-    /// Its vectors.
-    pub fn parts(self) -> [V; 10] {
-        [
-            self.q,
-            self.v,
-            self.qdot,
-            self.a,
-            self.lambda,
-            self.q_raw,
-            self.v_raw,
-            self.s,
-            self.delta,
-            self.sigma,
-        ]
-    }
-}
-
-impl<S: SolveScalar> StepData<Vec<S>> {
-    /// A step of zeros.
-    fn new(numbering: &Numbering) -> Self {
-        let parts = Self::lengths(numbering).map(|n| vec![S::zero(); n]);
-        Self::of_parts(parts, false)
-    }
-
-    /// A view of it.
-    pub fn view(&self) -> StepData<&[S]> {
-        StepData {
-            q: &self.q,
-            v: &self.v,
-            qdot: &self.qdot,
-            a: &self.a,
-            lambda: &self.lambda,
-            q_raw: &self.q_raw,
-            v_raw: &self.v_raw,
-            s: &self.s,
-            delta: &self.delta,
-            sigma: &self.sigma,
-            dense: self.dense,
-        }
-    }
-}
-
-impl<S: SolveScalar> StepData<&[S]> {
-    /// State and derivative at the fraction θ of a step of size h that starts from `node`: q before
-    /// its Euler parameters are brought to unit length, v, and the derivative of v.
-    fn dense(self, node: Node<&[S]>, h: S, theta: f64, [q, v, a]: [&mut [S]; 3]) {
-        let (w, rate) = dense_weights(theta);
-        q.copy_from_slice(node.q);
-        v.copy_from_slice(node.v);
-        a.fill(S::zero());
-        for i in 0..ALL {
-            add_row(q, h * w[i], self.qdot, i);
-            add_row(v, h * w[i], self.a, i);
-            add_row(a, S::from(rate[i]), self.a, i);
-        }
-    }
-}
-
-impl StepData<&[f64]> {
-    /// The positions in `range` at the fraction of a step of size h with the weights `w`, before the
-    /// Euler parameters are brought to unit length; `out` elsewhere is left as it is.
-    pub fn positions(
-        &self,
-        node: Node<&[f64]>,
-        h: f64,
-        w: &[f64; ALL],
-        range: std::ops::Range<usize>,
-        out: &mut [f64],
-    ) {
-        let nq = node.q.len();
-        out[range.clone()].copy_from_slice(&node.q[range.clone()]);
-        for (i, w) in w.iter().enumerate() {
-            let row = &self.qdot[i * nq..(i + 1) * nq];
-            for (out, x) in out[range.clone()].iter_mut().zip(&row[range.clone()]) {
-                *out += h * w * x;
-            }
-        }
-    }
-}
-
-/// Adds `scale` times row i of `rows`, which are as long as `out`.
-fn add_row<S: SolveScalar>(out: &mut [S], scale: S, rows: &[S], i: usize) {
-    let row = &rows[i * out.len()..(i + 1) * out.len()];
-    for (out, &x) in out.iter_mut().zip(row) {
-        *out += scale * x;
-    }
-}
 
 /// Why a step could not be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -250,7 +69,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
     ///
     /// # Errors
     /// [`StepFailure`].
-    pub fn stages(&mut self, node: Node<&[S]>, (start, h): (S, S)) -> Result<(), StepFailure> {
+    pub fn stages(&mut self, node: NodeView<S>, (start, h): (S, S)) -> Result<(), StepFailure> {
         self.data.dense = false;
         self.put_node(node, 0);
         for i in 1..STAGES {
@@ -277,7 +96,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
     /// [`StepFailure`].
     pub fn dense_stages(
         &mut self,
-        (node, end): (Node<&[S]>, Node<&[S]>),
+        (node, end): (NodeView<S>, NodeView<S>),
         (start, h): (S, S),
     ) -> Result<(), StepFailure> {
         self.put_node(end, END);
@@ -288,7 +107,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         Ok(())
     }
 
-    fn put_node(&mut self, node: Node<&[S]>, i: usize) {
+    fn put_node(&mut self, node: NodeView<S>, i: usize) {
         let numbering = self.field.numbering;
         let data = &mut self.data;
         let (q, v) = (span(node.q, i), span(node.v, i));
@@ -299,7 +118,12 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         bodies::rates(numbering, node.q, node.v, &mut data.qdot[q]);
     }
 
-    fn stage(&mut self, node: Node<&[S]>, i: usize, (start, h): (S, S)) -> Result<(), StepFailure> {
+    fn stage(
+        &mut self,
+        node: NodeView<S>,
+        i: usize,
+        (start, h): (S, S),
+    ) -> Result<(), StepFailure> {
         let (q, v, c) = (span(node.q, i), span(node.v, i), span(node.lambda, i));
         let data = &mut self.data;
         // The stages before i stand in front of it.
@@ -417,7 +241,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
 
     /// How far the last stage is from the end of the step in state and in derivative, measured by
     /// `measure`.
-    pub fn last_stage(&mut self, to: Node<&[S]>, measure: impl Fn(&[S], &[S]) -> f64) -> [f64; 2] {
+    pub fn last_stage(&mut self, to: NodeView<S>, measure: impl Fn(&[S], &[S]) -> f64) -> [f64; 2] {
         let (q, v, _) = &mut self.scratch;
         let data = &self.data;
         let last = STAGES - 1;
@@ -440,7 +264,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
 
     /// The motion inside the step of size h from `node`, at its fraction θ: positions, velocities and
     /// accelerations.
-    pub fn inside(&mut self, node: Node<&[S]>, h: S, theta: f64) -> [&[S]; 3] {
+    pub fn inside(&mut self, node: NodeView<S>, h: S, theta: f64) -> [&[S]; 3] {
         let (q, v, a) = &mut self.scratch;
         self.data.view().dense(node, h, theta, [q, v, a]);
         bodies::bring_to_unit(self.field.numbering, q);
