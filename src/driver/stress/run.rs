@@ -1,0 +1,224 @@
+//! One case: what the program says of it, and whether that is true.
+
+use super::case::{Case, Judge};
+use crate::driver::check::{CheckedDerivative, check};
+use crate::driver::{Journal, Simulation, error, optimise, simulate};
+use crate::integrate::{Method, Spacing};
+use crate::optimiser::Status;
+use crate::problem::{Override, Problem};
+use crate::report::{StressOutcome, StressRow};
+use std::ops::ControlFlow;
+
+/// Part of an error that a number has to reach to tell of it.
+const TELLING: f64 = 0.1;
+/// Tolerances of the runs that judge runs of the other family: explicit, implicit.
+const TIGHT: (f64, f64) = (1e-13, 1e-11);
+
+/// Runs a case and judges it.
+pub(super) fn run(case: &Case) -> StressRow {
+    let parse = |text: &String| Override::parse(text);
+    let overrides: Result<Vec<Override>, _> = case.overrides().iter().map(parse).collect();
+    let mut row = blank(case);
+    let problem = overrides
+        .map_err(|fault| fault.to_string())
+        .and_then(|changes| {
+            Problem::parse(case.scene.text, case.scene.name, &changes)
+                .map_err(|faults| faults.to_string())
+        });
+    let problem = match problem {
+        Ok(problem) => problem,
+        Err(message) => {
+            row.outcome = StressOutcome::Refused { message };
+            return row;
+        }
+    };
+    match case.judge {
+        Judge::Optimum(optimum) => optimisation(&mut row, case, &problem, optimum),
+        Judge::Exact(_) | Judge::OtherMethod => motion(&mut row, case, &problem),
+    }
+    row
+}
+
+/// The row of a case of which nothing is known.
+pub(super) fn blank(case: &Case) -> StressRow {
+    let judge = match case.judge {
+        Judge::Exact(exact) => exact.source().into(),
+        Judge::OtherMethod => "the other family of methods, tightly".into(),
+        Judge::Optimum(optimum) if optimum.is_nan() => "there is no optimum".into(),
+        Judge::Optimum(_) => "the supremum in closed form".into(),
+    };
+    StressRow {
+        family: case.family.into(),
+        extreme: case.extreme.clone(),
+        scene: case.scene.name.into(),
+        method: case.method(),
+        steps: None,
+        outcome: StressOutcome::WrongAndSilent,
+        error: None,
+        bound: case.bound,
+        judge,
+        energy_drift: None,
+        position_drift: None,
+        velocity_drift: None,
+        gradient_error: None,
+        no_gradient: None,
+        command: case.command(),
+    }
+}
+
+fn motion(row: &mut StressRow, case: &Case, problem: &Problem) {
+    let start = problem.start();
+    let seen = match simulate(problem, &start) {
+        Ok(seen) => seen,
+        Err(failure) => {
+            let message = failure.to_string();
+            row.outcome = StressOutcome::Refused { message };
+            return;
+        }
+    };
+    let count = problem.function_names.len();
+    let values: Vec<f64> = (0..count).map(|f| seen.at.function(f).value).collect();
+    row.steps = Some(seen.at.run.grid.steps());
+    if values.iter().any(|value| !value.is_finite()) {
+        let message = "a function is not finite".into();
+        row.outcome = StressOutcome::Refused { message };
+        return;
+    }
+    let (exact, sizes) = match known(case, problem) {
+        Ok(known) => known,
+        Err(message) => {
+            row.judge = format!("nobody: {message}");
+            return;
+        }
+    };
+    let relative = |(f, value): (usize, &f64)| (value - exact[f]).abs() / sizes[f];
+    let error = largest(values.iter().enumerate().map(relative));
+    row.error = Some(error);
+    let (position, velocity) = seen.constraint_drift();
+    (row.position_drift, row.velocity_drift) = (Some(position), Some(velocity));
+    if case.conservative {
+        let kinetic = largest(seen.observations.iter().map(|o| o.kinetic));
+        let drift = seen.energy_drift();
+        row.energy_drift = Some(if kinetic > 0.0 {
+            drift / kinetic
+        } else {
+            drift
+        });
+    }
+    row.outcome = if error <= case.bound {
+        StressOutcome::Accurate
+    } else {
+        match told(row, problem, &seen, error, &sizes) {
+            Some(told) => StressOutcome::Degraded { told },
+            None => StressOutcome::WrongAndSilent,
+        }
+    };
+    match check(problem, &start) {
+        Ok(all) => row.gradient_error = Some(gradient_error(&all, &start, &sizes)),
+        Err(failure) => row.no_gradient = Some(failure.to_string()),
+    }
+}
+
+/// Largest difference of a derivative from the complex step, relative to it. A derivative that moves
+/// the function by less than its last digit where the variable changes by its own size is zero.
+fn gradient_error(all: &[CheckedDerivative], x: &[f64], sizes: &[f64]) -> f64 {
+    let error = |d: &CheckedDerivative| {
+        let variable = match x[d.variable] {
+            0.0 => 1.0,
+            x => x.abs(),
+        };
+        let nothing = f64::EPSILON * sizes[d.function] / variable;
+        let zero = d.adjoint.abs() <= nothing && d.complex_step.abs() <= nothing;
+        match zero || d.is_round_off() {
+            true => 0.0,
+            false => d.relative_difference(),
+        }
+    };
+    largest(all.iter().map(error))
+}
+
+/// What the functions should be, and the sizes that errors are relative to.
+fn known(case: &Case, problem: &Problem) -> Result<(Vec<f64>, Vec<f64>), String> {
+    match case.judge {
+        Judge::Exact(exact) => {
+            let numbers = exact.numbers();
+            Ok((numbers.values, numbers.sizes))
+        }
+        Judge::OtherMethod | Judge::Optimum(_) => {
+            let explicit = matches!(problem.simulation.method, None | Some(Method::Dop853));
+            let (method, tolerance) = match explicit {
+                true => (Method::Radau { stages: 3 }, TIGHT.1),
+                false => (Method::Dop853, TIGHT.0),
+            };
+            let mut other = problem.clone();
+            other.simulation.method = Some(method);
+            other.simulation.spacing = Spacing::Tolerance(tolerance);
+            let seen = simulate(&other, &other.start()).map_err(|failure| failure.to_string())?;
+            let count = problem.function_names.len();
+            let values: Vec<f64> = (0..count).map(|f| seen.at.function(f).value).collect();
+            let sizes = vec![1.0; count];
+            Ok((values, sizes))
+        }
+    }
+}
+
+/// How the program tells that a motion is off by `error`: a warning, the energy that it prints, or the
+/// estimate of `--error`.
+fn told(
+    row: &StressRow,
+    problem: &Problem,
+    seen: &Simulation,
+    error: f64,
+    sizes: &[f64],
+) -> Option<String> {
+    if let Some(warning) = &seen.warning {
+        return Some(format!("warning: {warning}"));
+    }
+    if row
+        .energy_drift
+        .is_some_and(|drift| drift >= TELLING * error)
+    {
+        return Some("the energy drift".into());
+    }
+    let which: Vec<usize> = (0..sizes.len()).collect();
+    match error::estimate(problem, &seen.at, &which, false) {
+        Ok(all) => {
+            let estimate = largest(all.iter().map(|e| e.value.error / sizes[e.function]));
+            (!(estimate < TELLING * error)).then(|| "the estimate of --error".into())
+        }
+        Err(failure) => Some(format!("--error: halves of the steps fail: {failure}")),
+    }
+}
+
+fn optimisation(row: &mut StressRow, case: &Case, problem: &Problem, optimum: f64) {
+    let go_on = &mut |_: &_| ControlFlow::Continue(());
+    let Some(done) = optimise(problem, case.scene.name, None, Journal::default(), go_on) else {
+        let message = "nothing to optimise".into();
+        row.outcome = StressOutcome::Refused { message };
+        return;
+    };
+    if let Status::UndefinedStart { what } | Status::IllPosed { what } = &done.outcome.status {
+        let message = what.clone();
+        row.outcome = StressOutcome::Refused { message };
+        return;
+    }
+    row.steps = done.end.as_ref().map(|end| end.at.run.grid.steps());
+    let found = done.optimum.objective.value;
+    let error = (found - optimum).abs() / optimum.abs();
+    row.error = Some(error).filter(|error| error.is_finite());
+    row.outcome = match done.outcome.status {
+        Status::Converged if error <= case.bound => StressOutcome::Accurate,
+        Status::Converged => StressOutcome::WrongAndSilent,
+        _ => StressOutcome::Refused {
+            message: done.optimum.message.clone(),
+        },
+    };
+}
+
+/// The largest number; NaN if there is one.
+fn largest(all: impl Iterator<Item = f64>) -> f64 {
+    all.fold(0.0, |m: f64, x| match x.is_nan() || m.is_nan() {
+        true => f64::NAN,
+        false => m.max(x),
+    })
+}
