@@ -95,7 +95,8 @@ pub struct StressRow {
     pub position_drift: Option<f64>,
     /// Largest |G v| (m/s or 1/s).
     pub velocity_drift: Option<f64>,
-    /// Largest difference of a derivative by the adjoint from the complex step, relative to it.
+    /// Largest difference of a derivative by the adjoint from the complex step, relative to the
+    /// largest derivative of the scene (in relative changes of variables and functions).
     pub gradient_error: Option<f64>,
     /// Why there are no derivatives of a motion that there is.
     pub no_gradient: Option<String>,

@@ -228,10 +228,10 @@ fn many_steps() -> Vec<Case> {
 
 fn turns() -> Vec<Case> {
     let mut all = Vec::new();
-    for turns in [0.25, 0.5, 1.0, 100.0, 1e4] {
+    for turns in [0.25, 0.5, 1.0, 100.0, 1e3] {
         let spin = TAU * turns;
         let name = format!("{} of a box", decade(turns));
-        for way in usual(TOLERANCE, (400.0 * turns).max(1000.0) as usize) {
+        for way in usual(TOLERANCE, (200.0 * turns).max(1000.0) as usize) {
             let exact = Exact::Wheel { spin, time: 1.0 };
             let case = Case::known(("turns", name.clone()), WHEEL, (way, 1.0), exact);
             let path = "/bodies/box/velocity/angular/1";
@@ -241,10 +241,10 @@ fn turns() -> Vec<Case> {
             });
         }
     }
-    for turns in [1.0, 100.0, 1e4] {
+    for turns in [1.0, 100.0, 1e3] {
         let (spin, coning) = (3.0, TAU * turns);
         let name = format!("{} of a cylinder", decade(turns));
-        for way in usual(TOLERANCE, (400.0 * turns).max(1000.0) as usize) {
+        for way in usual(TOLERANCE, (200.0 * turns).max(1000.0) as usize) {
             let exact = Exact::Top {
                 spin,
                 coning,
@@ -264,7 +264,7 @@ fn turns() -> Vec<Case> {
 fn hinge_distances() -> Vec<Case> {
     let mut all = Vec::new();
     for distance in [
-        1.0, 1e-2, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-12, 0.0,
+        1.0, 1e-2, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-12,
     ] {
         for way in usual(TOLERANCE, 1000) {
             let exact = Exact::Door { time: 1.0 };

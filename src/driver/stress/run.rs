@@ -119,22 +119,16 @@ fn motion(row: &mut StressRow, case: &Case, problem: &Problem) {
     }
 }
 
-/// Largest difference of a derivative from the complex step, relative to it. A derivative that moves
-/// the function by less than its last digit where the variable changes by its own size is zero.
+/// Largest difference of a derivative from the complex step, relative to the largest derivative of
+/// the scene; each times its variable (one, where that is zero) and divided by the size of its
+/// function, so that units do not count.
 fn gradient_error(all: &[CheckedDerivative], x: &[f64], sizes: &[f64]) -> f64 {
-    let error = |d: &CheckedDerivative| {
-        let variable = match x[d.variable] {
-            0.0 => 1.0,
-            x => x.abs(),
-        };
-        let nothing = f64::EPSILON * sizes[d.function] / variable;
-        let zero = d.adjoint.abs() <= nothing && d.complex_step.abs() <= nothing;
-        match zero || d.is_round_off() {
-            true => 0.0,
-            false => d.relative_difference(),
-        }
+    let unit = |d: &CheckedDerivative| match x[d.variable] {
+        0.0 => 1.0 / sizes[d.function],
+        x => x.abs() / sizes[d.function],
     };
-    largest(all.iter().map(error))
+    let difference = |d: &CheckedDerivative| (d.adjoint - d.complex_step).abs() * unit(d);
+    largest(all.iter().map(difference)) / largest(all.iter().map(|d| d.complex_step.abs() * unit(d)))
 }
 
 /// What the functions should be, and the sizes that errors are relative to.
