@@ -36,8 +36,9 @@ pub(super) enum Judge {
     Exact(Exact),
     /// A run by a method of the other family with a much tighter tolerance.
     OtherMethod,
-    /// The least or largest value of the objective of an optimisation; NaN if there is none.
-    Optimum(f64),
+    /// The least or largest value of the objective of an optimisation, NaN if there is none, and the
+    /// size that its error is relative to.
+    Optimum { value: f64, size: f64 },
 }
 
 /// A case.
@@ -205,7 +206,7 @@ impl Case {
     pub fn command(&self) -> String {
         let verb = match self.judge {
             Judge::Exact(_) | Judge::OtherMethod => "simulate ",
-            Judge::Optimum(_) => "",
+            Judge::Optimum { .. } => "",
         };
         let mut text = format!("optimize {verb}problems/extreme/{}", self.scene.name);
         for change in self.overrides() {

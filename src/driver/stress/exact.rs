@@ -22,8 +22,13 @@ pub(super) enum Exact {
     SpringPendulum { omega: f64, time: f64 },
     /// A block on a slide with a spring of 10 rad/s and this damping ratio.
     Oscillator { ratio: f64, time: f64 },
-    /// A rod of 1 m on a hinge at rest 1 rad from hanging, or with a speed of its centre.
-    Pendulum { start: f64, spin: f64, time: f64 },
+    /// A rod of 1 m on a hinge, so far from hanging (rad) and turning at `spin` (rad/s).
+    Pendulum {
+        radius: f64,
+        start: f64,
+        spin: f64,
+        time: f64,
+    },
     /// A cylinder free in space with this angular velocity about its axis and across it (rad/s).
     Top { spin: f64, coning: f64, time: f64 },
     /// A box of 1 m that turns steadily about y.
@@ -46,12 +51,12 @@ impl Exact {
     /// What it is, for the table.
     pub fn source(self) -> &'static str {
         match self {
-            Exact::DoublePendulum { .. } => "minimal coordinates, extrapolation",
+            Exact::DoublePendulum { .. } => "minimal coordinates by extrapolation",
             Exact::SpringPendulum { omega, .. } if omega < SLOW => {
-                "Cartesian coordinates, extrapolation"
+                "Cartesian coordinates by extrapolation"
             }
-            Exact::SpringPendulum { .. } => "slow manifold to 1/ω², extrapolation",
-            Exact::Pendulum { spin, .. } if spin != 0.0 => "minimal coordinate, extrapolation",
+            Exact::SpringPendulum { .. } => "slow manifold to 1/ω² by extrapolation",
+            Exact::Pendulum { spin, .. } if spin != 0.0 => "minimal coordinate by extrapolation",
             Exact::Pendulum { .. } | Exact::Door { .. } => "elliptic functions",
             Exact::Aggregate { .. } => "quadrature of the closed form",
             Exact::Oscillator { .. }
@@ -74,8 +79,14 @@ impl Exact {
             }
             Exact::SpringPendulum { omega, time } => (slow_spring_pendulum(omega, time), 1.0),
             Exact::Oscillator { ratio, time } => (vec![1.0 + oscillator(ratio, time)], 0.1),
-            Exact::Pendulum { start, spin, time } => {
-                let angle = pendulum(1.5 * G, start, spin, time);
+            Exact::Pendulum {
+                radius,
+                start,
+                spin,
+                time,
+            } => {
+                let about_hinge = 1.0 / 3.0 + 0.25 * radius * radius;
+                let angle = pendulum(0.5 * G / about_hinge, start, spin, time);
                 (vec![angle.sin(), -angle.cos()], 1.0)
             }
             Exact::Top { spin, coning, time } => (top(spin, coning, time), 0.1),

@@ -10,6 +10,7 @@ mod cases;
 mod exact;
 mod reference;
 mod run;
+mod scenes;
 
 use crate::report::{StressFamily, StressOutcome, StressRow, StressTable};
 use case::Case;
@@ -59,7 +60,7 @@ pub fn stress(
     });
     let mut rows = rows.into_inner().unwrap_or_default();
     rows.sort_by_key(|(k, _)| *k);
-    let families = cases::FAMILIES.map(|(name, about)| StressFamily {
+    let families = scenes::FAMILIES.map(|(name, about)| StressFamily {
         name: name.into(),
         about: about.into(),
     });
