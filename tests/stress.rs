@@ -11,6 +11,19 @@ use std::process::{Command, Output};
 /// derivative of the scene.
 const GRADIENT: f64 = 1e-10;
 
+/// Cases whose derivatives round-off spoils beyond that, and how far; `docs/stability.md` says why.
+const SPOILT: [(&str, f64); 0] = [];
+
+fn gradient_bound(case: &str) -> f64 {
+    let spoilt = SPOILT.iter().find(|(name, _)| case.starts_with(name));
+    spoilt.map_or(GRADIENT, |(_, bound)| *bound)
+}
+
+/// Whether an error is above its bound; a NaN is no small error.
+fn is_large(error: f64, bound: f64) -> bool {
+    error.is_nan() || error > bound
+}
+
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -81,11 +94,13 @@ fn no_extreme_scene_is_wrong_without_a_word() {
                 expected.get(&name)
             ));
         }
-        // A NaN is no small error.
-        if row.gradient_error.is_some_and(|error| !(error <= GRADIENT)) {
+        if row
+            .gradient_error
+            .is_some_and(|error| is_large(error, gradient_bound(&name)))
+        {
             wrong.push(format!("{name}: gradient {:?}", row.gradient_error));
         }
-        if class == "accurate" && row.error.is_none_or(|error| !(error <= row.bound)) {
+        if class == "accurate" && row.error.is_none_or(|error| is_large(error, row.bound)) {
             wrong.push(format!("{name}: accurate without a judge"));
         }
     }
@@ -102,7 +117,11 @@ fn the_committed_table_is_whole_and_has_no_silent_error() {
         if !["accurate", "degraded", "refused"].contains(&row.outcome.as_str()) {
             wrong.push(format!("{}: {}", row.case, row.outcome));
         }
-        if row.gradient_error.is_some_and(|error| !(error <= GRADIENT)) {
+        let bound = gradient_bound(&row.case);
+        if row
+            .gradient_error
+            .is_some_and(|error| is_large(error, bound))
+        {
             wrong.push(format!("{}: gradient {:?}", row.case, row.gradient_error));
         }
         let motion = row.outcome == "accurate" && !row.case.starts_with("optimum/");

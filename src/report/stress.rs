@@ -79,6 +79,8 @@ pub struct StressRow {
     pub scene: String,
     /// Method that was asked for, with its tolerance or number of steps.
     pub method: String,
+    /// Name of the method that was in use.
+    pub by: Option<String>,
     /// Steps that were taken.
     pub steps: Option<usize>,
     /// What became of it.
@@ -144,11 +146,12 @@ const CLASSES: [&str; 6] = [
     "wrong and silent",
 ];
 
-const COLUMNS: [&str; 17] = [
+const COLUMNS: [&str; 18] = [
     "case",
     "scene",
     "extreme",
     "method",
+    "by",
     "steps",
     "outcome",
     "error",
@@ -176,6 +179,7 @@ impl StressTable {
                 row.scene.clone(),
                 row.extreme.clone(),
                 row.method.clone(),
+                row.by.clone().unwrap_or_default(),
                 row.steps.map_or_else(String::new, |n| n.to_string()),
                 row.outcome.class().to_owned(),
                 number(row.error),
@@ -227,9 +231,9 @@ impl StressTable {
                 continue;
             }
             text += &format!("\n## {}\n\n{}\n\n", family.name, family.about);
-            text += "| extreme | scene | method | steps | outcome | error | accurate within | \
+            text += "| extreme | scene | method | by | steps | outcome | error | accurate within | \
                      judged by | energy drift | position drift | velocity drift | gradient error |\n";
-            text += "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+            text += "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
             rows.iter().for_each(|row| text += &markdown_row(row));
             let notes = notes(&rows);
             if !notes.is_empty() {
@@ -271,10 +275,11 @@ fn markdown_row(row: &StressRow) -> String {
     };
     let steps = row.steps.map_or_else(|| "–".into(), |n| n.to_string());
     format!(
-        "| {} | {} | {} | {steps} | {} | {} | {:.0e} | {} | {} | {} | {} | {gradient} |\n",
+        "| {} | {} | {} | {} | {steps} | {} | {} | {:.0e} | {} | {} | {} | {} | {gradient} |\n",
         row.extreme,
         row.scene,
         row.method,
+        row.by.as_deref().unwrap_or("–"),
         row.outcome.class(),
         number(row.error),
         row.bound,
@@ -318,6 +323,7 @@ mod tests {
             extreme: "1e6".into(),
             scene: "fast.json".into(),
             method: "dop853".into(),
+            by: None,
             steps: Some(3),
             outcome,
             error: None,

@@ -95,7 +95,8 @@ pub(super) const ADAPTIVE: [Method; 3] = [
     Method::Radau { stages: 3 },
 ];
 
-/// The scene's choice and the methods that follow a `tolerance`; the others with equal steps.
+/// The scene's choice, which is the explicit method unless the scene is stiff, and the implicit
+/// methods: by a `tolerance`, or else with equal steps.
 pub(super) fn usual(tolerance: f64, steps: usize) -> Vec<Way> {
     let tolerance = Steps::Tolerance(tolerance);
     let mut all = vec![Way {
@@ -106,7 +107,8 @@ pub(super) fn usual(tolerance: f64, steps: usize) -> Vec<Way> {
         method: Some(method),
         steps,
     };
-    all.extend(ADAPTIVE.map(|method| way((method, tolerance))));
+    let [_, implicit @ ..] = ADAPTIVE;
+    all.extend(implicit.map(|method| way((method, tolerance))));
     all.extend(order_two().map(|method| way((method, Steps::Equal(steps)))));
     all
 }

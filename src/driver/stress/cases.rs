@@ -44,7 +44,7 @@ pub(super) fn all() -> Vec<Case> {
 
 fn mass_ratios() -> Vec<Case> {
     let mut all = Vec::new();
-    for ratio in [1e-8, 1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6, 1e8] {
+    for ratio in [1e-8, 1e-4, 1.0, 1e4, 1e8] {
         for way in usual(TOLERANCE, 4000) {
             let exact = Exact::DoublePendulum {
                 masses: [1.0, ratio],
@@ -86,7 +86,11 @@ fn stiffness() -> Vec<Case> {
 fn damping() -> Vec<Case> {
     let mut all = Vec::new();
     for ratio in [0.0, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4] {
-        for way in usual(TOLERANCE, 2000) {
+        let explicit = Way {
+            method: Some(Method::Dop853),
+            steps: Steps::Tolerance(TOLERANCE),
+        };
+        for way in std::iter::once(explicit).chain(usual(TOLERANCE, 2000)) {
             let exact = Exact::Oscillator { ratio, time: 1.0 };
             let name = ("damping", decade(ratio));
             let case = Case::known(name, OSCILLATOR, (way, 1.0), exact);
@@ -140,15 +144,17 @@ fn many_steps() -> Vec<Case> {
             ..Case::known(name, PENDULUM, (way, 100.0), exact)
         }
     };
-    equal(steps).into_iter().map(case).collect()
+    let mut ways = equal(steps);
+    ways.retain(|way| way.method != Some(Method::Radau { stages: 2 }));
+    ways.into_iter().map(case).collect()
 }
 
 /// The usual ways to make so many turns. Radau IIA of order 3 is given a looser tolerance for many,
-/// and left out for more.
+/// and Radau IIA is left out for more.
 fn ways_round(turns: f64) -> Vec<Way> {
-    let mut all = usual(TOLERANCE, (100.0 * turns).max(1000.0) as usize);
+    let mut all = usual(TOLERANCE, (50.0 * turns).max(1000.0) as usize);
     let slow = Some(Method::Radau { stages: 2 });
-    all.retain(|way| way.method != slow || turns <= 100.0);
+    all.retain(|way| turns <= 100.0 || !matches!(way.method, Some(Method::Radau { .. })));
     for way in &mut all {
         if way.method == slow && turns > 1.0 {
             way.steps = Steps::Tolerance(1e-6);
@@ -311,7 +317,7 @@ fn aggregates() -> Vec<Case> {
 
 fn speeds() -> Vec<Case> {
     let mut all = Vec::new();
-    for speed in [1.0, 1e3, 1e6, 1e9, 1e12, 1e50] {
+    for speed in [1.0, 1e3, 1e6, 1e9, 1e50] {
         for way in usual(TOLERANCE, 1000) {
             let exact = Exact::Dumbbell { speed, time: 1.0 };
             let name = ("speed", format!("{} of two cylinders", decade(speed)));

@@ -54,6 +54,7 @@ pub(super) fn blank(case: &Case) -> StressRow {
         extreme: case.extreme.clone(),
         scene: case.scene.name.into(),
         method: case.method(),
+        by: None,
         steps: None,
         outcome: StressOutcome::WrongAndSilent,
         error: None,
@@ -81,6 +82,7 @@ fn motion(row: &mut StressRow, case: &Case, problem: &Problem) {
     let count = problem.function_names.len();
     let values: Vec<f64> = (0..count).map(|f| seen.at.function(f).value).collect();
     row.steps = Some(seen.at.run.grid.steps());
+    row.by = Some(seen.at.run.method.name());
     if values.iter().any(|value| !value.is_finite()) {
         let message = "a function is not finite".into();
         row.outcome = StressOutcome::Refused { message };
@@ -191,7 +193,8 @@ fn told(
     match error::estimate(problem, &seen.at, &which, false) {
         Ok(all) => {
             let estimate = largest(all.iter().map(|e| e.value.error / sizes[e.function]));
-            (!(estimate < TELLING * error)).then(|| "the estimate of --error".into())
+            let telling = estimate.is_nan() || estimate >= TELLING * error;
+            telling.then(|| "the estimate of --error".into())
         }
         Err(failure) => Some(format!("--error: halves of the steps fail: {failure}")),
     }
