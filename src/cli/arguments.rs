@@ -89,6 +89,9 @@ pub enum Command {
     /// Measure error against run time for all methods, orders, steps and tolerances; writes
     /// work_precision.csv, orders.csv and work_precision.svg.
     WorkPrecision(Measurement),
+    /// Try the program on extreme scenes and judge what it says of them; writes stability.md and
+    /// stability.csv. Exit code 1 if a number is wrong without a word about it.
+    Stress(Suite),
     /// Compare two records of optimal designs; exit code 1 if they differ beyond tolerance.
     Compare(Comparison),
     /// Draw the figures of a result directory again from its record.
@@ -119,6 +122,23 @@ pub struct Measurement {
     /// Function whose gradient is judged [default: the objective, or the first function].
     #[arg(long, value_name = "NAME")]
     pub function: Option<String>,
+}
+
+/// Which cases `stress` tries.
+#[derive(Args, Debug)]
+pub struct Suite {
+    /// Directory for the table [default: results/stability; none if only some cases are run].
+    #[arg(long, short)]
+    pub output: Option<PathBuf>,
+    /// Only the case of this name, or those whose names begin with it: mass-ratio, mass-ratio/1e-8.
+    #[arg(long, value_name = "CASE")]
+    pub only: Option<String>,
+    /// Time that a case may take (s).
+    #[arg(long, default_value_t = crate::driver::stress::LIMIT, value_parser = positive)]
+    pub seconds: f64,
+    /// No progress and no summary.
+    #[arg(long, short)]
+    pub quiet: bool,
 }
 
 /// Two records.

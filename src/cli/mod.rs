@@ -7,6 +7,7 @@ mod progress;
 mod records;
 mod simulate;
 mod starts;
+mod stress;
 mod work_precision;
 
 use crate::driver::error;
@@ -74,6 +75,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         Some(Command::Simulate(job)) => simulate::simulate(&job),
         Some(Command::Check { job, tolerance }) => simulate::check(&job, tolerance),
         Some(Command::WorkPrecision(asked)) => work_precision::measure(&asked),
+        Some(Command::Stress(asked)) => stress::stress(&asked),
         Some(Command::Compare(files)) => compare::compare(&files),
         Some(Command::Plot { directory }) => compare::plot(&directory),
         Some(Command::Schema) => compare::schema(),

@@ -1,5 +1,5 @@
 //! What the program does with a problem: simulate it, check its gradients, optimise it, measure
-//! the methods on it.
+//! the methods on it; and what becomes of extreme ones.
 
 pub mod check;
 pub mod error;
@@ -13,6 +13,7 @@ pub mod optimise;
 mod record;
 pub mod second_order;
 pub mod simulate;
+pub mod stress;
 pub mod warm_start;
 pub mod work_precision;
 
@@ -23,5 +24,6 @@ pub use multi_start::multi_start;
 pub use optimise::{Optimisation, Solved, optimise, solve};
 pub use second_order::second_order;
 pub use simulate::{Simulation, simulate};
+pub use stress::stress;
 pub use warm_start::WarmStart;
 pub use work_precision::work_precision;

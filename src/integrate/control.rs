@@ -16,8 +16,10 @@ const GROW: f64 = 6.0;
 const LEAPS: [f64; 8] = [0.7, 1.3, 0.5, 1.8, 0.3, 2.5, 0.15, 4.0];
 /// Smallest step, as a part of the duration.
 const SMALLEST: f64 = 1e-12;
-/// Most steps and tries of an adaptive run.
-const MOST: usize = 50_000_000;
+/// Most steps and tries of an adaptive run, and after how many its pace is looked at: a run that
+/// would need more tries than these at its latest pace is given up at once.
+const MOST: usize = 10_000_000;
+const PACE: usize = 100_000;
 
 /// Lengths and speeds of a scene that errors are relative to.
 #[derive(Clone, Copy, Debug)]
@@ -159,8 +161,11 @@ pub struct Controller {
     leap: Option<(f64, usize)>,
     latest: f64,
     largest: f64,
-    /// Tries so far.
+    /// Tries so far, and the fraction of the duration that was reached when the pace was looked at.
     tries: usize,
+    looked: f64,
+    /// Whether the run would need too many tries.
+    too_slow: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -212,6 +217,8 @@ impl Controller {
             latest: 0.0,
             largest: 0.0,
             tries: 0,
+            looked: 0.0,
+            too_slow: false,
         }
     }
 
@@ -226,10 +233,16 @@ impl Controller {
             Plan::Given { grid, next } => (*next <= grid.steps()).then(|| grid.width(*next)),
             Plan::Chosen { width, .. } => {
                 let rest = 1.0 - reached;
-                if rest <= 0.0 || *width < SMALLEST || self.tries > MOST {
+                if rest <= 0.0 || *width < SMALLEST || self.too_slow {
                     return None;
                 }
                 self.tries += 1;
+                if self.tries.is_multiple_of(PACE) {
+                    let pace = (reached - self.looked) / PACE as f64;
+                    self.looked = reached;
+                    let to_come = (MOST - self.tries.min(MOST)) as f64;
+                    self.too_slow = pace * to_come < rest;
+                }
                 *width = width.min(self.widest);
                 let next = self.stops.iter().find(|&&at| at > reached + SMALLEST);
                 if let Some(at) = next.filter(|&&at| at < reached + *width) {
@@ -324,7 +337,7 @@ impl Controller {
     pub fn too_small(&self) -> bool {
         match &self.plan {
             Plan::Given { .. } => false,
-            Plan::Chosen { width, .. } => *width < SMALLEST || self.tries > MOST,
+            Plan::Chosen { width, .. } => *width < SMALLEST || self.too_slow,
         }
     }
 

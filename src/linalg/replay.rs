@@ -10,7 +10,7 @@ use crate::math::Scalar;
 use std::collections::BTreeSet;
 
 /// A pivot smaller than this part of the largest candidate of its column is refused.
-const THRESHOLD: f64 = 1e-3;
+const THRESHOLD: f64 = 0.1;
 
 /// The pivot of some column of the matrix is zero, not finite, or too small beside the others.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,6 +13,7 @@
 //! | [`mod@summary`] | the text that a person reads at the end |
 //! | [`positions`] | tables of reference positions |
 //! | [`work_precision`] | error against run time, `work_precision.csv` and `orders.csv` |
+//! | [`stress`] | the stability table, `stability.md` and `stability.csv` |
 //! | [`plots`] | figures as SVG |
 
 pub mod compare;
@@ -25,6 +26,7 @@ mod number;
 pub mod optimum;
 pub mod plots;
 pub mod positions;
+pub mod stress;
 pub mod summary;
 mod table;
 pub mod work_precision;
@@ -34,5 +36,6 @@ pub use error::ReportError;
 pub use files::{atomic_write, prepare_directory, read_text, write_all};
 pub use history::{Column, History, HistoryRow};
 pub use optimum::Optimum;
+pub use stress::{StressFamily, StressOutcome, StressRow, StressTable};
 pub use summary::summary;
 pub use work_precision::{MethodOrder, PrecisionRow, WorkPrecision};

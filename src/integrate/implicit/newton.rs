@@ -15,7 +15,7 @@ use crate::system::Numbering;
 const TOLERANCE: f64 = 1e-13;
 /// Relative change below which a stagnating iteration has reached round-off as well.
 const STAGNANT: f64 = 1e-9;
-/// Scaled residual, relative to the length scale, that is round-off.
+/// Scaled residual, relative to the largest coordinate, that is round-off.
 const ROUND_OFF: f64 = 1e-14;
 /// Contraction above which the iteration matrix is renewed.
 const RENEW: f64 = 0.1;
@@ -105,7 +105,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             .scale
             .step(numbering, [&x.q, &x.v, &x.dq, &x.dv], h.re());
         // What a nearly singular matrix magnifies to changes of any size.
-        let round_off = ROUND_OFF * self.scale.length.max(1.0);
+        let round_off = ROUND_OFF * scales.place().max(1.0);
         let mut previous = f64::INFINITY;
         let (mut polish, mut before) = (false, 0.0_f64);
         for iteration in 1..=ITERATIONS {

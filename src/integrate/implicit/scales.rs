@@ -11,7 +11,7 @@ const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SceneScale {
     /// Length scale (m).
-    pub length: f64,
+    length: f64,
     gravity: f64,
 }
 
@@ -62,6 +62,12 @@ impl SceneScale {
 }
 
 impl Scales {
+    /// Largest coordinate of a body, or the scene's length if that is larger (m): positions have
+    /// round-off of its size.
+    pub fn place(&self) -> f64 {
+        self.parts[0][1]
+    }
+
     /// Largest change relative to the increments, round-off left out, of the scaled update (δy,
     /// h δv); NaN if it is not finite.
     pub fn size<S: Scalar>(&self, update: &[S], h: f64) -> f64 {

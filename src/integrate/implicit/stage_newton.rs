@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 1e-13;
 /// Relative change below which a stagnating iteration has reached round-off: stiff forces magnify
 /// that of positions.
 const STAGNANT: f64 = 1e-7;
-/// Scaled residual, relative to the length scale, that is round-off.
+/// Scaled residual, relative to the largest coordinate, that is round-off.
 const ROUND_OFF: f64 = 1e-14;
 /// Contraction above which the matrices are renewed for the next step.
 const RENEW: f64 = 0.05;
@@ -144,7 +144,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             let remaining = size * (pair / (1.0 - pair.min(0.9))).min(1.0);
             let stagnant = iteration > 2
                 && contraction > 0.3
-                && (size <= scales.round_off.max(STAGNANT) || self.is_round_off());
+                && (size <= scales.round_off.max(STAGNANT) || self.is_round_off(&scales));
             if remaining <= TOLERANCE || stagnant {
                 if S::INFINITESIMAL {
                     for _ in 0..INFINITESIMAL_ITERATIONS {
@@ -159,7 +159,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             }
             if iteration > 1 {
                 slowest = slowest.max(contraction);
-                if slow && !self.is_round_off() {
+                if slow && !self.is_round_off(&scales) {
                     break;
                 }
             }
@@ -171,8 +171,8 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
 
     /// Whether the residuals are round-off, however large the changes are that a nearly singular
     /// matrix makes of it.
-    fn is_round_off(&self) -> bool {
-        let limit = ROUND_OFF * self.scale.length.max(1.0);
+    fn is_round_off(&self, scales: &Scales) -> bool {
+        let limit = ROUND_OFF * scales.place().max(1.0);
         let all = self.residuals.iter().flatten();
         all.fold(0.0, |m: f64, x| m.max(x.re().abs())) <= limit
     }

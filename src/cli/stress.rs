@@ -1,0 +1,67 @@
+//! `optimize stress`.
+
+use super::arguments::Suite;
+use super::{DONE, Failure, NOT_REACHED, print, tell};
+use crate::driver::stress::{is_named, names, stress as run};
+use crate::report::{StressRow, write_all};
+use std::path::Path;
+
+/// Runs the stress suite and writes its table.
+pub fn stress(asked: &Suite) -> Result<u8, Failure> {
+    let wanted = |case: &str| asked.only.as_ref().is_none_or(|only| is_named(case, only));
+    if let (Some(only), false) = (&asked.only, names(false).iter().any(|case| wanted(case))) {
+        let mut families: Vec<String> = Vec::new();
+        for name in names(false) {
+            let family = name.split('/').next().unwrap_or_default().to_owned();
+            if !families.contains(&family) {
+                families.push(family);
+            }
+        }
+        return Err(Failure::bad_input(format!(
+            "found --only {only:?}, expected a case or the beginning of its name, such as {}",
+            families.join(", ")
+        )));
+    }
+    let seen = |row: &StressRow| {
+        if !asked.quiet {
+            tell(&line(row));
+        }
+    };
+    let table = run(wanted, asked.seconds, &seen);
+    let directory = match (&asked.output, &asked.only) {
+        (Some(directory), _) => Some(directory.as_path()),
+        (None, None) => Some(Path::new("results/stability")),
+        (None, Some(_)) => None,
+    };
+    if let Some(directory) = directory {
+        let files = [
+            ("stability.md", table.to_markdown()),
+            ("stability.csv", table.to_csv()),
+        ];
+        let files = files.map(|(name, text)| (directory.join(name), text.into_bytes()));
+        write_all(&files).map_err(Failure::bad_input)?;
+    }
+    if !asked.quiet {
+        print(&format!("{}\n", table.summary()))?;
+        if let Some(directory) = directory {
+            tell(&format!("results in {}\n", directory.display()));
+        }
+    }
+    Ok(match table.has_failures() {
+        true => NOT_REACHED,
+        false => DONE,
+    })
+}
+
+fn line(row: &StressRow) -> String {
+    let number = |x: Option<f64>| x.map_or_else(|| "-".into(), |x| format!("{x:.1e}"));
+    let words = row.outcome.words().replace('\n', " ");
+    format!(
+        "{:48} {:16} error {:>7}  energy {:>7}  gradient {:>7}  {words}\n",
+        row.name(),
+        row.outcome.class(),
+        number(row.error),
+        number(row.energy_drift),
+        number(row.gradient_error),
+    )
+}

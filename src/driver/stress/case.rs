@@ -1,0 +1,219 @@
+//! A case of the stress suite: a scene, how it is changed and integrated, and who judges it.
+
+use super::exact::Exact;
+use crate::integrate::Method;
+use crate::report::stress::case_name;
+
+/// A problem file under `problems/extreme`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SceneFile {
+    /// Its name.
+    pub name: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+/// Where steps end.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Steps {
+    /// They follow a tolerance.
+    Tolerance(f64),
+    /// So many equal ones.
+    Equal(usize),
+}
+
+/// Method, or none if the scene chooses, and steps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way {
+    pub method: Option<Method>,
+    pub steps: Steps,
+}
+
+/// Who says what the numbers should be.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Judge {
+    /// A motion that is known without the program.
+    Exact(Exact),
+    /// A run by a method of the other family with a much tighter tolerance.
+    OtherMethod,
+    /// The least or largest value of the objective of an optimisation, NaN if there is none, and the
+    /// size that its error is relative to.
+    Optimum { value: f64, size: f64 },
+}
+
+/// A case.
+#[derive(Clone, Debug)]
+pub(super) struct Case {
+    /// What is extreme, in one word.
+    pub family: &'static str,
+    /// How extreme.
+    pub extreme: String,
+    /// The scene.
+    pub scene: SceneFile,
+    /// Method and steps; `None` leaves them to the file.
+    pub way: Option<Way>,
+    /// Duration (s).
+    pub duration: f64,
+    /// Changes of the file, as PATH=VALUE, besides those of method, steps and duration.
+    pub changes: Vec<String>,
+    /// Who judges.
+    pub judge: Judge,
+    /// Error, relative to the size of the motion, up to which it is accurate.
+    pub bound: f64,
+    /// Whether energy is conserved.
+    pub conservative: bool,
+    /// Whether the case is run by the fast subset of the tests.
+    pub slow: bool,
+}
+
+/// Errors up to which a motion counts as accurate: by a tolerance of 1e-9, and by equal steps of a
+/// method of order 2.
+const FINE: f64 = 1e-6;
+const COARSE: f64 = 1e-3;
+
+/// The bound for a method: those of order 2 cannot be had fine at ordinary steps.
+fn bound(way: Way) -> f64 {
+    match way.method {
+        Some(Method::Bdf { .. } | Method::GeneralisedAlpha { .. }) => COARSE,
+        _ => FINE,
+    }
+}
+
+/// BDF of order 2, and generalised-α.
+pub(super) fn order_two() -> [Method; 2] {
+    let bdf = Method::Bdf {
+        order: 2,
+        start: crate::integrate::Start::Radau,
+    };
+    [bdf, Method::GeneralisedAlpha { radius: 0.8 }]
+}
+
+/// The methods that can follow a tolerance.
+pub(super) const ADAPTIVE: [Method; 3] = [
+    Method::Dop853,
+    Method::Radau { stages: 2 },
+    Method::Radau { stages: 3 },
+];
+
+/// The scene's choice, which is the explicit method unless the scene is stiff, and the implicit
+/// methods: by a `tolerance`, or else with equal steps.
+pub(super) fn usual(tolerance: f64, steps: usize) -> Vec<Way> {
+    let tolerance = Steps::Tolerance(tolerance);
+    let mut all = vec![Way {
+        method: None,
+        steps: tolerance,
+    }];
+    let way = |(method, steps)| Way {
+        method: Some(method),
+        steps,
+    };
+    let [_, implicit @ ..] = ADAPTIVE;
+    all.extend(implicit.map(|method| way((method, tolerance))));
+    all.extend(order_two().map(|method| way((method, Steps::Equal(steps)))));
+    all
+}
+
+/// All methods with equal steps.
+pub(super) fn equal(steps: usize) -> Vec<Way> {
+    let methods = ADAPTIVE.into_iter().chain(order_two());
+    let way = |method| Way {
+        method: Some(method),
+        steps: Steps::Equal(steps),
+    };
+    methods.map(way).collect()
+}
+
+impl Way {
+    /// Name for the table.
+    pub fn name(self) -> String {
+        let method = self.method.map_or_else(|| "chosen".into(), Method::name);
+        match self.steps {
+            Steps::Tolerance(tolerance) => format!("{method} to {tolerance:.0e}"),
+            Steps::Equal(steps) => format!("{method} in {steps}"),
+        }
+    }
+
+    /// The section "simulation" of a problem file.
+    fn json(self, duration: f64) -> String {
+        let steps = match self.steps {
+            Steps::Tolerance(tolerance) => format!("\"tolerance\":{tolerance:e}"),
+            Steps::Equal(steps) => format!("\"steps\":{steps}"),
+        };
+        let method = match self.method {
+            None => String::new(),
+            Some(Method::Dop853) => ",\"method\":\"dop853\"".into(),
+            Some(Method::Radau { stages }) => {
+                format!(",\"method\":{{\"radau\":{{\"stages\":{stages}}}}}")
+            }
+            Some(Method::Bdf { order, .. }) => {
+                format!(",\"method\":{{\"bdf\":{{\"order\":{order}}}}}")
+            }
+            Some(Method::GeneralisedAlpha { radius }) => {
+                format!(",\"method\":{{\"generalised_alpha\":{{\"radius\":{radius}}}}}")
+            }
+        };
+        format!("{{\"duration\":{duration:e},{steps}{method}}}")
+    }
+}
+
+impl Case {
+    /// A case that conserves energy and whose motion is known.
+    pub fn known(
+        (family, extreme): (&'static str, String),
+        scene: SceneFile,
+        (way, duration): (Way, f64),
+        exact: Exact,
+    ) -> Self {
+        Self {
+            family,
+            extreme,
+            scene,
+            way: Some(way),
+            duration,
+            changes: Vec::new(),
+            judge: Judge::Exact(exact),
+            bound: bound(way),
+            conservative: true,
+            slow: false,
+        }
+    }
+
+    /// With another change of the file.
+    pub fn set(mut self, path: &str, value: impl std::fmt::Display) -> Self {
+        self.changes.push(format!("{path}={value}"));
+        self
+    }
+
+    /// Method and steps for the table.
+    pub fn method(&self) -> String {
+        self.way
+            .map_or_else(|| "as the file says".into(), Way::name)
+    }
+
+    /// Name by which it can be run alone.
+    pub fn name(&self) -> String {
+        case_name(self.family, &self.extreme, &self.method())
+    }
+
+    /// All changes of the file.
+    pub fn overrides(&self) -> Vec<String> {
+        let mut all = self.changes.clone();
+        if let Some(way) = self.way {
+            all.push(format!("/simulation={}", way.json(self.duration)));
+        }
+        all
+    }
+
+    /// The command that runs the same.
+    pub fn command(&self) -> String {
+        let verb = match self.judge {
+            Judge::Exact(_) | Judge::OtherMethod => "simulate ",
+            Judge::Optimum { .. } => "",
+        };
+        let mut text = format!("optimize {verb}problems/extreme/{}", self.scene.name);
+        for change in self.overrides() {
+            text += &format!(" --set '{change}'");
+        }
+        text
+    }
+}

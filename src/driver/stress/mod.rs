@@ -1,0 +1,110 @@
+//! The stress suite: extreme scenes, each judged by something that shares nothing with the method
+//! under test, so that no number is wrong without a word about it.
+//!
+//! A case is *accurate* if every function agrees with its judge, *degraded* if it does not and the
+//! program says so (by a warning, the energy drift that it prints or the estimate of `--error`),
+//! *refused* if there are no numbers but a reason, and else *wrong and silent*.
+
+mod case;
+mod cases;
+mod exact;
+mod reference;
+mod run;
+mod scenes;
+
+use crate::report::{StressFamily, StressOutcome, StressRow, StressTable};
+use case::Case;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::time::Duration;
+
+/// Time that a case may take (s).
+pub const LIMIT: f64 = 300.0;
+
+/// Names of all cases, in the order of the table; `fast` leaves those out that take seconds.
+pub fn names(fast: bool) -> Vec<String> {
+    let wanted = |case: &&Case| !(fast && case.slow);
+    let all = cases::all();
+    all.iter().filter(wanted).map(Case::name).collect()
+}
+
+/// Runs the cases that `wanted` says of by their names, several at once; `seen` is told of every row
+/// as it is known. Rows stand in the order of the table.
+pub fn stress(
+    wanted: impl Fn(&str) -> bool,
+    seconds: f64,
+    seen: &(dyn Fn(&StressRow) + Sync),
+) -> StressTable {
+    let mut chosen = cases::all();
+    chosen.retain(|case| wanted(&case.name()));
+    let next = AtomicUsize::new(0);
+    let rows: Mutex<Vec<(usize, StressRow)>> = Mutex::new(Vec::new());
+    let workers = std::thread::available_parallelism().map_or(1, usize::from);
+    // Threads of their own: a worker waits for its case, and must not hold up those that compute.
+    std::thread::scope(|scope| {
+        for _ in 0..workers.min(chosen.len()) {
+            scope.spawn(|| {
+                loop {
+                    let k = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(case) = chosen.get(k) else { return };
+                    let row = limited(case, seconds);
+                    seen(&row);
+                    if let Ok(mut rows) = rows.lock() {
+                        rows.push((k, row));
+                    }
+                }
+            });
+        }
+    });
+    let mut rows = rows.into_inner().unwrap_or_default();
+    rows.sort_by_key(|(k, _)| *k);
+    let families = scenes::FAMILIES.map(|(name, about)| StressFamily {
+        name: name.into(),
+        about: about.into(),
+    });
+    let rows: Vec<StressRow> = rows.into_iter().map(|(_, row)| row).collect();
+    let tried = |family: &StressFamily| rows.iter().any(|row| row.family == family.name);
+    StressTable {
+        families: families.into_iter().filter(tried).collect(),
+        rows,
+    }
+}
+
+/// Whether `only` names a case or the beginning of its name, in whole parts.
+pub fn is_named(case: &str, only: &str) -> bool {
+    let rest = case.strip_prefix(only.trim_end_matches('/'));
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+}
+
+/// The row of a case, which may break down and may take so long.
+fn limited(case: &Case, seconds: f64) -> StressRow {
+    let (send, receive) = mpsc::channel();
+    let own = case.clone();
+    // A case that does not end cannot be stopped: it is left behind until the program ends.
+    let started = std::thread::Builder::new().spawn(move || {
+        let row = catch_unwind(AssertUnwindSafe(|| run::run(&own)));
+        let _ = send.send(row);
+    });
+    let mut row = run::blank(case);
+    row.outcome = match started {
+        Err(error) => StressOutcome::Panicked {
+            message: error.to_string(),
+        },
+        Ok(_) => match receive.recv_timeout(Duration::from_secs_f64(seconds)) {
+            Ok(Ok(row)) => return row,
+            Ok(Err(panic)) => StressOutcome::Panicked {
+                message: words(panic.as_ref()),
+            },
+            Err(_) => StressOutcome::TimeLimit { seconds },
+        },
+    };
+    row
+}
+
+fn words(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().cloned();
+    text.or_else(|| panic.downcast_ref::<&str>().map(|&text| text.into()))
+        .unwrap_or_else(|| "a panic without words".into())
+}

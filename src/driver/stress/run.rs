@@ -1,0 +1,239 @@
+//! One case: what the program says of it, and whether that is true.
+
+use super::case::{Case, Judge};
+use crate::driver::check::{CheckedDerivative, check};
+use crate::driver::{Journal, Simulation, error, optimise, simulate};
+use crate::integrate::{Method, Spacing};
+use crate::optimiser::Status;
+use crate::problem::{Override, Problem};
+use crate::report::{StressOutcome, StressRow};
+use std::ops::ControlFlow;
+
+/// Part of an error that a number has to reach to tell of it.
+const TELLING: f64 = 0.1;
+/// Steps beyond which no gradient is asked for: the check keeps the stages of three runs in memory.
+const MOST_STEPS: usize = 100_000;
+/// Tolerances of the runs that judge runs of the other family: explicit, implicit.
+const TIGHT: (f64, f64) = (1e-13, 1e-11);
+
+/// Runs a case and judges it.
+pub(super) fn run(case: &Case) -> StressRow {
+    let parse = |text: &String| Override::parse(text);
+    let overrides: Result<Vec<Override>, _> = case.overrides().iter().map(parse).collect();
+    let mut row = blank(case);
+    let problem = overrides
+        .map_err(|fault| fault.to_string())
+        .and_then(|changes| {
+            Problem::parse(case.scene.text, case.scene.name, &changes)
+                .map_err(|faults| one_line(&faults.to_string()))
+        });
+    let problem = match problem {
+        Ok(problem) => problem,
+        Err(message) => {
+            row.outcome = StressOutcome::Refused { message };
+            return row;
+        }
+    };
+    match case.judge {
+        Judge::Optimum { value, size } => optimisation(&mut row, case, &problem, (value, size)),
+        Judge::Exact(_) | Judge::OtherMethod => motion(&mut row, case, &problem),
+    }
+    row
+}
+
+/// The row of a case of which nothing is known.
+pub(super) fn blank(case: &Case) -> StressRow {
+    let judge = match case.judge {
+        Judge::Exact(exact) => exact.source().into(),
+        Judge::OtherMethod => "explicit against implicit at 1e-13 or 1e-11".into(),
+        Judge::Optimum { value, .. } if value.is_nan() => "there is no optimum".into(),
+        Judge::Optimum { .. } => "the least that can be in closed form".into(),
+    };
+    StressRow {
+        family: case.family.into(),
+        extreme: case.extreme.clone(),
+        scene: case.scene.name.into(),
+        method: case.method(),
+        by: None,
+        steps: None,
+        outcome: StressOutcome::WrongAndSilent,
+        error: None,
+        bound: case.bound,
+        judge,
+        energy_drift: None,
+        position_drift: None,
+        velocity_drift: None,
+        gradient_error: None,
+        no_gradient: None,
+        command: case.command(),
+    }
+}
+
+fn motion(row: &mut StressRow, case: &Case, problem: &Problem) {
+    let start = problem.start();
+    let seen = match simulate(problem, &start) {
+        Ok(seen) => seen,
+        Err(failure) => {
+            let message = failure.to_string();
+            row.outcome = StressOutcome::Refused { message };
+            return;
+        }
+    };
+    let count = problem.function_names.len();
+    let values: Vec<f64> = (0..count).map(|f| seen.at.function(f).value).collect();
+    row.steps = Some(seen.at.run.grid.steps());
+    row.by = Some(seen.at.run.method.name());
+    if values.iter().any(|value| !value.is_finite()) {
+        let message = "a function is not finite".into();
+        row.outcome = StressOutcome::Refused { message };
+        return;
+    }
+    let (exact, sizes) = match known(case, problem) {
+        Ok(known) => known,
+        Err(message) => {
+            row.judge = format!("nobody: {message}");
+            return;
+        }
+    };
+    let relative = |(f, value): (usize, &f64)| (value - exact[f]).abs() / sizes[f];
+    let error = largest(values.iter().enumerate().map(relative));
+    row.error = Some(error);
+    let (position, velocity) = seen.constraint_drift();
+    (row.position_drift, row.velocity_drift) = (Some(position), Some(velocity));
+    if case.conservative {
+        let kinetic = largest(seen.observations.iter().map(|o| o.kinetic));
+        let drift = seen.energy_drift();
+        row.energy_drift = Some(if kinetic > 0.0 {
+            drift / kinetic
+        } else {
+            drift
+        });
+    }
+    row.outcome = if error <= case.bound {
+        StressOutcome::Accurate
+    } else {
+        match told(row, problem, &seen, error, &sizes) {
+            Some(told) => StressOutcome::Degraded { told },
+            None => StressOutcome::WrongAndSilent,
+        }
+    };
+    let steps = seen.at.run.grid.steps();
+    drop(seen);
+    if steps > MOST_STEPS {
+        row.no_gradient = Some(format!("not asked for beyond {MOST_STEPS} steps"));
+        return;
+    }
+    match check(problem, &start) {
+        Ok(all) => row.gradient_error = Some(gradient_error(&all, &start, &sizes)),
+        Err(failure) => row.no_gradient = Some(failure.to_string()),
+    }
+}
+
+/// Largest difference of a derivative from the complex step, relative to the largest derivative of
+/// the scene; each times its variable (one, where that is zero) and divided by the size of its
+/// function, so that units do not count.
+fn gradient_error(all: &[CheckedDerivative], x: &[f64], sizes: &[f64]) -> f64 {
+    let unit = |d: &CheckedDerivative| match x[d.variable] {
+        0.0 => 1.0 / sizes[d.function],
+        x => x.abs() / sizes[d.function],
+    };
+    let difference = |d: &CheckedDerivative| (d.adjoint - d.complex_step).abs() * unit(d);
+    largest(all.iter().map(difference))
+        / largest(all.iter().map(|d| d.complex_step.abs() * unit(d)))
+}
+
+/// What the functions should be, and the sizes that errors are relative to.
+fn known(case: &Case, problem: &Problem) -> Result<(Vec<f64>, Vec<f64>), String> {
+    match case.judge {
+        Judge::Exact(exact) => {
+            let numbers = exact.numbers();
+            Ok((numbers.values, numbers.sizes))
+        }
+        Judge::OtherMethod | Judge::Optimum { .. } => {
+            let explicit = matches!(problem.simulation.method, None | Some(Method::Dop853));
+            let (method, tolerance) = match explicit {
+                true => (Method::Radau { stages: 3 }, TIGHT.1),
+                false => (Method::Dop853, TIGHT.0),
+            };
+            let mut other = problem.clone();
+            other.simulation.method = Some(method);
+            other.simulation.spacing = Spacing::Tolerance(tolerance);
+            let seen = simulate(&other, &other.start()).map_err(|failure| failure.to_string())?;
+            let count = problem.function_names.len();
+            let values: Vec<f64> = (0..count).map(|f| seen.at.function(f).value).collect();
+            let sizes = vec![1.0; count];
+            Ok((values, sizes))
+        }
+    }
+}
+
+/// How the program tells that a motion is off by `error`: a warning, the energy that it prints, a joint
+/// that it leaves out altogether, or the estimate of `--error`.
+fn told(
+    row: &StressRow,
+    problem: &Problem,
+    seen: &Simulation,
+    error: f64,
+    sizes: &[f64],
+) -> Option<String> {
+    if let Some(warning) = &seen.warning {
+        return Some(format!("warning: {warning}"));
+    }
+    if row
+        .energy_drift
+        .is_some_and(|drift| drift >= TELLING * error)
+    {
+        return Some("the energy drift".into());
+    }
+    let mut redundant = problem.redundant.iter();
+    if let Some(all) = redundant.find(|joint| joint.left_out == joint.rows) {
+        return Some(format!("what is said of the file as it is read: {all}"));
+    }
+    let which: Vec<usize> = (0..sizes.len()).collect();
+    match error::estimate(problem, &seen.at, &which, false) {
+        Ok(all) => {
+            let estimate = largest(all.iter().map(|e| e.value.error / sizes[e.function]));
+            let telling = estimate.is_nan() || estimate >= TELLING * error;
+            telling.then(|| "the estimate of --error".into())
+        }
+        Err(failure) => Some(format!("--error: halves of the steps fail: {failure}")),
+    }
+}
+
+fn optimisation(row: &mut StressRow, case: &Case, problem: &Problem, (optimum, size): (f64, f64)) {
+    let go_on = &mut |_: &_| ControlFlow::Continue(());
+    let Some(done) = optimise(problem, case.scene.name, None, Journal::default(), go_on) else {
+        let message = "nothing to optimise".into();
+        row.outcome = StressOutcome::Refused { message };
+        return;
+    };
+    if let Status::UndefinedStart { what } | Status::IllPosed { what } = &done.outcome.status {
+        let message = what.clone();
+        row.outcome = StressOutcome::Refused { message };
+        return;
+    }
+    row.steps = done.end.as_ref().map(|end| end.at.run.grid.steps());
+    let found = done.optimum.objective.value;
+    let error = (found - optimum).abs() / size;
+    row.error = Some(error).filter(|error| error.is_finite());
+    row.outcome = match done.outcome.status {
+        Status::Converged if error <= case.bound => StressOutcome::Accurate,
+        Status::Converged => StressOutcome::WrongAndSilent,
+        _ => StressOutcome::Refused {
+            message: done.optimum.message.clone(),
+        },
+    };
+}
+
+/// A text over several lines as one.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The largest number; NaN if there is one.
+fn largest(all: impl Iterator<Item = f64>) -> f64 {
+    all.fold(0.0, |m: f64, x| match x.is_nan() || m.is_nan() {
+        true => f64::NAN,
+        false => m.max(x),
+    })
+}

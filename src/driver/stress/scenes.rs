@@ -1,0 +1,94 @@
+//! The problem files of the stress suite, and the families of its cases.
+
+use super::case::SceneFile;
+
+macro_rules! scene {
+    ($name:literal) => {
+        SceneFile {
+            name: concat!($name, ".json"),
+            text: include_str!(concat!(
+                env!("CARGO_MANIFEST_DIR"),
+                "/problems/extreme/",
+                $name,
+                ".json"
+            )),
+        }
+    };
+}
+
+pub(super) const DOUBLE_PENDULUM: SceneFile = scene!("double_pendulum");
+pub(super) const SPRING_PENDULUM: SceneFile = scene!("spring_pendulum");
+pub(super) const OSCILLATOR: SceneFile = scene!("damped_oscillator");
+pub(super) const PENDULUM: SceneFile = scene!("pendulum");
+pub(super) const TOP: SceneFile = scene!("tumbling_top");
+pub(super) const WHEEL: SceneFile = scene!("wheel");
+pub(super) const AGGREGATE: SceneFile = scene!("aggregate");
+pub(super) const DOOR: SceneFile = scene!("door");
+pub(super) const DUMBBELL: SceneFile = scene!("dumbbell");
+pub(super) const OPEN_JOINT: SceneFile = scene!("open_joint");
+pub(super) const LOCKING: SceneFile = scene!("locking_linkage");
+pub(super) const UNBOUNDED: SceneFile = scene!("unbounded_throw");
+pub(super) const INFEASIBLE: SceneFile = scene!("infeasible_throw");
+
+/// The families with what they try.
+pub(super) const FAMILIES: [(&str, &str); 14] = [
+    (
+        "mass-ratio",
+        "Two hinged rods swing for 2 s; the lower one has this many times the mass of the upper one.",
+    ),
+    (
+        "stiffness",
+        "A bob swings on a spring without damping, started without vibration; this is ω h of the \
+         spring at steps of 1 ms.",
+    ),
+    (
+        "damping",
+        "A block on a spring of 10 rad/s with this damping ratio, released 0.1 m off, for 1 s.",
+    ),
+    (
+        "step-size",
+        "Two hinged rods swing for 2 s by equal steps of this size (s).",
+    ),
+    (
+        "many-steps",
+        "A rod swings for 100 s by this many equal steps.",
+    ),
+    (
+        "turns",
+        "A box turns about a horizontal axis so many times, its pitch through 90 degrees twice a \
+         turn; a free cylinder cones about a horizontal axis so many times.",
+    ),
+    (
+        "hinge-distance",
+        "A door of 1 m by 2 m on two ball joints this far (m) apart, its centre far beside both.",
+    ),
+    (
+        "no-inertia",
+        "A rod without inertia about its own axis, or next to none, on a hinge or on a ball joint.",
+    ),
+    (
+        "open-start",
+        "A rod beside its hinge by this gap (m), its centre pushed across at this speed (m/s).",
+    ),
+    (
+        "length",
+        "Two hinged rods of this length (m) swing for the same number of their own periods.",
+    ),
+    (
+        "rho",
+        "The Kreisselmeier–Steinhauser function of a point that circles once, with this ρ (1/m).",
+    ),
+    (
+        "speed",
+        "Two hinged cylinders fly at this speed (m/s) and turn at 3 rad/s; a box whose end turns at this \
+         speed.",
+    ),
+    (
+        "locking",
+        "A four-bar linkage whose coupler is at its longest 2.1 m; this is its length (m).",
+    ),
+    (
+        "optimum",
+        "Optimisations that have no optimum, or run into designs at which the mechanism locks.",
+    ),
+];

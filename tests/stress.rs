@@ -1,0 +1,226 @@
+//! The stress suite: a fast part of it run and compared with the committed table, which is held to
+//! the claims that `docs/stability.md` makes of it.
+
+use flexbody::driver::stress::{names, stress};
+use flexbody::problem::Problem;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// Largest difference of a derivative by the adjoint from the complex step, relative to the largest
+/// derivative of the scene.
+const GRADIENT: f64 = 1e-10;
+
+/// Cases whose derivatives round-off spoils beyond that, and how far; `docs/stability.md` says why.
+const SPOILT: [(&str, f64); 12] = [
+    // ε k l / (m g): the force of a spring of l = 1 m is known to ε k l.
+    ("stiffness/10/", 2.3e-9),
+    ("stiffness/100/", 2.3e-7),
+    ("stiffness/1e3/", 2.3e-5),
+    ("stiffness/1e4/", 2.3e-3),
+    ("stiffness/1e5/", 2.3e-1),
+    ("stiffness/1e6/", 2.3e1),
+    // The direction of the line between two balls so far apart.
+    ("hinge-distance/1e-4/", 1e-6),
+    ("hinge-distance/1e-5/", 1e-8),
+    ("hinge-distance/1e-6/", 1e-8),
+    // Masses of 6e-19 kg and 6e-10 kg beside equations of size one.
+    ("length/1e-6/", 1e-2),
+    ("length/1e-3/", 1e-4),
+    // A singular position, 1e-4 of the length away.
+    ("locking/2.0999/", 1e-9),
+];
+
+fn gradient_bound(case: &str) -> f64 {
+    let spoilt = SPOILT.iter().find(|(name, _)| case.starts_with(name));
+    spoilt.map_or(GRADIENT, |(_, bound)| *bound)
+}
+
+/// Whether an error is above its bound; a NaN is no small error.
+fn is_large(error: f64, bound: f64) -> bool {
+    error.is_nan() || error > bound
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A row of the committed table.
+struct Committed {
+    case: String,
+    scene: String,
+    outcome: String,
+    gradient_error: Option<f64>,
+    no_gradient: bool,
+}
+
+/// The committed rows; no field up to the gradient's error holds a comma.
+fn committed() -> Vec<Committed> {
+    let path = root().join("results/stability/stability.csv");
+    let text = std::fs::read_to_string(path).expect("a committed table");
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let column = |name: &str| {
+        let at = header.iter().position(|own| *own == name);
+        at.unwrap_or_else(|| panic!("no column {name}"))
+    };
+    let [case, scene, outcome, gradient, none] =
+        ["case", "scene", "outcome", "gradient_error", "no_gradient"].map(column);
+    let row = |line: &str| {
+        let fields: Vec<&str> = line.split(',').collect();
+        Committed {
+            case: fields[case].into(),
+            scene: fields[scene].into(),
+            outcome: fields[outcome].into(),
+            gradient_error: fields[gradient].parse().ok(),
+            no_gradient: !fields[none].is_empty(),
+        }
+    };
+    lines.map(row).collect()
+}
+
+/// The part of the suite that tests can afford: what a user gets who says nothing of the method, all
+/// methods where it is cheap, and all optimisations.
+fn is_fast(case: &str) -> bool {
+    let families = ["damping/", "optimum/", "rho/", "speed/1e6"];
+    case.contains("/chosen to") || families.iter().any(|family| case.starts_with(family))
+}
+
+#[test]
+fn no_extreme_scene_is_wrong_without_a_word() {
+    let fast: BTreeSet<String> = names(true)
+        .into_iter()
+        .filter(|case| is_fast(case))
+        .collect();
+    assert!(fast.len() > 100, "{}", fast.len());
+    let expected: BTreeMap<String, String> = committed()
+        .into_iter()
+        .map(|row| (row.case, row.outcome))
+        .collect();
+    let table = stress(|case| fast.contains(case), 300.0, &|_| {});
+    assert_eq!(table.rows.len(), fast.len());
+    let mut wrong = Vec::new();
+    for row in &table.rows {
+        let (name, class) = (row.name(), row.outcome.class());
+        if row.outcome.is_failure() {
+            wrong.push(format!("{name}: {class}, error {:?}", row.error));
+        }
+        if expected.get(&name).map(String::as_str) != Some(class) {
+            wrong.push(format!(
+                "{name}: {class}, in the table {:?}",
+                expected.get(&name)
+            ));
+        }
+        if row
+            .gradient_error
+            .is_some_and(|error| is_large(error, gradient_bound(&name)))
+        {
+            wrong.push(format!("{name}: gradient {:?}", row.gradient_error));
+        }
+        if class == "accurate" && row.error.is_none_or(|error| is_large(error, row.bound)) {
+            wrong.push(format!("{name}: accurate without a judge"));
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_committed_table_is_whole_and_has_no_silent_error() {
+    let rows = committed();
+    let cases: Vec<&str> = rows.iter().map(|row| row.case.as_str()).collect();
+    assert_eq!(cases, names(false));
+    let mut wrong = Vec::new();
+    for row in &rows {
+        if !["accurate", "degraded", "refused"].contains(&row.outcome.as_str()) {
+            wrong.push(format!("{}: {}", row.case, row.outcome));
+        }
+        let bound = gradient_bound(&row.case);
+        if row
+            .gradient_error
+            .is_some_and(|error| is_large(error, bound))
+        {
+            wrong.push(format!("{}: gradient {:?}", row.case, row.gradient_error));
+        }
+        let motion = row.outcome == "accurate" && !row.case.starts_with("optimum/");
+        if motion && row.gradient_error.is_none() && !row.no_gradient {
+            wrong.push(format!("{}: no gradient, and no reason", row.case));
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_scene_is_a_problem_file_that_a_case_uses() {
+    let used: BTreeSet<String> = committed().into_iter().map(|row| row.scene).collect();
+    let folder = root().join("problems/extreme");
+    let there: BTreeSet<String> = std::fs::read_dir(&folder)
+        .expect("scenes")
+        .map(|entry| entry.expect("a file").file_name().to_string_lossy().into())
+        .collect();
+    assert_eq!(there, used);
+    for name in &there {
+        let problem = Problem::load(&folder.join(name), &[]).unwrap_or_else(|f| panic!("{f}"));
+        assert_eq!(format!("{}.json", problem.name), *name);
+    }
+}
+
+fn command(directory: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_optimize"))
+        .arg("stress")
+        .args(arguments)
+        .current_dir(directory)
+        .output()
+        .expect("the program starts")
+}
+
+#[test]
+fn one_case_is_run_alone_and_written_where_it_is_asked_for() {
+    let scratch = tempfile::tempdir().expect("a scratch directory");
+    let case = "damping/1e4/dop853 to 1e-9";
+    let done = command(scratch.path(), &["--only", case]);
+    let text = String::from_utf8_lossy(&done.stdout);
+    assert_eq!(done.status.code(), Some(0), "{text}");
+    assert_eq!(text, "1 cases: 1 refused\n");
+    let told = String::from_utf8_lossy(&done.stderr);
+    assert!(told.contains("the scene is stiff"), "{told}");
+    // A part of the table does not take the place of the whole.
+    let files = |at: &Path| std::fs::read_dir(at).expect("a directory").count();
+    assert_eq!(files(scratch.path()), 0);
+
+    let out: PathBuf = scratch.path().join("out");
+    let arguments = ["--only", case, "--quiet", "--output", "out"];
+    let done = command(scratch.path(), &arguments);
+    assert_eq!(done.status.code(), Some(0));
+    assert!(done.stdout.is_empty() && done.stderr.is_empty());
+    assert_eq!(files(&out), 2);
+    let table = std::fs::read_to_string(out.join("stability.md")).expect("a table");
+    assert!(
+        table.contains("| damping | 1 | 0 | 0 | 1 | 0 | 0 | 0 |"),
+        "{table}"
+    );
+}
+
+#[test]
+fn a_case_that_does_not_end_is_said_to_have_been_stopped() {
+    let scratch = tempfile::tempdir().expect("a scratch directory");
+    let arguments = [
+        "--only",
+        "many-steps/1e6/bdf2 in 1000000",
+        "--seconds",
+        "0.01",
+    ];
+    let done = command(scratch.path(), &arguments);
+    assert_eq!(done.status.code(), Some(1));
+    assert_eq!(done.stdout, b"1 cases: 1 time limit\n");
+}
+
+#[test]
+fn a_name_of_no_case_is_bad_input() {
+    let done = command(root(), &["--only", "mass"]);
+    assert_eq!(done.status.code(), Some(2));
+    let told = String::from_utf8_lossy(&done.stderr);
+    assert!(
+        told.contains("found --only \"mass\"") && told.contains("mass-ratio, "),
+        "{told}"
+    );
+}
