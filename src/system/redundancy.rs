@@ -19,7 +19,7 @@ use crate::model::{ConstraintRow, Model};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Part of a unit row across the others below which it follows from them.
-const DEPENDENT: f64 = 1e-9;
+const DEPENDENT: f64 = 1e-11;
 /// Part of the largest such part that an earlier row is kept for.
 const PREFERRED: f64 = 0.1;
 /// Gap relative to the length scale at which the joints count as closed here.
