@@ -61,6 +61,9 @@ pub struct Job {
     /// /bodies/arm/mass=42. May be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
+    /// Integrates the scene as it is written: leaves out nothing that its motion does not need.
+    #[arg(long)]
+    pub no_lowering: bool,
     /// Reports the estimated discretisation error of every function and of its gradient, by a
     /// second simulation with steps of half the size.
     #[arg(long)]

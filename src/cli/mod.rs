@@ -116,7 +116,14 @@ fn load(job: &Job) -> Result<Problem, Failure> {
         .map(|text| Override::parse(text))
         .collect::<Result<Vec<_>, _>>()
         .map_err(Failure::bad_input)?;
-    let problem = Problem::load(&job.problem, &overrides).map_err(Failure::bad_input)?;
+    let read = |overrides: &[Override]| {
+        let mut problem = Problem::load(&job.problem, overrides).map_err(Failure::bad_input)?;
+        if job.no_lowering {
+            problem.lowering = None;
+        }
+        Ok(problem)
+    };
+    let problem = read(&overrides)?;
     if !job.quiet {
         for redundancy in &problem.redundant {
             tell(&format!("{redundancy}\n"));
@@ -140,7 +147,7 @@ fn load(job: &Job) -> Result<Problem, Failure> {
     for text in reached.overrides() {
         overrides.push(Override::parse(&text).map_err(Failure::bad_input)?);
     }
-    Problem::load(&job.problem, &overrides).map_err(Failure::bad_input)
+    read(&overrides)
 }
 
 /// Reads a record from its file or its directory; also says which file that is.

@@ -176,13 +176,16 @@ pub struct Joint<S> {
     pub frame_b: JointFrame<S>,
     /// Rows of the kind that are not imposed, as they follow from those of other joints.
     pub left_out: Vec<ConstraintRow>,
+    /// Rows that hold identically in all motions that the bodies' mobility admits, and are not
+    /// imposed.
+    pub identical: Vec<ConstraintRow>,
 }
 
 impl<S> Joint<S> {
     /// The rows that are imposed.
     pub fn rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
         let rows = self.kind.rows().iter().copied();
-        rows.filter(|row| !self.left_out.contains(row))
+        rows.filter(|row| !self.left_out.contains(row) && !self.identical.contains(row))
     }
 }
 
@@ -201,6 +204,7 @@ impl<S: Scalar> Joint<S> {
             frame_a: frame(&self.frame_a),
             frame_b: frame(&self.frame_b),
             left_out: self.left_out.clone(),
+            identical: self.identical.clone(),
         }
     }
 }

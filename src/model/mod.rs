@@ -8,11 +8,13 @@
 pub mod course;
 pub mod joint;
 pub mod load;
+pub mod mobility;
 pub mod rigid_body;
 
 pub use course::Course;
 pub use joint::{ConstraintRow, Joint, JointFrame, JointKind};
 pub use load::{Axes, Freedom, Load, LoadKind};
+pub use mobility::Mobility;
 pub use rigid_body::RigidBody;
 
 use crate::math::{Scalar, Vec3};

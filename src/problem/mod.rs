@@ -32,6 +32,7 @@ pub use variables::Variable;
 
 use crate::functions::Scene;
 use crate::integrate::{self, Spacing};
+use crate::lower::Lowering;
 use crate::math::Scalar;
 use crate::model::ConstraintRow;
 use crate::optimiser::Method;
@@ -146,6 +147,8 @@ pub struct Problem {
     pub redundant: Vec<Redundancy>,
     /// The rows that are left out, by joint.
     left_out: Vec<Vec<ConstraintRow>>,
+    /// What is left out of its scenes before they are integrated; `None` if nothing shall be.
+    pub lowering: Option<Lowering>,
 }
 
 impl Problem {
@@ -190,7 +193,18 @@ impl Problem {
 
     /// The scene at the design `x`, analytic in `x`; one component per variable, each in the unit
     /// of its numbers.
+    ///
+    /// What its lowering leaves out is left out of the model, where the design admits it.
     pub fn scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
+        let mut scene = self.unlowered_scene(x);
+        if let Some(lowering) = &self.lowering {
+            lowering.apply(&mut scene.model);
+        }
+        scene
+    }
+
+    /// The scene at the design `x` with nothing left out but what follows from other joints.
+    pub fn unlowered_scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
         let mut scene = scene::scene(&self.written, &self.order, x);
         for (joint, left_out) in scene.model.joints.iter_mut().zip(&self.left_out) {
             joint.left_out.clone_from(left_out);

@@ -11,7 +11,7 @@ use crate::functions::{
 };
 use crate::math::scalar::{length, lift3};
 use crate::math::{Scalar, Vec3};
-use crate::model::{Joint, JointFrame, Model, RigidBody};
+use crate::model::{Joint, JointFrame, Mobility, Model, RigidBody};
 
 /// Gravity where the file gives none (m/s²).
 pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
@@ -90,6 +90,7 @@ fn body<S: Scalar>(
         orientation: pose.orientation,
         velocity,
         angular_velocity: pose.rotation.tr_mul(&omega),
+        mobility: Mobility::Spatial,
     }
 }
 
@@ -140,6 +141,7 @@ fn joint<S: Scalar>(assembly: &Assembly<S>, name: &str, written: &WrittenJoint) 
         frame_a: frame(a),
         frame_b: frame(b),
         left_out: Vec::new(),
+        identical: Vec::new(),
     }
 }
 

@@ -5,6 +5,7 @@ use super::bodies::Motion;
 use super::constraint::RowGradient;
 use super::joints;
 use super::numbering::Numbering;
+use super::reduce::{emit_reduced, through, unreduced};
 use crate::linalg::{Emit, Pattern, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::{Mat3, Scalar};
 use crate::model::Model;
@@ -107,8 +108,10 @@ pub struct BodyBlocks<S> {
     pub angular: Mat3<S>,
 }
 
-/// The matrix [B + (Gᵀs)_y, Gᵀ; G, 0] and its factors; order n_v + n_c.
+/// The matrix [B + (Gᵀs)_y, Gᵀ; G, 0] in the unknowns of the bodies, and its factors. Vectors are of
+/// length n_v + n_c.
 pub struct SaddlePoint<S> {
+    numbering: Numbering,
     matrix: SparseMatrix<S>,
     factors: SparseLu<S>,
     /// Number of factorisations so far.
@@ -122,16 +125,19 @@ impl<S: SolveScalar> SaddlePoint<S> {
         let mut gradients = Vec::new();
         joints::gradients(model, numbering, &motions, &mut gradients);
         let zeros = vec![S::zero(); numbering.constraints()];
-        let order = numbering.velocities() + numbering.constraints();
+        let order = numbering.unknowns() + numbering.constraints();
         let block = |_| BodyBlocks {
             linear: S::one(),
             angular: Mat3::identity(),
         };
         let pattern = Pattern::record(order, |emit: &mut dyn Emit<S>| {
-            emit_saddle_point(model, numbering, &motions, &gradients, &zeros, block, emit);
+            emit_reduced(numbering, 1, emit, |emit| {
+                emit_saddle_point(model, numbering, &motions, &gradients, &zeros, block, emit);
+            });
         });
         let factors = SparseLu::new(&pattern);
         Self {
+            numbering: numbering.clone(),
             matrix: SparseMatrix::new(pattern),
             factors,
             factorisations: 0,
@@ -153,28 +159,37 @@ impl<S: SolveScalar> SaddlePoint<S> {
         let mut gradients = Vec::with_capacity(numbering.constraints());
         joints::gradients(model, numbering, motions, &mut gradients);
         self.matrix.assemble(|emit| {
-            emit_saddle_point(
-                model,
-                numbering,
-                motions,
-                &gradients,
-                multipliers,
-                block,
-                emit,
-            );
+            emit_reduced(numbering, 1, emit, |emit| {
+                emit_saddle_point(
+                    model,
+                    numbering,
+                    motions,
+                    &gradients,
+                    multipliers,
+                    block,
+                    emit,
+                );
+            });
         });
         self.factorisations += 1;
-        self.factors.factorise(&self.matrix)
+        let found = self.factors.factorise(&self.matrix);
+        found.map_err(|singular| SingularMatrix {
+            column: unreduced(numbering, 1, singular.column),
+        })
     }
 
     /// Solves in place.
     pub fn solve(&mut self, rhs: &mut [S]) {
-        self.factors.solve(rhs);
+        let factors = &mut self.factors;
+        through(&self.numbering, 1, rhs, |rhs| factors.solve(rhs));
     }
 
     /// Solves the transposed system in place, with one step of iterative refinement.
     pub fn solve_transposed(&mut self, rhs: &mut [S]) {
-        self.factors.solve_transposed_refined(&self.matrix, rhs);
+        let (factors, matrix) = (&mut self.factors, &self.matrix);
+        through(&self.numbering, 1, rhs, |rhs| {
+            factors.solve_transposed_refined(matrix, rhs);
+        });
     }
 }
 

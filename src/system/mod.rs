@@ -18,6 +18,7 @@ pub mod marker;
 pub mod numbering;
 pub mod observe;
 pub mod rank;
+pub mod reduce;
 pub mod redundancy;
 pub mod tree;
 

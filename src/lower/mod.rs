@@ -1,0 +1,119 @@
+//! The smallest system that moves as a scene does: what is left out of it before anything is
+//! integrated, and why nothing more is.
+//!
+//! A reduction is made only if it changes nothing but round-off, at every design: it is examined at
+//! the start, at both bounds and at designs between them, and by dual numbers in its derivative by
+//! every variable. The same examination, in values, is repeated wherever a scene is made.
+
+mod examine;
+mod normal;
+pub mod planar;
+mod tilt;
+
+pub use examine::Obstacle;
+pub use planar::Plane;
+
+use crate::functions::Scene;
+use crate::math::{Dual, Scalar};
+use crate::model::Model;
+
+/// A design variable, as far as it matters here.
+#[derive(Clone, Debug)]
+pub struct Range {
+    /// Name.
+    pub name: String,
+    /// Where the design starts.
+    pub start: f64,
+    /// Bounds, infinite if there are none.
+    pub bounds: [f64; 2],
+    /// A typical change.
+    pub scale: f64,
+}
+
+/// What is left out of the scenes of a problem.
+#[derive(Clone, Debug)]
+pub struct Lowering {
+    /// The plane that all motion stays in, or what leaves every plane.
+    pub plane: Result<Plane, Obstacle>,
+}
+
+/// Designs between the bounds at which a reduction is examined.
+const BETWEEN: usize = 4;
+
+impl Lowering {
+    /// Finds what can be left out of the scenes that `real` and `dual` make of a design.
+    pub fn find(
+        real: &dyn Fn(&[f64]) -> Scene<f64>,
+        dual: &dyn Fn(&[Dual]) -> Scene<Dual>,
+        variables: &[Range],
+    ) -> Self {
+        let start: Vec<f64> = variables.iter().map(|variable| variable.start).collect();
+        let plane = Plane::find(&real(&start).model).and_then(|plane| {
+            for design in designs(variables) {
+                plane
+                    .holds(&real(&design).model, 0.0)
+                    .map_err(|obstacle| Obstacle {
+                        elsewhere: true,
+                        ..obstacle
+                    })?;
+            }
+            for (i, variable) in variables.iter().enumerate() {
+                let seed = |(j, &x): (usize, &f64)| Dual::new(x, if i == j { 1.0 } else { 0.0 });
+                let x: Vec<Dual> = start.iter().enumerate().map(seed).collect();
+                let model = dual(&x).model;
+                plane
+                    .holds(&model, variable.scale)
+                    .map_err(|obstacle| Obstacle {
+                        variable: Some(variable.name.clone()),
+                        ..obstacle
+                    })?;
+            }
+            Ok(plane)
+        });
+        Self { plane }
+    }
+
+    /// Leaves out of `model` what can be; false if its design does not admit it, which leaves the
+    /// model as it is.
+    pub fn apply<S: Scalar>(&self, model: &mut Model<S>) -> bool {
+        match &self.plane {
+            Ok(plane) if plane.holds(model, 0.0).is_ok() => {
+                plane.apply(model);
+                true
+            }
+            Ok(_) => false,
+            Err(_) => true,
+        }
+    }
+}
+
+/// Both corners of the bounds, and designs spread between them in a fixed way.
+fn designs(variables: &[Range]) -> Vec<Vec<f64>> {
+    if variables.is_empty() {
+        return Vec::new();
+    }
+    let ends = |variable: &Range| {
+        let [lower, upper] = variable.bounds;
+        let finite = |bound: f64, otherwise: f64| match bound.is_finite() {
+            true => bound,
+            false => otherwise,
+        };
+        let (start, scale) = (variable.start, variable.scale);
+        [finite(lower, start - scale), finite(upper, start + scale)]
+    };
+    let at = |part: &dyn Fn(usize) -> f64| {
+        let value = |(i, variable): (usize, &Range)| {
+            let [lower, upper] = ends(variable);
+            lower + part(i) * (upper - lower)
+        };
+        variables.iter().enumerate().map(value).collect()
+    };
+    let mut all = vec![at(&|_| 0.0), at(&|_| 1.0)];
+    for k in 1..=BETWEEN {
+        // Fractional parts of multiples of an irrational number.
+        all.push(at(&|i| {
+            (0.618_033_988_749_895 * (k + 7 * i + 1) as f64).fract()
+        }));
+    }
+    all
+}
