@@ -88,6 +88,16 @@ pub enum Command {
         #[arg(long, default_value_t = 1e-10, value_parser = positive)]
         tolerance: f64,
     },
+    /// Say what the scene has, what is left out before it is integrated and why, and what is left:
+    /// unknowns, elimination, method, memory, and what the functions depend on.
+    Explain {
+        /// The problem.
+        #[command(flatten)]
+        job: Job,
+        /// Prints JSON.
+        #[arg(long)]
+        json: bool,
+    },
     /// Measure error against run time for all methods, orders, steps and tolerances; writes
     /// work_precision.csv, orders.csv and work_precision.svg.
     WorkPrecision(Measurement),

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod compare;
+mod explain;
 mod optimise;
 mod progress;
 mod simulate;
@@ -72,6 +73,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let done = match arguments.command {
         Some(Command::Simulate(job)) => simulate::simulate(&job),
         Some(Command::Check { job, tolerance }) => simulate::check(&job, tolerance),
+        Some(Command::Explain { job, json }) => explain::explain(&job, json),
         Some(Command::WorkPrecision(asked)) => work_precision::measure(&asked),
         Some(Command::Compare(files)) => compare::compare(&files),
         Some(Command::Plot { directory }) => compare::plot(&directory),

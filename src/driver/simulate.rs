@@ -80,7 +80,7 @@ impl Simulation {
     pub fn reactions(&self, k: usize) -> Vec<Reaction> {
         let (model, run) = (&self.model, &self.at.run);
         let numbering = Numbering::new(model);
-        let lambda = multipliers(model, &numbering, run, k);
+        let lambda = multipliers(model, run, k);
         reactions(model, &numbering, run.q(k), &lambda)
     }
 }

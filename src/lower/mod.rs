@@ -73,6 +73,21 @@ impl Lowering {
         Self { plane }
     }
 
+    /// Every reduction, with what it leaves or what stands against it.
+    pub fn reductions(&self) -> Vec<(&'static str, Result<String, Obstacle>)> {
+        let plane = match &self.plane {
+            Ok(plane) => {
+                let [x, y, z] = [plane.normal.x, plane.normal.y, plane.normal.z];
+                Ok(format!(
+                    "the scene moves in the plane across ({x:.6}, {y:.6}, {z:.6}); three unknowns \
+                     a body"
+                ))
+            }
+            Err(obstacle) => Err(obstacle.clone()),
+        };
+        vec![("motion out of a plane", plane)]
+    }
+
     /// Leaves out of `model` what can be; false if its design does not admit it, which leaves the
     /// model as it is.
     pub fn apply<S: Scalar>(&self, model: &mut Model<S>) -> bool {

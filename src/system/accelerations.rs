@@ -10,7 +10,7 @@ use super::bodies::{self, Motion, all_force_balances, velocities_of};
 use super::constraint::RowGradient;
 use super::initial::mass;
 use super::joints::{self, JointCotangent};
-use super::kkt::SaddlePoint;
+use super::kkt::{Elimination, SaddlePoint};
 use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
 use super::reduce;
@@ -132,6 +132,14 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             let mut rest = self.residual(rhs, &given);
             self.solve_tree(&mut rest);
             rhs.iter_mut().zip(&rest).for_each(|(x, &d)| *x += d);
+        }
+    }
+
+    /// How the matrix that was factorised last is eliminated.
+    pub fn elimination(&mut self) -> Elimination {
+        match &mut self.solver {
+            Solver::Tree(tree) => tree.elimination(self.numbering),
+            Solver::Sparse(saddle, _) => saddle.elimination(),
         }
     }
 

@@ -108,6 +108,20 @@ pub struct BodyBlocks<S> {
     pub angular: Mat3<S>,
 }
 
+/// How a matrix of the index-1 equations is eliminated, and what that takes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Elimination {
+    /// Order of the matrix: unknowns of the bodies, and rows.
+    pub order: usize,
+    /// Bodies in the order of elimination, each with the joint that it hangs from; `None` if joints
+    /// close loops and a sparse factorisation is used.
+    pub bodies: Option<Vec<usize>>,
+    /// Entries of the sparse matrix and of its factors.
+    pub fill: Option<(usize, usize)>,
+    /// Floating-point operations of a factorisation.
+    pub operations: usize,
+}
+
 /// The matrix [B + (Gᵀs)_y, Gᵀ; G, 0] in the unknowns of the bodies, and its factors. Vectors are of
 /// length n_v + n_c.
 pub struct SaddlePoint<S> {
@@ -176,6 +190,21 @@ impl<S: SolveScalar> SaddlePoint<S> {
         found.map_err(|singular| SingularMatrix {
             column: unreduced(numbering, 1, singular.column),
         })
+    }
+
+    /// Order and entries of the matrix, and how it is eliminated.
+    ///
+    /// # Panics
+    /// If it was not factorised.
+    pub fn elimination(&mut self) -> Elimination {
+        let (factor_entries, operations) = self.factors.cost();
+        let pattern = &self.matrix.pattern;
+        Elimination {
+            order: pattern.order(),
+            bodies: None,
+            fill: Some((pattern.entries(), factor_entries)),
+            operations,
+        }
     }
 
     /// Solves in place.

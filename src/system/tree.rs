@@ -18,6 +18,7 @@
 //! three, the blocks are of order three.
 
 use super::constraint::RowGradient;
+use super::kkt;
 use super::numbering::Numbering;
 use super::reduce::along;
 use crate::linalg::SingularMatrix;
@@ -60,13 +61,29 @@ impl<S: Scalar> Tree<S> {
         })
     }
 
-    /// Bodies in the order in which they are eliminated.
-    pub fn order(&self) -> Vec<usize> {
+    /// How the matrix is eliminated. Operations are those of blocks of the sizes at hand: a
+    /// decomposition of order k takes k³/3, a solution 2 k², a product of all rows what its
+    /// factors say.
+    pub fn elimination(&self, numbering: &Numbering) -> kkt::Elimination {
         let links = match self {
             Tree::Small(elimination) => &elimination.links,
             Tree::Large(elimination) => &elimination.links,
         };
-        links.iter().map(|link| link.body).collect()
+        let operations = |link: &Link| {
+            let m = numbering.mobility(link.body).unknowns();
+            let Some((joint, _, parent)) = link.joint else {
+                return m.pow(3) / 3;
+            };
+            let n = numbering.rows(joint).len();
+            let p = parent.map_or(0, |parent| numbering.mobility(parent).unknowns());
+            m.pow(3) / 3 + n * 2 * m * m + n * n * m + n.pow(3) / 3 + n * n * p + n * p * p
+        };
+        kkt::Elimination {
+            order: numbering.unknowns() + numbering.constraints(),
+            bodies: Some(links.iter().map(|link| link.body).collect()),
+            fill: None,
+            operations: links.iter().map(operations).sum(),
+        }
     }
 
     /// Eliminates with the given masses and inertias (the model's) and gradients of the rows.

@@ -27,6 +27,24 @@ pub struct Tape<S> {
     pub steps: Vec<StepData<S>>,
 }
 
+impl<S> Tape<S> {
+    /// How many numbers it holds.
+    pub fn numbers(&self) -> usize {
+        let node = |node: &Node<S>| [&node.q, &node.v, &node.a, &node.lambda].map(Vec::len);
+        let step = |step: &StepData<S>| {
+            let stages = [&step.q, &step.v, &step.qdot, &step.a, &step.lambda];
+            let end = [&step.q_raw, &step.v_raw, &step.s, &step.delta, &step.sigma];
+            [stages, end]
+                .concat()
+                .into_iter()
+                .map(Vec::len)
+                .sum::<usize>()
+        };
+        let nodes = self.nodes.iter().flat_map(node);
+        nodes.sum::<usize>() + self.steps.iter().map(step).sum::<usize>()
+    }
+}
+
 impl Tape<Complex64> {
     /// The real part.
     pub fn real(&self) -> Tape<f64> {
