@@ -39,7 +39,7 @@ fn assert_order(what: &str, errors: [f64; 3], order: f64) {
 /// Largest |E(t) − E(0)| of the total energy [J].
 fn energy_drift(model: &Model<f64>, run: &Trajectory<f64>) -> f64 {
     let energy = |k| {
-        let seen = observe(model, &run.numbering, run.q(k), run.v(k));
+        let seen = observe(model, &run.numbering, (run.q(k), run.v(k)), run.time(k));
         seen.kinetic + seen.potential
     };
     (0..=run.last()).fold(0.0, |m: f64, k| m.max((energy(k) - energy(0)).abs()))
@@ -48,7 +48,7 @@ fn energy_drift(model: &Model<f64>, run: &Trajectory<f64>) -> f64 {
 /// Asserts that position and velocity constraints hold to 1e-10 (m, m/s, 1 or 1/s) throughout.
 fn assert_constraints_hold(model: &Model<f64>, run: &Trajectory<f64>) {
     for k in 0..=run.last() {
-        let seen = observe(model, &run.numbering, run.q(k), run.v(k));
+        let seen = observe(model, &run.numbering, (run.q(k), run.v(k)), run.time(k));
         let worst = seen.position_drift.max(seen.velocity_drift);
         assert!(
             worst <= 1e-10,

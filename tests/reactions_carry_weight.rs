@@ -19,7 +19,7 @@ fn reactions_at_start(model: &Model<f64>) -> Vec<Reaction> {
     let numbering = Numbering::new(model);
     let mut saddle = SaddlePoint::new(model, &numbering);
     let start = initial::solve(model, &numbering, &mut saddle).expect("is consistent");
-    reactions(model, &numbering, &start.q, &start.lambda)
+    reactions(model, &numbering, (&start.q, &start.lambda), 0.0)
 }
 
 fn assert_near(what: &str, found: &Vec3<f64>, expected: &Vec3<f64>) {
@@ -112,7 +112,8 @@ fn bodies_at_rest_stay_at_rest() {
                 let weight = at(9.81 * if count == 2 { 5.0 } else { 2.0 });
                 for k in 0..=run.last() {
                     let lambda = multipliers(&model, &run, k);
-                    let found = &reactions(&model, &run.numbering, run.q(k), &lambda)[0];
+                    let found =
+                        &reactions(&model, &run.numbering, (run.q(k), &lambda), run.time(k))[0];
                     assert_near("ceiling", &found.force_ground, &weight);
                     assert!(moved(k) <= 1e-12, "{kind:?}, {method:?}, step {k}");
                 }

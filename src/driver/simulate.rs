@@ -47,7 +47,7 @@ pub fn simulate_with(
     let (model, run) = (problem.unlowered_scene(x).model, &at.run);
     let numbering = Numbering::new(&model);
     let observations = (0..=run.last())
-        .map(|k| observe(&model, &numbering, run.q(k), run.v(k)))
+        .map(|k| observe(&model, &numbering, (run.q(k), run.v(k)), run.time(k)))
         .collect();
     Ok(Simulation {
         at,
@@ -81,6 +81,6 @@ impl Simulation {
         let (model, run) = (&self.model, &self.at.run);
         let numbering = Numbering::new(model);
         let lambda = multipliers(model, run, k);
-        reactions(model, &numbering, run.q(k), &lambda)
+        reactions(model, &numbering, (run.q(k), &lambda), run.time(k))
     }
 }

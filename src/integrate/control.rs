@@ -3,8 +3,8 @@
 use super::grid::Grid;
 use super::settings::Spacing;
 use crate::math::Scalar;
-use crate::model::Model;
 use crate::model::course::Course;
+use crate::model::{Model, MotionCourse};
 use crate::system::initial::InitialState;
 use crate::system::{Numbering, assembly};
 
@@ -108,7 +108,7 @@ fn largest<S: Scalar>(x: &[S]) -> f64 {
 /// Part of a period of the fastest harmonic load that a step may take.
 const PART_OF_PERIOD: f64 = 0.25;
 
-/// What the loads of a model say of the steps: fractions of the duration at which steps must end,
+/// What the loads and drives of a model say of the steps: fractions of the duration at which steps must end,
 /// ascending, and their largest width.
 fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64>, f64) {
     let mut stops = Vec::new();
@@ -121,6 +121,18 @@ fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64>, f64) {
                 widest = widest.min(PART_OF_PERIOD * period / duration);
             }
             Course::Table { times, .. } => stops.extend(times.iter().map(|t| t.re() / duration)),
+        }
+    }
+    for drive in model.joints.iter().flat_map(|joint| &joint.drives) {
+        match &drive.course {
+            MotionCourse::Polynomial(_) => {}
+            MotionCourse::Harmonic { frequency, .. } => {
+                let period = 1.0 / frequency.re().abs();
+                widest = widest.min(PART_OF_PERIOD * period / duration);
+            }
+            MotionCourse::Table { times, .. } => {
+                stops.extend(times.iter().map(|t| t.re() / duration));
+            }
         }
     }
     stops.retain(|&at| at > 0.0 && at < 1.0);

@@ -90,7 +90,7 @@ fn watch<S: SolveScalar>(
     q: &[S],
     (step, time): (usize, f64),
 ) -> Result<(), IntegrationFailure> {
-    match redundancy::opened(model, numbering, q) {
+    match redundancy::opened(model, numbering, q, S::from(time)) {
         None => Ok(()),
         Some(open) => Err(IntegrationFailure::RedundancyLost {
             joint: model.joints[open.joint].name.clone(),

@@ -23,8 +23,12 @@ fn axis(model: &Model<f64>, joint: &Joint<f64>) -> Vec3<f64> {
 /// have to lie in the plane. `None` if these span the space.
 pub(super) fn candidate(model: &Model<f64>) -> Option<Vec3<f64>> {
     let turns = |joint: &&Joint<f64>| match joint.kind {
-        JointKind::Revolute | JointKind::Planar => true,
-        JointKind::Spherical | JointKind::Prismatic => false,
+        JointKind::Revolute | JointKind::Planar | JointKind::Cylindrical => true,
+        JointKind::Spherical
+        | JointKind::Prismatic
+        | JointKind::Universal
+        | JointKind::Rod
+        | JointKind::Weld => false,
     };
     let axes: Vec<Vec3<f64>> = model
         .joints

@@ -20,13 +20,13 @@ use super::examine::{Examiner, Obstacle};
 use super::normal::{candidate, clean};
 use super::tilt;
 use crate::math::scalar::lift3;
-use crate::math::{Scalar, Vec3, rotation};
+use crate::math::{Mat3, Scalar, Vec3, rotation};
 use crate::model::{Axes, ConstraintRow, Freedom, Joint, JointFrame, JointKind, LoadKind};
 use crate::model::{Mobility, Model};
 use crate::system::assembly::length_scale;
 use crate::system::reduce::along;
 use crate::system::redundancy;
-use ConstraintRow::{Coincident, Perpendicular, Sliding};
+use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
 /// A plane, and where the parts of a scene stand in it.
 #[derive(Clone, Debug)]
@@ -51,8 +51,8 @@ struct Joined {
     identical: Vec<ConstraintRow>,
     /// Rows that follow from others in the plane.
     left_out: Vec<ConstraintRow>,
-    /// Turn (cosine, sine) of the frames about e3 that brings e1 along the normal, if one is needed.
-    turn: Option<(f64, f64)>,
+    /// Axes of the frames by those that are written, if these have to be turned to the normal.
+    turn: Option<Mat3<f64>>,
     /// Heights of its points above the centres of mass (above the origin on ground).
     heights: [f64; 2],
 }
@@ -99,24 +99,22 @@ fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, Vec3<S>)>; 2
     }
 }
 
-fn turned<S: Scalar>(frame: &JointFrame<S>, (c, s): (f64, f64)) -> JointFrame<S> {
+/// The frame with axes e'_i = Σ_j c_ij e_j.
+fn turned<S: Scalar>(frame: &JointFrame<S>, c: &Mat3<f64>) -> JointFrame<S> {
     let [e1, e2, e3] = frame.axes;
+    let part = |i: usize, j: usize| S::from(c[(i, j)]);
     JointFrame {
-        point: frame.point,
-        axes: [
-            e1 * S::from(c) + e2 * S::from(s),
-            e2 * S::from(c) - e1 * S::from(s),
-            e3,
-        ],
+        axes: std::array::from_fn(|i| e1 * part(i, 0) + e2 * part(i, 1) + e3 * part(i, 2)),
+        ..*frame
     }
 }
 
-/// Axes that the rows of a kind use, on side A and on side B.
-fn used(kind: JointKind) -> [[bool; 3]; 2] {
+/// Axes that the rows of a joint use, on side A and on side B.
+fn used<S>(joint: &Joint<S>) -> [[bool; 3]; 2] {
     let mut used = [[false; 3]; 2];
-    for row in kind.rows() {
-        match *row {
-            Coincident(_) => {}
+    for row in joint.all_rows() {
+        match row {
+            Coincident(_) | Distance => {}
             Perpendicular { a, b } => {
                 used[0][a] = true;
                 used[1][b] = true;
@@ -204,15 +202,15 @@ impl Plane {
             Coincident(_) => *row == largest,
             Perpendicular { a, b } => across(0, a) != across(1, b),
             Sliding { a } => across(0, a),
+            Distance => false,
         };
-        let rows = joint.kind.rows().iter().copied();
-        rows.filter(identical).collect()
+        joint.all_rows().filter(identical).collect()
     }
 
     fn frames<S: Scalar>(&self, joint: &Joint<S>, j: usize) -> [JointFrame<S>; 2] {
         let frames = [joint.frame_a, joint.frame_b];
         match self.joints[j].turn {
-            Some(turn) => frames.map(|frame| turned(&frame, turn)),
+            Some(turn) => frames.map(|frame| turned(&frame, &turn)),
             None => frames,
         }
     }
@@ -327,7 +325,7 @@ impl Plane {
             let name = &joint.name;
             let frames = self.frames(joint, j);
             let bodies = [Some(joint.body_a), joint.body_b];
-            for (side, used) in used(joint.kind).into_iter().enumerate() {
+            for (side, used) in used(joint).into_iter().enumerate() {
                 let normal = turned.normal(bodies[side]);
                 for axis in (0..3).filter(|&axis| used[axis]) {
                     let e = &frames[side].axes[axis];
@@ -351,6 +349,20 @@ impl Plane {
                         };
                         examiner.zero(part, 1.0, what);
                     }
+                }
+            }
+            for drive in &joint.drives {
+                let normal = turned.normal(Some(joint.body_a));
+                let e = &frames[0].axes[2];
+                let part = normal.dot(e);
+                let what = || (format!("joint \"{name}\" is driven out of the plane"), "");
+                match drive.freedom {
+                    Freedom::Turn => {
+                        for x in (e - normal * part).iter() {
+                            examiner.zero(*x, 1.0, what);
+                        }
+                    }
+                    Freedom::Slide => examiner.zero(part, 1.0, what),
                 }
             }
             if self.identical(joint, turned, j) != own.identical {
@@ -519,17 +531,33 @@ impl Plane {
     }
 }
 
-/// The turn of a joint's frames about e3 that brings e1 along the normal, where the rows use e1 or
-/// e2, e3 lies in the plane, and neither is along the normal yet.
-fn turn_to(joint: &Joint<f64>, normal: &Vec3<f64>) -> Option<(f64, f64)> {
+/// Axes of a joint's frames that are along or across the normal, where those that its rows use are
+/// not, and may be turned: about e3 if that lies in the plane, anyhow in a weld.
+fn turn_to(joint: &Joint<f64>, normal: &Vec3<f64>) -> Option<Mat3<f64>> {
+    const ALIGNED: f64 = 4.0 * f64::EPSILON;
     let [e1, e2, e3] = &joint.frame_a.axes;
-    if normal.dot(e3).abs() > 0.5 || used(joint.kind) == [[false; 3]; 2] {
+    let n = Vec3::new(normal.dot(e1), normal.dot(e2), normal.dot(e3));
+    let aligned = n.iter().filter(|x| x.abs() <= ALIGNED).count() == 2;
+    if aligned || used(joint) == [[false; 3]; 2] {
         return None;
     }
-    let (c, s) = (normal.dot(e1), normal.dot(e2));
-    let size = c.hypot(s);
-    let aligned = c.abs().min(s.abs()) <= 4.0 * f64::EPSILON;
-    (!aligned).then(|| (c / size, s / size))
+    let third = match joint.kind {
+        JointKind::Weld => {
+            // Any direction across the normal.
+            let mut farthest = Vec3::zeros();
+            farthest[n.iamin()] = 1.0;
+            n.cross(&farthest).normalize()
+        }
+        _ if n.z.abs() <= 0.5 => Vec3::z(),
+        _ => return None,
+    };
+    let first = (n - third * n.dot(&third)).normalize();
+    let second = third.cross(&first);
+    Some(Mat3::from_rows(&[
+        first.transpose(),
+        second.transpose(),
+        third.transpose(),
+    ]))
 }
 
 fn largest<S: Scalar>(v: &Vec3<S>) -> f64 {

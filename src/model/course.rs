@@ -143,14 +143,14 @@ fn harmonic<S: Scalar>([amplitude, frequency, phase]: [S; 3], time: S) -> S {
 }
 
 /// Where a time lies in a table.
-enum Place {
+pub(super) enum Place {
     Before,
     /// Between the instants k and k + 1.
     Inside(usize),
     After,
 }
 
-fn interval<S: Scalar>(times: &[S], time: f64) -> Place {
+pub(super) fn interval<S: Scalar>(times: &[S], time: f64) -> Place {
     match times.partition_point(|t| t.re() <= time) {
         0 => Place::Before,
         after if after == times.len() => Place::After,
@@ -159,7 +159,7 @@ fn interval<S: Scalar>(times: &[S], time: f64) -> Place {
 }
 
 /// The points k − 1 … k + 2, as far as there are any.
-fn stencil(k: usize, count: usize) -> [Option<usize>; 4] {
+pub(super) fn stencil(k: usize, count: usize) -> [Option<usize>; 4] {
     let there = |i: Option<usize>| i.filter(|&i| i < count);
     [k.checked_sub(1), Some(k), Some(k + 1), there(Some(k + 2))]
 }

@@ -1,18 +1,40 @@
 //! The joints and the constraint rows that each is made of.
 //!
 //! With d = r_A + R_A s_A − r_B − R_B s_B and orthonormal axes e1, e2, e3 fixed in each body
-//! (e3 is the joint's axis), every joint is a list of three kinds of row (Haug 1989,
+//! (e3 is the joint's axis), every joint is a list of four kinds of row (Haug 1989,
 //! *Computer Aided Kinematics and Dynamics of Mechanical Systems*, ch. 9):
 //!
 //! ```text
 //! Coincident k     d_k                     = 0      component k of d in ground axes
 //! Perpendicular    (R_A e_i) · (R_B e_j)   = 0
 //! Sliding i        (R_A e_i) · d           = 0
+//! Distance         ½ (d · d / L − L)       = 0      L is the length of a rod
 //! ```
 //!
-//! The equations, Jacobians and pull-backs of the rows are in `system::constraint`.
+//! A drive prescribes what a joint would leave free by one more row, see [`super::drive`]. The
+//! equations, Jacobians and pull-backs of the rows are in `system::constraint`.
 
+use super::drive::Drive;
 use crate::math::{Scalar, Vec3};
+
+/// A motion that a joint allows along or about its axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Freedom {
+    /// Turning about the axis: the rate is φ̇ = e · (ω_A − ω_B).
+    Turn,
+    /// Sliding along the axis: the rate is that of e · (P_A − P_B).
+    Slide,
+}
+
+impl Freedom {
+    /// The row that holds this motion where a drive has it.
+    pub fn driven_row(self) -> ConstraintRow {
+        match self {
+            Freedom::Turn => Perpendicular { a: 0, b: 1 },
+            Freedom::Slide => Sliding { a: 2 },
+        }
+    }
+}
 
 /// One scalar constraint equation; indices are 0-based components or axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,6 +53,8 @@ pub enum ConstraintRow {
         /// Axis on body A.
         a: usize,
     },
+    /// d has the length of the rod.
+    Distance,
 }
 
 impl ConstraintRow {
@@ -38,7 +62,7 @@ impl ConstraintRow {
     pub fn ground_component(self) -> Option<usize> {
         match self {
             Coincident(k) => Some(k),
-            Perpendicular { .. } | Sliding { .. } => None,
+            Perpendicular { .. } | Sliding { .. } | Distance => None,
         }
     }
 
@@ -49,30 +73,39 @@ impl ConstraintRow {
             Coincident(1) => "y distance",
             Coincident(_) => "z distance",
             Perpendicular { .. } => "angle between axes",
-            Sliding { .. } => "distance across the sliding direction",
+            Sliding { .. } => "distance along an axis",
+            Distance => "length",
         }
     }
 
     /// True if the row transmits a force.
     pub fn has_force(self) -> bool {
         match self {
-            Coincident(_) | Sliding { .. } => true,
+            Coincident(_) | Sliding { .. } | Distance => true,
             Perpendicular { .. } => false,
         }
     }
 
-    /// True if the force turns with body A.
-    pub fn follows_axis(self) -> bool {
+    /// True if the gradient depends on d, and with it on where the bodies are.
+    pub fn depends_on_distance(self) -> bool {
         match self {
-            Sliding { .. } => true,
+            Sliding { .. } | Distance => true,
             Coincident(_) | Perpendicular { .. } => false,
+        }
+    }
+
+    /// True if the force turns with d.
+    pub fn follows_distance(self) -> bool {
+        match self {
+            Distance => true,
+            Coincident(_) | Perpendicular { .. } | Sliding { .. } => false,
         }
     }
 
     /// True if the reaction on one body depends on the rotation of the other.
     pub fn couples_rotations(self) -> bool {
         match self {
-            Perpendicular { .. } | Sliding { .. } => true,
+            Perpendicular { .. } | Sliding { .. } | Distance => true,
             Coincident(_) => false,
         }
     }
@@ -89,9 +122,17 @@ pub enum JointKind {
     Prismatic,
     /// One body moves in a plane of the other and turns about its normal: 3 rows.
     Planar,
+    /// One body slides along an axis of the other and turns about it: 4 rows.
+    Cylindrical,
+    /// Two points coincide and the axis of A stays perpendicular to the cross axis of B: 4 rows.
+    Universal,
+    /// Two points keep their distance: 1 row.
+    Rod,
+    /// Two bodies move as one: 6 rows.
+    Weld,
 }
 
-use ConstraintRow::{Coincident, Perpendicular, Sliding};
+use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
 impl JointKind {
     /// The constraint rows of this joint.
@@ -117,15 +158,46 @@ impl JointKind {
                 Perpendicular { a: 2, b: 0 },
                 Perpendicular { a: 2, b: 1 },
             ],
+            JointKind::Cylindrical => &[
+                Perpendicular { a: 2, b: 0 },
+                Perpendicular { a: 2, b: 1 },
+                Sliding { a: 0 },
+                Sliding { a: 1 },
+            ],
+            JointKind::Universal => &[
+                Coincident(0),
+                Coincident(1),
+                Coincident(2),
+                Perpendicular { a: 2, b: 0 },
+            ],
+            JointKind::Rod => &[Distance],
+            JointKind::Weld => &[
+                Coincident(0),
+                Coincident(1),
+                Coincident(2),
+                Perpendicular { a: 0, b: 1 },
+                Perpendicular { a: 1, b: 2 },
+                Perpendicular { a: 2, b: 0 },
+            ],
+        }
+    }
+
+    /// What the joint allows along or about its axis, turning first.
+    pub fn freedoms(self) -> &'static [Freedom] {
+        match self {
+            JointKind::Revolute | JointKind::Planar => &[Freedom::Turn],
+            JointKind::Prismatic => &[Freedom::Slide],
+            JointKind::Cylindrical => &[Freedom::Turn, Freedom::Slide],
+            JointKind::Spherical | JointKind::Universal | JointKind::Rod | JointKind::Weld => &[],
         }
     }
 
     /// Frame axes that both bodies share; the rows alone would also admit them turned by 180°.
     pub fn common_axes(self) -> &'static [usize] {
         match self {
-            JointKind::Spherical => &[],
-            JointKind::Revolute | JointKind::Planar => &[2],
-            JointKind::Prismatic => &[0, 1, 2],
+            JointKind::Spherical | JointKind::Universal | JointKind::Rod => &[],
+            JointKind::Revolute | JointKind::Planar | JointKind::Cylindrical => &[2],
+            JointKind::Prismatic | JointKind::Weld => &[0, 1, 2],
         }
     }
 
@@ -136,6 +208,10 @@ impl JointKind {
             JointKind::Revolute => "revolute",
             JointKind::Prismatic => "prismatic",
             JointKind::Planar => "planar",
+            JointKind::Cylindrical => "cylindrical",
+            JointKind::Universal => "universal",
+            JointKind::Rod => "rod",
+            JointKind::Weld => "weld",
         }
     }
 }
@@ -147,6 +223,8 @@ pub struct JointFrame<S> {
     pub point: Vec3<S>,
     /// Orthonormal axes e1, e2, e3 in body axes; e3 is the joint's axis.
     pub axes: [Vec3<S>; 3],
+    /// Length L of a rod that starts here (frame A of a rod; else unused) (m).
+    pub length: S,
 }
 
 impl<S: Scalar> JointFrame<S> {
@@ -155,7 +233,17 @@ impl<S: Scalar> JointFrame<S> {
         Self {
             point: Vec3::zeros(),
             axes: [Vec3::zeros(); 3],
+            length: S::zero(),
         }
+    }
+
+    /// Adds another frame (of cotangents).
+    pub fn add(&mut self, other: &Self) {
+        self.point += other.point;
+        for (axis, by) in self.axes.iter_mut().zip(&other.axes) {
+            *axis += by;
+        }
+        self.length += other.length;
     }
 }
 
@@ -174,7 +262,9 @@ pub struct Joint<S> {
     pub frame_a: JointFrame<S>,
     /// Where the joint sits on body B.
     pub frame_b: JointFrame<S>,
-    /// Rows of the kind that are not imposed, as they follow from those of other joints.
+    /// Prescribed motions, one a freedom at most.
+    pub drives: Vec<Drive<S>>,
+    /// Rows of [`Joint::all_rows`] that are not imposed, as they follow from those of other joints.
     pub left_out: Vec<ConstraintRow>,
     /// Rows that hold identically in all motions that the bodies' mobility admits, and are not
     /// imposed.
@@ -182,10 +272,26 @@ pub struct Joint<S> {
 }
 
 impl<S> Joint<S> {
+    /// The rows of the kind and of the drives.
+    pub fn all_rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
+        let driven = self.drives.iter().map(|drive| drive.freedom.driven_row());
+        self.kind.rows().iter().copied().chain(driven)
+    }
+
     /// The rows that are imposed.
     pub fn rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
-        let rows = self.kind.rows().iter().copied();
-        rows.filter(|row| !self.left_out.contains(row) && !self.identical.contains(row))
+        let imposed =
+            |row: &ConstraintRow| !self.left_out.contains(row) && !self.identical.contains(row);
+        self.all_rows().filter(imposed)
+    }
+
+    /// Frame axes that both bodies share once the joint is closed.
+    pub fn common_axes(&self) -> &'static [usize] {
+        let turned = |drive: &Drive<S>| drive.freedom == Freedom::Turn;
+        match self.drives.iter().any(turned) {
+            true => &[0, 1, 2],
+            false => self.kind.common_axes(),
+        }
     }
 }
 
@@ -195,14 +301,17 @@ impl<S: Scalar> Joint<S> {
         let mut frame = |frame: &JointFrame<S>| JointFrame {
             point: frame.point.map(&mut *f),
             axes: frame.axes.map(|axis| axis.map(&mut *f)),
+            length: f(frame.length),
         };
+        let (frame_a, frame_b) = (frame(&self.frame_a), frame(&self.frame_b));
         Joint {
             name: self.name.clone(),
             kind: self.kind,
             body_a: self.body_a,
             body_b: self.body_b,
-            frame_a: frame(&self.frame_a),
-            frame_b: frame(&self.frame_b),
+            frame_a,
+            frame_b,
+            drives: self.drives.iter().map(|drive| drive.map(f)).collect(),
             left_out: self.left_out.clone(),
             identical: self.identical.clone(),
         }

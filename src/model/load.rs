@@ -18,6 +18,7 @@
 //! derivatives are in `system::loads`.
 
 use super::course::Course;
+use super::joint::Freedom;
 use crate::math::{Scalar, Vec3};
 
 /// A named load.
@@ -36,15 +37,6 @@ pub enum Axes {
     Ground,
     /// Those of the body that it acts on, which it turns with.
     Body,
-}
-
-/// A motion that a joint allows along or about its axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Freedom {
-    /// Turning about the axis: the rate is φ̇ = e · (ω_A − ω_B).
-    Turn,
-    /// Sliding along the axis: the rate is that of e · (P_A − P_B).
-    Slide,
 }
 
 /// The kinds of load.

@@ -6,14 +6,16 @@
 //! every parameter's place then holds the derivative of a function with respect to it.
 
 pub mod course;
+pub mod drive;
 pub mod joint;
 pub mod load;
 pub mod mobility;
 pub mod rigid_body;
 
 pub use course::Course;
-pub use joint::{ConstraintRow, Joint, JointFrame, JointKind};
-pub use load::{Axes, Freedom, Load, LoadKind};
+pub use drive::{Drive, MotionCourse};
+pub use joint::{ConstraintRow, Freedom, Joint, JointFrame, JointKind};
+pub use load::{Axes, Load, LoadKind};
 pub use mobility::Mobility;
 pub use rigid_body::RigidBody;
 

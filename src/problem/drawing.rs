@@ -150,7 +150,7 @@ fn outline(body: &Body, centre: Vec3<f64>, x: &[f64]) -> Outline {
             )
         }
         Some(Shape::Sphere { radius }) => Outline::Sphere(radius.get(x)),
-        None => Outline::Spokes(
+        Some(Shape::Point) | None => Outline::Spokes(
             body.points
                 .values()
                 .map(|p| vector(p, x) - centre)

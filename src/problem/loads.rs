@@ -3,8 +3,8 @@
 use super::placement::{Assembly, GROUND};
 use super::scene::unit;
 use super::schema::Document;
-use super::schema::loads::{Axes as WrittenAxes, Course as Written, Ends, Load as WrittenLoad};
-use super::schema::mechanics::Joint;
+use super::schema::joints::Joint;
+use super::schema::loads::{Axes as WrittenAxes, Course as Written, Load as WrittenLoad};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, Course, Freedom, JointKind, Load, LoadKind};
 
@@ -54,11 +54,7 @@ fn kind<S: Scalar>(
         WrittenLoad::Spring(spring) => {
             let end = |side: usize| {
                 let name = &spring.between[side];
-                let point = match &spring.at {
-                    Ends::Each(pair) => assembly.in_body(name, [&pair.a, &pair.b][side]),
-                    Ends::Ground(points) => assembly.at_ground(name, &points[side]),
-                };
-                (name, point - assembly.pose(name).centre)
+                (name, assembly.end(&spring.between, &spring.at, side))
             };
             let (a, b) = match spring.between[0] == GROUND {
                 true => (end(1), end(0)),
@@ -142,6 +138,11 @@ pub fn freedom(joint: &Joint) -> Option<Freedom> {
     match joint.kind() {
         JointKind::Revolute => Some(Freedom::Turn),
         JointKind::Prismatic => Some(Freedom::Slide),
-        JointKind::Spherical | JointKind::Planar => None,
+        JointKind::Spherical
+        | JointKind::Planar
+        | JointKind::Cylindrical
+        | JointKind::Universal
+        | JointKind::Rod
+        | JointKind::Weld => None,
     }
 }

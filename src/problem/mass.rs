@@ -55,10 +55,12 @@ pub fn volume<S: Scalar>(shape: &Shape, x: &[S]) -> S {
             let r = radius.get(x);
             r * r * r * (4.0 * PI / 3.0)
         }
+        Shape::Point => S::zero(),
     }
 }
 
-/// Principal moments of inertia per mass of a homogeneous shape about its centre (m²).
+/// Principal moments of inertia per mass of a homogeneous shape about its centre (m²); any that are
+/// regular for a point, as nothing turns it.
 fn gyration<S: Scalar>(shape: &Shape, x: &[S]) -> Vec3<S> {
     let about = |r: S, l: S| (r * r * 0.5, (r * r * 3.0 + l * l) / 12.0);
     match shape {
@@ -78,6 +80,7 @@ fn gyration<S: Scalar>(shape: &Shape, x: &[S]) -> Vec3<S> {
             let (along, across) = about(radius.get(x), length.get(x));
             Vec3::new(along, across, across)
         }
+        Shape::Point => Vec3::repeat(S::one()),
     }
 }
 

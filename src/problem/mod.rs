@@ -7,6 +7,7 @@
 mod check;
 mod drawing;
 mod fault;
+mod joints;
 mod loads;
 mod mass;
 mod overrides;

@@ -3,7 +3,8 @@
 use super::mass::mass_properties;
 use super::quantity::{Quantity, Vector, vector};
 use super::schema::Document;
-use super::schema::mechanics::{Axis, Location, Point};
+use super::schema::joints::{Axis, Ends};
+use super::schema::mechanics::{Location, Point};
 use crate::math::rotation::{Quat, compose, from_axis_angle, matrix};
 use crate::math::{Mat3, Scalar, Vec3};
 
@@ -197,6 +198,16 @@ impl<'a, S: Scalar> Assembly<'a, S> {
     pub fn at_ground(&self, body: &str, point: &Vector) -> Vec3<S> {
         let pose = self.pose(body);
         pose.rotation.tr_mul(&(self.ground(point) - pose.origin))
+    }
+
+    /// An end of a rod or spring on its body (or on ground) from the centre of mass.
+    pub fn end(&self, between: &[String; 2], at: &Ends, side: usize) -> Vec3<S> {
+        let name = &between[side];
+        let point = match at {
+            Ends::Each(pair) => self.in_body(name, [&pair.a, &pair.b][side]),
+            Ends::Ground(points) => self.at_ground(name, &points[side]),
+        };
+        point - self.pose(name).centre
     }
 
     /// A number of the file at this design.

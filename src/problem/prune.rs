@@ -7,10 +7,11 @@ use serde_json::{Map, Value, json};
 use std::collections::HashSet;
 
 /// Sections whose entries have names, and stand or fall each by itself.
-const NAMED: [&str; 6] = [
+const NAMED: [&str; 7] = [
     "bodies",
     "joints",
     "loads",
+    "drives",
     "functions",
     "variables",
     "constraints",

@@ -15,6 +15,7 @@ use super::{Constraint, Objective, OptimiserSettings, Problem, Sense, Simulation
 use crate::integrate::{self, Spacing, Start};
 use crate::lower::{self, Lowering};
 use crate::math::Dual;
+use crate::model::JointKind;
 use crate::optimiser::Method;
 use crate::system::assembly::AssemblyFailure;
 use crate::system::kkt::SaddlePoint;
@@ -96,7 +97,10 @@ pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Pr
                 .into_iter()
                 .map(|joint| joint.left_out)
                 .collect();
-            match collapsed(&problem).or_else(|| unassembled(&problem)) {
+            let finding = collapsed(&problem)
+                .or_else(|| driven_twice(&problem))
+                .or_else(|| unassembled(&problem));
+            match finding {
                 Some(finding) => faults(vec![finding]),
                 None => {
                     problem.lowering = Some(lowering(&problem));
@@ -125,13 +129,37 @@ fn lowering(problem: &Problem) -> Lowering {
     Lowering::find(&real, &dual, &variables)
 }
 
-/// The fault of a spring whose ends meet where the bodies are placed: it has no direction.
+/// The fault of a spring or rod whose ends meet where the bodies are placed: it has no direction.
 fn collapsed(problem: &Problem) -> Option<Finding> {
     let model = problem.scene(&problem.start()).model;
-    let spring = loads::without_length(&model)?;
-    let pointer = join(&join(&join("/loads", spring), "spring"), "at");
+    let rod = (model.joints.iter())
+        .find(|joint| joint.kind == JointKind::Rod && joint.frame_a.length == 0.0)
+        .map(|joint| join(&join(&join("/joints", &joint.name), "rod"), "at"));
+    let spring = || {
+        let spring = loads::without_length(&model)?;
+        Some(join(&join(&join("/loads", spring), "spring"), "at"))
+    };
+    let pointer = rod.or_else(spring)?;
     let expected = "ends that are apart, as a force acts along the line through them";
     Some(Finding::new(pointer, "ends at the same place", expected))
+}
+
+/// The fault of a drive of a motion that other joints and drives prescribe already.
+fn driven_twice(problem: &Problem) -> Option<Finding> {
+    let model = problem.scene(&problem.start()).model;
+    let joint = model.joints.iter().find(|joint| {
+        let mut rows = joint.drives.iter().map(|drive| drive.freedom.driven_row());
+        rows.any(|row| joint.left_out.contains(&row))
+    })?;
+    let drives = &problem.written.drives;
+    let (name, _) = drives.iter().find(|(_, drive)| drive.joint == joint.name)?;
+    let found = format!("the joint \"{}\"", joint.name);
+    let expected = "a joint whose motion the other joints and drives leave free";
+    Some(Finding::new(
+        join(&join("/drives", name), "joint"),
+        found,
+        expected,
+    ))
 }
 
 /// The fault of joints that cannot be closed, or not uniquely, at the design of the file.

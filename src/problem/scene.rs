@@ -1,17 +1,17 @@
 //! The map from a design to a scene, analytic in the design.
 
 use super::mass::mass_properties;
-use super::placement::{Assembly, GROUND, split_location};
+use super::placement::Assembly;
 use super::quantity::{Vector, vector};
 use super::schema::Document;
 use super::schema::functions::{self as written, Function as Written};
-use super::schema::mechanics::{Joint as WrittenJoint, JointPlace, Point};
+use super::schema::mechanics::{Point, Shape};
 use crate::functions::{
     EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Scene, Side,
 };
 use crate::math::scalar::{length, lift3};
 use crate::math::{Scalar, Vec3};
-use crate::model::{Joint, JointFrame, Mobility, Model, RigidBody};
+use crate::model::{Mobility, Model, RigidBody};
 
 /// Gravity where the file gives none (m/s²).
 pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
@@ -24,10 +24,6 @@ pub fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<
         None => lift3(&Vec3::from(GRAVITY)),
     };
     let bodies = (0..document.bodies.len()).map(|index| body(document, &assembly, index, x));
-    let joints = document
-        .joints
-        .iter()
-        .map(|(name, written)| joint(&assembly, name, written));
     let builder = Builder {
         document,
         assembly: &assembly,
@@ -38,7 +34,7 @@ pub fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<
         model: Model {
             gravity,
             bodies: bodies.collect(),
-            joints: joints.collect(),
+            joints: super::joints::joints(document, &assembly),
             loads: super::loads::loads(document, &assembly),
         },
         duration: document.simulation.duration.get(x),
@@ -82,6 +78,10 @@ fn body<S: Scalar>(
         }
         (None, None) => (Vec3::zeros(), Vec3::zeros()),
     };
+    let omega = match &body.shape {
+        Some(Shape::Point) => Vec3::zeros(),
+        _ => omega,
+    };
     RigidBody {
         name: (*name).clone(),
         mass: properties.mass,
@@ -91,57 +91,6 @@ fn body<S: Scalar>(
         velocity,
         angular_velocity: pose.rotation.tr_mul(&omega),
         mobility: Mobility::Spatial,
-    }
-}
-
-/// An orthonormal right-handed triad whose third axis is along `axis`; the first is chosen by the
-/// ground axis that is farthest from it.
-fn triad<S: Scalar>(axis: Vec3<S>) -> [Vec3<S>; 3] {
-    let e3 = unit(axis);
-    let farthest = (0..3)
-        .min_by(|&i, &j| e3[i].re().abs().total_cmp(&e3[j].re().abs()))
-        .expect("a vector has three components");
-    let mut e1 = Vec3::zeros();
-    e1[farthest] = S::one();
-    let e1 = unit(e1 - e3 * e3[farthest]);
-    [e1, e3.cross(&e1), e3]
-}
-
-/// A joint; ground is always body B.
-fn joint<S: Scalar>(assembly: &Assembly<S>, name: &str, written: &WrittenJoint) -> Joint<S> {
-    let (between, place, axis) = written.parts();
-    let triad = match axis {
-        Some(axis) => triad(assembly.axis(axis)),
-        None => triad(Vec3::z()),
-    };
-    let frame = |side: usize| {
-        let body = &between[side];
-        let pose = assembly.pose(body);
-        let point = match place {
-            JointPlace::Named(text) if split_location(text).0 == body => {
-                assembly.named_in_body(text)
-            }
-            JointPlace::Named(text) => pose.rotation.tr_mul(&(assembly.named(text) - pose.origin)),
-            JointPlace::Coordinates(point) => assembly.at_ground(body, point),
-            JointPlace::Each(pair) => assembly.in_body(body, [&pair.a, &pair.b][side]),
-        };
-        JointFrame {
-            point: point - pose.centre,
-            axes: triad.map(|e| pose.rotation.tr_mul(&e)),
-        }
-    };
-    let (a, b) = if between[0] == GROUND { (1, 0) } else { (0, 1) };
-    Joint {
-        name: name.to_owned(),
-        kind: written.kind(),
-        body_a: assembly
-            .index(&between[a])
-            .expect("a joint has at least one body that is not ground"),
-        body_b: assembly.index(&between[b]),
-        frame_a: frame(a),
-        frame_b: frame(b),
-        left_out: Vec::new(),
-        identical: Vec::new(),
     }
 }
 

@@ -79,7 +79,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         joints::gradients(
             self.model,
             self.numbering,
-            &self.motions,
+            (&self.motions, time),
             &mut self.gradients,
         );
     }
@@ -113,7 +113,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         saddle.factorise(
             self.model,
             self.numbering,
-            &self.motions,
+            (&self.motions, self.time),
             zeros,
             mass(self.model),
         )
@@ -180,7 +180,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         let (upper, lower) = rhs.split_at_mut(nv);
         a.fill(S::zero());
         all_force_balances(self.model, self.numbering, &self.motions, a, upper);
-        joints::accelerations(self.model, self.numbering, &self.motions, lower);
+        let at = (&self.motions[..], self.time);
+        joints::accelerations(self.model, self.numbering, at, lower);
         rhs.iter_mut().for_each(|x| *x = -*x);
         let forces = &mut rhs[..nv];
         loads::add_forces(self.model, self.numbering, &self.motions, self.time, forces);
@@ -190,8 +191,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         self.rhs = rhs;
     }
 
-    /// The correction of the velocities that makes G v = 0 in the metric of the mass, and its
-    /// multipliers: M δ + Gᵀσ = 0, G (v + δ) = 0.
+    /// The correction of the velocities that makes G v + Φ_t = 0 in the metric of the mass, and
+    /// its multipliers: M δ + Gᵀσ = 0, G (v + δ) + Φ_t = 0.
     pub fn velocity_correction(&mut self, v: &[S], delta: &mut [S], sigma: &mut [S]) {
         let mut rhs = std::mem::take(&mut self.rhs);
         let nv = self.numbering.velocities();
@@ -203,6 +204,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             v,
             &mut rhs[nv..],
         );
+        let at = (&self.motions[..], self.time);
+        joints::add_driven_rates(self.model, self.numbering, at, &mut rhs[nv..]);
         rhs[nv..].iter_mut().for_each(|x| *x = -*x);
         self.solve(&mut rhs);
         delta.copy_from_slice(&rhs[..nv]);
@@ -212,7 +215,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
 
     /// Constraints Φ where the solver stands.
     pub fn constraints(&self, out: &mut [S]) {
-        joints::values(self.model, self.numbering, &self.motions, out);
+        let at = (&self.motions[..], self.time);
+        joints::values(self.model, self.numbering, at, out);
     }
 
     /// Adds Gᵀ λ to `out`.
@@ -284,15 +288,28 @@ impl Accelerations<'_, f64> {
             model: cot,
         };
         let cotangents = [None, None, Some(&psi[nv..]), Some(lambda)];
-        joints::pull_back(model, numbering, &self.moving, cotangents, &mut out);
+        let at = (&self.moving[..], self.time);
+        by_time += joints::pull_back(model, numbering, at, cotangents, &mut out);
         self.rhs = psi;
         by_time
     }
 
-    /// Pulls λᵀ G(q) w, which is linear in w, back to tangent positions and joint frames.
-    pub fn pull_rate(&self, w: &[f64], lambda: &[f64], y: &mut [f64], cot: &mut Model<f64>) {
+    /// Pulls λᵀ G(q, t) w, which is linear in w, back to tangent positions, the parameters of the
+    /// joints and time (returned).
+    pub fn pull_rate(&self, w: &[f64], lambda: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
+        let moving = self
+            .motions
+            .iter()
+            .enumerate()
+            .map(|(i, motion)| motion.virtually(&w[self.numbering.velocity(i)..]));
+        let moving: Vec<Motion<f64>> = moving.collect();
+        self.pull_joints(&moving, [None, None, None, Some(lambda)], y, cot)
+    }
+
+    /// As [`Accelerations::pull_rate`] for χᵀ (G v + Φ_t) at the velocities v.
+    pub fn pull_rates(&self, v: &[f64], chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
         let moving = self.motions.iter().enumerate().map(|(i, motion)| {
-            let (velocity, omega) = velocities_of(&w[self.numbering.velocity(i)..]);
+            let (velocity, omega) = velocities_of(&v[self.numbering.velocity(i)..]);
             Motion {
                 velocity,
                 omega,
@@ -300,24 +317,27 @@ impl Accelerations<'_, f64> {
             }
         });
         let moving: Vec<Motion<f64>> = moving.collect();
-        let mut out = JointCotangent {
-            y: Some(y),
-            v: None,
-            model: cot,
-        };
-        let cotangents = [None, Some(lambda), None, None];
-        joints::pull_back(self.model, self.numbering, &moving, cotangents, &mut out);
+        self.pull_joints(&moving, [None, Some(chi), None, None], y, cot)
     }
 
-    /// Pulls χᵀ Φ(q) back to tangent positions and joint frames.
-    pub fn pull_constraints(&self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) {
+    /// As [`Accelerations::pull_rate`] for χᵀ Φ(q, t).
+    pub fn pull_constraints(&self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
+        self.pull_joints(&self.motions, [Some(chi), None, None, None], y, cot)
+    }
+
+    fn pull_joints(
+        &self,
+        motions: &[Motion<f64>],
+        cotangents: [Option<&[f64]>; 4],
+        y: &mut [f64],
+        cot: &mut Model<f64>,
+    ) -> f64 {
         let mut out = JointCotangent {
             y: Some(y),
             v: None,
             model: cot,
         };
-        let cotangents = [Some(chi), None, None, None];
-        let motions = &self.motions;
-        joints::pull_back(self.model, self.numbering, motions, cotangents, &mut out);
+        let at = (motions, self.time);
+        joints::pull_back(self.model, self.numbering, at, cotangents, &mut out)
     }
 }

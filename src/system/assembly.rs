@@ -1,11 +1,12 @@
 //! Assembly: the positions nearest to the placement that close every joint,
-//! T(q)ᵀ (q − q_g) + Gᵀ s = 0, Φ(q) = 0, or the joint that cannot be closed.
+//! T(q)ᵀ (q − q_g) + Gᵀ s = 0, Φ(q, 0) = 0, or the joint that cannot be closed.
 
 use super::bodies::{self, Motion, positions_of, tangent_of_cotangent};
 use super::joints;
 use super::kkt::{BodyBlocks, SaddlePoint};
 use super::numbering::Numbering;
 use super::redundancy;
+use super::side::sides;
 use crate::linalg::SolveScalar;
 use crate::math::{Mat3, Scalar, Vec3, rotation};
 use crate::model::Model;
@@ -81,10 +82,10 @@ pub enum AssemblyFailure {
 /// placement.
 pub fn length_scale<S: Scalar>(model: &Model<S>) -> f64 {
     let size = |v: &Vec3<S>| v.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
-    let joints = model
-        .joints
-        .iter()
-        .flat_map(|j| [size(&j.frame_a.point), size(&j.frame_b.point)]);
+    let joints = model.joints.iter().flat_map(|j| {
+        let (a, b) = (&j.frame_a, &j.frame_b);
+        [size(&a.point), size(&b.point), a.length.re().abs()]
+    });
     let bodies = model.bodies.iter().map(|b| size(&b.position));
     let largest = joints.chain(bodies).fold(0.0, f64::max);
     if largest > 0.0 { largest } else { 1.0 }
@@ -113,13 +114,13 @@ pub(super) fn assemble<S: SolveScalar>(
     let mut least = f64::INFINITY;
     for iteration in 0..ITERATIONS {
         Motion::all(numbering, &q, v_guess, &mut motions);
-        joints::values(model, numbering, &motions, &mut phi);
+        joints::values(model, numbering, (&motions, S::zero()), &mut phi);
         let gap = phi.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
         if gap < least {
             least = gap;
             best.clone_from(&phi);
         }
-        joints::gradients(model, numbering, &motions, &mut gradients);
+        joints::gradients(model, numbering, (&motions, S::zero()), &mut gradients);
         let mut rhs = vec![S::zero(); nv];
         let away: Vec<S> = q.iter().zip(q_guess).map(|(&q, &g)| q - g).collect();
         tangent_of_cotangent(numbering, &q, &away, &mut rhs);
@@ -130,7 +131,7 @@ pub(super) fn assemble<S: SolveScalar>(
         }
         let metric = position_metric(model, numbering, &q);
         saddle
-            .factorise(model, numbering, &motions, &s, metric)
+            .factorise(model, numbering, (&motions, S::zero()), &s, metric)
             .map_err(|_| {
                 // Redundant joints seldom meet exactly before they are assembled.
                 let meet = least <= NEARLY_CLOSED * scale && iteration == 0;
@@ -218,7 +219,7 @@ fn check_left_out<S: Scalar>(
     scale: f64,
     iterations: usize,
 ) -> Result<(), AssemblyFailure> {
-    match redundancy::widest(model, motions) {
+    match redundancy::widest(model, (motions, S::zero())) {
         Some(widest) if widest.gap.is_nan() || widest.gap > FOLLOWS * scale.max(1.0) => {
             Err(AssemblyFailure::Open {
                 joint: model.joints[widest.joint].name.clone(),
@@ -235,11 +236,9 @@ fn check_left_out<S: Scalar>(
 fn check_turned<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> Result<(), AssemblyFailure> {
     let ground = Motion::ground();
     for joint in &model.joints {
-        let (a, b) = joints::sides(joint, motions, &ground);
-        for &axis in joint.kind.common_axes() {
-            let in_a = a.motion.rotation * a.frame.axes[axis];
-            let in_b = b.motion.rotation * b.frame.axes[axis];
-            if in_a.dot(&in_b).re() < 0.0 {
+        let (a, b) = sides(joint, motions, &ground, S::zero());
+        for &axis in joint.common_axes() {
+            if a.axis(axis).dot(&b.axis(axis)).re() < 0.0 {
                 return Err(AssemblyFailure::Turned {
                     joint: joint.name.clone(),
                 });

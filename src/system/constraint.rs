@@ -1,4 +1,4 @@
-//! The three constraint rows: value, rate, acceleration bias, Jacobian and pull-back of each.
+//! The constraint rows: value, rate, acceleration bias, Jacobian and pull-back of each.
 //!
 //! A row is a bilinear function of markers (see [`super::marker`]): with d = P_A − P_B the
 //! distance of two points and u, w axes of the two frames (see [`crate::model::joint`]),
@@ -8,43 +8,17 @@
 //! Coincident k     d_k         ḋ_k                  d̈_k
 //! Perpendicular    u · w       u̇ · w + u · ẇ        ü · w + 2 u̇ · ẇ + u · ẅ
 //! Sliding          u · d       u̇ · d + u · ḋ        ü · d + 2 u̇ · ḋ + u · d̈
+//! Distance         ½(d·d/L−L)  d · ḋ / L            (d · d̈ + ḋ · ḋ) / L
 //! ```
 //!
-//! The acceleration term of the index-1 equations is γ = −bias, the bias being Φ̈ at v̇ = 0.
+//! A drive moves the markers on body B (see [`super::side`]): the rate is then G v + Φ_t. The
+//! acceleration term of the index-1 equations is γ = −bias, the bias being Φ̈ at v̇ = 0.
 
-use super::bodies::Motion;
 use super::marker::{self, Jet};
-use crate::math::scalar::skew;
-use crate::math::{Mat3, Scalar, Vec3};
+use super::side::{FrameMotion, Side};
+use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, JointFrame};
-use ConstraintRow::{Coincident, Perpendicular, Sliding};
-
-/// One side of a joint: the body's motion and the joint's frame on it.
-#[derive(Clone, Copy, Debug)]
-pub struct Side<'a, S> {
-    /// Motion of the body (ground at rest if there is none).
-    pub motion: &'a Motion<S>,
-    /// The joint's frame on the body.
-    pub frame: &'a JointFrame<S>,
-}
-
-impl<S: Scalar> Side<'_, S> {
-    fn axis(&self, i: usize) -> Vec3<S> {
-        self.motion.rotation * self.frame.axes[i]
-    }
-
-    fn point(&self) -> Vec3<S> {
-        self.motion.position + self.motion.rotation * self.frame.point
-    }
-
-    fn axis_jet(&self, i: usize) -> Jet<S> {
-        Jet::direction(self.motion, &self.frame.axes[i])
-    }
-
-    fn point_jet(&self) -> Jet<S> {
-        Jet::point(self.motion, &self.frame.point)
-    }
-}
+use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
 /// The markers that the rows of a joint are made of, each in motion once.
 struct Markers<S> {
@@ -70,12 +44,15 @@ impl<S: Scalar> Markers<S> {
         }
     }
 
-    /// The vectors u, w (or d) whose product a row is.
-    fn factors(&self, row: ConstraintRow) -> (Jet<S>, Jet<S>) {
+    /// The vectors u, w whose product, times `scale`, the derivatives of a row are those of;
+    /// `length` is that of the rod.
+    fn factors(&self, row: ConstraintRow, length: S) -> (Jet<S>, Jet<S>, S) {
+        let one = S::one();
         match row {
-            Coincident(k) => (Jet::fixed(unit(k)), self.distance),
-            Perpendicular { a, b } => (self.axes_a[a], self.axes_b[b]),
-            Sliding { a } => (self.axes_a[a], self.distance),
+            Coincident(k) => (Jet::fixed(unit(k)), self.distance, one),
+            Perpendicular { a, b } => (self.axes_a[a], self.axes_b[b], one),
+            Sliding { a } => (self.axes_a[a], self.distance, one),
+            Distance => (self.distance, self.distance, S::from(0.5) / length),
         }
     }
 }
@@ -96,7 +73,7 @@ impl MarkersUsed {
         };
         for row in rows {
             match row {
-                Coincident(_) => used.points = true,
+                Coincident(_) | Distance => used.points = true,
                 Perpendicular { a, b } => {
                     used.axes_a[a] = true;
                     used.axes_b[b] = true;
@@ -123,17 +100,21 @@ pub fn value<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
         Coincident(k) => a.point()[k] - b.point()[k],
         Perpendicular { a: i, b: j } => a.axis(i).dot(&b.axis(j)),
         Sliding { a: i } => a.axis(i).dot(&(a.point() - b.point())),
+        Distance => {
+            let (d, length) = (a.point() - b.point(), a.frame.length);
+            (d.dot(&d) / length - length) * 0.5
+        }
     }
 }
 
-/// Rate G v of a row.
+/// Rate G v + Φ_t of a row.
 pub fn rate<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
     let mut out = [S::zero()];
     rates(std::iter::once(row), a, b, &mut out);
     out[0]
 }
 
-/// Rates G v of the rows of a joint.
+/// Rates G v + Φ_t of the rows of a joint.
 pub fn rates<S: Scalar>(
     rows: impl Iterator<Item = ConstraintRow> + Clone,
     a: &Side<S>,
@@ -142,8 +123,8 @@ pub fn rates<S: Scalar>(
 ) {
     let markers = Markers::of(rows.clone(), a, b);
     for (row, out) in rows.zip(out) {
-        let (u, w) = markers.factors(row);
-        *out = u.rate.dot(&w.x) + u.x.dot(&w.rate);
+        let (u, w, scale) = markers.factors(row, a.frame.length);
+        *out = (u.rate.dot(&w.x) + u.x.dot(&w.rate)) * scale;
     }
 }
 
@@ -157,11 +138,12 @@ pub fn accelerations<S: Scalar>(
 ) {
     let markers = Markers::of(rows.clone(), a, b);
     for (row, out) in rows.zip(out) {
-        let (u, w) = markers.factors(row);
+        let (u, w, scale) = markers.factors(row, a.frame.length);
         *out = match row {
             Coincident(k) => w.acceleration[k],
-            Perpendicular { .. } | Sliding { .. } => {
-                u.acceleration.dot(&w.x) + u.rate.dot(&w.rate) * 2.0 + u.x.dot(&w.acceleration)
+            Perpendicular { .. } | Sliding { .. } | Distance => {
+                let ends = u.acceleration.dot(&w.x) + u.x.dot(&w.acceleration);
+                (ends + u.rate.dot(&w.rate) * 2.0) * scale
             }
         };
     }
@@ -206,84 +188,19 @@ pub fn gradient<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> RowG
                 torque_b: -sb.cross(&rb.tr_mul(&u)),
             }
         }
-    }
-}
-
-/// Derivative of Gᵀλ of one row in the tangent positions (δr_A, δθ_A, δr_B, δθ_B), rows ordered
-/// likewise; 3 × 3 blocks. Blocks that vanish for every row are left out, and the rows of r_B are
-/// the negatives of those of r_A.
-#[derive(Clone, Copy, Debug)]
-pub struct ReactionJacobian<S> {
-    /// (r_A, θ_A).
-    pub force_by_a: Mat3<S>,
-    /// (θ_A, r_A); (θ_A, r_B) is its negative.
-    pub a_by_position: Mat3<S>,
-    /// (θ_A, θ_A).
-    pub a_by_a: Mat3<S>,
-    /// (θ_A, θ_B).
-    pub a_by_b: Mat3<S>,
-    /// (θ_B, θ_A).
-    pub b_by_a: Mat3<S>,
-    /// (θ_B, θ_B).
-    pub b_by_b: Mat3<S>,
-}
-
-impl<S: Scalar> ReactionJacobian<S> {
-    /// All blocks zero.
-    pub fn zero() -> Self {
-        let zero = Mat3::zeros();
-        Self {
-            force_by_a: zero,
-            a_by_position: zero,
-            a_by_a: zero,
-            a_by_b: zero,
-            b_by_a: zero,
-            b_by_b: zero,
-        }
-    }
-}
-
-/// Adds the derivative of λ (row of G)ᵀ to `out`.
-pub fn add_reaction_jacobian<S: Scalar>(
-    row: ConstraintRow,
-    lambda: S,
-    a: &Side<S>,
-    b: &Side<S>,
-    out: &mut ReactionJacobian<S>,
-) {
-    let (ra, rb) = (&a.motion.rotation, &b.motion.rotation);
-    let (sa, sb) = (skew(&a.frame.point), skew(&b.frame.point));
-    match row {
-        Coincident(k) => {
-            let (fa, fb) = (ra.row(k).transpose(), rb.row(k).transpose());
-            out.a_by_a += sa * skew(&fa) * lambda;
-            out.b_by_b -= sb * skew(&fb) * lambda;
-        }
-        Perpendicular { a: i, b: j } => {
-            let (ea, eb) = (skew(&a.frame.axes[i]), skew(&b.frame.axes[j]));
-            let mixed = ea * ra.tr_mul(rb) * eb * lambda;
-            out.a_by_a += ea * skew(&ra.tr_mul(&b.axis(j))) * lambda;
-            out.b_by_b += eb * skew(&rb.tr_mul(&a.axis(i))) * lambda;
-            out.a_by_b -= mixed;
-            out.b_by_a -= mixed.transpose();
-        }
-        Sliding { a: i } => {
-            let e = skew(&a.frame.axes[i]);
-            let u = a.axis(i);
-            let d = a.point() - b.point();
-            let mixed = e * ra.tr_mul(rb) * sb * lambda;
-            out.force_by_a -= ra * e * lambda;
-            out.a_by_position += e * ra.transpose() * lambda;
-            out.a_by_a += e * (skew(&ra.tr_mul(&d)) - sa) * lambda;
-            out.a_by_b += mixed;
-            out.b_by_a += mixed.transpose();
-            out.b_by_b -= sb * skew(&rb.tr_mul(&u)) * lambda;
+        Distance => {
+            let u = (a.point() - b.point()) / a.frame.length;
+            RowGradient {
+                force: u,
+                torque_a: sa.cross(&ra.tr_mul(&u)),
+                torque_b: -sb.cross(&rb.tr_mul(&u)),
+            }
         }
     }
 }
 
 /// Cotangents of one side of a joint.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct SideCotangent<S> {
     /// By the tangent position: δr (ground axes).
     pub position: Vec3<S>,
@@ -295,11 +212,13 @@ pub struct SideCotangent<S> {
     pub omega: Vec3<S>,
     /// By the frame's point and axes.
     pub frame: JointFrame<S>,
+    /// By their motion on the body, if they move.
+    pub moving: Option<Box<FrameMotion<S>>>,
 }
 
 impl<S: Scalar> SideCotangent<S> {
-    /// All cotangents zero.
-    pub fn zero() -> Self {
+    /// All cotangents of a side whose frame does not move zero.
+    pub fn fixed() -> Self {
         let zero = Vec3::zeros();
         Self {
             position: zero,
@@ -307,6 +226,25 @@ impl<S: Scalar> SideCotangent<S> {
             velocity: zero,
             omega: zero,
             frame: JointFrame::zero(),
+            moving: None,
+        }
+    }
+
+    /// Adds another cotangent of a side whose frame does not move.
+    pub fn add(&mut self, other: &Self) {
+        self.position += other.position;
+        self.theta += other.theta;
+        self.velocity += other.velocity;
+        self.omega += other.omega;
+        self.frame.add(&other.frame);
+    }
+
+    /// All cotangents of `side` zero.
+    fn of(side: &Side<S>) -> Self {
+        let moving = side.moving.as_ref();
+        Self {
+            moving: moving.map(|_| Box::new(FrameMotion::zero())),
+            ..Self::fixed()
         }
     }
 }
@@ -324,6 +262,7 @@ pub fn pull_back<S: Scalar>(
     let mut by_distance = Jet::zero();
     let mut by_axes_a = [Jet::zero(); 3];
     let mut by_axes_b = [Jet::zero(); 3];
+    let mut by_length = S::zero();
     for (i, row) in rows.clone().enumerate() {
         let cot = cot(i);
         // Φ = u·w and its time derivatives are symmetric in the two factors.
@@ -351,10 +290,22 @@ pub fn pull_back<S: Scalar>(
                 by_axes_a[i].add(&by(&markers.distance));
                 by_distance.add(&by(&markers.axes_a[i]));
             }
+            Distance => {
+                // d · d / (2 L): both factors are d; Φ alone has the term −L / 2.
+                let length = a.frame.length;
+                let d = &markers.distance;
+                by_distance.add(&by(d).scaled(S::one() / length));
+                let squares = d.x.dot(&d.x) * 0.5 * cot.value
+                    + d.x.dot(&d.rate) * cot.rate
+                    + (d.x.dot(&d.acceleration) + d.rate.dot(&d.rate)) * cot.acceleration
+                    + d.x.dot(&d.virtual_rate) * cot.virtual_rate;
+                by_length -= squares / (length * length) + cot.value * 0.5;
+            }
         }
     }
     let used = MarkersUsed::by(rows);
-    let (mut out_a, mut out_b) = (SideCotangent::zero(), SideCotangent::zero());
+    let (mut out_a, mut out_b) = (SideCotangent::of(a), SideCotangent::of(b));
+    out_a.frame.length = by_length;
     if used.points {
         pull_point(a, &by_distance, &mut out_a);
         pull_point(b, &Jet::zero().minus(&by_distance), &mut out_b);
@@ -383,32 +334,28 @@ pub struct RowCotangent<S> {
     pub virtual_rate: S,
 }
 
-impl<S: Scalar> SideCotangent<S> {
-    /// Adds another cotangent.
-    pub fn add(&mut self, other: &Self) {
-        self.position += other.position;
-        self.theta += other.theta;
-        self.velocity += other.velocity;
-        self.omega += other.omega;
-        self.frame.point += other.frame.point;
-        for (axis, by) in self.frame.axes.iter_mut().zip(&other.frame.axes) {
-            *axis += by;
-        }
-    }
-}
-
 fn pull_axis<S: Scalar>(side: &Side<S>, i: usize, cot: &Jet<S>, out: &mut SideCotangent<S>) {
-    let by = marker::pull_back(side.motion, &side.frame.axes[i], cot);
+    let local = side.moving.as_ref().map(|moving| moving.axis(i));
+    let by = marker::pull_back_moving(side.motion, &side.frame.axes[i], local.as_ref(), cot);
     out.theta += by.theta;
     out.omega += by.omega;
     out.frame.axes[i] += by.vector;
+    if let Some(moving) = &mut out.moving {
+        moving.rate.axes[i] += by.local.rate;
+        moving.acceleration.axes[i] += by.local.acceleration;
+    }
 }
 
 fn pull_point<S: Scalar>(side: &Side<S>, cot: &Jet<S>, out: &mut SideCotangent<S>) {
-    let by = marker::pull_back(side.motion, &side.frame.point, cot);
+    let local = side.moving.as_ref().map(|moving| moving.point());
+    let by = marker::pull_back_moving(side.motion, &side.frame.point, local.as_ref(), cot);
     out.theta += by.theta;
     out.omega += by.omega;
     out.frame.point += by.vector;
     out.position += cot.x;
     out.velocity += cot.rate;
+    if let Some(moving) = &mut out.moving {
+        moving.rate.point += by.local.rate;
+        moving.acceleration.point += by.local.acceleration;
+    }
 }

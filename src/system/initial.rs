@@ -2,8 +2,8 @@
 //! accelerations and multipliers that go with them; forwards, and backwards for the adjoint.
 //!
 //! ```text
-//! positions       T(q)ᵀ (q − q_g) + Gᵀ s = 0,      Φ(q) = 0
-//! velocities      v − v_g + Gᵀ σ = 0,              G v = 0
+//! positions       T(q)ᵀ (q − q_g) + Gᵀ s = 0,      Φ(q, 0) = 0
+//! velocities      v − v_g + Gᵀ σ = 0,              G v + Φ_t = 0
 //! accelerations   M a − f(q, v, 0) + Gᵀ λ = 0,     G a + bias(q, v) = 0
 //! ```
 
@@ -70,10 +70,12 @@ pub fn solve<S: SolveScalar>(
     };
     let singular = |_| super::rank::explain(model, &q);
     saddle
-        .factorise(model, numbering, &motions, &zeros, identity)
+        .factorise(model, numbering, (&motions, S::zero()), &zeros, identity)
         .map_err(singular)?;
+    let mut driven = vec![S::zero(); nc];
+    joints::add_driven_rates(model, numbering, (&motions, S::zero()), &mut driven);
     let mut rhs = v_guess;
-    rhs.resize(nv + nc, S::zero());
+    rhs.extend(driven.into_iter().map(|rate| -rate));
     saddle.solve(&mut rhs);
     let sigma = rhs.split_off(nv);
     let v = rhs;
@@ -93,9 +95,9 @@ pub fn solve<S: SolveScalar>(
         *balance -= force;
     }
     let mut bias = vec![S::zero(); nc];
-    joints::accelerations(model, numbering, &motions, &mut bias);
+    joints::accelerations(model, numbering, (&motions, S::zero()), &mut bias);
     saddle
-        .factorise(model, numbering, &motions, &zeros, mass(model))
+        .factorise(model, numbering, (&motions, S::zero()), &zeros, mass(model))
         .map_err(singular)?;
     let mut rhs: Vec<S> = balance.into_iter().chain(bias).map(|x| -x).collect();
     saddle.solve(&mut rhs);
@@ -153,27 +155,28 @@ pub fn pull_back(
         let chi = psi.split_off(nv);
         (psi, chi)
     };
-    // Pulls λᵀ G(q) w, which is linear in w, back to positions and joint frames.
-    let pull_rate = |w: &[f64], lambda: &[f64], y: &mut [f64], cot: &mut Model<f64>| {
-        let mut at = Vec::new();
-        Motion::all(numbering, &state.q, w, &mut at);
+    // The start is at t = 0 whatever the design, so derivatives by time are of no use.
+    let pull = |motions: &[Motion<f64>],
+                cotangents: [Option<&[f64]>; 4],
+                y: &mut [f64],
+                cot: &mut Model<f64>| {
         let mut out = JointCotangent {
             y: Some(y),
             v: None,
             model: cot,
         };
-        joints::pull_back(
-            model,
-            numbering,
-            &at,
-            [None, Some(lambda), None, None],
-            &mut out,
-        );
+        joints::pull_back(model, numbering, (motions, 0.0), cotangents, &mut out);
+    };
+    // Pulls λᵀ G(q) w, which is linear in w, back to positions and joint frames.
+    let pull_rate = |w: &[f64], lambda: &[f64], y: &mut [f64], cot: &mut Model<f64>| {
+        let at = |(i, motion): (usize, &Motion<f64>)| motion.virtually(&w[numbering.velocity(i)..]);
+        let moving: Vec<Motion<f64>> = motions.iter().enumerate().map(at).collect();
+        pull(&moving, [None, None, None, Some(lambda)], y, cot);
     };
 
     if a_bar.iter().any(|&x| x != 0.0) {
         saddle
-            .factorise(model, numbering, &motions, &zeros, mass(model))
+            .factorise(model, numbering, (&motions, 0.0), &zeros, mass(model))
             .map_err(singular)?;
         let (psi, chi) = transposed(saddle, a_bar);
         for (i, body) in model.bodies.iter().enumerate() {
@@ -197,7 +200,6 @@ pub fn pull_back(
         let mut out = LoadCotangent {
             y: Some(&mut y_bar),
             v: Some(&mut v_bar),
-            // The start is at t = 0 whatever the design.
             time: &mut 0.0,
             model: cot,
         };
@@ -209,13 +211,8 @@ pub fn pull_back(
             v: Some(&mut v_bar),
             model: cot,
         };
-        joints::pull_back(
-            model,
-            numbering,
-            &motions,
-            [None, None, Some(&chi), None],
-            &mut out,
-        );
+        let cotangents = [None, None, Some(&chi[..]), None];
+        joints::pull_back(model, numbering, (&motions, 0.0), cotangents, &mut out);
     }
 
     let identity = |_| BodyBlocks {
@@ -223,32 +220,21 @@ pub fn pull_back(
         angular: Mat3::identity(),
     };
     saddle
-        .factorise(model, numbering, &motions, &zeros, identity)
+        .factorise(model, numbering, (&motions, 0.0), &zeros, identity)
         .map_err(singular)?;
     let (psi, chi) = transposed(saddle, &v_bar);
     pull_rate(&psi, &state.sigma, &mut y_bar, cot);
-    pull_rate(&state.v, &chi, &mut y_bar, cot);
+    pull(&motions, [None, Some(&chi), None, None], &mut y_bar, cot);
     let v_guess_bar: Vec<f64> = psi.iter().map(|x| -x).collect();
 
     let metric = position_metric(model, numbering, &state.q);
     saddle
-        .factorise(model, numbering, &motions, &state.s, metric)
+        .factorise(model, numbering, (&motions, 0.0), &state.s, metric)
         .map_err(singular)?;
     let (psi, chi) = transposed(saddle, &y_bar);
     let mut unused = vec![0.0; nv];
     pull_rate(&psi, &state.s, &mut unused, cot);
-    let mut out = JointCotangent {
-        y: None,
-        v: None,
-        model: cot,
-    };
-    joints::pull_back(
-        model,
-        numbering,
-        &motions,
-        [Some(&chi), None, None, None],
-        &mut out,
-    );
+    pull(&motions, [Some(&chi), None, None, None], &mut unused, cot);
 
     for (i, body) in cot.bodies.iter_mut().enumerate() {
         let o = numbering.velocity(i);

@@ -1,43 +1,27 @@
 //! The joints of a model in motion: constraint vectors, reactions and pull-backs over all rows.
 
 use super::bodies::{Motion, add6, velocities_of};
-use super::constraint::{
-    self, ReactionJacobian, RowCotangent, RowGradient, Side, SideCotangent, gradient,
-};
+use super::constraint::{self, RowCotangent, RowGradient, SideCotangent, gradient};
 use super::numbering::Numbering;
+use super::reaction::{self, ReactionJacobian};
+use super::side::{Side, pull_driven_frame, sides};
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Joint, Model};
 use std::ops::Range;
 
-/// Both sides of a joint; `ground` is the motion of a missing body B.
-pub fn sides<'a, S: Scalar>(
-    joint: &'a Joint<S>,
-    motions: &'a [Motion<S>],
-    ground: &'a Motion<S>,
-) -> (Side<'a, S>, Side<'a, S>) {
-    let motion_b = joint.body_b.map_or(ground, |body| &motions[body]);
-    (
-        Side {
-            motion: &motions[joint.body_a],
-            frame: &joint.frame_a,
-        },
-        Side {
-            motion: motion_b,
-            frame: &joint.frame_b,
-        },
-    )
-}
+/// Most rows of a joint.
+pub const ROWS: usize = 6;
 
 /// Calls `visit(row numbers, joint, side a, side b)` for every joint.
 fn for_each_joint<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
-    motions: &[Motion<S>],
+    (motions, time): (&[Motion<S>], S),
     mut visit: impl FnMut(Range<usize>, &Joint<S>, &Side<S>, &Side<S>),
 ) {
     let ground = Motion::ground();
     for (j, joint) in model.joints.iter().enumerate() {
-        let (a, b) = sides(joint, motions, &ground);
+        let (a, b) = sides(joint, motions, &ground, time);
         visit(numbering.rows(j), joint, &a, &b);
     }
 }
@@ -45,33 +29,33 @@ fn for_each_joint<S: Scalar>(
 /// Calls `visit(joint number, row, side a, side b)` for every row that is left out.
 pub fn for_each_left_out<S: Scalar>(
     model: &Model<S>,
-    motions: &[Motion<S>],
+    (motions, time): (&[Motion<S>], S),
     mut visit: impl FnMut(usize, ConstraintRow, &Side<S>, &Side<S>),
 ) {
     let ground = Motion::ground();
     for (j, joint) in model.joints.iter().enumerate() {
         for &row in &joint.left_out {
-            let (a, b) = sides(joint, motions, &ground);
+            let (a, b) = sides(joint, motions, &ground, time);
             visit(j, row, &a, &b);
         }
     }
 }
 
-/// Constraints Φ(q).
+/// Constraints Φ(q, t); `at` is where the bodies are, and when.
 pub fn values<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
-    motions: &[Motion<S>],
+    at: (&[Motion<S>], S),
     out: &mut [S],
 ) {
-    for_each_joint(model, numbering, motions, |numbers, joint, a, b| {
+    for_each_joint(model, numbering, at, |numbers, joint, a, b| {
         for (out, row) in out[numbers].iter_mut().zip(joint.rows()) {
             *out = constraint::value(row, a, b);
         }
     });
 }
 
-/// Constraint rates G(q) v from the gradients.
+/// Products G(q) v from the gradients.
 pub fn rates_from_gradients<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
@@ -92,16 +76,45 @@ pub fn rates_from_gradients<S: Scalar>(
     }
 }
 
-/// Constraint rates G(q) v.
+/// Constraint rates G(q) v + Φ_t.
 pub fn rates<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
-    motions: &[Motion<S>],
+    at: (&[Motion<S>], S),
     out: &mut [S],
 ) {
-    for_each_joint(model, numbering, motions, |numbers, joint, a, b| {
+    for_each_joint(model, numbering, at, |numbers, joint, a, b| {
         constraint::rates(joint.rows(), a, b, &mut out[numbers]);
     });
+}
+
+/// Adds the rates Φ_t that the drives make to `out`.
+pub fn add_driven_rates<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    (motions, time): (&[Motion<S>], S),
+    out: &mut [S],
+) {
+    let ground = Motion::ground();
+    let held = |motion: &Motion<S>| Motion {
+        velocity: Vec3::zeros(),
+        omega: Vec3::zeros(),
+        ..*motion
+    };
+    for (j, joint) in model.joints.iter().enumerate() {
+        if joint.drives.is_empty() {
+            continue;
+        }
+        let (mut a, mut b) = sides(joint, motions, &ground, time);
+        let (at_a, at_b) = (held(a.motion), held(b.motion));
+        (a.motion, b.motion) = (&at_a, &at_b);
+        let mut rates = [S::zero(); ROWS];
+        let rates = &mut rates[..numbering.rows(j).len()];
+        constraint::rates(joint.rows(), &a, &b, rates);
+        for (out, &rate) in out[numbering.rows(j)].iter_mut().zip(&*rates) {
+            *out += rate;
+        }
+    }
 }
 
 /// Second derivatives Φ̈ at the accelerations of `motions`: the biases −γ of Φ̈ = G v̇ − γ if these
@@ -109,10 +122,10 @@ pub fn rates<S: Scalar>(
 pub fn accelerations<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
-    motions: &[Motion<S>],
+    at: (&[Motion<S>], S),
     out: &mut [S],
 ) {
-    for_each_joint(model, numbering, motions, |numbers, joint, a, b| {
+    for_each_joint(model, numbering, at, |numbers, joint, a, b| {
         constraint::accelerations(joint.rows(), a, b, &mut out[numbers]);
     });
 }
@@ -121,11 +134,11 @@ pub fn accelerations<S: Scalar>(
 pub fn gradients<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
-    motions: &[Motion<S>],
+    at: (&[Motion<S>], S),
     out: &mut Vec<RowGradient<S>>,
 ) {
     out.clear();
-    for_each_joint(model, numbering, motions, |_, joint, a, b| {
+    for_each_joint(model, numbering, at, |_, joint, a, b| {
         out.extend(joint.rows().map(|row| gradient(row, a, b)));
     });
 }
@@ -167,14 +180,14 @@ pub fn add_reactions<S: Scalar>(
 /// Derivative of G(q)ᵀ λ of one joint in the tangent positions of its two bodies.
 pub fn reaction_jacobian<S: Scalar>(
     joint: &Joint<S>,
-    motions: &[Motion<S>],
+    (motions, time): (&[Motion<S>], S),
     lambda: &[S],
 ) -> ReactionJacobian<S> {
     let ground = Motion::ground();
-    let (a, b) = sides(joint, motions, &ground);
+    let (a, b) = sides(joint, motions, &ground, time);
     let mut out = ReactionJacobian::zero();
     for (row, &l) in joint.rows().zip(lambda) {
-        constraint::add_reaction_jacobian(row, l, &a, &b, &mut out);
+        reaction::add_reaction_jacobian(row, l, &a, &b, &mut out);
     }
     out
 }
@@ -200,24 +213,25 @@ pub struct JointCotangent<'a> {
     pub y: Option<&'a mut [f64]>,
     /// Velocities; `None` if not wanted.
     pub v: Option<&'a mut [f64]>,
-    /// Joint frames.
+    /// Parameters of the joints.
     pub model: &'a mut Model<f64>,
 }
 
 /// Pulls cotangents of the values, rates, second derivatives and virtual rates of all rows (in this
-/// order, each optional) back to tangent positions, velocities and joint frames, the accelerations
-/// and virtual velocities held.
+/// order, each optional) back to tangent positions, velocities and the parameters of the
+/// joints, the accelerations and virtual velocities held; returns the derivative by time.
 pub fn pull_back(
     model: &Model<f64>,
     numbering: &Numbering,
-    motions: &[Motion<f64>],
+    (motions, time): (&[Motion<f64>], f64),
     cotangents: [Option<&[f64]>; 4],
     out: &mut JointCotangent,
-) {
+) -> f64 {
     let ground = Motion::ground();
+    let mut by_time = 0.0;
     let at = |which: usize, i: usize| cotangents[which].map_or(0.0, |c| c[i]);
     for (j, joint) in model.joints.iter().enumerate() {
-        let (a, b) = sides(joint, motions, &ground);
+        let (a, b) = sides(joint, motions, &ground, time);
         let first = numbering.rows(j).start;
         let cot = |i: usize| RowCotangent {
             value: at(0, first + i),
@@ -238,14 +252,13 @@ pub fn pull_back(
             }
         }
         let target = &mut out.model.joints[j];
-        for (frame, by) in [
-            (&mut target.frame_a, &by_a.frame),
-            (&mut target.frame_b, &by_b.frame),
-        ] {
-            frame.point += by.point;
-            for k in 0..3 {
-                frame.axes[k] += by.axes[k];
+        target.frame_a.add(&by_a.frame);
+        match &by_b.moving {
+            None => target.frame_b.add(&by_b.frame),
+            Some(motion) => {
+                by_time += pull_driven_frame(joint, time, &by_b.frame, motion, target);
             }
         }
     }
+    by_time
 }

@@ -67,15 +67,16 @@ impl<S: Scalar> Emit<S> for Transposed<'_, S> {
 pub fn emit_reaction_jacobian<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
-    motions: &[Motion<S>],
+    at: (&[Motion<S>], S),
     lambda: &[S],
     (row, column): (usize, usize),
     scale: S,
     emit: &mut dyn Emit<S>,
 ) {
     for (j, joint) in model.joints.iter().enumerate() {
-        let k = joints::reaction_jacobian(joint, motions, &lambda[numbering.rows(j)]);
-        let slides = joint.rows().any(|kind| kind.follows_axis());
+        let k = joints::reaction_jacobian(joint, at, &lambda[numbering.rows(j)]);
+        let slides = joint.rows().any(|kind| kind.depends_on_distance());
+        let stretches = joint.rows().any(|kind| kind.follows_distance());
         let turns = joint.rows().any(|kind| kind.couples_rotations());
         let a = numbering.velocity(joint.body_a);
         let (ra, ca) = (row + a, column + a);
@@ -84,6 +85,9 @@ pub fn emit_reaction_jacobian<S: Scalar>(
             emit.add_block(ra, ca + 3, &(k.force_by_a * scale));
             emit.add_block(ra + 3, ca, &(k.a_by_position * scale));
         }
+        if stretches {
+            emit.add_block(ra, ca, &(k.force_by_position * scale));
+        }
         if let Some(body) = joint.body_b {
             let b = numbering.velocity(body);
             let (rb, cb) = (row + b, column + b);
@@ -91,6 +95,15 @@ pub fn emit_reaction_jacobian<S: Scalar>(
             if slides {
                 emit.add_block(rb, ca + 3, &(k.force_by_a * -scale));
                 emit.add_block(ra + 3, cb, &(k.a_by_position * -scale));
+            }
+            if stretches {
+                emit.add_block(ra, cb, &(k.force_by_position * -scale));
+                emit.add_block(rb, ca, &(k.force_by_position * -scale));
+                emit.add_block(rb, cb, &(k.force_by_position * scale));
+                emit.add_block(ra, cb + 3, &(k.force_by_b * scale));
+                emit.add_block(rb, cb + 3, &(k.force_by_b * -scale));
+                emit.add_block(rb + 3, ca, &(k.b_by_position * scale));
+                emit.add_block(rb + 3, cb, &(k.b_by_position * -scale));
             }
             if turns {
                 emit.add_block(ra + 3, cb + 3, &(k.a_by_b * scale));
@@ -137,7 +150,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
     pub fn new(model: &Model<S>, numbering: &Numbering) -> Self {
         let motions = vec![Motion::ground(); numbering.bodies()];
         let mut gradients = Vec::new();
-        joints::gradients(model, numbering, &motions, &mut gradients);
+        joints::gradients(model, numbering, (&motions, S::zero()), &mut gradients);
         let zeros = vec![S::zero(); numbering.constraints()];
         let order = numbering.unknowns() + numbering.constraints();
         let block = |_| BodyBlocks {
@@ -145,8 +158,9 @@ impl<S: SolveScalar> SaddlePoint<S> {
             angular: Mat3::identity(),
         };
         let pattern = Pattern::record(order, |emit: &mut dyn Emit<S>| {
+            let at = (&motions[..], S::zero());
             emit_reduced(numbering, 1, emit, |emit| {
-                emit_saddle_point(model, numbering, &motions, &gradients, &zeros, block, emit);
+                emit_saddle_point(model, numbering, at, &gradients, &zeros, block, emit);
             });
         });
         let factors = SparseLu::new(&pattern);
@@ -166,23 +180,15 @@ impl<S: SolveScalar> SaddlePoint<S> {
         &mut self,
         model: &Model<S>,
         numbering: &Numbering,
-        motions: &[Motion<S>],
+        at: (&[Motion<S>], S),
         multipliers: &[S],
         block: impl Fn(usize) -> BodyBlocks<S>,
     ) -> Result<(), SingularMatrix> {
         let mut gradients = Vec::with_capacity(numbering.constraints());
-        joints::gradients(model, numbering, motions, &mut gradients);
+        joints::gradients(model, numbering, at, &mut gradients);
         self.matrix.assemble(|emit| {
             emit_reduced(numbering, 1, emit, |emit| {
-                emit_saddle_point(
-                    model,
-                    numbering,
-                    motions,
-                    &gradients,
-                    multipliers,
-                    block,
-                    emit,
-                );
+                emit_saddle_point(model, numbering, at, &gradients, multipliers, block, emit);
             });
         });
         self.factorisations += 1;
@@ -225,28 +231,21 @@ impl<S: SolveScalar> SaddlePoint<S> {
 fn emit_saddle_point<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
-    motions: &[Motion<S>],
+    at: (&[Motion<S>], S),
     gradients: &[RowGradient<S>],
     multipliers: &[S],
     block: impl Fn(usize) -> BodyBlocks<S>,
     emit: &mut dyn Emit<S>,
 ) {
     let n = numbering.velocities();
+    let here = at;
     for body in 0..numbering.bodies() {
         let BodyBlocks { linear, angular } = block(body);
         let at = numbering.velocity(body);
         emit.add_identity(at, at, linear);
         emit.add_block(at + 3, at + 3, &angular);
     }
-    emit_reaction_jacobian(
-        model,
-        numbering,
-        motions,
-        multipliers,
-        (0, 0),
-        S::one(),
-        emit,
-    );
+    emit_reaction_jacobian(model, numbering, here, multipliers, (0, 0), S::one(), emit);
     emit_transposed_gradients(model, numbering, gradients, (0, n), S::one(), emit);
     emit_gradients(model, numbering, gradients, (n, 0), emit);
 }

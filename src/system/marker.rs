@@ -2,8 +2,10 @@
 //! and acceleration, and how cotangents of these come back to the body.
 //!
 //! ```text
-//! u = R e,   u̇ = R (ω × e),   ü = R (α × e + ω × (ω × e))        (P adds r, ṙ, r̈)
+//! u = R e,   u̇ = R (ω × e + ė),   ü = R (α × e + ω × (ω × e) + 2 ω × ė + ë)    (P adds r, ṙ, r̈)
 //! ```
+//!
+//! ė and ë are zero unless the marker moves on its body.
 
 use super::bodies::Motion;
 use crate::math::{Scalar, Vec3};
@@ -19,6 +21,15 @@ pub struct Jet<S> {
     pub acceleration: Vec3<S>,
     /// Rate that the virtual velocities of the motion make.
     pub virtual_rate: Vec3<S>,
+}
+
+/// Motion of a marker's vector on its body, in the body's axes.
+#[derive(Clone, Copy, Debug)]
+pub struct Local<S> {
+    /// ė.
+    pub rate: Vec3<S>,
+    /// ë.
+    pub acceleration: Vec3<S>,
 }
 
 impl<S: Scalar> Jet<S> {
@@ -39,19 +50,29 @@ impl<S: Scalar> Jet<S> {
 
     /// The direction with components `e` in body axes.
     pub fn direction(motion: &Motion<S>, e: &Vec3<S>) -> Self {
-        let (r, w) = (&motion.rotation, &motion.omega);
-        let turned = w.cross(e);
-        Jet {
-            x: r * e,
-            rate: r * turned,
-            acceleration: r * (w.cross(&turned) + motion.alpha.cross(e)),
-            virtual_rate: r * motion.virtual_omega.cross(e),
-        }
+        Self::moving_direction(motion, e, None)
     }
 
     /// The point at `s` from the centre of mass, in body axes.
     pub fn point(motion: &Motion<S>, s: &Vec3<S>) -> Self {
-        let mut jet = Self::direction(motion, s);
+        Self::moving_point(motion, s, None)
+    }
+
+    /// The direction with components `e` in body axes, which may move on the body.
+    pub fn moving_direction(motion: &Motion<S>, e: &Vec3<S>, local: Option<&Local<S>>) -> Self {
+        let (r, w) = (&motion.rotation, &motion.omega);
+        let (rate, acceleration) = derivatives(motion, e, local);
+        Jet {
+            x: r * e,
+            rate: r * rate,
+            acceleration: r * (w.cross(&rate) + acceleration),
+            virtual_rate: r * motion.virtual_omega.cross(e),
+        }
+    }
+
+    /// The point at `s` from the centre of mass, in body axes, which may move on the body.
+    pub fn moving_point(motion: &Motion<S>, s: &Vec3<S>, local: Option<&Local<S>>) -> Self {
+        let mut jet = Self::moving_direction(motion, s, local);
         jet.x += motion.position;
         jet.rate += motion.velocity;
         jet.acceleration += motion.acceleration;
@@ -69,6 +90,16 @@ impl<S: Scalar> Jet<S> {
         }
     }
 
+    /// The jet times a number.
+    pub fn scaled(&self, scale: S) -> Self {
+        Jet {
+            x: self.x * scale,
+            rate: self.rate * scale,
+            acceleration: self.acceleration * scale,
+            virtual_rate: self.virtual_rate * scale,
+        }
+    }
+
     /// Adds another jet.
     pub fn add(&mut self, other: &Self) {
         self.x += other.x;
@@ -76,6 +107,21 @@ impl<S: Scalar> Jet<S> {
         self.acceleration += other.acceleration;
         self.virtual_rate += other.virtual_rate;
     }
+}
+
+/// In body axes: ω × e + ė, and what ω × (that) lacks of the second derivative,
+/// α × e + ω × ė + ë.
+fn derivatives<S: Scalar>(
+    motion: &Motion<S>,
+    e: &Vec3<S>,
+    local: Option<&Local<S>>,
+) -> (Vec3<S>, Vec3<S>) {
+    let (mut rate, mut acceleration) = (motion.omega.cross(e), motion.alpha.cross(e));
+    if let Some(local) = local {
+        rate += local.rate;
+        acceleration += motion.omega.cross(&local.rate) + local.acceleration;
+    }
+    (rate, acceleration)
 }
 
 /// Cotangents that a marker's jet leaves on its body (for a point, those of r, ṙ and r̈ are the
@@ -88,29 +134,49 @@ pub struct MarkerCotangent<S> {
     pub omega: Vec3<S>,
     /// By the angular acceleration α.
     pub alpha: Vec3<S>,
-    /// By the marker's constant vector in body axes.
+    /// By the marker's vector in body axes.
     pub vector: Vec3<S>,
+    /// By the motion of that vector on the body.
+    pub local: Local<S>,
 }
 
 /// Pulls the cotangent of a jet back: the transposed derivative of [`Jet::direction`], the virtual
 /// velocities held.
 pub fn pull_back<S: Scalar>(motion: &Motion<S>, e: &Vec3<S>, cot: &Jet<S>) -> MarkerCotangent<S> {
+    pull_back_moving(motion, e, None, cot)
+}
+
+/// As [`pull_back`] for a marker that moves on its body.
+pub fn pull_back_moving<S: Scalar>(
+    motion: &Motion<S>,
+    e: &Vec3<S>,
+    local: Option<&Local<S>>,
+    cot: &Jet<S>,
+) -> MarkerCotangent<S> {
     let (r, w) = (&motion.rotation, &motion.omega);
     let (x, rate) = (r.tr_mul(&cot.x), r.tr_mul(&cot.rate));
     let second = r.tr_mul(&cot.acceleration);
     let virtually = r.tr_mul(&cot.virtual_rate);
-    let turned = w.cross(e);
-    let by_turned = rate + second.cross(w);
+    let (first, rest) = derivatives(motion, e, local);
+    let by_first = rate + second.cross(w);
+    let mut omega = e.cross(&by_first) + first.cross(&second);
+    if let Some(local) = local {
+        omega += local.rate.cross(&second);
+    }
     MarkerCotangent {
         theta: e.cross(&x)
-            + turned.cross(&rate)
-            + (w.cross(&turned) + motion.alpha.cross(e)).cross(&second)
+            + first.cross(&rate)
+            + (w.cross(&first) + rest).cross(&second)
             + motion.virtual_omega.cross(e).cross(&virtually),
-        omega: e.cross(&by_turned) + turned.cross(&second),
+        omega,
         alpha: e.cross(&second),
         vector: x
-            + by_turned.cross(w)
+            + by_first.cross(w)
             + second.cross(&motion.alpha)
             + virtually.cross(&motion.virtual_omega),
+        local: Local {
+            rate: by_first + second.cross(w),
+            acceleration: second,
+        },
     }
 }

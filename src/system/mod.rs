@@ -18,8 +18,10 @@ pub mod marker;
 pub mod numbering;
 pub mod observe;
 pub mod rank;
+pub mod reaction;
 pub mod reduce;
 pub mod redundancy;
+pub mod side;
 pub mod tree;
 
 pub use bodies::Motion;

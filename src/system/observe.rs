@@ -6,6 +6,7 @@ use super::joints;
 use super::loads;
 use super::numbering::Numbering;
 use super::redundancy::smallest_multipliers;
+use super::side::sides;
 use crate::math::Vec3;
 use crate::model::Model;
 
@@ -22,7 +23,7 @@ pub struct Observation {
     pub angular_momentum: Vec3<f64>,
     /// Largest |Φ|, rows that are left out included (m or 1).
     pub position_drift: f64,
-    /// Largest |G v| likewise (m/s or 1/s).
+    /// Largest |G v + Φ_t| likewise (m/s or 1/s).
     pub velocity_drift: f64,
 }
 
@@ -39,8 +40,13 @@ pub struct Reaction {
     pub torque_ground: Vec3<f64>,
 }
 
-/// Observes the state (q, v).
-pub fn observe(model: &Model<f64>, numbering: &Numbering, q: &[f64], v: &[f64]) -> Observation {
+/// Observes the state (q, v) at `time` (s).
+pub fn observe(
+    model: &Model<f64>,
+    numbering: &Numbering,
+    (q, v): (&[f64], &[f64]),
+    time: f64,
+) -> Observation {
     let mut motions = Vec::new();
     Motion::all(numbering, q, v, &mut motions);
     let mut seen = Observation {
@@ -61,11 +67,11 @@ pub fn observe(model: &Model<f64>, numbering: &Numbering, q: &[f64], v: &[f64]) 
     }
     seen.potential += loads::potential(model, &motions);
     let mut rows = vec![0.0; numbering.constraints()];
-    joints::values(model, numbering, &motions, &mut rows);
+    joints::values(model, numbering, (&motions, time), &mut rows);
     seen.position_drift = largest(&rows);
-    joints::rates(model, numbering, &motions, &mut rows);
+    joints::rates(model, numbering, (&motions, time), &mut rows);
     seen.velocity_drift = largest(&rows);
-    joints::for_each_left_out(model, &motions, |_, row, a, b| {
+    joints::for_each_left_out(model, (&motions, time), |_, row, a, b| {
         let (value, rate) = (constraint::value(row, a, b), constraint::rate(row, a, b));
         seen.position_drift = largest(&[seen.position_drift, value]);
         seen.velocity_drift = largest(&[seen.velocity_drift, rate]);
@@ -81,15 +87,15 @@ fn largest(x: &[f64]) -> f64 {
     )
 }
 
-/// Reactions of all joints in the state (q, λ), from −Gᵀλ.
+/// Reactions of all joints in the state (q, λ) at `time` (s), from −Gᵀλ.
 ///
 /// Where rows are left out, as they follow from others, reactions are not unique: these are those
 /// of the smallest multipliers over all rows that move the bodies in the same way.
 pub fn reactions(
     model: &Model<f64>,
     numbering: &Numbering,
-    q: &[f64],
-    lambda: &[f64],
+    (q, lambda): (&[f64], &[f64]),
+    time: f64,
 ) -> Vec<Reaction> {
     let at_rest = vec![0.0; numbering.velocities()];
     let mut motions = Vec::new();
@@ -102,22 +108,22 @@ pub fn reactions(
         let mut spread = Vec::new();
         for (j, joint) in model.joints.iter_mut().enumerate() {
             let mut imposed = lambda[numbering.rows(j)].iter();
-            let rows = joint.kind.rows().iter();
-            spread.extend(rows.map(|row| match joint.left_out.contains(row) {
+            let rows = joint.all_rows();
+            spread.extend(rows.map(|row| match joint.left_out.contains(&row) {
                 true => 0.0,
                 false => *imposed.next().expect("an imposed row has a multiplier"),
             }));
             joint.left_out.clear();
         }
         complete = Numbering::new(&model);
-        let lambda = smallest_multipliers(&model, &complete, &motions, &spread);
+        let lambda = smallest_multipliers(&model, &complete, (&motions, time), &spread);
         (lambda, &complete)
     };
     let ground = Motion::ground();
     let reaction = |(j, joint): (usize, &crate::model::Joint<f64>)| {
-        let (a, b) = joints::sides(joint, &motions, &ground);
+        let (a, b) = sides(joint, &motions, &ground, time);
         let mut total = [0.0; 6];
-        for (&row, &l) in joint.kind.rows().iter().zip(&lambda[all_rows.rows(j)]) {
+        for (row, &l) in joint.all_rows().zip(&lambda[all_rows.rows(j)]) {
             let g = gradient(row, &a, &b);
             add6(&mut total, &(g.force * -l), &(g.torque_a * -l));
         }

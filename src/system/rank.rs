@@ -19,7 +19,7 @@ pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     let at_rest = vec![S::zero(); numbering.velocities()];
     Motion::all(&numbering, q, &at_rest, &mut motions);
     let mut gradients = Vec::new();
-    joints::gradients(model, &numbering, &motions, &mut gradients);
+    joints::gradients(model, &numbering, (&motions, S::zero()), &mut gradients);
     let mut g = DMatrix::<f64>::zeros(numbering.constraints(), numbering.velocities());
     for (j, joint) in model.joints.iter().enumerate() {
         for i in numbering.rows(j) {

@@ -77,11 +77,12 @@ pub fn leave_out(model: &mut Model<f64>) -> Vec<Redundancy> {
         let rows: Vec<ConstraintRow> = joint.rows().collect();
         let out = rows.iter().zip(&mut kept).filter(|(_, kept)| !kept);
         joint.left_out = out.map(|(row, _)| *row).collect();
+        let rows = joint.all_rows().count();
         if !joint.left_out.is_empty() {
             found.push(Redundancy {
                 joint: joint.name.clone(),
                 left_out: joint.left_out.len(),
-                rows: rows.len(),
+                rows,
             });
         }
     }
@@ -176,7 +177,7 @@ impl<'a> Rows<'a> {
     fn gradients(&self, q: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
         let motions = self.motions(q);
         let mut all = Vec::new();
-        joints::gradients(self.model, &self.numbering, &motions, &mut all);
+        joints::gradients(self.model, &self.numbering, (&motions, 0.0), &mut all);
         let count = self.numbers().count();
         let mut g = DMatrix::zeros(self.numbering.velocities(), count);
         let mut i = 0;
@@ -216,7 +217,8 @@ impl<'a> Rows<'a> {
         let mut values = vec![0.0; self.numbering.constraints()];
         let mut closed_before = false;
         for _ in 0..ITERATIONS {
-            joints::values(self.model, &self.numbering, &self.motions(&q), &mut values);
+            let motions = self.motions(&q);
+            joints::values(self.model, &self.numbering, (&motions, 0.0), &mut values);
             let gap = self.numbers().fold(0.0_f64, |m, i| m.max(values[i].abs()));
             let closed = gap <= CLOSED * self.length.max(1.0);
             if closed && closed_before {
@@ -317,9 +319,9 @@ pub struct Widest {
 }
 
 /// The row that is open most among those that are left out; `None` if none is left out.
-pub fn widest<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> Option<Widest> {
+pub fn widest<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Widest> {
     let mut widest: Option<Widest> = None;
-    joints::for_each_left_out(model, motions, |joint, row, a, b| {
+    joints::for_each_left_out(model, at, |joint, row, a, b| {
         let gap = constraint::value(row, a, b).re().abs();
         if widest.is_none_or(|most| gap > most.gap || gap.is_nan()) {
             widest = Some(Widest { joint, row, gap });
@@ -329,7 +331,12 @@ pub fn widest<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> Option<Wide
 }
 
 /// The row that is open by more than [`OPENED`] of the model's length scale at q, if one is.
-pub fn opened<S: Scalar>(model: &Model<S>, numbering: &Numbering, q: &[S]) -> Option<Widest> {
+pub fn opened<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    q: &[S],
+    time: S,
+) -> Option<Widest> {
     if model.joints.iter().all(|joint| joint.left_out.is_empty()) {
         return None;
     }
@@ -337,7 +344,7 @@ pub fn opened<S: Scalar>(model: &Model<S>, numbering: &Numbering, q: &[S]) -> Op
     let at_rest = vec![S::zero(); numbering.velocities()];
     Motion::all(numbering, q, &at_rest, &mut motions);
     let limit = OPENED * length_scale(model);
-    widest(model, &motions).filter(|widest| widest.gap.is_nan() || widest.gap > limit)
+    widest(model, (&motions, time)).filter(|widest| widest.gap.is_nan() || widest.gap > limit)
 }
 
 /// The multipliers of all rows, those left out included, with the smallest sum of squares that act
@@ -345,15 +352,15 @@ pub fn opened<S: Scalar>(model: &Model<S>, numbering: &Numbering, q: &[S]) -> Op
 /// equations (Björck 1996, *Numerical Methods for Least Squares Problems*, algorithm 7.4.1).
 ///
 /// Each joint's rows follow each other in the order of its kind. `model` has all rows imposed,
-/// `numbering` numbers them and `motions` is where it is.
+/// `numbering` numbers them and `at` is where it is, and when.
 pub fn smallest_multipliers(
     model: &Model<f64>,
     numbering: &Numbering,
-    motions: &[Motion<f64>],
+    at: (&[Motion<f64>], f64),
     lambda: &[f64],
 ) -> Vec<f64> {
     let mut gradients = Vec::new();
-    joints::gradients(model, numbering, motions, &mut gradients);
+    joints::gradients(model, numbering, at, &mut gradients);
     let transposed = |x: &[f64]| {
         let mut out = vec![0.0; numbering.velocities()];
         joints::add_reactions(model, numbering, &gradients, x, &mut out);

@@ -3,7 +3,7 @@
 use super::models::{KINDS, Numbers, axes_along, joint};
 use flexbody::math::scalar::COMPLEX_STEP;
 use flexbody::math::{Complex64, Scalar};
-use flexbody::model::{JointKind, Model};
+use flexbody::model::{Drive, Freedom, JointKind, Model, MotionCourse};
 use flexbody::system::bodies::{Motion, rates};
 use flexbody::system::{Numbering, initial, joints};
 
@@ -17,13 +17,20 @@ pub struct Case {
     pub numbers: Numbers,
 }
 
-/// Every kind of joint between two bodies and to ground, at two random states.
+/// When the cases are looked at (s).
+pub const TIME: f64 = 0.3;
+
+/// Every kind of joint between two bodies and to ground, at two random states, without drives and
+/// with all that it can have.
 pub fn cases() -> Vec<Case> {
     let mut all = Vec::new();
     for kind in KINDS {
         for body_b in [Some(0), None] {
             for seed in [3, 4] {
                 all.push(case(kind, body_b, seed));
+                if !kind.freedoms().is_empty() {
+                    all.push(driven(case(kind, body_b, seed + 10)));
+                }
             }
         }
     }
@@ -54,6 +61,33 @@ pub fn case(kind: JointKind, body_b: Option<usize>, seed: u64) -> Case {
     }
 }
 
+/// The case with its joint driven along and about its axis, by courses of all kinds.
+fn driven(mut case: Case) -> Case {
+    let joint = &mut case.model.joints[0];
+    let course = |freedom: Freedom| match (joint.kind, freedom) {
+        (JointKind::Planar, _) => MotionCourse::Table {
+            times: vec![0.0, 0.1, 0.25, 0.4, 0.6],
+            values: vec![0.1, 0.2, -0.3, 0.4, 0.2],
+        },
+        (_, Freedom::Slide) => MotionCourse::Harmonic {
+            mean: 0.1,
+            amplitude: 0.4,
+            frequency: 0.7,
+            phase: 0.2,
+        },
+        (_, Freedom::Turn) => MotionCourse::Polynomial(vec![0.2, 1.3, -0.7, 0.4]),
+    };
+    let drive = |&freedom: &Freedom| Drive {
+        freedom,
+        course: course(freedom),
+    };
+    let drives = joint.kind.freedoms().iter().map(drive).collect();
+    joint.drives = drives;
+    case.name += " driven";
+    case.numbering = Numbering::new(&case.model);
+    case
+}
+
 impl Case {
     /// Puts the joint at a random place with a random axis, closed.
     pub fn close_joint(&mut self) {
@@ -61,7 +95,9 @@ impl Case {
         let at = (joint.name.as_str(), joint.kind);
         let between = (joint.body_a, joint.body_b);
         let (point, axis) = (self.numbers.vector(), self.numbers.vector());
-        self.model.joints[0] = super::models::joint(&self.model.bodies, at, between, &point, &axis);
+        let mut closed = super::models::joint(&self.model.bodies, at, between, &point, &axis);
+        closed.drives.clone_from(&joint.drives);
+        self.model.joints[0] = closed;
     }
 
     /// Asserts the tolerance for a list of derivatives.
@@ -97,12 +133,24 @@ impl Case {
         q: &[Complex64],
         v: &[Complex64],
     ) -> Vec<f64> {
+        self.constraints_at(model, q, v, TIME.into())
+    }
+
+    /// The same at another time.
+    pub fn constraints_at(
+        &self,
+        model: &Model<Complex64>,
+        q: &[Complex64],
+        v: &[Complex64],
+        time: Complex64,
+    ) -> Vec<f64> {
         let (numbering, motions) = (&self.numbering, self.motions(q, v));
+        let at = (&motions[..], time);
         let rows = numbering.constraints();
         let mut all = vec![Complex64::from(0.0); 3 * rows];
-        joints::values(model, numbering, &motions, &mut all[..rows]);
-        joints::rates(model, numbering, &motions, &mut all[rows..2 * rows]);
-        joints::accelerations(model, numbering, &motions, &mut all[2 * rows..]);
+        joints::values(model, numbering, at, &mut all[..rows]);
+        joints::rates(model, numbering, at, &mut all[rows..2 * rows]);
+        joints::accelerations(model, numbering, at, &mut all[2 * rows..]);
         slopes(&all)
     }
 
@@ -115,7 +163,8 @@ impl Case {
         let at_rest = vec![S::zero(); self.v.len()];
         let mut gradients = Vec::new();
         let motions = self.motions(q, &at_rest);
-        joints::gradients(model, &self.numbering, &motions, &mut gradients);
+        let at = (&motions[..], S::from(TIME));
+        joints::gradients(model, &self.numbering, at, &mut gradients);
         let mut out = at_rest;
         joints::add_reactions(model, &self.numbering, &gradients, lambda, &mut out);
         out

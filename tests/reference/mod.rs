@@ -192,7 +192,7 @@ pub fn reaction_error(model: &Model<f64>, run: &Trajectory<f64>, reference: &[In
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
     for (k, at) in common(run, reference) {
         let lambda = multipliers(model, run, k);
-        let found = reactions(model, &run.numbering, run.q(k), &lambda);
+        let found = reactions(model, &run.numbering, (run.q(k), &lambda), run.time(k));
         for (joint, found) in model.joints.iter().zip(&found) {
             let expected = &at.value["reactions"][&joint.name];
             for (key, found) in [

@@ -4,11 +4,15 @@ use flexbody::math::{Mat3, Vec3, rotation};
 use flexbody::model::{Joint, JointFrame, JointKind, Mobility, Model, RigidBody};
 
 /// All kinds of joint.
-pub const KINDS: [JointKind; 4] = [
+pub const KINDS: [JointKind; 8] = [
     JointKind::Spherical,
     JointKind::Revolute,
     JointKind::Prismatic,
     JointKind::Planar,
+    JointKind::Cylindrical,
+    JointKind::Universal,
+    JointKind::Rod,
+    JointKind::Weld,
 ];
 
 /// Pseudo-random numbers that are the same in every run (Steele, Lea & Flood 2014, SplitMix64).
@@ -65,7 +69,7 @@ pub fn axes_along(axis: &Vec3<f64>) -> [Vec3<f64>; 3] {
 }
 
 /// A joint at a ground point and along a ground axis, closed where the bodies are placed;
-/// `None` is ground.
+/// `None` is ground. A rod is 0.75 m long and ends at the point.
 pub fn joint(
     bodies: &[RigidBody<f64>],
     (name, kind): (&str, JointKind),
@@ -79,20 +83,28 @@ pub fn joint(
         JointFrame {
             point: r.tr_mul(&(point - bodies[body].position)),
             axes: axes.map(|e| r.tr_mul(&e)),
+            length: 0.0,
         }
     };
+    let mut frame_a = on(body_a);
+    if kind == JointKind::Rod {
+        frame_a.point += Vec3::new(0.25, 0.5, -0.5);
+        frame_a.length = 0.75;
+    }
     Joint {
+        drives: Vec::new(),
         left_out: Vec::new(),
         identical: Vec::new(),
         name: name.into(),
         kind,
         body_a,
         body_b,
-        frame_a: on(body_a),
+        frame_a,
         frame_b: body_b.map_or(
             JointFrame {
                 point: *point,
                 axes,
+                length: 0.0,
             },
             on,
         ),

@@ -95,7 +95,7 @@ pub(super) fn gradients(
         field.factorise().map_err(singular)?;
         for sweep in &mut sweeps {
             sweep.node(&mut field, to, end);
-            projection::pull_back(sweep, &mut field, data, to, &mut scratch);
+            projection::pull_back(sweep, &mut field, data, to, (&mut scratch, end));
             sweep.end(h, run.grid.width(n), data);
         }
         for i in (1..STAGES).rev() {

@@ -12,24 +12,30 @@ use crate::system::bodies::{self, positions_of, velocities_of};
 const REFINEMENTS: usize = 40;
 
 /// Pulls the cotangents of the projected state (`sweep.of`) back to the state before the
-/// projection; `field` stands at the projected state and is factorised. `scratch` receives
-/// derivatives that are of no use.
+/// projection; `field` stands at the projected state, at the `fraction` of the duration, and is
+/// factorised. `scratch` receives derivatives that are of no use.
 pub(super) fn pull_back(
     sweep: &mut Sweep,
     field: &mut Accelerations<f64>,
     data: &StepData<f64>,
     to: &Node<f64>,
-    scratch: &mut Model<f64>,
+    (scratch, fraction): (&mut Model<f64>, f64),
 ) {
     let numbering = field.numbering;
     let nv = to.v.len();
     let nq = to.q.len();
-    let Sensitivity { q, v, cot, .. } = &mut sweep.of;
+    let Sensitivity {
+        q,
+        v,
+        cot,
+        by_duration,
+        ..
+    } = &mut sweep.of;
     let cot = &mut cot.model;
     let mut y = vec![0.0; nv];
     bodies::tangent_of_cotangent(numbering, &to.q, &q.value, &mut y);
 
-    // M δ + Gᵀσ = 0, G (v~ + δ) = 0: the cotangent loses its part Gᵀχ, which is as small as the
+    // M δ + Gᵀσ = 0, G (v~ + δ) + Φ_t = 0: the cotangent loses its part Gᵀχ, which is as small as the
     // step.
     let mut psi = v.value.clone();
     psi.resize(nv + to.lambda.len(), 0.0);
@@ -46,11 +52,11 @@ pub(super) fn pull_back(
         body.inertia += psi_theta * d_theta.transpose();
     }
     let mut more = vec![0.0; nv];
-    field.pull_rate(&psi[..nv], &data.sigma, &mut more, cot);
-    field.pull_rate(&to.v, &psi[nv..], &mut more, cot);
+    let mut by_time = field.pull_rate(&psi[..nv], &data.sigma, &mut more, cot);
+    by_time += field.pull_rates(&to.v, &psi[nv..], &mut more, cot);
     y.iter_mut().zip(&more).for_each(|(y, &m)| *y += m);
 
-    // M T⁺ (q − q~) + Gᵀs = 0, Φ(q) = 0: its matrix differs from the factorised one by terms X of
+    // M T⁺ (q − q~) + Gᵀs = 0, Φ(q, t) = 0: its matrix differs from the factorised one by terms X of
     // the size of the correction, which iterative refinement takes in.
     let mut psi = y;
     psi.resize(nv + to.lambda.len(), 0.0);
@@ -81,8 +87,9 @@ pub(super) fn pull_back(
     psi.iter_mut().for_each(|x| *x = -*x);
     field.add_reactions(&psi[nv..], &mut more);
     let mut unused = vec![0.0; nv];
-    field.pull_rate(&psi[..nv], &data.s, &mut unused, cot);
-    field.pull_constraints(&psi[nv..], &mut unused, cot);
+    by_time += field.pull_rate(&psi[..nv], &data.s, &mut unused, cot);
+    by_time += field.pull_constraints(&psi[nv..], &mut unused, cot);
+    *by_duration += fraction * by_time;
     let mut change = vec![0.0; nq];
     bodies::rates_cotangent(numbering, &to.q, &more, &mut change);
     for i in 0..numbering.bodies() {

@@ -128,7 +128,7 @@ impl<'a> Bench<'a> {
         let model = self.problem.unlowered_scene(self.x).model;
         let numbering = Numbering::new(&model);
         let observations = (0..=run.last())
-            .map(|k| observe(&model, &numbering, run.q(k), run.v(k)))
+            .map(|k| observe(&model, &numbering, (run.q(k), run.v(k)), run.time(k)))
             .collect();
         let seen = Simulation {
             at: self.at(run),

@@ -3,8 +3,8 @@
 //! ```text
 //! F1 = P(q) q̇ − v + Gᵀ μ            P(q) q̇ = (ṙ, 2 L(p) ṗ) per body
 //! F2 = M v̇ − f(q, v, t) + Gᵀ λ
-//! F3 = Φ(q)
-//! F4 = G(q) v
+//! F3 = Φ(q, t)
+//! F4 = G(q, t) v + Φ_t
 //! ```
 //!
 //! (Gear, Leimkuhler & Gupta 1985.) The unknowns are the tangent positions y, v, λ and μ, in this
@@ -21,6 +21,7 @@ use crate::system::joints::{self, JointCotangent};
 use crate::system::kkt::{emit_gradients, emit_reaction_jacobian, emit_transposed_gradients};
 use crate::system::loads::{self, LoadCotangent};
 use crate::system::reduce;
+use crate::system::side::sides;
 use crate::system::{Numbering, joints::rate_by_position};
 
 /// Positions and velocities are the parts of a residual that are in velocity numbering.
@@ -107,7 +108,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         joints::gradients(
             self.model,
             self.numbering,
-            &self.motions,
+            (&self.motions, at.time),
             &mut self.gradients,
         );
     }
@@ -132,8 +133,10 @@ impl<'a, S: Scalar> Equations<'a, S> {
         for (f, &load) in out2.iter_mut().zip(&self.loads) {
             *f -= load;
         }
-        joints::values(model, numbering, &self.motions, out3);
+        let here = (&self.motions[..], at.time);
+        joints::values(model, numbering, here, out3);
         joints::rates_from_gradients(model, numbering, &self.gradients, at.v, out4);
+        joints::add_driven_rates(model, numbering, here, out4);
         let scaled: [(&mut [S], S); 3] = [(out1, h), (out2, h * h), (out4, h)];
         for (rows, scale) in scaled {
             for f in rows {
@@ -168,8 +171,9 @@ impl<'a, S: Scalar> Equations<'a, S> {
         bodies::emit_force_balance(model, numbering, motions, (f2, v), (c, h), emit);
         let scales = (h * h, h);
         loads::emit_jacobian(model, numbering, motions, at.time, (f2, y, v), scales, emit);
-        emit_reaction_jacobian(model, numbering, motions, at.mu, (f1, y), h, emit);
-        emit_reaction_jacobian(model, numbering, motions, at.lambda, (f2, y), h * h, emit);
+        let here = (&motions[..], at.time);
+        emit_reaction_jacobian(model, numbering, here, at.mu, (f1, y), h, emit);
+        emit_reaction_jacobian(model, numbering, here, at.lambda, (f2, y), h * h, emit);
         let one = S::one();
         emit_transposed_gradients(model, numbering, &self.gradients, (f1, mu), one, emit);
         emit_transposed_gradients(model, numbering, &self.gradients, (f2, lambda), one, emit);
@@ -178,13 +182,13 @@ impl<'a, S: Scalar> Equations<'a, S> {
         // F4 by y.
         let ground = Motion::ground();
         for (j, joint) in model.joints.iter().enumerate() {
-            let (a, b) = joints::sides(joint, motions, &ground);
+            let (a, b) = sides(joint, motions, &ground, at.time);
             for (i, row) in numbering.rows(j).zip(joint.rows()) {
                 let (by_a, by_b) = rate_by_position(row, &a, &b);
                 for (body, by) in [(Some(joint.body_a), by_a), (joint.body_b, by_b)] {
                     let Some(body) = body else { continue };
                     let column = y + numbering.velocity(body);
-                    if row.follows_axis() {
+                    if row.depends_on_distance() {
                         emit.add_row(f4 + i, column, &(by.position * h));
                     }
                     emit.add_row(f4 + i, column + 3, &(by.theta * h));
@@ -300,7 +304,8 @@ impl Equations<'_, f64> {
                 v: None,
                 model: cot,
             };
-            joints::pull_back(model, numbering, motions, cotangents, &mut out);
+            by_time +=
+                joints::pull_back(model, numbering, (motions, at.time), cotangents, &mut out);
         };
         // λᵀ G ψ_2 beside Φ and G v, and μᵀ G ψ_1 unless the motion needs no μ.
         let virtually = |psi: &[f64]| -> Vec<Motion<f64>> {

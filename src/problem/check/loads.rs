@@ -5,7 +5,9 @@ use crate::model::JointKind;
 use crate::problem::fault::Finding;
 use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join};
-use crate::problem::schema::loads::{Course, Ends, Load};
+use crate::problem::quantity::Quantity;
+use crate::problem::schema::joints::Ends;
+use crate::problem::schema::loads::{Course, Load};
 
 impl Checker<'_> {
     pub(super) fn loads(&mut self) {
@@ -18,7 +20,7 @@ impl Checker<'_> {
     }
 
     fn load(&mut self, pointer: &str, load: &Load) {
-        use JointKind::{Planar, Prismatic, Revolute, Spherical};
+        use JointKind::{Cylindrical, Planar, Prismatic, Revolute, Spherical};
         match load {
             Load::Force(force) => {
                 self.moving(pointer, &force.body, &force.point);
@@ -41,13 +43,11 @@ impl Checker<'_> {
             Load::Spring(spring) => {
                 self.between(&join(pointer, "between"), &spring.between);
                 if let Ends::Each(pair) = &spring.at {
-                    let at = join(pointer, "at");
-                    self.point(&join(&at, "a"), &spring.between[0], &pair.a);
-                    self.point(&join(&at, "b"), &spring.between[1], &pair.b);
+                    self.pair(&join(pointer, "at"), &spring.between, pair);
                 }
             }
             Load::TorsionSpring(spring) => {
-                self.loaded_joint(pointer, &spring.joint, &[Revolute, Planar]);
+                self.loaded_joint(pointer, &spring.joint, &[Revolute, Planar, Cylindrical]);
             }
             Load::Damping(damping) => {
                 self.loaded_joint(pointer, &damping.joint, &[Revolute, Prismatic, Spherical]);
@@ -71,8 +71,8 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks the joint of a load, which has to be of one of these kinds.
-    fn loaded_joint(&mut self, pointer: &str, name: &str, kinds: &[JointKind]) {
+    /// Checks the joint of a load or drive, which has to be of one of these kinds.
+    pub(super) fn loaded_joint(&mut self, pointer: &str, name: &str, kinds: &[JointKind]) {
         let pointer = join(pointer, "joint");
         let wanted = kinds.iter().map(|kind| kind.name()).collect::<Vec<_>>();
         let expected = format!("the name of a joint that is {}", wanted.join(" or "));
@@ -93,9 +93,13 @@ impl Checker<'_> {
     }
 
     fn course(&mut self, pointer: &str, course: Course) {
-        let Course::Table(times, values) = course else {
-            return;
-        };
+        if let Course::Table(times, values) = course {
+            self.table(pointer, times, values);
+        }
+    }
+
+    /// Checks the table of a course.
+    pub(super) fn table(&mut self, pointer: &str, times: &[f64], values: &[Quantity]) {
         let table = join(pointer, "table");
         if times.len() < 2 || times.len() != values.len() {
             let found = format!("{} times and {} values", times.len(), values.len());

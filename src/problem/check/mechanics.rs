@@ -1,4 +1,4 @@
-//! Bodies, placements and joints.
+//! Bodies and placements.
 
 use super::Checker;
 use crate::model::rigid_body::is_inertia_of_solid;
@@ -6,13 +6,12 @@ use crate::problem::fault::Finding;
 use crate::problem::mass::{mass_properties, volume};
 use crate::problem::placement::{GROUND, placement_order};
 use crate::problem::pointer::join;
-use crate::problem::schema::mechanics::{Axis, Body, Joint, JointPlace, Location, Place, Turns};
+use crate::problem::schema::mechanics::{Body, Location, Place, Shape, Turns};
 
 impl Checker<'_> {
     pub(super) fn mechanics(&mut self) {
         let document = self.document;
         self.names("bodies", document.bodies.keys());
-        self.names("joints", document.joints.keys());
         if document.bodies.is_empty() && !self.damage.holds("bodies", "") {
             self.fault(Finding::new("/bodies", "no body", "at least one"));
         }
@@ -31,10 +30,6 @@ impl Checker<'_> {
             let found = format!("the circle {}", circle.join(" → "));
             let expected = "bodies whose places lead to the ground";
             self.fault(Finding::new(pointer, found, expected));
-        }
-        for (name, joint) in &document.joints {
-            let pointer = join(&join("/joints", name), joint.kind().name());
-            self.joint(&pointer, joint);
         }
     }
 
@@ -61,6 +56,9 @@ impl Checker<'_> {
                     "\"density\" without \"shape\"",
                     "\"mass\" and \"inertia\"",
                 );
+            }
+            (Some(Shape::Point), Some(_), None) => {
+                wrong("density", "the density of a point", "a mass");
             }
             (Some(shape), Some(_), None) if volume::<f64>(shape, &[]) == 0.0 => {
                 let found = "the density of a rod without radius";
@@ -128,29 +126,6 @@ impl Checker<'_> {
                 for (k, one) in several.iter().enumerate() {
                     self.direction(&join(&join(&turn, k), "axis"), &one.axis);
                 }
-            }
-            None => {}
-        }
-    }
-
-    fn joint(&mut self, pointer: &str, joint: &Joint) {
-        let (between, place, axis) = joint.parts();
-        self.between(&join(pointer, "between"), between);
-        let at = join(pointer, "at");
-        match place {
-            JointPlace::Named(text) => self.location(&at, text),
-            JointPlace::Coordinates(_) => {}
-            JointPlace::Each(pair) => {
-                self.point(&join(&at, "a"), &between[0], &pair.a);
-                self.point(&join(&at, "b"), &between[1], &pair.b);
-            }
-        }
-        let pointer = join(pointer, "axis");
-        match axis {
-            Some(Axis::Ground(axis)) => self.direction(&pointer, axis),
-            Some(Axis::OfBody(of)) => {
-                self.body(&join(&pointer, "body"), &of.body);
-                self.direction(&join(&pointer, "axis"), &of.axis);
             }
             None => {}
         }

@@ -1,5 +1,6 @@
 //! What names and numbers of a document mean together: every fault that the schema cannot see.
 
+mod joints;
 mod loads;
 mod mechanics;
 mod study;
@@ -20,7 +21,9 @@ pub(super) fn check(document: &Document, damage: &Damage) -> Vec<Finding> {
         findings: Vec::new(),
     };
     checker.mechanics();
+    checker.joints();
     checker.loads();
+    checker.drives();
     checker.study();
     checker.findings
 }

@@ -1,6 +1,7 @@
 //! Loads as they are written in a file.
 
-use super::mechanics::{Point, PointPair};
+use super::joints::Ends;
+use super::mechanics::Point;
 use crate::problem::quantity::{Quantity, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -179,22 +180,11 @@ pub struct Spring {
     pub damping: Quantity,
 }
 
-/// Ends of a spring.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Ends {
-    /// One point on each body.
-    Each(PointPair),
-    /// Ground coordinates of both at the start, in the order of the bodies.
-    #[schemars(extend("unit" = "m"))]
-    Ground([Vector; 2]),
-}
-
 /// A spring with a damper about the axis of a joint.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TorsionSpring {
-    /// Name of a revolute or planar joint.
+    /// Name of a revolute, planar or cylindrical joint.
     pub joint: String,
     /// Angle without torque, of the first body against the second (ground counts as the second)
     /// about the axis, from where the bodies are placed; default 0.

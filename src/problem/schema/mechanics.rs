@@ -1,4 +1,4 @@
-//! Bodies and joints as they are written in a file.
+//! Bodies as they are written in a file.
 
 use crate::problem::quantity::{Quantity, Vector};
 use indexmap::IndexMap;
@@ -70,6 +70,8 @@ pub enum Shape {
         #[schemars(extend("unit" = "m", "minimum" = 0))]
         radius: Quantity,
     },
+    /// A mass without extent, which does not turn: ball joints and rods hold it at its own place.
+    Point,
 }
 
 /// The quantity 0.
@@ -200,109 +202,4 @@ pub struct AssemblyVelocity {
     /// Ground point that the rotation is about, default the origin.
     #[schemars(extend("unit" = "m"))]
     pub about: Option<Vector>,
-}
-
-/// A joint between two bodies, or a body and "ground".
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Joint {
-    /// A ball joint: the points coincide.
-    Spherical(Ball),
-    /// A hinge: the points coincide and the bodies turn about the axis.
-    Revolute(Axial),
-    /// A slider: the second body moves along the axis of the first without turning.
-    Prismatic(Axial),
-    /// The second body moves in the plane through the first body's point across its axis and
-    /// turns about the axis.
-    Planar(Axial),
-}
-
-/// Bodies and place of a joint without an axis.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Ball {
-    /// The two bodies; one of them may be "ground".
-    pub between: [String; 2],
-    /// Where the joint is at the start.
-    pub at: JointPlace,
-}
-
-/// Bodies, place and axis of a joint.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Axial {
-    /// The two bodies; one of them may be "ground".
-    pub between: [String; 2],
-    /// Where the joint is at the start.
-    pub at: JointPlace,
-    /// The joint's axis at the start, of any length but zero.
-    pub axis: Axis,
-}
-
-/// Where a joint is at the start.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum JointPlace {
-    /// `"body.point"`, or `"body"` for the origin of its axes.
-    Named(String),
-    /// Ground coordinates.
-    #[schemars(extend("unit" = "m"))]
-    Coordinates(Vector),
-    /// One point on each body; assembly brings them together.
-    Each(PointPair),
-}
-
-/// One point on each body of a joint.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PointPair {
-    /// Point of the first body, by name or in its axes (ground coordinates if it is ground).
-    pub a: Point,
-    /// Point of the second body, likewise.
-    pub b: Point,
-}
-
-/// Direction of a joint's axis.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Axis {
-    /// In ground axes.
-    #[schemars(extend("unit" = "1"))]
-    Ground(Vector),
-    /// In the axes of a body.
-    OfBody(BodyAxis),
-}
-
-/// An axis fixed in a body.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BodyAxis {
-    /// The body.
-    pub body: String,
-    /// Direction in its axes.
-    #[schemars(extend("unit" = "1"))]
-    pub axis: Vector,
-}
-
-impl Joint {
-    /// Its bodies, place and axis.
-    pub fn parts(&self) -> (&[String; 2], &JointPlace, Option<&Axis>) {
-        match self {
-            Joint::Spherical(ball) => (&ball.between, &ball.at, None),
-            Joint::Revolute(axial) | Joint::Prismatic(axial) | Joint::Planar(axial) => {
-                (&axial.between, &axial.at, Some(&axial.axis))
-            }
-        }
-    }
-
-    /// Its key in the file.
-    pub fn kind(&self) -> crate::model::JointKind {
-        use crate::model::JointKind;
-        match self {
-            Joint::Spherical(_) => JointKind::Spherical,
-            Joint::Revolute(_) => JointKind::Revolute,
-            Joint::Prismatic(_) => JointKind::Prismatic,
-            Joint::Planar(_) => JointKind::Planar,
-        }
-    }
 }

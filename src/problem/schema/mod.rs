@@ -1,14 +1,18 @@
 //! The problem file as it is written: serde structures, whose documentation is the JSON Schema.
 
+pub mod drives;
 pub mod functions;
+pub mod joints;
 pub mod loads;
 pub mod mechanics;
 
 use super::quantity::{Quantity, Vector};
+use drives::Drive;
 use functions::Function;
 use indexmap::IndexMap;
+use joints::Joint;
 use loads::Load;
-use mechanics::{AssemblyVelocity, Body, Joint};
+use mechanics::{AssemblyVelocity, Body};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -16,7 +20,7 @@ use serde::Deserialize;
 pub const VERSION: u64 = 1;
 
 /// A multibody scene, what is asked of it and what may be designed. Units are SI, angles are in
-/// radians; the keys of bodies, joints, loads, functions, variables and constraints are their
+/// radians; the keys of bodies, joints, loads, drives, functions, variables and constraints are their
 /// names.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -49,6 +53,9 @@ pub struct Document {
     /// Loads by name: forces, torques, springs, dampers and friction.
     #[serde(default)]
     pub loads: IndexMap<String, Load>,
+    /// Drives by name: prescribed motions of joints.
+    #[serde(default)]
+    pub drives: IndexMap<String, Drive>,
     /// How long and how finely the scene is simulated.
     pub simulation: Simulation,
     /// Functions of interest by name.

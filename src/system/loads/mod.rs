@@ -10,10 +10,9 @@ mod power;
 mod pull;
 
 use super::bodies::{Motion, add6, velocities_of};
-use super::constraint::Side;
 use super::initial;
-use super::joints::sides;
 use super::numbering::Numbering;
+use super::side::Side;
 use crate::linalg::Emit;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, Freedom, JointFrame, LoadKind, Model};
@@ -37,63 +36,37 @@ fn for_each_load<S: Scalar>(
         return;
     }
     let (ground, nowhere) = (Motion::ground(), JointFrame::zero());
+    let at = |point: &Vec3<S>| JointFrame {
+        point: *point,
+        ..nowhere
+    };
+    let acting = |(body_a, frame_a): (usize, JointFrame<S>),
+                  (body_b, frame_b): (Option<usize>, JointFrame<S>)| Acting {
+        bodies: [Some(body_a), body_b],
+        a: Side::fixed(&motions[body_a], frame_a),
+        b: Side::fixed(body_b.map_or(&ground, |body| &motions[body]), frame_b),
+    };
     for (i, load) in model.loads.iter().enumerate() {
-        let at_point = |point: &Vec3<S>| JointFrame {
-            point: *point,
-            axes: nowhere.axes,
-        };
-        let (frame_a, frame_b);
         let acting = match &load.kind {
-            LoadKind::Force { body, point, .. } => {
-                frame_a = at_point(point);
-                acting(motions, &ground, (*body, &frame_a), (None, &nowhere))
-            }
-            LoadKind::Torque { body, .. } => {
-                acting(motions, &ground, (*body, &nowhere), (None, &nowhere))
-            }
+            LoadKind::Force { body, point, .. } => acting((*body, at(point)), (None, nowhere)),
+            LoadKind::Torque { body, .. } => acting((*body, nowhere), (None, nowhere)),
             LoadKind::Spring {
                 body_a,
                 body_b,
                 point_a,
                 point_b,
                 ..
-            } => {
-                (frame_a, frame_b) = (at_point(point_a), at_point(point_b));
-                acting(motions, &ground, (*body_a, &frame_a), (*body_b, &frame_b))
-            }
+            } => acting((*body_a, at(point_a)), (*body_b, at(point_b))),
+            // The angle of a spring is that of the bodies, whatever drives them.
             LoadKind::TorsionSpring { joint, .. }
             | LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }
             | LoadKind::Friction { joint, .. } => {
                 let joint = &model.joints[*joint];
-                let (a, b) = sides(joint, motions, &ground);
-                Acting {
-                    bodies: [Some(joint.body_a), joint.body_b],
-                    a,
-                    b,
-                }
+                acting((joint.body_a, joint.frame_a), (joint.body_b, joint.frame_b))
             }
         };
         visit(i, &load.kind, &acting);
-    }
-}
-
-fn acting<'a, S: Scalar>(
-    motions: &'a [Motion<S>],
-    ground: &'a Motion<S>,
-    (body_a, frame_a): (usize, &'a JointFrame<S>),
-    (body_b, frame_b): (Option<usize>, &'a JointFrame<S>),
-) -> Acting<'a, S> {
-    Acting {
-        bodies: [Some(body_a), body_b],
-        a: Side {
-            motion: &motions[body_a],
-            frame: frame_a,
-        },
-        b: Side {
-            motion: body_b.map_or(ground, |body| &motions[body]),
-            frame: frame_b,
-        },
     }
 }
 

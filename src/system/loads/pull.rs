@@ -5,8 +5,9 @@ use super::power::{SLIDE, Stretch, angle, stretch, tanh, turn_rate};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, Freedom, LoadKind};
 use crate::system::bodies::Motion;
-use crate::system::constraint::{self, RowCotangent, Side, SideCotangent};
+use crate::system::constraint::{self, RowCotangent, SideCotangent};
 use crate::system::marker::{self, Jet};
+use crate::system::side::Side;
 
 /// Derivatives of a load's power (or energy).
 pub(super) struct Pulled<S> {
@@ -24,8 +25,8 @@ pub(super) struct Pulled<S> {
 impl<S: Scalar> Pulled<S> {
     fn zero() -> Self {
         Self {
-            a: SideCotangent::zero(),
-            b: SideCotangent::zero(),
+            a: SideCotangent::fixed(),
+            b: SideCotangent::fixed(),
             direction: Vec3::zeros(),
             scalars: [S::zero(); 4],
         }
@@ -56,14 +57,8 @@ pub(super) fn pull<S: Scalar>(
     let motions = moving(at, psi);
     let virtually = Acting {
         bodies: at.bodies,
-        a: Side {
-            motion: &motions[0],
-            frame: at.a.frame,
-        },
-        b: Side {
-            motion: &motions[1],
-            frame: at.b.frame,
-        },
+        a: Side::fixed(&motions[0], at.a.frame),
+        b: Side::fixed(&motions[1], at.b.frame),
     };
     match kind {
         LoadKind::Force {
@@ -277,7 +272,7 @@ fn pull_rate<S: Scalar>(at: &Acting<S>, (by_length, by_rate): (S, S), out: &mut 
     let Stretch {
         length, direction, ..
     } = stretch(at);
-    let speed = |side: &Side<S>| Jet::point(side.motion, &side.frame.point).rate;
+    let speed = |side: &Side<S>| side.point_jet().rate;
     let apart = speed(&at.a) - speed(&at.b);
     // The direction turns with the part of a displacement across it.
     let across = apart - direction * direction.dot(&apart);

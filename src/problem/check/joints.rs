@@ -1,0 +1,134 @@
+//! Joints and drives.
+
+use super::Checker;
+use crate::model::{Freedom, JointKind};
+use crate::problem::fault::Finding;
+use crate::problem::joints::holds_points;
+use crate::problem::pointer::join;
+use crate::problem::schema::drives::Course;
+use crate::problem::schema::joints::{Axis, Ends, Joint, JointPlace, PointPair};
+use crate::problem::schema::mechanics::Shape;
+
+impl Checker<'_> {
+    pub(super) fn joints(&mut self) {
+        let document = self.document;
+        self.names("joints", document.joints.keys());
+        for (name, joint) in &document.joints {
+            let pointer = join(&join("/joints", name), joint.kind().name());
+            self.joint(&pointer, joint);
+        }
+    }
+
+    fn joint(&mut self, pointer: &str, joint: &Joint) {
+        let between = joint.between();
+        self.between(&join(pointer, "between"), between);
+        self.point_masses(pointer, joint);
+        let at = join(pointer, "at");
+        match (joint, joint.place()) {
+            (_, Some(JointPlace::Named(text))) => self.location(&at, text),
+            (_, Some(JointPlace::Each(pair))) => self.pair(&at, between, pair),
+            (Joint::Rod(rod), _) => {
+                if let Ends::Each(pair) = &rod.at {
+                    self.pair(&at, between, pair);
+                }
+            }
+            (_, Some(JointPlace::Coordinates(_)) | None) => {}
+        }
+        for (key, axis) in ["axis", "cross"].into_iter().zip(joint.axes()) {
+            let pointer = join(pointer, key);
+            match axis {
+                Some(Axis::Ground(axis)) => self.direction(&pointer, axis),
+                Some(Axis::OfBody(of)) => {
+                    self.body(&join(&pointer, "body"), &of.body);
+                    self.direction(&join(&pointer, "axis"), &of.axis);
+                }
+                None => {}
+            }
+        }
+    }
+
+    /// Checks one point on each of two bodies.
+    pub(super) fn pair(&mut self, at: &str, between: &[String; 2], pair: &PointPair) {
+        self.point(&join(at, "a"), &between[0], &pair.a);
+        self.point(&join(at, "b"), &between[1], &pair.b);
+    }
+
+    /// Checks that a joint of a point mass is one that needs neither extent nor rotation.
+    fn point_masses(&mut self, pointer: &str, joint: &Joint) {
+        for (k, name) in joint.between().iter().enumerate() {
+            let body = self.document.bodies.get(name);
+            let is_point = body.is_some_and(|body| matches!(body.shape, Some(Shape::Point)));
+            if is_point && !holds_points(joint.kind()) {
+                let found = format!("\"{name}\", which is a point mass");
+                let expected = "a body with extent, or a joint that is spherical or rod";
+                let place = join(&join(pointer, "between"), k);
+                self.fault(Finding::new(place, found, expected));
+            }
+        }
+    }
+
+    pub(super) fn drives(&mut self) {
+        let document = self.document;
+        self.names("drives", document.drives.keys());
+        for (name, drive) in &document.drives {
+            let pointer = join("/drives", name);
+            if drive.turn.is_none() && drive.slide.is_none() {
+                let expected = "\"turn\" or \"slide\"";
+                self.fault(Finding::new(&pointer, "a drive without motion", expected).of_key());
+            }
+            if let Some(turn) = &drive.turn {
+                self.driven(&pointer, &drive.joint, Freedom::Turn);
+                self.motion(&join(&pointer, "turn"), turn.parts());
+            }
+            if let Some(slide) = &drive.slide {
+                self.driven(&pointer, &drive.joint, Freedom::Slide);
+                self.motion(&join(&pointer, "slide"), slide.parts());
+            }
+            let earlier = document
+                .drives
+                .iter()
+                .take_while(|(other, _)| *other != name);
+            let twice = earlier.into_iter().find(|(_, other)| {
+                let both = |a: bool, b: bool| a && b;
+                other.joint == drive.joint
+                    && (both(other.turn.is_some(), drive.turn.is_some())
+                        || both(other.slide.is_some(), drive.slide.is_some()))
+            });
+            if let Some((other, _)) = twice {
+                let found = format!("\"{}\", which \"{other}\" drives", drive.joint);
+                let expected = "a joint that no other drive moves";
+                self.fault(Finding::new(join(&pointer, "joint"), found, expected));
+            }
+        }
+    }
+
+    /// Checks that a drive's joint has the freedom that it prescribes.
+    fn driven(&mut self, pointer: &str, joint: &str, freedom: Freedom) {
+        let kinds = [
+            JointKind::Revolute,
+            JointKind::Planar,
+            JointKind::Prismatic,
+            JointKind::Cylindrical,
+        ];
+        let kinds: Vec<JointKind> = kinds
+            .into_iter()
+            .filter(|kind| kind.freedoms().contains(&freedom))
+            .collect();
+        self.loaded_joint(pointer, joint, &kinds);
+    }
+
+    fn motion(&mut self, pointer: &str, course: Course) {
+        match course {
+            Course::Polynomial([]) => {
+                let finding = Finding::new(
+                    join(pointer, "polynomial"),
+                    "no coefficient",
+                    "at least one, that of 1",
+                );
+                self.fault(finding);
+            }
+            Course::Table(times, values) => self.table(pointer, times, values),
+            Course::Rate(_) | Course::Polynomial(_) | Course::Harmonic(_) => {}
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! From the joints and drives of a file to those of a model.
+
+use super::placement::{Assembly, GROUND, split_location};
+use super::quantity::Quantity;
+use super::scene::unit;
+use super::schema::Document;
+use super::schema::drives::{Course as Written, Drive as WrittenDrive};
+use super::schema::joints::{Joint as WrittenJoint, JointPlace};
+use super::schema::mechanics::Shape;
+use crate::math::scalar::length;
+use crate::math::{Scalar, Vec3};
+use crate::model::{Drive, Freedom, Joint, JointFrame, JointKind, MotionCourse};
+
+/// The joints of a checked document, in its order, with their drives.
+pub fn joints<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Joint<S>> {
+    let one = |(name, written): (&String, &WrittenJoint)| Joint {
+        drives: drives(document, assembly, name),
+        ..joint(document, assembly, name, written)
+    };
+    document.joints.iter().map(one).collect()
+}
+
+/// An orthonormal right-handed triad whose third axis is along `axis`; the first is along the
+/// ground axis that is farthest from it, as far as that is perpendicular.
+fn triad<S: Scalar>(axis: Vec3<S>) -> [Vec3<S>; 3] {
+    let e3 = unit(axis);
+    let farthest = (0..3)
+        .min_by(|&i, &j| e3[i].re().abs().total_cmp(&e3[j].re().abs()))
+        .expect("a vector has three components");
+    let mut e1 = Vec3::zeros();
+    e1[farthest] = S::one();
+    triad_with(e3, e1)
+}
+
+/// The triad with the unit vector `e3` and the first axis along `e1` as far as that is
+/// perpendicular.
+fn triad_with<S: Scalar>(e3: Vec3<S>, e1: Vec3<S>) -> [Vec3<S>; 3] {
+    let e1 = unit(e1 - e3 * e3.dot(&e1));
+    [e1, e3.cross(&e1), e3]
+}
+
+/// A joint without its drives; ground is always body B.
+fn joint<S: Scalar>(
+    document: &Document,
+    assembly: &Assembly<S>,
+    name: &str,
+    written: &WrittenJoint,
+) -> Joint<S> {
+    let between = written.between();
+    let (a, b) = if between[0] == GROUND { (1, 0) } else { (0, 1) };
+    let [axis, cross] = written
+        .axes()
+        .map(|axis| axis.map(|axis| assembly.axis(axis)));
+    let triad = match (axis, cross) {
+        (None, _) => triad(Vec3::z()),
+        (Some(axis), None) => triad(axis),
+        // e3 is fixed in body A and e1 in body B.
+        (Some(axis), Some(cross)) => {
+            let (e3, e1) = if a == 0 { (axis, cross) } else { (cross, axis) };
+            triad_with(unit(e3), e1)
+        }
+    };
+    let frame = |side: usize| {
+        let body = &between[side];
+        let pose = assembly.pose(body);
+        let is_point = document
+            .bodies
+            .get(body)
+            .is_some_and(|body| matches!(body.shape, Some(Shape::Point)));
+        let point = match (written, written.place()) {
+            _ if is_point => Vec3::zeros(),
+            (WrittenJoint::Rod(rod), _) => assembly.end(between, &rod.at, side),
+            (_, None) => Vec3::zeros(),
+            (_, Some(place)) => at(assembly, place, body, side) - pose.centre,
+        };
+        JointFrame {
+            point,
+            axes: triad.map(|e| pose.rotation.tr_mul(&e)),
+            length: S::zero(),
+        }
+    };
+    let (mut frame_a, frame_b) = (frame(a), frame(b));
+    if let WrittenJoint::Rod(rod) = written {
+        let end = |side: usize, frame: &JointFrame<S>| {
+            let pose = assembly.pose(&between[side]);
+            pose.position() + pose.rotation * frame.point
+        };
+        frame_a.length = match &rod.length {
+            Some(length) => assembly.quantity(length),
+            None => length(&(end(a, &frame_a) - end(b, &frame_b))),
+        };
+    }
+    Joint {
+        name: name.to_owned(),
+        kind: written.kind(),
+        body_a: assembly
+            .index(&between[a])
+            .expect("a joint has at least one body that is not ground"),
+        body_b: assembly.index(&between[b]),
+        frame_a,
+        frame_b,
+        drives: Vec::new(),
+        left_out: Vec::new(),
+        identical: Vec::new(),
+    }
+}
+
+/// Where a joint is on a body, from the origin of its axes.
+fn at<S: Scalar>(assembly: &Assembly<S>, place: &JointPlace, body: &str, side: usize) -> Vec3<S> {
+    match place {
+        JointPlace::Named(text) if split_location(text).0 == body => assembly.named_in_body(text),
+        JointPlace::Named(text) => {
+            let pose = assembly.pose(body);
+            pose.rotation.tr_mul(&(assembly.named(text) - pose.origin))
+        }
+        JointPlace::Coordinates(point) => assembly.at_ground(body, point),
+        JointPlace::Each(pair) => assembly.in_body(body, [&pair.a, &pair.b][side]),
+    }
+}
+
+/// The drives of the joint `name`.
+fn drives<S: Scalar>(document: &Document, assembly: &Assembly<S>, name: &str) -> Vec<Drive<S>> {
+    let of = |drive: &&WrittenDrive| drive.joint == name;
+    let parts = |drive: &WrittenDrive| {
+        let turn = drive.turn.as_ref().map(|turn| Drive {
+            freedom: Freedom::Turn,
+            course: course(assembly, turn.parts()),
+        });
+        let slide = drive.slide.as_ref().map(|slide| Drive {
+            freedom: Freedom::Slide,
+            course: course(assembly, slide.parts()),
+        });
+        turn.into_iter().chain(slide)
+    };
+    document
+        .drives
+        .values()
+        .filter(of)
+        .flat_map(parts)
+        .collect()
+}
+
+fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> MotionCourse<S> {
+    let get = |quantity: &Quantity| assembly.quantity(quantity);
+    match written {
+        Written::Rate(rate) => MotionCourse::Polynomial(vec![S::zero(), get(rate)]),
+        Written::Polynomial(coefficients) => {
+            MotionCourse::Polynomial(coefficients.iter().map(get).collect())
+        }
+        Written::Harmonic([mean, amplitude, frequency, phase]) => MotionCourse::Harmonic {
+            mean: get(mean),
+            amplitude: get(amplitude),
+            frequency: get(frequency),
+            phase: get(phase),
+        },
+        Written::Table(times, values) => MotionCourse::Table {
+            times: times.iter().map(|&t| t.into()).collect(),
+            values: values.iter().map(get).collect(),
+        },
+    }
+}
+
+/// What a joint of this kind cannot do to a point mass: hold it beside itself, or turn it.
+pub fn holds_points(kind: JointKind) -> bool {
+    matches!(kind, JointKind::Spherical | JointKind::Rod)
+}

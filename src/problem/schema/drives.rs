@@ -1,0 +1,100 @@
+//! Drives as they are written in a file.
+
+use crate::problem::quantity::Quantity;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// The prescribed motion of a joint about its axis, along it, or both: of its first body against the
+/// second (ground counts as the second), from where the bodies are placed.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Drive {
+    /// Name of a revolute, planar, prismatic or cylindrical joint.
+    pub joint: String,
+    /// Angle about the axis in time.
+    pub turn: Option<Turning>,
+    /// Displacement along the axis in time.
+    pub slide: Option<Sliding>,
+}
+
+/// A motion in its unit.
+macro_rules! courses {
+    ($course:ident, $what:literal, $unit:literal, $rate:literal, $powers:literal) => {
+        #[doc = concat!("Course of ", $what, " in time.")]
+        #[derive(Clone, Debug, Deserialize, JsonSchema)]
+        #[serde(rename_all = "snake_case", deny_unknown_fields)]
+        pub enum $course {
+            /// A constant rate, from zero.
+            Rate(#[schemars(extend("unit" = $rate))] Quantity),
+            /// Coefficients c0, c1, c2, … of c0 + c1 t + c2 t² + …
+            Polynomial(#[schemars(extend("unit" = $powers))] Vec<Quantity>),
+            /// mean + amplitude · sin(2π frequency t + phase).
+            Harmonic {
+                /// Amplitude.
+                #[schemars(extend("unit" = $unit))]
+                amplitude: Quantity,
+                /// Frequency.
+                #[schemars(extend("unit" = "Hz"))]
+                frequency: Quantity,
+                /// Phase at t = 0, default 0.
+                #[serde(default = "nothing")]
+                #[schemars(extend("unit" = "rad"))]
+                phase: Quantity,
+                /// Mean, default 0.
+                #[serde(default = "nothing")]
+                #[schemars(extend("unit" = $unit))]
+                mean: Quantity,
+            },
+            /// Interpolation with continuous acceleration, at rest at both ends and held beyond
+            /// them.
+            Table {
+                /// Instants, increasing.
+                #[schemars(extend(
+                    "unit" = "s",
+                    "design_variable" = "the instants of a table keep their order; design its values"
+                ))]
+                times: Vec<f64>,
+                /// Value at each instant.
+                #[schemars(extend("unit" = $unit))]
+                values: Vec<Quantity>,
+            },
+        }
+
+        impl $course {
+            /// The course, whatever its unit.
+            pub fn parts(&self) -> Course<'_> {
+                match self {
+                    Self::Rate(rate) => Course::Rate(rate),
+                    Self::Polynomial(coefficients) => Course::Polynomial(coefficients),
+                    Self::Harmonic {
+                        amplitude,
+                        frequency,
+                        phase,
+                        mean,
+                    } => Course::Harmonic([mean, amplitude, frequency, phase]),
+                    Self::Table { times, values } => Course::Table(times, values),
+                }
+            }
+        }
+    };
+}
+
+courses!(Turning, "an angle", "rad", "rad/s", "rad, rad/s, rad/s², …");
+courses!(Sliding, "a displacement", "m", "m/s", "m, m/s, m/s², …");
+
+/// A course in time, whatever its unit.
+pub enum Course<'a> {
+    /// Constant rate.
+    Rate(&'a Quantity),
+    /// Coefficients.
+    Polynomial(&'a [Quantity]),
+    /// Mean, amplitude, frequency and phase.
+    Harmonic([&'a Quantity; 4]),
+    /// Instants and values.
+    Table(&'a [f64], &'a [Quantity]),
+}
+
+/// The quantity 0.
+fn nothing() -> Quantity {
+    Quantity::fixed(0.0)
+}

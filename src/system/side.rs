@@ -1,0 +1,193 @@
+//! The two sides of a joint at an instant: the body's motion and the joint's frame on it, which the
+//! drives of the joint move.
+//!
+//! A frame on body B that turns by φ and shifts by σ (see [`crate::model::drive`]) has
+//!
+//! ```text
+//! ė1 = φ̇ e2,   ë1 = φ̈ e2 − φ̇² e1,   ė2 = −φ̇ e1,   ë2 = −φ̈ e1 − φ̇² e2,   ṡ = σ̇ e3,   s̈ = σ̈ e3
+//! ```
+
+use super::bodies::Motion;
+use super::marker::{Jet, Local};
+use crate::math::{Scalar, Vec3};
+use crate::model::{Freedom, Joint, JointFrame};
+
+/// One side of a joint.
+#[derive(Clone, Debug)]
+pub struct Side<'a, S> {
+    /// Motion of the body (ground at rest if there is none).
+    pub motion: &'a Motion<S>,
+    /// The joint's frame on the body at this time.
+    pub frame: JointFrame<S>,
+    /// How the frame moves on the body, if it does.
+    pub moving: Option<Box<FrameMotion<S>>>,
+}
+
+/// First and second derivative in time of a frame, in the axes of its body.
+#[derive(Clone, Debug)]
+pub struct FrameMotion<S> {
+    /// First derivative.
+    pub rate: JointFrame<S>,
+    /// Second derivative.
+    pub acceleration: JointFrame<S>,
+}
+
+impl<S: Scalar> FrameMotion<S> {
+    /// All zero.
+    pub fn zero() -> Self {
+        Self {
+            rate: JointFrame::zero(),
+            acceleration: JointFrame::zero(),
+        }
+    }
+
+    /// The motion of axis i.
+    pub fn axis(&self, i: usize) -> Local<S> {
+        Local {
+            rate: self.rate.axes[i],
+            acceleration: self.acceleration.axes[i],
+        }
+    }
+
+    /// The motion of the point.
+    pub fn point(&self) -> Local<S> {
+        Local {
+            rate: self.rate.point,
+            acceleration: self.acceleration.point,
+        }
+    }
+}
+
+impl<'a, S: Scalar> Side<'a, S> {
+    /// A side whose frame does not move.
+    pub fn fixed(motion: &'a Motion<S>, frame: JointFrame<S>) -> Self {
+        Self {
+            motion,
+            frame,
+            moving: None,
+        }
+    }
+
+    /// Axis i in ground axes.
+    pub fn axis(&self, i: usize) -> Vec3<S> {
+        self.motion.rotation * self.frame.axes[i]
+    }
+
+    /// The point in ground axes.
+    pub fn point(&self) -> Vec3<S> {
+        self.motion.position + self.motion.rotation * self.frame.point
+    }
+
+    /// Axis i in motion.
+    pub fn axis_jet(&self, i: usize) -> Jet<S> {
+        let local = self.moving.as_ref().map(|moving| moving.axis(i));
+        Jet::moving_direction(self.motion, &self.frame.axes[i], local.as_ref())
+    }
+
+    /// The point in motion.
+    pub fn point_jet(&self) -> Jet<S> {
+        let local = self.moving.as_ref().map(|moving| moving.point());
+        Jet::moving_point(self.motion, &self.frame.point, local.as_ref())
+    }
+}
+
+/// Both sides of a joint at `time` (s); `ground` is the motion of a missing body B.
+pub fn sides<'a, S: Scalar>(
+    joint: &Joint<S>,
+    motions: &'a [Motion<S>],
+    ground: &'a Motion<S>,
+    time: S,
+) -> (Side<'a, S>, Side<'a, S>) {
+    let motion_b = joint.body_b.map_or(ground, |body| &motions[body]);
+    let mut b = Side::fixed(motion_b, joint.frame_b);
+    if !joint.drives.is_empty() {
+        let (frame, moving) = driven_frame(joint, time);
+        b.frame = frame;
+        b.moving = Some(Box::new(moving));
+    }
+    (Side::fixed(&motions[joint.body_a], joint.frame_a), b)
+}
+
+/// The courses of the joint's drives at `time`: (turn, slide), zero where there is none.
+fn courses<S: Scalar>(joint: &Joint<S>, time: S) -> ([S; 4], [S; 4]) {
+    let zero = [S::zero(); 4];
+    let (mut turn, mut slide) = (zero, zero);
+    for drive in &joint.drives {
+        let at = drive.course.derivatives(time);
+        match drive.freedom {
+            Freedom::Turn => turn = at,
+            Freedom::Slide => slide = at,
+        }
+    }
+    (turn, slide)
+}
+
+/// The frame on body B of a driven joint at `time`, and its motion.
+fn driven_frame<S: Scalar>(joint: &Joint<S>, time: S) -> (JointFrame<S>, FrameMotion<S>) {
+    let ([turn, spin, spin_up, _], [shift, speed, speed_up, _]) = courses(joint, time);
+    let mut frame = joint.frame_b;
+    let [e1, e2, e3] = frame.axes;
+    let (sine, cosine) = turn.sin_cos();
+    let (e1, e2) = (e1 * cosine + e2 * sine, e2 * cosine - e1 * sine);
+    frame.axes = [e1, e2, e3];
+    frame.point += e3 * shift;
+    let square = spin * spin;
+    let mut moving = FrameMotion::zero();
+    moving.rate.axes = [e2 * spin, -e1 * spin, Vec3::zeros()];
+    moving.rate.point = e3 * speed;
+    moving.acceleration.axes = [
+        e2 * spin_up - e1 * square,
+        -e1 * spin_up - e2 * square,
+        Vec3::zeros(),
+    ];
+    moving.acceleration.point = e3 * speed_up;
+    (frame, moving)
+}
+
+/// Pulls the cotangents of the frame on body B at `time`, and of its motion, back to the joint's
+/// parameters (added to `own`); returns the derivative by time.
+pub fn pull_driven_frame(
+    joint: &Joint<f64>,
+    time: f64,
+    by_frame: &JointFrame<f64>,
+    by_motion: &FrameMotion<f64>,
+    own: &mut Joint<f64>,
+) -> f64 {
+    let (turn, slide) = courses(joint, time);
+    let [angle, spin, spin_up, _] = turn;
+    let (frame, _) = driven_frame(joint, time);
+    let [e1, e2, e3] = frame.axes;
+    let (x, r, a) = (by_frame, &by_motion.rate, &by_motion.acceleration);
+    let square = spin * spin;
+    // The turned axes, through themselves and through their derivatives.
+    let by_e1 = x.axes[0] - r.axes[1] * spin - a.axes[1] * spin_up - a.axes[0] * square;
+    let by_e2 = x.axes[1] + r.axes[0] * spin + a.axes[0] * spin_up - a.axes[1] * square;
+    let weights_turn = [
+        by_e1.dot(&e2) - by_e2.dot(&e1),
+        r.axes[0].dot(&e2)
+            - r.axes[1].dot(&e1)
+            - 2.0 * spin * (a.axes[0].dot(&e1) + a.axes[1].dot(&e2)),
+        a.axes[0].dot(&e2) - a.axes[1].dot(&e1),
+    ];
+    let weights_slide = [x.point.dot(&e3), r.point.dot(&e3), a.point.dot(&e3)];
+    let (sine, cosine) = angle.sin_cos();
+    let along = x.point * slide[0] + r.point * slide[1] + a.point * slide[2];
+    own.frame_b.add(&JointFrame {
+        point: x.point,
+        axes: [
+            by_e1 * cosine - by_e2 * sine,
+            by_e1 * sine + by_e2 * cosine,
+            x.axes[2] + along,
+        ],
+        length: x.length,
+    });
+    let mut by_time = 0.0;
+    for (drive, own) in joint.drives.iter().zip(&mut own.drives) {
+        let weights = match drive.freedom {
+            Freedom::Turn => weights_turn,
+            Freedom::Slide => weights_slide,
+        };
+        by_time += drive.course.pull_back(time, weights, &mut own.course);
+    }
+    by_time
+}
