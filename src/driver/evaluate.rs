@@ -40,7 +40,8 @@ impl Evaluated {
         problem: &Problem,
         x: &[f64],
     ) -> Result<(Self, Option<Refresh>), IntegrationFailure> {
-        let scene = problem.scene::<f64>(x);
+        let (scene, all) = problem.lowered_scene::<f64>(x);
+        integration.unlowered += usize::from(!all);
         let not_solid = |body: &&RigidBody<f64>| !body.is_solid();
         if let Some(body) = scene.model.bodies.iter().find(not_solid) {
             return Err(IntegrationFailure::Unphysical {
@@ -80,10 +81,18 @@ impl Evaluated {
         problem: &Problem,
         which: &[usize],
     ) -> Result<(Vec<Vec<Derivative>>, WorkCounts), IntegrationFailure> {
-        let adjoint = adjoint::gradients(&self.scene, &self.run, which)?;
+        // A function that is asked for twice, as objective and in a constraint, is swept once.
+        let mut once = which.to_vec();
+        once.sort_unstable();
+        once.dedup();
+        let adjoint = adjoint::gradients(&self.scene, &self.run, &once)?;
+        let place = |f: &usize| {
+            once.binary_search(f)
+                .expect("every function is in the list")
+        };
         let by_parameters: Vec<Vec<f64>> =
             adjoint.gradients.iter().map(Scene::parameters).collect();
-        let mut all = vec![Vec::with_capacity(self.x.len()); which.len()];
+        let mut all = vec![Vec::with_capacity(self.x.len()); once.len()];
         for i in 0..self.x.len() {
             let moved = parameter_derivatives(problem, &self.x, i);
             for (gradient, by) in all.iter_mut().zip(&by_parameters) {
@@ -95,7 +104,8 @@ impl Evaluated {
                 gradient.push(sum);
             }
         }
-        Ok((all, adjoint.counts))
+        let asked = which.iter().map(|f| all[place(f)].clone()).collect();
+        Ok((asked, adjoint.counts))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::evaluate::{Derivative, Evaluated};
 use super::integration::{Integration, looks_at_the_whole};
 use crate::integrate::{IntegrationFailure, Trajectory};
-use crate::model::Model;
+use crate::model::{Mobility, Model};
 use crate::problem::Problem;
 use crate::report::{Explanation, FunctionUse, SystemSize};
 use crate::system::Numbering;
@@ -99,6 +99,12 @@ fn lowering(
                     Err(obstacle) => kept.push(format!("{reduction}: {obstacle}")),
                 }
             }
+        }
+    }
+    for body in &lowered.bodies {
+        if body.mobility == Mobility::Point {
+            let why = "nothing turns it, and no function looks at it";
+            left_out.push(format!("the rotation of body \"{}\": {why}", body.name));
         }
     }
     for (before, after) in written.joints.iter().zip(&lowered.joints) {

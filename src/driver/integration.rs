@@ -24,6 +24,8 @@ pub struct Integration {
     chosen: Option<(Settings, String)>,
     /// How often the steps were chosen anew.
     pub refreshes: usize,
+    /// How many designs did not admit what the lowering leaves out at the others.
+    pub unlowered: usize,
     keep_stages: bool,
 }
 
@@ -56,6 +58,7 @@ impl Integration {
             samples,
             chosen: None,
             refreshes: 0,
+            unlowered: 0,
             keep_stages: gradients,
         }
     }

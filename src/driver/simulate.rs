@@ -21,6 +21,8 @@ pub struct Simulation {
     pub reason: String,
     /// What is wrong with the method for this scene, if anything.
     pub warning: Option<String>,
+    /// Whether this design does not admit what the lowering leaves out at the others.
+    pub unlowered: bool,
 }
 
 /// Simulates the design `x` of `problem`.
@@ -41,7 +43,9 @@ pub fn simulate_with(
     problem: &Problem,
     x: &[f64],
 ) -> Result<Simulation, IntegrationFailure> {
+    let before = integration.unlowered;
     let (at, _) = Evaluated::with(integration, problem, x)?;
+    let unlowered = integration.unlowered > before;
     let warning = integration.warning(&at.scene, &at.run);
     let reason = integration.chosen().map_or("", |(_, reason)| reason).into();
     let (model, run) = (problem.unlowered_scene(x).model, &at.run);
@@ -55,6 +59,7 @@ pub fn simulate_with(
         observations,
         reason,
         warning,
+        unlowered,
     })
 }
 

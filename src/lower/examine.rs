@@ -59,11 +59,30 @@ impl Examiner {
         scale: f64,
         what: impl FnOnce() -> (String, &'static str),
     ) {
-        let derived = value.infinitesimal().abs() * self.change;
-        let size = value.re().abs().max(derived);
+        self.vanishes(&[value], scale, what);
+    }
+
+    /// As [`Examiner::zero`], of a vector.
+    pub fn vanishes<S: Scalar>(
+        &mut self,
+        vector: &[S],
+        scale: f64,
+        what: impl FnOnce() -> (String, &'static str),
+    ) {
+        let length = |part: &dyn Fn(S) -> f64| {
+            let squares = vector.iter().map(|x| part(*x).powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        let derived = length(&|x| x.infinitesimal()) * self.change;
+        let size = length(&|x| x.re()).max(derived);
         // A value that is not a number does not vanish.
         if self.found.is_ok() && (size.is_nan() || size > ROUND_OFF * scale) {
             let (what, unit) = what();
+            // Angles are asked for by their sine.
+            let size = match unit {
+                "rad" => size.min(1.0).asin(),
+                _ => size,
+            };
             self.found = Err(Obstacle {
                 what,
                 size,

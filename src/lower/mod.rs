@@ -6,8 +6,10 @@
 //! every variable. The same examination, in values, is repeated wherever a scene is made.
 
 mod examine;
+mod in_plane;
 mod normal;
 pub mod planar;
+pub mod point;
 mod tilt;
 
 pub use examine::Obstacle;
@@ -15,7 +17,7 @@ pub use planar::Plane;
 
 use crate::functions::Scene;
 use crate::math::{Dual, Scalar};
-use crate::model::Model;
+use crate::model::Mobility;
 
 /// A design variable, as far as it matters here.
 #[derive(Clone, Debug)]
@@ -35,6 +37,8 @@ pub struct Range {
 pub struct Lowering {
     /// The plane that all motion stays in, or what leaves every plane.
     pub plane: Result<Plane, Obstacle>,
+    /// Bodies whose rotation nothing turns or looks at.
+    pub points: Vec<usize>,
 }
 
 /// Designs between the bounds at which a reduction is examined.
@@ -48,29 +52,56 @@ impl Lowering {
         variables: &[Range],
     ) -> Self {
         let start: Vec<f64> = variables.iter().map(|variable| variable.start).collect();
-        let plane = Plane::find(&real(&start).model).and_then(|plane| {
-            for design in designs(variables) {
-                plane
-                    .holds(&real(&design).model, 0.0)
-                    .map_err(|obstacle| Obstacle {
-                        elsewhere: true,
-                        ..obstacle
-                    })?;
-            }
-            for (i, variable) in variables.iter().enumerate() {
-                let seed = |(j, &x): (usize, &f64)| Dual::new(x, if i == j { 1.0 } else { 0.0 });
-                let x: Vec<Dual> = start.iter().enumerate().map(seed).collect();
-                let model = dual(&x).model;
-                plane
-                    .holds(&model, variable.scale)
-                    .map_err(|obstacle| Obstacle {
+        let first = real(&start);
+        let others: Vec<Scene<f64>> = designs(variables).iter().map(|x| real(x)).collect();
+        let seed = |i: usize| -> Vec<Dual> {
+            let part = |j: usize| if i == j { 1.0 } else { 0.0 };
+            start
+                .iter()
+                .enumerate()
+                .map(|(j, &x)| Dual::new(x, part(j)))
+                .collect()
+        };
+        let derived = variables.iter().enumerate();
+        let derived: Vec<(&Range, Scene<Dual>)> = derived
+            .map(|(i, variable)| (variable, dual(&seed(i))))
+            .collect();
+        // Asks a question of all designs and of all derivatives.
+        let everywhere =
+            |at: &dyn Fn(&Scene<f64>) -> Result<(), Obstacle>,
+             by: &dyn Fn(&Scene<Dual>, f64) -> Result<(), Obstacle>| {
+                for (variable, scene) in &derived {
+                    by(scene, variable.scale).map_err(|obstacle| Obstacle {
                         variable: Some(variable.name.clone()),
                         ..obstacle
                     })?;
-            }
+                }
+                others.iter().try_for_each(at).map_err(|obstacle| Obstacle {
+                    elsewhere: true,
+                    ..obstacle
+                })
+            };
+        let plane = Plane::find(&first.model).and_then(|plane| {
+            everywhere(&|scene| plane.holds(&scene.model, 0.0), &|scene, change| {
+                plane.holds(&scene.model, change)
+            })?;
             Ok(plane)
         });
-        Self { plane }
+        let points = match &plane {
+            // A body in the plane has three unknowns already.
+            Ok(_) => Vec::new(),
+            Err(_) => (0..first.model.bodies.len())
+                .filter(|&body| {
+                    let here = point::holds(&first, body, 0.0);
+                    here.is_ok()
+                        && everywhere(&|scene| point::holds(scene, body, 0.0), &|scene, change| {
+                            point::holds(scene, body, change)
+                        })
+                        .is_ok()
+                })
+                .collect(),
+        };
+        Self { plane, points }
     }
 
     /// Every reduction, with what it leaves or what stands against it.
@@ -88,17 +119,23 @@ impl Lowering {
         vec![("motion out of a plane", plane)]
     }
 
-    /// Leaves out of `model` what can be; false if its design does not admit it, which leaves the
-    /// model as it is.
-    pub fn apply<S: Scalar>(&self, model: &mut Model<S>) -> bool {
-        match &self.plane {
-            Ok(plane) if plane.holds(model, 0.0).is_ok() => {
-                plane.apply(model);
-                true
+    /// Leaves out of `scene` what can be; false if its design does not admit some of it, which is
+    /// then left in.
+    pub fn apply<S: Scalar>(&self, scene: &mut Scene<S>) -> bool {
+        let mut all = true;
+        if let Ok(plane) = &self.plane {
+            match plane.holds(&scene.model, 0.0) {
+                Ok(()) => plane.apply(&mut scene.model),
+                Err(_) => all = false,
             }
-            Ok(_) => false,
-            Err(_) => true,
         }
+        for &body in &self.points {
+            match point::holds(scene, body, 0.0) {
+                Ok(()) => scene.model.bodies[body].mobility = Mobility::Point,
+                Err(_) => all = false,
+            }
+        }
+        all
     }
 }
 

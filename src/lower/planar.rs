@@ -16,15 +16,14 @@
 //! Sliding P            kept
 //! ```
 
-use super::examine::{Examiner, Obstacle};
+use super::examine::Obstacle;
+use super::in_plane::points;
 use super::normal::{candidate, clean};
 use super::tilt;
 use crate::math::scalar::lift3;
 use crate::math::{Mat3, Scalar, Vec3, rotation};
-use crate::model::{Axes, ConstraintRow, Freedom, Joint, JointFrame, JointKind, LoadKind};
+use crate::model::{ConstraintRow, Joint, JointFrame, JointKind};
 use crate::model::{Mobility, Model};
-use crate::system::assembly::length_scale;
-use crate::system::reduce::along;
 use crate::system::redundancy;
 use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
@@ -36,35 +35,35 @@ pub struct Plane {
     /// Two orthonormal directions in it.
     along: [Vec3<f64>; 2],
     /// The normal in the axes of each body, and the height of its centre of mass.
-    bodies: Vec<(Vec3<f64>, f64)>,
-    joints: Vec<Joined>,
+    pub(super) bodies: Vec<(Vec3<f64>, f64)>,
+    pub(super) joints: Vec<Joined>,
     /// Heights of the points of each load above the centres of mass (above the origin on ground).
-    loads: Vec<[f64; 2]>,
+    pub(super) loads: Vec<[f64; 2]>,
     /// Bodies that tilt as one; `None` if they do not.
-    groups: Vec<Option<usize>>,
+    pub(super) groups: Vec<Option<usize>>,
 }
 
 /// A joint in the plane.
 #[derive(Clone, Debug)]
-struct Joined {
+pub(super) struct Joined {
     /// Rows that hold identically.
-    identical: Vec<ConstraintRow>,
+    pub identical: Vec<ConstraintRow>,
     /// Rows that follow from others in the plane.
     left_out: Vec<ConstraintRow>,
     /// Axes of the frames by those that are written, if these have to be turned to the normal.
     turn: Option<Mat3<f64>>,
     /// Heights of its points above the centres of mass (above the origin on ground).
-    heights: [f64; 2],
+    pub heights: [f64; 2],
 }
 
 /// The normal in the axes of the bodies and of ground.
-struct Turned<S> {
-    normals: Vec<Vec3<S>>,
-    ground: Vec3<S>,
+pub(super) struct Turned<S> {
+    pub normals: Vec<Vec3<S>>,
+    pub ground: Vec3<S>,
 }
 
 impl<S: Scalar> Turned<S> {
-    fn new(model: &Model<S>, normal: &Vec3<f64>) -> Self {
+    pub fn new(model: &Model<S>, normal: &Vec3<f64>) -> Self {
         let ground: Vec3<S> = lift3(normal);
         let bodies = model.bodies.iter();
         Self {
@@ -75,27 +74,8 @@ impl<S: Scalar> Turned<S> {
         }
     }
 
-    fn normal(&self, body: Option<usize>) -> &Vec3<S> {
+    pub fn normal(&self, body: Option<usize>) -> &Vec3<S> {
         body.map_or(&self.ground, |body| &self.normals[body])
-    }
-}
-
-/// Points of a load on its bodies.
-fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, Vec3<S>)>; 2] {
-    match kind {
-        LoadKind::Force { body, point, .. } => [Some((Some(*body), *point)), None],
-        LoadKind::Spring {
-            body_a,
-            body_b,
-            point_a,
-            point_b,
-            ..
-        } => [Some((Some(*body_a), *point_a)), Some((*body_b, *point_b))],
-        LoadKind::Torque { .. }
-        | LoadKind::TorsionSpring { .. }
-        | LoadKind::Damping { .. }
-        | LoadKind::BallDamping { .. }
-        | LoadKind::Friction { .. } => [None, None],
     }
 }
 
@@ -110,7 +90,7 @@ fn turned<S: Scalar>(frame: &JointFrame<S>, c: &Mat3<f64>) -> JointFrame<S> {
 }
 
 /// Axes that the rows of a joint use, on side A and on side B.
-fn used<S>(joint: &Joint<S>) -> [[bool; 3]; 2] {
+pub(super) fn used<S>(joint: &Joint<S>) -> [[bool; 3]; 2] {
     let mut used = [[false; 3]; 2];
     for row in joint.all_rows() {
         match row {
@@ -185,7 +165,7 @@ impl Plane {
     }
 
     /// Rows of joint j that hold identically, if the joint fits the plane.
-    fn identical<S: Scalar>(
+    pub(super) fn identical<S: Scalar>(
         &self,
         joint: &Joint<S>,
         turned: &Turned<S>,
@@ -207,7 +187,7 @@ impl Plane {
         joint.all_rows().filter(identical).collect()
     }
 
-    fn frames<S: Scalar>(&self, joint: &Joint<S>, j: usize) -> [JointFrame<S>; 2] {
+    pub(super) fn frames<S: Scalar>(&self, joint: &Joint<S>, j: usize) -> [JointFrame<S>; 2] {
         let frames = [joint.frame_a, joint.frame_b];
         match self.joints[j].turn {
             Some(turn) => frames.map(|frame| turned(&frame, &turn)),
@@ -228,305 +208,6 @@ impl Plane {
             [joint.frame_a, joint.frame_b] = self.frames(joint, j);
             joint.identical.clone_from(&own.identical);
             joint.left_out.clone_from(&own.left_out);
-        }
-    }
-
-    /// Examines whether `model` moves in this plane, and by how much its derivative leaves it for a
-    /// `change` of the variable.
-    ///
-    /// # Errors
-    /// What leaves it first.
-    pub fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Result<(), Obstacle> {
-        let turned = Turned::new(model, &self.normal);
-        let mut examiner = Examiner::new(change);
-        let length = length_scale(model);
-        self.joints(model, &turned, length, &mut examiner);
-        self.bodies(model, &turned, length, &mut examiner);
-        self.loads(model, &turned, length, &mut examiner);
-        self.upright(model, length, &mut examiner);
-        examiner.found
-    }
-
-    fn bodies<S: Scalar>(
-        &self,
-        model: &Model<S>,
-        turned: &Turned<S>,
-        length: f64,
-        examiner: &mut Examiner,
-    ) {
-        let gravity = largest(&model.gravity);
-        examiner.zero(along(&model.gravity, &self.normal), gravity, || {
-            ("gravity leaves the plane".into(), "m/s²")
-        });
-        let speed = model.bodies.iter().map(|body| largest(&body.velocity));
-        let spin = model
-            .bodies
-            .iter()
-            .map(|body| largest(&body.angular_velocity));
-        let (speed, spin) = (speed.fold(0.0, f64::max), spin.fold(0.0, f64::max));
-        for (i, body) in model.bodies.iter().enumerate() {
-            let (normal, height) = &self.bodies[i];
-            let own: Vec3<S> = lift3(normal);
-            let name = &body.name;
-            for x in (turned.normals[i] - own).iter() {
-                let what = || (format!("body \"{name}\" is turned out of the plane"), "rad");
-                examiner.zero(*x, 1.0, what);
-            }
-            let above = along(&body.position, &self.normal) - *height;
-            let what = || (format!("body \"{name}\" is moved across the plane"), "m");
-            examiner.zero(above, length, what);
-            let scale = body
-                .inertia
-                .iter()
-                .fold(0.0_f64, |m, x| m.max(x.re().abs()));
-            for (about, inertia) in [
-                (body.inertia * own, body.inertia),
-                (body.inertia.tr_mul(&own), body.inertia.transpose()),
-            ] {
-                let off = about - own * own.dot(&(inertia * own));
-                for x in off.iter() {
-                    let what = || {
-                        let what = "the normal is off the principal axes of inertia of body";
-                        (format!("{what} \"{name}\""), "kg m²")
-                    };
-                    examiner.zero(*x, scale, what);
-                }
-            }
-            let what = || {
-                (
-                    format!("the velocity of body \"{name}\" leaves the plane"),
-                    "m/s",
-                )
-            };
-            examiner.zero(along(&body.velocity, &self.normal), speed, what);
-            let omega = &body.angular_velocity;
-            for x in (omega - own * own.dot(omega)).iter() {
-                let what = || {
-                    let what = "is off the normal";
-                    (
-                        format!("the angular velocity of body \"{name}\" {what}"),
-                        "rad/s",
-                    )
-                };
-                examiner.zero(*x, spin, what);
-            }
-        }
-    }
-
-    fn joints<S: Scalar>(
-        &self,
-        model: &Model<S>,
-        turned: &Turned<S>,
-        length: f64,
-        examiner: &mut Examiner,
-    ) {
-        for (j, joint) in model.joints.iter().enumerate() {
-            let own = &self.joints[j];
-            let name = &joint.name;
-            let frames = self.frames(joint, j);
-            let bodies = [Some(joint.body_a), joint.body_b];
-            for (side, used) in used(joint).into_iter().enumerate() {
-                let normal = turned.normal(bodies[side]);
-                for axis in (0..3).filter(|&axis| used[axis]) {
-                    let e = &frames[side].axes[axis];
-                    let part = normal.dot(e);
-                    if part.re().abs() > 0.5 {
-                        for x in (e - normal * part).iter() {
-                            let what = || {
-                                (
-                                    format!("the axis of joint \"{name}\" is off the normal"),
-                                    "rad",
-                                )
-                            };
-                            examiner.zero(*x, 1.0, what);
-                        }
-                    } else {
-                        let what = || {
-                            (
-                                format!("the axis of joint \"{name}\" leaves the plane"),
-                                "rad",
-                            )
-                        };
-                        examiner.zero(part, 1.0, what);
-                    }
-                }
-            }
-            for drive in &joint.drives {
-                let normal = turned.normal(Some(joint.body_a));
-                let e = &frames[0].axes[2];
-                let part = normal.dot(e);
-                let what = || (format!("joint \"{name}\" is driven out of the plane"), "");
-                match drive.freedom {
-                    Freedom::Turn => {
-                        for x in (e - normal * part).iter() {
-                            examiner.zero(*x, 1.0, what);
-                        }
-                    }
-                    Freedom::Slide => examiner.zero(part, 1.0, what),
-                }
-            }
-            if self.identical(joint, turned, j) != own.identical {
-                let what = || (format!("joint \"{name}\" is turned"), "");
-                examiner.zero(S::one(), 0.0, what);
-            }
-            let mut heights = [S::zero(); 2];
-            for (side, frame) in frames.iter().enumerate() {
-                let above = turned.normal(bodies[side]).dot(&frame.point);
-                let what = || {
-                    (
-                        format!("a point of joint \"{name}\" is moved across the plane"),
-                        "m",
-                    )
-                };
-                examiner.zero(above - own.heights[side], length, what);
-                let centre = bodies[side].map_or(0.0, |body| self.bodies[body].1);
-                heights[side] = above + centre;
-            }
-            let what = || {
-                let what = "are not equally high above the plane";
-                (format!("the points of joint \"{name}\" {what}"), "m")
-            };
-            examiner.zero(heights[0] - heights[1], length, what);
-        }
-    }
-
-    fn loads<S: Scalar>(
-        &self,
-        model: &Model<S>,
-        turned: &Turned<S>,
-        length: f64,
-        examiner: &mut Examiner,
-    ) {
-        for (load, heights) in model.loads.iter().zip(&self.loads) {
-            let name = &load.name;
-            let mut ends = [None; 2];
-            for (k, at) in points(&load.kind).into_iter().enumerate() {
-                let Some((body, point)) = at else { continue };
-                let above = turned.normal(body).dot(&point);
-                let what = || {
-                    (
-                        format!("a point of load \"{name}\" is moved across the plane"),
-                        "m",
-                    )
-                };
-                examiner.zero(above - heights[k], length, what);
-                ends[k] = Some(above + body.map_or(0.0, |body| self.bodies[body].1));
-            }
-            let what = || (format!("load \"{name}\" leaves the plane"), "");
-            if let [Some(a), Some(b)] = ends {
-                examiner.zero(a - b, length, what);
-            }
-            let normal = |body: &usize, axes: &Axes| match axes {
-                Axes::Ground => turned.ground,
-                Axes::Body => turned.normals[*body],
-            };
-            match &load.kind {
-                LoadKind::Force {
-                    body,
-                    direction,
-                    axes,
-                    ..
-                } => {
-                    let part = normal(body, axes).dot(direction);
-                    examiner.zero(part, largest(direction), what);
-                }
-                LoadKind::Torque {
-                    body,
-                    direction,
-                    axes,
-                    ..
-                } => {
-                    let n = normal(body, axes);
-                    for x in (direction - n * n.dot(direction)).iter() {
-                        examiner.zero(*x, largest(direction), what);
-                    }
-                }
-                LoadKind::TorsionSpring { joint, .. }
-                | LoadKind::Damping {
-                    joint,
-                    freedom: Freedom::Turn,
-                    ..
-                }
-                | LoadKind::Friction {
-                    joint,
-                    freedom: Freedom::Turn,
-                    ..
-                } => {
-                    let joint = &model.joints[*joint];
-                    let n = turned.normals[joint.body_a];
-                    let e = &joint.frame_a.axes[2];
-                    for x in (e - n * n.dot(e)).iter() {
-                        examiner.zero(*x, 1.0, what);
-                    }
-                }
-                LoadKind::Spring { .. }
-                | LoadKind::BallDamping { .. }
-                | LoadKind::Damping {
-                    freedom: Freedom::Slide,
-                    ..
-                }
-                | LoadKind::Friction {
-                    freedom: Freedom::Slide,
-                    ..
-                } => {}
-            }
-        }
-    }
-
-    /// Bodies that nothing holds upright have what acts on them from outside their group as high as
-    /// their centres of mass.
-    fn upright<S: Scalar>(&self, model: &Model<S>, length: f64, examiner: &mut Examiner) {
-        let group = |body: Option<usize>| body.and_then(|body| self.groups[body]);
-        let mut level = vec![None; model.bodies.len()];
-        for (i, body) in model.bodies.iter().enumerate() {
-            let Some(own) = self.groups[i] else { continue };
-            let height = self.bodies[i].1;
-            let first: f64 = *level[own].get_or_insert(height);
-            let name = &body.name;
-            let what = || {
-                (
-                    format!("body \"{name}\" tilts: its centre of mass is off the others'"),
-                    "m",
-                )
-            };
-            examiner.zero(height - first, length, what);
-        }
-        let mut acts =
-            |body: Option<usize>, height: f64, what: &dyn Fn() -> (String, &'static str)| {
-                if let (Some(own), Some(body)) = (group(body), body) {
-                    let off = self.bodies[body].1 + height - level[own].unwrap_or(0.0);
-                    examiner.zero(off, length, what);
-                }
-            };
-        for (joint, own) in model.joints.iter().zip(&self.joints) {
-            let bodies = [Some(joint.body_a), joint.body_b];
-            if group(bodies[0]) == group(bodies[1]) {
-                continue;
-            }
-            let name = &joint.name;
-            let what = || {
-                (
-                    format!("joint \"{name}\" tilts a body: it is off its centre of mass"),
-                    "m",
-                )
-            };
-            for (body, height) in bodies.into_iter().zip(own.heights) {
-                acts(body, height, &what);
-            }
-        }
-        for (load, heights) in model.loads.iter().zip(&self.loads) {
-            let name = &load.name;
-            let what = || {
-                (
-                    format!("load \"{name}\" tilts a body: it is off its centre of mass"),
-                    "m",
-                )
-            };
-            for (at, height) in points(&load.kind).into_iter().zip(heights) {
-                if let Some((body, _)) = at {
-                    acts(body, *height, &what);
-                }
-            }
         }
     }
 }
@@ -558,8 +239,4 @@ fn turn_to(joint: &Joint<f64>, normal: &Vec3<f64>) -> Option<Mat3<f64>> {
         second.transpose(),
         third.transpose(),
     ]))
-}
-
-fn largest<S: Scalar>(v: &Vec3<S>) -> f64 {
-    v.iter().fold(0.0, |m, x| m.max(x.re().abs()))
 }

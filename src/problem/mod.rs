@@ -197,11 +197,15 @@ impl Problem {
     ///
     /// What its lowering leaves out is left out of the model, where the design admits it.
     pub fn scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
+        self.lowered_scene(x).0
+    }
+
+    /// As [`Problem::scene`], and whether the design admits all that the lowering leaves out.
+    pub fn lowered_scene<S: Scalar>(&self, x: &[S]) -> (Scene<S>, bool) {
         let mut scene = self.unlowered_scene(x);
-        if let Some(lowering) = &self.lowering {
-            lowering.apply(&mut scene.model);
-        }
-        scene
+        let lowering = self.lowering.as_ref();
+        let all = lowering.is_none_or(|lowering| lowering.apply(&mut scene));
+        (scene, all)
     }
 
     /// The scene at the design `x` with nothing left out but what follows from other joints.

@@ -136,6 +136,7 @@ impl<'a> Bench<'a> {
             observations,
             reason: String::new(),
             warning: None,
+            unlowered: false,
         };
         let (position, velocity) = seen.constraint_drift();
         ([seen.energy_drift(), position, velocity], seen.at.run)
