@@ -481,6 +481,53 @@ fn a_ball_held_at_its_centre_is_a_point() {
     ))));
 }
 
+/// A stand that is welded to ground, with a bracket welded to it, carries the trebuchet.
+#[test]
+fn what_is_welded_to_ground_has_no_unknowns() {
+    for (file, joint, place) in [
+        ("problems/trebuchet.json", "axle", [-4.0, 0.0, 0.0]),
+        (
+            "problems/triple_pendulum.json",
+            "first hinge",
+            [0.0, 0.0, 0.0],
+        ),
+    ] {
+        let problem = changed(file, |document| {
+            let bodies = &mut document["bodies"];
+            let solid = json!({"box": {"size": [1, 2, 3]}});
+            bodies["stand"] = json!({"shape": solid, "mass": 7, "place": {"at": [1, -5, 0]}});
+            bodies["bracket"] = json!({"shape": solid, "mass": 3, "place": {"at": [2, -6, 0]}});
+            let joints = &mut document["joints"];
+            let kind = joints[joint].as_object_mut().expect("a joint");
+            for (_, kind) in kind.iter_mut() {
+                for end in kind["between"].as_array_mut().expect("two ends") {
+                    if end == "ground" {
+                        *end = json!("stand");
+                    }
+                }
+                kind["at"] = json!(place);
+            }
+            joints["foot"] = json!({"weld": {"between": ["bracket", "ground"], "at": [2, -6, 0]}});
+            joints["seam"] = json!({"weld": {"between": ["stand", "bracket"], "at": [2, -5, 0]}});
+        });
+        let bare = load(file, &[]);
+        let size = |problem: &Problem| {
+            let model = problem.scene::<f64>(&problem.start()).model;
+            let numbering = flexbody::system::Numbering::new(&model);
+            (numbering.unknowns(), numbering.constraints())
+        };
+        assert_eq!(size(&problem), size(&bare), "{file}");
+        assert_eq!(is_planar(&problem), is_planar(&bare));
+        for method in [Method::Dop853, RADAU, BDF] {
+            let found = differences(&problem, &settings(method, Spacing::Steps(300)));
+            println!("{file} by {}: {found:?}", method.name());
+            for x in found {
+                assert!(x <= 1e-11, "{file} by {}: {x:e}", method.name());
+            }
+        }
+    }
+}
+
 #[test]
 fn an_explanation_counts_what_is_left() {
     let problem = load("problems/trebuchet.json", &[]);

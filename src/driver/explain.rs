@@ -102,9 +102,13 @@ fn lowering(
         }
     }
     for body in &lowered.bodies {
-        if body.mobility == Mobility::Point {
-            let why = "nothing turns it, and no function looks at it";
-            left_out.push(format!("the rotation of body \"{}\": {why}", body.name));
+        let name = &body.name;
+        match body.mobility {
+            Mobility::Point => left_out.push(format!(
+                "the rotation of body \"{name}\": nothing turns it, and no function looks at it"
+            )),
+            Mobility::Fixed => left_out.push(format!("body \"{name}\": it is welded to ground")),
+            Mobility::Spatial | Mobility::Planar { .. } => {}
         }
     }
     for (before, after) in written.joints.iter().zip(&lowered.joints) {

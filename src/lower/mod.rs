@@ -6,6 +6,7 @@
 //! every variable. The same examination, in values, is repeated wherever a scene is made.
 
 mod examine;
+pub mod fixed;
 mod in_plane;
 mod normal;
 pub mod planar;
@@ -13,11 +14,13 @@ pub mod point;
 mod tilt;
 
 pub use examine::Obstacle;
+pub use fixed::Fixed;
 pub use planar::Plane;
 
 use crate::functions::Scene;
 use crate::math::{Dual, Scalar};
-use crate::model::Mobility;
+use crate::model::{ConstraintRow, Mobility};
+use crate::system::redundancy;
 
 /// A design variable, as far as it matters here.
 #[derive(Clone, Debug)]
@@ -39,6 +42,10 @@ pub struct Lowering {
     pub plane: Result<Plane, Obstacle>,
     /// Bodies whose rotation nothing turns or looks at.
     pub points: Vec<usize>,
+    /// Bodies that nothing can move.
+    pub fixed: Fixed,
+    /// Rows that follow from others once these are ground, by joint.
+    left_out: Vec<Vec<ConstraintRow>>,
 }
 
 /// Designs between the bounds at which a reduction is examined.
@@ -101,7 +108,27 @@ impl Lowering {
                 })
                 .collect(),
         };
-        Self { plane, points }
+        let fixed = Fixed::find(&first.model);
+        let stays = everywhere(&|scene| fixed.holds(&scene.model, 0.0), &|scene, change| {
+            fixed.holds(&scene.model, change)
+        });
+        let mut found = Self {
+            plane,
+            points,
+            fixed: match stays {
+                Ok(()) => fixed,
+                Err(_) => Fixed::default(),
+            },
+            left_out: Vec::new(),
+        };
+        if !found.fixed.is_empty() {
+            let mut lowered = first.clone();
+            found.apply(&mut lowered);
+            redundancy::leave_out(&mut lowered.model);
+            let joints = lowered.model.joints.into_iter();
+            found.left_out = joints.map(|joint| joint.left_out).collect();
+        }
+        found
     }
 
     /// Every reduction, with what it leaves or what stands against it.
@@ -135,7 +162,14 @@ impl Lowering {
                 Err(_) => all = false,
             }
         }
-        all
+        if !all || self.fixed.holds(&scene.model, 0.0).is_err() {
+            return false;
+        }
+        self.fixed.apply(&mut scene.model);
+        for (joint, left_out) in scene.model.joints.iter_mut().zip(&self.left_out) {
+            joint.left_out.clone_from(left_out);
+        }
+        true
     }
 }
 

@@ -17,6 +17,8 @@ pub enum Mobility {
     },
     /// Translation without rotation: three unknowns.
     Point,
+    /// None: no unknowns.
+    Fixed,
 }
 
 impl Mobility {
@@ -25,6 +27,7 @@ impl Mobility {
         match self {
             Mobility::Spatial => 6,
             Mobility::Planar { .. } | Mobility::Point => 3,
+            Mobility::Fixed => 0,
         }
     }
 }

@@ -30,6 +30,7 @@ pub fn compress<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) -> 
             match numbering.mobility(body) {
                 Mobility::Spatial => x.copy_within(at..at + 6, to),
                 Mobility::Point => x.copy_within(at..at + 3, to),
+                Mobility::Fixed => {}
                 Mobility::Planar {
                     along: [t1, t2],
                     normal,
@@ -66,6 +67,7 @@ pub fn expand<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) {
                     x.copy_within(from..from + 3, at);
                     x[at + 3..at + 6].fill(S::zero());
                 }
+                Mobility::Fixed => x[at..at + 6].fill(S::zero()),
                 Mobility::Planar {
                     along: [t1, t2],
                     normal,
@@ -146,7 +148,7 @@ impl<S> Reduced<'_, S> {
         match self.numbering.mobility(body) {
             Mobility::Spatial => [(at + k, 1.0), (0, 0.0)],
             Mobility::Point if k < 3 => [(at + k, 1.0), (0, 0.0)],
-            Mobility::Point => [(0, 0.0), (0, 0.0)],
+            Mobility::Point | Mobility::Fixed => [(0, 0.0), (0, 0.0)],
             Mobility::Planar {
                 along: [t1, t2], ..
             } if k < 3 => [(at, t1[k]), (at + 1, t2[k])],

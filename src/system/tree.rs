@@ -51,13 +51,14 @@ pub enum Tree<S> {
 impl<S: Scalar> Tree<S> {
     /// Plans the elimination, or `None` if the joints of `model` close a loop.
     pub fn plan(model: &Model<S>, numbering: &Numbering) -> Option<Self> {
-        let links = links(model)?;
-        let small = (0..numbering.bodies())
-            .all(|body| numbering.mobility(body).unknowns() == SMALL)
+        let links = links(model, numbering)?;
+        let small = links
+            .iter()
+            .all(|link| numbering.mobility(link.body).unknowns() == SMALL)
             && (0..numbering.joints()).all(|joint| numbering.rows(joint).len() <= SMALL);
         Some(match small {
-            true => Tree::Small(Elimination::new(links)),
-            false => Tree::Large(Elimination::new(links)),
+            true => Tree::Small(Elimination::new(links, numbering.bodies())),
+            false => Tree::Large(Elimination::new(links, numbering.bodies())),
         })
     }
 
@@ -113,29 +114,39 @@ impl<S: Scalar> Tree<S> {
 }
 
 /// Links of the tree, leaves first, or `None` if the joints of `model` close a loop.
-fn links<S>(model: &Model<S>) -> Option<Vec<Link>> {
+/// Bodies without unknowns are ground.
+fn links<S>(model: &Model<S>, numbering: &Numbering) -> Option<Vec<Link>> {
     let bodies = model.bodies.len();
     let mut parent: Vec<Option<(usize, bool, Option<usize>)>> = vec![None; bodies];
     let mut used = vec![false; model.joints.len()];
     // Bodies in the order in which they are reached from ground or a free root.
     let mut reached: Vec<usize> = Vec::with_capacity(bodies);
     let mut seen = vec![false; bodies];
-    for (j, joint) in model.joints.iter().enumerate() {
-        if joint.body_b.is_none() {
-            if std::mem::replace(&mut seen[joint.body_a], true) {
-                return None;
-            }
-            used[j] = true;
-            parent[joint.body_a] = Some((j, true, None));
-            reached.push(joint.body_a);
+    let moves = |body: usize| numbering.mobility(body).unknowns() > 0;
+    let ends = |j: usize| {
+        let joint = &model.joints[j];
+        let b = joint.body_b.filter(|&b| moves(b));
+        (Some(joint.body_a).filter(|&a| moves(a)), b)
+    };
+    for j in 0..model.joints.len() {
+        let (body, is_a) = match ends(j) {
+            (Some(a), None) => (a, true),
+            (None, Some(b)) => (b, false),
+            (None, None) | (Some(_), Some(_)) => continue,
+        };
+        if std::mem::replace(&mut seen[body], true) {
+            return None;
         }
+        used[j] = true;
+        parent[body] = Some((j, is_a, None));
+        reached.push(body);
     }
     let mut next = 0;
     let mut adjacent = vec![Vec::new(); bodies];
-    for (j, joint) in model.joints.iter().enumerate() {
-        if let Some(b) = joint.body_b {
-            adjacent[joint.body_a].push((j, b, false));
-            adjacent[b].push((j, joint.body_a, true));
+    for j in 0..model.joints.len() {
+        if let (Some(a), Some(b)) = ends(j) {
+            adjacent[a].push((j, b, false));
+            adjacent[b].push((j, a, true));
         }
     }
     for root in 0..=bodies {
@@ -153,7 +164,7 @@ fn links<S>(model: &Model<S>) -> Option<Vec<Link>> {
                 reached.push(to);
             }
         }
-        if root < bodies && !std::mem::replace(&mut seen[root], true) {
+        if root < bodies && moves(root) && !std::mem::replace(&mut seen[root], true) {
             reached.push(root);
         }
     }
@@ -196,8 +207,8 @@ fn size<const N: usize>(numbering: &Numbering, body: usize) -> usize {
 }
 
 impl<S: Scalar, const N: usize> Elimination<S, N> {
-    fn new(links: Vec<Link>) -> Self {
-        let mut link_of = vec![0; links.len()];
+    fn new(links: Vec<Link>, bodies: usize) -> Self {
+        let mut link_of = vec![0; bodies];
         for (l, link) in links.iter().enumerate() {
             link_of[link.body] = l;
         }
@@ -329,6 +340,7 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
 fn inertia<S: Scalar, const N: usize>(body: &RigidBody<S>, mobility: &Mobility) -> [[S; N]; N] {
     let mut out = [[S::zero(); N]; N];
     let linear = match mobility {
+        Mobility::Fixed => 0,
         Mobility::Planar { .. } => 2,
         Mobility::Spatial | Mobility::Point => 3,
     };
@@ -347,7 +359,7 @@ fn inertia<S: Scalar, const N: usize>(body: &RigidBody<S>, mobility: &Mobility) 
             let about = body.inertia * normal.map(S::from);
             out[2][2] = along(&about, normal);
         }
-        Mobility::Point => {}
+        Mobility::Point | Mobility::Fixed => {}
     }
     out
 }
@@ -373,6 +385,7 @@ fn reduced<S: Scalar, const N: usize>(
             out[2] = along(t, normal);
         }
         Mobility::Point => out[..3].copy_from_slice(f.as_slice()),
+        Mobility::Fixed => {}
         Mobility::Spatial => {
             out[..3].copy_from_slice(f.as_slice());
             out[3..].copy_from_slice(t.as_slice());
