@@ -107,8 +107,9 @@ const BDF: Method = Method::Bdf {
 };
 
 /// The problems, whether they are planar, the methods to try, and what round-off may become: the
-/// squeezer turns fast, the rows of four bars pass through singular positions, in which Newton's
-/// method stalls with steps of this size.
+/// squeezer magnifies it by turning fast. The rows of four bars stop before their first singular
+/// position, in which they do not determine how round-off goes on (`benchmarks.rs` runs them through
+/// it, lowered).
 #[test]
 fn every_problem_moves_the_same_lowered() {
     let all: [(&str, bool, &[Method], f64); 13] = [
@@ -139,10 +140,10 @@ fn every_problem_moves_the_same_lowered() {
         ),
         ("benchmarks/bricard", false, &[Method::Dop853, RADAU], 1e-11),
         ("benchmarks/flyball_governor", false, &[RADAU], 1e-11),
-        ("benchmarks/four_bars_1", true, &[Method::Dop853], 1e-8),
-        ("benchmarks/four_bars_2", true, &[Method::Dop853], 1e-8),
-        ("benchmarks/four_bars_10", true, &[Method::Dop853], 1e-8),
-        ("benchmarks/four_bars_40", true, &[Method::Dop853], 1e-8),
+        ("benchmarks/four_bars_1", true, &[Method::Dop853], 1e-11),
+        ("benchmarks/four_bars_2", true, &[Method::Dop853], 1e-11),
+        ("benchmarks/four_bars_10", true, &[Method::Dop853], 1e-11),
+        ("benchmarks/four_bars_40", true, &[Method::Dop853], 1e-11),
         (
             "benchmarks/simple_pendulum",
             true,
@@ -168,7 +169,11 @@ fn every_problem_moves_the_same_lowered() {
         assert!(listed(file), "{} is not in the list", file.display());
     }
     for (name, planar, methods, round_off) in all {
-        let problem = load(&format!("problems/{name}.json"), &[]);
+        let short: &[&str] = match name.contains("four_bars") {
+            true => &["/simulation/duration=0.5"],
+            false => &[],
+        };
+        let problem = load(&format!("problems/{name}.json"), short);
         assert_eq!(is_planar(&problem), planar, "{name}");
         for &method in methods {
             let spacing = match method.is_adaptive() {
@@ -334,7 +339,8 @@ fn any_normal_will_do() {
     for name in names {
         let problem = load(&format!("problems/{name}.json"), &[]);
         let scene = problem.unlowered_scene::<f64>(&problem.start());
-        let duration = scene.duration.min(1.0);
+        // The four bars are level, and their motion not determined, soon after.
+        let duration = scene.duration.min(0.5);
         for (axis, angle) in [
             (Vec3::x(), 0.5 * std::f64::consts::PI),
             (Vec3::y(), 0.5 * std::f64::consts::PI),
