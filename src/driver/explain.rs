@@ -31,7 +31,7 @@ pub fn explain(problem: &Problem) -> Result<Explanation, IntegrationFailure> {
         })
         .collect();
     let needed = |f: &usize| !functions[*f].used.is_empty();
-    let asked = which.iter().any(|f| needed(f));
+    let asked = which.iter().any(&needed);
     let idle = |i: usize| {
         let mut needed = which.iter().filter(|f| needed(f));
         asked && !needed.any(|&f| depends(&gradients[f][i]))

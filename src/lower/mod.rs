@@ -22,6 +22,9 @@ use crate::math::{Dual, Scalar};
 use crate::model::{ConstraintRow, Mobility};
 use crate::system::redundancy;
 
+/// Whether something may be left out, or what stands against it.
+type Verdict = Result<(), Obstacle>;
+
 /// A design variable, as far as it matters here.
 #[derive(Clone, Debug)]
 pub struct Range {
@@ -74,20 +77,19 @@ impl Lowering {
             .map(|(i, variable)| (variable, dual(&seed(i))))
             .collect();
         // Asks a question of all designs and of all derivatives.
-        let everywhere =
-            |at: &dyn Fn(&Scene<f64>) -> Result<(), Obstacle>,
-             by: &dyn Fn(&Scene<Dual>, f64) -> Result<(), Obstacle>| {
-                for (variable, scene) in &derived {
-                    by(scene, variable.scale).map_err(|obstacle| Obstacle {
-                        variable: Some(variable.name.clone()),
-                        ..obstacle
-                    })?;
-                }
-                others.iter().try_for_each(at).map_err(|obstacle| Obstacle {
-                    elsewhere: true,
+        let everywhere = |at: &dyn Fn(&Scene<f64>) -> Result<(), Obstacle>,
+                          by: &dyn Fn(&Scene<Dual>, f64) -> Verdict| {
+            for (variable, scene) in &derived {
+                by(scene, variable.scale).map_err(|obstacle| Obstacle {
+                    variable: Some(variable.name.clone()),
                     ..obstacle
-                })
-            };
+                })?;
+            }
+            others.iter().try_for_each(at).map_err(|obstacle| Obstacle {
+                elsewhere: true,
+                ..obstacle
+            })
+        };
         let plane = Plane::find(&first.model).and_then(|plane| {
             everywhere(&|scene| plane.holds(&scene.model, 0.0), &|scene, change| {
                 plane.holds(&scene.model, change)
