@@ -5,7 +5,7 @@
 //! true error is not ten times that doubt, which includes 1e-13 of its size: it is at round-off.
 
 use flexbody::driver::Evaluated;
-use flexbody::driver::error::estimate;
+use flexbody::driver::error::{estimate, reach};
 use flexbody::integrate::{Method, Samples, Settings, Spacing, Start, simulate};
 use flexbody::problem::Problem;
 use serde_json::{Value, json};
@@ -231,6 +231,57 @@ fn estimates_are_right_on_andrews_squeezer() {
         steps(BDF2, 4000),
     ];
     judge(&andrews(), &settings, 1.0);
+}
+
+/// Only what errs too much is refined: the samples of an aggregate of the whole motion, the steps of a
+/// value at its end, and steps that are samples too.
+#[test]
+fn an_accuracy_is_reached_by_what_lacks_it() {
+    let by_tolerance = |tolerance: f64| {
+        move |problem: &mut Problem| {
+            problem.simulation.spacing = Spacing::Tolerance(tolerance);
+        }
+    };
+    let reached = |file: &str, accuracy: f64, change: &dyn Fn(&mut Problem)| {
+        let mut problem = load(file, |_| {});
+        change(&mut problem);
+        let which = problem.objective.expect("an objective").function;
+        let found = reach(&mut problem, which, accuracy).expect("runs");
+        assert!(found.error <= accuracy, "{found:?}");
+        // The estimate is that of the problem as it was left.
+        let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+        let own = estimate(&problem, &at, &[which], false).expect("runs")[0].value;
+        assert!(own.error <= 1.01 * accuracy * own.value.abs(), "{own:?}");
+        found
+    };
+    let seldom = |problem: &mut Problem| problem.simulation.samples = Some(50);
+    let found = reached("trebuchet.json", 1e-7, &seldom);
+    assert_eq!(found.spacing, None, "{found:?}");
+    assert!(found.samples > Some(50), "{found:?}");
+    assert_eq!(found.overrides().len(), 1);
+
+    let found = reached("trebuchet_release_time.json", 1e-9, &by_tolerance(1e-6));
+    assert!(
+        matches!(found.spacing, Some(Spacing::Tolerance(finer)) if finer < 1e-6),
+        "{found:?}"
+    );
+    assert_eq!(found.samples, None, "{found:?}");
+
+    let bdf = |problem: &mut Problem| {
+        problem.simulation.method = Some(BDF2);
+        problem.simulation.spacing = Spacing::Steps(1000);
+        problem.simulation.samples = None;
+    };
+    let found = reached("trebuchet.json", 1e-5, &bdf);
+    assert!(
+        matches!(found.spacing, Some(Spacing::Steps(more)) if more > 1000),
+        "{found:?}"
+    );
+    assert_eq!(found.samples, None, "{found:?}");
+
+    // What suffices stays as it is.
+    let found = reached("trebuchet_release_time.json", 1e-2, &by_tolerance(1e-6));
+    assert!(found.overrides().is_empty(), "{found:?}");
 }
 
 /// The table of the documentation.

@@ -134,6 +134,7 @@ fn scene(model: &Model<f64>, duration: f64) -> Scene<f64> {
     Scene {
         model: model.clone(),
         duration,
+        until: None,
         functions: functions(last, last.saturating_sub(1)),
     }
 }

@@ -112,7 +112,7 @@ const BDF: Method = Method::Bdf {
 /// it, lowered).
 #[test]
 fn every_problem_moves_the_same_lowered() {
-    let all: [(&str, bool, &[Method], f64); 13] = [
+    let all: [(&str, bool, &[Method], f64); 14] = [
         ("trebuchet", true, &[Method::Dop853, RADAU, BDF], 1e-11),
         (
             "trebuchet_release_time",
@@ -120,6 +120,7 @@ fn every_problem_moves_the_same_lowered() {
             &[Method::Dop853, RADAU, BDF],
             1e-11,
         ),
+        ("trebuchet_release_angle", true, &[Method::Dop853], 1e-11),
         (
             "triple_pendulum",
             false,

@@ -75,6 +75,8 @@ fn history(rows: impl Iterator<Item = [f64; 4]>) -> History {
             regularisation: 0.0,
             line_search_trials: 1,
             phase: "normal".into(),
+            steps: Some(158),
+            refreshes: Some(1),
             design: Vec::new(),
             constraints: Vec::new(),
         }

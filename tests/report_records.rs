@@ -21,6 +21,8 @@ fn history() -> History {
         regularisation: 0.0,
         line_search_trials: 1,
         phase: "normal".into(),
+        steps: Some(158),
+        refreshes: Some(1),
         design: vec![400.0, -0.0],
         constraints: vec![-2.76],
     };
@@ -139,6 +141,7 @@ fn history_heading_names_units() {
     let text = history().to_csv().expect("is valid");
     let start = "iteration,evaluations,objective: range [m],infeasibility,optimality,barrier,\
                  step norm,dual step,primal step,regularisation,line search trials,phase,\
+                 time steps,times chosen anew,\
                  \"variable: mass, \"\"heavy\"\" part [kg]\",variable: angle [rad] [],\
                  \"constraint: clear the\nbarrier [m]\"\n0,1,546.507,2.76,";
     assert!(text.starts_with(start), "{text}");
@@ -149,14 +152,19 @@ fn numbers_that_are_not_finite_are_empty_fields() {
     let mut history = history();
     history.rows[1].optimality = f64::INFINITY;
     history.rows[1].constraints[0] = f64::NAN;
+    history.rows[1].steps = None;
     let text = history.to_csv().expect("is valid");
     assert!(
         text.lines()
             .last()
             .expect("is valid")
-            .ends_with("400.0,-0.0,")
+            .ends_with(",normal,,1,400.0,-0.0,")
     );
     let back = History::from_csv(&text).expect("is valid");
+    assert_eq!(
+        (back.rows[1].steps, back.rows[1].refreshes),
+        (None, Some(1))
+    );
     assert!(back.rows[1].optimality.is_nan() && back.rows[1].constraints[0].is_nan());
 }
 
@@ -177,8 +185,8 @@ fn faults_of_a_history_name_the_line() {
             "history, line 3: found \"inf\", expected a finite number or nothing",
         ),
         (
-            good.replace("normal,400.0,-0.0,-2.76\n1", "normal,400.0,-0.0\n1"),
-            "history, line 3: found 14 fields, expected 15 as in the header",
+            good.replace("158,1,400.0,-0.0,-2.76\n1", "158,1,400.0,-0.0\n1"),
+            "history, line 3: found 16 fields, expected 17 as in the header",
         ),
         (
             good.replace("dual step", "double step"),
@@ -186,7 +194,7 @@ fn faults_of_a_history_name_the_line() {
         ),
         (
             "iteration,evaluations".into(),
-            "history, line 1: found 2 columns, expected at least 12",
+            "history, line 1: found 2 columns, expected at least 14",
         ),
     ];
     for (text, message) in cases {

@@ -119,6 +119,31 @@ fn release_time(start: &[f64]) {
     assert_near("range", done.optimum.objective.value, 856.58952, 1e-8);
 }
 
+/// A sling that lets go at an angle, found as an event, throws as far as one that lets go at the best
+/// time; the best angle is the one that it has then.
+#[test]
+fn release_angle_throws_as_far_as_release_time() {
+    let design = [
+        500.0,
+        8.0,
+        30.0,
+        0.008_115_959_97,
+        0.008,
+        -0.007_861_594_832,
+        -2.257_758_82,
+    ];
+    for start in [
+        &[][..],
+        &[417.1, 3.535, 42.72, 0.00549, 0.009129, -0.2534, -2.0],
+        &[461.3, 5.311, 33.51, 0.009736, 0.01573, 0.2966, -2.6],
+    ] {
+        let problem = problem("trebuchet_release_angle.json", start);
+        let done = solve(&problem);
+        assert_optimal(&problem, &done, 1.408766, &design);
+        assert_near("range", done.optimum.objective.value, 856.58952, 1e-8);
+    }
+}
+
 #[test]
 fn release_time_from_the_start_of_the_file() {
     release_time(&[]);

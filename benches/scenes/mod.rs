@@ -71,6 +71,7 @@ impl Case {
             scene: Scene {
                 model,
                 duration,
+                until: None,
                 functions,
             },
             settings,

@@ -3,6 +3,7 @@
 mod compensated;
 mod explicit;
 mod implicit;
+mod room;
 mod sensitivity;
 
 use crate::functions::Scene;

@@ -32,7 +32,7 @@ impl<'a> Sensitivity<'a> {
     pub fn new(scene: &'a Scene<f64>, run: &Trajectory<f64>, own: usize) -> Self {
         let (nq, nv) = (run.numbering.positions(), run.numbering.velocities());
         Self {
-            linearised: Linearised::new(&scene.functions[own], &scene.model, run),
+            linearised: Linearised::new(scene.function(own), &scene.model, run),
             own,
             cot: scene.zero_cotangent(),
             by_duration: 0.0,
@@ -52,13 +52,8 @@ impl<'a> Sensitivity<'a> {
             part.fill(0.0);
         }
         let [y, v, a] = &mut self.sample;
-        let mut out = SnapshotCotangent {
-            y,
-            v,
-            a,
-            model: &mut self.cot.model,
-        };
-        let own = &mut self.cot.functions[self.own];
+        let (model, own) = self.cot.model_and_function(self.own);
+        let mut out = SnapshotCotangent { y, v, a, model };
         self.linearised
             .pull_back(k, &Snapshot::of(&scene.model, run, k), &mut out, own);
         true
@@ -94,7 +89,7 @@ impl<'a> Sensitivity<'a> {
         counts.solves += REFINED_SOLVES * (saddle.factorisations - before);
         cot.duration = self.by_duration + self.linearised.by_duration;
         self.linearised
-            .pull_back_parameters(&mut cot.functions[self.own]);
+            .pull_back_parameters(cot.model_and_function(self.own).1);
         Ok(())
     }
 }

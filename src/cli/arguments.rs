@@ -31,8 +31,9 @@ pub struct Arguments {
 /// Where an optimisation starts and what it does besides.
 #[derive(Args, Debug)]
 pub struct Course {
-    /// Goes on with the interrupted run of this directory: its evaluations are not repeated.
-    #[arg(long, value_name = "DIR", conflicts_with = "starts")]
+    /// Goes on with the run of this directory that was killed, interrupted or at a limit: its
+    /// evaluations are not repeated. Settings of the optimiser may differ.
+    #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
     /// Starts from the design of another optimum.json (or its directory), by names of variables.
     #[arg(long, value_name = "FILE")]
@@ -68,8 +69,8 @@ pub struct Job {
     /// second simulation with steps of half the size.
     #[arg(long)]
     pub error: bool,
-    /// Refines the steps until the estimated error of the objective at the start, relative to it, is
-    /// below this.
+    /// Refines the steps or the samples, whichever err too much, until the estimated error of the
+    /// objective at the start, relative to it, is below this. Never coarser than the file asks.
     #[arg(long, value_name = "ERROR", value_parser = positive)]
     pub accuracy: Option<f64>,
 }

@@ -5,6 +5,7 @@ mod compare;
 mod explain;
 mod optimise;
 mod progress;
+mod records;
 mod simulate;
 mod starts;
 mod work_precision;

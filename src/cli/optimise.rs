@@ -2,23 +2,23 @@
 
 use super::arguments::{Course, Job};
 use super::progress::show;
+use super::records::{Records, Start, changed};
 use super::starts::several;
 use super::{
     DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, load, print, record, tell,
 };
-use crate::driver::{self, Journal, Optimisation, WarmStart, figures, journal};
+use crate::driver::{self, Optimisation, WarmStart, figures, multi_start};
 use crate::optimiser::{Counts, Status};
 use crate::problem::Problem;
-use crate::report::evaluations::{EvaluationLog, EvaluationRecord, Found};
-use crate::report::{History, atomic_write, summary, write_all};
+use crate::report::{History, ReportError, atomic_write, prepare_directory, summary, write_all};
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 
-/// Every evaluation of the run.
-const EVALUATIONS: &str = "evaluations.jsonl";
+/// The record of the optimum.
+const OPTIMUM: &str = "optimum.json";
 /// The history while the run goes on: the results beside it are still those of an earlier run.
 const PARTIAL: &str = "history.partial.csv";
 /// What another run can start from.
@@ -36,10 +36,24 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
         Some(from) => start_from(&mut problem, from)?,
         None => None,
     };
+    let starts = match course.starts {
+        Some(count) => Some(spread(&problem, count)?),
+        None => None,
+    };
     let directory = match (&job.output, &course.resume) {
         (Some(directory), _) | (None, Some(directory)) => directory.clone(),
         (None, None) => Path::new("results").join(&problem.name),
     };
+    let resume = course.resume.as_deref();
+    if let Some(from) = resume.filter(|from| !from.is_dir()) {
+        return Err(Failure::bad_input(format!(
+            "found no directory {}, expected that of the run to resume; to begin one, leave --resume \
+             out",
+            from.display()
+        )));
+    }
+    prepare_directory(&directory).map_err(Failure::bad_input)?;
+    let records = Records::new(&directory, resume, starts.is_some())?;
     let stop = Arc::new(AtomicBool::new(false));
     let interrupted = Arc::clone(&stop);
     // A second handler in one process is refused; the first then still ends the run.
@@ -51,28 +65,22 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
     });
     let stopped = || stop.load(Ordering::Relaxed);
 
-    let (problem, mut done) = match course.starts {
-        Some(count) => {
-            // Before the work, not after it.
-            std::fs::create_dir_all(&directory).map_err(|error| {
-                Failure::bad_input(format!(
-                    "cannot make the directory {}: {error}",
-                    directory.display()
-                ))
-            })?;
-            several(
-                &problem,
-                (&file, &directory),
-                count as usize,
-                &stopped,
-                job.quiet,
-            )?
+    let (problem, mut done, start) = match starts {
+        Some(starts) => {
+            let run = several(&problem, &starts, &records, &stopped, job.quiet)?;
+            let done = run.solved.complete(&run.problem, &file);
+            (run.problem, done, Start::OneOf(run.start))
         }
         None => {
-            let resume = course.resume.as_deref();
-            let start = (state.as_ref(), resume);
-            let done = one(&problem, &file, start, &directory, &stopped, job.quiet)?;
-            (problem, done)
+            let done = one(
+                &problem,
+                (&file, &directory),
+                state.as_ref(),
+                &records,
+                &stopped,
+                job.quiet,
+            )?;
+            (problem, done, Start::Only)
         }
     };
     match &done.outcome.status {
@@ -80,35 +88,18 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
         Status::IllPosed { what } => return Err(Failure::bad_input(what)),
         _ => {}
     }
-    if course.second_order && done.outcome.converged() {
-        done.optimum.second_order =
-            driver::second_order(&problem, &done.outcome).map_err(Failure::numerical)?;
-    }
-
-    let mut files = figures::of_optimisation(&problem, &done);
-    let record = done.optimum.to_json();
-    if let Ok(text) = &record {
-        files.push(("optimum.json", text.clone().into_bytes()));
-    }
-    if let Ok(text) = done.history.to_csv() {
-        files.push(("history.csv", text.into_bytes()));
-    }
-    let state = WarmStart::of(&problem, &done.outcome);
-    if let Some(text) = state.and_then(|state| serde_json::to_vec(&state).ok()) {
-        files.push((STATE, text));
-    }
-    let files: Vec<(PathBuf, Vec<u8>)> = files
-        .into_iter()
-        .map(|(name, bytes)| (directory.join(name), bytes))
-        .collect();
-    write_all(&files).map_err(Failure::bad_input)?;
-    // The whole history stands beside it now; a file that stays does no harm.
-    let _ = std::fs::remove_file(directory.join(PARTIAL));
+    let recorded = write(&problem, &done, &directory)?;
+    // What goes wrong from here on loses nothing.
+    let checked = match course.second_order {
+        true => second_order(&problem, &mut done, &directory, (&records, start), &stopped),
+        false => Ok(()),
+    };
     if !job.quiet {
         print(&summary(&done.optimum))?;
         tell(&times(&done.outcome.counts));
         tell(&format!("results in {}\n", directory.display()));
     }
+    checked?;
     if let (true, Some(end)) = (job.error, &done.end) {
         print(&super::simulate::errors(&problem, &end.at)?)?;
     }
@@ -119,13 +110,81 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
         Status::Converged => Ok(DONE),
         Status::Interrupted => Ok(INTERRUPTED),
         _ => {
-            record.map_err(Failure::numerical)?;
+            recorded.map_err(Failure::numerical)?;
             if job.quiet {
                 tell(&format!("{}: {}\n", problem.name, done.optimum.message));
             }
             Ok(NOT_REACHED)
         }
     }
+}
+
+/// The starts of several optimisations.
+fn spread(problem: &Problem, count: u32) -> Result<Vec<Vec<f64>>, Failure> {
+    multi_start::starts(problem, count as usize).map_err(|variable| {
+        Failure::bad_input(format!(
+            "found the variable \"{variable}\" without two bounds, expected \"lower\" and \
+             \"upper\" for every variable: starts are spread between them"
+        ))
+    })
+}
+
+/// Writes all results; also says why the record of the optimum could not be made, if so.
+fn write(
+    problem: &Problem,
+    done: &Optimisation,
+    directory: &Path,
+) -> Result<Result<(), ReportError>, Failure> {
+    let mut files = figures::of_optimisation(problem, done);
+    let record = done.optimum.to_json();
+    if let Ok(text) = &record {
+        files.push((OPTIMUM, text.clone().into_bytes()));
+    }
+    if let Ok(text) = done.history.to_csv() {
+        files.push(("history.csv", text.into_bytes()));
+    }
+    let state = WarmStart::of(problem, &done.outcome);
+    if let Some(text) = state.and_then(|state| serde_json::to_vec(&state).ok()) {
+        files.push((STATE, text));
+    }
+    let files: Vec<(PathBuf, Vec<u8>)> = files
+        .into_iter()
+        .map(|(name, bytes)| (directory.join(name), bytes))
+        .collect();
+    write_all(&files).map_err(Failure::bad_input)?;
+    // The whole history stands beside it now; a file that stays does no harm.
+    let _ = std::fs::remove_file(directory.join(PARTIAL));
+    Ok(record.map(drop))
+}
+
+/// Checks the curvature of an optimum that is written already, and renews its record.
+fn second_order(
+    problem: &Problem,
+    done: &mut Optimisation,
+    directory: &Path,
+    (records, start): (&Records, Start),
+    stopped: &dyn Fn() -> bool,
+) -> Result<(), Failure> {
+    if !done.outcome.converged() {
+        tell("second order: not checked, as the run did not converge\n");
+        return Ok(());
+    }
+    let opened = records.reopen(start, problem).map_err(Failure::bad_input)?;
+    let fault = Mutex::new(None);
+    let has_failed = || fault.lock().is_ok_and(|error| error.is_some());
+    let ended = || stopped() || has_failed();
+    let journal = opened.journal(&fault, true);
+    let found = driver::second_order(problem, &done.outcome, &done.integration, journal, &ended);
+    if let Ok(Some(error)) = fault.into_inner() {
+        return Err(Failure::bad_input(error));
+    }
+    done.optimum.second_order = found.map_err(|failure| {
+        Failure::numerical(format!(
+            "second order: not checked: {failure}; the results are without it"
+        ))
+    })?;
+    let text = done.optimum.to_json().map_err(Failure::numerical)?;
+    atomic_write(&directory.join(OPTIMUM), text.as_bytes()).map_err(Failure::bad_input)
 }
 
 /// Where the wall time went; not a part of the record, which is the same for the same run.
@@ -198,39 +257,22 @@ fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<WarmStart>, F
 /// One optimisation, its evaluations and iterations on the disk as they happen.
 fn one(
     problem: &Problem,
-    file: &str,
-    (state, resume): (Option<&WarmStart>, Option<&Path>),
-    directory: &Path,
+    (file, directory): (&str, &Path),
+    state: Option<&WarmStart>,
+    records: &Records,
     stopped: &dyn Fn() -> bool,
     quiet: bool,
 ) -> Result<Optimisation, Failure> {
-    let head = journal::head(problem);
-    let path = directory.join(EVALUATIONS);
-    let (mut log, earlier) = match resume {
-        Some(from) if from == directory => EvaluationLog::resume(&path, &head),
-        Some(from) => {
-            EvaluationLog::read(&from.join(EVALUATIONS), &head).and_then(|(earlier, _)| {
-                let mut log = EvaluationLog::create(&path, &head)?;
-                earlier.iter().try_for_each(|known| log.append(known))?;
-                Ok((log, earlier))
-            })
-        }
-        None => EvaluationLog::create(&path, &head).map(|log| (log, Vec::new())),
+    let opened = records
+        .open(Start::Only, problem)
+        .map_err(Failure::bad_input)?;
+    if !quiet {
+        tell(&records.resumed(opened.known));
+        tell(&changed(&opened.changes));
     }
-    .map_err(Failure::bad_input)?;
-    let unwritable = RefCell::new(None);
-    let mut record = |evaluation: EvaluationRecord| {
-        if let (false, Found::Steps(steps)) = (quiet, &evaluation.found) {
-            let count = steps.ends.len().saturating_sub(1);
-            tell(&format!(
-                "{count} steps by {}: {}\n",
-                steps.method, steps.reason
-            ));
-        }
-        if let Err(error) = log.append(&evaluation) {
-            unwritable.borrow_mut().get_or_insert(error);
-        }
-    };
+    let unwritable: RefCell<Option<ReportError>> = RefCell::new(None);
+    let fault = Mutex::new(None);
+    let has_failed = || fault.lock().is_ok_and(|error| error.is_some());
     let mut progress = |history: &History| {
         if !quiet {
             show(history);
@@ -241,17 +283,19 @@ fn one(
         if let Err(error) = saved {
             unwritable.borrow_mut().get_or_insert(error);
         }
-        if stopped() || unwritable.borrow().is_some() {
+        if stopped() || has_failed() || unwritable.borrow().is_some() {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
         }
     };
-    let journal = Journal::new(earlier, &mut record);
+    let journal = opened.journal(&fault, quiet);
     let state = state.map(|warm| &warm.state);
     let done = driver::optimise(problem, file, state, journal, &mut progress);
-    let synchronised = log.synchronise().err();
-    match unwritable.into_inner().or(synchronised) {
+    match unwritable
+        .into_inner()
+        .or(fault.into_inner().ok().flatten())
+    {
         Some(error) => Err(Failure::bad_input(error)),
         None => done.ok_or_else(|| Failure::bad_input("nothing to optimise")),
     }

@@ -46,7 +46,7 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
         "{}: {} s by {} in {} steps ({} evaluations, {} Newton iterations, {} factorisations)\n  \
          method: {}\n",
         problem.name,
-        run.duration,
+        (run.duration * 1e9).round() / 1e9,
         run.method.name(),
         run.grid.steps(),
         counts.evaluations,

@@ -5,7 +5,7 @@ use super::{DONE, Failure, load, print, tell};
 use crate::driver::work_precision::{Plan, work_precision};
 use crate::problem::Problem;
 use crate::report::positions::positions_from_csv;
-use crate::report::{PrecisionRow, plots, read_text, write_all};
+use crate::report::{PrecisionRow, plots, prepare_directory, read_text, write_all};
 use std::path::{Path, PathBuf};
 
 /// Measures all methods on the start of a problem and writes what it finds.
@@ -21,6 +21,7 @@ pub fn measure(asked: &Measurement) -> Result<u8, Failure> {
         Some(directory) => directory.clone(),
         None => Path::new("results/work-precision").join(&problem.name),
     };
+    prepare_directory(&directory).map_err(Failure::bad_input)?;
     let mut seen = |row: &PrecisionRow| {
         if !job.quiet {
             tell(&line(row));

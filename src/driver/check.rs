@@ -1,6 +1,7 @@
 //! The check of gradients: adjoint beside complex step.
 
 use super::evaluate::Evaluated;
+use super::event;
 use super::integration::Integration;
 use crate::functions::Function;
 use crate::integrate::{IntegrationFailure, Settings, Trajectory, simulate};
@@ -67,9 +68,14 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
         return Ok(Vec::new());
     };
     let which: Vec<usize> = (0..in_use.scene.functions.len()).collect();
+    let duration = in_use.run.duration;
+    let rate = match &in_use.scene.until {
+        Some(_) => event::rate(&in_use.scene, settings, duration)?,
+        None => f64::NAN,
+    };
     let steps: Vec<ComplexStep> = (0..x.len())
         .into_par_iter()
-        .map(|i| complex_step(problem, settings, x, i))
+        .map(|i| complex_step(problem, settings, (duration, rate), x, i))
         .collect::<Result<_, _>>()?;
     let Some(first) = steps.first() else {
         return Ok(Vec::new());
@@ -105,13 +111,15 @@ struct ComplexStep {
 fn complex_step(
     problem: &Problem,
     settings: &Settings,
+    event: (f64, f64),
     x: &[f64],
     i: usize,
 ) -> Result<ComplexStep, IntegrationFailure> {
     let mut x: Vec<Complex64> = x.iter().map(|&x| x.into()).collect();
     x[i].im = COMPLEX_STEP;
     let scene = problem.scene(&x);
-    let run = simulate(&scene.model, scene.duration, settings)?;
+    let duration = event::complex_duration(&scene, settings, event)?;
+    let run = simulate(&scene.model, duration, settings)?;
     let derivative =
         |f: &Function<Complex64>| f.evaluate(&scene.model, &run).value.im / COMPLEX_STEP;
     Ok(ComplexStep {

@@ -13,9 +13,10 @@
 //! the two may be of any size and sign.
 
 use super::evaluate::Evaluated;
+use super::event;
 use super::integration::{Integration, looks_at_the_whole};
-use crate::integrate::{IntegrationFailure, Samples, Settings, Spacing, Trajectory, simulate};
-use crate::problem::Problem;
+use crate::integrate::{IntegrationFailure, Samples, Settings, Spacing, Trajectory};
+use crate::problem::{Problem, Simulation};
 
 /// Order of the trapezoidal rule, by which functions sum over the motion.
 const SUMS: usize = 2;
@@ -31,6 +32,10 @@ pub struct Estimate {
     pub value: f64,
     /// Its estimated error, absolute.
     pub error: f64,
+    /// The part of the steps in it, with its sign.
+    pub of_steps: f64,
+    /// The part of the samples in it, with its sign.
+    pub of_samples: f64,
 }
 
 /// A function's value and, if asked for, its gradient in the design variables.
@@ -57,12 +62,10 @@ pub fn estimate(
 ) -> Result<Vec<FunctionError>, IntegrationFailure> {
     let sums = |f: &usize| looks_at_the_whole(&at.scene.functions[*f]);
     let finer = halved(&at.run, which.iter().any(sums));
-    let run = simulate(&at.scene.model, at.scene.duration, &finer)?;
-    let mut fine = Evaluated {
-        x: at.x.clone(),
-        scene: at.scene.clone(),
-        run,
-    };
+    let mut scene = at.scene.clone();
+    let run = event::settle(&mut scene, &finer, at.run.duration)?;
+    let x = at.x.clone();
+    let mut fine = Evaluated { x, scene, run };
     let numbers = |of: &Evaluated, which: &[usize]| -> Result<Vec<Vec<f64>>, IntegrationFailure> {
         let mut all: Vec<Vec<f64>> = which.iter().map(|&f| vec![of.function(f).value]).collect();
         if gradients && !which.is_empty() {
@@ -90,9 +93,14 @@ pub fn estimate(
             true => thinner.next().unwrap_or_else(|| finer.clone()),
             false => finer.clone(),
         };
-        let estimate = |((&h, &thin), &fine): ((&f64, &f64), &f64)| Estimate {
-            value: h,
-            error: ((h - thin) * steps + (thin - fine) * samples).abs(),
+        let estimate = |((&h, &thin), &fine): ((&f64, &f64), &f64)| {
+            let (of_steps, of_samples) = ((h - thin) * steps, (thin - fine) * samples);
+            Estimate {
+                value: h,
+                error: (of_steps + of_samples).abs(),
+                of_steps,
+                of_samples,
+            }
         };
         let numbers = coarse.iter().zip(&thinner).zip(&finer);
         let mut estimates: Vec<Estimate> = numbers.map(estimate).collect();
@@ -147,9 +155,9 @@ fn thin(run: &mut Trajectory<f64>) {
 pub struct Accuracy {
     /// Number of steps.
     pub steps: usize,
-    /// Tolerance of the steps, if they follow one.
-    pub tolerance: Option<f64>,
-    /// Number of samples, if they were increased.
+    /// Number of steps of equal size or tolerance, if it was refined.
+    pub spacing: Option<Spacing>,
+    /// Number of samples, if it was increased.
     pub samples: Option<usize>,
     /// Estimated error reached, relative to the function.
     pub error: f64,
@@ -158,9 +166,12 @@ pub struct Accuracy {
 impl Accuracy {
     /// The changes of the problem file that make these steps, as path=value.
     pub fn overrides(&self) -> Vec<String> {
-        let mut all = match self.tolerance {
-            Some(tolerance) => vec![format!("/simulation/tolerance={tolerance:e}")],
-            None => vec![format!("/simulation/steps={}", self.steps)],
+        let mut all = match self.spacing {
+            Some(Spacing::Tolerance(tolerance)) => {
+                vec![format!("/simulation/tolerance={tolerance:e}")]
+            }
+            Some(Spacing::Steps(steps)) => vec![format!("/simulation/steps={steps}")],
+            Some(Spacing::Frozen(_)) | None => Vec::new(),
         };
         all.extend((self.samples).map(|samples| format!("/simulation/samples={samples}")));
         all
@@ -172,19 +183,24 @@ impl Accuracy {
             true => "",
             false => ", which is all that can be reached",
         };
-        let tolerance = self.tolerance.map_or_else(String::new, |tolerance| {
-            format!(", tolerance {tolerance:.1e}")
-        });
+        let refined = match self.spacing {
+            Some(Spacing::Tolerance(tolerance)) => format!(", tolerance {tolerance:.1e}"),
+            _ => String::new(),
+        };
+        let samples = self
+            .samples
+            .map_or_else(String::new, |samples| format!(", {samples} samples"));
         format!(
-            "accuracy {asked:.1e}: {} steps{tolerance}; estimated relative error of the objective \
-             at the start {:.1e}{missed}",
+            "accuracy {asked:.1e}: {} steps{refined}{samples}; estimated relative error of the \
+             objective at the start {:.1e}{missed}",
             self.steps, self.error
         )
     }
 }
 
-/// Changes the steps of `problem` until the estimated error of the function `which` at its start is
-/// below `accuracy`, relative to the function.
+/// Refines the steps or the samples of `problem`, whichever err too much, until the estimated error
+/// of the function `which` at its start is below `accuracy`, relative to the function. They get no
+/// coarser than the problem asks for.
 ///
 /// # Errors
 /// If a simulation fails.
@@ -194,57 +210,66 @@ pub fn reach(
     accuracy: f64,
 ) -> Result<Accuracy, IntegrationFailure> {
     let x = problem.start();
-    let mut reached = f64::INFINITY;
-    let mut steps = 0;
-    for _ in 0..ATTEMPTS {
+    let asked = problem.simulation.clone();
+    let mut attempts = ATTEMPTS;
+    let (error, steps) = loop {
         let scene = problem.scene(&x);
         let mut integration = Integration::new(problem, &scene, false, false);
         let (at, _) = Evaluated::with(&mut integration, problem, &x)?;
-        let found = estimate(problem, &at, &[which], false)?;
-        let value = found[0].value;
-        reached = value.error / value.value.abs().max(f64::MIN_POSITIVE);
-        steps = at.run.grid.steps();
-        if reached <= accuracy {
-            break;
+        let value = estimate(problem, &at, &[which], false)?[0].value;
+        let size = value.value.abs().max(f64::MIN_POSITIVE);
+        let reached = value.error / size;
+        attempts -= 1;
+        if reached <= accuracy || attempts == 0 {
+            break (reached, at.run.grid.steps());
         }
-        // Half of the excess may be the sums' and half the steps': refine both.
-        let order = at.run.method.order();
-        let summed = looks_at_the_whole(&at.scene.functions[which]);
-        let gain = (2.0 * reached / accuracy).max(2.0);
-        let simulation = &mut problem.simulation;
-        match &mut simulation.spacing {
-            Spacing::Tolerance(tolerance) => {
-                if *tolerance <= FINEST.0 && !summed {
-                    break;
-                }
-                *tolerance = (*tolerance / gain).max(FINEST.0);
-            }
-            Spacing::Steps(count) => {
-                let order = if summed { order.min(SUMS) } else { order };
-                let more = gain.powf(1.0 / order as f64);
-                let next = (*count as f64 * more).ceil() as usize;
-                if *count >= FINEST.1 {
-                    break;
-                }
-                *count = next.min(FINEST.1);
-            }
-            Spacing::Frozen(_) => break,
+        // Either part may have half of what is allowed.
+        let excess = |part: f64| 2.0 * part.abs() / (accuracy * size);
+        let (of_steps, of_samples) = (excess(value.of_steps), excess(value.of_samples));
+        if !refine(&mut problem.simulation, &at.run, of_steps, of_samples) {
+            break (reached, at.run.grid.steps());
         }
-        let between = !matches!(simulation.spacing, Spacing::Steps(_));
-        if summed && (between || simulation.samples.is_some()) {
-            let more = gain.sqrt().min(8.0);
-            let next = (at.run.last() as f64 * more).ceil() as usize;
-            simulation.samples = Some(next.min(FINEST.1));
-        }
-    }
-    let simulation = &problem.simulation;
+    };
+    let now = &problem.simulation;
     Ok(Accuracy {
         steps,
-        tolerance: match simulation.spacing {
-            Spacing::Tolerance(tolerance) => Some(tolerance),
-            _ => None,
-        },
-        samples: simulation.samples,
-        error: reached,
+        spacing: (now.spacing != asked.spacing).then(|| now.spacing.clone()),
+        samples: now.samples.filter(|_| now.samples != asked.samples),
+        error,
     })
+}
+
+/// Refines steps and samples that err by so many times what is allowed, if more than once; `false` if
+/// nothing can be refined.
+fn refine(
+    simulation: &mut Simulation,
+    run: &Trajectory<f64>,
+    of_steps: f64,
+    of_samples: f64,
+) -> bool {
+    let before = simulation.clone();
+    let more_samples = of_samples.sqrt().clamp(2.0_f64.sqrt(), 8.0);
+    // Methods of equal steps are sampled at their ends.
+    let apart = run.method.is_adaptive();
+    if of_samples > 1.0 && apart {
+        let next = (run.last() as f64 * more_samples).ceil() as usize;
+        simulation.samples = Some(next.min(FINEST.1));
+    }
+    match &mut simulation.spacing {
+        Spacing::Tolerance(tolerance) if of_steps > 1.0 => {
+            *tolerance = (*tolerance / of_steps.max(2.0)).max(FINEST.0);
+        }
+        Spacing::Steps(count) => {
+            let mut more = 1.0_f64;
+            if of_steps > 1.0 {
+                more = of_steps.max(2.0).powf(1.0 / run.method.order() as f64);
+            }
+            if of_samples > 1.0 && !apart {
+                more = more.max(more_samples);
+            }
+            *count = ((*count as f64 * more).ceil() as usize).min(FINEST.1);
+        }
+        Spacing::Tolerance(_) | Spacing::Frozen(_) => {}
+    }
+    *simulation != before
 }

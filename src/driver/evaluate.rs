@@ -1,7 +1,7 @@
 //! Functions and gradients of a problem at a design: one simulation, one backward march.
 
 use super::integration::{Integration, Refresh};
-use super::journal::Journal;
+use super::journal::{Journal, bits};
 use crate::adjoint;
 use crate::functions::{Scene, evaluate};
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
@@ -10,6 +10,9 @@ use crate::model::RigidBody;
 use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
 use crate::problem::{Problem, Sense};
 use nalgebra::DMatrix;
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::rc::Rc;
 
 /// A design that was simulated.
 pub struct Evaluated {
@@ -40,7 +43,7 @@ impl Evaluated {
         problem: &Problem,
         x: &[f64],
     ) -> Result<(Self, Option<Refresh>), IntegrationFailure> {
-        let (scene, all) = problem.lowered_scene::<f64>(x);
+        let (mut scene, all) = problem.lowered_scene::<f64>(x);
         integration.unlowered += usize::from(!all);
         let not_solid = |body: &&RigidBody<f64>| !body.is_solid();
         if let Some(body) = scene.model.bodies.iter().find(not_solid) {
@@ -48,7 +51,7 @@ impl Evaluated {
                 body: body.name.clone(),
             });
         }
-        let (run, refresh) = integration.simulate(&scene)?;
+        let (run, refresh) = integration.simulate(&mut scene)?;
         let x = x.to_vec();
         Ok((Self { x, scene, run }, refresh))
     }
@@ -85,10 +88,23 @@ impl Evaluated {
         let mut once = which.to_vec();
         once.sort_unstable();
         once.dedup();
-        let adjoint = adjoint::gradients(&self.scene, &self.run, &once)?;
         let place = |f: &usize| {
             once.binary_search(f)
                 .expect("every function is in the list")
+        };
+        let adjoint = match &self.scene.until {
+            Some(_) if !once.is_empty() => {
+                let with_event: Vec<usize> =
+                    once.iter().copied().chain([self.scene.event()]).collect();
+                let mut found = adjoint::gradients(&self.scene, &self.run, &with_event)?;
+                let event = found.gradients.pop();
+                for gradient in &mut found.gradients {
+                    *gradient =
+                        along_event(gradient, event.as_ref().expect("the event was asked for"));
+                }
+                found
+            }
+            _ => adjoint::gradients(&self.scene, &self.run, &once)?,
         };
         let by_parameters: Vec<Vec<f64>> =
             adjoint.gradients.iter().map(Scene::parameters).collect();
@@ -107,6 +123,22 @@ impl Evaluated {
         let asked = which.iter().map(|f| all[place(f)].clone()).collect();
         Ok((asked, adjoint.counts))
     }
+}
+
+/// The derivative of a function where the event moves with the parameters: ∂f − (∂f/∂T) (∂g − ∂c) /
+/// (∂g/∂T).
+fn along_event(function: &Scene<f64>, event: &Scene<f64>) -> Scene<f64> {
+    let ratio = function.duration / event.duration;
+    let mut event = event.clone();
+    if let Some(until) = &mut event.until {
+        until.value = -1.0;
+    }
+    let by_event = event.parameters();
+    let mut next = by_event.into_iter();
+    let mut out = function.map(&mut |f| f - ratio * next.next().expect("scenes of one shape"));
+    // The duration is none of the design's any more.
+    out.duration = 0.0;
+    out
 }
 
 /// A derivative in a variable: the sum over the parameters of the scene that it moves.
@@ -133,6 +165,18 @@ fn parameter_derivatives(problem: &Problem, x: &[f64], i: usize) -> Vec<f64> {
         .collect()
 }
 
+/// The steps that the functions of a design were found with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JudgedOn {
+    /// Number of steps.
+    pub steps: Option<usize>,
+    /// How often they had been chosen anew.
+    pub refreshes: usize,
+}
+
+/// The steps of every design that was evaluated, by its bits; shared with who observes the run.
+pub type Judgements = Rc<RefCell<HashMap<Vec<u64>, JudgedOn>>>;
+
 /// The problem as a nonlinear program. Keeps the last simulated design, so that a gradient where
 /// the functions were just evaluated costs the backward march only.
 pub struct Evaluator<'a> {
@@ -143,6 +187,10 @@ pub struct Evaluator<'a> {
     /// The steps in use.
     pub integration: Integration,
     journal: Journal<'a>,
+    /// Which choice of steps of the journal `integration` goes by.
+    choice: Option<usize>,
+    /// What the functions of each design were found with.
+    pub judgements: Judgements,
     /// Work of all simulations and gradients so far.
     pub counts: WorkCounts,
 }
@@ -152,10 +200,6 @@ impl<'a> Evaluator<'a> {
     pub fn new(problem: &'a Problem, journal: Journal<'a>) -> Option<Self> {
         let objective = problem.objective?;
         let scene = problem.scene(&problem.start());
-        let mut integration = Integration::new(problem, &scene, false, true);
-        if let Some((method, grid, times)) = journal.steps() {
-            integration.restore(method, grid, times);
-        }
         let sign = match objective.sense {
             Sense::Minimise => 1.0,
             Sense::Maximise => -1.0,
@@ -165,8 +209,10 @@ impl<'a> Evaluator<'a> {
             objective: objective.function,
             sign,
             last: None,
-            integration,
+            integration: Integration::new(problem, &scene, false, true),
             journal,
+            choice: None,
+            judgements: Judgements::default(),
             counts: WorkCounts::default(),
         })
     }
@@ -180,6 +226,18 @@ impl<'a> Evaluator<'a> {
     fn functions(&self) -> Vec<usize> {
         let constraints = self.problem.constraints.iter().map(|c| c.function);
         std::iter::once(self.objective).chain(constraints).collect()
+    }
+
+    /// Takes the steps that the journal has come to.
+    fn follow(&mut self) {
+        let choice = self.journal.choice();
+        if choice == self.choice {
+            return;
+        }
+        self.choice = choice;
+        if let Some((method, grid, refreshes)) = self.journal.steps() {
+            self.integration.restore(method, grid, refreshes);
+        }
     }
 
     fn failure(&self, reason: String) -> EvaluationFailure {
@@ -261,6 +319,14 @@ impl Nlp for Evaluator<'_> {
             let at = at(last, steps, counts, problem, &x).map_err(|failure| failure.to_string())?;
             Ok(functions.iter().map(|&f| at.function(f).value).collect())
         });
+        self.follow();
+        let judged = JudgedOn {
+            steps: self.integration.steps(),
+            refreshes: self.integration.refreshes,
+        };
+        let mut judgements = self.judgements.borrow_mut();
+        judgements.entry(bits(&x)).or_insert(judged);
+        drop(judgements);
         let values = found.map_err(|reason| self.failure(reason))?;
         Ok(Evaluation {
             objective: self.sign * values[0],
@@ -282,6 +348,7 @@ impl Nlp for Evaluator<'_> {
             *counts += work;
             Ok(gradients)
         });
+        self.follow();
         let gradients = found.map_err(|reason| self.failure(reason))?;
         let scaled = |f: usize, i: usize| gradients[f][i] * problem.variables[i].scale;
         let n = x.len();

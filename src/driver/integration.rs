@@ -2,6 +2,7 @@
 //! follow the error are kept until it no longer suffices, so that functions are smooth in the
 //! design.
 
+use super::event;
 use crate::functions::{Function, Reduction, Scene};
 use crate::integrate::{
     Chosen, Grid, IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, choice,
@@ -27,6 +28,8 @@ pub struct Integration {
     /// How many designs did not admit what the lowering leaves out at the others.
     pub unlowered: usize,
     keep_stages: bool,
+    /// When the event came in the last run, if the scene has one (s).
+    event: Option<f64>,
 }
 
 /// A change of the steps in use.
@@ -45,7 +48,8 @@ impl Integration {
     /// functions, `gradients` whether derivatives will be asked for.
     pub fn new(problem: &Problem, scene: &Scene<f64>, history: bool, gradients: bool) -> Self {
         let simulation = &problem.simulation;
-        let whole = history || scene.functions.iter().any(looks_at_the_whole);
+        let whole =
+            history || scene.until.is_some() || scene.functions.iter().any(looks_at_the_whole);
         let samples = match (simulation.samples, &simulation.spacing) {
             (Some(samples), _) => Samples::Uniform(samples),
             (None, Spacing::Steps(_)) => Samples::StepEnds,
@@ -60,6 +64,7 @@ impl Integration {
             refreshes: 0,
             unlowered: 0,
             keep_stages: gradients,
+            event: None,
         }
     }
 
@@ -67,6 +72,16 @@ impl Integration {
     pub fn chosen(&self) -> Option<(&Settings, &str)> {
         let (settings, reason) = self.chosen.as_ref()?;
         Some((settings, reason))
+    }
+
+    /// Number of steps of the motion, once it is known.
+    pub fn steps(&self) -> Option<usize> {
+        let spacing = self.chosen.as_ref().map(|(settings, _)| &settings.spacing);
+        match spacing.unwrap_or(&self.spacing) {
+            Spacing::Steps(steps) => Some(*steps),
+            Spacing::Frozen(grid) => Some(grid.steps()),
+            Spacing::Tolerance(_) => None,
+        }
     }
 
     /// Where the motion is sampled.
@@ -85,9 +100,9 @@ impl Integration {
         }
     }
 
-    /// Goes on with the steps of an earlier run, which chose them so many times.
-    pub fn restore(&mut self, method: Method, grid: Grid, times: usize) {
-        self.refreshes = times.saturating_sub(1);
+    /// Goes on with steps that were chosen before, after so many others.
+    pub fn restore(&mut self, method: Method, grid: Grid, refreshes: usize) {
+        self.refreshes = refreshes;
         let settings = Settings {
             method,
             spacing: Spacing::Frozen(grid),
@@ -113,19 +128,22 @@ impl Integration {
         }
     }
 
-    /// Simulates a scene with the steps in use, and chooses them anew where they do not suffice.
+    /// Simulates a scene with the steps in use, and chooses them anew where they do not suffice. Sets
+    /// the duration of a scene that ends at an event.
     ///
     /// # Errors
     /// If the simulation fails.
     pub fn simulate(
         &mut self,
-        scene: &Scene<f64>,
+        scene: &mut Scene<f64>,
     ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {
         let why = match (&self.chosen, &self.spacing) {
             (None, _) => "first design".into(),
             (Some((settings, _)), Spacing::Tolerance(tolerance)) => {
-                match simulate(&scene.model, scene.duration, settings) {
-                    Ok(run) if run.step_error <= REFRESH * tolerance => return Ok((run, None)),
+                match self.run(scene, settings) {
+                    Ok(run) if run.step_error <= REFRESH * tolerance => {
+                        return Ok((self.keep(run), None));
+                    }
                     Ok(run) => format!(
                         "a step's error of {:.1e} exceeds {REFRESH} times the tolerance",
                         run.step_error
@@ -133,18 +151,31 @@ impl Integration {
                     Err(failure) => failure.to_string(),
                 }
             }
-            (Some((settings, _)), _) => match simulate(&scene.model, scene.duration, settings) {
+            (Some((settings, _)), _) => match self.run(scene, settings) {
                 Err(failure @ IntegrationFailure::Stiff { .. }) if self.method.is_none() => {
                     failure.to_string()
                 }
-                found => return Ok((found?, None)),
+                Err(failure @ IntegrationFailure::NotReached { .. }) => failure.to_string(),
+                found => return Ok((self.keep(found?), None)),
             },
         };
+        let wanted = self.wanted();
+        let waited = scene.duration;
+        if let Some(until) = &scene.until {
+            let all = simulate_by(&scene.model, waited, self.method, &wanted)?.run;
+            let gaps = until.gaps(&scene.model, &all);
+            scene.duration = event::first(until, &all, &gaps)?;
+        }
+        let guess = scene.duration;
         let Chosen {
-            run,
+            mut run,
             settings,
             reason,
-        } = simulate_by(&scene.model, scene.duration, self.method, &self.wanted())?;
+        } = simulate_by(&scene.model, guess, self.method, &wanted)?;
+        if scene.until.is_some() {
+            scene.duration = waited;
+            run = event::settle(scene, &settings, guess)?;
+        }
         let changed = match &settings.spacing {
             Spacing::Frozen(grid) => Some(Refresh {
                 method: settings.method.name(),
@@ -155,7 +186,33 @@ impl Integration {
         };
         self.refreshes += usize::from(self.chosen.is_some());
         self.chosen = Some((settings, reason));
-        Ok((run, changed))
+        Ok((self.keep(run), changed))
+    }
+
+    /// A run on the steps in use, up to the event if there is one; where it came before, if that is
+    /// known, or else found anew.
+    fn run(
+        &self,
+        scene: &mut Scene<f64>,
+        settings: &Settings,
+    ) -> Result<Trajectory<f64>, IntegrationFailure> {
+        let Some(until) = &scene.until else {
+            return simulate(&scene.model, scene.duration, settings);
+        };
+        let guess = match self.event {
+            Some(event) => event,
+            None => {
+                let all = simulate(&scene.model, scene.duration, settings)?;
+                event::first(until, &all, &until.gaps(&scene.model, &all))?
+            }
+        };
+        event::settle(scene, settings, guess)
+    }
+
+    /// Keeps when the event came.
+    fn keep(&mut self, run: Trajectory<f64>) -> Trajectory<f64> {
+        self.event = Some(run.duration);
+        run
     }
 }
 

@@ -4,55 +4,80 @@ use super::integration::Refresh;
 use crate::integrate::{Grid, Method};
 use crate::problem::Problem;
 use crate::report::evaluations::{EvaluationRecord, Found, Head, StepsInUse};
+use serde_json::{Map, Value};
+use sha2::{Digest, Sha256};
 use std::collections::HashMap;
+
+/// Keys of a problem file that no function follows from.
+const SETTINGS: [&str; 5] = ["$schema", "name", "description", "optimiser", "plot"];
 
 /// Evaluations that are known, and a receiver of new ones.
 ///
 /// The optimiser asks for the same designs in the same order whenever its program returns the same
 /// numbers, so a run that is given the evaluations of an interrupted one goes through the same
-/// iterations, multipliers and quasi-Newton matrices without a simulation, and then goes on.
+/// iterations, multipliers and quasi-Newton matrices without a simulation, and then goes on. No design
+/// is evaluated twice.
 #[derive(Default)]
 pub struct Journal<'a> {
-    /// By whether they are gradients, and by the bits of the design.
-    known: HashMap<(bool, Vec<u64>), Found>,
-    /// Steps in use at the end of the earlier run, and how often it chose them.
-    steps: Option<(StepsInUse, usize)>,
-    record: Option<&'a mut dyn FnMut(EvaluationRecord)>,
+    /// By whether they are gradients, and by the bits of the design: what was found, and the steps
+    /// that were in use then.
+    known: HashMap<(bool, Vec<u64>), (Found, Option<usize>)>,
+    /// All choices of steps, and the one that the evaluations so far have led to.
+    choices: Vec<Choice>,
+    in_use: Option<usize>,
+    record: Option<Box<dyn FnMut(EvaluationRecord) + 'a>>,
+}
+
+/// Steps that were chosen, or taken up again.
+struct Choice {
+    steps: StepsInUse,
+    /// How many others had been chosen before they were for the first time.
+    refreshes: usize,
 }
 
 impl<'a> Journal<'a> {
     /// A journal that knows `earlier` and hands new evaluations to `record`.
-    pub fn new(
-        earlier: Vec<EvaluationRecord>,
-        record: &'a mut dyn FnMut(EvaluationRecord),
-    ) -> Self {
-        let chosen = |record: &EvaluationRecord| match &record.found {
-            Found::Steps(steps) => Some(steps.clone()),
-            _ => None,
+    pub fn new(earlier: Vec<EvaluationRecord>, record: impl FnMut(EvaluationRecord) + 'a) -> Self {
+        let mut journal = Self {
+            record: Some(Box::new(record)),
+            ..Self::default()
         };
-        let times = earlier.iter().filter_map(chosen).count();
-        let steps = earlier.iter().rev().find_map(chosen);
-        let steps = steps.map(|steps| (steps, times));
-        let known = earlier
-            .into_iter()
-            .filter(|record| !matches!(record.found, Found::Steps(_)))
-            .map(|EvaluationRecord { design, found }| {
-                let of_gradients = matches!(found, Found::Gradients(_) | Found::NoGradients(_));
-                ((of_gradients, bits(&design)), found)
-            })
-            .collect();
-        Self {
-            known,
-            steps,
-            record: Some(record),
+        for EvaluationRecord { design, found } in earlier {
+            match found {
+                Found::Steps(steps) => journal.choose(steps),
+                found => {
+                    let of_gradients = matches!(found, Found::Gradients(_) | Found::NoGradients(_));
+                    let steps = journal.choices.len().checked_sub(1);
+                    let key = (of_gradients, bits(&design));
+                    journal.known.insert(key, (found, steps));
+                }
+            }
         }
+        journal
     }
 
-    /// Method and steps in use at the end of the earlier run, and how often it chose them.
+    /// Which choice of steps is in use, counted from 0, if any was made.
+    pub fn choice(&self) -> Option<usize> {
+        self.in_use
+    }
+
+    /// Method and steps of the choice in use, and how often others had been chosen before it.
     pub fn steps(&self) -> Option<(Method, Grid, usize)> {
-        let (steps, times) = self.steps.as_ref()?;
+        let Choice { steps, refreshes } = &self.choices[self.in_use?];
         let method = Method::adaptive(&steps.method)?;
-        Some((method, Grid::from_ends(steps.ends.clone())?, *times))
+        Some((method, Grid::from_ends(steps.ends.clone())?, *refreshes))
+    }
+
+    fn choose(&mut self, steps: StepsInUse) {
+        let same = |c: &&Choice| c.steps.method == steps.method && c.steps.ends == steps.ends;
+        let refreshes = match self.choices.iter().find(same) {
+            Some(known) => known.refreshes,
+            None => {
+                let next = self.choices.iter().map(|c| c.refreshes + 1).max();
+                next.unwrap_or(0)
+            }
+        };
+        self.choices.push(Choice { steps, refreshes });
     }
 
     /// Values at a design: known, or found by `evaluate` and recorded.
@@ -61,9 +86,9 @@ impl<'a> Journal<'a> {
         design: &[f64],
         evaluate: impl FnOnce(&mut Option<Refresh>) -> Result<Vec<f64>, String>,
     ) -> Result<Vec<f64>, String> {
-        match self.known.get(&(false, bits(design))) {
-            Some(Found::Values(values)) => return Ok(values.clone()),
-            Some(Found::NoValues(why)) => return Err(why.clone()),
+        match self.recall(false, design) {
+            Some(Found::Values(values)) => return Ok(values),
+            Some(Found::NoValues(why)) => return Err(why),
             _ => {}
         }
         let finite = |values: Vec<f64>| match values.iter().find(|x| !x.is_finite()) {
@@ -77,7 +102,7 @@ impl<'a> Journal<'a> {
             Ok(values) => Found::Values(values.clone()),
             Err(why) => Found::NoValues(why.clone()),
         };
-        self.write(design, recorded);
+        self.learn(false, design, recorded);
         found
     }
 
@@ -87,9 +112,9 @@ impl<'a> Journal<'a> {
         design: &[f64],
         evaluate: impl FnOnce(&mut Option<Refresh>) -> Result<Vec<Vec<f64>>, String>,
     ) -> Result<Vec<Vec<f64>>, String> {
-        match self.known.get(&(true, bits(design))) {
-            Some(Found::Gradients(gradients)) => return Ok(gradients.clone()),
-            Some(Found::NoGradients(why)) => return Err(why.clone()),
+        match self.recall(true, design) {
+            Some(Found::Gradients(gradients)) => return Ok(gradients),
+            Some(Found::NoGradients(why)) => return Err(why),
             _ => {}
         }
         let finite =
@@ -104,12 +129,27 @@ impl<'a> Journal<'a> {
             Ok(gradients) => Found::Gradients(gradients.clone()),
             Err(why) => Found::NoGradients(why.clone()),
         };
-        self.write(design, recorded);
+        self.learn(true, design, recorded);
         found
     }
 
-    /// Writes a change of the steps in use, before what was found with them.
+    /// What is known of a design; the steps in use are then at least those of that time.
+    fn recall(&mut self, of_gradients: bool, design: &[f64]) -> Option<Found> {
+        let (found, steps) = self.known.get(&(of_gradients, bits(design)))?;
+        self.in_use = self.in_use.max(*steps);
+        Some(found.clone())
+    }
+
+    fn learn(&mut self, of_gradients: bool, design: &[f64], found: Found) {
+        let key = (of_gradients, bits(design));
+        self.known.insert(key, (found.clone(), self.in_use));
+        self.write(design, found);
+    }
+
+    /// Writes a change of the steps in use, before what was found with them. Where an earlier run went
+    /// on to other steps than these, that they are in use again is a change too.
     fn refreshed(&mut self, design: &[f64], refresh: Option<Refresh>) {
+        let left = |k: &usize| k + 1 < self.choices.len();
         if let Some(Refresh {
             method,
             grid,
@@ -122,8 +162,20 @@ impl<'a> Journal<'a> {
                 reason,
                 ends,
             };
-            self.write(design, Found::Steps(steps));
+            self.take(design, steps);
+        } else if let Some(k) = self.in_use.filter(left) {
+            let steps = StepsInUse {
+                reason: "as before".into(),
+                ..self.choices[k].steps.clone()
+            };
+            self.take(design, steps);
         }
+    }
+
+    fn take(&mut self, design: &[f64], steps: StepsInUse) {
+        self.choose(steps.clone());
+        self.in_use = Some(self.choices.len() - 1);
+        self.write(design, Found::Steps(steps));
     }
 
     fn write(&mut self, design: &[f64], found: Found) {
@@ -140,8 +192,12 @@ impl<'a> Journal<'a> {
 pub fn head(problem: &Problem) -> Head {
     let objective = problem.objective.map(|o| o.function);
     let constraints = problem.constraints.iter().map(|c| c.function);
+    let document = problem.document.as_object().cloned().unwrap_or_default();
+    let is_setting = |(key, _): &(String, Value)| SETTINGS.contains(&key.as_str());
+    let (settings, stated): (Map<_, _>, Map<_, _>) = document.into_iter().partition(is_setting);
+    let hash = Sha256::digest(Value::Object(stated).to_string());
     Head {
-        sha256: problem.hash.clone(),
+        sha256: hash.iter().map(|byte| format!("{byte:02x}")).collect(),
         start: problem.start(),
         variables: problem.variables.iter().map(|v| v.name.clone()).collect(),
         functions: objective
@@ -149,9 +205,75 @@ pub fn head(problem: &Problem) -> Head {
             .chain(constraints)
             .map(|f| problem.function_names[f].clone())
             .collect(),
+        settings,
     }
 }
 
-fn bits(design: &[f64]) -> Vec<u64> {
+/// A design to the last bit.
+pub(super) fn bits(design: &[f64]) -> Vec<u64> {
     design.iter().map(|x| x.to_bits()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn steps(ends: &[f64]) -> EvaluationRecord {
+        EvaluationRecord {
+            design: vec![0.0],
+            found: Found::Steps(StepsInUse {
+                method: "dop853".into(),
+                reason: "first design".into(),
+                ends: ends.to_vec(),
+            }),
+        }
+    }
+
+    fn value(x: f64) -> EvaluationRecord {
+        EvaluationRecord {
+            design: vec![x],
+            found: Found::Values(vec![x]),
+        }
+    }
+
+    /// A run that leaves the course of the earlier one goes on with the steps of that time, and its
+    /// record says so.
+    #[test]
+    fn steps_are_those_of_the_last_known_evaluation() {
+        let (coarse, fine) = ([0.0, 1.0], [0.0, 0.5, 1.0]);
+        let earlier = vec![steps(&coarse), value(1.0), steps(&fine), value(2.0)];
+        let mut written = Vec::new();
+        let mut journal = Journal::new(earlier.clone(), |record| written.push(record));
+        let never = |_: &mut Option<Refresh>| -> Result<Vec<f64>, String> { panic!("is known") };
+        assert!(journal.steps().is_none());
+        assert_eq!(journal.values(&[1.0], never), Ok(vec![1.0]));
+        let in_use = |journal: &Journal<'_>| {
+            let (_, grid, refreshes) = journal.steps().expect("chosen");
+            (grid.ends().to_vec(), refreshes)
+        };
+        assert_eq!(in_use(&journal), (coarse.to_vec(), 0));
+        for x in [3.0, 4.0] {
+            assert_eq!(journal.values(&[x], |_| Ok(vec![x])), Ok(vec![x]));
+            // No design is evaluated twice.
+            assert_eq!(journal.values(&[x], never), Ok(vec![x]));
+        }
+        assert_eq!(in_use(&journal), (coarse.to_vec(), 0));
+        // Evaluations of before do not bring older steps back, later ones bring none.
+        assert_eq!(journal.values(&[2.0], never), Ok(vec![2.0]));
+        assert_eq!(in_use(&journal), (coarse.to_vec(), 0));
+        drop(journal);
+        let mut again = steps(&coarse);
+        again.design = vec![3.0];
+        if let Found::Steps(steps) = &mut again.found {
+            steps.reason = "as before".into();
+        }
+        assert_eq!(written, [again, value(3.0), value(4.0)]);
+        // Read back, the record says the same of all evaluations.
+        let all = [earlier, written].concat();
+        let mut journal = Journal::new(all, |_| {});
+        for (x, ends, refreshes) in [(1.0, &coarse[..], 0), (2.0, &fine, 1), (4.0, &coarse, 0)] {
+            assert_eq!(journal.values(&[x], never), Ok(vec![x]));
+            assert_eq!(in_use(&journal), (ends.to_vec(), refreshes));
+        }
+    }
 }

@@ -4,6 +4,7 @@
 pub mod check;
 pub mod error;
 pub mod evaluate;
+pub mod event;
 pub mod explain;
 pub mod figures;
 pub mod integration;
@@ -21,7 +22,7 @@ pub use evaluate::{Evaluated, Evaluator};
 pub use explain::explain;
 pub use journal::Journal;
 pub use multi_start::multi_start;
-pub use optimise::{Optimisation, optimise};
+pub use optimise::{Optimisation, Solved, optimise, solve};
 pub use second_order::second_order;
 pub use simulate::{Simulation, simulate};
 pub use warm_start::WarmStart;

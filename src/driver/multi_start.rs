@@ -1,9 +1,9 @@
 //! Several optimisations of one problem from spread starts, and the distinct optima they find.
 
+use super::evaluate::unscaled;
 use super::journal::Journal;
-use super::optimise::{Optimisation, optimise};
-use crate::problem::{Problem, Sense};
-use crate::report::evaluations::EvaluationRecord;
+use super::optimise::{Solved, solve};
+use crate::problem::{Problem, Sense, Variable};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
@@ -17,10 +17,19 @@ const FEASIBLE: f64 = 1e-6;
 
 /// One of several optimisations.
 pub struct Run {
+    /// The number of its start, from 0.
+    pub start: usize,
     /// The problem with its start.
     pub problem: Problem,
     /// What became of it.
-    pub optimisation: Optimisation,
+    pub solved: Solved,
+}
+
+impl Run {
+    /// The design that it ended at, in the units of the problem file.
+    pub fn design(&self) -> Vec<f64> {
+        unscaled(&self.problem, &self.solved.outcome.x)
+    }
 }
 
 /// An optimum that at least one run found.
@@ -37,14 +46,14 @@ pub struct LocalOptimum {
 /// # Errors
 /// The name of a variable without two bounds.
 pub fn starts(problem: &Problem, count: usize) -> Result<Vec<Vec<f64>>, String> {
-    let open = |v: &&crate::problem::Variable| !(v.lower.is_finite() && v.upper.is_finite());
+    let open = |v: &&Variable| !(v.lower.is_finite() && v.upper.is_finite());
     if count > 1
         && let Some(variable) = problem.variables.iter().find(open)
     {
         return Err(variable.name.clone());
     }
     let spread = (1..count).map(|k| {
-        let place = |(i, v): (usize, &crate::problem::Variable)| {
+        let place = |(i, v): (usize, &Variable)| {
             let t = f64::from(sobol_burley::sample(k as u32 - 1, i as u32, 0));
             v.lower + t * (v.upper - v.lower)
         };
@@ -60,20 +69,21 @@ pub fn started_at(problem: &Problem, start: &[f64]) -> Problem {
     problem
 }
 
-/// Optimises from every start, in parallel; runs are in the order of the starts. `stopped` is
-/// asked after every iteration of every run; `record` receives every evaluation with the number of
-/// its start, as soon as it is known.
-pub fn multi_start(
+/// Optimises from every start, in parallel; runs are in the order of the starts. `stopped` is asked
+/// before every run and after every iteration; `open` gives the journal of a start, by its number and
+/// problem, or `None` if there can be none, and the start is left out.
+pub fn multi_start<'j>(
     problem: &Problem,
-    file: &str,
     starts: &[Vec<f64>],
     stopped: &(dyn Fn() -> bool + Sync),
-    record: &(dyn Fn(usize, EvaluationRecord) + Sync),
+    open: &'j (dyn Fn(usize, &Problem) -> Option<Journal<'j>> + Sync),
 ) -> Vec<Run> {
-    let run = |(k, start): (usize, &Vec<f64>)| {
-        let problem = started_at(problem, start);
-        let mut write = |evaluation| record(k, evaluation);
-        let journal = Journal::new(Vec::new(), &mut write);
+    let run = |(start, design): (usize, &Vec<f64>)| {
+        if stopped() {
+            return None;
+        }
+        let problem = started_at(problem, design);
+        let journal = open(start, &problem)?;
         let mut progress = |_: &_| {
             if stopped() {
                 ControlFlow::Break(())
@@ -81,10 +91,11 @@ pub fn multi_start(
                 ControlFlow::Continue(())
             }
         };
-        let optimisation = optimise(&problem, file, None, journal, &mut progress)?;
+        let solved = solve(&problem, None, journal, &mut progress)?;
         Some(Run {
+            start,
             problem,
-            optimisation,
+            solved,
         })
     };
     starts.par_iter().enumerate().filter_map(run).collect()
@@ -94,7 +105,7 @@ pub fn multi_start(
 pub fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
     let mut found: Vec<LocalOptimum> = Vec::new();
     for (k, run) in runs.iter().enumerate() {
-        if !run.optimisation.outcome.converged() {
+        if !run.solved.outcome.converged() {
             continue;
         }
         let known = found
@@ -109,7 +120,7 @@ pub fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
         }
     }
     let worth = |o: &LocalOptimum| {
-        let value = runs[o.run].optimisation.optimum.objective.value;
+        let value = runs[o.run].solved.objective();
         match problem.objective.map(|o| o.sense) {
             Some(Sense::Maximise) => -value,
             _ => value,
@@ -123,12 +134,12 @@ pub fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
 /// that violates its constraints least.
 pub fn best(runs: &[Run]) -> Option<usize> {
     let rank = |run: &Run| {
-        let violation = run.optimisation.outcome.kkt.violation;
-        let value = run.optimisation.outcome.objective;
+        let violation = run.solved.outcome.kkt.violation;
+        let value = run.solved.outcome.objective;
         let value = if value.is_nan() { f64::INFINITY } else { value };
         let feasible = violation <= FEASIBLE;
         let open = if feasible { 0.0 } else { violation };
-        (!run.optimisation.outcome.converged(), open, value)
+        (!run.solved.outcome.converged(), open, value)
     };
     (0..runs.len()).min_by(|&a, &b| {
         let (a, b) = (rank(&runs[a]), rank(&runs[b]));
@@ -138,17 +149,16 @@ pub fn best(runs: &[Run]) -> Option<usize> {
 }
 
 fn same(problem: &Problem, a: &Run, b: &Run) -> bool {
-    let (a, b) = (&a.optimisation.optimum, &b.optimisation.optimum);
-    let (f, g) = (a.objective.value, b.objective.value);
+    let (f, g) = (a.solved.objective(), b.solved.objective());
     let close = (f - g).abs() <= SAME_OBJECTIVE * f.abs().max(g.abs());
+    let designs = a.design().into_iter().zip(b.design());
     close
-        && problem.variables.iter().all(|v| {
+        && problem.variables.iter().zip(designs).all(|(v, (x, y))| {
             let range = if v.lower.is_finite() && v.upper.is_finite() {
                 v.upper - v.lower
             } else {
                 v.scale
             };
-            let (x, y) = (&a.design[&v.name], &b.design[&v.name]);
-            (x.value - y.value).abs() <= SAME_DESIGN * range
+            (x - y).abs() <= SAME_DESIGN * range
         })
 }

@@ -1,14 +1,28 @@
 //! A problem optimised: the optimiser's outcome, its history, and the simulations at both ends.
 
-use super::evaluate::{Evaluator, unscaled};
-use super::journal::Journal;
+use super::evaluate::{Evaluator, Judgements, unscaled};
+use super::integration::Integration;
+use super::journal::{Journal, bits};
 use super::record::record;
 use super::simulate::{Simulation, simulate, simulate_with};
+use crate::integrate::WorkCounts;
 use crate::optimiser::{self, Observer, Options, Outcome, Phase, Row, SavedState};
 use crate::problem::Problem;
 use crate::report::history::{Column, History, HistoryRow};
 use crate::report::optimum::Optimum;
 use std::ops::ControlFlow;
+
+/// An optimisation that has ended, with its figures still to be simulated.
+pub struct Solved {
+    /// The optimiser's outcome, in its scaled variables.
+    pub outcome: Outcome,
+    /// Every iteration.
+    pub history: History,
+    /// The steps in use at the end.
+    pub integration: Integration,
+    sign: f64,
+    counts: WorkCounts,
+}
 
 /// An optimisation that has ended.
 pub struct Optimisation {
@@ -18,13 +32,16 @@ pub struct Optimisation {
     pub optimum: Optimum,
     /// Every iteration.
     pub history: History,
+    /// The steps in use at the end.
+    pub integration: Integration,
     /// The simulated start, unless it failed.
     pub start: Option<Simulation>,
     /// The simulated optimum, unless it failed.
     pub end: Option<Simulation>,
 }
 
-/// Optimises `problem`, from its start or from the state of another run. `journal` holds what is known already; `progress` sees the history after every iteration and may stop the run.
+/// Optimises `problem`, from its start or from the state of another run. `journal` holds what is
+/// known already; `progress` sees the history after every iteration and may stop the run.
 ///
 /// Returns `None` if the problem has no objective or no variables.
 pub fn optimise<'a>(
@@ -34,60 +51,89 @@ pub fn optimise<'a>(
     journal: Journal<'a>,
     progress: &mut dyn FnMut(&History) -> ControlFlow<()>,
 ) -> Option<Optimisation> {
+    Some(solve(problem, from, journal, progress)?.complete(problem, file))
+}
+
+/// As [`optimise`], without the simulations of its ends.
+pub fn solve<'a>(
+    problem: &'a Problem,
+    from: Option<&SavedState>,
+    journal: Journal<'a>,
+    progress: &mut dyn FnMut(&History) -> ControlFlow<()>,
+) -> Option<Solved> {
     let mut program = Evaluator::new(problem, journal)?;
     if problem.variables.is_empty() {
         return None;
     }
-    let mut options = Options::default();
-    options.method = problem.optimiser.method.unwrap_or(options.method);
-    options.tolerance = problem.optimiser.tolerance.unwrap_or(options.tolerance);
-    options.max_iterations = problem
-        .optimiser
-        .iterations
-        .unwrap_or(options.max_iterations);
-    options.max_evaluations = problem
-        .optimiser
-        .evaluations
-        .unwrap_or(options.max_evaluations);
-    options.max_seconds = problem.optimiser.seconds;
     let sign = program.sign();
     let mut recorder = Recorder {
         problem,
         sign,
         history: empty_history(problem),
+        judgements: program.judgements.clone(),
         progress,
     };
+    let options = options(problem);
     let outcome = match from {
         Some(state) => optimiser::resume(&mut program, &options, &mut recorder, state),
         None => optimiser::solve(&mut program, &options, &mut recorder),
     };
-    let history = recorder.history;
-    let counts = program.counts;
-    let start = simulate(problem, &problem.start()).ok();
-    // With the steps that its values were found with.
-    let refreshes = program.integration.refreshes;
-    program.integration.see_whole();
-    let end = simulate_with(
-        &mut program.integration,
-        problem,
-        &unscaled(problem, &outcome.x),
-    )
-    .ok();
-    let optimum = record(
-        problem,
-        file,
-        &outcome,
-        sign,
-        (counts, refreshes),
-        [start.as_ref(), end.as_ref()],
-    );
-    Some(Optimisation {
+    Some(Solved {
         outcome,
-        optimum,
-        history,
-        start,
-        end,
+        history: recorder.history,
+        sign,
+        counts: program.counts,
+        integration: program.integration,
     })
+}
+
+/// The optimiser's settings, as far as the file gives them.
+fn options(problem: &Problem) -> Options {
+    let given = &problem.optimiser;
+    let default = Options::default();
+    Options {
+        method: given.method.unwrap_or(default.method),
+        tolerance: given.tolerance.unwrap_or(default.tolerance),
+        max_iterations: given.iterations.unwrap_or(default.max_iterations),
+        max_evaluations: given.evaluations.unwrap_or(default.max_evaluations),
+        max_seconds: given.seconds,
+        unbounded_below: given.unbounded_below.unwrap_or(default.unbounded_below),
+        ..default
+    }
+}
+
+impl Solved {
+    /// The objective in the user's sense.
+    pub fn objective(&self) -> f64 {
+        self.sign * self.outcome.objective
+    }
+
+    /// Simulates both ends and makes the record.
+    pub fn complete(self, problem: &Problem, file: &str) -> Optimisation {
+        let start = simulate(problem, &problem.start()).ok();
+        let refreshes = self.integration.refreshes;
+        // With the steps that its values were found with.
+        let mut whole = self.integration.clone();
+        whole.see_whole();
+        let x = unscaled(problem, &self.outcome.x);
+        let end = simulate_with(&mut whole, problem, &x).ok();
+        let optimum = record(
+            problem,
+            file,
+            &self.outcome,
+            self.sign,
+            (self.counts, refreshes),
+            [start.as_ref(), end.as_ref()],
+        );
+        Optimisation {
+            outcome: self.outcome,
+            optimum,
+            history: self.history,
+            integration: self.integration,
+            start,
+            end,
+        }
+    }
 }
 
 /// The history of a problem before its first iteration.
@@ -120,12 +166,14 @@ struct Recorder<'a> {
     problem: &'a Problem,
     sign: f64,
     history: History,
+    judgements: Judgements,
     progress: &'a mut dyn FnMut(&History) -> ControlFlow<()>,
 }
 
 impl Observer for Recorder<'_> {
     fn iteration(&mut self, row: &Row<'_>) -> ControlFlow<()> {
         let design = unscaled(self.problem, row.x);
+        let judged = self.judgements.borrow().get(&bits(&design)).copied();
         self.history.rows.push(HistoryRow {
             iteration: row.iteration,
             evaluations: row.evaluations,
@@ -139,6 +187,8 @@ impl Observer for Recorder<'_> {
             regularisation: row.regularisation,
             line_search_trials: row.trials,
             phase: phase_name(row.phase).to_string(),
+            steps: judged.and_then(|judged| judged.steps),
+            refreshes: judged.map(|judged| judged.refreshes),
             design,
             constraints: row.constraints.to_vec(),
         });

@@ -1,11 +1,18 @@
 //! Whether an optimum is a minimum of second order: the curvature of the Lagrangian along the
 //! directions that the active bounds and constraints leave free.
+//!
+//! A bound or constraint whose multiplier is zero, or next to it, holds the design by no force: it is
+//! weakly active. Feasible directions of no first-order change then form a cone,
+//! {d : a·d = 0 for what is strictly active, a·d ≥ 0 for what is weakly active}. With H = ∇²L the
+//! optimum is strict if dᵀHd > 0 on the span of the cone, and is none if dᵀHd < 0 for a d of the cone;
+//! what lies between is not decided (Nocedal & Wright 2006, theorems 12.5 and 12.6).
 
 use super::evaluate::Evaluator;
+use super::integration::Integration;
 use super::journal::Journal;
-use crate::optimiser::{EvaluationFailure, Nlp, Outcome};
+use crate::optimiser::{EvaluationFailure, Nlp, Outcome, Side};
 use crate::problem::Problem;
-use crate::report::optimum::SecondOrder;
+use crate::report::optimum::{Curvature, SecondOrder};
 use nalgebra::{DMatrix, DVector};
 
 /// Length of a difference in scaled variables: the error of a central difference of gradients is
@@ -13,86 +20,273 @@ use nalgebra::{DMatrix, DVector};
 const STEP: f64 = 1e-4;
 /// Eigenvalues of AᵀA for the active rows A, each of unit length, below this count as zero.
 const NEGLIGIBLE: f64 = 1e-10;
+/// Multipliers below this part of the objective's gradient may hold nothing: the curvature tells.
+const WEAK: f64 = 1e-3;
+/// Largest part of a unit direction by which it may leave a bound and count as along it.
+const ALONG: f64 = 1e-6;
+
+/// A bound or constraint next to without force.
+struct Weak {
+    name: String,
+    /// Its gradient, of unit length, which points inwards.
+    inwards: DVector<f64>,
+    /// By how much the objective rises for a unit inwards.
+    force: f64,
+}
+
+/// What is active, in the free variables.
+struct Active {
+    /// Variables that no strictly active bound holds.
+    free: Vec<usize>,
+    /// Gradients of the strictly active constraints.
+    rows: DMatrix<f64>,
+    weak: Vec<Weak>,
+}
 
 /// Eigenvalues of the reduced Hessian Zᵀ ∇²L Z of the minimised Lagrangian, in the variables as
-/// the optimiser scales them, by central differences of gradients: four gradients a direction.
+/// the optimiser scales them, by central differences of gradients: four gradients a direction. `None`
+/// if `stopped` says so before the end.
 ///
-/// Z spans the directions along which free variables (those off their bounds) move without
-/// changing active constraints to first order. Their error is estimated from a second
-/// step of twice the length and from their asymmetry.
+/// Z spans the directions along which variables that no strictly active bound holds move without
+/// changing strictly active constraints to first order. The error is estimated from a second step of
+/// twice the length and from the asymmetry. Near a bound the differences are centred inside it, by a
+/// distance of their length, of which that estimate knows.
+///
+/// Gradients that `journal` knows are not evaluated again; the others go by the steps of
+/// `integration`.
 ///
 /// # Errors
 /// If a simulation fails beside the optimum.
 pub fn second_order(
     problem: &Problem,
     outcome: &Outcome,
+    integration: &Integration,
+    journal: Journal<'_>,
+    stopped: &dyn Fn() -> bool,
 ) -> Result<Option<SecondOrder>, EvaluationFailure> {
-    let Some(mut program) = Evaluator::new(problem, Journal::default()) else {
+    let Some(mut program) = Evaluator::new(problem, journal) else {
         return Ok(None);
     };
+    program.integration = integration.clone();
     let x = DVector::from_column_slice(&outcome.x);
-    let on_bound = |i: usize| {
-        let name = &problem.variables[i].name;
-        outcome.active_bounds.iter().any(|a| a.name == *name)
-    };
-    let free: Vec<usize> = (0..x.len()).filter(|&i| !on_bound(i)).collect();
-    let active: Vec<usize> = (0..problem.constraints.len())
-        .filter(|&j| {
-            let name = &problem.constraints[j].name;
-            outcome.active_constraints.iter().any(|a| a.name == *name)
-        })
-        .collect();
-    let jacobian = program.gradients(x.as_slice())?.jacobian;
-    let rows = DMatrix::from_fn(active.len(), free.len(), |r, c| {
-        jacobian[(active[r], free[c])]
-    });
+    let Active { free, rows, weak } = active(problem, outcome, &mut program)?;
     let basis = null_space(&rows);
     let (lower, upper) = program.variable_bounds();
-    let room = |i: usize| (x[i] - lower[i]).min(upper[i] - x[i]);
-    let step = free.iter().map(|&i| 0.25 * room(i)).fold(STEP, f64::min);
-    if step < 1e-3 * STEP {
-        return Ok(None);
-    }
+    let narrowest = free.iter().map(|&i| (upper[i] - lower[i]) / 4.0);
+    let step = narrowest.fold(STEP, f64::min);
 
     let multipliers = DVector::from_column_slice(&outcome.multipliers.constraints);
-    let mut slope = |x: &DVector<f64>| -> Result<DVector<f64>, EvaluationFailure> {
-        let g = program.gradients(x.as_slice())?;
-        let all = DVector::from_vec(g.objective) + g.jacobian.tr_mul(&multipliers);
-        Ok(DVector::from_iterator(
-            free.len(),
-            free.iter().map(|&i| all[i]),
-        ))
-    };
     let k = basis.ncols();
-    let mut differences = |step: f64| -> Result<DMatrix<f64>, EvaluationFailure> {
+    let mut differences = |step: f64| -> Result<Option<DMatrix<f64>>, EvaluationFailure> {
+        let mut centre = x.clone();
+        for &i in &free {
+            centre[i] = centre[i].clamp(lower[i] + step, upper[i] - step);
+        }
         let mut hessian = DMatrix::zeros(k, k);
         for j in 0..k {
-            let mut beside = |length: f64| {
-                let mut at = x.clone();
+            let mut beside = |length: f64| -> Result<DVector<f64>, EvaluationFailure> {
+                let mut at = centre.clone();
                 for (c, &i) in free.iter().enumerate() {
                     at[i] += length * basis[(c, j)];
                 }
-                slope(&at)
+                let g = program.gradients(at.as_slice())?;
+                let all = DVector::from_vec(g.objective) + g.jacobian.tr_mul(&multipliers);
+                Ok(all.select_rows(&free))
             };
+            if stopped() {
+                return Ok(None);
+            }
             let change = beside(step)? - beside(-step)?;
             hessian.set_column(j, &(basis.tr_mul(&change) / (2.0 * step)));
         }
-        Ok(hessian)
+        Ok(Some(hessian))
     };
-    let (coarse, hessian) = (differences(2.0 * step)?, differences(step)?);
+    let (Some(coarse), Some(hessian)) = (differences(2.0 * step)?, differences(step)?) else {
+        return Ok(None);
+    };
     let transposed = hessian.transpose();
     let asymmetry = (&hessian - &transposed).amax() * 0.5;
     let uncertainty = (&hessian - &coarse).amax().max(asymmetry);
-    let mut eigenvalues: Vec<f64> = ((hessian + transposed) * 0.5)
-        .symmetric_eigenvalues()
-        .iter()
-        .copied()
-        .collect();
+    let reduced = Reduced {
+        hessian: (hessian + transposed) * 0.5,
+        uncertainty,
+        basis,
+        weak,
+    }
+    .held();
+    let curvature = reduced.judge();
+    let mut eigenvalues: Vec<f64> = match curvature {
+        Curvature::NoFreeDirection => Vec::new(),
+        _ => reduced
+            .hessian
+            .symmetric_eigenvalues()
+            .iter()
+            .copied()
+            .collect(),
+    };
     eigenvalues.sort_by(f64::total_cmp);
     Ok(Some(SecondOrder {
         eigenvalues,
         uncertainty,
+        curvature,
+        weakly_active: reduced.weak.into_iter().map(|weak| weak.name).collect(),
     }))
+}
+
+/// What holds the optimum, and what it merely touches.
+fn active(
+    problem: &Problem,
+    outcome: &Outcome,
+    program: &mut Evaluator<'_>,
+) -> Result<Active, EvaluationFailure> {
+    let n = outcome.x.len();
+    let slopes = program.gradients(&outcome.x)?;
+    let steepest = DVector::from_column_slice(&slopes.objective).amax();
+    // Where the gradient vanishes, a tenth of its size elsewhere takes its place.
+    let scaling = &outcome.scaling;
+    let elsewhere = scaling.typical_gradient.max(scaling.objective_gradient);
+    let force = WEAK * steepest.max(0.1 * elsewhere);
+    let (lower, upper) = program.variable_bounds();
+    let mut free = Vec::new();
+    let mut touched = Vec::new();
+    for i in 0..n {
+        let name = &problem.variables[i].name;
+        let bound = outcome.active_bounds.iter().find(|a| a.name == *name);
+        if bound.is_some_and(|a| a.side == Side::Equal || a.multiplier > force) {
+            continue;
+        }
+        let near = |distance: f64| distance <= 2.0 * STEP;
+        let multipliers = &outcome.multipliers;
+        let close = if near(outcome.x[i] - lower[i]) {
+            Some((1.0, multipliers.lower_bounds[i]))
+        } else {
+            near(upper[i] - outcome.x[i]).then_some((-1.0, multipliers.upper_bounds[i]))
+        };
+        if let Some((inwards, multiplier)) = close {
+            if multiplier > force {
+                continue;
+            }
+            touched.push((free.len(), inwards, multiplier, name.clone()));
+        }
+        free.push(i);
+    }
+    let unit = |(c, sign, force, name): (usize, f64, f64, String)| Weak {
+        name,
+        force,
+        inwards: DVector::from_fn(free.len(), |r, _| if r == c { sign } else { 0.0 }),
+    };
+    let mut weak: Vec<Weak> = touched.into_iter().map(unit).collect();
+    let mut strict = Vec::new();
+    for (j, constraint) in problem.constraints.iter().enumerate() {
+        let mut all = outcome.active_constraints.iter();
+        let Some(bound) = all.find(|a| a.name == constraint.name) else {
+            continue;
+        };
+        let row = slopes.jacobian.row(j).transpose();
+        let inner = row.select_rows(&free);
+        let held = bound.multiplier * row.amax() > force;
+        match bound.side {
+            side if side == Side::Equal || held => strict.push(inner.transpose()),
+            side => {
+                let sign = if side == Side::Lower { 1.0 } else { -1.0 };
+                let length = inner.norm().max(f64::MIN_POSITIVE);
+                weak.push(Weak {
+                    name: constraint.name.clone(),
+                    force: bound.multiplier * length,
+                    inwards: inner * (sign / length),
+                });
+            }
+        }
+    }
+    let rows = match strict.is_empty() {
+        true => DMatrix::zeros(0, free.len()),
+        false => DMatrix::from_rows(&strict),
+    };
+    Ok(Active { free, rows, weak })
+}
+
+/// The Hessian of the directions `basis`, which `weak` may bound.
+struct Reduced {
+    hessian: DMatrix<f64>,
+    uncertainty: f64,
+    basis: DMatrix<f64>,
+    weak: Vec<Weak>,
+}
+
+impl Reduced {
+    /// Without the directions along which a force, small as it is, outweighs the curvature over the
+    /// length of the differences: there the optimum is held all the same.
+    fn held(self) -> Self {
+        let k = self.basis.ncols();
+        let (mut rows, mut weak) = (Vec::new(), Vec::new());
+        for bound in self.weak {
+            let across = self.basis.tr_mul(&bound.inwards);
+            let part = across.norm();
+            if part <= ALONG {
+                continue;
+            }
+            let curvature = (&self.hessian * &across).dot(&across) / (part * part);
+            if bound.force * part > STEP * curvature.abs().max(self.uncertainty) {
+                rows.push(across.transpose());
+            } else {
+                weak.push(bound);
+            }
+        }
+        let free = match rows.is_empty() {
+            true => DMatrix::identity(k, k),
+            false => null_space(&DMatrix::from_rows(&rows)),
+        };
+        Self {
+            hessian: free.tr_mul(&self.hessian) * &free,
+            basis: self.basis * free,
+            weak,
+            ..self
+        }
+    }
+
+    fn judge(&self) -> Curvature {
+        if self.basis.ncols() == 0 {
+            return Curvature::NoFreeDirection;
+        }
+        let eigen = self.hessian.clone().symmetric_eigen();
+        let values = &eigen.eigenvalues;
+        if values.iter().all(|&value| value > self.uncertainty) {
+            return Curvature::StrictOptimum;
+        }
+        let falling = |k: &usize| values[*k] < -self.uncertainty;
+        let (mut falls, mut outside) = (false, false);
+        for k in (0..values.len()).filter(falling) {
+            match self.admits(&(&self.basis * eigen.eigenvectors.column(k)), values[k]) {
+                true => falls = true,
+                false => outside = true,
+            }
+        }
+        // The face of the cone along which all that is weakly active stays active.
+        let faces = DMatrix::from_fn(self.weak.len(), self.basis.ncols(), |r, c| {
+            self.weak[r].inwards.dot(&self.basis.column(c))
+        });
+        let face = null_space(&faces);
+        if face.ncols() > 0 {
+            let along = face.tr_mul(&self.hessian) * &face;
+            falls |= along.symmetric_eigenvalues().min() < -self.uncertainty;
+        }
+        match (falls, outside) {
+            (true, _) => Curvature::NoOptimum,
+            (false, true) => Curvature::NotDecided,
+            (false, false) => Curvature::Flat,
+        }
+    }
+
+    /// Whether a direction of negative curvature, followed either way, is in the cone, and what little
+    /// force there is gives way within the length of the differences.
+    fn admits(&self, direction: &DVector<f64>, curvature: f64) -> bool {
+        let along = |sign: f64| {
+            let part = |w: &Weak| sign * w.inwards.dot(direction);
+            let rise: f64 = self.weak.iter().map(|w| w.force * part(w)).sum();
+            self.weak.iter().all(|w| part(w) >= -ALONG) && rise <= -curvature * STEP
+        };
+        along(1.0) || along(-1.0)
+    }
 }
 
 /// Orthonormal basis of the directions that `rows` map to zero.
@@ -124,6 +318,60 @@ fn null_space(rows: &DMatrix<f64>) -> DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn weak(inwards: [f64; 2], force: f64) -> Weak {
+        Weak {
+            name: String::new(),
+            inwards: DVector::from_column_slice(&inwards),
+            force,
+        }
+    }
+
+    fn reduced(hessian: [f64; 4], weak: Vec<Weak>) -> Reduced {
+        Reduced {
+            hessian: DMatrix::from_row_slice(2, 2, &hessian),
+            uncertainty: 1e-3,
+            basis: DMatrix::identity(2, 2),
+            weak,
+        }
+    }
+
+    /// f = ½ xᵀHx at 0: over the plane, over x ≥ 0, over x, y ≥ 0.
+    #[test]
+    fn a_cone_is_judged_by_its_own_directions() {
+        let verdict = |hessian, weak| reduced(hessian, weak).judge();
+        let half = || vec![weak([1.0, 0.0], 0.0)];
+        let quarter = || vec![weak([1.0, 0.0], 0.0), weak([0.0, 1.0], 0.0)];
+        let bowl = [1.0, 0.0, 0.0, 2.0];
+        // Falls along (1, 1), rises along (1, -1); and the other way.
+        let (within, across) = ([0.0, -1.0, -1.0, 0.0], [0.0, 1.0, 1.0, 0.0]);
+        assert_eq!(verdict(bowl, quarter()), Curvature::StrictOptimum);
+        assert_eq!(verdict(within, vec![]), Curvature::NoOptimum);
+        assert_eq!(verdict(within, quarter()), Curvature::NoOptimum);
+        assert_eq!(verdict(across, vec![]), Curvature::NoOptimum);
+        assert_eq!(verdict(across, half()), Curvature::NoOptimum);
+        // xy over x, y ≥ 0 is a minimum, but not by what its eigenvectors say.
+        assert_eq!(verdict(across, quarter()), Curvature::NotDecided);
+        assert_eq!(verdict([1.0, 0.0, 0.0, 1e-4], half()), Curvature::Flat);
+        // Along the face x = 0 it falls both ways.
+        assert_eq!(verdict([1.0, 0.0, 0.0, -1.0], half()), Curvature::NoOptimum);
+    }
+
+    /// A force along x that outweighs the curvature over the differences, and one that does not.
+    #[test]
+    fn a_small_force_holds_what_curves_less() {
+        for (force, curvature) in [
+            (1e-3, Curvature::StrictOptimum),
+            (1e-5, Curvature::NoOptimum),
+        ] {
+            let found = reduced([-1.0, 0.0, 0.0, 1.0], vec![weak([1.0, 0.0], force)]).held();
+            assert_eq!(found.judge(), curvature, "{force}");
+            assert_eq!(found.weak.len(), usize::from(force < 1e-4));
+        }
+        let held = vec![weak([1.0, 0.0], 1.0), weak([0.0, 1.0], 1.0)];
+        let vertex = reduced([1.0, 0.0, 0.0, 1.0], held).held();
+        assert_eq!(vertex.judge(), Curvature::NoFreeDirection);
+    }
 
     #[test]
     fn a_null_space_is_orthonormal_and_complete() {

@@ -134,6 +134,19 @@ impl<S: Scalar> Instant<S> {
         }
     }
 
+    /// What it is, for messages.
+    pub fn describe(&self) -> &'static str {
+        match self {
+            Instant::Position { .. } => "position",
+            Instant::Velocity { .. } => "velocity",
+            Instant::Acceleration { .. } => "acceleration",
+            Instant::Speed { .. } => "speed",
+            Instant::Energy(_) => "energy",
+            Instant::Rotation { .. } => "rotation",
+            Instant::Range { .. } => "range",
+        }
+    }
+
     /// The quantity with every parameter replaced by `f` of it.
     pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Instant<T> {
         match self {

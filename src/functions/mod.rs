@@ -9,4 +9,4 @@ pub mod scene;
 
 pub use function::{Function, Reduction, Release};
 pub use instant::{EnergyPart, Gate, Instant, Projectile, Side};
-pub use scene::Scene;
+pub use scene::{Scene, Until};

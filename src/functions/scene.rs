@@ -1,6 +1,8 @@
 //! A scene: everything that a design determines.
 
-use super::Function;
+use super::evaluate::{sample, turns};
+use super::{Function, Instant, Reduction};
+use crate::integrate::Trajectory;
 use crate::math::Scalar;
 use crate::model::Model;
 
@@ -9,19 +11,104 @@ use crate::model::Model;
 pub struct Scene<S> {
     /// Bodies, joints, gravity.
     pub model: Model<S>,
-    /// Simulated time T (s).
+    /// Simulated time T (s); with an event, the longest that it is waited for until T is known.
     pub duration: S,
+    /// The event that ends the run, if one does.
+    pub until: Option<Until<S>>,
     /// Functions of interest, in the order of the problem file.
     pub functions: Vec<Function<S>>,
 }
 
+/// An event: an instant quantity g reaches a value c for the first time. It makes the duration a
+/// function of the design, g(T) = c.
+#[derive(Clone, Debug)]
+pub struct Until<S> {
+    /// g at the end of the run.
+    pub measure: Function<S>,
+    /// c.
+    pub value: S,
+}
+
+impl<S: Scalar> Until<S> {
+    /// The event that `instant` reaches `value`.
+    pub fn new(instant: Instant<S>, value: S) -> Self {
+        let reduction = Reduction::Final;
+        Self {
+            measure: Function::Reduced { instant, reduction },
+            value,
+        }
+    }
+
+    /// g − c at the end of a run.
+    pub fn gap(&self, model: &Model<S>, run: &Trajectory<S>) -> S {
+        self.measure.evaluate(model, run).value - self.value
+    }
+
+    fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Until<T> {
+        Until {
+            measure: self.measure.map(f),
+            value: f(self.value),
+        }
+    }
+}
+
+impl Until<f64> {
+    /// What is waited for, for messages.
+    pub fn describe(&self) -> String {
+        match &self.measure {
+            Function::Reduced { instant, .. } => instant.describe().into(),
+            Function::Clearance { .. } => "clearance".into(),
+        }
+    }
+
+    /// g − c at all instants of a run.
+    pub fn gaps(&self, model: &Model<f64>, run: &Trajectory<f64>) -> Vec<f64> {
+        let Function::Reduced { instant, .. } = &self.measure else {
+            unreachable!("an event is an instant quantity");
+        };
+        let turns = turns(instant.watched_rotation(), run);
+        let all = sample(instant, &turns, model, run);
+        all.into_iter().map(|g| g - self.value).collect()
+    }
+}
+
 impl<S: Scalar> Scene<S> {
+    /// Number of the event's quantity among the functions: one past the last.
+    pub fn event(&self) -> usize {
+        self.functions.len()
+    }
+
+    /// A function of interest by number, the event's quantity included.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn function(&self, number: usize) -> &Function<S> {
+        match &self.until {
+            Some(until) if number == self.event() => &until.measure,
+            _ => &self.functions[number],
+        }
+    }
+
+    /// The model, and a function of interest as in [`Scene::function`], to be changed.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn model_and_function(&mut self, number: usize) -> (&mut Model<S>, &mut Function<S>) {
+        let event = self.event();
+        let function = match &mut self.until {
+            Some(until) if number == event => &mut until.measure,
+            _ => &mut self.functions[number],
+        };
+        (&mut self.model, function)
+    }
+
     /// The scene with every parameter replaced by `f` of it, visited in one fixed order: model,
-    /// duration, functions.
+    /// duration, event, functions.
     pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Scene<T> {
         Scene {
             model: self.model.map(f),
             duration: f(self.duration),
+            until: self.until.as_ref().map(|until| until.map(f)),
             functions: self
                 .functions
                 .iter()

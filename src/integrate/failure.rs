@@ -101,6 +101,21 @@ pub enum IntegrationFailure {
         /// The body.
         body: String,
     },
+    /// The event that ends the run does not come, or not there where it came for designs before.
+    #[error(
+        "the {quantity} that ends the run does not reach {value} within {waited} s: it comes as \
+         near as {nearest:.3e}"
+    )]
+    NotReached {
+        /// The quantity.
+        quantity: String,
+        /// Its value at the event.
+        value: f64,
+        /// Least distance from it.
+        nearest: f64,
+        /// How long it was waited for (s).
+        waited: f64,
+    },
     /// The duration is zero, negative or not finite.
     #[error("the duration {duration} s is not positive")]
     Duration {

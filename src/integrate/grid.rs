@@ -41,6 +41,11 @@ impl Grid {
         &self.ends
     }
 
+    /// Makes room for so many steps.
+    pub fn reserve(&mut self, steps: usize) {
+        self.ends.reserve(steps);
+    }
+
     /// Adds a step that ends at `end`.
     pub fn push(&mut self, end: f64) {
         self.ends.push(end);

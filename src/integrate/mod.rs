@@ -6,6 +6,7 @@ pub mod explicit;
 pub mod failure;
 pub mod grid;
 pub mod implicit;
+pub mod rows;
 pub mod settings;
 pub mod trajectory;
 
@@ -19,7 +20,7 @@ use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::kkt::SaddlePoint;
-use crate::system::{Numbering, initial, redundancy};
+use crate::system::{Motion, Numbering, initial, redundancy};
 use control::Controller;
 
 /// Integrates `model` over `duration` in real or, for complex-step derivatives, in complex
@@ -83,19 +84,19 @@ fn close<S: SolveScalar>(
     Ok(())
 }
 
-/// Fails if a constraint that was left out has opened at the end `time` of step `step`.
+/// Fails if a constraint that was left out has opened at the end of step `step`, where and when the
+/// bodies are as `at` says.
 fn watch<S: SolveScalar>(
     model: &Model<S>,
-    numbering: &Numbering,
-    q: &[S],
-    (step, time): (usize, f64),
+    at: (&[Motion<S>], S),
+    step: usize,
 ) -> Result<(), IntegrationFailure> {
-    match redundancy::opened(model, numbering, q, S::from(time)) {
+    match redundancy::opened(model, at) {
         None => Ok(()),
         Some(open) => Err(IntegrationFailure::RedundancyLost {
             joint: model.joints[open.joint].name.clone(),
             gap: open.gap,
-            time,
+            time: at.1.re(),
             step,
         }),
     }

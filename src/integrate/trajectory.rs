@@ -106,6 +106,20 @@ impl<S: Scalar> Trajectory<S> {
         }
     }
 
+    /// Makes room for the history of `steps` steps and `samples` instants.
+    pub fn reserve(&mut self, steps: usize, samples: usize) {
+        let (nq, nv) = (self.numbering.positions(), self.numbering.velocities());
+        self.grid.reserve(steps);
+        self.instants.reserve(samples);
+        self.places.reserve(samples);
+        self.q.reserve(samples * nq);
+        self.v.reserve(samples * nv);
+        self.a.reserve(samples * nv);
+        if !self.lambda.is_empty() {
+            self.lambda.reserve(samples * self.numbering.constraints());
+        }
+    }
+
     /// Adds an instant.
     pub fn push(&mut self, at: f64, place: Place, [q, v, a, lambda]: [&[S]; 4]) {
         self.instants.push(at);
@@ -162,18 +176,21 @@ impl<S: Scalar> Trajectory<S> {
 
 /// The instants that `samples` asks for, in rising order without the first one, as far as `end`
 /// (a fraction); `next` counts those that were taken.
-pub(super) fn due(samples: Samples, next: &mut usize, end: f64) -> Vec<f64> {
-    match samples {
-        Samples::StepEnds => vec![end],
+pub(super) fn due(
+    samples: Samples,
+    next: &mut usize,
+    end: f64,
+) -> impl Iterator<Item = f64> + use<'_> {
+    let mut at_end = true;
+    std::iter::from_fn(move || match samples {
+        Samples::StepEnds => std::mem::take(&mut at_end).then_some(end),
         Samples::Uniform(count) => {
-            let mut all = Vec::new();
-            while *next <= count && super::grid::within(*next as f64 / count as f64, end) {
-                all.push(*next as f64 / count as f64);
-                *next += 1;
-            }
-            all
+            let at = *next as f64 / count as f64;
+            let here = *next <= count && super::grid::within(at, end);
+            *next += usize::from(here);
+            here.then_some(at)
         }
-    }
+    })
 }
 
 impl Trajectory<Complex64> {

@@ -93,7 +93,8 @@ pub fn holds<S: Scalar>(scene: &Scene<S>, index: usize, change: f64) -> Result<(
         }
     }
     let read = || "a function looks at its rotation".to_owned();
-    for function in &scene.functions {
+    let event = scene.until.as_ref().map(|until| &until.measure);
+    for function in scene.functions.iter().chain(event) {
         for (body, point) in looks_at(function) {
             if is(body) {
                 vanishes(&point.unwrap_or(one), &read);

@@ -85,6 +85,8 @@ pub struct OptimiserSettings {
     pub evaluations: Option<usize>,
     /// Longest wall time of the run (s).
     pub seconds: Option<f64>,
+    /// Minimised objective below which the problem is called unbounded.
+    pub unbounded_below: Option<f64>,
 }
 
 /// How a scene is integrated, as far as the file says.

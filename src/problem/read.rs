@@ -3,7 +3,7 @@
 use super::check::check;
 use super::fault::{Faults, Finding, Part};
 use super::overrides::Override;
-use super::placement::placement_order;
+use super::placement::{Assembly, placement_order};
 use super::pointer::join;
 use super::prune::prune;
 use super::schema::{self, Document};
@@ -11,13 +11,13 @@ use super::source::{Duplicate, Source};
 use super::structure::walk;
 use super::syntax;
 use super::variables::{bind, variables};
-use super::{Constraint, Objective, OptimiserSettings, Problem, Sense, Simulation};
+use super::{Constraint, Objective, OptimiserSettings, Problem, Sense, Simulation, Variable};
 use crate::integrate::{self, Spacing, Start};
 use crate::lower::{self, Lowering};
 use crate::math::Dual;
 use crate::model::JointKind;
 use crate::optimiser::Method;
-use crate::system::assembly::AssemblyFailure;
+use crate::system::assembly::{AssemblyFailure, length_scale};
 use crate::system::kkt::SaddlePoint;
 use crate::system::{Numbering, initial, loads, redundancy};
 use serde_json::Value;
@@ -90,7 +90,19 @@ pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Pr
     match deserialise(&sound) {
         Ok(written) => {
             let mut problem = problem(document, written, order, variables);
-            let mut model = problem.unlowered_scene(&problem.start()).model;
+            let scene = problem.unlowered_scene(&problem.start());
+            if let Some(until) = &scene.until {
+                let value = |variable: &&mut Variable| {
+                    variable
+                        .paths
+                        .iter()
+                        .any(|path| path == "/simulation/until/reaches")
+                };
+                for variable in problem.variables.iter_mut().filter(value) {
+                    variable.unit = until.measure.unit();
+                }
+            }
+            let mut model = scene.model;
             problem.redundant = redundancy::leave_out(&mut model);
             problem.left_out = model
                 .joints
@@ -98,6 +110,7 @@ pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Pr
                 .map(|joint| joint.left_out)
                 .collect();
             let finding = collapsed(&problem)
+                .or_else(|| oblique(&problem))
                 .or_else(|| driven_twice(&problem))
                 .or_else(|| unassembled(&problem));
             match finding {
@@ -133,7 +146,10 @@ fn lowering(problem: &Problem) -> Lowering {
 fn collapsed(problem: &Problem) -> Option<Finding> {
     let model = problem.scene(&problem.start()).model;
     let rod = (model.joints.iter())
-        .find(|joint| joint.kind == JointKind::Rod && joint.frame_a.length == 0.0)
+        .find(|joint| {
+            let shortest = 1e-12 * length_scale(&model);
+            joint.kind == JointKind::Rod && joint.frame_a.length <= shortest
+        })
         .map(|joint| join(&join(&join("/joints", &joint.name), "rod"), "at"));
     let spring = || {
         let spring = loads::without_length(&model)?;
@@ -142,6 +158,28 @@ fn collapsed(problem: &Problem) -> Option<Finding> {
     let pointer = rod.or_else(spring)?;
     let expected = "ends that are apart, as a force acts along the line through them";
     Some(Finding::new(pointer, "ends at the same place", expected))
+}
+
+/// Largest cosine between the axes of a universal joint that counts as none.
+const PERPENDICULAR: f64 = 1e-9;
+
+/// The fault of a universal joint whose axes are not perpendicular where the bodies are placed.
+fn oblique(problem: &Problem) -> Option<Finding> {
+    let start = problem.start();
+    let assembly = Assembly::new(&problem.written, &problem.order, &start);
+    problem.written.joints.iter().find_map(|(name, joint)| {
+        let [Some(axis), Some(cross)] = joint.axes() else {
+            return None;
+        };
+        let [axis, cross] = [axis, cross].map(|axis| assembly.axis(axis).normalize());
+        let cosine = axis.dot(&cross);
+        (cosine.abs() > PERPENDICULAR).then(|| {
+            let pointer = join(&join(&join("/joints", name), "universal"), "cross");
+            let degrees = cosine.acos().to_degrees();
+            let found = format!("an axis at {degrees:.6} degrees to the other");
+            Finding::new(pointer, found, "one that is perpendicular to \"axis\"")
+        })
+    })
 }
 
 /// The fault of a drive of a motion that other joints and drives prescribe already.
@@ -283,6 +321,7 @@ fn problem(
                 iterations: optimiser.iterations,
                 evaluations: optimiser.evaluations,
                 seconds: optimiser.seconds,
+                unbounded_below: optimiser.unbounded_below,
             },
         ),
         hash: hash.iter().map(|byte| format!("{byte:02x}")).collect(),

@@ -7,7 +7,7 @@ use super::schema::Document;
 use super::schema::functions::{self as written, Function as Written};
 use super::schema::mechanics::{Point, Shape};
 use crate::functions::{
-    EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Scene, Side,
+    EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Scene, Side, Until,
 };
 use crate::math::scalar::{length, lift3};
 use crate::math::{Scalar, Vec3};
@@ -38,6 +38,11 @@ pub fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<
             loads: super::loads::loads(document, &assembly),
         },
         duration: document.simulation.duration.get(x),
+        until: document
+            .simulation
+            .until
+            .as_ref()
+            .map(|until| Until::new(builder.instant(&until.measure), until.reaches.get(x))),
         functions: document
             .functions
             .values()

@@ -4,6 +4,9 @@ use super::ReportError;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+/// Names of files that are not whole yet begin and end so.
+const TEMPORARY: (&str, &str) = (".flexbody-", ".tmp");
+
 /// Writes a file whole or not at all.
 ///
 /// The bytes go to a temporary file of the same directory, are synchronised with the disk, and
@@ -83,7 +86,7 @@ fn prepare(path: &Path, bytes: &[u8]) -> Result<Prepared, ReportError> {
 /// (the default of `tempfile` is private to the user, and the rename would keep that).
 fn new_file(directory: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".flexbody-").suffix(".tmp");
+    builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -100,6 +103,28 @@ fn finish(prepared: Prepared) -> Result<(), ReportError> {
             path,
             source: error.error,
         })
+}
+
+/// Makes sure, before work is done for it, that a directory takes files: makes it if need be, and
+/// removes the temporary files of runs that were killed there.
+///
+/// # Errors
+/// [`ReportError::Write`] with the path of the directory.
+pub fn prepare_directory(path: &Path) -> Result<(), ReportError> {
+    let fault = |source| ReportError::Write {
+        path: path.to_path_buf(),
+        source,
+    };
+    std::fs::create_dir_all(path).map_err(fault)?;
+    for entry in std::fs::read_dir(path).map_err(fault)?.flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1) {
+            // One that stays does no harm.
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+    new_file(path).map(drop).map_err(fault)
 }
 
 /// Reads a text file.

@@ -39,6 +39,11 @@ pub struct HistoryRow {
     pub line_search_trials: usize,
     /// What kind of step this was, in the optimiser's own words.
     pub phase: String,
+    /// Number of time steps of the motion that the functions were found with, where it is known.
+    pub steps: Option<usize>,
+    /// How often the steps had been chosen anew by then: rows of different numbers were judged on
+    /// different steps.
+    pub refreshes: Option<usize>,
     /// Design variables, in the order of [`History::variables`].
     pub design: Vec<f64>,
     /// Constraint values, in the order of [`History::constraints`].
@@ -62,7 +67,7 @@ const OBJECTIVE: &str = "objective: ";
 const VARIABLE: &str = "variable: ";
 const CONSTRAINT: &str = "constraint: ";
 /// Columns before the design variables; `objective` is followed by its name.
-const FIXED: [&str; 12] = [
+const FIXED: [&str; 14] = [
     "iteration",
     "evaluations",
     OBJECTIVE,
@@ -75,6 +80,8 @@ const FIXED: [&str; 12] = [
     "regularisation",
     "line search trials",
     "phase",
+    "time steps",
+    "times chosen anew",
 ];
 
 impl History {
@@ -83,7 +90,7 @@ impl History {
     /// The header names each column, with the unit in square brackets where it is known; the
     /// columns of the problem's own names begin with `objective: `, `variable: ` or
     /// `constraint: `. Numbers are the shortest that read back exactly; a NaN or infinite entry
-    /// is written as an empty field and read as NaN.
+    /// is written as an empty field and read as NaN; so is a count that is not known.
     ///
     /// # Errors
     /// [`ReportError::History`] if a row has not one entry for each variable and constraint, or
@@ -240,6 +247,8 @@ impl HistoryRow {
         );
         fields.push(self.line_search_trials.to_string());
         fields.push(self.phase.clone());
+        let known = |count: Option<usize>| count.map_or_else(String::new, |n| n.to_string());
+        fields.extend([self.steps, self.refreshes].map(known));
         fields.extend(
             self.design
                 .iter()
@@ -255,6 +264,10 @@ impl HistoryRow {
             field
                 .parse()
                 .map_err(|_| fault(record.line, &format!("{field:?}"), "a count"))
+        };
+        let known = |i: usize| match record.fields[i].is_empty() {
+            true => Ok(None),
+            false => count(i).map(Some),
         };
         let number = |i: usize| -> Result<f64, ReportError> {
             let field: &str = &record.fields[i];
@@ -282,6 +295,8 @@ impl HistoryRow {
             regularisation: number(9)?,
             line_search_trials: count(10)?,
             phase: record.fields[11].clone(),
+            steps: known(12)?,
+            refreshes: known(13)?,
             design: (FIXED.len()..split).map(number).collect::<Result<_, _>>()?,
             constraints: (split..record.fields.len())
                 .map(number)

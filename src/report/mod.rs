@@ -34,7 +34,7 @@ pub mod work_precision;
 pub use compare::{Comparison, Tolerances, compare};
 pub use error::ReportError;
 pub use explain::{Explanation, FunctionUse, SystemSize};
-pub use files::{atomic_write, read_text, write_all};
+pub use files::{atomic_write, prepare_directory, read_text, write_all};
 pub use history::{Column, History, HistoryRow};
 pub use optimum::Optimum;
 pub use summary::summary;

@@ -200,8 +200,8 @@ pub struct RowScaling {
     pub gradient: f64,
 }
 
-/// Curvature of the minimised Lagrangian along the directions that active bounds and constraints
-/// leave free.
+/// Curvature of the minimised Lagrangian along the directions that strictly active bounds and
+/// constraints leave free.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SecondOrder {
@@ -209,6 +209,28 @@ pub struct SecondOrder {
     pub eigenvalues: Vec<f64>,
     /// Estimated error of its entries.
     pub uncertainty: f64,
+    /// What follows.
+    pub curvature: Curvature,
+    /// Variables at a bound, and constraints, that are active without force: their multiplier is zero or
+    /// next to it, and the eigenvalues are those with them left free.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub weakly_active: Vec<String>,
+}
+
+/// What the curvature says of an optimum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Curvature {
+    /// Strictly active bounds and constraints leave no direction free.
+    NoFreeDirection,
+    /// The curvature is positive along all free directions.
+    StrictOptimum,
+    /// The curvature is negative along a feasible direction.
+    NoOptimum,
+    /// The curvature is zero within its error along some direction, and negative along none.
+    Flat,
+    /// The curvature is negative, but only where weakly active bounds stand against it.
+    NotDecided,
 }
 
 /// How the motion was integrated.

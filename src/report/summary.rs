@@ -1,7 +1,7 @@
 //! The text that a person reads at the end of an optimisation.
 
 use super::number::{grouped, significant};
-use super::optimum::{Activity, KktResiduals, Optimum, SecondOrder, Sense, Side};
+use super::optimum::{Activity, Curvature, KktResiduals, Optimum, SecondOrder, Sense, Side};
 use super::table;
 
 /// Status, objective, design, constraints, accuracy and work of an optimisation, as text.
@@ -158,32 +158,41 @@ fn sensitivity(optimum: &Optimum, constraint: &super::optimum::ConstraintValue) 
 
 /// What the reduced Hessian says.
 fn curvature(second: &SecondOrder) -> String {
+    let verdict = match second.curvature {
+        Curvature::NoFreeDirection => "bounds and constraints leave no free direction",
+        Curvature::StrictOptimum => "a strict local optimum",
+        Curvature::NoOptimum => "no local optimum: it improves along a free direction",
+        Curvature::Flat => "flat within the accuracy of the differences",
+        Curvature::NotDecided => {
+            "not decided: the curvature is negative only where bounds without force stand against it"
+        }
+    };
+    let mut text = format!("Second order: {verdict}");
     let SecondOrder {
         eigenvalues,
         uncertainty,
+        ..
     } = second;
-    let (Some(&least), Some(&most)) = (eigenvalues.first(), eigenvalues.last()) else {
-        return "Second order: bounds and constraints leave no free direction\n".to_owned();
-    };
-    let verdict = if least > *uncertainty {
-        "a strict local optimum"
-    } else if least < -uncertainty {
-        "no local optimum: it improves along a free direction"
-    } else {
-        "flat within the accuracy of the differences"
-    };
-    format!(
-        "Second order: {verdict}; curvature {} … {} along {} free {} (± {})\n",
-        significant(least, 3),
-        significant(most, 3),
-        eigenvalues.len(),
-        if eigenvalues.len() == 1 {
-            "direction"
-        } else {
-            "directions"
-        },
-        significant(*uncertainty, 2),
-    )
+    if let (Some(&least), Some(&most)) = (eigenvalues.first(), eigenvalues.last()) {
+        text.push_str(&format!(
+            "; curvature {} … {} along {} free {} (± {})",
+            significant(least, 3),
+            significant(most, 3),
+            eigenvalues.len(),
+            if eigenvalues.len() == 1 {
+                "direction"
+            } else {
+                "directions"
+            },
+            significant(*uncertainty, 2),
+        ));
+    }
+    text.push('\n');
+    if !second.weakly_active.is_empty() {
+        let names = second.weakly_active.join(", ");
+        text.push_str(&format!("  active without force: {names}\n"));
+    }
+    text
 }
 
 fn work(optimum: &Optimum) -> String {

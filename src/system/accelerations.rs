@@ -296,48 +296,62 @@ impl Accelerations<'_, f64> {
 
     /// Pulls λᵀ G(q, t) w, which is linear in w, back to tangent positions, the parameters of the
     /// joints and time (returned).
-    pub fn pull_rate(&self, w: &[f64], lambda: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
-        let moving = self
-            .motions
-            .iter()
-            .enumerate()
-            .map(|(i, motion)| motion.virtually(&w[self.numbering.velocity(i)..]));
-        let moving: Vec<Motion<f64>> = moving.collect();
-        self.pull_joints(&moving, [None, None, None, Some(lambda)], y, cot)
+    pub fn pull_rate(
+        &mut self,
+        w: &[f64],
+        lambda: &[f64],
+        y: &mut [f64],
+        cot: &mut Model<f64>,
+    ) -> f64 {
+        let cotangents = [None, None, None, Some(lambda)];
+        self.pull_moving(|motion, at| motion.virtually(&w[at..]), cotangents, y, cot)
     }
 
     /// As [`Accelerations::pull_rate`] for χᵀ (G v + Φ_t) at the velocities v.
-    pub fn pull_rates(&self, v: &[f64], chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
-        let moving = self.motions.iter().enumerate().map(|(i, motion)| {
-            let (velocity, omega) = velocities_of(&v[self.numbering.velocity(i)..]);
+    pub fn pull_rates(
+        &mut self,
+        v: &[f64],
+        chi: &[f64],
+        y: &mut [f64],
+        cot: &mut Model<f64>,
+    ) -> f64 {
+        let moving = |motion: &Motion<f64>, at: usize| {
+            let (velocity, omega) = velocities_of(&v[at..]);
             Motion {
                 velocity,
                 omega,
                 ..*motion
             }
-        });
-        let moving: Vec<Motion<f64>> = moving.collect();
-        self.pull_joints(&moving, [None, Some(chi), None, None], y, cot)
+        };
+        self.pull_moving(moving, [None, Some(chi), None, None], y, cot)
     }
 
     /// As [`Accelerations::pull_rate`] for χᵀ Φ(q, t).
-    pub fn pull_constraints(&self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
-        self.pull_joints(&self.motions, [Some(chi), None, None, None], y, cot)
+    pub fn pull_constraints(&mut self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
+        let cotangents = [Some(chi), None, None, None];
+        self.pull_moving(|motion, _| *motion, cotangents, y, cot)
     }
 
-    fn pull_joints(
-        &self,
-        motions: &[Motion<f64>],
+    /// Pulls the rows' cotangents back at motions that are made of each body's and of where its
+    /// velocities stand.
+    fn pull_moving(
+        &mut self,
+        moving: impl Fn(&Motion<f64>, usize) -> Motion<f64>,
         cotangents: [Option<&[f64]>; 4],
         y: &mut [f64],
         cot: &mut Model<f64>,
     ) -> f64 {
+        let (model, numbering) = (self.model, self.numbering);
+        let motions = self.motions.iter().enumerate();
+        self.moving.clear();
+        self.moving
+            .extend(motions.map(|(i, motion)| moving(motion, numbering.velocity(i))));
         let mut out = JointCotangent {
             y: Some(y),
             v: None,
             model: cot,
         };
-        let at = (motions, self.time);
-        joints::pull_back(self.model, self.numbering, at, cotangents, &mut out)
+        let at = (&self.moving[..], self.time);
+        joints::pull_back(model, numbering, at, cotangents, &mut out)
     }
 }

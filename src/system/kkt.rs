@@ -141,6 +141,7 @@ pub struct SaddlePoint<S> {
     numbering: Numbering,
     matrix: SparseMatrix<S>,
     factors: SparseLu<S>,
+    gradients: Vec<RowGradient<S>>,
     /// Number of factorisations so far.
     pub factorisations: usize,
 }
@@ -168,6 +169,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
             numbering: numbering.clone(),
             matrix: SparseMatrix::new(pattern),
             factors,
+            gradients,
             factorisations: 0,
         }
     }
@@ -184,8 +186,8 @@ impl<S: SolveScalar> SaddlePoint<S> {
         multipliers: &[S],
         block: impl Fn(usize) -> BodyBlocks<S>,
     ) -> Result<(), SingularMatrix> {
-        let mut gradients = Vec::with_capacity(numbering.constraints());
-        joints::gradients(model, numbering, at, &mut gradients);
+        let gradients = &mut self.gradients;
+        joints::gradients(model, numbering, at, gradients);
         self.matrix.assemble(|emit| {
             emit_reduced(numbering, 1, emit, |emit| {
                 emit_saddle_point(model, numbering, at, &gradients, multipliers, block, emit);

@@ -330,21 +330,13 @@ pub fn widest<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Wide
     widest
 }
 
-/// The row that is open by more than [`OPENED`] of the model's length scale at q, if one is.
-pub fn opened<S: Scalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    q: &[S],
-    time: S,
-) -> Option<Widest> {
-    if model.joints.iter().all(|joint| joint.left_out.is_empty()) {
-        return None;
-    }
-    let mut motions = Vec::new();
-    let at_rest = vec![S::zero(); numbering.velocities()];
-    Motion::all(numbering, q, &at_rest, &mut motions);
-    let limit = OPENED * length_scale(model);
-    widest(model, (&motions, time)).filter(|widest| widest.gap.is_nan() || widest.gap > limit)
+/// The row that is open by more than [`OPENED`] of the model's length scale where the bodies are, if
+/// one is.
+pub fn opened<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Widest> {
+    widest(model, at).filter(|widest| {
+        let limit = OPENED * length_scale(model);
+        widest.gap.is_nan() || widest.gap > limit
+    })
 }
 
 /// The multipliers of all rows, those left out included, with the smallest sum of squares that act

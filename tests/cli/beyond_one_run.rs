@@ -2,8 +2,9 @@
 
 use crate::program::{HAMMER, expect, json, read, scratch};
 use flexbody::driver::evaluate::Evaluated;
-use flexbody::driver::{Journal, optimise, second_order};
+use flexbody::driver::{Journal, Optimisation, optimise, second_order};
 use flexbody::problem::Problem;
+use flexbody::report::optimum::{Curvature, SecondOrder};
 use std::ops::ControlFlow;
 
 /// A bar that is hinged where it swings fastest, at d² = I/m from its centre.
@@ -21,17 +22,28 @@ const SWING: &str = r#"{
   "objective": {"minimise": "swept angle"}
 }"#;
 
+fn solved(problem: &Problem) -> Optimisation {
+    let mut progress = |_: &_| ControlFlow::Continue(());
+    let done = optimise(problem, "", None, Journal::default(), &mut progress);
+    let done = done.expect("has an objective");
+    assert!(done.outcome.converged());
+    done
+}
+
+fn curvature(problem: &Problem, done: &Optimisation) -> SecondOrder {
+    let (outcome, integration) = (&done.outcome, &done.integration);
+    second_order(problem, outcome, integration, Journal::default(), &|| false)
+        .expect("runs")
+        .expect("is not stopped")
+}
+
 #[test]
 fn the_curvature_is_that_of_the_function() {
     let problem = Problem::parse(SWING, "swing.json", &[]).expect("no faults");
-    let done = optimise(&problem, "", None, Journal::default(), &mut |_| {
-        ControlFlow::Continue(())
-    })
-    .expect("has an objective");
-    assert!(done.outcome.converged());
-    let found = second_order(&problem, &done.outcome)
-        .expect("runs")
-        .expect("is free");
+    let done = solved(&problem);
+    let found = curvature(&problem, &done);
+    assert_eq!(found.curvature, Curvature::StrictOptimum);
+    assert!(found.weakly_active.is_empty());
     // The second difference of the function itself, with steps of the fourth root of round-off.
     let scale = problem.variables[0].scale;
     let x = done.optimum.design["pin"].value;
@@ -48,6 +60,77 @@ fn the_curvature_is_that_of_the_function() {
         difference > 0.0 && found.uncertainty < 1e-3 * difference,
         "{found:?}"
     );
+}
+
+/// A bound through the optimum holds it by no force; a bound beside it does.
+#[test]
+fn a_bound_without_force_leaves_its_direction_free() {
+    let free = Problem::parse(SWING, "swing.json", &[]).expect("no faults");
+    let free_end = solved(&free);
+    let best = free_end.optimum.design["pin"].value;
+    let expected = curvature(&free, &free_end).eigenvalues[0];
+    let bounded = |upper: f64| {
+        let text = SWING.replace(
+            r#""upper": 0.5"#,
+            &format!(r#""upper": {upper}, "scale": 0.5"#),
+        );
+        let problem = Problem::parse(&text, "swing.json", &[]).expect("no faults");
+        curvature(&problem, &solved(&problem))
+    };
+    assert!(best < -0.2 && free.variables[0].scale == 0.5);
+    let touched = bounded(best);
+    assert_eq!(touched.weakly_active, ["pin"], "{touched:?}");
+    assert_eq!(touched.curvature, Curvature::StrictOptimum);
+    // The differences are taken inside the bound, a few 1e-4 of the scale beside the optimum.
+    let error = (touched.eigenvalues[0] - expected).abs();
+    assert!(
+        error < 1e-2 * expected && error < 10.0 * touched.uncertainty,
+        "{touched:?} {expected}"
+    );
+    let held = bounded(best - 0.05);
+    assert_eq!(held.curvature, Curvature::NoFreeDirection, "{held:?}");
+    assert!(held.eigenvalues.is_empty() && held.weakly_active.is_empty());
+}
+
+/// The check comes after the record: where it fails, the optimum is there.
+#[test]
+fn a_check_of_the_curvature_that_fails_loses_nothing() {
+    let at = scratch();
+    std::fs::write(at.path().join("swing.json"), SWING).expect("is written");
+    let run = |code: i32, how: &[&str]| {
+        let arguments = [&["swing.json"], how].concat();
+        expect(code, at.path(), &arguments)
+    };
+    run(0, &["--output", "out", "--quiet"]);
+    let path = at.path().join("out/evaluations.jsonl");
+    let record = || json(&read(&at.path().join("out/optimum.json")));
+    let plain = record();
+    let before = read(&path).lines().count();
+    let ran = run(0, &["--resume", "out", "--second-order"]);
+    assert!(
+        ran.out.contains("Second order: a strict local optimum"),
+        "{}",
+        ran.out
+    );
+    assert_eq!(record()["second_order"]["curvature"], "strict_optimum");
+    let text = read(&path);
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(
+        lines.len(),
+        before + 4,
+        "four gradients beside the optimum are recorded"
+    );
+    // As if the first of them had failed.
+    let design = &json(lines[before])["design"];
+    let failed = serde_json::json!({"design": design, "no_gradients": "the bar broke"});
+    let text = lines[..before].join("\n") + "\n" + &failed.to_string() + "\n";
+    std::fs::write(&path, text).expect("is written");
+    std::fs::remove_file(at.path().join("out/optimum.json")).expect("is removed");
+    let ran = run(3, &["--resume", "out", "--second-order"]);
+    assert!(ran.err.contains("second order: not checked: ") && ran.err.contains("the bar broke"));
+    assert!(ran.out.contains("Minimised swept angle"), "{}", ran.out);
+    assert_eq!(record()["design"], plain["design"]);
+    assert!(record()["second_order"].is_null());
 }
 
 /// The swing has two optima, one on either side of the centre, of equal worth.
@@ -130,9 +213,17 @@ fn limits_of_the_file_end_the_run_by_name() {
         let record = json(&read(&at.path().join("out/optimum.json")));
         assert_eq!(record["status"], status);
     }
+    // The strike is maximised: its negative falls below this at once.
+    let floor = "/optimiser={\"unbounded_below\": -0.1}";
+    let arguments = [HAMMER, "--set", floor, "--output", "out", "--quiet"];
+    let ran = expect(1, at.path(), &arguments);
+    assert!(ran.err.contains("without bound"), "{}", ran.err);
     for setting in [
         "/optimiser={\"evaluations\": 0}",
         "/optimiser={\"seconds\": 0}",
+        "/optimiser={\"unbounded_below\": 0}",
+        "/optimiser={\"unbounded_below\": 1e20}",
+        "/optimiser={\"unbounded_below\": \"low\"}",
     ] {
         let ran = expect(2, at.path(), &[HAMMER, "--set", setting]);
         assert!(ran.err.contains("/optimiser/"), "{}", ran.err);

@@ -171,6 +171,8 @@ fn optimising_writes_a_record_and_figures() {
         history.starts_with("iteration,evaluations,objective: strike"),
         "{history}"
     );
+    let last: Vec<&str> = history.lines().last().expect("a row").split(',').collect();
+    assert_eq!(last[12..14], ["100", "0"], "steps, times chosen anew");
     let iterations = optimum["counts"]["iterations"].as_u64().expect("a count");
     assert_eq!(history.lines().count() as u64, iterations + 2);
 }
@@ -333,10 +335,13 @@ fn paths_are_taken_from_the_working_directory() {
 fn results_that_cannot_be_written_are_bad_input() {
     let at = scratch();
     std::fs::write(at.path().join("file"), "mine").expect("is written");
-    for job in [&[HAMMER][..], &["simulate", HAMMER]] {
+    let measured = ["work-precision", HAMMER];
+    for job in [&[HAMMER][..], &["simulate", HAMMER], &measured] {
         for output in ["file", "file/below"] {
             let ran = expect(2, at.path(), &[job, &["--output", output]].concat());
             assert!(ran.err.contains("file"), "{}", ran.err);
+            // Found before the work, of which there is a line for each run.
+            assert_eq!(ran.err.lines().count(), 1, "{}", ran.err);
         }
     }
     assert_eq!(read(&at.path().join("file")), "mine");

@@ -4,3 +4,4 @@ mod beyond_one_run;
 mod commands;
 mod program;
 mod restart;
+mod several_starts;

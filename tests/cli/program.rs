@@ -8,6 +8,8 @@ use tempfile::TempDir;
 
 pub const HAMMER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/hammer.json");
 
+pub const TREBUCHET: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/trebuchet.json");
+
 /// What a run of the program left.
 #[derive(Debug)]
 pub struct Ran {
@@ -68,6 +70,16 @@ pub fn read(path: &Path) -> String {
 
 pub fn json(text: &str) -> Value {
     serde_json::from_str(text).expect("valid JSON")
+}
+
+/// The optimum in a directory without the work of its simulations, which a resumed run has less of.
+pub fn optimum(directory: &Path) -> Value {
+    let mut record = json(&read(&directory.join("optimum.json")));
+    for work in ["steps", "newton_iterations", "factorisations", "solves"] {
+        let counts = record["counts"].as_object_mut().expect("counts");
+        counts.remove(work);
+    }
+    record
 }
 
 /// Calls `judge` for every value in a document.

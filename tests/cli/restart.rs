@@ -1,11 +1,10 @@
 //! Runs that are killed, interrupted or resumed lose nothing and repeat nothing.
 
-use crate::program::{HAMMER, expect, json, names, read, scratch};
+use crate::program::{HAMMER, TREBUCHET, expect, json, names, optimum, read, scratch};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-const TREBUCHET: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/trebuchet.json");
 /// A tenth of the steps: the work of the optimiser is the same.
 const STEPS: &str = "/simulation/samples=300";
 
@@ -19,18 +18,6 @@ fn start(directory: &Path, output: &str) -> Child {
         .expect("the program runs")
 }
 
-/// The optimum without the work of its simulations, which a resumed run has less of.
-fn optimum(directory: &Path) -> serde_json::Value {
-    let mut record = json(&read(&directory.join("optimum.json")));
-    for work in ["steps", "newton_iterations", "factorisations", "solves"] {
-        record["counts"]
-            .as_object_mut()
-            .expect("counts")
-            .remove(work);
-    }
-    record
-}
-
 /// Twenty moments spread over the whole run, early ones among them.
 #[test]
 fn a_killed_run_resumes_to_the_same_optimum_and_repeats_no_evaluation() {
@@ -40,7 +27,7 @@ fn a_killed_run_resumes_to_the_same_optimum_and_repeats_no_evaluation() {
     let duration = begun.elapsed();
     let whole = at.path().join("whole");
     let evaluations = read(&whole.join("evaluations.jsonl"));
-    let mut begun_anew = 0;
+    let mut in_the_midst = 0;
     for k in 0..20 {
         let output = format!("killed_{k}");
         let directory = at.path().join(&output);
@@ -50,32 +37,174 @@ fn a_killed_run_resumes_to_the_same_optimum_and_repeats_no_evaluation() {
         std::thread::sleep(duration.mul_f64(moment));
         run.kill().expect("is killed or has ended");
         run.wait().expect("has ended");
-        let left = std::fs::read_to_string(directory.join("evaluations.jsonl"));
-        // Killed before its first evaluation, it has lost none, and begins anew.
-        let arguments = match &left {
-            Ok(_) => [TREBUCHET, "--set", STEPS, "--resume", &output, "--quiet"],
-            Err(_) => {
-                assert!(!directory.join("optimum.json").exists());
-                begun_anew += 1;
-                [TREBUCHET, "--set", STEPS, "--output", &output, "--quiet"]
-            }
-        };
-        let left = left.unwrap_or_default();
+        let left = std::fs::read_to_string(directory.join("evaluations.jsonl")).unwrap_or_default();
         let kept = &left[..left.rfind('\n').map_or(0, |end| end + 1)];
         assert!(evaluations.starts_with(kept), "moment {k}");
+        in_the_midst += usize::from(kept.lines().count() > 1 && kept != evaluations);
+        // Killed before it made its directory, it was not begun.
+        let how = if directory.exists() {
+            "--resume"
+        } else {
+            "--output"
+        };
+        let arguments = [TREBUCHET, "--set", STEPS, how, &output, "--quiet"];
         expect(0, at.path(), &arguments);
         // The same evaluations in the same order, none of them twice.
-        assert_eq!(
-            read(&directory.join("evaluations.jsonl")),
-            evaluations,
-            "moment {k}"
-        );
+        let found = read(&directory.join("evaluations.jsonl"));
+        assert_eq!(found, evaluations, "moment {k}");
         assert_eq!(optimum(&directory), optimum(&whole), "moment {k}");
+        let history = |directory: &Path| read(&directory.join("history.csv"));
+        assert_eq!(history(&directory), history(&whole), "moment {k}");
+        assert_eq!(names(&directory), names(&whole), "moment {k}");
     }
-    assert!(
-        begun_anew <= 5,
-        "{begun_anew} runs had no evaluation when they were killed"
-    );
+    assert!(in_the_midst >= 5, "{in_the_midst} runs were killed midway");
+}
+
+/// Cut after every line, with the check of the curvature among them.
+#[test]
+fn a_record_of_any_length_is_gone_on_with() {
+    let at = scratch();
+    let path = at.path().join("out/evaluations.jsonl");
+    let tolerance = [
+        "--set",
+        "/simulation={\"duration\": 0.6, \"tolerance\": 1e-6}",
+    ];
+    let run = |how: &[&str]| {
+        let arguments = [&[HAMMER, "--second-order", "--quiet"], &tolerance[..], how].concat();
+        expect(0, at.path(), &arguments);
+        (read(&path), optimum(&at.path().join("out")))
+    };
+    let (whole, best) = run(&["--output", "out"]);
+    let lines: Vec<&str> = whole.split_inclusive('\n').collect();
+    assert!(whole.contains("\"steps\"") && lines.len() > 10, "{whole}");
+    for k in 0..lines.len() {
+        // A part of the next line is there too.
+        let cut = lines[..k].concat() + &lines[k][..lines[k].len() / 2];
+        std::fs::write(&path, cut).expect("is cut");
+        let (found, again) = run(&["--resume", "out"]);
+        assert_eq!(found, whole, "after {k} lines");
+        assert_eq!(again, best, "after {k} lines");
+    }
+}
+
+/// A run that was killed before it had written a line is begun anew, and what it left is removed.
+#[test]
+fn a_run_that_has_just_begun_is_resumed() {
+    let at = scratch();
+    expect(0, at.path(), &[HAMMER, "--output", "whole", "--quiet"]);
+    let whole = read(&at.path().join("whole/evaluations.jsonl"));
+    let head = whole.lines().next().expect("a head");
+    let directory = at.path().join("out");
+    let path = directory.join("evaluations.jsonl");
+    let begun = |left: Option<&str>, told: &str| {
+        let _ = std::fs::remove_dir_all(&directory);
+        std::fs::create_dir(&directory).expect("is made");
+        std::fs::write(directory.join(".flexbody-Xy12.tmp"), "half").expect("is written");
+        if let Some(left) = left {
+            std::fs::write(&path, left).expect("is written");
+        }
+        let ran = expect(0, at.path(), &[HAMMER, "--resume", "out"]);
+        assert!(ran.err.contains(told), "{}", ran.err);
+        assert_eq!(read(&path), whole);
+        assert_eq!(names(&directory), names(&at.path().join("whole")));
+    };
+    let anew = "out: no evaluation yet, starts anew\n";
+    begun(None, anew);
+    begun(Some(""), anew);
+    begun(Some(&head[..20]), anew);
+    begun(Some(&format!("{head}\n")), anew);
+    let three: Vec<&str> = whole.split_inclusive('\n').take(4).collect();
+    begun(Some(&three.concat()), "out: 3 evaluations are known");
+    let ran = expect(2, at.path(), &[HAMMER, "--resume", "nowhere"]);
+    assert!(ran.err.contains("no directory nowhere"), "{}", ran.err);
+    assert!(!at.path().join("nowhere").exists());
+}
+
+/// Limits, names and figures are no part of the functions; what differs is told.
+#[test]
+fn a_run_at_its_limit_goes_on_with_a_higher_one() {
+    let at = scratch();
+    let end = |directory: &str| {
+        let directory = at.path().join(directory);
+        let evaluations = read(&directory.join("evaluations.jsonl"));
+        let (_, evaluations) = evaluations.split_once('\n').expect("a head");
+        let mut record = optimum(&directory);
+        record.as_object_mut().expect("an object").remove("problem");
+        (evaluations.to_owned(), record)
+    };
+    expect(0, at.path(), &[HAMMER, "--output", "whole", "--quiet"]);
+    for (limit, few) in [
+        ("iterations", "2"),
+        ("evaluations", "3"),
+        ("seconds", "1e-3"),
+    ] {
+        let [low, high] = [few, "1000"].map(|n| format!("/optimiser={{\"{limit}\": {n}}}"));
+        let limited = [HAMMER, "--set", &low, "--output", "out", "--quiet"];
+        expect(1, at.path(), &limited);
+        let (part, _) = end("out");
+        let again = [
+            HAMMER,
+            "--set",
+            &high,
+            "--set",
+            "/name=\"maul\"",
+            "--resume",
+            "out",
+        ];
+        let ran = expect(0, at.path(), &again);
+        let few: f64 = few.parse().expect("a number");
+        let count = |n: f64| {
+            if limit == "seconds" {
+                format!("{n}")
+            } else {
+                format!("{n:.0}")
+            }
+        };
+        let told = format!(
+            "changed since the resumed run: /optimiser/{limit} was {}",
+            count(few)
+        );
+        assert!(
+            ran.err.contains(&told) && ran.err.contains("is 1000"),
+            "{}",
+            ran.err
+        );
+        let named = "/name was \"hammer\", is \"maul\"";
+        assert!(ran.err.contains(named), "{}", ran.err);
+        let (evaluations, record) = end("out");
+        assert!(evaluations.starts_with(&part) && evaluations.len() > part.len());
+        assert_eq!((evaluations, record), end("whole"), "{limit}");
+        // What was told once is not told again.
+        let ran = expect(0, at.path(), &again);
+        assert!(!ran.err.contains("changed since"), "{}", ran.err);
+    }
+}
+
+/// Another method asks for other designs; where it asks for known ones, nothing is repeated.
+#[test]
+fn another_method_takes_the_evaluations_over() {
+    let at = scratch();
+    expect(0, at.path(), &[HAMMER, "--output", "out", "--quiet"]);
+    let path = at.path().join("out/evaluations.jsonl");
+    let method = "/optimiser={\"method\": \"trust_region\"}";
+    let ran = expect(0, at.path(), &[HAMMER, "--set", method, "--resume", "out"]);
+    let told = "/optimiser/method was left out, is \"trust_region\"";
+    assert!(ran.err.contains(told), "{}", ran.err);
+    let text = read(&path);
+    let mut lines: Vec<&str> = text.lines().collect();
+    let all = lines.len();
+    let kind = |line: &&str| line.contains("\"values\"");
+    let resumed = lines.iter().filter(|line| kind(line)).count();
+    lines.sort_unstable();
+    lines.dedup();
+    assert_eq!(lines.len(), all, "no evaluation stands there twice");
+    let fresh = [HAMMER, "--set", method, "--output", "fresh", "--quiet"];
+    expect(0, at.path(), &fresh);
+    let [a, b] = ["out", "fresh"].map(|directory| {
+        let record = optimum(&at.path().join(directory));
+        record["objective"]["value"].as_f64().expect("a number")
+    });
+    assert!((a - b).abs() <= 1e-6 * b.abs() && resumed > 5, "{a} {b}");
 }
 
 #[cfg(unix)]
@@ -116,9 +245,6 @@ fn a_record_of_another_problem_is_not_resumed() {
         ran.err
     );
     assert_eq!(crate::program::files(&at.path().join("out")), before);
-    let ran = expect(2, at.path(), &[HAMMER, "--resume", "nowhere"]);
-    assert!(ran.err.contains("nowhere"), "{}", ran.err);
-    assert!(!at.path().join("nowhere").exists());
 }
 
 #[test]
@@ -130,50 +256,4 @@ fn a_run_that_has_ended_is_resumed_without_a_simulation() {
     assert_eq!(read(&at.path().join("out/evaluations.jsonl")), evaluations);
     let record = json(&read(&at.path().join("out/optimum.json")));
     assert_eq!(record["counts"]["steps"], 0);
-}
-
-/// The record is there before the first evaluation is.
-#[test]
-fn a_run_without_an_evaluation_can_be_resumed() {
-    let at = scratch();
-    expect(0, at.path(), &[HAMMER, "--output", "out", "--quiet"]);
-    let path = at.path().join("out/evaluations.jsonl");
-    let whole = read(&path);
-    let head = whole.lines().next().expect("a head").to_owned() + "\n";
-    std::fs::write(&path, head).expect("is written");
-    expect(0, at.path(), &[HAMMER, "--resume", "out", "--quiet"]);
-    assert_eq!(read(&path), whole);
-}
-
-/// Every start has its own record; those of an earlier call with more starts are gone.
-#[test]
-fn every_start_keeps_its_evaluations() {
-    let at = scratch();
-    let log = |k: usize| at.path().join(format!("out/evaluations.start_{k}.jsonl"));
-    let problem = crate::program::changed(at.path(), "bounded.json", |document| {
-        for (_, variable) in document["variables"].as_object_mut().expect("variables") {
-            for side in ["lower", "upper"] {
-                assert!(variable[side].is_number(), "{variable}");
-            }
-        }
-    });
-    let starts = |n: &str| {
-        let arguments = [&problem, "--starts", n, "--output", "out", "--quiet"];
-        expect(0, at.path(), &arguments);
-    };
-    starts("3");
-    let mut beginnings = Vec::new();
-    for k in 1..=3 {
-        let text = read(&log(k));
-        let head = json(text.lines().next().expect("a head"));
-        beginnings.push(head["start"].clone());
-        let first = json(text.lines().nth(1).expect("an evaluation"));
-        assert!(first["values"].is_array(), "{first}");
-        assert!(text.lines().count() > 5);
-    }
-    assert!(beginnings[0] != beginnings[1] && beginnings[1] != beginnings[2]);
-    starts("2");
-    assert!(log(2).exists() && !log(3).exists());
-    let ran = expect(2, at.path(), &[HAMMER, "--resume", "out"]);
-    assert!(ran.err.contains("evaluations.jsonl"), "{}", ran.err);
 }

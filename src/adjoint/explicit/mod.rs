@@ -42,15 +42,20 @@ pub(super) fn gradients(
     let mut sweeps: Vec<Sweep> = which.iter().map(new).collect();
     let mut field = Accelerations::new(model, numbering);
     let mut scratch = scene.zero_cotangent().model;
-    let mut again = tape
-        .steps
-        .is_empty()
-        .then(|| Stepper::new(model, numbering));
+    // Stages that were not kept are made again.
+    let mut again = (!tape.keeps_stages()).then(|| Stepper::new(model, numbering));
+    let start = tape.node(0);
+    let mut end_again = Node {
+        q: start.q.to_vec(),
+        v: start.v.to_vec(),
+        a: start.a.to_vec(),
+        lambda: start.lambda.to_vec(),
+    };
     let mut sample = run.last();
     let mut counts = WorkCounts::default();
     for n in (1..=run.grid.steps()).rev() {
         let h = run.duration * run.grid.width(n);
-        let (from, to) = (&tape.nodes[n - 1], &tape.nodes[n]);
+        let (from, to) = (tape.node(n - 1), tape.node(n));
         let (begin, end) = (run.grid.ends()[n - 1], run.grid.ends()[n]);
         let first = first_sample(run, n, sample);
         let inside = |place: &Place| matches!(place, Place::Inside { .. });
@@ -58,10 +63,10 @@ pub(super) fn gradients(
         let failed = |failure| failed(failure, (model, numbering), (n, run.duration * end));
         let singular = |singular| failed(StepFailure::Singular(singular));
         let data = match &mut again {
-            None => &tape.steps[n - 1],
+            None => tape.step(n),
             Some(stepper) => {
                 let times = (run.duration, begin, h);
-                repeat(stepper, (from, to), times, dense).map_err(failed)?
+                repeat(stepper, (from, to, &mut end_again), times, dense).map_err(failed)?
             }
         };
         for k in (first..=sample).rev() {
@@ -75,14 +80,15 @@ pub(super) fn gradients(
                 return Ok(());
             }
             let (nq, nv, nc) = (from.q.len(), from.v.len(), from.lambda.len());
-            let (q, v) = (row(&data.q, nq, i), row(&data.v, nv, i));
+            let (q, v) = (row(data.q, nq, i), row(data.v, nv, i));
             let fraction = begin + run.grid.width(n) * C[i];
             field.stand(q, v, run.duration * begin + h * C[i]);
             field.factorise()?;
-            let found = (row(&data.a, nv, i), row(&data.lambda, nc, i));
+            let found = (row(data.a, nv, i), row(data.lambda, nc, i));
             for sweep in sweeps {
                 let (q, v) = sweep.stage(i, field, (q, v, fraction), found);
                 sweep.spread(A[i], (&q, &v), h, run.grid.width(n), data);
+                sweep.room.back([q, v]);
             }
             Ok(())
         };
@@ -91,7 +97,7 @@ pub(super) fn gradients(
                 stage(i, &mut field, &mut sweeps).map_err(singular)?;
             }
         }
-        field.stand(&to.q, &to.v, run.duration * end);
+        field.stand(to.q, to.v, run.duration * end);
         field.factorise().map_err(singular)?;
         for sweep in &mut sweeps {
             sweep.node(&mut field, to, end);
@@ -113,7 +119,6 @@ pub(super) fn gradients(
         counts.solves += stepper.field.solves;
     }
     let mut saddle = SaddlePoint::new(model, numbering);
-    let start = &tape.nodes[0];
     for sweep in &mut sweeps {
         sweep.sample(scene, run, 0, None);
         sweep.node_rates(numbering, start);
@@ -135,18 +140,17 @@ fn first_sample(run: &Trajectory<f64>, n: usize, last: usize) -> usize {
 /// Makes a step whose stages were not kept once more.
 fn repeat<'s>(
     stepper: &'s mut Stepper<f64>,
-    (from, to): (&Node<f64>, &Node<f64>),
+    (from, to, end): (Node<&[f64]>, Node<&[f64]>, &mut Node<Vec<f64>>),
     (duration, begin, h): (f64, f64, f64),
     dense: bool,
-) -> Result<&'s StepData<f64>, StepFailure> {
-    let mut end = to.clone();
+) -> Result<StepData<&'s [f64]>, StepFailure> {
     let start = duration * begin;
     stepper.stages(from, (start, h))?;
-    stepper.finish(&mut end, start + h)?;
+    stepper.finish(end, start + h)?;
     if dense {
         stepper.dense_stages((from, to), (start, h))?;
     }
-    Ok(&stepper.data)
+    Ok(stepper.data.view())
 }
 
 fn row(rows: &[f64], width: usize, i: usize) -> &[f64] {

@@ -17,8 +17,8 @@ const REFINEMENTS: usize = 40;
 pub(super) fn pull_back(
     sweep: &mut Sweep,
     field: &mut Accelerations<f64>,
-    data: &StepData<f64>,
-    to: &Node<f64>,
+    data: StepData<&[f64]>,
+    to: Node<&[f64]>,
     (scratch, fraction): (&mut Model<f64>, f64),
 ) {
     let numbering = field.numbering;
@@ -31,17 +31,18 @@ pub(super) fn pull_back(
         by_duration,
         ..
     } = &mut sweep.of;
+    let room = &mut sweep.room;
     let cot = &mut cot.model;
-    let mut y = vec![0.0; nv];
-    bodies::tangent_of_cotangent(numbering, &to.q, &q.value, &mut y);
+    let mut y = room.zeros(nv);
+    bodies::tangent_of_cotangent(numbering, to.q, &q.value, &mut y);
 
     // M δ + Gᵀσ = 0, G (v~ + δ) + Φ_t = 0: the cotangent loses its part Gᵀχ, which is as small as the
     // step.
-    let mut psi = v.value.clone();
+    let mut psi = room.copy(&v.value);
     psi.resize(nv + to.lambda.len(), 0.0);
     field.solve(&mut psi);
     psi.iter_mut().for_each(|x| *x = -*x);
-    let mut reaction = vec![0.0; nv];
+    let mut reaction = room.zeros(nv);
     field.add_reactions(&psi[nv..], &mut reaction);
     v.add(1.0, &reaction);
     for (i, body) in cot.bodies.iter_mut().enumerate() {
@@ -51,23 +52,25 @@ pub(super) fn pull_back(
         body.mass += psi_r.dot(&d_r);
         body.inertia += psi_theta * d_theta.transpose();
     }
-    let mut more = vec![0.0; nv];
-    let mut by_time = field.pull_rate(&psi[..nv], &data.sigma, &mut more, cot);
-    by_time += field.pull_rates(&to.v, &psi[nv..], &mut more, cot);
+    let mut more = room.zeros(nv);
+    let mut by_time = field.pull_rate(&psi[..nv], data.sigma, &mut more, cot);
+    by_time += field.pull_rates(to.v, &psi[nv..], &mut more, cot);
     y.iter_mut().zip(&more).for_each(|(y, &m)| *y += m);
 
     // M T⁺ (q − q~) + Gᵀs = 0, Φ(q, t) = 0: its matrix differs from the factorised one by terms X of
     // the size of the correction, which iterative refinement takes in.
+    room.back([psi, reaction]);
     let mut psi = y;
     psi.resize(nv + to.lambda.len(), 0.0);
     field.solve(&mut psi);
-    let first = psi.clone();
-    let mut rest = vec![0.0; nv];
+    let first = room.copy(&psi);
+    let (mut rest, mut change) = (room.zeros(nv), room.zeros(psi.len()));
     let mut before = f64::INFINITY;
     for _ in 0..REFINEMENTS {
-        rest = difference(field, data, to, &psi[..nv], scratch);
-        let mut change = rest.clone();
-        change.resize(psi.len(), 0.0);
+        rest.fill(0.0);
+        add_difference(field, data, to, &psi[..nv], &mut rest, scratch);
+        change[..nv].copy_from_slice(&rest);
+        change[nv..].fill(0.0);
         field.solve(&mut change);
         // ψ = K⁻¹ (ȳ − Xᵀψ).
         let refined = first.iter().zip(&change).map(|(&x, &d)| x - d);
@@ -86,12 +89,13 @@ pub(super) fn pull_back(
     more.iter_mut().zip(&rest).for_each(|(m, &x)| *m -= x);
     psi.iter_mut().for_each(|x| *x = -*x);
     field.add_reactions(&psi[nv..], &mut more);
-    let mut unused = vec![0.0; nv];
-    by_time += field.pull_rate(&psi[..nv], &data.s, &mut unused, cot);
+    let mut unused = room.zeros(nv);
+    by_time += field.pull_rate(&psi[..nv], data.s, &mut unused, cot);
     by_time += field.pull_constraints(&psi[nv..], &mut unused, cot);
     *by_duration += fraction * by_time;
-    let mut change = vec![0.0; nq];
-    bodies::rates_cotangent(numbering, &to.q, &more, &mut change);
+    room.back([rest, change, first, unused]);
+    let mut change = room.zeros(nq);
+    bodies::rates_cotangent(numbering, to.q, &more, &mut change);
     for i in 0..numbering.bodies() {
         let (o, u) = (numbering.position(i), numbering.velocity(i));
         let (r, p) = positions_of(&to.q[o..]);
@@ -108,20 +112,21 @@ pub(super) fn pull_back(
         }
     }
     q.add(1.0, &change);
+    room.back([psi, more, change]);
 }
 
-/// Xᵀψ: the derivative of the position projection's equations in the projected positions, without
+/// Adds Xᵀψ: the derivative of the position projection's equations in the projected positions, without
 /// the mass matrix, transposed.
-fn difference(
-    field: &Accelerations<f64>,
-    data: &StepData<f64>,
-    to: &Node<f64>,
+fn add_difference(
+    field: &mut Accelerations<f64>,
+    data: StepData<&[f64]>,
+    to: Node<&[f64]>,
     psi: &[f64],
+    out: &mut [f64],
     scratch: &mut Model<f64>,
-) -> Vec<f64> {
+) {
     let numbering = field.numbering;
-    let mut out = vec![0.0; psi.len()];
-    field.pull_rate(psi, &data.s, &mut out, scratch);
+    field.pull_rate(psi, data.s, out, scratch);
     for (i, body) in field.model.bodies.iter().enumerate() {
         let (o, u) = (numbering.position(i), numbering.velocity(i));
         let (_, p) = positions_of(&to.q[o..]);
@@ -130,5 +135,4 @@ fn difference(
         let turned = rotation::rate_product(&p, &rotation::rate_transposed(&raw, &w)) - w;
         bodies::add6(&mut out[u..], &Vec3::zeros(), &turned);
     }
-    out
 }

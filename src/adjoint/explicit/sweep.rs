@@ -1,6 +1,7 @@
 //! One function on its way back through the stages of a step.
 
 use super::row;
+use crate::adjoint::room::Room;
 use crate::adjoint::sensitivity::{Sensitivity, add_scaled, dot};
 use crate::functions::Scene;
 use crate::integrate::Trajectory;
@@ -25,6 +26,8 @@ pub(super) struct Sweep<'a> {
     a: Vec<f64>,
     /// What the step adds to the cotangents on the way to the node before it.
     before: (Vec<f64>, Vec<f64>),
+    /// Vectors that are not in use.
+    pub room: Room,
 }
 
 impl<'a> Sweep<'a> {
@@ -37,6 +40,7 @@ impl<'a> Sweep<'a> {
             qdot: vec![0.0; ALL * nq],
             a: vec![0.0; ALL * nv],
             before: (vec![0.0; nq], vec![0.0; nv]),
+            room: Room::default(),
         }
     }
 
@@ -47,7 +51,7 @@ impl<'a> Sweep<'a> {
         scene: &Scene<f64>,
         run: &Trajectory<f64>,
         k: usize,
-        inside: Option<(&StepData<f64>, &Node<f64>)>,
+        inside: Option<(StepData<&[f64]>, Node<&[f64]>)>,
     ) {
         if !self.of.linearise(scene, run, k) {
             return;
@@ -55,7 +59,7 @@ impl<'a> Sweep<'a> {
         let numbering = &run.numbering;
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         let [y, v, a] = &self.of.sample;
-        let mut q = vec![0.0; nq];
+        let mut q = self.room.zeros(nq);
         match (run.places[k], inside) {
             (Place::Inside { step, theta }, Some((data, from))) => {
                 let width = run.grid.width(step);
@@ -72,8 +76,10 @@ impl<'a> Sweep<'a> {
                 );
                 let (in_q, in_v) = (from_q..to_q, from_v..to_v);
                 let (w, rate) = dense_weights(theta);
-                let raw = data.positions(from, h, &w, in_q.clone());
+                let mut raw = self.room.zeros(nq);
+                data.positions(from, h, &w, in_q.clone(), &mut raw);
                 bodies::add_unit_cotangent(numbering, &raw, y, &mut q);
+                self.room.back([raw]);
                 let (q, v, a) = (&q[in_q.clone()], &v[in_v.clone()], &a[in_v.clone()]);
                 for i in 0..ALL {
                     if w[i] == 0.0 && rate[i] == 0.0 {
@@ -85,8 +91,8 @@ impl<'a> Sweep<'a> {
                     let by_a = &mut row_mut(&mut self.a, nv, i)[in_v.clone()];
                     add_scaled(by_a, h * w[i], v);
                     add_scaled(by_a, rate[i], a);
-                    let slope = dot(q, &row(&data.qdot, nq, i)[in_q.clone()])
-                        + dot(v, &row(&data.a, nv, i)[in_v.clone()]);
+                    let slope = dot(q, &row(data.qdot, nq, i)[in_q.clone()])
+                        + dot(v, &row(data.a, nv, i)[in_v.clone()]);
                     self.of.by_duration += width * w[i] * slope;
                 }
                 add_scaled(&mut self.before.0[in_q], 1.0, q);
@@ -99,6 +105,7 @@ impl<'a> Sweep<'a> {
                 add_scaled(&mut self.node.1, 1.0, a);
             }
         }
+        self.room.back([q]);
     }
 
     /// Pulls the cotangents of the derivatives at stage i back to its state (returned), where `field`
@@ -113,12 +120,14 @@ impl<'a> Sweep<'a> {
         let numbering = field.numbering;
         let (nq, nv) = (q.len(), v.len());
         let (qdot_bar, a_bar) = (row(&self.qdot, nq, i), row(&self.a, nv, i));
-        let (mut q_bar, mut v_bar, mut y) = (vec![0.0; nq], vec![0.0; nv], vec![0.0; nv]);
+        let room = &mut self.room;
+        let (mut q_bar, mut v_bar, mut y) = (room.zeros(nq), room.zeros(nv), room.zeros(nv));
         bodies::pull_rates(numbering, (q, v), qdot_bar, (&mut q_bar, &mut v_bar));
         let cot = &mut self.of.cot.model;
         let by_time = field.pull_back(found, a_bar, (&mut y, &mut v_bar), cot);
         self.of.by_duration += fraction * by_time;
         bodies::add_unit_cotangent(numbering, q, &y, &mut q_bar);
+        self.room.back([y]);
         (q_bar, v_bar)
     }
 
@@ -130,7 +139,7 @@ impl<'a> Sweep<'a> {
         (q, v): (&[f64], &[f64]),
         h: f64,
         width: f64,
-        data: &StepData<f64>,
+        data: StepData<&[f64]>,
     ) {
         add_scaled(&mut self.before.0, 1.0, q);
         add_scaled(&mut self.before.1, 1.0, v);
@@ -143,7 +152,7 @@ impl<'a> Sweep<'a> {
         (q, v): (&[f64], &[f64]),
         h: f64,
         width: f64,
-        data: &StepData<f64>,
+        data: StepData<&[f64]>,
     ) {
         let mut slope = 0.0;
         for &(j, weight) in weights {
@@ -151,14 +160,14 @@ impl<'a> Sweep<'a> {
             add_scaled(row_mut(&mut self.qdot, q.len(), j), h * weight, q);
             add_scaled(row_mut(&mut self.a, v.len(), j), h * weight, v);
             slope +=
-                weight * (dot(q, row(&data.qdot, q.len(), j)) + dot(v, row(&data.a, v.len(), j)));
+                weight * (dot(q, row(data.qdot, q.len(), j)) + dot(v, row(data.a, v.len(), j)));
         }
         self.of.by_duration += width * slope;
     }
 
     /// Pulls the cotangents of the derivatives at the node after the step back to its state, where
     /// `field` stands.
-    pub fn node(&mut self, field: &mut Accelerations<f64>, to: &Node<f64>, fraction: f64) {
+    pub fn node(&mut self, field: &mut Accelerations<f64>, to: Node<&[f64]>, fraction: f64) {
         let (nq, nv) = (to.q.len(), to.v.len());
         if self.touched[END] {
             add_scaled(&mut self.node.0, 1.0, row(&self.qdot, nq, END));
@@ -166,31 +175,35 @@ impl<'a> Sweep<'a> {
         }
         self.node_rates(field.numbering, to);
         if self.node.1.iter().any(|&x| x != 0.0) {
-            let mut y = vec![0.0; nv];
-            let (mut q, mut v) = (vec![0.0; nq], vec![0.0; nv]);
-            let found = (&to.a[..], &to.lambda[..]);
+            let room = &mut self.room;
+            let (mut q, mut v, mut y) = (room.zeros(nq), room.zeros(nv), room.zeros(nv));
+            let found = (to.a, to.lambda);
             let cot = &mut self.of.cot.model;
             let by_time = field.pull_back(found, &self.node.1, (&mut y, &mut v), cot);
             self.of.by_duration += fraction * by_time;
-            bodies::add_unit_cotangent(field.numbering, &to.q, &y, &mut q);
+            bodies::add_unit_cotangent(field.numbering, to.q, &y, &mut q);
             self.of.q.add(1.0, &q);
             self.of.v.add(1.0, &v);
+            self.room.back([q, v, y]);
         }
     }
 
     /// Pulls the cotangent of q̇ at the node back to its state.
-    pub fn node_rates(&mut self, numbering: &Numbering, to: &Node<f64>) {
-        let (mut q, mut v) = (vec![0.0; to.q.len()], vec![0.0; to.v.len()]);
+    pub fn node_rates(&mut self, numbering: &Numbering, to: Node<&[f64]>) {
+        let (mut q, mut v) = (self.room.zeros(to.q.len()), self.room.zeros(to.v.len()));
         let bars = (&mut q[..], &mut v[..]);
-        bodies::pull_rates(numbering, (&to.q, &to.v), &self.node.0, bars);
+        bodies::pull_rates(numbering, (to.q, to.v), &self.node.0, bars);
         self.of.q.add(1.0, &q);
         self.of.v.add(1.0, &v);
+        self.room.back([q, v]);
     }
 
     /// Hands the cotangents of the unprojected end on to the stages and to the node before.
-    pub fn end(&mut self, h: f64, width: f64, data: &StepData<f64>) {
-        let (q, v) = (self.of.q.value.clone(), self.of.v.value.clone());
+    pub fn end(&mut self, h: f64, width: f64, data: StepData<&[f64]>) {
+        let q = self.room.copy(&self.of.q.value);
+        let v = self.room.copy(&self.of.v.value);
         self.hand_on(B, (&q, &v), h, width, data);
+        self.room.back([q, v]);
     }
 
     /// Moves to the node before the step.

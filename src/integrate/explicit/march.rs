@@ -1,18 +1,17 @@
 //! The march of the explicit method over given or chosen steps.
 
+use super::Tape;
 use super::step::{Node, StepFailure, Stepper};
 use super::tableau::{ORDER, STAGES};
-use super::{StepData, Tape};
 use crate::integrate::control::{Controller, Scale};
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Place, place};
-use crate::integrate::settings::{Method, Settings, Spacing};
+use crate::integrate::settings::{Method, Samples, Settings, Spacing};
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::{close, watch};
 use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::model::Model;
 use crate::system::Numbering;
-use crate::system::bodies;
 use crate::system::initial::InitialState;
 
 /// h |λ| beyond which an explicit step is at the border of its stability region (Hairer & Wanner
@@ -41,10 +40,9 @@ pub fn march<S: SolveScalar>(
         a: start.a.clone(),
         lambda: start.lambda.clone(),
     };
-    let tape = trajectory::Tape::Explicit(Tape {
-        nodes: vec![node.clone()],
-        steps: Vec::new(),
-    });
+    let mut tape = Tape::new(numbering, settings.keep_stages);
+    tape.push(node.view());
+    let tape = trajectory::Tape::Explicit(tape);
     let scale = Scale::of(model, numbering, &start, duration.re());
     let mut run = Trajectory::start(numbering.clone(), Method::Dop853, duration, start, tape);
     let mut controller = Controller::new(&settings.spacing, ORDER, &scale, (model, duration.re()));
@@ -53,12 +51,14 @@ pub fn march<S: SolveScalar>(
     let watched = !matches!(settings.spacing, Spacing::Frozen(_));
     let (mut from, mut to) = (node.clone(), node);
     let mut next = 1;
+    // The history of steps that are chosen on the way grows with them.
+    reserve(&mut run, settings);
     while let Some(width) = controller.next(run.grid.reached()) {
         let h = duration * width;
         let end = controller.end(run.grid.reached(), width);
         let tried = stepper
-            .stages(&from, (duration * run.grid.reached(), h))
-            .map(|()| error(&stepper, &scale, &from, h))
+            .stages(from.view(), (duration * run.grid.reached(), h))
+            .map(|()| error(&mut stepper, &scale, from.view(), h))
             .and_then(|error| {
                 let accepted = controller.judge(error);
                 if accepted {
@@ -84,24 +84,28 @@ pub fn march<S: SolveScalar>(
             }
         }
         controller.accept();
-        watch(model, numbering, &to.q, (number, duration.re() * end))?;
-        if stiffness.seen(&stepper, &scale, &to, h.re()) && watched {
+        // The equations were left standing at the end of the step.
+        watch(model, (&stepper.field.motions, duration * end), number)?;
+        if stiffness.seen(&mut stepper, &scale, to.view(), h.re()) && watched {
             return Err(IntegrationFailure::Stiff {
                 time: duration.re() * end,
                 step: number,
             });
         }
         run.grid.push(end);
-        sample(&mut run, &mut stepper, (&from, &to), settings, &mut next).map_err(|failure| {
-            failed(failure, (model, numbering), (number, duration.re() * end))
-        })?;
+        sample(
+            &mut run,
+            &mut stepper,
+            (from.view(), to.view()),
+            settings,
+            &mut next,
+        )
+        .map_err(|failure| failed(failure, (model, numbering), (number, duration.re() * end)))?;
         let trajectory::Tape::Explicit(tape) = &mut run.tape else {
             unreachable!("the tape is that of the explicit method")
         };
-        tape.nodes.push(to.clone());
-        if settings.keep_stages {
-            tape.steps.push(stepper.data.clone());
-        }
+        tape.push(to.view());
+        tape.keep(stepper.data.view());
         std::mem::swap(&mut from, &mut to);
     }
     close(&mut run, &controller)?;
@@ -110,11 +114,28 @@ pub fn march<S: SolveScalar>(
     Ok(run)
 }
 
+/// Makes room for the history of a run whose steps are known.
+fn reserve<S: SolveScalar>(run: &mut Trajectory<S>, settings: &Settings) {
+    let steps = match &settings.spacing {
+        Spacing::Steps(steps) => *steps,
+        Spacing::Frozen(grid) => grid.steps(),
+        Spacing::Tolerance(_) => return,
+    };
+    let samples = match settings.samples {
+        Samples::StepEnds => steps,
+        Samples::Uniform(samples) => samples,
+    };
+    run.reserve(steps, samples);
+    if let trajectory::Tape::Explicit(tape) = &mut run.tape {
+        tape.reserve(steps);
+    }
+}
+
 /// Adds the instants of the step that was just accepted.
 fn sample<S: SolveScalar>(
     run: &mut Trajectory<S>,
     stepper: &mut Stepper<S>,
-    (from, to): (&Node<S>, &Node<S>),
+    (from, to): (Node<&[S]>, Node<&[S]>),
     settings: &Settings,
     next: &mut usize,
 ) -> Result<(), StepFailure> {
@@ -123,16 +144,15 @@ fn sample<S: SolveScalar>(
     for at in trajectory::due(settings.samples, next, run.grid.reached()) {
         let place = place(&run.grid, k, at);
         match place {
-            Place::Node(_) => run.push(at, place, [&to.q, &to.v, &to.a, &[]]),
+            Place::Node(_) => run.push(at, place, [to.q, to.v, to.a, &[]]),
             Place::Inside { theta, .. } => {
                 if !stepper.data.dense {
                     let start = run.duration * run.grid.ends()[k - 1];
                     stepper.dense_stages((from, to), (start, h))?;
                     run.counts.evaluations += super::tableau::ALL - super::tableau::END - 1;
                 }
-                let [mut q, v, a] = stepper.data.dense(from, h, theta);
-                bodies::bring_to_unit(&run.numbering, &mut q);
-                run.push(at, place, [&q, &v, &a, &[]]);
+                let [q, v, a] = stepper.inside(from, h, theta);
+                run.push(at, place, [q, v, a, &[]]);
             }
         }
     }
@@ -141,13 +161,10 @@ fn sample<S: SolveScalar>(
 
 /// Estimated error of a step relative to the scene's scale (Hairer, Nørsett & Wanner 1993,
 /// eq. II.10.17): |e5|² / √(|e5|² + 0.01 |e3|²).
-fn error<S: SolveScalar>(stepper: &Stepper<S>, scale: &Scale, from: &Node<S>, h: S) -> f64 {
+fn error<S: SolveScalar>(stepper: &mut Stepper<S>, scale: &Scale, from: Node<&[S]>, h: S) -> f64 {
     let numbering = stepper.field.numbering;
-    let data = &stepper.data;
-    let speeds = scale.speeds(numbering, &from.v, &data.v_raw);
-    let [e5, e3] = stepper
-        .error_vectors(h)
-        .map(|[q, v]| scale.square(numbering, &q, &v, speeds));
+    let speeds = scale.speeds(numbering, from.v, &stepper.data.v_raw);
+    let [e5, e3] = stepper.errors(h, |q, v| scale.square(numbering, q, v, speeds));
     let denominator = e5 + 0.01 * e3;
     if denominator == 0.0 {
         0.0
@@ -203,34 +220,15 @@ impl Stiffness {
     /// Whether the scene is stiff after the step in `stepper`, which ended in `to`.
     fn seen<S: SolveScalar>(
         &mut self,
-        stepper: &Stepper<S>,
+        stepper: &mut Stepper<S>,
         scale: &Scale,
-        to: &Node<S>,
+        to: Node<&[S]>,
         h: f64,
     ) -> bool {
-        let data: &StepData<S> = &stepper.data;
         let numbering = stepper.field.numbering;
-        let last = STAGES - 1;
-        let (nq, nv) = (to.q.len(), to.v.len());
-        let away = |x: &[S], rows: &[S], n: usize| -> Vec<S> {
-            let row = &rows[last * n..(last + 1) * n];
-            x.iter().zip(row).map(|(&x, &y)| x - y).collect()
-        };
-        let speeds = scale.speeds(numbering, &to.v, &data.v_raw);
-        let dy = scale.square(
-            numbering,
-            &away(&to.q, &data.q, nq),
-            &away(&to.v, &data.v, nv),
-            speeds,
-        );
-        let mut rates = vec![S::zero(); nq];
-        bodies::rates(numbering, &to.q, &to.v, &mut rates);
-        let df = scale.square(
-            numbering,
-            &away(&rates, &data.qdot, nq),
-            &away(&to.a, &data.a, nv),
-            speeds,
-        );
+        let speeds = scale.speeds(numbering, to.v, &stepper.data.v_raw);
+        let measure = |q: &[S], v: &[S]| scale.square(numbering, q, v, speeds);
+        let [dy, df] = stepper.last_stage(to, measure);
         // Round-off compared with round-off says nothing.
         if dy > NOISE * NOISE && h * (df / dy).sqrt() > STIFF.0 {
             self.innocent = 0;

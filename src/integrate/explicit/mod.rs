@@ -14,34 +14,84 @@ pub mod tableau;
 
 pub use step::{Node, StepData, Stepper};
 
-use super::trajectory::real;
+use super::rows::Rows;
 use crate::math::Complex64;
+use crate::system::Numbering;
+
+/// Numbers of stages that are kept at most (256 MB in `f64`); of longer histories the stages are made
+/// again.
+const KEPT: usize = 1 << 25;
 
 /// What the adjoint needs: the node that each step starts from, and the stages of each step if
 /// they were kept.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Tape<S> {
-    /// Nodes 0 … N.
-    pub nodes: Vec<Node<S>>,
-    /// Steps 1 … N, or nothing.
-    pub steps: Vec<StepData<S>>,
+    nodes: Rows<S, 4>,
+    steps: Rows<S, 10>,
+    /// Whether the stages of the dense output of each kept step were computed.
+    dense: Vec<bool>,
+    /// Whether stages are still kept.
+    keeping: bool,
 }
 
-impl<S> Tape<S> {
+impl<S: Copy> Tape<S> {
+    /// An empty tape, which keeps stages if `keeping` and as far as memory allows.
+    pub fn new(numbering: &Numbering, keeping: bool) -> Self {
+        Self {
+            nodes: Rows::new(Node::<&[S]>::lengths(numbering)),
+            steps: Rows::new(StepData::<&[S]>::lengths(numbering)),
+            dense: Vec::new(),
+            keeping,
+        }
+    }
+
+    /// Makes room for so many steps, and for their stages if these are kept.
+    pub fn reserve(&mut self, steps: usize) {
+        self.nodes.reserve(steps);
+        self.keeping &= steps * self.steps.width() <= KEPT;
+        if self.keeping {
+            self.steps.reserve(steps);
+            self.dense.reserve(steps);
+        }
+    }
+
+    /// Adds a node.
+    pub fn push(&mut self, node: Node<&[S]>) {
+        self.nodes.push([node.q, node.v, node.a, node.lambda]);
+    }
+
+    /// Keeps the stages of a step, if all are kept.
+    pub fn keep(&mut self, step: StepData<&[S]>) {
+        if self.keeping && self.steps.numbers() + self.steps.width() > KEPT {
+            self.keeping = false;
+            self.steps.clear();
+            self.dense = Vec::new();
+        }
+        if self.keeping {
+            self.steps.push(step.parts());
+            self.dense.push(step.dense);
+        }
+    }
+
+    /// Whether stages were kept.
+    pub fn keeps_stages(&self) -> bool {
+        self.keeping
+    }
+
+    /// Node n of 0 … N.
+    pub fn node(&self, n: usize) -> Node<&[S]> {
+        let [q, v, a, lambda] = self.nodes.get(n);
+        Node { q, v, a, lambda }
+    }
+
+    /// The kept stages of step n of 1 … N.
+    pub fn step(&self, n: usize) -> StepData<&[S]> {
+        StepData::of_parts(self.steps.get(n - 1), self.dense[n - 1])
+    }
+
     /// How many numbers it holds.
     pub fn numbers(&self) -> usize {
-        let node = |node: &Node<S>| [&node.q, &node.v, &node.a, &node.lambda].map(Vec::len);
-        let step = |step: &StepData<S>| {
-            let stages = [&step.q, &step.v, &step.qdot, &step.a, &step.lambda];
-            let end = [&step.q_raw, &step.v_raw, &step.s, &step.delta, &step.sigma];
-            [stages, end]
-                .concat()
-                .into_iter()
-                .map(Vec::len)
-                .sum::<usize>()
-        };
-        let nodes = self.nodes.iter().flat_map(node);
-        nodes.sum::<usize>() + self.steps.iter().map(step).sum::<usize>()
+        self.nodes.numbers() + self.steps.numbers()
     }
 }
 
@@ -49,37 +99,10 @@ impl Tape<Complex64> {
     /// The real part.
     pub fn real(&self) -> Tape<f64> {
         Tape {
-            nodes: self.nodes.iter().map(Node::real).collect(),
-            steps: self.steps.iter().map(StepData::real).collect(),
-        }
-    }
-}
-
-impl Node<Complex64> {
-    fn real(&self) -> Node<f64> {
-        Node {
-            q: real(&self.q),
-            v: real(&self.v),
-            a: real(&self.a),
-            lambda: real(&self.lambda),
-        }
-    }
-}
-
-impl StepData<Complex64> {
-    fn real(&self) -> StepData<f64> {
-        StepData {
-            q: real(&self.q),
-            v: real(&self.v),
-            qdot: real(&self.qdot),
-            a: real(&self.a),
-            lambda: real(&self.lambda),
-            q_raw: real(&self.q_raw),
-            v_raw: real(&self.v_raw),
-            s: real(&self.s),
-            delta: real(&self.delta),
-            sigma: real(&self.sigma),
-            dense: self.dense,
+            nodes: self.nodes.real(),
+            steps: self.steps.real(),
+            dense: self.dense.clone(),
+            keeping: self.keeping,
         }
     }
 }

@@ -16,95 +16,165 @@ const REMAINDER: f64 = 1e-16;
 /// Largest |Φ| that is round-off, relative to the length scale.
 const CLOSED: f64 = 2e-15;
 
-/// State at the end of a step, with its accelerations.
-#[derive(Clone, Debug)]
-pub struct Node<S> {
+/// State at the end of a step, with its accelerations; V is a vector or a slice.
+#[derive(Clone, Copy, Debug)]
+pub struct Node<V> {
     /// Positions.
-    pub q: Vec<S>,
+    pub q: V,
     /// Velocities.
-    pub v: Vec<S>,
+    pub v: V,
     /// Accelerations.
-    pub a: Vec<S>,
+    pub a: V,
     /// Multipliers λ.
-    pub lambda: Vec<S>,
+    pub lambda: V,
 }
 
-/// Everything that a step computed; stage i stands in row i of `q`, `v`, `qdot`, `a`, `lambda`.
-#[derive(Clone, Debug)]
-pub struct StepData<S> {
+impl<V> Node<V> {
+    /// Lengths of its vectors.
+    pub fn lengths(numbering: &Numbering) -> [usize; 4] {
+        let (nq, nv) = (numbering.positions(), numbering.velocities());
+        [nq, nv, nv, numbering.constraints()]
+    }
+}
+
+impl<S> Node<Vec<S>> {
+    /// A view of it.
+    pub fn view(&self) -> Node<&[S]> {
+        Node {
+            q: &self.q,
+            v: &self.v,
+            a: &self.a,
+            lambda: &self.lambda,
+        }
+    }
+}
+
+/// Everything that a step computed; stage i stands in row i of `q`, `v`, `qdot`, `a`, `lambda`. V is
+/// a vector or a slice.
+#[derive(Clone, Copy, Debug)]
+pub struct StepData<V> {
     /// Positions of the stages; their Euler parameters are not of unit length.
-    pub q: Vec<S>,
+    pub q: V,
     /// Velocities of the stages.
-    pub v: Vec<S>,
+    pub v: V,
     /// Rates q̇ = T(q) v.
-    pub qdot: Vec<S>,
+    pub qdot: V,
     /// Accelerations.
-    pub a: Vec<S>,
+    pub a: V,
     /// Multipliers λ.
-    pub lambda: Vec<S>,
+    pub lambda: V,
     /// Positions before the projection.
-    pub q_raw: Vec<S>,
+    pub q_raw: V,
     /// Velocities before the projection.
-    pub v_raw: Vec<S>,
+    pub v_raw: V,
     /// Multipliers s of the position projection.
-    pub s: Vec<S>,
+    pub s: V,
     /// Correction of the velocities.
-    pub delta: Vec<S>,
+    pub delta: V,
     /// Multipliers σ of the velocity projection.
-    pub sigma: Vec<S>,
+    pub sigma: V,
     /// Whether the stages of the dense output were computed.
     pub dense: bool,
 }
 
-impl<S: SolveScalar> StepData<S> {
-    fn new(numbering: &Numbering) -> Self {
-        let zeros = |n: usize| vec![S::zero(); n];
+impl<V> StepData<V> {
+    /// Lengths of its vectors.
+    pub fn lengths(numbering: &Numbering) -> [usize; 10] {
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         let nc = numbering.constraints();
+        let rows = [nq, nv, nq, nv, nc].map(|n| ALL * n);
+        let [a, b, c, d, e] = rows;
+        [a, b, c, d, e, nq, nv, nc, nv, nc]
+    }
+
+    /// The step with these vectors.
+    pub fn of_parts(parts: [V; 10], dense: bool) -> Self {
+        let [q, v, qdot, a, lambda, q_raw, v_raw, s, delta, sigma] = parts;
         Self {
-            q: zeros(ALL * nq),
-            v: zeros(ALL * nv),
-            qdot: zeros(ALL * nq),
-            a: zeros(ALL * nv),
-            lambda: zeros(ALL * nc),
-            q_raw: zeros(nq),
-            v_raw: zeros(nv),
-            s: zeros(nc),
-            delta: zeros(nv),
-            sigma: zeros(nc),
-            dense: false,
+            q,
+            v,
+            qdot,
+            a,
+            lambda,
+            q_raw,
+            v_raw,
+            s,
+            delta,
+            sigma,
+            dense,
         }
     }
 
-    /// State and derivative at the fraction θ of a step of size h that starts from `node`: q before
-    /// its Euler parameters are brought to unit length, v, and the derivative of v.
-    pub fn dense(&self, node: &Node<S>, h: S, theta: f64) -> [Vec<S>; 3] {
-        let (w, rate) = dense_weights(theta);
-        let mut out = [
-            node.q.clone(),
-            node.v.clone(),
-            vec![S::zero(); node.v.len()],
-        ];
-        for i in 0..ALL {
-            add_row(&mut out[0], h * w[i], &self.qdot, i);
-            add_row(&mut out[1], h * w[i], &self.a, i);
-            add_row(&mut out[2], S::from(rate[i]), &self.a, i);
-        }
-        out
+    /// Its vectors.
+    pub fn parts(self) -> [V; 10] {
+        [
+            self.q,
+            self.v,
+            self.qdot,
+            self.a,
+            self.lambda,
+            self.q_raw,
+            self.v_raw,
+            self.s,
+            self.delta,
+            self.sigma,
+        ]
     }
 }
 
-impl StepData<f64> {
-    /// The positions of [`StepData::dense`] in `range`, zeros elsewhere, by its weights `w`.
+impl<S: SolveScalar> StepData<Vec<S>> {
+    /// A step of zeros.
+    fn new(numbering: &Numbering) -> Self {
+        let parts = Self::lengths(numbering).map(|n| vec![S::zero(); n]);
+        Self::of_parts(parts, false)
+    }
+
+    /// A view of it.
+    pub fn view(&self) -> StepData<&[S]> {
+        StepData {
+            q: &self.q,
+            v: &self.v,
+            qdot: &self.qdot,
+            a: &self.a,
+            lambda: &self.lambda,
+            q_raw: &self.q_raw,
+            v_raw: &self.v_raw,
+            s: &self.s,
+            delta: &self.delta,
+            sigma: &self.sigma,
+            dense: self.dense,
+        }
+    }
+}
+
+impl<S: SolveScalar> StepData<&[S]> {
+    /// State and derivative at the fraction θ of a step of size h that starts from `node`: q before
+    /// its Euler parameters are brought to unit length, v, and the derivative of v.
+    fn dense(self, node: Node<&[S]>, h: S, theta: f64, [q, v, a]: [&mut [S]; 3]) {
+        let (w, rate) = dense_weights(theta);
+        q.copy_from_slice(node.q);
+        v.copy_from_slice(node.v);
+        a.fill(S::zero());
+        for i in 0..ALL {
+            add_row(q, h * w[i], self.qdot, i);
+            add_row(v, h * w[i], self.a, i);
+            add_row(a, S::from(rate[i]), self.a, i);
+        }
+    }
+}
+
+impl StepData<&[f64]> {
+    /// The positions in `range` at the fraction of a step of size h with the weights `w`, before the
+    /// Euler parameters are brought to unit length; `out` elsewhere is left as it is.
     pub fn positions(
         &self,
-        node: &Node<f64>,
+        node: Node<&[f64]>,
         h: f64,
         w: &[f64; ALL],
         range: std::ops::Range<usize>,
-    ) -> Vec<f64> {
+        out: &mut [f64],
+    ) {
         let nq = node.q.len();
-        let mut out = vec![0.0; nq];
         out[range.clone()].copy_from_slice(&node.q[range.clone()]);
         for (i, w) in w.iter().enumerate() {
             let row = &self.qdot[i * nq..(i + 1) * nq];
@@ -112,7 +182,6 @@ impl StepData<f64> {
                 *out += h * w * x;
             }
         }
-        out
     }
 }
 
@@ -146,10 +215,12 @@ pub struct Stepper<'a, S> {
     /// The index-1 equations.
     pub field: Accelerations<'a, S>,
     /// The step made last.
-    pub data: StepData<S>,
+    pub data: StepData<Vec<S>>,
     length: f64,
     residual: Vec<S>,
     moved: Vec<S>,
+    /// Room for positions and two times velocities.
+    scratch: (Vec<S>, Vec<S>, Vec<S>),
 }
 
 impl<'a, S: SolveScalar> Stepper<'a, S> {
@@ -161,6 +232,11 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             length: assembly::length_scale(model),
             residual: vec![S::zero(); numbering.velocities() + numbering.constraints()],
             moved: vec![S::zero(); numbering.positions()],
+            scratch: (
+                vec![S::zero(); numbering.positions()],
+                vec![S::zero(); numbering.velocities()],
+                vec![S::zero(); numbering.velocities()],
+            ),
         }
     }
 
@@ -169,15 +245,15 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
     ///
     /// # Errors
     /// [`StepFailure`].
-    pub fn stages(&mut self, node: &Node<S>, (start, h): (S, S)) -> Result<(), StepFailure> {
+    pub fn stages(&mut self, node: Node<&[S]>, (start, h): (S, S)) -> Result<(), StepFailure> {
         self.data.dense = false;
         self.put_node(node, 0);
         for i in 1..STAGES {
             self.stage(node, i, (start, h))?;
         }
         let data = &mut self.data;
-        data.q_raw.copy_from_slice(&node.q);
-        data.v_raw.copy_from_slice(&node.v);
+        data.q_raw.copy_from_slice(node.q);
+        data.v_raw.copy_from_slice(node.v);
         for &(i, b) in B {
             add_row(&mut data.q_raw, h * b, &data.qdot, i);
             add_row(&mut data.v_raw, h * b, &data.a, i);
@@ -196,7 +272,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
     /// [`StepFailure`].
     pub fn dense_stages(
         &mut self,
-        (node, end): (&Node<S>, &Node<S>),
+        (node, end): (Node<&[S]>, Node<&[S]>),
         (start, h): (S, S),
     ) -> Result<(), StepFailure> {
         self.put_node(end, END);
@@ -207,26 +283,26 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         Ok(())
     }
 
-    fn put_node(&mut self, node: &Node<S>, i: usize) {
+    fn put_node(&mut self, node: Node<&[S]>, i: usize) {
         let numbering = self.field.numbering;
         let data = &mut self.data;
-        let (q, v) = (span(&node.q, i), span(&node.v, i));
-        data.q[q.clone()].copy_from_slice(&node.q);
-        data.v[v.clone()].copy_from_slice(&node.v);
-        data.a[v].copy_from_slice(&node.a);
-        data.lambda[span(&node.lambda, i)].copy_from_slice(&node.lambda);
-        bodies::rates(numbering, &node.q, &node.v, &mut data.qdot[q]);
+        let (q, v) = (span(node.q, i), span(node.v, i));
+        data.q[q.clone()].copy_from_slice(node.q);
+        data.v[v.clone()].copy_from_slice(node.v);
+        data.a[v].copy_from_slice(node.a);
+        data.lambda[span(node.lambda, i)].copy_from_slice(node.lambda);
+        bodies::rates(numbering, node.q, node.v, &mut data.qdot[q]);
     }
 
-    fn stage(&mut self, node: &Node<S>, i: usize, (start, h): (S, S)) -> Result<(), StepFailure> {
-        let (q, v, c) = (span(&node.q, i), span(&node.v, i), span(&node.lambda, i));
+    fn stage(&mut self, node: Node<&[S]>, i: usize, (start, h): (S, S)) -> Result<(), StepFailure> {
+        let (q, v, c) = (span(node.q, i), span(node.v, i), span(node.lambda, i));
         let data = &mut self.data;
         // The stages before i stand in front of it.
         let (_, at_q) = data.q.split_at_mut(q.start);
         let (_, at_v) = data.v.split_at_mut(v.start);
         let (at_q, at_v) = (&mut at_q[..node.q.len()], &mut at_v[..node.v.len()]);
-        at_q.copy_from_slice(&node.q);
-        at_v.copy_from_slice(&node.v);
+        at_q.copy_from_slice(node.q);
+        at_v.copy_from_slice(node.v);
         for &(j, a) in A[i] {
             add_row(at_q, h * a, &data.qdot, j);
             add_row(at_v, h * a, &data.a, j);
@@ -244,7 +320,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
     ///
     /// # Errors
     /// [`StepFailure`].
-    pub fn finish(&mut self, out: &mut Node<S>, end: S) -> Result<(), StepFailure> {
+    pub fn finish(&mut self, out: &mut Node<Vec<S>>, end: S) -> Result<(), StepFailure> {
         self.project_positions(&mut out.q, end)?;
         self.field.factorise()?;
         let data = &mut self.data;
@@ -318,19 +394,52 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         Err(StepFailure::Projection)
     }
 
-    /// Estimated errors of positions and velocities of the step of size h: Σ h e_i k_i for the
-    /// embedded formulas of order 5 and 3.
-    pub fn error_vectors(&self, h: S) -> [[Vec<S>; 2]; 2] {
+    /// Estimated errors of positions and velocities of the step of size h, Σ h e_i k_i for the
+    /// embedded formulas of order 5 and 3, each measured by `measure`.
+    pub fn errors(&mut self, h: S, measure: impl Fn(&[S], &[S]) -> f64) -> [f64; 2] {
+        let (q, v, _) = &mut self.scratch;
         let data = &self.data;
         [E5, E3].map(|e| {
-            let mut q = vec![S::zero(); data.q_raw.len()];
-            let mut v = vec![S::zero(); data.v_raw.len()];
+            q.fill(S::zero());
+            v.fill(S::zero());
             for &(i, e) in e {
-                add_row(&mut q, h * e, &data.qdot, i);
-                add_row(&mut v, h * e, &data.a, i);
+                add_row(q, h * e, &data.qdot, i);
+                add_row(v, h * e, &data.a, i);
             }
-            [q, v]
+            measure(q, v)
         })
+    }
+
+    /// How far the last stage is from the end of the step in state and in derivative, measured by
+    /// `measure`.
+    pub fn last_stage(&mut self, to: Node<&[S]>, measure: impl Fn(&[S], &[S]) -> f64) -> [f64; 2] {
+        let (q, v, _) = &mut self.scratch;
+        let data = &self.data;
+        let last = STAGES - 1;
+        let less = |out: &mut [S], rows: &[S]| {
+            let n = out.len();
+            let row = &rows[last * n..(last + 1) * n];
+            out.iter_mut().zip(row).for_each(|(x, &y)| *x -= y);
+        };
+        q.copy_from_slice(to.q);
+        v.copy_from_slice(to.v);
+        less(q, &data.q);
+        less(v, &data.v);
+        let state = measure(q, v);
+        bodies::rates(self.field.numbering, to.q, to.v, q);
+        v.copy_from_slice(to.a);
+        less(q, &data.qdot);
+        less(v, &data.a);
+        [state, measure(q, v)]
+    }
+
+    /// The motion inside the step of size h from `node`, at its fraction θ: positions, velocities and
+    /// accelerations.
+    pub fn inside(&mut self, node: Node<&[S]>, h: S, theta: f64) -> [&[S]; 3] {
+        let (q, v, a) = &mut self.scratch;
+        self.data.view().dense(node, h, theta, [q, v, a]);
+        bodies::bring_to_unit(self.field.numbering, q);
+        [q, v, a]
     }
 }
 

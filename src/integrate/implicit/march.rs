@@ -14,10 +14,9 @@ use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::{close, watch};
 use crate::linalg::SolveScalar;
 use crate::model::Model;
-use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
-use crate::system::bodies;
 use crate::system::initial::InitialState;
+use crate::system::{Motion, Numbering, bodies, joints};
 use std::collections::VecDeque;
 
 /// Integrates from a consistent start.
@@ -72,6 +71,8 @@ pub fn march<S: SolveScalar>(
         _ => Samples::StepEnds,
     };
     let mut next = 1;
+    let mut motions = Vec::new();
+    let redundant = model.joints.iter().any(|joint| !joint.left_out.is_empty());
     while let Some(width) = controller.next(run.grid.reached()) {
         let h = duration * width;
         let end = controller.end(run.grid.reached(), width);
@@ -93,7 +94,11 @@ pub fn march<S: SolveScalar>(
             continue;
         }
         controller.accept();
-        watch(model, numbering, &stages[stages.len() - 1].q, at)?;
+        if redundant {
+            let last = &stages[stages.len() - 1];
+            Motion::all(numbering, &last.q, &last.v, &mut motions);
+            watch(model, (&motions, last.time), k)?;
+        }
         solver.remember(&stages, k);
         run.grid.push(end);
         sample(&mut run, &scheme, &past.from, &stages, samples, &mut next);
@@ -262,9 +267,37 @@ impl<S: SolveScalar> Solver<'_, S> {
         let nv = a.len();
         let end: Vec<f64> = stages[stages.len() - 1].v.iter().map(|x| x.re()).collect();
         let speeds = scale.speeds(numbering, &start.v, &end);
-        scale
+        let error = scale
             .tangent_square(&found[..nv], &found[nv..], h, speeds)
-            .sqrt()
+            .sqrt();
+        if self.real.joints.iter().all(|joint| joint.drives.is_empty()) {
+            return error;
+        }
+        let stages: Vec<Stage<f64>> = stages.iter().map(Stage::real).collect();
+        error.max(self.drift(&start, &stages, h, (scale, speeds)))
+    }
+
+    /// How far the middle of a step is off the joints, relative to the scene's scale. The stages are
+    /// on them: motion that is prescribed has no other error to be seen.
+    fn drift(
+        &self,
+        from: &Stage<f64>,
+        stages: &[Stage<f64>],
+        h: f64,
+        (scale, speeds): (&Scale, [f64; 2]),
+    ) -> f64 {
+        let mut middle = dense(self.scheme, from, stages, h, 0.5);
+        let (model, numbering) = (self.real, self.numbering);
+        bodies::bring_to_unit(numbering, &mut middle.q);
+        let mut motions = Vec::new();
+        Motion::all(numbering, &middle.q, &middle.v, &mut motions);
+        let at = (&motions[..], from.time + 0.5 * h);
+        let mut rows = vec![0.0; numbering.constraints()];
+        let largest = |rows: &[f64]| rows.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        joints::values(model, numbering, at, &mut rows);
+        let open = largest(&rows) / scale.length;
+        joints::rates(model, numbering, at, &mut rows);
+        open.max(largest(&rows) / speeds[0])
     }
 }
 

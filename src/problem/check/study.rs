@@ -48,6 +48,14 @@ impl Checker<'_> {
             }
         }
         self.simulation();
+        let optimiser = document.optimiser.as_ref();
+        if let Some(floor) = optimiser.and_then(|optimiser| optimiser.unbounded_below)
+            && floor >= 0.0
+        {
+            let expected = "a number below zero, far below any objective that makes sense";
+            let pointer = "/optimiser/unbounded_below";
+            self.fault(Finding::new(pointer, floor.to_string(), expected));
+        }
         for (k, text) in document.plot.trace.iter().enumerate() {
             self.location(&join("/plot/trace", k), text);
         }
@@ -56,6 +64,9 @@ impl Checker<'_> {
     /// Steps or a tolerance, and a method that can follow it.
     fn simulation(&mut self) {
         let simulation = &self.document.simulation;
+        if let Some(until) = &simulation.until {
+            self.instant("/simulation/until/measure", &until.measure);
+        }
         if let (Some(_), Some(tolerance)) = (simulation.steps, simulation.tolerance) {
             let expected = "either \"steps\" or \"tolerance\"";
             let found = format!("the tolerance {tolerance} beside a number of steps");

@@ -8,7 +8,7 @@ pub mod mechanics;
 
 use super::quantity::{Quantity, Vector};
 use drives::Drive;
-use functions::Function;
+use functions::{Function, Instant};
 use indexmap::IndexMap;
 use joints::Joint;
 use loads::Load;
@@ -80,9 +80,11 @@ pub struct Document {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Simulation {
-    /// Simulated time.
+    /// Simulated time; with `until`, the longest that the event is waited for.
     #[schemars(extend("unit" = "s", "exclusiveMinimum" = 0))]
     pub duration: Quantity,
+    /// Event that ends the run: a quantity reaches a value for the first time. Default none.
+    pub until: Option<Until>,
     /// Number of time steps of equal size, instead of a tolerance.
     #[schemars(extend(
         "minimum" = 1,
@@ -108,6 +110,17 @@ pub struct Simulation {
     pub samples: Option<usize>,
     /// Integration method. Default: chosen by the scene, dop853 unless it is stiff, else radau.
     pub method: Option<Method>,
+}
+
+/// An event that ends the run.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Until {
+    /// The quantity.
+    pub measure: Instant,
+    /// The value that it reaches.
+    #[schemars(extend("unit" = "that of the quantity"))]
+    pub reaches: Quantity,
 }
 
 /// An integration method.
@@ -251,6 +264,13 @@ pub struct Optimiser {
         "design_variable" = "a limit of the run is the optimiser's, not a physical number"
     ))]
     pub seconds: Option<f64>,
+    /// Value, below zero, that the minimised objective may not fall below: if it does, the problem is
+    /// called unbounded. An objective that is maximised is judged by its negative. Default -1e20.
+    #[schemars(extend(
+        "exclusiveMaximum" = 0,
+        "design_variable" = "a limit of the run is the optimiser's, not a physical number"
+    ))]
+    pub unbounded_below: Option<f64>,
 }
 
 /// How the motion is drawn.

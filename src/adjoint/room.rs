@@ -1,0 +1,29 @@
+//! Vectors that are used for a while and given back, so that a backward march allocates in its first
+//! step only.
+
+/// Vectors that are not in use.
+#[derive(Default)]
+pub(super) struct Room(Vec<Vec<f64>>);
+
+impl Room {
+    /// A vector of n zeros.
+    pub fn zeros(&mut self, n: usize) -> Vec<f64> {
+        let mut x = self.0.pop().unwrap_or_default();
+        x.clear();
+        x.resize(n, 0.0);
+        x
+    }
+
+    /// A copy of `x`.
+    pub fn copy(&mut self, x: &[f64]) -> Vec<f64> {
+        let mut y = self.0.pop().unwrap_or_default();
+        y.clear();
+        y.extend_from_slice(x);
+        y
+    }
+
+    /// Takes vectors back.
+    pub fn back<const N: usize>(&mut self, all: [Vec<f64>; N]) {
+        self.0.extend(all);
+    }
+}

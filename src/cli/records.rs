@@ -1,0 +1,193 @@
+//! The record of the evaluations of a run: begun, or gone on with.
+
+use super::{Failure, tell};
+use crate::driver::{Journal, journal};
+use crate::problem::Problem;
+use crate::report::ReportError;
+use crate::report::evaluations::{Earlier, EvaluationLog, EvaluationRecord, Found};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// Record of the only start.
+const SINGLE: &str = "evaluations.jsonl";
+/// Records of several starts begin and end so, with the number of the start between.
+const SEVERAL: (&str, &str) = ("evaluations.start_", ".jsonl");
+
+/// Where the records of a run are, and where those of an earlier one are, if it goes on with one.
+pub struct Records<'a> {
+    directory: &'a Path,
+    resumed: Option<&'a Path>,
+}
+
+/// Which of the starts of a run: the only one, or one of several, from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    Only,
+    OneOf(usize),
+}
+
+impl Start {
+    fn file(self) -> String {
+        match self {
+            Self::Only => SINGLE.to_owned(),
+            Self::OneOf(k) => format!("{}{}{}", SEVERAL.0, k + 1, SEVERAL.1),
+        }
+    }
+}
+
+/// The record of one start, opened.
+pub struct Opened {
+    log: EvaluationLog,
+    earlier: Vec<EvaluationRecord>,
+    /// How many evaluations an earlier run left.
+    pub known: usize,
+    /// The settings that differ from those of the earlier run.
+    pub changes: Vec<String>,
+}
+
+impl<'a> Records<'a> {
+    /// The records of a run in `directory`, which is there; `several` is whether it has several starts.
+    /// What another run left there goes, unless it is resumed.
+    pub fn new(
+        directory: &'a Path,
+        resumed: Option<&'a Path>,
+        several: bool,
+    ) -> Result<Self, Failure> {
+        let Some(from) = resumed else {
+            remove(directory)?;
+            return Ok(Self { directory, resumed });
+        };
+        let (single, multiple) = files(from)?.into_iter().partition::<Vec<_>, _>(|file| {
+            let name = file.file_name();
+            name.is_some_and(|name| name == SINGLE)
+        });
+        let wrong = match several {
+            true if multiple.is_empty() => single.first().map(|file| (file, "leave --starts out")),
+            false if single.is_empty() => multiple.first().map(|file| (file, "give --starts N")),
+            _ => None,
+        };
+        if let Some((file, advice)) = wrong {
+            return Err(Failure::bad_input(format!(
+                "found {}, expected the record of {}: {advice} to resume it",
+                file.display(),
+                if several { "several starts" } else { SINGLE },
+            )));
+        }
+        let same = match (from.canonicalize(), directory.canonicalize()) {
+            (Ok(a), Ok(b)) => a == b,
+            _ => from == directory,
+        };
+        if !same {
+            remove(directory)?;
+        }
+        Ok(Self { directory, resumed })
+    }
+
+    /// What is told of an earlier run that left so many evaluations.
+    pub fn resumed(&self, known: usize) -> String {
+        match (self.resumed, known) {
+            (None, _) => String::new(),
+            (Some(from), 0) => format!("{}: no evaluation yet, starts anew\n", from.display()),
+            (Some(from), n) => {
+                let from = from.display();
+                format!("{from}: {n} evaluations are known and are not repeated\n")
+            }
+        }
+    }
+
+    /// Opens the record of a start, with what an earlier run left of it.
+    pub fn open(&self, start: Start, problem: &Problem) -> Result<Opened, ReportError> {
+        self.opened(self.resumed, start, problem)
+    }
+
+    /// Opens the record of a start of this run again.
+    pub fn reopen(&self, start: Start, problem: &Problem) -> Result<Opened, ReportError> {
+        self.opened(Some(self.directory), start, problem)
+    }
+
+    fn opened(
+        &self,
+        from: Option<&Path>,
+        start: Start,
+        problem: &Problem,
+    ) -> Result<Opened, ReportError> {
+        let head = journal::head(problem);
+        let file = start.file();
+        let earlier = match from {
+            Some(from) => Earlier::read(&from.join(&file), &head)?,
+            None => None,
+        };
+        let log = EvaluationLog::create(&self.directory.join(&file), &head, earlier.as_ref())?;
+        let changes = earlier.as_ref().map(|earlier| head.changes(&earlier.head));
+        let earlier = earlier.map_or_else(Vec::new, |earlier| earlier.records);
+        let evaluation = |record: &&EvaluationRecord| !matches!(record.found, Found::Steps(_));
+        Ok(Opened {
+            log,
+            known: earlier.iter().filter(evaluation).count(),
+            earlier,
+            changes: changes.unwrap_or_default(),
+        })
+    }
+}
+
+impl Opened {
+    /// The journal of the record; the first fault in writing is left in `fault`. Choices of steps are
+    /// told unless `quiet`.
+    pub fn journal(self, fault: &Mutex<Option<ReportError>>, quiet: bool) -> Journal<'_> {
+        let mut log = self.log;
+        Journal::new(self.earlier, move |evaluation| {
+            if let (false, Found::Steps(steps)) = (quiet, &evaluation.found) {
+                let count = steps.ends.len().saturating_sub(1);
+                tell(&format!(
+                    "{count} steps by {}: {}\n",
+                    steps.method, steps.reason
+                ));
+            }
+            if let Err(error) = log.append(&evaluation)
+                && let Ok(mut first) = fault.lock()
+            {
+                first.get_or_insert(error);
+            }
+        })
+    }
+}
+
+/// What differs from the run that is resumed, to be told.
+pub fn changed(changes: &[String]) -> String {
+    changes
+        .iter()
+        .map(|change| format!("changed since the resumed run: {change}\n"))
+        .collect()
+}
+
+/// All records in a directory.
+fn files(directory: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let entries = std::fs::read_dir(directory).map_err(|error| {
+        Failure::bad_input(format!(
+            "cannot read {}: {error}; without a directory of a run, leave --resume out",
+            directory.display()
+        ))
+    })?;
+    let is_record = |path: &PathBuf| {
+        let name = path.file_name().map(|name| name.to_string_lossy());
+        name.is_some_and(|name| {
+            name == SINGLE || (name.starts_with(SEVERAL.0) && name.ends_with(SEVERAL.1))
+        })
+    };
+    let mut all: Vec<PathBuf> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(is_record)
+        .collect();
+    all.sort();
+    Ok(all)
+}
+
+fn remove(directory: &Path) -> Result<(), Failure> {
+    for path in files(directory)? {
+        std::fs::remove_file(&path).map_err(|error| {
+            Failure::bad_input(format!("cannot remove {}: {error}", path.display()))
+        })?;
+    }
+    Ok(())
+}

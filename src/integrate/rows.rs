@@ -1,0 +1,80 @@
+//! Records of vectors, one after the other in one piece of memory.
+
+use super::trajectory::real;
+use crate::math::Complex64;
+
+/// Records of N vectors, whose lengths are the same in all records.
+#[derive(Clone, Debug)]
+pub struct Rows<S, const N: usize> {
+    lengths: [usize; N],
+    data: Vec<S>,
+    count: usize,
+}
+
+impl<S: Copy, const N: usize> Rows<S, N> {
+    /// No record yet.
+    pub fn new(lengths: [usize; N]) -> Self {
+        Self {
+            lengths,
+            data: Vec::new(),
+            count: 0,
+        }
+    }
+
+    /// Number of numbers in a record.
+    pub fn width(&self) -> usize {
+        self.lengths.iter().sum()
+    }
+
+    /// Makes room for so many more records.
+    pub fn reserve(&mut self, count: usize) {
+        self.data.reserve_exact(count * self.width());
+    }
+
+    /// Adds a record.
+    ///
+    /// # Panics
+    /// If a vector has another length than in all records.
+    pub fn push(&mut self, record: [&[S]; N]) {
+        assert_eq!(record.map(<[S]>::len), self.lengths);
+        for part in record {
+            self.data.extend_from_slice(part);
+        }
+        self.count += 1;
+    }
+
+    /// Gives all records and their memory up.
+    pub fn clear(&mut self) {
+        self.data = Vec::new();
+        self.count = 0;
+    }
+
+    /// Number of numbers in all records.
+    pub fn numbers(&self) -> usize {
+        self.data.len()
+    }
+
+    /// Record k.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn get(&self, k: usize) -> [&[S]; N] {
+        let mut rest = &self.data[k * self.width()..(k + 1) * self.width()];
+        self.lengths.map(|length| {
+            let (part, after) = rest.split_at(length);
+            rest = after;
+            part
+        })
+    }
+}
+
+impl<const N: usize> Rows<Complex64, N> {
+    /// The real part.
+    pub fn real(&self) -> Rows<f64, N> {
+        Rows {
+            lengths: self.lengths,
+            data: real(&self.data),
+            count: self.count,
+        }
+    }
+}

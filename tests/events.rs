@@ -1,0 +1,163 @@
+//! Runs that end at an event: closed forms of time, place and derivatives, and gradients against the
+//! complex step by several methods.
+
+use flexbody::driver::{Evaluated, check, simulate};
+use flexbody::integrate::IntegrationFailure;
+use flexbody::problem::Problem;
+use serde_json::{Value, json};
+
+fn problem(file: &Value) -> Problem {
+    Problem::parse(&file.to_string(), "scene.json", &[]).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// A ball thrown up and along, until it is at a height again.
+fn throw(simulation: Value) -> Value {
+    json!({
+        "version": 1, "name": "throw",
+        "bodies": {"ball": {"shape": "point", "mass": 2, "velocity": {"linear": [3, 4, 0]}}},
+        "simulation": simulation,
+        "functions": {"x": {"final": {"position": {"body": "ball", "direction": [1, 0, 0]}}}},
+        "variables": {"speed": {"path": "/bodies/ball/velocity/linear/1"},
+                      "along": {"path": "/bodies/ball/velocity/linear/0"},
+                      "height": {"path": "/simulation/until/reaches"}}
+    })
+}
+
+/// The measure of the ball's height.
+fn height() -> Value {
+    json!({"position": {"body": "ball", "direction": [0, 1, 0]}})
+}
+
+/// T = (u + √(u² − 2 g h)) / g for a height h < 0, and its derivatives, by every family of methods.
+#[test]
+fn a_throw_ends_where_its_parabola_does() {
+    let (u, v, h, g) = (4.0_f64, 3.0, -1.5, 9.81);
+    let root = (u * u - 2.0 * g * h).sqrt();
+    let duration = (u + root) / g;
+    let exact = [v * (1.0 + u / root) / g, duration, -v / root];
+    for (key, value, method) in [
+        ("tolerance", json!(1e-9), json!("dop853")),
+        ("tolerance", json!(1e-9), json!({"radau": {"stages": 3}})),
+        ("steps", json!(20), json!({"radau": {"stages": 2}})),
+    ] {
+        let until = json!({"measure": height(), "reaches": h});
+        let mut simulation = json!({"duration": 3, "until": until, "method": method});
+        simulation[key] = value;
+        let problem = problem(&throw(simulation));
+        let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+        assert!(
+            (at.run.duration - duration).abs() <= 1e-14,
+            "{method}: {}",
+            at.run.duration
+        );
+        assert!(
+            (at.function(0).value - v * duration).abs() <= 1e-13,
+            "{method}"
+        );
+        let (gradient, _) = at.gradients(&problem, &[0]).expect("differentiates");
+        for (given, exact) in gradient[0].iter().zip(exact) {
+            assert!(
+                (given - exact).abs() <= 1e-12,
+                "{method}: {given} against {exact}"
+            );
+        }
+    }
+}
+
+/// A height that is passed upwards and downwards ends the run on the way up.
+#[test]
+fn the_first_of_several_events_counts() {
+    let until = json!({"measure": height(), "reaches": 0.5});
+    let file = throw(json!({"duration": 3, "until": until}));
+    let problem = problem(&file);
+    let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+    let first = (4.0 - (16.0_f64 - 9.81).sqrt()) / 9.81;
+    assert!(
+        (at.run.duration - first).abs() <= 1e-14,
+        "{}",
+        at.run.duration
+    );
+}
+
+#[test]
+fn an_event_that_does_not_come_is_named() {
+    let until = json!({"measure": height(), "reaches": 2});
+    let problem = problem(&throw(json!({"duration": 3, "until": until})));
+    let failure = simulate(&problem, &problem.start()).err().expect("fails");
+    let IntegrationFailure::NotReached { nearest, .. } = &failure else {
+        panic!("{failure}");
+    };
+    // As near as the samples see of 2 − u²/(2 g).
+    assert!((nearest - (2.0 - 16.0 / 19.62)).abs() < 1e-4, "{nearest}");
+    let text = failure.to_string();
+    assert!(
+        text.contains("the position that ends the run does not reach 2 within 3 s"),
+        "{text}"
+    );
+}
+
+/// A double pendulum with a spring, until its second bar has turned: every function, by all families
+/// of methods.
+#[test]
+fn gradients_are_those_of_the_complex_step() {
+    for (key, value, method) in [
+        ("tolerance", json!(1e-8), json!("dop853")),
+        ("tolerance", json!(1e-6), json!({"radau": {"stages": 3}})),
+        ("steps", json!(60), json!({"bdf": {"order": 2}})),
+        (
+            "steps",
+            json!(60),
+            json!({"generalised_alpha": {"radius": 0.8}}),
+        ),
+    ] {
+        let mut file = json!({
+            "version": 1, "name": "pendulum",
+            "bodies": {
+                "upper": {"shape": {"box": {"size": [1, 0.1, 0.1]}}, "mass": 1,
+                          "points": {"root": [-0.5, 0, 0], "tip": [0.5, 0, 0]},
+                          "place": {"put": "root"}},
+                "lower": {"shape": {"box": {"size": [1, 0.1, 0.1]}}, "mass": 0.6,
+                          "points": {"root": [-0.5, 0, 0], "tip": [0.5, 0, 0]},
+                          "place": {"put": "root", "at": "upper.tip"}}
+            },
+            "joints": {
+                "hinge": {"revolute": {"between": ["upper", "ground"], "at": "upper.root",
+                                       "axis": [0, 0, 1]}},
+                "elbow": {"universal": {"between": ["upper", "lower"], "at": "upper.tip",
+                                        "axis": [0, 0, 1], "cross": [0, 1, 0]}}
+            },
+            "loads": {"spring": {"torsion_spring": {"joint": "hinge", "stiffness": 2}}},
+            "simulation": {
+                "duration": 2, "method": method,
+                "until": {"measure": {"rotation": {"body": "lower", "axis": [0, 0, 1]}},
+                          "reaches": -0.8}
+            },
+            "functions": {
+                "tip": {"final": {"position": {"body": "lower", "point": "tip",
+                                               "direction": [0.6, 0.8, 0]}}},
+                "work": {"integral": {"energy": "kinetic"}},
+                "rush": {"ks": {"rho": 2, "of": {"speed": {"body": "lower"}}}}
+            },
+            "variables": {
+                "angle": {"path": "/simulation/until/reaches"},
+                "stiffness": {"path": "/loads/spring/torsion_spring/stiffness", "lower": 0.1},
+                "mass": {"path": "/bodies/lower/mass", "lower": 0.1},
+                "length": {"path": "/bodies/upper/points/tip/0", "lower": 0.1}
+            }
+        });
+        file["simulation"][key] = value;
+        let problem = problem(&file);
+        let found = check(&problem, &problem.start()).expect("runs");
+        assert_eq!(found.len(), 12);
+        for derivative in &found {
+            let of = found.iter().filter(|d| d.function == derivative.function);
+            let largest = of.fold(0.0_f64, |m, d| m.max(d.complex_step.abs()));
+            assert!(
+                derivative.complex_step.abs() > 1e-3 * largest,
+                "{derivative:?}"
+            );
+            let off = (derivative.adjoint - derivative.complex_step).abs();
+            assert!(off <= 1e-12 * largest, "{method}: {derivative:?}");
+        }
+    }
+}
