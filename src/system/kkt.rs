@@ -190,7 +190,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
         joints::gradients(model, numbering, at, gradients);
         self.matrix.assemble(|emit| {
             emit_reduced(numbering, 1, emit, |emit| {
-                emit_saddle_point(model, numbering, at, &gradients, multipliers, block, emit);
+                emit_saddle_point(model, numbering, at, gradients, multipliers, block, emit);
             });
         });
         self.factorisations += 1;

@@ -23,7 +23,7 @@ use crate::functions::Scene;
 use crate::integrate::explicit::march::failed;
 use crate::integrate::explicit::step::StepFailure;
 use crate::integrate::explicit::tableau::{A, ALL, C, END, STAGES};
-use crate::integrate::explicit::{Node, StepData, Stepper, Tape};
+use crate::integrate::explicit::{Node, NodeView, StepView, Stepper, Tape};
 use crate::integrate::grid::Place;
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
 use crate::system::accelerations::Accelerations;
@@ -140,10 +140,10 @@ fn first_sample(run: &Trajectory<f64>, n: usize, last: usize) -> usize {
 /// Makes a step whose stages were not kept once more.
 fn repeat<'s>(
     stepper: &'s mut Stepper<f64>,
-    (from, to, end): (Node<&[f64]>, Node<&[f64]>, &mut Node<Vec<f64>>),
+    (from, to, end): (NodeView<f64>, NodeView<f64>, &mut Node<Vec<f64>>),
     (duration, begin, h): (f64, f64, f64),
     dense: bool,
-) -> Result<StepData<&'s [f64]>, StepFailure> {
+) -> Result<StepView<'s, f64>, StepFailure> {
     let start = duration * begin;
     stepper.stages(from, (start, h))?;
     stepper.finish(end, start + h)?;

@@ -2,7 +2,7 @@
 
 use super::sweep::Sweep;
 use crate::adjoint::sensitivity::Sensitivity;
-use crate::integrate::explicit::{Node, StepData};
+use crate::integrate::explicit::{NodeView, StepView};
 use crate::math::{Vec3, rotation};
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
@@ -17,8 +17,8 @@ const REFINEMENTS: usize = 40;
 pub(super) fn pull_back(
     sweep: &mut Sweep,
     field: &mut Accelerations<f64>,
-    data: StepData<&[f64]>,
-    to: Node<&[f64]>,
+    data: StepView<f64>,
+    to: NodeView<f64>,
     (scratch, fraction): (&mut Model<f64>, f64),
 ) {
     let numbering = field.numbering;
@@ -119,8 +119,8 @@ pub(super) fn pull_back(
 /// the mass matrix, transposed.
 fn add_difference(
     field: &mut Accelerations<f64>,
-    data: StepData<&[f64]>,
-    to: Node<&[f64]>,
+    data: StepView<f64>,
+    to: NodeView<f64>,
     psi: &[f64],
     out: &mut [f64],
     scratch: &mut Model<f64>,

@@ -6,7 +6,7 @@ use crate::adjoint::sensitivity::{Sensitivity, add_scaled, dot};
 use crate::functions::Scene;
 use crate::integrate::Trajectory;
 use crate::integrate::explicit::tableau::{ALL, B, END, dense_weights};
-use crate::integrate::explicit::{Node, StepData};
+use crate::integrate::explicit::{NodeView, StepView};
 use crate::integrate::grid::Place;
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
@@ -51,7 +51,7 @@ impl<'a> Sweep<'a> {
         scene: &Scene<f64>,
         run: &Trajectory<f64>,
         k: usize,
-        inside: Option<(StepData<&[f64]>, Node<&[f64]>)>,
+        inside: Option<(StepView<f64>, NodeView<f64>)>,
     ) {
         if !self.of.linearise(scene, run, k) {
             return;
@@ -139,7 +139,7 @@ impl<'a> Sweep<'a> {
         (q, v): (&[f64], &[f64]),
         h: f64,
         width: f64,
-        data: StepData<&[f64]>,
+        data: StepView<f64>,
     ) {
         add_scaled(&mut self.before.0, 1.0, q);
         add_scaled(&mut self.before.1, 1.0, v);
@@ -152,7 +152,7 @@ impl<'a> Sweep<'a> {
         (q, v): (&[f64], &[f64]),
         h: f64,
         width: f64,
-        data: StepData<&[f64]>,
+        data: StepView<f64>,
     ) {
         let mut slope = 0.0;
         for &(j, weight) in weights {
@@ -167,7 +167,7 @@ impl<'a> Sweep<'a> {
 
     /// Pulls the cotangents of the derivatives at the node after the step back to its state, where
     /// `field` stands.
-    pub fn node(&mut self, field: &mut Accelerations<f64>, to: Node<&[f64]>, fraction: f64) {
+    pub fn node(&mut self, field: &mut Accelerations<f64>, to: NodeView<f64>, fraction: f64) {
         let (nq, nv) = (to.q.len(), to.v.len());
         if self.touched[END] {
             add_scaled(&mut self.node.0, 1.0, row(&self.qdot, nq, END));
@@ -189,7 +189,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Pulls the cotangent of q̇ at the node back to its state.
-    pub fn node_rates(&mut self, numbering: &Numbering, to: Node<&[f64]>) {
+    pub fn node_rates(&mut self, numbering: &Numbering, to: NodeView<f64>) {
         let (mut q, mut v) = (self.room.zeros(to.q.len()), self.room.zeros(to.v.len()));
         let bars = (&mut q[..], &mut v[..]);
         bodies::pull_rates(numbering, (to.q, to.v), &self.node.0, bars);
@@ -199,7 +199,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Hands the cotangents of the unprojected end on to the stages and to the node before.
-    pub fn end(&mut self, h: f64, width: f64, data: StepData<&[f64]>) {
+    pub fn end(&mut self, h: f64, width: f64, data: StepView<f64>) {
         let q = self.room.copy(&self.of.q.value);
         let v = self.room.copy(&self.of.v.value);
         self.hand_on(B, (&q, &v), h, width, data);

@@ -12,7 +12,7 @@ pub mod march;
 pub mod step;
 pub mod tableau;
 
-pub use step::{Node, StepData, Stepper};
+pub use step::{Node, NodeView, StepData, StepView, Stepper};
 
 use super::rows::Rows;
 use crate::math::Complex64;

@@ -29,6 +29,11 @@ pub struct Node<V> {
     pub lambda: V,
 }
 
+/// A view of a node.
+pub type NodeView<'a, S> = Node<&'a [S]>;
+/// A view of a step.
+pub type StepView<'a, S> = StepData<&'a [S]>;
+
 impl<V> Node<V> {
     /// Lengths of its vectors.
     pub fn lengths(numbering: &Numbering) -> [usize; 4] {
