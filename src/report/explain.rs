@@ -105,6 +105,8 @@ impl Explanation {
             }),
             row("operations to factorise", &|s| s.operations.to_string()),
         ];
+        let told = |row: &Vec<String>| row[1..].iter().any(|cell| !cell.is_empty());
+        let rows: Vec<Vec<String>> = rows.into_iter().filter(told).collect();
         text.push_str("\nequations\n");
         text.push_str(&render(&["", ">as written", ">lowered"], &rows));
         let order = match self.lowered.order.is_empty() {

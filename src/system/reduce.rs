@@ -5,10 +5,11 @@
 //! two, of positions and of velocities, for the stabilised ones) followed by entries of constraint
 //! rows, which stay as they are. B has orthonormal columns, so that x = B u has u = Bᵀ x.
 
+use super::constraint::RowGradient;
 use super::numbering::Numbering;
 use crate::linalg::Emit;
 use crate::math::{Scalar, Vec3};
-use crate::model::Mobility;
+use crate::model::{Mobility, RigidBody};
 
 /// aᵀ b of a constant vector b.
 pub fn along<S: Scalar>(a: &Vec3<S>, b: &Vec3<f64>) -> S {
@@ -107,6 +108,67 @@ pub fn unreduced(numbering: &Numbering, parts: usize, place: usize) -> usize {
         Some(part) if part < parts => part * nv + numbering.velocity_of_unknown(place % nu),
         _ => place + parts * (nv - nu),
     }
+}
+
+/// Bᵀ M B of a body.
+pub(super) fn inertia<S: Scalar, const N: usize>(
+    body: &RigidBody<S>,
+    mobility: &Mobility,
+) -> [[S; N]; N] {
+    let mut out = [[S::zero(); N]; N];
+    let linear = match mobility {
+        Mobility::Fixed => 0,
+        Mobility::Planar { .. } => 2,
+        Mobility::Spatial | Mobility::Point => 3,
+    };
+    for (i, row) in out.iter_mut().enumerate().take(linear) {
+        row[i] = body.mass;
+    }
+    match mobility {
+        Mobility::Spatial => {
+            for i in 0..3 {
+                for k in 0..3 {
+                    out[3 + i][3 + k] = body.inertia[(i, k)];
+                }
+            }
+        }
+        Mobility::Planar { normal, .. } => {
+            let about = body.inertia * normal.map(S::from);
+            out[2][2] = along(&about, normal);
+        }
+        Mobility::Point | Mobility::Fixed => {}
+    }
+    out
+}
+
+/// A row of G B on its side A or B.
+pub(super) fn reduced<S: Scalar, const N: usize>(
+    g: &RowGradient<S>,
+    side_a: bool,
+    mobility: &Mobility,
+) -> [S; N] {
+    let (f, t) = match side_a {
+        true => (g.force, &g.torque_a),
+        false => (-g.force, &g.torque_b),
+    };
+    let mut out = [S::zero(); N];
+    match mobility {
+        Mobility::Planar {
+            along: [t1, t2],
+            normal,
+        } => {
+            out[0] = along(&f, t1);
+            out[1] = along(&f, t2);
+            out[2] = along(t, normal);
+        }
+        Mobility::Point => out[..3].copy_from_slice(f.as_slice()),
+        Mobility::Fixed => {}
+        Mobility::Spatial => {
+            out[..3].copy_from_slice(f.as_slice());
+            out[3..].copy_from_slice(t.as_slice());
+        }
+    }
+    out
 }
 
 /// Calls `assemble` with what takes entries in unreduced numbering and emits them reduced.

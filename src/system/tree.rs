@@ -20,10 +20,10 @@
 use super::constraint::RowGradient;
 use super::kkt;
 use super::numbering::Numbering;
-use super::reduce::along;
+use super::reduce::{inertia, reduced};
 use crate::linalg::SingularMatrix;
 use crate::math::Scalar;
-use crate::model::{Mobility, Model, RigidBody};
+use crate::model::Model;
 
 /// Most unknowns of a body and most rows of a joint; and where both are small.
 const MOST: usize = 6;
@@ -334,64 +334,6 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
             x[at..at + m].copy_from_slice(&own[..m]);
         }
     }
-}
-
-/// Bᵀ M B of a body.
-fn inertia<S: Scalar, const N: usize>(body: &RigidBody<S>, mobility: &Mobility) -> [[S; N]; N] {
-    let mut out = [[S::zero(); N]; N];
-    let linear = match mobility {
-        Mobility::Fixed => 0,
-        Mobility::Planar { .. } => 2,
-        Mobility::Spatial | Mobility::Point => 3,
-    };
-    for (i, row) in out.iter_mut().enumerate().take(linear) {
-        row[i] = body.mass;
-    }
-    match mobility {
-        Mobility::Spatial => {
-            for i in 0..3 {
-                for k in 0..3 {
-                    out[3 + i][3 + k] = body.inertia[(i, k)];
-                }
-            }
-        }
-        Mobility::Planar { normal, .. } => {
-            let about = body.inertia * normal.map(S::from);
-            out[2][2] = along(&about, normal);
-        }
-        Mobility::Point | Mobility::Fixed => {}
-    }
-    out
-}
-
-/// A row of G B on its side A or B.
-fn reduced<S: Scalar, const N: usize>(
-    g: &RowGradient<S>,
-    side_a: bool,
-    mobility: &Mobility,
-) -> [S; N] {
-    let (f, t) = match side_a {
-        true => (g.force, &g.torque_a),
-        false => (-g.force, &g.torque_b),
-    };
-    let mut out = [S::zero(); N];
-    match mobility {
-        Mobility::Planar {
-            along: [t1, t2],
-            normal,
-        } => {
-            out[0] = along(&f, t1);
-            out[1] = along(&f, t2);
-            out[2] = along(t, normal);
-        }
-        Mobility::Point => out[..3].copy_from_slice(f.as_slice()),
-        Mobility::Fixed => {}
-        Mobility::Spatial => {
-            out[..3].copy_from_slice(f.as_slice());
-            out[3..].copy_from_slice(t.as_slice());
-        }
-    }
-    out
 }
 
 /// The first m entries of `x`, then zeros.
