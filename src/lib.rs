@@ -38,6 +38,7 @@
 //! | [`integrate`] | the methods, explicit and implicit; their equations, steps and trajectories |
 //! | [`functions`] | functions of interest and their derivatives |
 //! | [`adjoint`] | exact gradients: the backward march through each method |
+//! | [`lower`] | what of a scene is left out before it is integrated, and why not more |
 //! | [`optimiser`] | nonlinear programs; knows nothing of mechanics |
 //! | [`problem`] | the problem file: faults, schema, the map from a design to a scene |
 //! | [`report`] | records, comparison, tables, figures, text |
@@ -50,6 +51,7 @@ pub mod driver;
 pub mod functions;
 pub mod integrate;
 pub mod linalg;
+pub mod lower;
 pub mod math;
 pub mod model;
 pub mod optimiser;

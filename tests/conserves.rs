@@ -10,7 +10,7 @@
 mod reference;
 
 use flexbody::math::{Mat3, Vec3, rotation};
-use flexbody::model::{JointKind, Model, RigidBody};
+use flexbody::model::{JointKind, Mobility, Model, RigidBody};
 use flexbody::system::initial::velocity_correction;
 use flexbody::system::observe::{Observation, observe};
 use reference::models::{KINDS, free_pair};
@@ -163,6 +163,7 @@ fn a_free_top_follows_the_exact_solution() {
         orientation: start,
         velocity: Vec3::new(-0.5, 0.4, 0.6),
         angular_velocity: spin,
+        mobility: Mobility::Spatial,
     };
     let momentum = rotation::matrix(&start) * (body.inertia * spin);
     let exact = |t: f64| {

@@ -62,6 +62,9 @@ pub struct Job {
     /// /bodies/arm/mass=42. May be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
+    /// Integrates the scene as it is written: leaves out nothing that its motion does not need.
+    #[arg(long)]
+    pub no_lowering: bool,
     /// Reports the estimated discretisation error of every function and of its gradient, by a
     /// second simulation with steps of half the size.
     #[arg(long)]
@@ -85,6 +88,16 @@ pub enum Command {
         /// Largest relative difference that passes.
         #[arg(long, default_value_t = 1e-10, value_parser = positive)]
         tolerance: f64,
+    },
+    /// Say what the scene has, what is left out before it is integrated and why, and what is left:
+    /// unknowns, elimination, method, memory, and what the functions depend on.
+    Explain {
+        /// The problem.
+        #[command(flatten)]
+        job: Job,
+        /// Prints JSON.
+        #[arg(long)]
+        json: bool,
     },
     /// Measure error against run time for all methods, orders, steps and tolerances; writes
     /// work_precision.csv, orders.csv and work_precision.svg.

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod compare;
+mod explain;
 mod optimise;
 mod progress;
 mod records;
@@ -74,6 +75,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let done = match arguments.command {
         Some(Command::Simulate(job)) => simulate::simulate(&job),
         Some(Command::Check { job, tolerance }) => simulate::check(&job, tolerance),
+        Some(Command::Explain { job, json }) => explain::explain(&job, json),
         Some(Command::WorkPrecision(asked)) => work_precision::measure(&asked),
         Some(Command::Stress(asked)) => stress::stress(&asked),
         Some(Command::Compare(files)) => compare::compare(&files),
@@ -119,7 +121,14 @@ fn load(job: &Job) -> Result<Problem, Failure> {
         .map(|text| Override::parse(text))
         .collect::<Result<Vec<_>, _>>()
         .map_err(Failure::bad_input)?;
-    let problem = Problem::load(&job.problem, &overrides).map_err(Failure::bad_input)?;
+    let read = |overrides: &[Override]| {
+        let mut problem = Problem::load(&job.problem, overrides).map_err(Failure::bad_input)?;
+        if job.no_lowering {
+            problem.lowering = None;
+        }
+        Ok(problem)
+    };
+    let problem = read(&overrides)?;
     if !job.quiet {
         for redundancy in &problem.redundant {
             tell(&format!("{redundancy}\n"));
@@ -143,7 +152,7 @@ fn load(job: &Job) -> Result<Problem, Failure> {
     for text in reached.overrides() {
         overrides.push(Override::parse(&text).map_err(Failure::bad_input)?);
     }
-    Problem::load(&job.problem, &overrides).map_err(Failure::bad_input)
+    read(&overrides)
 }
 
 /// Reads a record from its file or its directory; also says which file that is.

@@ -57,6 +57,9 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     if let Some(warning) = &simulation.warning {
         let _ = writeln!(text, "  warning: {warning}");
     }
+    if simulation.unlowered {
+        text.push_str("  integrated as written: this design does not admit the lowering\n");
+    }
     let width = problem
         .function_names
         .iter()

@@ -43,7 +43,8 @@ impl Evaluated {
         problem: &Problem,
         x: &[f64],
     ) -> Result<(Self, Option<Refresh>), IntegrationFailure> {
-        let mut scene = problem.scene::<f64>(x);
+        let (mut scene, all) = problem.lowered_scene::<f64>(x);
+        integration.unlowered += usize::from(!all);
         let not_solid = |body: &&RigidBody<f64>| !body.is_solid();
         if let Some(body) = scene.model.bodies.iter().find(not_solid) {
             return Err(IntegrationFailure::Unphysical {
@@ -83,10 +84,18 @@ impl Evaluated {
         problem: &Problem,
         which: &[usize],
     ) -> Result<(Vec<Vec<Derivative>>, WorkCounts), IntegrationFailure> {
+        // A function that is asked for twice, as objective and in a constraint, is swept once.
+        let mut once = which.to_vec();
+        once.sort_unstable();
+        once.dedup();
+        let place = |f: &usize| {
+            once.binary_search(f)
+                .expect("every function is in the list")
+        };
         let adjoint = match &self.scene.until {
-            Some(_) if !which.is_empty() => {
+            Some(_) if !once.is_empty() => {
                 let with_event: Vec<usize> =
-                    which.iter().copied().chain([self.scene.event()]).collect();
+                    once.iter().copied().chain([self.scene.event()]).collect();
                 let mut found = adjoint::gradients(&self.scene, &self.run, &with_event)?;
                 let event = found.gradients.pop();
                 for gradient in &mut found.gradients {
@@ -95,11 +104,11 @@ impl Evaluated {
                 }
                 found
             }
-            _ => adjoint::gradients(&self.scene, &self.run, which)?,
+            _ => adjoint::gradients(&self.scene, &self.run, &once)?,
         };
         let by_parameters: Vec<Vec<f64>> =
             adjoint.gradients.iter().map(Scene::parameters).collect();
-        let mut all = vec![Vec::with_capacity(self.x.len()); which.len()];
+        let mut all = vec![Vec::with_capacity(self.x.len()); once.len()];
         for i in 0..self.x.len() {
             let moved = parameter_derivatives(problem, &self.x, i);
             for (gradient, by) in all.iter_mut().zip(&by_parameters) {
@@ -111,7 +120,8 @@ impl Evaluated {
                 gradient.push(sum);
             }
         }
-        Ok((all, adjoint.counts))
+        let asked = which.iter().map(|f| all[place(f)].clone()).collect();
+        Ok((asked, adjoint.counts))
     }
 }
 

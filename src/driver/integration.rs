@@ -25,6 +25,8 @@ pub struct Integration {
     chosen: Option<(Settings, String)>,
     /// How often the steps were chosen anew.
     pub refreshes: usize,
+    /// How many designs did not admit what the lowering leaves out at the others.
+    pub unlowered: usize,
     keep_stages: bool,
     /// When the event came in the last run, if the scene has one (s).
     event: Option<f64>,
@@ -60,6 +62,7 @@ impl Integration {
             samples,
             chosen: None,
             refreshes: 0,
+            unlowered: 0,
             keep_stages: gradients,
             event: None,
         }

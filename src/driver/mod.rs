@@ -5,6 +5,7 @@ pub mod check;
 pub mod error;
 pub mod evaluate;
 pub mod event;
+pub mod explain;
 pub mod figures;
 pub mod integration;
 pub mod journal;
@@ -19,6 +20,7 @@ pub mod work_precision;
 
 pub use check::{CheckedDerivative, check};
 pub use evaluate::{Evaluated, Evaluator};
+pub use explain::explain;
 pub use journal::Journal;
 pub use multi_start::multi_start;
 pub use optimise::{Optimisation, Solved, optimise, solve};

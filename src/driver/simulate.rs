@@ -3,19 +3,26 @@
 use super::evaluate::Evaluated;
 use super::integration::Integration;
 use crate::integrate::{IntegrationFailure, multipliers};
+use crate::model::Model;
 use crate::problem::Problem;
+use crate::system::Numbering;
 use crate::system::observe::{Observation, Reaction, observe, reactions};
 
 /// A simulated design with its observations at every instant.
 pub struct Simulation {
     /// The design, its scene and motion.
     pub at: Evaluated,
+    /// The model with nothing left out that its motion does not need, which observations and
+    /// reactions are those of.
+    pub model: Model<f64>,
     /// Energy, momentum and drift at every instant.
     pub observations: Vec<Observation>,
     /// Why the method was chosen.
     pub reason: String,
     /// What is wrong with the method for this scene, if anything.
     pub warning: Option<String>,
+    /// Whether this design does not admit what the lowering leaves out at the others.
+    pub unlowered: bool,
 }
 
 /// Simulates the design `x` of `problem`.
@@ -36,18 +43,23 @@ pub fn simulate_with(
     problem: &Problem,
     x: &[f64],
 ) -> Result<Simulation, IntegrationFailure> {
+    let before = integration.unlowered;
     let (at, _) = Evaluated::with(integration, problem, x)?;
+    let unlowered = integration.unlowered > before;
     let warning = integration.warning(&at.scene, &at.run);
     let reason = integration.chosen().map_or("", |(_, reason)| reason).into();
-    let (model, run) = (&at.scene.model, &at.run);
+    let (model, run) = (problem.unlowered_scene(x).model, &at.run);
+    let numbering = Numbering::new(&model);
     let observations = (0..=run.last())
-        .map(|k| observe(model, &run.numbering, (run.q(k), run.v(k)), run.time(k)))
+        .map(|k| observe(&model, &numbering, (run.q(k), run.v(k)), run.time(k)))
         .collect();
     Ok(Simulation {
         at,
+        model,
         observations,
         reason,
         warning,
+        unlowered,
     })
 }
 
@@ -71,8 +83,9 @@ impl Simulation {
 
     /// Joint reactions at instant k.
     pub fn reactions(&self, k: usize) -> Vec<Reaction> {
-        let (model, run) = (&self.at.scene.model, &self.at.run);
+        let (model, run) = (&self.model, &self.at.run);
+        let numbering = Numbering::new(model);
         let lambda = multipliers(model, run, k);
-        reactions(model, &run.numbering, (run.q(k), &lambda), run.time(k))
+        reactions(model, &numbering, (run.q(k), &lambda), run.time(k))
     }
 }

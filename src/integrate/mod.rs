@@ -50,14 +50,15 @@ pub fn simulate<S: SolveScalar>(
     Ok(run)
 }
 
-/// Multipliers λ at instant k of a run of `model`: as the method marched them, or from the index-1
-/// equations of the state there.
+/// Multipliers λ at instant k of a run of `model`: as the method marched them, or, if it did not or
+/// the run left rows of the model out, from the index-1 equations of the state there.
 pub fn multipliers(model: &Model<f64>, run: &Trajectory<f64>, k: usize) -> Vec<f64> {
-    let nc = run.numbering.constraints();
-    if !run.lambda.is_empty() {
+    let numbering = Numbering::new(model);
+    let nc = numbering.constraints();
+    if !run.lambda.is_empty() && run.numbering == numbering {
         return run.lambda[k * nc..(k + 1) * nc].to_vec();
     }
-    let mut field = Accelerations::new(model, &run.numbering);
+    let mut field = Accelerations::new(model, &numbering);
     let (mut a, mut lambda) = (run.a(k).to_vec(), vec![0.0; nc]);
     field.stand(run.q(k), run.v(k), run.time(k));
     match field.factorise() {

@@ -130,6 +130,17 @@ impl<S: Scalar> Trajectory<S> {
         self.lambda.extend_from_slice(lambda);
     }
 
+    /// Memory of the samples and of what is kept for the adjoint (bytes).
+    pub fn bytes(&self) -> [usize; 2] {
+        let samples = [&self.q, &self.v, &self.a, &self.lambda];
+        let samples: usize = samples.iter().map(|all| all.len()).sum();
+        let tape = match &self.tape {
+            Tape::Explicit(tape) => tape.numbers(),
+            Tape::Implicit(tape) => tape.numbers(),
+        };
+        [samples, tape].map(|numbers| numbers * size_of::<S>())
+    }
+
     /// Index of the last instant.
     pub fn last(&self) -> usize {
         self.instants.len() - 1

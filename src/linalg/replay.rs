@@ -104,6 +104,20 @@ impl<S: Scalar> Replay<S> {
         }
     }
 
+    /// Entries of both factors, and floating-point operations of a factorisation.
+    pub fn cost(&self) -> (usize, usize) {
+        let n = self.columns.len();
+        let column = |j: usize| {
+            let updates = self.upper.rows(j).iter();
+            let updates: usize = updates
+                .map(|&k| 2 * self.lower.rows(k as usize).len())
+                .sum();
+            updates + self.lower.rows(j).len() + 1
+        };
+        let entries = n + self.lower.rows.len() + self.upper.rows.len();
+        (entries, (0..n).map(column).sum())
+    }
+
     /// Eliminates the values of `matrix`, whose pattern was planned for.
     ///
     /// # Errors

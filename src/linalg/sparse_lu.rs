@@ -85,6 +85,14 @@ impl<S: SolveScalar> SparseLu<S> {
         Ok(rows)
     }
 
+    /// Entries of both factors, and floating-point operations of a factorisation.
+    ///
+    /// # Panics
+    /// If no matrix was factorised.
+    pub fn cost(&mut self) -> (usize, usize) {
+        self.factors().cost()
+    }
+
     /// The factors.
     fn factors(&mut self) -> &mut Replay<S> {
         self.replay

@@ -266,6 +266,9 @@ pub struct Joint<S> {
     pub drives: Vec<Drive<S>>,
     /// Rows of [`Joint::all_rows`] that are not imposed, as they follow from those of other joints.
     pub left_out: Vec<ConstraintRow>,
+    /// Rows that hold identically in all motions that the bodies' mobility admits, and are not
+    /// imposed.
+    pub identical: Vec<ConstraintRow>,
 }
 
 impl<S> Joint<S> {
@@ -277,7 +280,9 @@ impl<S> Joint<S> {
 
     /// The rows that are imposed.
     pub fn rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
-        self.all_rows().filter(|row| !self.left_out.contains(row))
+        let imposed =
+            |row: &ConstraintRow| !self.left_out.contains(row) && !self.identical.contains(row);
+        self.all_rows().filter(imposed)
     }
 
     /// Frame axes that both bodies share once the joint is closed.
@@ -308,6 +313,7 @@ impl<S: Scalar> Joint<S> {
             frame_b,
             drives: self.drives.iter().map(|drive| drive.map(f)).collect(),
             left_out: self.left_out.clone(),
+            identical: self.identical.clone(),
         }
     }
 }

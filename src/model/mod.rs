@@ -9,12 +9,14 @@ pub mod course;
 pub mod drive;
 pub mod joint;
 pub mod load;
+pub mod mobility;
 pub mod rigid_body;
 
 pub use course::Course;
 pub use drive::{Drive, MotionCourse};
 pub use joint::{ConstraintRow, Freedom, Joint, JointFrame, JointKind};
 pub use load::{Axes, Load, LoadKind};
+pub use mobility::Mobility;
 pub use rigid_body::RigidBody;
 
 use crate::math::{Scalar, Vec3};

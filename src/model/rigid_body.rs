@@ -1,5 +1,6 @@
 //! A rigid body: its mass properties and its start.
 
+use super::Mobility;
 use crate::math::rotation::Quat;
 use crate::math::{Mat3, Scalar, Vec3};
 
@@ -24,6 +25,8 @@ pub struct RigidBody<S> {
     pub velocity: Vec3<S>,
     /// Guess of the angular velocity at t = 0 in body axes (rad/s).
     pub angular_velocity: Vec3<S>,
+    /// Which velocities the body can have; constant whatever the design.
+    pub mobility: Mobility,
 }
 
 impl<S: Scalar> RigidBody<S> {
@@ -37,6 +40,7 @@ impl<S: Scalar> RigidBody<S> {
             orientation: self.orientation.map(&mut *f),
             velocity: self.velocity.map(&mut *f),
             angular_velocity: self.angular_velocity.map(&mut *f),
+            mobility: self.mobility,
         }
     }
 }

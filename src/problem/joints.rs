@@ -101,6 +101,7 @@ fn joint<S: Scalar>(
         frame_b,
         drives: Vec::new(),
         left_out: Vec::new(),
+        identical: Vec::new(),
     }
 }
 

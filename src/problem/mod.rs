@@ -33,6 +33,7 @@ pub use variables::Variable;
 
 use crate::functions::Scene;
 use crate::integrate::{self, Spacing};
+use crate::lower::Lowering;
 use crate::math::Scalar;
 use crate::model::ConstraintRow;
 use crate::optimiser::Method;
@@ -149,6 +150,8 @@ pub struct Problem {
     pub redundant: Vec<Redundancy>,
     /// The rows that are left out, by joint.
     left_out: Vec<Vec<ConstraintRow>>,
+    /// What is left out of its scenes before they are integrated; `None` if nothing shall be.
+    pub lowering: Option<Lowering>,
 }
 
 impl Problem {
@@ -193,7 +196,22 @@ impl Problem {
 
     /// The scene at the design `x`, analytic in `x`; one component per variable, each in the unit
     /// of its numbers.
+    ///
+    /// What its lowering leaves out is left out of the model, where the design admits it.
     pub fn scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
+        self.lowered_scene(x).0
+    }
+
+    /// As [`Problem::scene`], and whether the design admits all that the lowering leaves out.
+    pub fn lowered_scene<S: Scalar>(&self, x: &[S]) -> (Scene<S>, bool) {
+        let mut scene = self.unlowered_scene(x);
+        let lowering = self.lowering.as_ref();
+        let all = lowering.is_none_or(|lowering| lowering.apply(&mut scene));
+        (scene, all)
+    }
+
+    /// The scene at the design `x` with nothing left out but what follows from other joints.
+    pub fn unlowered_scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
         let mut scene = scene::scene(&self.written, &self.order, x);
         for (joint, left_out) in scene.model.joints.iter_mut().zip(&self.left_out) {
             joint.left_out.clone_from(left_out);

@@ -13,6 +13,8 @@ use super::syntax;
 use super::variables::{bind, variables};
 use super::{Constraint, Objective, OptimiserSettings, Problem, Sense, Simulation, Variable};
 use crate::integrate::{self, Spacing, Start};
+use crate::lower::{self, Lowering};
+use crate::math::Dual;
 use crate::model::JointKind;
 use crate::optimiser::Method;
 use crate::system::assembly::{AssemblyFailure, length_scale};
@@ -88,7 +90,7 @@ pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Pr
     match deserialise(&sound) {
         Ok(written) => {
             let mut problem = problem(document, written, order, variables);
-            let scene = problem.scene(&problem.start());
+            let scene = problem.unlowered_scene(&problem.start());
             if let Some(until) = &scene.until {
                 let value = |variable: &&mut Variable| {
                     variable
@@ -113,11 +115,31 @@ pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Pr
                 .or_else(|| unassembled(&problem));
             match finding {
                 Some(finding) => faults(vec![finding]),
-                None => Ok(problem),
+                None => {
+                    problem.lowering = Some(lowering(&problem));
+                    Ok(problem)
+                }
             }
         }
         Err(finding) => faults(vec![finding]),
     }
+}
+
+/// What can be left out of the scenes of a problem.
+fn lowering(problem: &Problem) -> Lowering {
+    let variables: Vec<lower::Range> = problem
+        .variables
+        .iter()
+        .map(|variable| lower::Range {
+            name: variable.name.clone(),
+            start: variable.start,
+            bounds: [variable.lower, variable.upper],
+            scale: variable.scale,
+        })
+        .collect();
+    let real = |x: &[f64]| problem.unlowered_scene(x);
+    let dual = |x: &[Dual]| problem.unlowered_scene(x);
+    Lowering::find(&real, &dual, &variables)
 }
 
 /// The fault of a spring or rod whose ends meet where the bodies are placed: it has no direction.
@@ -308,6 +330,7 @@ fn problem(
         order,
         redundant: Vec::new(),
         left_out: Vec::new(),
+        lowering: None,
     }
 }
 

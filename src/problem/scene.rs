@@ -11,7 +11,7 @@ use crate::functions::{
 };
 use crate::math::scalar::{length, lift3};
 use crate::math::{Scalar, Vec3};
-use crate::model::{Model, RigidBody};
+use crate::model::{Mobility, Model, RigidBody};
 
 /// Gravity where the file gives none (m/s²).
 pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
@@ -95,6 +95,7 @@ fn body<S: Scalar>(
         orientation: pose.orientation,
         velocity,
         angular_velocity: pose.rotation.tr_mul(&omega),
+        mobility: Mobility::Spatial,
     }
 }
 

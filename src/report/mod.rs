@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`files`] | files written whole or not at all |
 //! | [`evaluations`] | every evaluation, `evaluations.jsonl` |
+//! | [`explain`] | what is left out of a scene and what is left |
 //! | [`history`] | the iterations of an optimisation, `history.csv` |
 //! | [`optimum`] | the end of an optimisation, `optimum.json` |
 //! | [`mod@compare`] | an optimum against a committed baseline |
@@ -20,6 +21,7 @@ pub mod compare;
 mod csv;
 mod error;
 pub mod evaluations;
+pub mod explain;
 pub mod files;
 pub mod history;
 mod number;
@@ -33,6 +35,7 @@ pub mod work_precision;
 
 pub use compare::{Comparison, Tolerances, compare};
 pub use error::ReportError;
+pub use explain::{Explanation, FunctionUse, SystemSize};
 pub use files::{atomic_write, prepare_directory, read_text, write_all};
 pub use history::{Column, History, HistoryRow};
 pub use optimum::Optimum;

@@ -10,9 +10,10 @@ use super::bodies::{self, Motion, all_force_balances, velocities_of};
 use super::constraint::RowGradient;
 use super::initial::mass;
 use super::joints::{self, JointCotangent};
-use super::kkt::SaddlePoint;
+use super::kkt::{Elimination, SaddlePoint};
 use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
+use super::reduce;
 use super::tree::Tree;
 use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::model::Model;
@@ -47,7 +48,7 @@ enum Solver<S> {
 impl<'a, S: SolveScalar> Accelerations<'a, S> {
     /// Plans the solver.
     pub fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
-        let solver = match Tree::plan(model) {
+        let solver = match Tree::plan(model, numbering) {
             Some(tree) => Solver::Tree(tree),
             None => Self::sparse(model, numbering),
         };
@@ -134,9 +135,18 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         }
     }
 
+    /// How the matrix that was factorised last is eliminated.
+    pub fn elimination(&mut self) -> Elimination {
+        match &mut self.solver {
+            Solver::Tree(tree) => tree.elimination(self.numbering),
+            Solver::Sparse(saddle, _) => saddle.elimination(),
+        }
+    }
+
     fn solve_tree(&self, rhs: &mut [S]) {
         if let Solver::Tree(tree) = &self.solver {
-            tree.solve(self.numbering, &self.gradients, rhs);
+            let numbering = self.numbering;
+            reduce::through(numbering, 1, rhs, |rhs| tree.solve(numbering, rhs));
         }
     }
 

@@ -5,6 +5,7 @@ use super::bodies::Motion;
 use super::constraint::RowGradient;
 use super::joints;
 use super::numbering::Numbering;
+use super::reduce::{emit_reduced, through, unreduced};
 use crate::linalg::{Emit, Pattern, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::{Mat3, Scalar};
 use crate::model::Model;
@@ -120,8 +121,24 @@ pub struct BodyBlocks<S> {
     pub angular: Mat3<S>,
 }
 
-/// The matrix [B + (Gᵀs)_y, Gᵀ; G, 0] and its factors; order n_v + n_c.
+/// How a matrix of the index-1 equations is eliminated, and what that takes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Elimination {
+    /// Order of the matrix: unknowns of the bodies, and rows.
+    pub order: usize,
+    /// Bodies in the order of elimination, each with the joint that it hangs from; `None` if joints
+    /// close loops and a sparse factorisation is used.
+    pub bodies: Option<Vec<usize>>,
+    /// Entries of the sparse matrix and of its factors.
+    pub fill: Option<(usize, usize)>,
+    /// Floating-point operations of a factorisation.
+    pub operations: usize,
+}
+
+/// The matrix [B + (Gᵀs)_y, Gᵀ; G, 0] in the unknowns of the bodies, and its factors. Vectors are of
+/// length n_v + n_c.
 pub struct SaddlePoint<S> {
+    numbering: Numbering,
     matrix: SparseMatrix<S>,
     factors: SparseLu<S>,
     gradients: Vec<RowGradient<S>>,
@@ -136,17 +153,20 @@ impl<S: SolveScalar> SaddlePoint<S> {
         let mut gradients = Vec::new();
         joints::gradients(model, numbering, (&motions, S::zero()), &mut gradients);
         let zeros = vec![S::zero(); numbering.constraints()];
-        let order = numbering.velocities() + numbering.constraints();
+        let order = numbering.unknowns() + numbering.constraints();
         let block = |_| BodyBlocks {
             linear: S::one(),
             angular: Mat3::identity(),
         };
         let pattern = Pattern::record(order, |emit: &mut dyn Emit<S>| {
             let at = (&motions[..], S::zero());
-            emit_saddle_point(model, numbering, at, &gradients, &zeros, block, emit);
+            emit_reduced(numbering, 1, emit, |emit| {
+                emit_saddle_point(model, numbering, at, &gradients, &zeros, block, emit);
+            });
         });
         let factors = SparseLu::new(&pattern);
         Self {
+            numbering: numbering.clone(),
             matrix: SparseMatrix::new(pattern),
             factors,
             gradients,
@@ -169,20 +189,44 @@ impl<S: SolveScalar> SaddlePoint<S> {
         let gradients = &mut self.gradients;
         joints::gradients(model, numbering, at, gradients);
         self.matrix.assemble(|emit| {
-            emit_saddle_point(model, numbering, at, gradients, multipliers, block, emit);
+            emit_reduced(numbering, 1, emit, |emit| {
+                emit_saddle_point(model, numbering, at, gradients, multipliers, block, emit);
+            });
         });
         self.factorisations += 1;
-        self.factors.factorise(&self.matrix)
+        let found = self.factors.factorise(&self.matrix);
+        found.map_err(|singular| SingularMatrix {
+            column: unreduced(numbering, 1, singular.column),
+        })
+    }
+
+    /// Order and entries of the matrix, and how it is eliminated.
+    ///
+    /// # Panics
+    /// If it was not factorised.
+    pub fn elimination(&mut self) -> Elimination {
+        let (factor_entries, operations) = self.factors.cost();
+        let pattern = &self.matrix.pattern;
+        Elimination {
+            order: pattern.order(),
+            bodies: None,
+            fill: Some((pattern.entries(), factor_entries)),
+            operations,
+        }
     }
 
     /// Solves in place.
     pub fn solve(&mut self, rhs: &mut [S]) {
-        self.factors.solve(rhs);
+        let factors = &mut self.factors;
+        through(&self.numbering, 1, rhs, |rhs| factors.solve(rhs));
     }
 
     /// Solves the transposed system in place, with one step of iterative refinement.
     pub fn solve_transposed(&mut self, rhs: &mut [S]) {
-        self.factors.solve_transposed_refined(&self.matrix, rhs);
+        let (factors, matrix) = (&mut self.factors, &self.matrix);
+        through(&self.numbering, 1, rhs, |rhs| {
+            factors.solve_transposed_refined(matrix, rhs);
+        });
     }
 }
 

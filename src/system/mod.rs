@@ -19,6 +19,7 @@ pub mod numbering;
 pub mod observe;
 pub mod rank;
 pub mod reaction;
+pub mod reduce;
 pub mod redundancy;
 pub mod side;
 pub mod tree;

@@ -1,13 +1,20 @@
 //! Where each body's states and each joint's multipliers stand; frozen once per scene.
+//!
+//! Every rigid body has seven positions and six velocities; what it has of unknowns in a linear
+//! system is what its mobility says (see [`super::reduce`]).
 
-use crate::model::Model;
+use crate::model::{Mobility, Model};
 use std::ops::Range;
 
-/// Offsets of bodies and joints in the state vectors.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Positions and velocities of a body.
+const POSITIONS: usize = 7;
+const VELOCITIES: usize = 6;
+
+/// Offsets of bodies and joints in the state vectors and among the unknowns.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Numbering {
-    position: Vec<usize>,
-    velocity: Vec<usize>,
+    mobility: Vec<Mobility>,
+    unknown: Vec<usize>,
     constraint: Vec<usize>,
 }
 
@@ -21,16 +28,17 @@ impl Numbering {
             }
             all
         };
+        let mobility: Vec<Mobility> = model.bodies.iter().map(|body| body.mobility).collect();
         Self {
-            position: offsets(&mut model.bodies.iter().map(|_| 7)),
-            velocity: offsets(&mut model.bodies.iter().map(|_| 6)),
+            unknown: offsets(&mut mobility.iter().map(Mobility::unknowns)),
+            mobility,
             constraint: offsets(&mut model.joints.iter().map(|joint| joint.rows().count())),
         }
     }
 
     /// Number of bodies.
     pub fn bodies(&self) -> usize {
-        self.position.len() - 1
+        self.mobility.len()
     }
 
     /// Number of joints.
@@ -40,12 +48,22 @@ impl Numbering {
 
     /// Length of q: seven a rigid body (r, p).
     pub fn positions(&self) -> usize {
-        self.position[self.bodies()]
+        POSITIONS * self.bodies()
     }
 
     /// Length of v: six a rigid body (ṙ, ω).
     pub fn velocities(&self) -> usize {
-        self.velocity[self.bodies()]
+        VELOCITIES * self.bodies()
+    }
+
+    /// Number of unknowns u in v = B u.
+    pub fn unknowns(&self) -> usize {
+        self.unknown[self.bodies()]
+    }
+
+    /// Whether some body has fewer unknowns than velocities.
+    pub fn is_reduced(&self) -> bool {
+        self.unknowns() < self.velocities()
     }
 
     /// Number of constraint rows.
@@ -55,17 +73,33 @@ impl Numbering {
 
     /// Start of a body's positions in q.
     pub fn position(&self, body: usize) -> usize {
-        self.position[body]
+        POSITIONS * body
     }
 
     /// Start of a body's velocities in v.
     pub fn velocity(&self, body: usize) -> usize {
-        self.velocity[body]
+        VELOCITIES * body
+    }
+
+    /// Start of a body's unknowns in u.
+    pub fn unknown(&self, body: usize) -> usize {
+        self.unknown[body]
+    }
+
+    /// Which velocities a body can have.
+    pub fn mobility(&self, body: usize) -> &Mobility {
+        &self.mobility[body]
     }
 
     /// The body that a component of v belongs to.
     pub fn body_of_velocity(&self, component: usize) -> usize {
-        self.velocity.partition_point(|&start| start <= component) - 1
+        component / VELOCITIES
+    }
+
+    /// The component of v that stands for an unknown in messages: one of the same body.
+    pub fn velocity_of_unknown(&self, unknown: usize) -> usize {
+        let body = self.unknown.partition_point(|&start| start <= unknown) - 1;
+        self.velocity(body) + unknown - self.unknown[body]
     }
 
     /// A joint's rows among the constraints.

@@ -14,6 +14,7 @@ use super::constraint;
 use super::initial::guess;
 use super::joints;
 use super::numbering::Numbering;
+use super::reduce;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Model};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -73,9 +74,10 @@ pub fn leave_out(model: &mut Model<f64>) -> Vec<Redundancy> {
     let mut kept = kept.into_iter();
     for &j in &joints {
         let joint = &mut model.joints[j];
+        let rows: Vec<ConstraintRow> = joint.rows().collect();
+        let out = rows.iter().zip(&mut kept).filter(|(_, kept)| !kept);
+        joint.left_out = out.map(|(row, _)| *row).collect();
         let rows = joint.all_rows().count();
-        let out = joint.all_rows().zip(&mut kept).filter(|(_, kept)| !kept);
-        joint.left_out = out.map(|(row, _)| row).collect();
         if !joint.left_out.is_empty() {
             found.push(Redundancy {
                 joint: joint.name.clone(),
@@ -198,6 +200,9 @@ impl<'a> Rows<'a> {
                 i += 1;
             }
         }
+        for mut row in g.column_iter_mut() {
+            reduce::project(&self.numbering, row.as_mut_slice());
+        }
         let scales: Vec<f64> = g.column_iter().map(|row| 1.0 / row.norm()).collect();
         for (mut row, scale) in g.column_iter_mut().zip(&scales) {
             row *= *scale;
@@ -249,6 +254,7 @@ impl<'a> Rows<'a> {
         // Any direction that no symmetry of a scene singles out.
         let count = self.numbering.velocities();
         let mut along = DVector::from_fn(count, |i, _| (1.0 + 1.7 * i as f64).sin());
+        reduce::project(&self.numbering, along.as_mut_slice());
         let factors = normal(&g)?;
         // Twice, as the weight that keeps it regular leaves a little.
         for _ in 0..2 {

@@ -14,15 +14,20 @@
 //!
 //! The articulated inertia M̂ only grows, so nothing cancels whatever the ratio of the masses, and
 //! the cost is linear in the number of bodies (Featherstone 1983, here in absolute coordinates).
+//! x_b are the unknowns that the mobility of b leaves it; where no body and no joint has more than
+//! three, the blocks are of order three.
 
 use super::constraint::RowGradient;
+use super::kkt;
 use super::numbering::Numbering;
+use super::reduce::{inertia, reduced};
 use crate::linalg::SingularMatrix;
-use crate::math::{Mat3, Scalar};
+use crate::math::Scalar;
 use crate::model::Model;
 
-/// A joint has at most as many rows.
-const ROWS: usize = 6;
+/// Most unknowns of a body and most rows of a joint; and where both are small.
+const MOST: usize = 6;
+const SMALL: usize = 3;
 /// A pivot below this part of its diagonal entry is singular.
 const SINGULAR: f64 = 1e-13;
 
@@ -34,95 +39,52 @@ struct Link {
     joint: Option<(usize, bool, Option<usize>)>,
 }
 
-/// Factors of one link.
-#[derive(Clone)]
-struct Factors<S> {
-    /// Articulated inertia, then its Cholesky factor L D Lᵀ (D inverted on the diagonal).
-    inertia: [[S; 6]; 6],
-    /// G_jb M̂⁻¹, row by row.
-    lever: [[S; 6]; ROWS],
-    /// L D Lᵀ of S.
-    schur: [[S; ROWS]; ROWS],
-}
-
 /// Planned elimination of a model without closed loops.
 #[derive(Clone)]
-pub struct Tree<S> {
-    /// Leaves first.
-    links: Vec<Link>,
-    factors: Vec<Factors<S>>,
-    /// Link of each body.
-    link_of: Vec<usize>,
+pub enum Tree<S> {
+    /// Blocks of order three.
+    Small(Elimination<S, SMALL>),
+    /// Blocks of up to order six.
+    Large(Elimination<S, MOST>),
 }
 
 impl<S: Scalar> Tree<S> {
     /// Plans the elimination, or `None` if the joints of `model` close a loop.
-    pub fn plan(model: &Model<S>) -> Option<Self> {
-        let bodies = model.bodies.len();
-        let mut parent: Vec<Option<(usize, bool, Option<usize>)>> = vec![None; bodies];
-        let mut used = vec![false; model.joints.len()];
-        // Bodies in the order in which they are reached from ground or a free root.
-        let mut reached: Vec<usize> = Vec::with_capacity(bodies);
-        let mut seen = vec![false; bodies];
-        for (j, joint) in model.joints.iter().enumerate() {
-            if joint.body_b.is_none() {
-                if std::mem::replace(&mut seen[joint.body_a], true) {
-                    return None;
-                }
-                used[j] = true;
-                parent[joint.body_a] = Some((j, true, None));
-                reached.push(joint.body_a);
-            }
-        }
-        let mut next = 0;
-        let mut adjacent = vec![Vec::new(); bodies];
-        for (j, joint) in model.joints.iter().enumerate() {
-            if let Some(b) = joint.body_b {
-                adjacent[joint.body_a].push((j, b, false));
-                adjacent[b].push((j, joint.body_a, true));
-            }
-        }
-        for root in 0..=bodies {
-            while next < reached.len() {
-                let from = reached[next];
-                next += 1;
-                for &(j, to, is_a) in &adjacent[from] {
-                    if std::mem::replace(&mut used[j], true) {
-                        continue;
-                    }
-                    if std::mem::replace(&mut seen[to], true) {
-                        return None;
-                    }
-                    parent[to] = Some((j, is_a, Some(from)));
-                    reached.push(to);
-                }
-            }
-            if root < bodies && !std::mem::replace(&mut seen[root], true) {
-                reached.push(root);
-            }
-        }
-        let links: Vec<Link> = reached
+    pub fn plan(model: &Model<S>, numbering: &Numbering) -> Option<Self> {
+        let links = links(model, numbering)?;
+        let small = links
             .iter()
-            .rev()
-            .map(|&body| Link {
-                body,
-                joint: parent[body],
-            })
-            .collect();
-        let mut link_of = vec![0; bodies];
-        for (l, link) in links.iter().enumerate() {
-            link_of[link.body] = l;
-        }
-        let zero = Factors {
-            inertia: [[S::zero(); 6]; 6],
-            lever: [[S::zero(); 6]; ROWS],
-            schur: [[S::zero(); ROWS]; ROWS],
-        };
-        Some(Self {
-            factors: vec![zero; links.len()],
-            links,
-            link_of,
+            .all(|link| numbering.mobility(link.body).unknowns() == SMALL)
+            && (0..numbering.joints()).all(|joint| numbering.rows(joint).len() <= SMALL);
+        Some(match small {
+            true => Tree::Small(Elimination::new(links, numbering.bodies())),
+            false => Tree::Large(Elimination::new(links, numbering.bodies())),
         })
+    }
+
+    /// How the matrix is eliminated. Operations are those of blocks of the sizes at hand: a
+    /// decomposition of order k takes k³/3, a solution 2 k², a product of all rows what its
+    /// factors say.
+    pub fn elimination(&self, numbering: &Numbering) -> kkt::Elimination {
+        let links = match self {
+            Tree::Small(elimination) => &elimination.links,
+            Tree::Large(elimination) => &elimination.links,
+        };
+        let operations = |link: &Link| {
+            let m = numbering.mobility(link.body).unknowns();
+            let Some((joint, _, parent)) = link.joint else {
+                return m.pow(3) / 3;
+            };
+            let n = numbering.rows(joint).len();
+            let p = parent.map_or(0, |parent| numbering.mobility(parent).unknowns());
+            m.pow(3) / 3 + n * 2 * m * m + n * n * m + n.pow(3) / 3 + n * n * p + n * p * p
+        };
+        kkt::Elimination {
+            order: numbering.unknowns() + numbering.constraints(),
+            bodies: Some(links.iter().map(|link| link.body).collect()),
+            fill: None,
+            operations: links.iter().map(operations).sum(),
+        }
     }
 
     /// Eliminates with the given masses and inertias (the model's) and gradients of the rows.
@@ -136,14 +98,149 @@ impl<S: Scalar> Tree<S> {
         numbering: &Numbering,
         gradients: &[RowGradient<S>],
     ) -> Result<(), SingularMatrix> {
-        for (l, link) in self.links.iter().enumerate() {
-            let body = &model.bodies[link.body];
-            set_inertia(&mut self.factors[l].inertia, body.mass, &body.inertia);
+        match self {
+            Tree::Small(elimination) => elimination.factorise(model, numbering, gradients),
+            Tree::Large(elimination) => elimination.factorise(model, numbering, gradients),
+        }
+    }
+
+    /// Solves in place for (u, λ) given (Bᵀ f, g), with the factors made last.
+    pub fn solve(&self, numbering: &Numbering, rhs: &mut [S]) {
+        match self {
+            Tree::Small(elimination) => elimination.solve(numbering, rhs),
+            Tree::Large(elimination) => elimination.solve(numbering, rhs),
+        }
+    }
+}
+
+/// Links of the tree, leaves first, or `None` if the joints of `model` close a loop.
+/// Bodies without unknowns are ground.
+fn links<S>(model: &Model<S>, numbering: &Numbering) -> Option<Vec<Link>> {
+    let bodies = model.bodies.len();
+    let mut parent: Vec<Option<(usize, bool, Option<usize>)>> = vec![None; bodies];
+    let mut used = vec![false; model.joints.len()];
+    // Bodies in the order in which they are reached from ground or a free root.
+    let mut reached: Vec<usize> = Vec::with_capacity(bodies);
+    let mut seen = vec![false; bodies];
+    let moves = |body: usize| numbering.mobility(body).unknowns() > 0;
+    let ends = |j: usize| {
+        let joint = &model.joints[j];
+        let b = joint.body_b.filter(|&b| moves(b));
+        (Some(joint.body_a).filter(|&a| moves(a)), b)
+    };
+    for j in 0..model.joints.len() {
+        let (body, is_a) = match ends(j) {
+            (Some(a), None) => (a, true),
+            (None, Some(b)) => (b, false),
+            (None, None) | (Some(_), Some(_)) => continue,
+        };
+        if std::mem::replace(&mut seen[body], true) {
+            return None;
+        }
+        used[j] = true;
+        parent[body] = Some((j, is_a, None));
+        reached.push(body);
+    }
+    let mut next = 0;
+    let mut adjacent = vec![Vec::new(); bodies];
+    for j in 0..model.joints.len() {
+        if let (Some(a), Some(b)) = ends(j) {
+            adjacent[a].push((j, b, false));
+            adjacent[b].push((j, a, true));
+        }
+    }
+    for root in 0..=bodies {
+        while next < reached.len() {
+            let from = reached[next];
+            next += 1;
+            for &(j, to, is_a) in &adjacent[from] {
+                if std::mem::replace(&mut used[j], true) {
+                    continue;
+                }
+                if std::mem::replace(&mut seen[to], true) {
+                    return None;
+                }
+                parent[to] = Some((j, is_a, Some(from)));
+                reached.push(to);
+            }
+        }
+        if root < bodies && moves(root) && !std::mem::replace(&mut seen[root], true) {
+            reached.push(root);
+        }
+    }
+    let link = |&body: &usize| Link {
+        body,
+        joint: parent[body],
+    };
+    Some(reached.iter().rev().map(link).collect())
+}
+
+/// Factors of one link in blocks of up to order N.
+#[derive(Clone)]
+struct Factors<S, const N: usize> {
+    /// Articulated inertia, then its Cholesky factor L D Lᵀ (D inverted on the diagonal).
+    inertia: [[S; N]; N],
+    /// G_jb M̂⁻¹, row by row.
+    lever: [[S; N]; N],
+    /// G_jp, row by row.
+    above: [[S; N]; N],
+    /// L D Lᵀ of S.
+    schur: [[S; N]; N],
+}
+
+/// Elimination in blocks of up to order N.
+#[derive(Clone)]
+pub struct Elimination<S, const N: usize> {
+    /// Leaves first.
+    links: Vec<Link>,
+    factors: Vec<Factors<S, N>>,
+    /// Link of each body.
+    link_of: Vec<usize>,
+}
+
+/// Unknowns of a body: known beforehand where all have three.
+fn size<const N: usize>(numbering: &Numbering, body: usize) -> usize {
+    match N {
+        SMALL => SMALL,
+        _ => numbering.mobility(body).unknowns(),
+    }
+}
+
+impl<S: Scalar, const N: usize> Elimination<S, N> {
+    fn new(links: Vec<Link>, bodies: usize) -> Self {
+        let mut link_of = vec![0; bodies];
+        for (l, link) in links.iter().enumerate() {
+            link_of[link.body] = l;
+        }
+        let zero = [[S::zero(); N]; N];
+        let zero = Factors {
+            inertia: zero,
+            lever: zero,
+            above: zero,
+            schur: zero,
+        };
+        Self {
+            factors: vec![zero; links.len()],
+            links,
+            link_of,
+        }
+    }
+
+    fn factorise(
+        &mut self,
+        model: &Model<S>,
+        numbering: &Numbering,
+        gradients: &[RowGradient<S>],
+    ) -> Result<(), SingularMatrix> {
+        for (link, factors) in self.links.iter().zip(&mut self.factors) {
+            let mobility = numbering.mobility(link.body);
+            factors.inertia = inertia(&model.bodies[link.body], mobility);
         }
         for l in 0..self.links.len() {
             let link = self.links[l];
             let factors = &mut self.factors[l];
-            decompose(&mut factors.inertia, 6).map_err(|i| SingularMatrix {
+            let m = size::<N>(numbering, link.body);
+            decompose(&mut factors.inertia, m).map_err(|i| SingularMatrix {
                 column: numbering.velocity(link.body) + i,
             })?;
             let Some((joint, is_a, parent)) = link.joint else {
@@ -151,13 +248,15 @@ impl<S: Scalar> Tree<S> {
             };
             let rows = numbering.rows(joint);
             let n = rows.len();
+            let mobility = numbering.mobility(link.body);
+            let mut own = [[S::zero(); N]; N];
             for (i, g) in gradients[rows.clone()].iter().enumerate() {
-                let own = six(g, is_a);
-                let mut lever = own;
-                solve(&factors.inertia, &mut lever, 6);
+                own[i] = reduced(g, is_a, mobility);
+                let mut lever = own[i];
+                solve(&factors.inertia, &mut lever, m);
                 factors.lever[i] = lever;
-                for (k, other) in gradients[rows.clone()][..=i].iter().enumerate() {
-                    factors.schur[i][k] = dot(&factors.lever[i], &six(other, is_a));
+                for (k, other) in own[..=i].iter().enumerate() {
+                    factors.schur[i][k] = dot(&lever, other);
                 }
             }
             decompose(&mut factors.schur, n).map_err(|i| SingularMatrix {
@@ -165,10 +264,12 @@ impl<S: Scalar> Tree<S> {
             })?;
             let Some(parent) = parent else { continue };
             // G_jpᵀ S⁻¹ G_jp = Yᵀ D⁻¹ Y with Y = L⁻¹ G_jp.
-            let mut y = [[S::zero(); 6]; ROWS];
+            let mobility = numbering.mobility(parent);
+            let mut y = [[S::zero(); N]; N];
             let schur = factors.schur;
             for i in 0..n {
-                let mut row = six(&gradients[rows.start + i], !is_a);
+                let mut row = reduced(&gradients[rows.start + i], !is_a, mobility);
+                factors.above[i] = row;
                 for k in 0..i {
                     axpy(&mut row, -schur[i][k], &y[k]);
                 }
@@ -187,38 +288,41 @@ impl<S: Scalar> Tree<S> {
         Ok(())
     }
 
-    /// Solves in place for (x, λ) given (f, g), velocities first.
-    pub fn solve(&self, numbering: &Numbering, gradients: &[RowGradient<S>], rhs: &mut [S]) {
-        let (x, multipliers) = rhs.split_at_mut(numbering.velocities());
+    fn solve(&self, numbering: &Numbering, rhs: &mut [S]) {
+        let (x, multipliers) = rhs.split_at_mut(numbering.unknowns());
         for (link, factors) in self.links.iter().zip(&self.factors) {
-            let Some((joint, is_a, parent)) = link.joint else {
+            let Some((joint, _, parent)) = link.joint else {
                 continue;
             };
             let rows = numbering.rows(joint);
-            let own = six_of(x, numbering.velocity(link.body));
+            let m = size::<N>(numbering, link.body);
+            let own: [S; N] = block(&x[numbering.unknown(link.body)..], m);
             let e = &mut multipliers[rows.clone()];
             for (e, lever) in e.iter_mut().zip(&factors.lever) {
                 *e = dot(lever, &own) - *e;
             }
             solve(&factors.schur, e, rows.len());
             if let Some(parent) = parent {
-                let at = numbering.velocity(parent);
-                for (&e, g) in e.iter().zip(&gradients[rows]) {
-                    axpy(&mut x[at..at + 6], -e, &six(g, !is_a));
+                let at = numbering.unknown(parent);
+                let m = size::<N>(numbering, parent);
+                for (&e, above) in e.iter().zip(&factors.above) {
+                    axpy(&mut x[at..at + m], -e, above);
                 }
             }
         }
         for (link, factors) in self.links.iter().zip(&self.factors).rev() {
-            let at = numbering.velocity(link.body);
-            let mut own = six_of(x, at);
-            solve(&factors.inertia, &mut own, 6);
-            if let Some((joint, is_a, parent)) = link.joint {
+            let at = numbering.unknown(link.body);
+            let m = size::<N>(numbering, link.body);
+            let mut own: [S; N] = block(&x[at..], m);
+            solve(&factors.inertia, &mut own, m);
+            if let Some((joint, _, parent)) = link.joint {
                 let rows = numbering.rows(joint);
-                let mut more = [S::zero(); ROWS];
+                let mut more = [S::zero(); N];
                 if let Some(parent) = parent {
-                    let above = six_of(x, numbering.velocity(parent));
-                    for (more, g) in more.iter_mut().zip(&gradients[rows.clone()]) {
-                        *more = dot(&six(g, !is_a), &above);
+                    let m = size::<N>(numbering, parent);
+                    let known: [S; N] = block(&x[numbering.unknown(parent)..], m);
+                    for (more, above) in more[..rows.len()].iter_mut().zip(&factors.above) {
+                        *more = dot(above, &known);
                     }
                     solve(&factors.schur, &mut more, rows.len());
                 }
@@ -227,41 +331,26 @@ impl<S: Scalar> Tree<S> {
                     axpy(&mut own, -multipliers[row], &factors.lever[i]);
                 }
             }
-            x[at..at + 6].copy_from_slice(&own);
+            x[at..at + m].copy_from_slice(&own[..m]);
         }
     }
 }
 
-fn set_inertia<S: Scalar>(out: &mut [[S; 6]; 6], mass: S, inertia: &Mat3<S>) {
-    *out = [[S::zero(); 6]; 6];
-    for i in 0..3 {
-        out[i][i] = mass;
-        for k in 0..3 {
-            out[3 + i][3 + k] = inertia[(i, k)];
-        }
-    }
+/// The first m entries of `x`, then zeros.
+fn block<S: Scalar, const N: usize>(x: &[S], m: usize) -> [S; N] {
+    std::array::from_fn(|i| if i < m { x[i] } else { S::zero() })
 }
 
-/// The six entries of a row of G on its side A or B.
-fn six<S: Scalar>(g: &RowGradient<S>, side_a: bool) -> [S; 6] {
-    let (f, t) = (&g.force, if side_a { &g.torque_a } else { &g.torque_b });
-    if side_a {
-        [f.x, f.y, f.z, t.x, t.y, t.z]
-    } else {
-        [-f.x, -f.y, -f.z, t.x, t.y, t.z]
-    }
-}
-
-fn six_of<S: Scalar>(x: &[S], at: usize) -> [S; 6] {
-    std::array::from_fn(|i| x[at + i])
-}
-
-fn dot<S: Scalar>(a: &[S; 6], b: &[S; 6]) -> S {
-    let pair = |i: usize| a[i] * b[i] + a[i + 3] * b[i + 3];
+fn dot<S: Scalar, const N: usize>(a: &[S; N], b: &[S; N]) -> S {
+    // Pairs three apart, which do not wait for each other.
+    let pair = |i: usize| match N {
+        SMALL => a[i] * b[i],
+        _ => a[i] * b[i] + a[i + 3] * b[i + 3],
+    };
     pair(0) + pair(1) + pair(2)
 }
 
-fn axpy<S: Scalar>(out: &mut [S], scale: S, x: &[S; 6]) {
+fn axpy<S: Scalar, const N: usize>(out: &mut [S], scale: S, x: &[S; N]) {
     for (out, &x) in out.iter_mut().zip(x) {
         *out += scale * x;
     }
@@ -271,7 +360,7 @@ fn axpy<S: Scalar>(out: &mut [S], scale: S, x: &[S; 6]) {
 ///
 /// # Errors
 /// The row whose pivot is not positive beside its diagonal entry.
-fn decompose<S: Scalar>(a: &mut [[S; 6]; 6], n: usize) -> Result<(), usize> {
+fn decompose<S: Scalar, const N: usize>(a: &mut [[S; N]; N], n: usize) -> Result<(), usize> {
     for j in 0..n {
         let before = a[j][j].re();
         let mut pivot = a[j][j];
@@ -299,7 +388,7 @@ fn decompose<S: Scalar>(a: &mut [[S; 6]; 6], n: usize) -> Result<(), usize> {
 }
 
 /// Solves L D Lᵀ x = b in place.
-fn solve<S: Scalar>(a: &[[S; 6]; 6], b: &mut [S], n: usize) {
+fn solve<S: Scalar, const N: usize>(a: &[[S; N]; N], b: &mut [S], n: usize) {
     for i in 1..n {
         let mut sum = b[i];
         for k in 0..i {

@@ -396,3 +396,31 @@ fn an_assembly_that_cannot_be_closed_is_told_with_its_joint() {
     let ran = expect(2, at.path(), &["simulate", &file]);
     assert!(ran.err.contains("/joints/wall"), "{}", ran.err);
 }
+
+#[test]
+fn explain_says_what_is_left_out_and_what_is_not() {
+    let at = scratch();
+    let ran = expect(0, at.path(), &["explain", HAMMER]);
+    for part in [
+        "left out\n",
+        "unknowns of the accelerations",
+        "elimination:",
+        "memory:",
+    ] {
+        assert!(ran.out.contains(part), "{part}\n{}", ran.out);
+    }
+    let found = json(&expect(0, at.path(), &["explain", HAMMER, "--json"]).out);
+    assert_eq!(found["written"]["velocities"], 12);
+    assert_eq!(found["lowered"]["velocities"], 6);
+    let ran = expect(
+        0,
+        at.path(),
+        &["explain", HAMMER, "--no-lowering", "--json"],
+    );
+    let found = json(&ran.out);
+    assert_eq!(found["written"], found["lowered"]);
+    assert_eq!(found["kept"][0], "anything, as --no-lowering asks");
+    expect(2, at.path(), &["explain", HAMMER, "--output", "here"]);
+    expect(2, at.path(), &["explain", "nothing.json"]);
+    assert!(files(at.path()).is_empty());
+}

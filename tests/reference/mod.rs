@@ -9,7 +9,7 @@ pub mod models;
 
 use flexbody::integrate::{Method, Settings, Start, Trajectory, multipliers, simulate};
 use flexbody::math::{Mat3, Vec3};
-use flexbody::model::{JointKind, Model, RigidBody};
+use flexbody::model::{JointKind, Mobility, Model, RigidBody};
 use flexbody::system::observe::reactions;
 use serde_json::Value;
 
@@ -93,6 +93,7 @@ fn model(scene: &Value) -> Model<f64> {
                 orientation: orientation(&r),
                 velocity: vector(&body["v"]),
                 angular_velocity: r.transpose() * vector(&body["omega"]),
+                mobility: Mobility::Spatial,
             }
         })
         .collect();

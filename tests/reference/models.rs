@@ -1,7 +1,7 @@
 //! Models that are generic on purpose: full inertias, skew axes, no symmetry that hides a term.
 
 use flexbody::math::{Mat3, Vec3, rotation};
-use flexbody::model::{Joint, JointFrame, JointKind, Model, RigidBody};
+use flexbody::model::{Joint, JointFrame, JointKind, Mobility, Model, RigidBody};
 
 /// All kinds of joint.
 pub const KINDS: [JointKind; 8] = [
@@ -56,6 +56,7 @@ impl Numbers {
             orientation: self.orientation(),
             velocity: self.vector(),
             angular_velocity: self.vector() * 2.0,
+            mobility: Mobility::Spatial,
         }
     }
 }
@@ -93,6 +94,7 @@ pub fn joint(
     Joint {
         drives: Vec::new(),
         left_out: Vec::new(),
+        identical: Vec::new(),
         name: name.into(),
         kind,
         body_a,
@@ -119,6 +121,7 @@ pub fn rod(name: &str, mass: f64, x: f64) -> RigidBody<f64> {
         orientation: [1.0, 0.0, 0.0, 0.0],
         velocity: Vec3::zeros(),
         angular_velocity: Vec3::zeros(),
+        mobility: Mobility::Spatial,
     }
 }
 

@@ -57,7 +57,7 @@ impl<'a> Plan<'a> {
             .assemble(|emit| equations.jacobian(&at, h, 0.0, emit));
         self.factors
             .factorise(&self.matrix)
-            .map_err(|singular| equations.describe(singular.column))?;
+            .map_err(|singular| equations.describe_reduced(singular.column))?;
         counts.factorisations += 1;
         for sweep in sweeps {
             // By the increment Δ: the rates' and the memory's part.
@@ -68,14 +68,18 @@ impl<'a> Plan<'a> {
             }
             let mut total = (sweep.of.q.value.clone(), sweep.of.v.value.clone());
             add(&mut total, 1.0, &by_increment);
-            let mut psi = vec![0.0; equations.order()];
+            let mut psi = vec![0.0; equations.length()];
             bodies::tangent_of_cotangent(numbering, &stage.q, &total.0, &mut psi[..nv]);
             psi[nv..2 * nv].copy_from_slice(&total.1);
             psi.iter_mut().for_each(|x| *x = -*x);
             equations.scale_columns(h, &mut psi);
-            self.factors
-                .solve_transposed_refined(&self.matrix, &mut psi);
-            let mut change = self.held.multiply_transposed(&psi);
+            equations.compress(&mut psi);
+            let reduced = &mut psi[..equations.order()];
+            self.factors.solve_transposed_refined(&self.matrix, reduced);
+            let mut change = self.held.multiply_transposed(reduced);
+            equations.expand(&mut psi);
+            change.resize(psi.len(), 0.0);
+            equations.expand(&mut change);
             equations.unscale_columns(h, &mut change);
             equations.scale_rows(h, &mut psi);
             counts.solves += REFINED_SOLVES;

@@ -59,7 +59,7 @@ impl<'a> Plan<'a> {
             .assemble(|emit| emit_stages(equations, scheme, stages, h, emit));
         self.factors
             .factorise(&self.matrix)
-            .map_err(|singular| equations.describe(singular.column % n))?;
+            .map_err(|singular| equations.describe_reduced(singular.column % n))?;
         counts.factorisations += 1;
         let last = stages.len() - 1;
         for sweep in sweeps {
@@ -72,18 +72,21 @@ impl<'a> Plan<'a> {
             // By the increments Z_j: their own and the rates' part.
             let mut by: Vec<Pair> = sweep.increments.clone();
             spread(scheme, last, &sweep.rates, h, &mut by);
-            let mut psi = vec![0.0; stages.len() * n];
+            let mut psi = Vec::with_capacity(stages.len() * n);
+            let mut part = vec![0.0; equations.length()];
             for (j, (stage, by)) in stages.iter().zip(&by).enumerate() {
                 let mut total = by.clone();
                 if j == last {
                     let end = (sweep.of.q.value.clone(), sweep.of.v.value.clone());
                     add(&mut total, 1.0, &end);
                 }
-                let part = &mut psi[j * n..(j + 1) * n];
+                part.fill(0.0);
                 bodies::tangent_of_cotangent(numbering, &stage.q, &total.0, &mut part[..nv]);
                 part[nv..2 * nv].copy_from_slice(&total.1);
                 part.iter_mut().for_each(|x| *x = -*x);
-                equations.scale_columns(h, part);
+                equations.scale_columns(h, &mut part);
+                equations.compress(&mut part);
+                psi.extend_from_slice(&part[..n]);
             }
             self.factors
                 .solve_transposed_refined(&self.matrix, &mut psi);
@@ -91,18 +94,22 @@ impl<'a> Plan<'a> {
             let mut slope = 0.0;
             let mut changes = Vec::with_capacity(stages.len());
             for (i, stage) in stages.iter().enumerate() {
-                let part = &mut psi[i * n..(i + 1) * n];
+                let reduced = &psi[i * n..(i + 1) * n];
                 let at = stage.instant();
                 self.held
                     .assemble(|emit| equations.jacobian(&at, h, 0.0, emit));
-                let mut change = self.held.multiply_transposed(part);
+                let mut change = self.held.multiply_transposed(reduced);
+                change.resize(part.len(), 0.0);
+                equations.expand(&mut change);
                 equations.unscale_columns(h, &mut change);
                 changes.push(change);
-                equations.scale_rows(h, part);
+                part[..n].copy_from_slice(reduced);
+                equations.expand(&mut part);
+                equations.scale_rows(h, &mut part);
                 let cot = &mut sweep.of.cot.model;
-                let by_time = equations.pull_back(&stage.instant(), part, cot);
+                let by_time = equations.pull_back(&stage.instant(), &part, cot);
                 sweep.of.by_duration += (end - width * (1.0 - scheme.nodes[i])) * by_time;
-                let own = rates_of(model, numbering, &stage.q, part);
+                let own = rates_of(model, numbering, &stage.q, &part);
                 spread(scheme, i, &own, h, &mut by);
                 slope += work(&own, stage);
             }

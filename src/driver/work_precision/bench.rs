@@ -11,6 +11,7 @@ use crate::integrate::{
 };
 use crate::problem::Problem;
 use crate::report::PrecisionRow;
+use crate::system::Numbering;
 use crate::system::observe::observe;
 use std::hint::black_box;
 
@@ -124,15 +125,18 @@ impl<'a> Bench<'a> {
 
     /// Largest drift of energy (J), position and velocity constraints over a run.
     fn drift(&self, run: Trajectory<f64>) -> ([f64; 3], Trajectory<f64>) {
-        let model = &self.scene.model;
+        let model = self.problem.unlowered_scene(self.x).model;
+        let numbering = Numbering::new(&model);
         let observations = (0..=run.last())
-            .map(|k| observe(model, &run.numbering, (run.q(k), run.v(k)), run.time(k)))
+            .map(|k| observe(&model, &numbering, (run.q(k), run.v(k)), run.time(k)))
             .collect();
         let seen = Simulation {
             at: self.at(run),
+            model,
             observations,
             reason: String::new(),
             warning: None,
+            unlowered: false,
         };
         let (position, velocity) = seen.constraint_drift();
         ([seen.energy_drift(), position, velocity], seen.at.run)

@@ -20,8 +20,12 @@ use crate::system::constraint::RowGradient;
 use crate::system::joints::{self, JointCotangent};
 use crate::system::kkt::{emit_gradients, emit_reaction_jacobian, emit_transposed_gradients};
 use crate::system::loads::{self, LoadCotangent};
+use crate::system::reduce;
 use crate::system::side::sides;
 use crate::system::{Numbering, joints::rate_by_position};
+
+/// Positions and velocities are the parts of a residual that are in velocity numbering.
+const PARTS: usize = 2;
 
 /// Unknowns and rates at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -68,9 +72,29 @@ impl<'a, S: Scalar> Equations<'a, S> {
         self.model
     }
 
-    /// Number of equations: 2 (n_v + n_c).
-    pub fn order(&self) -> usize {
+    /// Length of a residual or of a vector of unknowns: 2 (n_v + n_c).
+    pub fn length(&self) -> usize {
         2 * (self.numbering.velocities() + self.numbering.constraints())
+    }
+
+    /// Order of the iteration matrix, which is in the unknowns of the bodies: 2 (n_u + n_c).
+    pub fn order(&self) -> usize {
+        2 * (self.numbering.unknowns() + self.numbering.constraints())
+    }
+
+    /// Lets `solve` work in place on the reduced form of a residual.
+    pub fn through<T: Scalar>(&self, x: &mut [T], solve: impl FnOnce(&mut [T])) {
+        reduce::through(self.numbering, PARTS, x, solve);
+    }
+
+    /// Brings a residual to its reduced form, of [`Equations::order`] entries at its head.
+    pub fn compress<T: Scalar>(&self, x: &mut [T]) {
+        reduce::compress(self.numbering, PARTS, x);
+    }
+
+    /// The inverse of [`Equations::compress`].
+    pub fn expand<T: Scalar>(&self, x: &mut [T]) {
+        reduce::expand(self.numbering, PARTS, x);
     }
 
     /// Starts of F1 … F4, which are also the starts of y, v, λ, μ.
@@ -126,14 +150,17 @@ impl<'a, S: Scalar> Equations<'a, S> {
         self.visit(at);
         let this = &*self;
         Pattern::record(self.order(), |emit: &mut dyn Emit<S>| {
-            this.emit(at, S::one(), S::one(), emit);
+            let assemble = |emit: &mut dyn Emit<S>| this.emit(at, S::one(), S::one(), emit);
+            reduce::emit_reduced(this.numbering, PARTS, emit, assemble);
         })
     }
 
     /// Emits the scaled iteration matrix for ∂q̇/∂q = ∂v̇/∂v = c.
     pub fn jacobian(&mut self, at: &Instant<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
         self.visit(at);
-        self.emit(at, h, c, emit);
+        reduce::emit_reduced(self.numbering, PARTS, emit, |emit| {
+            self.emit(at, h, c, emit);
+        });
     }
 
     fn emit(&self, at: &Instant<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
@@ -173,6 +200,12 @@ impl<'a, S: Scalar> Equations<'a, S> {
     /// Emits the scaled derivative in the unknowns of another stage with positions `q`, of which the
     /// rates here contain `d` / h times the tangent: d (P(q_here) T(q), M).
     pub fn emit_rates(&self, at: &Instant<S>, q: &[S], d: f64, emit: &mut dyn Emit<S>) {
+        reduce::emit_reduced(self.numbering, PARTS, emit, |emit| {
+            self.emit_all_rates(at, q, d, emit);
+        });
+    }
+
+    fn emit_all_rates(&self, at: &Instant<S>, q: &[S], d: f64, emit: &mut dyn Emit<S>) {
         let [y, v, ..] = self.starts();
         let d = S::from(d);
         for (i, body) in self.model.bodies.iter().enumerate() {
@@ -204,6 +237,11 @@ impl<'a, S: Scalar> Equations<'a, S> {
             *x *= h;
         }
         scale_parts(psi, &[(f2, h * h), (f3, 1.0), (f4, h)]);
+    }
+
+    /// The body or joint that a row or column of the iteration matrix belongs to, for messages.
+    pub fn describe_reduced(&self, row: usize) -> String {
+        self.describe(reduce::unreduced(self.numbering, PARTS, row))
     }
 
     /// The body or joint that an equation (or unknown) belongs to, for messages.

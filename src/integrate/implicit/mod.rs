@@ -112,6 +112,18 @@ pub struct Tape<S> {
     pub steps: Vec<Vec<Stage<S>>>,
 }
 
+impl<S> Tape<S> {
+    /// How many numbers it holds.
+    pub fn numbers(&self) -> usize {
+        let stage = |x: &Stage<S>| {
+            let states = [&x.q, &x.v, &x.dq, &x.dv, &x.lambda, &x.mu, &x.qdot, &x.vdot];
+            states.map(Vec::len).into_iter().sum::<usize>() + 1
+        };
+        let steps: usize = self.steps.iter().flatten().map(stage).sum();
+        stage(&self.start) + steps
+    }
+}
+
 impl Tape<Complex64> {
     /// The real part.
     pub fn real(&self) -> Tape<f64> {

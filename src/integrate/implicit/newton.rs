@@ -66,7 +66,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
     /// Plans the solution of the model's equations.
     pub fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
         let mut equations = Equations::new(model, numbering);
-        let order = equations.order();
+        let length = equations.length();
         let pattern = equations.pattern(&Stage::zero(numbering).instant());
         Self {
             equations,
@@ -77,7 +77,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             contraction: 1.0,
             unseen: 0,
             scale: SceneScale::of(model),
-            residual: vec![S::zero(); order],
+            residual: vec![S::zero(); length],
         }
     }
 
@@ -123,7 +123,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                     IntegrationFailure::Singular {
                         time,
                         step,
-                        place: equations.describe(singular.column),
+                        place: equations.describe_reduced(singular.column),
                     }
                 })?;
                 counts.factorisations += 1;
@@ -132,7 +132,8 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             counts.newton_iterations += 1;
             counts.solves += 1;
             let mut update = std::mem::take(&mut self.residual);
-            self.factors.solve(&mut update);
+            let factors = &mut self.factors;
+            self.equations.through(&mut update, |x| factors.solve(x));
             let size = scales.size(&update[..2 * nv], h.re());
             if !size.is_finite() {
                 self.residual = update;

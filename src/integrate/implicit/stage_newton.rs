@@ -63,7 +63,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     ) -> Self {
         let mut equations = Equations::new(real, numbering);
         let pattern = equations.pattern(&Stage::zero(numbering).instant());
-        let n = equations.order();
+        let n = equations.length();
         let real_mode = (scheme.modes[0].is_real() || estimates).then(|| {
             let matrix = SparseMatrix::new(pattern.clone());
             (matrix, SparseLu::new(&pattern))
@@ -240,7 +240,8 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                         *out += l.re * part(x);
                     }
                 }
-                factors.solve(&mut self.real_rhs);
+                let rhs = &mut self.real_rhs;
+                self.real.through(rhs, |x| factors.solve(x));
                 for (update, r) in self.updates.iter_mut().zip(&mode.right) {
                     for (out, &x) in update.iter_mut().zip(&self.real_rhs) {
                         *out -= whole(r.re * x);
@@ -253,7 +254,8 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                         *out += l * part(x);
                     }
                 }
-                self.complex_mode.1.solve(&mut self.complex_rhs);
+                let (rhs, factors) = (&mut self.complex_rhs, &mut self.complex_mode.1);
+                self.real.through(rhs, |x| factors.solve(x));
                 for (update, r) in self.updates.iter_mut().zip(&mode.right) {
                     for (out, x) in update.iter_mut().zip(&self.complex_rhs) {
                         *out -= whole(2.0 * (r * x).re);
@@ -315,7 +317,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         found.map_err(|singular| IntegrationFailure::Singular {
             time,
             step,
-            place: self.real.describe(singular.column),
+            place: self.real.describe_reduced(singular.column),
         })
     }
 
@@ -346,7 +348,8 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         bodies::mass_product(self.real.model(), numbering, &dv, &mut rest[..nv]);
         rest[..nv].iter_mut().for_each(|x| *x *= h / first);
         if let Some((_, factors)) = &mut self.real_mode {
-            factors.solve(&mut self.real_rhs);
+            let rhs = &mut self.real_rhs;
+            self.real.through(rhs, |x| factors.solve(x));
         }
         &self.real_rhs[..2 * nv]
     }

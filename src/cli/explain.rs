@@ -1,0 +1,20 @@
+//! `optimize explain`.
+
+use super::arguments::Job;
+use super::{DONE, Failure, load, print};
+use crate::driver;
+
+/// Says what is left out of a problem's scenes and what is left.
+pub fn explain(job: &Job, json: bool) -> Result<u8, Failure> {
+    if job.output.is_some() || job.error {
+        let what = "found --output or --error, expected neither: optimize explain writes no files";
+        return Err(Failure::bad_input(what));
+    }
+    let problem = load(job)?;
+    let explanation = driver::explain(&problem).map_err(Failure::numerical)?;
+    match json {
+        true => print(&explanation.json().map_err(Failure::numerical)?)?,
+        false => print(&explanation.text())?,
+    }
+    Ok(DONE)
+}

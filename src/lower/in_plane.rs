@@ -1,0 +1,323 @@
+//! Whether a model moves in a plane: the conditions of [`super::planar`], one after the other.
+
+use super::examine::{Examiner, Obstacle};
+use super::planar::{Plane, Turned, used};
+use crate::math::scalar::lift3;
+use crate::math::{Scalar, Vec3};
+use crate::model::{Axes, Freedom, LoadKind, Model};
+use crate::system::assembly::length_scale;
+use crate::system::reduce::along;
+
+/// Points of a load on its bodies.
+pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, Vec3<S>)>; 2] {
+    match kind {
+        LoadKind::Force { body, point, .. } => [Some((Some(*body), *point)), None],
+        LoadKind::Spring {
+            body_a,
+            body_b,
+            point_a,
+            point_b,
+            ..
+        } => [Some((Some(*body_a), *point_a)), Some((*body_b, *point_b))],
+        LoadKind::Torque { .. }
+        | LoadKind::TorsionSpring { .. }
+        | LoadKind::Damping { .. }
+        | LoadKind::BallDamping { .. }
+        | LoadKind::Friction { .. } => [None, None],
+    }
+}
+
+impl Plane {
+    /// Examines whether `model` moves in this plane, and by how much its derivative leaves it for a
+    /// `change` of the variable.
+    ///
+    /// # Errors
+    /// What leaves it first.
+    pub fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Result<(), Obstacle> {
+        let turned = Turned::new(model, &self.normal);
+        let mut examiner = Examiner::new(change);
+        let length = length_scale(model);
+        self.joints(model, &turned, length, &mut examiner);
+        self.bodies(model, &turned, length, &mut examiner);
+        self.loads(model, &turned, length, &mut examiner);
+        self.upright(model, length, &mut examiner);
+        examiner.found
+    }
+
+    fn bodies<S: Scalar>(
+        &self,
+        model: &Model<S>,
+        turned: &Turned<S>,
+        length: f64,
+        examiner: &mut Examiner,
+    ) {
+        let gravity = largest(&model.gravity);
+        examiner.zero(along(&model.gravity, &self.normal), gravity, || {
+            ("gravity leaves the plane".into(), "m/s²")
+        });
+        let speed = model.bodies.iter().map(|body| largest(&body.velocity));
+        let spin = model
+            .bodies
+            .iter()
+            .map(|body| largest(&body.angular_velocity));
+        let (speed, spin) = (speed.fold(0.0, f64::max), spin.fold(0.0, f64::max));
+        for (i, body) in model.bodies.iter().enumerate() {
+            let (normal, height) = &self.bodies[i];
+            let own: Vec3<S> = lift3(normal);
+            let name = &body.name;
+            let what = || (format!("body \"{name}\" is turned out of the plane"), "rad");
+            examiner.vanishes((turned.normals[i] - own).as_slice(), 1.0, what);
+            let above = along(&body.position, &self.normal) - *height;
+            let what = || (format!("body \"{name}\" is moved across the plane"), "m");
+            examiner.zero(above, length, what);
+            let scale = body
+                .inertia
+                .iter()
+                .fold(0.0_f64, |m, x| m.max(x.re().abs()));
+            for (about, inertia) in [
+                (body.inertia * own, body.inertia),
+                (body.inertia.tr_mul(&own), body.inertia.transpose()),
+            ] {
+                let off = about - own * own.dot(&(inertia * own));
+                let what = || {
+                    let what = "the normal is off the principal axes of inertia of body";
+                    (format!("{what} \"{name}\""), "kg m²")
+                };
+                examiner.vanishes(off.as_slice(), scale, what);
+            }
+            let what = || {
+                (
+                    format!("the velocity of body \"{name}\" leaves the plane"),
+                    "m/s",
+                )
+            };
+            examiner.zero(along(&body.velocity, &self.normal), speed, what);
+            let omega = &body.angular_velocity;
+            let what = || {
+                let what = "is off the normal";
+                (
+                    format!("the angular velocity of body \"{name}\" {what}"),
+                    "rad/s",
+                )
+            };
+            examiner.vanishes((omega - own * own.dot(omega)).as_slice(), spin, what);
+        }
+    }
+
+    fn joints<S: Scalar>(
+        &self,
+        model: &Model<S>,
+        turned: &Turned<S>,
+        length: f64,
+        examiner: &mut Examiner,
+    ) {
+        for (j, joint) in model.joints.iter().enumerate() {
+            let own = &self.joints[j];
+            let name = &joint.name;
+            let frames = self.frames(joint, j);
+            let bodies = [Some(joint.body_a), joint.body_b];
+            for (side, used) in used(joint).into_iter().enumerate() {
+                let normal = turned.normal(bodies[side]);
+                for axis in (0..3).filter(|&axis| used[axis]) {
+                    let e = &frames[side].axes[axis];
+                    let part = normal.dot(e);
+                    if part.re().abs() > 0.5 {
+                        let what = || {
+                            (
+                                format!("the axis of joint \"{name}\" is off the normal"),
+                                "rad",
+                            )
+                        };
+                        examiner.vanishes((e - normal * part).as_slice(), 1.0, what);
+                    } else {
+                        let what = || {
+                            (
+                                format!("the axis of joint \"{name}\" leaves the plane"),
+                                "rad",
+                            )
+                        };
+                        examiner.zero(part, 1.0, what);
+                    }
+                }
+            }
+            for drive in &joint.drives {
+                let normal = turned.normal(Some(joint.body_a));
+                let e = &frames[0].axes[2];
+                let part = normal.dot(e);
+                let what = || (format!("joint \"{name}\" is driven out of the plane"), "");
+                match drive.freedom {
+                    Freedom::Turn => {
+                        examiner.vanishes((e - normal * part).as_slice(), 1.0, what);
+                    }
+                    Freedom::Slide => examiner.zero(part, 1.0, what),
+                }
+            }
+            if self.identical(joint, turned, j) != own.identical {
+                let what = || (format!("joint \"{name}\" is turned"), "");
+                examiner.zero(S::one(), 0.0, what);
+            }
+            let mut heights = [S::zero(); 2];
+            for (side, frame) in frames.iter().enumerate() {
+                let above = turned.normal(bodies[side]).dot(&frame.point);
+                let what = || {
+                    (
+                        format!("a point of joint \"{name}\" is moved across the plane"),
+                        "m",
+                    )
+                };
+                examiner.zero(above - own.heights[side], length, what);
+                let centre = bodies[side].map_or(0.0, |body| self.bodies[body].1);
+                heights[side] = above + centre;
+            }
+            let what = || {
+                let what = "are not equally high above the plane";
+                (format!("the points of joint \"{name}\" {what}"), "m")
+            };
+            examiner.zero(heights[0] - heights[1], length, what);
+        }
+    }
+
+    fn loads<S: Scalar>(
+        &self,
+        model: &Model<S>,
+        turned: &Turned<S>,
+        length: f64,
+        examiner: &mut Examiner,
+    ) {
+        for (load, heights) in model.loads.iter().zip(&self.loads) {
+            let name = &load.name;
+            let mut ends = [None; 2];
+            for (k, at) in points(&load.kind).into_iter().enumerate() {
+                let Some((body, point)) = at else { continue };
+                let above = turned.normal(body).dot(&point);
+                let what = || {
+                    (
+                        format!("a point of load \"{name}\" is moved across the plane"),
+                        "m",
+                    )
+                };
+                examiner.zero(above - heights[k], length, what);
+                ends[k] = Some(above + body.map_or(0.0, |body| self.bodies[body].1));
+            }
+            let what = || (format!("load \"{name}\" leaves the plane"), "");
+            if let [Some(a), Some(b)] = ends {
+                examiner.zero(a - b, length, what);
+            }
+            let normal = |body: &usize, axes: &Axes| match axes {
+                Axes::Ground => turned.ground,
+                Axes::Body => turned.normals[*body],
+            };
+            match &load.kind {
+                LoadKind::Force {
+                    body,
+                    direction,
+                    axes,
+                    ..
+                } => {
+                    let part = normal(body, axes).dot(direction);
+                    examiner.zero(part, largest(direction), what);
+                }
+                LoadKind::Torque {
+                    body,
+                    direction,
+                    axes,
+                    ..
+                } => {
+                    let n = normal(body, axes);
+                    examiner.vanishes(
+                        (direction - n * n.dot(direction)).as_slice(),
+                        largest(direction),
+                        what,
+                    );
+                }
+                LoadKind::TorsionSpring { joint, .. }
+                | LoadKind::Damping {
+                    joint,
+                    freedom: Freedom::Turn,
+                    ..
+                }
+                | LoadKind::Friction {
+                    joint,
+                    freedom: Freedom::Turn,
+                    ..
+                } => {
+                    let joint = &model.joints[*joint];
+                    let n = turned.normals[joint.body_a];
+                    let e = &joint.frame_a.axes[2];
+                    examiner.vanishes((e - n * n.dot(e)).as_slice(), 1.0, what);
+                }
+                LoadKind::Spring { .. }
+                | LoadKind::BallDamping { .. }
+                | LoadKind::Damping {
+                    freedom: Freedom::Slide,
+                    ..
+                }
+                | LoadKind::Friction {
+                    freedom: Freedom::Slide,
+                    ..
+                } => {}
+            }
+        }
+    }
+
+    /// Bodies that nothing holds upright have what acts on them from outside their group as high as
+    /// their centres of mass.
+    fn upright<S: Scalar>(&self, model: &Model<S>, length: f64, examiner: &mut Examiner) {
+        let group = |body: Option<usize>| body.and_then(|body| self.groups[body]);
+        let mut level = vec![None; model.bodies.len()];
+        for (i, body) in model.bodies.iter().enumerate() {
+            let Some(own) = self.groups[i] else { continue };
+            let height = self.bodies[i].1;
+            let first: f64 = *level[own].get_or_insert(height);
+            let name = &body.name;
+            let what = || {
+                (
+                    format!("body \"{name}\" tilts: its centre of mass is off the others'"),
+                    "m",
+                )
+            };
+            examiner.zero(height - first, length, what);
+        }
+        let mut acts =
+            |body: Option<usize>, height: f64, what: &dyn Fn() -> (String, &'static str)| {
+                if let (Some(own), Some(body)) = (group(body), body) {
+                    let off = self.bodies[body].1 + height - level[own].unwrap_or(0.0);
+                    examiner.zero(off, length, what);
+                }
+            };
+        for (joint, own) in model.joints.iter().zip(&self.joints) {
+            let bodies = [Some(joint.body_a), joint.body_b];
+            if group(bodies[0]) == group(bodies[1]) {
+                continue;
+            }
+            let name = &joint.name;
+            let what = || {
+                (
+                    format!("joint \"{name}\" tilts a body: it is off its centre of mass"),
+                    "m",
+                )
+            };
+            for (body, height) in bodies.into_iter().zip(own.heights) {
+                acts(body, height, &what);
+            }
+        }
+        for (load, heights) in model.loads.iter().zip(&self.loads) {
+            let name = &load.name;
+            let what = || {
+                (
+                    format!("load \"{name}\" tilts a body: it is off its centre of mass"),
+                    "m",
+                )
+            };
+            for (at, height) in points(&load.kind).into_iter().zip(heights) {
+                if let Some((body, _)) = at {
+                    acts(body, *height, &what);
+                }
+            }
+        }
+    }
+}
+
+fn largest<S: Scalar>(v: &Vec3<S>) -> f64 {
+    v.iter().fold(0.0, |m, x| m.max(x.re().abs()))
+}

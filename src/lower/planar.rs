@@ -1,0 +1,242 @@
+//! Scenes that move in a plane: three unknowns a body, and no rows across the plane.
+//!
+//! With n the normal, a scene is planar if every axis that a joint's rows use is along or across n,
+//! the points that a joint brings together are equally high above the plane, n is a principal axis
+//! of every inertia, gravity, forces and velocities lie in the plane and torques and angular
+//! velocities are along n, and if nothing tilts: bodies that no joint holds upright have the points
+//! where forces act as high as their centres of mass.
+//!
+//! The rows of a joint, by whether the axes they use are along n (N) or across it (P):
+//!
+//! ```text
+//! Coincident k         left out for the k of the largest |n_k|: d · n = 0 identically
+//! Perpendicular N P    left out
+//! Perpendicular P P    kept
+//! Sliding N            left out
+//! Sliding P            kept
+//! ```
+
+use super::examine::Obstacle;
+use super::in_plane::points;
+use super::normal::{candidate, clean};
+use super::tilt;
+use crate::math::scalar::lift3;
+use crate::math::{Mat3, Scalar, Vec3, rotation};
+use crate::model::{ConstraintRow, Joint, JointFrame, JointKind};
+use crate::model::{Mobility, Model};
+use crate::system::redundancy;
+use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
+
+/// A plane, and where the parts of a scene stand in it.
+#[derive(Clone, Debug)]
+pub struct Plane {
+    /// Its unit normal, ground axes.
+    pub normal: Vec3<f64>,
+    /// Two orthonormal directions in it.
+    along: [Vec3<f64>; 2],
+    /// The normal in the axes of each body, and the height of its centre of mass.
+    pub(super) bodies: Vec<(Vec3<f64>, f64)>,
+    pub(super) joints: Vec<Joined>,
+    /// Heights of the points of each load above the centres of mass (above the origin on ground).
+    pub(super) loads: Vec<[f64; 2]>,
+    /// Bodies that tilt as one; `None` if they do not.
+    pub(super) groups: Vec<Option<usize>>,
+}
+
+/// A joint in the plane.
+#[derive(Clone, Debug)]
+pub(super) struct Joined {
+    /// Rows that hold identically.
+    pub identical: Vec<ConstraintRow>,
+    /// Rows that follow from others in the plane.
+    left_out: Vec<ConstraintRow>,
+    /// Axes of the frames by those that are written, if these have to be turned to the normal.
+    turn: Option<Mat3<f64>>,
+    /// Heights of its points above the centres of mass (above the origin on ground).
+    pub heights: [f64; 2],
+}
+
+/// The normal in the axes of the bodies and of ground.
+pub(super) struct Turned<S> {
+    pub normals: Vec<Vec3<S>>,
+    pub ground: Vec3<S>,
+}
+
+impl<S: Scalar> Turned<S> {
+    pub fn new(model: &Model<S>, normal: &Vec3<f64>) -> Self {
+        let ground: Vec3<S> = lift3(normal);
+        let bodies = model.bodies.iter();
+        Self {
+            normals: bodies
+                .map(|body| rotation::matrix(&body.orientation).tr_mul(&ground))
+                .collect(),
+            ground,
+        }
+    }
+
+    pub fn normal(&self, body: Option<usize>) -> &Vec3<S> {
+        body.map_or(&self.ground, |body| &self.normals[body])
+    }
+}
+
+/// The frame with axes e'_i = Σ_j c_ij e_j.
+fn turned<S: Scalar>(frame: &JointFrame<S>, c: &Mat3<f64>) -> JointFrame<S> {
+    let [e1, e2, e3] = frame.axes;
+    let part = |i: usize, j: usize| S::from(c[(i, j)]);
+    JointFrame {
+        axes: std::array::from_fn(|i| e1 * part(i, 0) + e2 * part(i, 1) + e3 * part(i, 2)),
+        ..*frame
+    }
+}
+
+/// Axes that the rows of a joint use, on side A and on side B.
+pub(super) fn used<S>(joint: &Joint<S>) -> [[bool; 3]; 2] {
+    let mut used = [[false; 3]; 2];
+    for row in joint.all_rows() {
+        match row {
+            Coincident(_) | Distance => {}
+            Perpendicular { a, b } => {
+                used[0][a] = true;
+                used[1][b] = true;
+            }
+            Sliding { a } => used[0][a] = true,
+        }
+    }
+    used
+}
+
+impl Plane {
+    /// The plane that `model` moves in.
+    ///
+    /// # Errors
+    /// What leaves it.
+    pub fn find(model: &Model<f64>) -> Result<Self, Obstacle> {
+        let normal = candidate(model).ok_or_else(|| Obstacle {
+            what: "gravity, lever arms and velocities lie in no common plane".into(),
+            size: 0.0,
+            unit: "",
+            variable: None,
+            elsewhere: false,
+        })?;
+        let turned = Turned::new(model, &normal);
+        let farthest = normal.iamin();
+        let mut first = Vec3::zeros();
+        first[farthest] = 1.0;
+        let first = clean(first - normal * normal[farthest]);
+        let height = |body: Option<usize>, point: &Vec3<f64>| turned.normal(body).dot(point);
+        let joints = model.joints.iter().map(|joint| {
+            let turn = turn_to(joint, turned.normal(Some(joint.body_a)));
+            Joined {
+                identical: Vec::new(),
+                left_out: Vec::new(),
+                turn,
+                heights: [
+                    height(Some(joint.body_a), &joint.frame_a.point),
+                    height(joint.body_b, &joint.frame_b.point),
+                ],
+            }
+        });
+        let loads = model.loads.iter().map(|load| {
+            points(&load.kind).map(|at| at.map_or(0.0, |(body, point)| height(body, &point)))
+        });
+        let mut plane = Self {
+            normal,
+            along: [first, clean(normal.cross(&first))],
+            bodies: (model.bodies.iter().zip(&turned.normals))
+                .map(|(body, own)| (clean(*own), normal.dot(&body.position)))
+                .collect(),
+            joints: joints.collect(),
+            loads: loads.collect(),
+            groups: Vec::new(),
+        };
+        for (j, joint) in model.joints.iter().enumerate() {
+            plane.joints[j].identical = plane.identical(joint, &turned, j);
+        }
+        let upright = |j: usize| tilt::holds_upright(&plane.joints[j].identical);
+        plane.groups = tilt::groups(model.bodies.len(), &model.joints, upright);
+        plane.holds(model, 0.0)?;
+        let mut lowered = model.clone();
+        plane.apply(&mut lowered);
+        redundancy::leave_out(&mut lowered);
+        for (own, joint) in plane.joints.iter_mut().zip(lowered.joints) {
+            own.left_out = joint.left_out;
+        }
+        Ok(plane)
+    }
+
+    /// Rows of joint j that hold identically, if the joint fits the plane.
+    pub(super) fn identical<S: Scalar>(
+        &self,
+        joint: &Joint<S>,
+        turned: &Turned<S>,
+        j: usize,
+    ) -> Vec<ConstraintRow> {
+        let frames = self.frames(joint, j);
+        let bodies = [Some(joint.body_a), joint.body_b];
+        let across = |side: usize, axis: usize| {
+            let normal = turned.normal(bodies[side]);
+            normal.dot(&frames[side].axes[axis]).re().abs() > 0.5
+        };
+        let largest = Coincident(self.normal.iamax());
+        let identical = |row: &ConstraintRow| match *row {
+            Coincident(_) => *row == largest,
+            Perpendicular { a, b } => across(0, a) != across(1, b),
+            Sliding { a } => across(0, a),
+            Distance => false,
+        };
+        joint.all_rows().filter(identical).collect()
+    }
+
+    pub(super) fn frames<S: Scalar>(&self, joint: &Joint<S>, j: usize) -> [JointFrame<S>; 2] {
+        let frames = [joint.frame_a, joint.frame_b];
+        match self.joints[j].turn {
+            Some(turn) => frames.map(|frame| turned(&frame, &turn)),
+            None => frames,
+        }
+    }
+
+    /// Leaves out of a model that the plane holds for what is across it.
+    pub fn apply<S: Scalar>(&self, model: &mut Model<S>) {
+        for (body, (normal, _)) in model.bodies.iter_mut().zip(&self.bodies) {
+            body.mobility = Mobility::Planar {
+                along: self.along,
+                normal: *normal,
+            };
+        }
+        for (j, own) in self.joints.iter().enumerate() {
+            let joint = &mut model.joints[j];
+            [joint.frame_a, joint.frame_b] = self.frames(joint, j);
+            joint.identical.clone_from(&own.identical);
+            joint.left_out.clone_from(&own.left_out);
+        }
+    }
+}
+
+/// Axes of a joint's frames that are along or across the normal, where those that its rows use are
+/// not, and may be turned: about e3 if that lies in the plane, anyhow in a weld.
+fn turn_to(joint: &Joint<f64>, normal: &Vec3<f64>) -> Option<Mat3<f64>> {
+    const ALIGNED: f64 = 4.0 * f64::EPSILON;
+    let [e1, e2, e3] = &joint.frame_a.axes;
+    let n = Vec3::new(normal.dot(e1), normal.dot(e2), normal.dot(e3));
+    let aligned = n.iter().filter(|x| x.abs() <= ALIGNED).count() == 2;
+    if aligned || used(joint) == [[false; 3]; 2] {
+        return None;
+    }
+    let third = match joint.kind {
+        JointKind::Weld => {
+            // Any direction across the normal.
+            let mut farthest = Vec3::zeros();
+            farthest[n.iamin()] = 1.0;
+            n.cross(&farthest).normalize()
+        }
+        _ if n.z.abs() <= 0.5 => Vec3::z(),
+        _ => return None,
+    };
+    let first = (n - third * n.dot(&third)).normalize();
+    let second = third.cross(&first);
+    Some(Mat3::from_rows(&[
+        first.transpose(),
+        second.transpose(),
+        third.transpose(),
+    ]))
+}

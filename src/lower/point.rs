@@ -1,0 +1,140 @@
+//! Bodies whose rotation nothing turns and nothing looks at: three unknowns instead of six.
+//!
+//! A body that hangs at its centre of mass, by spherical joints, springs or forces, and starts
+//! without spin keeps its orientation, M = 0 and ω = 0. Its rotation can be left out if no function
+//! reads where a point beside the centre is, or how the body is turned, since a design may still
+//! turn its start.
+
+use super::examine::{Examiner, Obstacle};
+use crate::functions::{Function, Instant, Release, Scene};
+use crate::math::{Scalar, Vec3};
+use crate::model::{Axes, JointKind, LoadKind};
+use crate::system::assembly::length_scale;
+
+/// Distance from the centre of mass, relative to the length scale and to what is round-off
+/// elsewhere, that still counts as none: a lever arm turns a small body fast.
+const CENTRED: f64 = 1e-2;
+
+/// Examines whether body `index` of `scene` may be taken as a point, in values and for a `change`
+/// of the variable that an infinitesimal part is the derivative by.
+///
+/// # Errors
+/// What turns it, or looks at its rotation.
+pub fn holds<S: Scalar>(scene: &Scene<S>, index: usize, change: f64) -> Result<(), Obstacle> {
+    let model = &scene.model;
+    let mut examiner = Examiner::new(change);
+    let length = CENTRED * length_scale(model);
+    let mut vanishes = |v: &Vec3<S>, what: &dyn Fn() -> String| {
+        examiner.vanishes(v.as_slice(), length, || (what(), ""));
+    };
+    // What turns the body whatever its size.
+    let one = Vec3::new(S::from(f64::INFINITY), S::zero(), S::zero());
+    let body = &model.bodies[index];
+    vanishes(&body.angular_velocity, &|| "it starts with a spin".into());
+    let is = |other: usize| other == index;
+    for joint in &model.joints {
+        let sides = [
+            (Some(joint.body_a), &joint.frame_a),
+            (joint.body_b, &joint.frame_b),
+        ];
+        for (_, frame) in sides.iter().filter(|(body, _)| body.is_some_and(is)) {
+            let name = &joint.name;
+            match joint.kind {
+                JointKind::Spherical | JointKind::Rod => {
+                    let what = || format!("joint \"{name}\" is off its centre of mass");
+                    vanishes(&frame.point, &what);
+                }
+                JointKind::Revolute
+                | JointKind::Prismatic
+                | JointKind::Planar
+                | JointKind::Cylindrical
+                | JointKind::Universal
+                | JointKind::Weld => {
+                    vanishes(&one, &|| format!("joint \"{name}\" turns it"));
+                }
+            }
+        }
+    }
+    for load in &model.loads {
+        let name = &load.name;
+        let turns = || format!("load \"{name}\" turns it");
+        match &load.kind {
+            LoadKind::Force {
+                body, point, axes, ..
+            } if is(*body) => match axes {
+                Axes::Ground => vanishes(point, &turns),
+                Axes::Body => vanishes(&one, &turns),
+            },
+            LoadKind::Torque { body, .. } if is(*body) => vanishes(&one, &turns),
+            LoadKind::Spring {
+                body_a,
+                body_b,
+                point_a,
+                point_b,
+                ..
+            } => {
+                if is(*body_a) {
+                    vanishes(point_a, &turns);
+                }
+                if body_b.is_some_and(is) {
+                    vanishes(point_b, &turns);
+                }
+            }
+            LoadKind::TorsionSpring { joint, .. }
+            | LoadKind::Damping { joint, .. }
+            | LoadKind::BallDamping { joint, .. }
+            | LoadKind::Friction { joint, .. } => {
+                let joint = &model.joints[*joint];
+                if is(joint.body_a) || joint.body_b.is_some_and(is) {
+                    vanishes(&one, &turns);
+                }
+            }
+            LoadKind::Force { .. } | LoadKind::Torque { .. } => {}
+        }
+    }
+    let read = || "a function looks at its rotation".to_owned();
+    let event = scene.until.as_ref().map(|until| &until.measure);
+    for function in scene.functions.iter().chain(event) {
+        for (body, point) in looks_at(function) {
+            if is(body) {
+                vanishes(&point.unwrap_or(one), &read);
+            }
+        }
+    }
+    examiner.found
+}
+
+/// Bodies that a function looks at, with the point of them, or none if it looks at the rotation.
+fn looks_at<S: Scalar>(function: &Function<S>) -> Vec<(usize, Option<Vec3<S>>)> {
+    let gated = |gate: &Option<crate::functions::Gate>| gate.map(|gate| (gate.body, None));
+    match function {
+        Function::Reduced { instant, .. } => match instant {
+            Instant::Position { body, point, .. }
+            | Instant::Velocity { body, point, .. }
+            | Instant::Acceleration { body, point, .. }
+            | Instant::Speed { body, point } => vec![(*body, Some(*point))],
+            // The energy reads angular velocities, which are zero, and heights of centres.
+            Instant::Energy(_) => Vec::new(),
+            Instant::Rotation { body, .. } => vec![(*body, None)],
+            Instant::Range { projectile, gate } => {
+                let thrown = (projectile.body, Some(projectile.point));
+                [thrown].into_iter().chain(gated(gate)).collect()
+            }
+        },
+        Function::Clearance {
+            projectile,
+            release,
+            ..
+        } => {
+            let mut all = vec![(projectile.body, Some(projectile.point))];
+            if let Release::Best {
+                projectile, gate, ..
+            } = release
+            {
+                all.push((projectile.body, Some(projectile.point)));
+                all.extend(gated(gate));
+            }
+            all
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! Groups of bodies that can tilt out of a plane only together.
+//!
+//! Forces in the plane that act above or beside a centre of mass tilt a body unless a joint holds
+//! it upright. Joints whose axes are held parallel do, so what they join tilts as one, or, joined
+//! to ground, not at all.
+
+use crate::model::{ConstraintRow, Joint};
+
+/// Whether the rows that hold identically in the plane keep the joint's bodies parallel.
+pub(super) fn holds_upright(identical: &[ConstraintRow]) -> bool {
+    let angles = identical
+        .iter()
+        .filter(|row| matches!(row, ConstraintRow::Perpendicular { .. }));
+    angles.count() >= 2
+}
+
+/// Group of each body; `None` for those that ground holds upright.
+pub(super) fn groups<S>(
+    bodies: usize,
+    joints: &[Joint<S>],
+    upright: impl Fn(usize) -> bool,
+) -> Vec<Option<usize>> {
+    let ground = bodies;
+    let mut root: Vec<usize> = (0..=bodies).collect();
+    fn find(root: &mut [usize], mut i: usize) -> usize {
+        while root[i] != i {
+            root[i] = root[root[i]];
+            i = root[i];
+        }
+        i
+    }
+    for (j, joint) in joints.iter().enumerate() {
+        if upright(j) {
+            let a = find(&mut root, joint.body_a);
+            let b = find(&mut root, joint.body_b.unwrap_or(ground));
+            root[a] = b;
+        }
+    }
+    let held = find(&mut root, ground);
+    (0..bodies)
+        .map(|body| Some(find(&mut root, body)).filter(|&own| own != held))
+        .collect()
+}

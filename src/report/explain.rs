@@ -1,0 +1,168 @@
+//! What a scene has, what of it is left out before it is integrated, and what its integration
+//! takes: the text of `optimize explain`.
+
+use super::table::render;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// What `optimize explain` tells.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Explanation {
+    /// Name of the problem.
+    pub name: String,
+    /// Numbers of bodies, joints and loads.
+    pub bodies: usize,
+    /// See above.
+    pub joints: usize,
+    /// See above.
+    pub loads: usize,
+    /// What is left out, and why it may be.
+    pub left_out: Vec<String>,
+    /// What is not left out, and what stands against it.
+    pub kept: Vec<String>,
+    /// The system as it is written.
+    pub written: SystemSize,
+    /// The system that is integrated.
+    pub lowered: SystemSize,
+    /// The method, why it was chosen, and how many steps it takes at the start.
+    pub method: String,
+    /// See above.
+    pub reason: String,
+    /// See above.
+    pub steps: usize,
+    /// Memory of the samples and of what is kept for gradients (bytes).
+    pub samples_bytes: usize,
+    /// See above.
+    pub tape_bytes: usize,
+    /// The functions.
+    pub functions: Vec<FunctionUse>,
+    /// Variables that neither the objective nor a constraint depends on.
+    pub idle_variables: Vec<String>,
+}
+
+/// Size of the equations of a scene, and how they are eliminated.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SystemSize {
+    /// Velocities.
+    pub velocities: usize,
+    /// Constraint rows.
+    pub rows: usize,
+    /// Unknowns of an implicit step, with the rows that stabilise it.
+    pub stabilised: usize,
+    /// Bodies in the order of elimination; empty if joints close loops.
+    pub order: Vec<String>,
+    /// Entries of the sparse matrix and of its factors, if joints close loops.
+    pub fill: Option<(usize, usize)>,
+    /// Floating-point operations of a factorisation.
+    pub operations: usize,
+}
+
+/// What a function is used for, and what it depends on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FunctionUse {
+    /// Its name.
+    pub name: String,
+    /// "objective", "constraint", or nothing if an optimisation never evaluates it.
+    pub used: String,
+    /// Whether it looks at the whole motion, or at its end alone.
+    pub whole_motion: bool,
+    /// Variables that it depends on at the start.
+    pub variables: Vec<String>,
+}
+
+impl Explanation {
+    /// The explanation as text.
+    pub fn text(&self) -> String {
+        let mut text = format!(
+            "{}: {} bodies, {} joints, {} loads\n",
+            self.name, self.bodies, self.joints, self.loads
+        );
+        for (title, lines) in [("left out", &self.left_out), ("not left out", &self.kept)] {
+            if !lines.is_empty() {
+                let _ = writeln!(text, "\n{title}");
+            }
+            for line in lines {
+                let _ = writeln!(text, "  {line}");
+            }
+        }
+        let sizes = [&self.written, &self.lowered];
+        let row = |name: &str, value: &dyn Fn(&SystemSize) -> String| {
+            let [written, lowered] = sizes.map(value);
+            vec![name.to_owned(), written, lowered]
+        };
+        let rows = [
+            row("velocities", &|s| s.velocities.to_string()),
+            row("constraint rows", &|s| s.rows.to_string()),
+            row("unknowns of the accelerations", &|s| {
+                (s.velocities + s.rows).to_string()
+            }),
+            row("unknowns of an implicit step", &|s| {
+                s.stabilised.to_string()
+            }),
+            row("entries, with fill", &|s| match s.fill {
+                Some((entries, fill)) => format!("{entries}, {fill}"),
+                None => String::new(),
+            }),
+            row("operations to factorise", &|s| s.operations.to_string()),
+        ];
+        let told = |row: &Vec<String>| row[1..].iter().any(|cell| !cell.is_empty());
+        let rows: Vec<Vec<String>> = rows.into_iter().filter(told).collect();
+        text.push_str("\nequations\n");
+        text.push_str(&render(&["", ">as written", ">lowered"], &rows));
+        let order = match self.lowered.order.is_empty() {
+            true => "by sparse LU, as joints close loops".to_owned(),
+            false => self.lowered.order.join(", "),
+        };
+        let _ = writeln!(text, "  elimination: {order}");
+        let _ = writeln!(
+            text,
+            "\nintegration\n  {} in {} steps: {}\n  memory: {} for the samples, {} for gradients",
+            self.method,
+            self.steps,
+            self.reason,
+            size(self.samples_bytes),
+            size(self.tape_bytes)
+        );
+        if !self.functions.is_empty() {
+            let row = |function: &FunctionUse| {
+                let looks = match function.whole_motion {
+                    true => "the whole motion",
+                    false => "the end",
+                };
+                vec![
+                    function.name.clone(),
+                    match function.used.is_empty() {
+                        true => "not evaluated by an optimisation".into(),
+                        false => function.used.clone(),
+                    },
+                    looks.into(),
+                    function.variables.join(", "),
+                ]
+            };
+            let rows: Vec<Vec<String>> = self.functions.iter().map(row).collect();
+            text.push('\n');
+            let headings = ["function", "use", "looks at", "depends at the start on"];
+            text.push_str(&render(&headings, &rows));
+        }
+        if !self.idle_variables.is_empty() {
+            let names = self.idle_variables.join(", ");
+            let _ = writeln!(text, "\nno objective and no constraint depends on: {names}");
+        }
+        text
+    }
+
+    /// The explanation as JSON.
+    pub fn json(&self) -> serde_json::Result<String> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+}
+
+/// Bytes as a person reads them.
+fn size(bytes: usize) -> String {
+    match bytes as f64 {
+        bytes if bytes < 1e3 => format!("{bytes} B"),
+        bytes if bytes < 1e6 => format!("{:.1} kB", bytes / 1e3),
+        bytes if bytes < 1e9 => format!("{:.1} MB", bytes / 1e6),
+        bytes => format!("{:.1} GB", bytes / 1e9),
+    }
+}

@@ -1,0 +1,234 @@
+//! Linear systems in the unknowns u of v = B u: vectors are brought to Bᵀ x and back to B u, and
+//! matrices are emitted as Bᵀ A B.
+//!
+//! A vector or matrix consists of some parts in velocity numbering (one for the index-1 equations,
+//! two, of positions and of velocities, for the stabilised ones) followed by entries of constraint
+//! rows, which stay as they are. B has orthonormal columns, so that x = B u has u = Bᵀ x.
+
+use super::constraint::RowGradient;
+use super::numbering::Numbering;
+use crate::linalg::Emit;
+use crate::math::{Scalar, Vec3};
+use crate::model::{Mobility, RigidBody};
+
+/// aᵀ b of a constant vector b.
+pub fn along<S: Scalar>(a: &Vec3<S>, b: &Vec3<f64>) -> S {
+    a.x * b.x + a.y * b.y + a.z * b.z
+}
+
+/// Replaces `x` by its reduced form, which stands at its head: Bᵀ of each of the `parts`, then the
+/// rest. Returns its length.
+pub fn compress<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) -> usize {
+    if !numbering.is_reduced() {
+        return x.len();
+    }
+    let (nv, nu) = (numbering.velocities(), numbering.unknowns());
+    for part in 0..parts {
+        for body in 0..numbering.bodies() {
+            let at = part * nv + numbering.velocity(body);
+            let to = part * nu + numbering.unknown(body);
+            // What is written stands before what is yet to be read.
+            match numbering.mobility(body) {
+                Mobility::Spatial => x.copy_within(at..at + 6, to),
+                Mobility::Point => x.copy_within(at..at + 3, to),
+                Mobility::Fixed => {}
+                Mobility::Planar {
+                    along: [t1, t2],
+                    normal,
+                } => {
+                    let linear = Vec3::new(x[at], x[at + 1], x[at + 2]);
+                    let angular = Vec3::new(x[at + 3], x[at + 4], x[at + 5]);
+                    x[to] = along(&linear, t1);
+                    x[to + 1] = along(&linear, t2);
+                    x[to + 2] = along(&angular, normal);
+                }
+            }
+        }
+    }
+    x.copy_within(parts * nv.., parts * nu);
+    x.len() - parts * (nv - nu)
+}
+
+/// The inverse of [`compress`]: the reduced form at the head of `x` becomes B u of each of the
+/// `parts`, then the rest.
+pub fn expand<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) {
+    if !numbering.is_reduced() {
+        return;
+    }
+    let (nv, nu) = (numbering.velocities(), numbering.unknowns());
+    let rest = x.len() - parts * nv;
+    x.copy_within(parts * nu..parts * nu + rest, parts * nv);
+    for part in (0..parts).rev() {
+        for body in (0..numbering.bodies()).rev() {
+            let from = part * nu + numbering.unknown(body);
+            let at = part * nv + numbering.velocity(body);
+            match numbering.mobility(body) {
+                Mobility::Spatial => x.copy_within(from..from + 6, at),
+                Mobility::Point => {
+                    x.copy_within(from..from + 3, at);
+                    x[at + 3..at + 6].fill(S::zero());
+                }
+                Mobility::Fixed => x[at..at + 6].fill(S::zero()),
+                Mobility::Planar {
+                    along: [t1, t2],
+                    normal,
+                } => {
+                    let u = [x[from], x[from + 1], x[from + 2]];
+                    for k in 0..3 {
+                        x[at + k] = u[0] * t1[k] + u[1] * t2[k];
+                        x[at + 3 + k] = u[2] * normal[k];
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Lets `solve` work in place on the reduced form of `x`.
+pub fn through<S: Scalar>(
+    numbering: &Numbering,
+    parts: usize,
+    x: &mut [S],
+    solve: impl FnOnce(&mut [S]),
+) {
+    let n = compress(numbering, parts, x);
+    solve(&mut x[..n]);
+    expand(numbering, parts, x);
+}
+
+/// Leaves of the velocities `x` the part that the mobilities admit, B Bᵀ x.
+pub fn project<S: Scalar>(numbering: &Numbering, x: &mut [S]) {
+    through(numbering, 1, x, |_| {});
+}
+
+/// The place in unreduced numbering that stands for a reduced one in messages.
+pub fn unreduced(numbering: &Numbering, parts: usize, place: usize) -> usize {
+    let (nv, nu) = (numbering.velocities(), numbering.unknowns());
+    match place.checked_div(nu) {
+        Some(part) if part < parts => part * nv + numbering.velocity_of_unknown(place % nu),
+        _ => place + parts * (nv - nu),
+    }
+}
+
+/// Bᵀ M B of a body.
+pub(super) fn inertia<S: Scalar, const N: usize>(
+    body: &RigidBody<S>,
+    mobility: &Mobility,
+) -> [[S; N]; N] {
+    let mut out = [[S::zero(); N]; N];
+    let linear = match mobility {
+        Mobility::Fixed => 0,
+        Mobility::Planar { .. } => 2,
+        Mobility::Spatial | Mobility::Point => 3,
+    };
+    for (i, row) in out.iter_mut().enumerate().take(linear) {
+        row[i] = body.mass;
+    }
+    match mobility {
+        Mobility::Spatial => {
+            for i in 0..3 {
+                for k in 0..3 {
+                    out[3 + i][3 + k] = body.inertia[(i, k)];
+                }
+            }
+        }
+        Mobility::Planar { normal, .. } => {
+            let about = body.inertia * normal.map(S::from);
+            out[2][2] = along(&about, normal);
+        }
+        Mobility::Point | Mobility::Fixed => {}
+    }
+    out
+}
+
+/// A row of G B on its side A or B.
+pub(super) fn reduced<S: Scalar, const N: usize>(
+    g: &RowGradient<S>,
+    side_a: bool,
+    mobility: &Mobility,
+) -> [S; N] {
+    let (f, t) = match side_a {
+        true => (g.force, &g.torque_a),
+        false => (-g.force, &g.torque_b),
+    };
+    let mut out = [S::zero(); N];
+    match mobility {
+        Mobility::Planar {
+            along: [t1, t2],
+            normal,
+        } => {
+            out[0] = along(&f, t1);
+            out[1] = along(&f, t2);
+            out[2] = along(t, normal);
+        }
+        Mobility::Point => out[..3].copy_from_slice(f.as_slice()),
+        Mobility::Fixed => {}
+        Mobility::Spatial => {
+            out[..3].copy_from_slice(f.as_slice());
+            out[3..].copy_from_slice(t.as_slice());
+        }
+    }
+    out
+}
+
+/// Calls `assemble` with what takes entries in unreduced numbering and emits them reduced.
+pub fn emit_reduced<S: Scalar>(
+    numbering: &Numbering,
+    parts: usize,
+    emit: &mut dyn Emit<S>,
+    assemble: impl FnOnce(&mut dyn Emit<S>),
+) {
+    if numbering.is_reduced() {
+        assemble(&mut Reduced {
+            numbering,
+            parts,
+            emit,
+        });
+    } else {
+        assemble(emit);
+    }
+}
+
+/// Emits Bᵀ A B for the entries of A.
+struct Reduced<'a, S> {
+    numbering: &'a Numbering,
+    parts: usize,
+    emit: &'a mut dyn Emit<S>,
+}
+
+impl<S> Reduced<'_, S> {
+    /// The reduced places that an unreduced one has a share in, and its shares.
+    fn shares(&self, place: usize) -> [(usize, f64); 2] {
+        let (nv, nu) = (self.numbering.velocities(), self.numbering.unknowns());
+        let part = place / nv.max(1);
+        if part >= self.parts {
+            return [(place - self.parts * (nv - nu), 1.0), (0, 0.0)];
+        }
+        let within = place % nv;
+        let (body, k) = (within / 6, within % 6);
+        let at = part * nu + self.numbering.unknown(body);
+        match self.numbering.mobility(body) {
+            Mobility::Spatial => [(at + k, 1.0), (0, 0.0)],
+            Mobility::Point if k < 3 => [(at + k, 1.0), (0, 0.0)],
+            Mobility::Point | Mobility::Fixed => [(0, 0.0), (0, 0.0)],
+            Mobility::Planar {
+                along: [t1, t2], ..
+            } if k < 3 => [(at, t1[k]), (at + 1, t2[k])],
+            Mobility::Planar { normal, .. } => [(at + 2, normal[k - 3]), (0, 0.0)],
+        }
+    }
+}
+
+impl<S: Scalar> Emit<S> for Reduced<'_, S> {
+    fn add(&mut self, row: usize, column: usize, value: S) {
+        // The shares do not depend on values: an entry without one is never emitted.
+        let columns = self.shares(column);
+        for (i, x) in self.shares(row) {
+            for (j, y) in columns {
+                if x * y != 0.0 {
+                    self.emit.add(i, j, value * (x * y));
+                }
+            }
+        }
+    }
+}
