@@ -295,7 +295,7 @@ fn iteration_matrix_of_the_stabilised_equations() {
             let x = Unknowns {
                 q: case.moved(&e[..12]),
                 v: moved(&case.v, 12, 1.0 / h),
-                lambda: moved(&lambda, 24, 1.0 / (h * h)),
+                lambda: moved(&lambda, 24, equations.mass() / (h * h)),
                 mu: moved(&mu, 24 + rows, 1.0 / h),
                 qdot: qdot
                     .iter()
@@ -337,11 +337,16 @@ fn pull_back_of_the_stabilised_equations() {
             qdot: lift(&qdot),
             vdot: lift(&vdot),
         };
+        // The residual has its dynamics divided by a mass.
+        let mut weights = psi.clone();
+        weights[12..24]
+            .iter_mut()
+            .for_each(|x| *x *= equations.mass());
         let now = step((&TIME, &1.0));
-        let exact = dot(&residual(&case, &case.lifted(), &x, 1.0, now), &psi);
+        let exact = dot(&residual(&case, &case.lifted(), &x, 1.0, now), &weights);
         case.assert("ψᵀF by time", &[by_time], &[exact]);
-        let exact =
-            case.by_parameters(|model| dot(&residual(&case, model, &x, 1.0, TIME.into()), &psi));
+        let exact = case
+            .by_parameters(|model| dot(&residual(&case, model, &x, 1.0, TIME.into()), &weights));
         case.assert("ψᵀF by parameters", &parameters(&cot), &exact);
     }
 }

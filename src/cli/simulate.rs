@@ -79,8 +79,12 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     let (position, velocity) = simulation.constraint_drift();
     let _ = writeln!(
         text,
-        "  energy {energy:.6e} J, drift {:.2e} J; constraints: position {position:.1e}, \
+        "  energy {energy:.6e} J, {} {:.2e} J; constraints: position {position:.1e}, \
          velocity {velocity:.1e}",
+        match simulation.at.scene.model.conserves_energy() {
+            true => "drift",
+            false => "by loads and drives up to",
+        },
         simulation.energy_drift()
     );
     if let Some(last) = last {

@@ -35,6 +35,22 @@ pub struct Model<S> {
 }
 
 impl<S: Scalar> Model<S> {
+    /// Whether nothing but springs and gravity does work, so that energy is conserved.
+    pub fn conserves_energy(&self) -> bool {
+        let conserves = |load: &Load<S>| match &load.kind {
+            LoadKind::Spring { damping, .. } | LoadKind::TorsionSpring { damping, .. } => {
+                damping.re() == 0.0
+            }
+            LoadKind::Damping { coefficient, .. } | LoadKind::BallDamping { coefficient, .. } => {
+                coefficient.re() == 0.0
+            }
+            LoadKind::Friction { size, .. } => size.re() == 0.0,
+            LoadKind::Force { .. } | LoadKind::Torque { .. } => false,
+        };
+        let driven = self.joints.iter().any(|joint| !joint.drives.is_empty());
+        !driven && self.loads.iter().all(conserves)
+    }
+
     /// The model with every parameter replaced by `f` of it, visited in one fixed order.
     pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Model<T> {
         Model {

@@ -9,8 +9,8 @@
 //!
 //! (Gear, Leimkuhler & Gupta 1985.) The unknowns are the tangent positions y, v, λ and μ, in this
 //! order; q̇ and v̇ are what the method makes of q and v, with ∂q̇/∂q = ∂v̇/∂v = c. The equations
-//! are solved in a scaling that keeps the condition independent of the step h (rows times
-//! h, h², 1, h; columns v, λ, μ divided by h, h², h).
+//! are solved in a scaling that keeps the condition independent of the step h and of the unit of mass,
+//! m being the mean mass (rows times h, h²/m, 1, h; columns v, λ, μ divided by h, h²/m, h).
 
 use crate::linalg::{Emit, Pattern};
 use crate::math::Scalar;
@@ -53,6 +53,17 @@ pub struct Equations<'a, S> {
     motions: Vec<Motion<S>>,
     gradients: Vec<RowGradient<S>>,
     loads: Vec<S>,
+    /// Mass that the dynamics are divided by and the multipliers λ counted in (kg).
+    mass: f64,
+}
+
+/// Entries times a number.
+struct Times<'a, S>(&'a mut dyn Emit<S>, S);
+
+impl<S: Scalar> Emit<S> for Times<'_, S> {
+    fn add(&mut self, row: usize, column: usize, value: S) {
+        self.0.add(row, column, value * self.1);
+    }
 }
 
 impl<'a, S: Scalar> Equations<'a, S> {
@@ -64,7 +75,13 @@ impl<'a, S: Scalar> Equations<'a, S> {
             motions: Vec::new(),
             gradients: Vec::new(),
             loads: vec![S::zero(); numbering.velocities()],
+            mass: typical_mass(model),
         }
+    }
+
+    /// Mass that the dynamics are divided by (kg).
+    pub fn mass(&self) -> f64 {
+        self.mass
     }
 
     /// The model.
@@ -137,7 +154,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         joints::values(model, numbering, here, out3);
         joints::rates_from_gradients(model, numbering, &self.gradients, at.v, out4);
         joints::add_driven_rates(model, numbering, here, out4);
-        let scaled: [(&mut [S], S); 3] = [(out1, h), (out2, h * h), (out4, h)];
+        let scaled: [(&mut [S], S); 3] = [(out1, h), (out2, h * h / self.mass), (out4, h)];
         for (rows, scale) in scaled {
             for f in rows {
                 *f *= scale;
@@ -168,12 +185,21 @@ impl<'a, S: Scalar> Equations<'a, S> {
         let [y, v, lambda, mu] = self.starts();
         let (f1, f2, f3, f4) = (y, v, lambda, mu);
         bodies::emit_kinematics(numbering, motions, at.qdot, (f1, y, v), (c, h), emit);
-        bodies::emit_force_balance(model, numbering, motions, (f2, v), (c, h), emit);
-        let scales = (h * h, h);
-        loads::emit_jacobian(model, numbering, motions, at.time, (f2, y, v), scales, emit);
         let here = (&motions[..], at.time);
         emit_reaction_jacobian(model, numbering, here, at.mu, (f1, y), h, emit);
-        emit_reaction_jacobian(model, numbering, here, at.lambda, (f2, y), h * h, emit);
+        let by_mass = &mut Times(emit, S::from(1.0 / self.mass));
+        bodies::emit_force_balance(model, numbering, motions, (f2, v), (c, h), by_mass);
+        let scales = (h * h, h);
+        loads::emit_jacobian(
+            model,
+            numbering,
+            motions,
+            at.time,
+            (f2, y, v),
+            scales,
+            by_mass,
+        );
+        emit_reaction_jacobian(model, numbering, here, at.lambda, (f2, y), h * h, by_mass);
         let one = S::one();
         emit_transposed_gradients(model, numbering, &self.gradients, (f1, mu), one, emit);
         emit_transposed_gradients(model, numbering, &self.gradients, (f2, lambda), one, emit);
@@ -213,8 +239,9 @@ impl<'a, S: Scalar> Equations<'a, S> {
             let turned = bodies::turn_between(&at.q[o..], &q[o..]);
             emit.add_identity(y + u, y + u, d);
             emit.add_block(y + u + 3, y + u + 3, &(turned * d));
-            emit.add_identity(v + u, v + u, body.mass * d);
-            emit.add_block(v + u + 3, v + u + 3, &(body.inertia * d));
+            let by_mass = d / self.mass;
+            emit.add_identity(v + u, v + u, body.mass * by_mass);
+            emit.add_block(v + u + 3, v + u + 3, &(body.inertia * by_mass));
         }
     }
 
@@ -222,12 +249,14 @@ impl<'a, S: Scalar> Equations<'a, S> {
     /// the scaled transposed system by the row scaling.
     pub fn scale_columns(&self, h: f64, b: &mut [f64]) {
         let [_, v, lambda, mu] = self.starts();
-        scale_parts(b, &[(v, 1.0 / h), (lambda, 1.0 / (h * h)), (mu, 1.0 / h)]);
+        let by_lambda = self.mass / (h * h);
+        scale_parts(b, &[(v, 1.0 / h), (lambda, by_lambda), (mu, 1.0 / h)]);
     }
 
     /// The inverse of [`Equations::scale_columns`].
     pub fn unscale_columns(&self, h: f64, b: &mut [f64]) {
-        self.scale_columns(1.0 / h, b);
+        let [_, v, lambda, mu] = self.starts();
+        scale_parts(b, &[(v, h), (lambda, h * h / self.mass), (mu, h)]);
     }
 
     /// See [`Equations::scale_columns`].
@@ -236,7 +265,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         for x in &mut psi[..f2] {
             *x *= h;
         }
-        scale_parts(psi, &[(f2, h * h), (f3, 1.0), (f4, h)]);
+        scale_parts(psi, &[(f2, h * h / self.mass), (f3, 1.0), (f4, h)]);
     }
 
     /// The body or joint that a row or column of the iteration matrix belongs to, for messages.
@@ -255,6 +284,16 @@ impl<'a, S: Scalar> Equations<'a, S> {
             i if i < f4 => format!("the position constraint of joint \"{}\"", joint(i - f3)),
             i => format!("the velocity constraint of joint \"{}\"", joint(i - f4)),
         }
+    }
+}
+
+/// The geometric mean of the bodies' masses (kg); 1 if there is none.
+fn typical_mass<S: Scalar>(model: &Model<S>) -> f64 {
+    let masses = model.bodies.iter().map(|body| body.mass.re());
+    let logs: Vec<f64> = masses.filter(|m| *m > 0.0).map(f64::ln).collect();
+    match logs.len() {
+        0 => 1.0,
+        count => (logs.iter().sum::<f64>() / count as f64).exp(),
     }
 }
 

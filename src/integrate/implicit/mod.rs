@@ -70,8 +70,9 @@ impl<S: Scalar> Stage<S> {
         }
     }
 
-    /// Moves by a scaled update (δy, h δv, h² δλ, h δμ) of a step of size h; the rates stay.
-    pub fn advance(&mut self, numbering: &Numbering, update: &[S], h: S) {
+    /// Moves by a scaled update (δy, h δv, h² δλ / m, h δμ) of a step of size h, the dynamics divided
+    /// by the mass m; the rates stay.
+    pub fn advance(&mut self, numbering: &Numbering, update: &[S], (h, mass): (S, f64)) {
         let (nv, nc) = (numbering.velocities(), numbering.constraints());
         bodies::advance(numbering, &mut self.q, &mut self.dq, &update[..nv]);
         for i in 0..nv {
@@ -80,7 +81,7 @@ impl<S: Scalar> Stage<S> {
             self.dv[i] += change;
         }
         for i in 0..nc {
-            self.lambda[i] += update[2 * nv + i] / (h * h);
+            self.lambda[i] += update[2 * nv + i] * mass / (h * h);
             self.mu[i] += update[2 * nv + nc + i] / h;
         }
     }

@@ -142,7 +142,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             for u in &mut update {
                 *u = -*u;
             }
-            x.advance(numbering, &update, h);
+            x.advance(numbering, &update, (h, self.equations.mass()));
             self.residual = update;
 
             let contraction = match iteration {

@@ -200,10 +200,11 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         counts.newton_iterations += 1;
         counts.solves += self.scheme.modes.len();
         let mut size = 0.0_f64;
+        let mass = self.equations.mass();
         for (stage, update) in stages.iter_mut().zip(&self.updates) {
             let own = scales.size(&update[..2 * nv], h.re());
             size = if own.is_nan() { own } else { size.max(own) };
-            stage.advance(self.numbering, update, h);
+            stage.advance(self.numbering, update, (h, mass));
         }
         size
     }
@@ -344,9 +345,10 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         let (f1, rest) = self.real_rhs.split_at_mut(nv);
         bodies::velocity_of_rates(numbering, &end, &dq, f1);
         f1.iter_mut().for_each(|x| *x /= *first);
-        // Rows of the dynamics are scaled by h², those of the kinematics by h.
+        // Rows of the dynamics are scaled by h² / m, those of the kinematics by h.
         bodies::mass_product(self.real.model(), numbering, &dv, &mut rest[..nv]);
-        rest[..nv].iter_mut().for_each(|x| *x *= h / first);
+        let scale = h / (first * self.real.mass());
+        rest[..nv].iter_mut().for_each(|x| *x *= scale);
         if let Some((_, factors)) = &mut self.real_mode {
             let rhs = &mut self.real_rhs;
             self.real.through(rhs, |x| factors.solve(x));
