@@ -55,12 +55,6 @@ impl Plane {
         examiner.zero(along(&model.gravity, &self.normal), gravity, || {
             ("gravity leaves the plane".into(), "m/s²")
         });
-        let speed = model.bodies.iter().map(|body| largest(&body.velocity));
-        let spin = model
-            .bodies
-            .iter()
-            .map(|body| largest(&body.angular_velocity));
-        let (speed, spin) = (speed.fold(0.0, f64::max), spin.fold(0.0, f64::max));
         for (i, body) in model.bodies.iter().enumerate() {
             let (normal, height) = &self.bodies[i];
             let own: Vec3<S> = lift3(normal);
@@ -91,6 +85,7 @@ impl Plane {
                     "m/s",
                 )
             };
+            let speed = largest(&body.velocity);
             examiner.zero(along(&body.velocity, &self.normal), speed, what);
             let omega = &body.angular_velocity;
             let what = || {
@@ -100,6 +95,7 @@ impl Plane {
                     "rad/s",
                 )
             };
+            let spin = largest(omega);
             examiner.vanishes((omega - own * own.dot(omega)).as_slice(), spin, what);
         }
     }

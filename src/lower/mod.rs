@@ -80,7 +80,9 @@ impl Lowering {
         let everywhere = |at: &dyn Fn(&Scene<f64>) -> Result<(), Obstacle>,
                           by: &dyn Fn(&Scene<Dual>, f64) -> Verdict| {
             for (variable, scene) in &derived {
-                by(scene, variable.scale).map_err(|obstacle| Obstacle {
+                // How finely the optimiser scales it says nothing of what it can break.
+                let change = variable.scale.max(variable.start.abs()).max(1.0);
+                by(scene, change).map_err(|obstacle| Obstacle {
                     variable: Some(variable.name.clone()),
                     ..obstacle
                 })?;

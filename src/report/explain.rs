@@ -146,7 +146,10 @@ impl Explanation {
         }
         if !self.idle_variables.is_empty() {
             let names = self.idle_variables.join(", ");
-            let _ = writeln!(text, "\nno objective and no constraint depends on: {names}");
+            let _ = writeln!(
+                text,
+                "\nat the start no objective and no constraint changes with: {names}"
+            );
         }
         text
     }

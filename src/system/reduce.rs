@@ -5,9 +5,11 @@
 //! two, of positions and of velocities, for the stabilised ones) followed by entries of constraint
 //! rows, which stay as they are. B has orthonormal columns, so that x = B u has u = Bᵀ x.
 
+use super::bodies::{add7, positions_of};
 use super::constraint::RowGradient;
 use super::numbering::Numbering;
 use crate::linalg::Emit;
+use crate::math::rotation::{self, Quat};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Mobility, RigidBody};
 
@@ -99,6 +101,69 @@ pub fn through<S: Scalar>(
 /// Leaves of the velocities `x` the part that the mobilities admit, B Bᵀ x.
 pub fn project<S: Scalar>(numbering: &Numbering, x: &mut [S]) {
     through(numbering, 1, x, |_| {});
+}
+
+/// Takes what the mobilities do not admit out of the increments (dq, dv) from a state (q0, v0) to
+/// (q, v). The reduced equations do not see such round-off, so that it would grow from step to step
+/// by extrapolation.
+pub fn hold<S: Scalar>(
+    numbering: &Numbering,
+    (q0, v0): (&[S], &[S]),
+    (q, dq): (&mut [S], &mut [S]),
+    (v, dv): (&mut [S], &mut [S]),
+) {
+    if !numbering.is_reduced() {
+        return;
+    }
+    project(numbering, dv);
+    for ((v, &v0), &dv) in v.iter_mut().zip(v0).zip(&*dv) {
+        *v = v0 + dv;
+    }
+    for body in 0..numbering.bodies() {
+        let at = numbering.position(body);
+        let own = at..at + 7;
+        let (dr, dp) = positions_of(&dq[own.clone()]);
+        let (dr, dp) = match numbering.mobility(body) {
+            Mobility::Spatial => continue,
+            Mobility::Fixed => (Vec3::zeros(), [S::zero(); 4]),
+            Mobility::Point => (dr, [S::zero(); 4]),
+            Mobility::Planar {
+                along: [t1, t2],
+                normal,
+            } => {
+                let (u1, u2) = (along(&dr, t1), along(&dr, t2));
+                let (_, p0) = positions_of(&q0[own.clone()]);
+                let dr = Vec3::from_fn(|k, _| u1 * t1[k] + u2 * t2[k]);
+                (dr, turn_about(&p0, &dp, normal))
+            }
+        };
+        dq[own.clone()].fill(S::zero());
+        add7(&mut dq[own.clone()], &dr, &dp);
+        for k in own {
+            q[k] = q0[k] + dq[k];
+        }
+    }
+}
+
+/// The increment of Euler parameters p0, of unit length, that is nearest to dp among the turns about
+/// the body axis n.
+fn turn_about<S: Scalar>(p0: &Quat<S>, dp: &Quat<S>, n: &Vec3<f64>) -> Quat<S> {
+    let back = [p0[0], -p0[1], -p0[2], -p0[3]];
+    let turn = rotation::compose(&back, dp);
+    // 1 + back ∘ dp, of which the scalar and the part along n are kept.
+    let (w, x) = (
+        S::one() + turn[0],
+        along(&Vec3::new(turn[1], turn[2], turn[3]), n),
+    );
+    let length = (w * w + x * x).sqrt();
+    let (w, x) = (w / length, x / length);
+    // w − 1 without cancellation.
+    let less = if w.re() > 0.0 {
+        -(x * x) / (S::one() + w)
+    } else {
+        w - S::one()
+    };
+    rotation::compose(p0, &[less, x * n[0], x * n[1], x * n[2]])
 }
 
 /// The place in unreduced numbering that stands for a reduced one in messages.

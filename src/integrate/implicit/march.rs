@@ -168,6 +168,7 @@ impl<S: SolveScalar> Solver<'_, S> {
         let Some(formula) = Formula::of_step(self.method, at.0) else {
             let mut stages = predict_stages(self.numbering, self.scheme, past, h);
             for (stage, &c) in stages.iter_mut().zip(&self.scheme.nodes) {
+                stage.hold(self.numbering, &past.from);
                 stage.time = start + h * c;
             }
             let (model, real, numbering) = (self.model, self.real, self.numbering);
@@ -183,6 +184,7 @@ impl<S: SolveScalar> Solver<'_, S> {
             self.memory = vec![first; memory_size(self.method)];
         }
         let mut stage = predict(self.numbering, past, h);
+        stage.hold(self.numbering, &past.from);
         stage.time = start + h;
         // h ẏ = c Δ + Σ e_j m_j.
         let (mut qdot, mut vdot) = (
@@ -208,6 +210,7 @@ impl<S: SolveScalar> Solver<'_, S> {
             .or_else(|_| {
                 // An extrapolation over steps that are large for the motion may lead astray.
                 stage = taylor(numbering, &past.from, h);
+                stage.hold(numbering, &past.from);
                 stage.time = start + h;
                 newton.forget();
                 newton.solve(&mut stage, &history, h, at, counts)

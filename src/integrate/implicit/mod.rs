@@ -11,7 +11,7 @@ mod scales;
 pub mod stage_newton;
 
 use crate::math::{Complex64, Scalar};
-use crate::system::{Numbering, bodies};
+use crate::system::{Numbering, bodies, reduce};
 use ggl::Instant;
 
 /// State at a stage with its multipliers, rates and its increments since the start of the step.
@@ -84,6 +84,13 @@ impl<S: Scalar> Stage<S> {
             self.lambda[i] += update[2 * nv + i] * mass / (h * h);
             self.mu[i] += update[2 * nv + nc + i] / h;
         }
+    }
+
+    /// Keeps a predicted stage of a step from `from` in what the bodies' mobilities admit.
+    fn hold(&mut self, numbering: &Numbering, from: &Self) {
+        let before = (&from.q[..], &from.v[..]);
+        let positions = (&mut self.q[..], &mut self.dq[..]);
+        reduce::hold(numbering, before, positions, (&mut self.v, &mut self.dv));
     }
 
     /// The real part.

@@ -82,11 +82,12 @@ pub struct Rod {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Ends {
-    /// One point on each body.
-    Each(PointPair),
+    // First, as a pair of points could be read from a list as well.
     /// Ground coordinates of both at the start, in the order of the bodies.
     #[schemars(extend("unit" = "m"))]
     Ground([Vector; 2]),
+    /// One point on each body.
+    Each(PointPair),
 }
 
 /// Where a joint is at the start.
