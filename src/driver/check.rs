@@ -21,7 +21,8 @@ pub struct CheckedDerivative {
     pub adjoint: f64,
     /// By the complex step.
     pub complex_step: f64,
-    /// Sum of the sizes of the terms that the adjoint's derivative is the sum of.
+    /// Sum of the sizes of the terms that the adjoint's derivatives are the sums of: the largest of all
+    /// variables, each by its scale.
     pub terms: f64,
     /// By the discrete adjoint of the motion that an optimisation would see. The two motions
     /// differ by round-off, which a sensitive motion magnifies.
@@ -87,6 +88,12 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
     };
     let (adjoint, _) = same.derivatives(problem, &which)?;
     let (in_use, _) = in_use.gradients(problem, &which)?;
+    // Round-off of the motion reaches small derivatives from the large ones.
+    let terms = |function: usize, variable: usize| {
+        let scale = |i: usize| problem.variables[i].scale;
+        let sizes = (adjoint[function].iter().enumerate()).map(|(i, d)| d.terms * scale(i));
+        sizes.fold(0.0, f64::max) / scale(variable)
+    };
     let pairs = which
         .iter()
         .flat_map(|&f| (0..x.len()).map(move |i| (f, i)));
@@ -95,7 +102,7 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
             function,
             variable,
             adjoint: adjoint[function][variable].value,
-            terms: adjoint[function][variable].terms,
+            terms: terms(function, variable),
             complex_step: steps[variable].derivatives[function],
             in_use: in_use[function][variable],
         })

@@ -16,7 +16,7 @@ use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
 
 /// Most runs to a root.
-const RUNS: usize = 12;
+const RUNS: usize = 40;
 /// Change of the duration, relative to it, that is round-off.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// Change below which one that no longer shrinks is round-off as well.
@@ -100,7 +100,10 @@ pub fn settle(
         if done {
             let start = side(&gaps);
             if gaps[..last].iter().any(|g| g * start < 0.0) {
-                return Err(lost(best));
+                // It came before as well, which finer samples show.
+                duration = first(&until, &run, &gaps)?;
+                (known, change) = (None, f64::INFINITY);
+                continue;
             }
             run.counts = counts;
             scene.duration = duration;

@@ -92,6 +92,19 @@ pub enum IntegrationFailure {
         /// Step number, from 1.
         step: usize,
     },
+    /// A driven joint was found turned by half a turn.
+    #[error(
+        "joint \"{joint}\" is half a turn off its drive at t = {time:.6e} s (step {step}): the steps \
+         are too large for it"
+    )]
+    Turned {
+        /// The joint.
+        joint: String,
+        /// Time of the step's end (s).
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+    },
     /// A body has mass or inertia that no solid has.
     #[error(
         "body \"{body}\" has no mass and inertia of a solid: mass and principal moments are \

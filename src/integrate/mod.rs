@@ -20,7 +20,7 @@ use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::kkt::SaddlePoint;
-use crate::system::{Motion, Numbering, initial, redundancy};
+use crate::system::{Motion, Numbering, assembly, initial, redundancy};
 use control::Controller;
 
 /// Integrates `model` over `duration` in real or, for complex-step derivatives, in complex
@@ -84,13 +84,20 @@ fn close<S: SolveScalar>(
     Ok(())
 }
 
-/// Fails if a constraint that was left out has opened at the end of step `step`, where and when the
-/// bodies are as `at` says.
+/// Fails if a constraint that was left out has opened, or a driven joint has turned by half a turn, at
+/// the end of step `step`, where and when the bodies are as `at` says.
 fn watch<S: SolveScalar>(
     model: &Model<S>,
     at: (&[Motion<S>], S),
     step: usize,
 ) -> Result<(), IntegrationFailure> {
+    if let Some(joint) = assembly::turned(model, at) {
+        return Err(IntegrationFailure::Turned {
+            joint: joint.name.clone(),
+            time: at.1.re(),
+            step,
+        });
+    }
     match redundancy::opened(model, at) {
         None => Ok(()),
         Some(open) => Err(IntegrationFailure::RedundancyLost {

@@ -106,7 +106,12 @@ fn joint<S: Scalar>(
 }
 
 /// Where a joint is on a body, from the origin of its axes.
-fn at<S: Scalar>(assembly: &Assembly<S>, place: &JointPlace, body: &str, side: usize) -> Vec3<S> {
+pub(super) fn at<S: Scalar>(
+    assembly: &Assembly<S>,
+    place: &JointPlace,
+    body: &str,
+    side: usize,
+) -> Vec3<S> {
     match place {
         JointPlace::Named(text) if split_location(text).0 == body => assembly.named_in_body(text),
         JointPlace::Named(text) => {

@@ -13,6 +13,7 @@ mod mass;
 mod overrides;
 mod placement;
 mod pointer;
+mod points;
 mod prune;
 mod quantity;
 mod read;

@@ -5,6 +5,7 @@ use super::fault::{Faults, Finding, Part};
 use super::overrides::Override;
 use super::placement::{Assembly, placement_order};
 use super::pointer::join;
+use super::points;
 use super::prune::prune;
 use super::schema::{self, Document};
 use super::source::{Duplicate, Source};
@@ -15,7 +16,7 @@ use super::{Constraint, Objective, OptimiserSettings, Problem, Sense, Simulation
 use crate::integrate::{self, Spacing, Start};
 use crate::lower::{self, Lowering};
 use crate::math::Dual;
-use crate::model::JointKind;
+use crate::model::{Joint, JointKind};
 use crate::optimiser::Method;
 use crate::system::assembly::{AssemblyFailure, length_scale};
 use crate::system::kkt::SaddlePoint;
@@ -111,6 +112,7 @@ pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Pr
                 .collect();
             let finding = collapsed(&problem)
                 .or_else(|| oblique(&problem))
+                .or_else(|| points::beside(&problem))
                 .or_else(|| driven_twice(&problem))
                 .or_else(|| unassembled(&problem));
             match finding {
@@ -185,13 +187,32 @@ fn oblique(problem: &Problem) -> Option<Finding> {
 /// The fault of a drive of a motion that other joints and drives prescribe already.
 fn driven_twice(problem: &Problem) -> Option<Finding> {
     let model = problem.scene(&problem.start()).model;
-    let joint = model.joints.iter().find(|joint| {
-        let mut rows = joint.drives.iter().map(|drive| drive.freedom.driven_row());
-        rows.any(|row| joint.left_out.contains(&row))
-    })?;
     let drives = &problem.written.drives;
-    let (name, _) = drives.iter().find(|(_, drive)| drive.joint == joint.name)?;
-    let found = format!("the joint \"{}\"", joint.name);
+    if drives.is_empty() {
+        return None;
+    }
+    let undriven = |names: &[&str]| {
+        let mut model = model.clone();
+        let named = |joint: &&mut Joint<f64>| names.contains(&joint.name.as_str());
+        model
+            .joints
+            .iter_mut()
+            .filter(named)
+            .for_each(|joint| joint.drives.clear());
+        redundancy::redundant_rows(&model)
+    };
+    let all: Vec<&str> = drives.values().map(|drive| drive.joint.as_str()).collect();
+    let (with, without) = (undriven(&[])?, undriven(&all)?);
+    if with <= without {
+        return None;
+    }
+    // The last drive without which less is prescribed twice.
+    let superfluous = |(_, joint): &(&String, &str)| undriven(&[*joint]).is_some_and(|n| n < with);
+    let mut named = drives
+        .iter()
+        .map(|(name, drive)| (name, drive.joint.as_str()));
+    let (name, joint) = named.rfind(superfluous)?;
+    let found = format!("the joint \"{joint}\"");
     let expected = "a joint whose motion the other joints and drives leave free";
     Some(Finding::new(
         join(&join("/drives", name), "joint"),

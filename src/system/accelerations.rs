@@ -71,6 +71,11 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         Solver::Sparse(Box::new(SaddlePoint::new(model, numbering)), zeros)
     }
 
+    /// Whether the joints close loops (or a body lacks inertia), so that the tree does not serve.
+    pub fn closes_loops(&self) -> bool {
+        matches!(self.solver, Solver::Sparse(..))
+    }
+
     /// Moves to the state (q, v) at `time` without factorising; the Euler parameters in `q` need not
     /// be of unit length.
     pub fn stand(&mut self, q: &[S], v: &[S], time: S) {

@@ -9,7 +9,7 @@ use super::redundancy;
 use super::side::sides;
 use crate::linalg::SolveScalar;
 use crate::math::{Mat3, Scalar, Vec3, rotation};
-use crate::model::Model;
+use crate::model::{Joint, Model};
 
 const ITERATIONS: usize = 50;
 /// Gap relative to the length scale below which the joints count as closed.
@@ -234,18 +234,27 @@ fn check_left_out<S: Scalar>(
 
 /// Refuses the spurious root of the orientation rows in which one frame is turned by 180°.
 fn check_turned<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> Result<(), AssemblyFailure> {
-    let ground = Motion::ground();
-    for joint in &model.joints {
-        let (a, b) = sides(joint, motions, &ground, S::zero());
-        for &axis in joint.common_axes() {
-            if a.axis(axis).dot(&b.axis(axis)).re() < 0.0 {
-                return Err(AssemblyFailure::Turned {
-                    joint: joint.name.clone(),
-                });
-            }
-        }
+    let at = (motions, S::zero());
+    match model.joints.iter().find(|joint| is_turned(joint, at)) {
+        None => Ok(()),
+        Some(joint) => Err(AssemblyFailure::Turned {
+            joint: joint.name.clone(),
+        }),
     }
-    Ok(())
+}
+
+/// A driven joint that is at the spurious root of its rows, in which a frame is turned by 180°, where
+/// and when the bodies are as `at` says. Steps of half a turn lead there.
+pub fn turned<'a, S: Scalar>(model: &'a Model<S>, at: (&[Motion<S>], S)) -> Option<&'a Joint<S>> {
+    let driven = model.joints.iter().filter(|joint| !joint.drives.is_empty());
+    driven.into_iter().find(|joint| is_turned(joint, at))
+}
+
+fn is_turned<S: Scalar>(joint: &Joint<S>, (motions, time): (&[Motion<S>], S)) -> bool {
+    let ground = Motion::ground();
+    let (a, b) = sides(joint, motions, &ground, time);
+    let opposite = |&axis: &usize| a.axis(axis).dot(&b.axis(axis)).re() < 0.0;
+    joint.common_axes().iter().any(opposite)
 }
 
 pub(super) fn finite<S: Scalar>(x: &[S]) -> bool {

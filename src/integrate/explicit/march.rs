@@ -18,6 +18,8 @@ use crate::system::initial::InitialState;
 /// h |λ| beyond which an explicit step is at the border of its stability region (Hairer & Wanner
 /// 1996, section IV.2), and how many such steps make a scene stiff.
 const STIFF: (f64, usize) = (6.1, 15);
+/// Correction of the velocities, relative to their scale, that is none of the step's error.
+const LOST: f64 = 0.01;
 /// Difference of states, relative to their scale, that may be round-off.
 const NOISE: f64 = 1e-13;
 /// Steps within the stability region after which a suspicion is dropped.
@@ -64,6 +66,9 @@ pub fn march<S: SolveScalar>(
                 let accepted = controller.judge(error);
                 if accepted {
                     stepper.finish(&mut to, duration * end)?;
+                    if leaves_branch(&mut stepper, &scale, from.view()) {
+                        return Err(StepFailure::Projection);
+                    }
                 }
                 Ok(accepted)
             });
@@ -172,6 +177,19 @@ fn error<S: SolveScalar>(stepper: &mut Stepper<S>, scale: &Scale, from: NodeView
     } else {
         e5 / denominator.sqrt()
     }
+}
+
+/// Whether the projection takes away much of the velocities, as where branches of the motion meet and
+/// the step ends on another than it came on: there it is no correction of the step's error.
+fn leaves_branch<S: SolveScalar>(
+    stepper: &mut Stepper<S>,
+    scale: &Scale,
+    from: NodeView<S>,
+) -> bool {
+    let numbering = stepper.field.numbering;
+    let speeds = scale.speeds(numbering, from.v, &stepper.data.v_raw);
+    let lost = stepper.velocity_correction(|q, v| scale.square(numbering, q, v, speeds));
+    lost.sqrt() > LOST
 }
 
 /// The body or joint that an unknown of the index-1 equations belongs to.

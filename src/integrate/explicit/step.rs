@@ -239,6 +239,17 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         })
     }
 
+    /// The correction of the velocities by the projection of the step made last, measured by `measure`;
+    /// zero if the joints close no loop, as such scenes have no singular positions.
+    pub fn velocity_correction(&mut self, measure: impl Fn(&[S], &[S]) -> f64) -> f64 {
+        if !self.field.closes_loops() {
+            return 0.0;
+        }
+        let (q, _, _) = &mut self.scratch;
+        q.fill(S::zero());
+        measure(q, &self.data.delta)
+    }
+
     /// How far the last stage is from the end of the step in state and in derivative, measured by
     /// `measure`.
     pub fn last_stage(&mut self, to: NodeView<S>, measure: impl Fn(&[S], &[S]) -> f64) -> [f64; 2] {

@@ -72,7 +72,8 @@ pub fn march<S: SolveScalar>(
     };
     let mut next = 1;
     let mut motions = Vec::new();
-    let redundant = model.joints.iter().any(|joint| !joint.left_out.is_empty());
+    let watched =
+        (model.joints.iter()).any(|joint| !joint.left_out.is_empty() || !joint.drives.is_empty());
     while let Some(width) = controller.next(run.grid.reached()) {
         let h = duration * width;
         let end = controller.end(run.grid.reached(), width);
@@ -94,7 +95,7 @@ pub fn march<S: SolveScalar>(
             continue;
         }
         controller.accept();
-        if redundant {
+        if watched {
             let last = &stages[stages.len() - 1];
             Motion::all(numbering, &last.q, &last.v, &mut motions);
             watch(model, (&motions, last.time), k)?;
