@@ -105,7 +105,14 @@ impl Layout {
     pub fn push_inside(&self, i: usize, value: f64, push: f64) -> f64 {
         let (l, u) = (self.lower[i], self.upper[i]);
         let width = u - l;
-        let margin = |bound: f64| margin(bound, width, push);
+        // A variable that is inside stays where it is: its scale, which may be that of bounds far
+        // apart, does not make it any nearer to them.
+        let margin = |bound: f64| {
+            let margin = margin(bound, width, push);
+            let away = (value - bound).abs();
+            let is_inside = i < self.n && (l..=u).contains(&value) && away > INSIDE * margin;
+            if is_inside { margin.min(away) } else { margin }
+        };
         let mut inside = value;
         if l.is_finite() {
             inside = inside.max(l + margin(l));
@@ -208,6 +215,9 @@ impl Iterate {
         y.iter().all(|v| v.is_finite()).then_some(y)
     }
 }
+
+/// Part of the distance at which a start is put from a bound that counts as inside.
+const INSIDE: f64 = 1e-3;
 
 /// Distance from `bound` at which a start is put: `push` relative to max(1, |bound|), and no more
 /// than that part of the distance of two bounds.
