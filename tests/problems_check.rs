@@ -51,7 +51,8 @@ fn at_full_size() {
     for (name, simulation, of_itself) in [
         ("trebuchet", r#"{"samples": 2000}"#, 1e-11),
         ("trebuchet", BDF2, 1e-11),
-        ("trebuchet", RADAU, 1e-11),
+        // The derivative in the arm's angle is the small one: 1e-14 of the gradient.
+        ("trebuchet", RADAU, 2e-11),
         ("trebuchet_release_time", "{}", 1e-12),
         ("trebuchet_release_time", BDF2, 1e-12),
         ("trebuchet_release_time", RADAU, 1e-12),

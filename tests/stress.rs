@@ -12,21 +12,19 @@ use std::process::{Command, Output};
 const GRADIENT: f64 = 1e-10;
 
 /// Cases whose derivatives round-off spoils beyond that, and how far; `docs/stability.md` says why.
-const SPOILT: [(&str, f64); 12] = [
+const SPOILT: [(&str, f64); 10] = [
     // ε k l / (m g): the force of a spring of l = 1 m is known to ε k l.
     ("stiffness/10/", 2.3e-9),
     ("stiffness/100/", 2.3e-7),
     ("stiffness/1e3/", 2.3e-5),
     ("stiffness/1e4/", 2.3e-3),
     ("stiffness/1e5/", 2.3e-1),
-    ("stiffness/1e6/", 2.3e1),
+    // Of these nothing is known.
+    ("stiffness/1e6/", f64::INFINITY),
     // The direction of the line between two balls so far apart.
     ("hinge-distance/1e-4/", 1e-6),
     ("hinge-distance/1e-5/", 1e-8),
     ("hinge-distance/1e-6/", 1e-8),
-    // Masses of 6e-19 kg and 6e-10 kg beside equations of size one.
-    ("length/1e-6/", 1e-2),
-    ("length/1e-3/", 1e-4),
     // A singular position, 1e-4 of the length away.
     ("locking/2.0999/", 1e-9),
 ];

@@ -21,8 +21,8 @@ pub struct CheckedDerivative {
     pub adjoint: f64,
     /// By the complex step.
     pub complex_step: f64,
-    /// Sum of the sizes of the terms that the adjoint's derivatives are the sums of: the largest of all
-    /// variables, each by its scale.
+    /// Sum of the sizes of the terms that the adjoint's derivative is the sum of, or the function's
+    /// largest derivative if that is larger, each variable counted in its scale.
     pub terms: f64,
     /// By the discrete adjoint of the motion that an optimisation would see. The two motions
     /// differ by round-off, which a sensitive motion magnifies.
@@ -91,8 +91,9 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
     // Round-off of the motion reaches small derivatives from the large ones.
     let terms = |function: usize, variable: usize| {
         let scale = |i: usize| problem.variables[i].scale;
-        let sizes = (adjoint[function].iter().enumerate()).map(|(i, d)| d.terms * scale(i));
-        sizes.fold(0.0, f64::max) / scale(variable)
+        let sizes = (adjoint[function].iter().enumerate()).map(|(i, d)| d.value.abs() * scale(i));
+        let largest = sizes.fold(0.0, f64::max) / scale(variable);
+        adjoint[function][variable].terms.max(largest)
     };
     let pairs = which
         .iter()

@@ -255,8 +255,8 @@ fn unassembled(problem: &Problem) -> Option<Finding> {
         ),
         AssemblyFailure::Singular => (
             "".to_owned(),
-            "a placement at which forces determine accelerations",
-            "place the bodies away from straight or folded positions",
+            "a scene whose equations have regular matrices in double precision",
+            "scale lengths, masses and times alike, so that they are nearer one",
         ),
     };
     let finding = Finding::new(pointer, failure.to_string(), expected);

@@ -74,7 +74,10 @@ pub enum AssemblyFailure {
         bodies: String,
     },
     /// The system is singular or not finite for another reason.
-    #[error("the equations of motion are singular at this placement")]
+    #[error(
+        "the equations of motion are singular to working precision at this placement, though joints \
+         and inertia determine the motion: lengths, masses or times differ too much from one"
+    )]
     Singular,
 }
 

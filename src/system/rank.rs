@@ -1,6 +1,6 @@
 //! Which joints or bodies make a model singular, by name. Runs only after a factorisation failed.
 
-use super::assembly::AssemblyFailure;
+use super::assembly::{AssemblyFailure, length_scale};
 use super::bodies::Motion;
 use super::joints;
 use super::numbering::Numbering;
@@ -11,6 +11,9 @@ use nalgebra::DMatrix;
 
 /// Singular values below this, relative to the largest, count as zero.
 const NEGLIGIBLE: f64 = 1e-10;
+
+/// Inertia or hold, relative to the largest, up to which a motion has none.
+const LOOSE: f64 = 1e-13;
 
 /// Says which constraints are redundant at q, or else which bodies can move without inertia.
 pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
@@ -38,8 +41,9 @@ pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     if g.iter().any(|x| !x.is_finite()) {
         return AssemblyFailure::Singular;
     }
+    scale(&mut g, length_scale(model));
     if g.is_empty() {
-        return without_inertia(model);
+        return without_inertia(model, &g);
     }
     let svd = g.clone().svd(true, false);
     let largest = svd.singular_values.max();
@@ -50,7 +54,7 @@ pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
         .constraints()
         .saturating_sub(numbering.velocities());
     if redundant.is_empty() && extra == 0 {
-        return without_inertia(model);
+        return without_inertia(model, &g);
     }
     let mut names: Vec<&str> = Vec::new();
     if let Some(u) = &svd.u {
@@ -82,7 +86,46 @@ pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     }
 }
 
-fn without_inertia<S: Scalar>(model: &Model<S>) -> AssemblyFailure {
+/// Counts angles as arcs at the `length`, and makes all rows unit rows, so that the scene's scale does
+/// not decide what is singular.
+fn scale(g: &mut DMatrix<f64>, length: f64) {
+    for (j, mut column) in g.column_iter_mut().enumerate() {
+        if j % 6 >= 3 {
+            column /= length;
+        }
+    }
+    for mut row in g.row_iter_mut() {
+        let size = row.norm();
+        if size > 0.0 {
+            row /= size;
+        }
+    }
+}
+
+/// Says which bodies can move without inertia, given the scaled gradients; if none can, that the
+/// equations are singular for another reason.
+fn without_inertia<S: Scalar>(model: &Model<S>, g: &DMatrix<f64>) -> AssemblyFailure {
+    let length = length_scale(model);
+    let n = 6 * model.bodies.len();
+    let mut inertia = DMatrix::zeros(n, n);
+    for (i, body) in model.bodies.iter().enumerate() {
+        let at = 6 * i;
+        for k in 0..3 {
+            inertia[(at + k, at + k)] = body.mass.re();
+            for l in 0..3 {
+                inertia[(at + 3 + k, at + 3 + l)] = body.inertia[(k, l)].re() / (length * length);
+            }
+        }
+    }
+    let largest = inertia.amax();
+    if largest > 0.0 {
+        inertia /= largest;
+    }
+    // A motion that neither joints hold nor inertia resists.
+    let held = &inertia + inertia.transpose() + g.tr_mul(g);
+    if held.symmetric_eigenvalues().min() > LOOSE {
+        return AssemblyFailure::Singular;
+    }
     let names: Vec<&str> = model
         .bodies
         .iter()
