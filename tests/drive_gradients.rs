@@ -1,8 +1,12 @@
 //! Joints and drives in problem files: exact gradients in every number of every kind of drive, by
 //! several methods, and the faults of what they cannot be told.
 
+#[path = "reference/numbers.rs"]
+mod numbers;
+
 use flexbody::driver::check;
 use flexbody::problem::Problem;
+use numbers::numbers;
 use serde_json::{Value, json};
 
 fn problem(file: &Value) -> Problem {
@@ -50,23 +54,6 @@ fn assert_gradients(mut file: Value, sections: &[&str]) {
             "{} moves nothing",
             paths[variable]
         );
-    }
-}
-
-fn numbers(value: &Value, at: &str, out: &mut Vec<String>) {
-    match value {
-        Value::Number(_) => out.push(at.to_owned()),
-        Value::Array(items) => {
-            for (k, item) in items.iter().enumerate() {
-                numbers(item, &format!("{at}/{k}"), out);
-            }
-        }
-        Value::Object(entries) => {
-            for (key, item) in entries.iter().filter(|(key, _)| *key != "times") {
-                numbers(item, &format!("{at}/{key}"), out);
-            }
-        }
-        _ => {}
     }
 }
 

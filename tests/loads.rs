@@ -1,8 +1,12 @@
 //! Loads in problem files: exact gradients in every number of every kind of load, and motions that
 //! are known in closed form.
 
+#[path = "reference/numbers.rs"]
+mod numbers;
+
 use flexbody::driver::{check, simulate};
 use flexbody::problem::Problem;
+use numbers::numbers;
 use serde_json::{Value, json};
 
 /// Half a second by BDF2 from the first step on.
@@ -50,26 +54,6 @@ fn scene(load: &Value) -> Value {
             "angle": {"path": "/bodies/arm/place/turn/angle"}
         }
     })
-}
-
-/// Paths to all numbers below `value`.
-fn numbers(value: &Value, at: &str, out: &mut Vec<String>) {
-    match value {
-        Value::Number(_) => out.push(at.to_owned()),
-        Value::Array(items) => {
-            for (k, item) in items.iter().enumerate() {
-                numbers(item, &format!("{at}/{k}"), out);
-            }
-        }
-        Value::Object(entries) => {
-            for (key, item) in entries {
-                if key != "times" {
-                    numbers(item, &format!("{at}/{key}"), out);
-                }
-            }
-        }
-        _ => {}
-    }
 }
 
 /// The duration, a length and an angle of the scene, and every number of the load: to 1e-12 of

@@ -115,22 +115,14 @@ impl Course<f64> {
                 Place::Before => by_values[0] += weight,
                 Place::After => *by_values.last_mut().expect("a table has values") += weight,
                 Place::Inside(k) => {
+                    let lists = (&times[..], &values[..]);
+                    by_points(k, lists, (by_times, by_values), |t, m| {
+                        weight * hermite(t, m, time.into()).du
+                    });
                     let at = stencil(k, times.len());
-                    // The interpolation depends on four points at most: its derivatives by dual
-                    // numbers, one number at a time.
                     let pick = |list: &[f64]| at.map(|i| i.map(|i| Dual::from(list[i])));
-                    let (t, m) = (pick(times), pick(values));
-                    let moved = |list: &[Option<Dual>; 4], j: usize| {
-                        let mut list = *list;
-                        list[j] = list[j].map(|x| Dual::new(x.re, 1.0));
-                        list
-                    };
-                    for (j, i) in at.iter().enumerate() {
-                        let Some(i) = *i else { continue };
-                        by_times[i] += weight * hermite(&moved(&t, j), &m, time.into()).du;
-                        by_values[i] += weight * hermite(&t, &moved(&m, j), time.into()).du;
-                    }
-                    *time_bar += weight * hermite(&t, &m, Dual::new(time, 1.0)).du;
+                    let now = Dual::new(time, 1.0);
+                    *time_bar += weight * hermite(&pick(times), &pick(values), now).du;
                 }
             },
             _ => unreachable!("a cotangent has the kind of its course"),
@@ -162,6 +154,32 @@ pub(super) fn interval<S: Scalar>(times: &[S], time: f64) -> Place {
 pub(super) fn stencil(k: usize, count: usize) -> [Option<usize>; 4] {
     let there = |i: Option<usize>| i.filter(|&i| i < count);
     [k.checked_sub(1), Some(k), Some(k + 1), there(Some(k + 2))]
+}
+
+/// The points around a time, as far as there are any: their instants or their values.
+pub(super) type Around = [Option<Dual>; 4];
+
+/// Adds the derivatives of an interpolation between the instants k and k + 1 by instants and values:
+/// it depends on four points at most, so that of `slope` by dual numbers, one number at a time.
+pub(super) fn by_points(
+    k: usize,
+    (times, values): (&[f64], &[f64]),
+    (by_times, by_values): (&mut [f64], &mut [f64]),
+    slope: impl Fn(&Around, &Around) -> f64,
+) {
+    let at = stencil(k, times.len());
+    let pick = |list: &[f64]| at.map(|i| i.map(|i| Dual::from(list[i])));
+    let (t, m) = (pick(times), pick(values));
+    let moved = |list: &Around, j: usize| {
+        let mut list = *list;
+        list[j] = list[j].map(|x| Dual::new(x.re, 1.0));
+        list
+    };
+    for (j, i) in at.iter().enumerate() {
+        let Some(i) = *i else { continue };
+        by_times[i] += slope(&moved(&t, j), &m);
+        by_values[i] += slope(&t, &moved(&m, j));
+    }
 }
 
 /// Cubic Hermite interpolation between the two middle points.

@@ -20,7 +20,7 @@
 //! Slope and curvature at a point of a table are those of the parabola through it and its
 //! neighbours; both are zero at its ends, beyond which it is held.
 
-use super::course::{Place, interval, stencil};
+use super::course::{Place, by_points, interval, stencil};
 use super::joint::Freedom;
 use crate::math::Scalar;
 use crate::math::scalar::Dual;
@@ -166,19 +166,10 @@ impl MotionCourse<f64> {
                 Place::Before => by_values[0] += w0,
                 Place::After => *by_values.last_mut().expect("a table has values") += w0,
                 Place::Inside(k) => {
-                    let at = stencil(k, times.len());
-                    let pick = |list: &[f64]| at.map(|i| i.map(|i| Dual::from(list[i])));
-                    let (t, m) = (pick(times), pick(values));
-                    let moved = |list: &[Option<Dual>; 4], j: usize| {
-                        let mut list = *list;
-                        list[j] = list[j].map(|x| Dual::new(x.re, 1.0));
-                        list
-                    };
-                    for (j, i) in at.iter().enumerate() {
-                        let Some(i) = *i else { continue };
-                        by_times[i] += along(quintic(&moved(&t, j), &m, now));
-                        by_values[i] += along(quintic(&t, &moved(&m, j), now));
-                    }
+                    let lists = (&times[..], &values[..]);
+                    by_points(k, lists, (by_times, by_values), |t, m| {
+                        along(quintic(t, m, now))
+                    });
                 }
             },
             _ => unreachable!("a cotangent has the kind of its course"),

@@ -100,6 +100,13 @@ pub fn redundant_rows(model: &Model<f64>) -> Option<usize> {
     Some(kept.into_iter().filter(|kept| !kept).count())
 }
 
+/// Unit rows of G at q as columns, in the order of the joints, angles counted as arcs at the length
+/// scale.
+pub fn unit_rows(model: &Model<f64>, q: &[f64]) -> DMatrix<f64> {
+    let joints: Vec<usize> = (0..model.joints.len()).collect();
+    Rows::new(model, &joints).gradients(q).0
+}
+
 /// Joints that lie in loops of bodies and ground; in trees no row follows from others.
 fn in_loops<S>(model: &Model<S>) -> Vec<usize> {
     let ground = model.bodies.len();
