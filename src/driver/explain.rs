@@ -142,6 +142,10 @@ fn size(model: &Model<f64>, run: &Trajectory<f64>) -> SystemSize {
         stabilised: 2 * (velocities + rows),
         fill: elimination.as_ref().and_then(|found| found.fill),
         operations: elimination.as_ref().map_or(0, |found| found.operations),
+        closing: elimination.as_ref().map_or(Vec::new(), |found| {
+            let name = |&joint: &usize| model.joints[joint].name.clone();
+            found.closing.iter().map(name).collect()
+        }),
         order: elimination
             .and_then(|found| found.bodies)
             .map_or(Vec::new(), named),

@@ -285,7 +285,9 @@ fn table(simulation: &Simulation) -> String {
         }
     }
     text.push('\n');
-    for (k, seen) in simulation.observations.iter().enumerate() {
+    let observations = simulation.observations.iter();
+    let reactions = simulation.reactions_at(0..simulation.observations.len());
+    for (k, (seen, reactions)) in observations.zip(reactions).enumerate() {
         let _ = write!(
             text,
             "{},{},{}",
@@ -297,7 +299,7 @@ fn table(simulation: &Simulation) -> String {
             let _ = write!(text, ",{x}");
         }
         let _ = write!(text, ",{},{}", seen.position_drift, seen.velocity_drift);
-        for reaction in simulation.reactions(k) {
+        for reaction in reactions {
             for x in reaction.force.iter().chain(reaction.torque.iter()) {
                 let _ = write!(text, ",{x}");
             }

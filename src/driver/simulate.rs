@@ -2,7 +2,7 @@
 
 use super::evaluate::Evaluated;
 use super::integration::Integration;
-use crate::integrate::{IntegrationFailure, multipliers};
+use crate::integrate::{IntegrationFailure, Multipliers};
 use crate::model::Model;
 use crate::problem::Problem;
 use crate::system::Numbering;
@@ -83,9 +83,19 @@ impl Simulation {
 
     /// Joint reactions at instant k.
     pub fn reactions(&self, k: usize) -> Vec<Reaction> {
+        let all = self.reactions_at(std::iter::once(k));
+        all.into_iter().flatten().collect()
+    }
+
+    /// Joint reactions at the given instants.
+    pub fn reactions_at(&self, instants: impl Iterator<Item = usize>) -> Vec<Vec<Reaction>> {
         let (model, run) = (&self.model, &self.at.run);
         let numbering = Numbering::new(model);
-        let lambda = multipliers(model, run, k);
-        reactions(model, &numbering, (run.q(k), &lambda), run.time(k))
+        let mut multipliers = Multipliers::new(model, &numbering, run);
+        let at = |k| {
+            let lambda = multipliers.at(k);
+            reactions(model, &numbering, (run.q(k), &lambda), run.time(k))
+        };
+        instants.map(at).collect()
     }
 }

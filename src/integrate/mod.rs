@@ -6,6 +6,7 @@ pub mod explicit;
 pub mod failure;
 pub mod grid;
 pub mod implicit;
+pub mod multipliers;
 pub mod rows;
 pub mod settings;
 pub mod trajectory;
@@ -13,12 +14,12 @@ pub mod trajectory;
 pub use choice::{Chosen, simulate_by};
 pub use failure::IntegrationFailure;
 pub use grid::Grid;
+pub use multipliers::Multipliers;
 pub use settings::{Method, Samples, Settings, Spacing, Start};
 pub use trajectory::{Tape, Trajectory, WorkCounts};
 
 use crate::linalg::SolveScalar;
 use crate::model::Model;
-use crate::system::accelerations::Accelerations;
 use crate::system::kkt::SaddlePoint;
 use crate::system::{Motion, Numbering, assembly, initial, redundancy};
 use control::Controller;
@@ -48,24 +49,6 @@ pub fn simulate<S: SolveScalar>(
     run.counts.factorisations += saddle.factorisations;
     run.counts.solves += saddle.factorisations;
     Ok(run)
-}
-
-/// Multipliers λ at instant k of a run of `model`: as the method marched them, or, if it did not or
-/// the run left rows of the model out, from the index-1 equations of the state there.
-pub fn multipliers(model: &Model<f64>, run: &Trajectory<f64>, k: usize) -> Vec<f64> {
-    let numbering = Numbering::new(model);
-    let nc = numbering.constraints();
-    if !run.lambda.is_empty() && run.numbering == numbering {
-        return run.lambda[k * nc..(k + 1) * nc].to_vec();
-    }
-    let mut field = Accelerations::new(model, &numbering);
-    let (mut a, mut lambda) = (run.a(k).to_vec(), vec![0.0; nc]);
-    field.stand(run.q(k), run.v(k), run.time(k));
-    match field.factorise() {
-        Ok(()) => field.accelerations(&mut a, &mut lambda),
-        Err(_) => lambda.fill(f64::NAN),
-    }
-    lambda
 }
 
 /// Ends the march of `run` over the steps of `controller`.

@@ -49,9 +49,11 @@ pub struct SystemSize {
     pub rows: usize,
     /// Unknowns of an implicit step, with the rows that stabilise it.
     pub stabilised: usize,
-    /// Bodies in the order of elimination; empty if joints close loops.
+    /// Bodies in the order of elimination; empty if that is left to sparse LU.
     pub order: Vec<String>,
-    /// Entries of the sparse matrix and of its factors, if joints close loops.
+    /// Joints that close loops, eliminated after the bodies.
+    pub closing: Vec<String>,
+    /// Entries of the sparse matrix and of its factors, where it is used.
     pub fill: Option<(usize, usize)>,
     /// Floating-point operations of a factorisation.
     pub operations: usize,
@@ -110,10 +112,14 @@ impl Explanation {
         text.push_str("\nequations\n");
         text.push_str(&render(&["", ">as written", ">lowered"], &rows));
         let order = match self.lowered.order.is_empty() {
-            true => "by sparse LU, as joints close loops".to_owned(),
+            true => "by sparse LU".to_owned(),
             false => self.lowered.order.join(", "),
         };
         let _ = writeln!(text, "  elimination: {order}");
+        if !self.lowered.closing.is_empty() {
+            let closing = self.lowered.closing.join(", ");
+            let _ = writeln!(text, "  last, as they close loops: {closing}");
+        }
         let _ = writeln!(
             text,
             "\nintegration\n  {} in {} steps: {}\n  memory: {} for the samples, {} for gradients",

@@ -39,7 +39,7 @@ pub struct Accelerations<'a, S> {
     pub solves: usize,
 }
 
-/// By the tree of joints, or by sparse LU where they close loops or a body lacks inertia.
+/// By the tree of joints, or by sparse LU where they close many loops or a body lacks inertia.
 enum Solver<S> {
     Tree(Tree<S>),
     Sparse(Box<SaddlePoint<S>>, Vec<S>),
@@ -71,9 +71,12 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         Solver::Sparse(Box::new(SaddlePoint::new(model, numbering)), zeros)
     }
 
-    /// Whether the joints close loops (or a body lacks inertia), so that the tree does not serve.
+    /// Whether the joints close loops, or a body lacks inertia so that the tree does not serve.
     pub fn closes_loops(&self) -> bool {
-        matches!(self.solver, Solver::Sparse(..))
+        match &self.solver {
+            Solver::Tree(tree) => tree.closes_loops(),
+            Solver::Sparse(..) => true,
+        }
     }
 
     /// Moves to the state (q, v) at `time` without factorising; the Euler parameters in `q` need not
@@ -109,7 +112,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             {
                 return Ok(());
             }
-            // A body without inertia of its own may still be held by its joints.
+            // A body without inertia of its own may still be held by its joints, and the rows of a loop
+            // by a choice of pivots.
             self.solver = Self::sparse(self.model, self.numbering);
         }
         let Solver::Sparse(saddle, zeros) = &mut self.solver else {
@@ -148,8 +152,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         }
     }
 
-    fn solve_tree(&self, rhs: &mut [S]) {
-        if let Solver::Tree(tree) = &self.solver {
+    fn solve_tree(&mut self, rhs: &mut [S]) {
+        if let Solver::Tree(tree) = &mut self.solver {
             let numbering = self.numbering;
             reduce::through(numbering, 1, rhs, |rhs| tree.solve(numbering, rhs));
         }

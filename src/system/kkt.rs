@@ -126,9 +126,11 @@ pub struct BodyBlocks<S> {
 pub struct Elimination {
     /// Order of the matrix: unknowns of the bodies, and rows.
     pub order: usize,
-    /// Bodies in the order of elimination, each with the joint that it hangs from; `None` if joints
-    /// close loops and a sparse factorisation is used.
+    /// Bodies in the order of elimination, each with the joint that it hangs from; `None` if a sparse
+    /// factorisation is used.
     pub bodies: Option<Vec<usize>>,
+    /// Joints that close loops, eliminated last; none if a sparse factorisation is used.
+    pub closing: Vec<usize>,
     /// Entries of the sparse matrix and of its factors.
     pub fill: Option<(usize, usize)>,
     /// Floating-point operations of a factorisation.
@@ -210,6 +212,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
         Elimination {
             order: pattern.order(),
             bodies: None,
+            closing: Vec::new(),
             fill: Some((pattern.entries(), factor_entries)),
             operations,
         }

@@ -7,7 +7,7 @@
 pub mod cases;
 pub mod models;
 
-use flexbody::integrate::{Method, Settings, Start, Trajectory, multipliers, simulate};
+use flexbody::integrate::{Method, Multipliers, Settings, Start, Trajectory, simulate};
 use flexbody::math::{Mat3, Vec3};
 use flexbody::model::{JointKind, Mobility, Model, RigidBody};
 use flexbody::system::observe::reactions;
@@ -190,8 +190,9 @@ fn common<'a>(
 /// ground axes) from the reference, relative to the largest reaction at any of its instants.
 pub fn reaction_error(model: &Model<f64>, run: &Trajectory<f64>, reference: &[Instant]) -> f64 {
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+    let mut multipliers = Multipliers::new(model, &run.numbering, run);
     for (k, at) in common(run, reference) {
-        let lambda = multipliers(model, run, k);
+        let lambda = multipliers.at(k);
         let found = reactions(model, &run.numbering, (run.q(k), &lambda), run.time(k));
         for (joint, found) in model.joints.iter().zip(&found) {
             let expected = &at.value["reactions"][&joint.name];

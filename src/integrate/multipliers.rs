@@ -1,0 +1,42 @@
+//! The multipliers of a run, at any of its instants.
+
+use super::trajectory::Trajectory;
+use crate::model::Model;
+use crate::system::Numbering;
+use crate::system::accelerations::Accelerations;
+
+/// Multipliers λ of a model along a run: as the method marched them or, if it did not or the run left
+/// rows of the model out, from the index-1 equations of the states.
+pub struct Multipliers<'a> {
+    run: &'a Trajectory<f64>,
+    numbering: &'a Numbering,
+    /// Solver of the index-1 equations, planned once for all instants.
+    field: Option<Accelerations<'a, f64>>,
+}
+
+impl<'a> Multipliers<'a> {
+    /// Those of `model`, which has as many bodies as that of `run`, with its numbering.
+    pub fn new(model: &'a Model<f64>, numbering: &'a Numbering, run: &'a Trajectory<f64>) -> Self {
+        let marched = !run.lambda.is_empty() && run.numbering == *numbering;
+        Self {
+            run,
+            numbering,
+            field: (!marched).then(|| Accelerations::new(model, numbering)),
+        }
+    }
+
+    /// λ at instant k; not numbers where the equations are singular.
+    pub fn at(&mut self, k: usize) -> Vec<f64> {
+        let (run, nc) = (self.run, self.numbering.constraints());
+        let Some(field) = &mut self.field else {
+            return run.lambda[k * nc..(k + 1) * nc].to_vec();
+        };
+        let (mut a, mut lambda) = (run.a(k).to_vec(), vec![0.0; nc]);
+        field.stand(run.q(k), run.v(k), run.time(k));
+        match field.factorise() {
+            Ok(()) => field.accelerations(&mut a, &mut lambda),
+            Err(_) => lambda.fill(f64::NAN),
+        }
+        lambda
+    }
+}

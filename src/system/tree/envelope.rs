@@ -1,0 +1,112 @@
+//! Symmetric positive definite matrices stored by envelope: each row from its first entry to the
+//! diagonal.
+
+use super::dense::SINGULAR;
+use crate::math::Scalar;
+
+/// A = L D Lᵀ in its envelope (Jennings 1966): L below the diagonal, D⁻¹ on it.
+#[derive(Clone)]
+pub(super) struct Envelope<S> {
+    /// Column of the first entry of each row.
+    first: Vec<usize>,
+    /// Where each row starts.
+    start: Vec<usize>,
+    entries: Vec<S>,
+    /// Size of what the diagonal entries are differences of.
+    sizes: Vec<f64>,
+}
+
+impl<S: Scalar> Envelope<S> {
+    /// A matrix whose row i starts in column `first[i]`.
+    pub fn new(first: Vec<usize>) -> Self {
+        let mut start = vec![0];
+        for (row, first) in first.iter().enumerate() {
+            start.push(start[row] + row + 1 - first);
+        }
+        Self {
+            entries: vec![S::zero(); start[first.len()]],
+            sizes: vec![0.0; first.len()],
+            start,
+            first,
+        }
+    }
+
+    /// Operations of a decomposition.
+    pub fn operations(&self) -> usize {
+        let row = |(row, &first): (usize, &usize)| {
+            let column = |column: usize| 2 * (column - first.max(self.first[column]));
+            (first..=row).map(column).sum::<usize>()
+        };
+        self.first.iter().enumerate().map(row).sum()
+    }
+
+    /// Sets all entries to zero.
+    pub fn clear(&mut self) {
+        self.entries.fill(S::zero());
+    }
+
+    /// Sets an entry of the lower triangle. `size` is that of what it is a difference of, if on the
+    /// diagonal.
+    pub fn set(&mut self, row: usize, column: usize, value: S, size: f64) {
+        self.entries[self.start[row] + column - self.first[row]] = value;
+        if row == column {
+            self.sizes[row] = size;
+        }
+    }
+
+    /// Decomposes in place.
+    ///
+    /// # Errors
+    /// A row whose pivot has lost too many digits.
+    pub fn decompose(&mut self) -> Result<(), usize> {
+        for i in 0..self.first.len() {
+            let first = self.first[i];
+            let (above, rest) = self.entries.split_at_mut(self.start[i]);
+            let row = &mut rest[..=i - first];
+            // row[j] holds L_ij D_j once it is reduced.
+            for j in first..i {
+                let other = &above[self.start[j]..self.start[j + 1]];
+                let from = first.max(self.first[j]);
+                let l = &other[from - self.first[j]..j - self.first[j]];
+                let sum = product(&row[from - first..j - first], l);
+                row[j - first] -= sum;
+            }
+            let mut pivot = row[i - first];
+            for j in first..i {
+                let scaled = row[j - first];
+                let l = scaled * above[self.start[j + 1] - 1];
+                pivot -= scaled * l;
+                row[j - first] = l;
+            }
+            if pivot.re() <= SINGULAR * self.sizes[i] || !pivot.is_finite() {
+                return Err(i);
+            }
+            row[i - first] = S::one() / pivot;
+        }
+        Ok(())
+    }
+
+    /// Solves A x = b in place.
+    pub fn solve(&self, b: &mut [S]) {
+        let row = |i: usize| &self.entries[self.start[i]..self.start[i + 1]];
+        for i in 0..b.len() {
+            let (known, rest) = b.split_at_mut(i);
+            rest[0] -= product(&known[self.first[i]..], row(i));
+        }
+        for (i, b) in b.iter_mut().enumerate() {
+            *b *= self.entries[self.start[i + 1] - 1];
+        }
+        for i in (0..b.len()).rev() {
+            let (rest, known) = b.split_at_mut(i);
+            for (x, &l) in rest[self.first[i]..].iter_mut().zip(row(i)) {
+                *x -= l * known[0];
+            }
+        }
+    }
+}
+
+/// Σ a_i b_i over what both have.
+pub(super) fn product<S: Scalar>(a: &[S], b: &[S]) -> S {
+    let products = a.iter().zip(b);
+    products.fold(S::zero(), |sum, (&a, &b)| sum + a * b)
+}

@@ -1,0 +1,328 @@
+//! The rows of the joints that close loops, eliminated after the forest.
+//!
+//! With T the matrix of the forest and L the rows of the closing joints,
+//!
+//! ```text
+//! [T Lᵀ; L 0] (x, μ) = (f, g)      →      L T⁻¹ Lᵀ μ = L T⁻¹ f − g,      T x = f − Lᵀ μ
+//! ```
+//!
+//! A row ℓ reaches only the links between its two bodies and ground. Swept towards ground like a
+//! force, it leaves on body b the force f_ℓb, and on its joint j the gap e_ℓj = G_jb M̂_b⁻¹ f_ℓb, so that
+//!
+//! ```text
+//! (L T⁻¹ Lᵀ)_ℓκ = Σ_b f_ℓbᵀ M̂_b⁻¹ f_κb − Σ_j e_ℓjᵀ S_j⁻¹ e_κj
+//! ```
+//!
+//! over the links that both reach. That matrix is positive definite where the rows are independent; it is
+//! stored by envelope, so that a row of loops that only touch their neighbours costs as much as each.
+
+use super::dense::{axpy, block, dot, solve};
+use super::elimination::{Factors, size};
+use super::envelope::{Envelope, product};
+use super::links::Link;
+use crate::linalg::SingularMatrix;
+use crate::math::Scalar;
+use crate::model::Model;
+use crate::system::constraint::RowGradient;
+use crate::system::numbering::Numbering;
+use crate::system::reduce::reduced;
+use std::ops::Range;
+
+/// Most blocks of work of the loops for each link: where loops reach far and overlap, fill in the
+/// order of sparse LU is less.
+const MOST_WORK: usize = 32;
+
+/// A joint that closes a loop.
+#[derive(Clone)]
+struct Closing {
+    joint: usize,
+    /// Bodies that it acts on, and whether each is its side A.
+    ends: [Option<(usize, bool)>; 2],
+    /// Its rows among those of all closing joints.
+    rows: Range<usize>,
+    /// The links that it reaches, leaves first.
+    path: Vec<usize>,
+    /// Where the waves of its first row start.
+    waves: usize,
+}
+
+/// Two closing joints, the later one first, with the places in their paths of what both reach.
+#[derive(Clone)]
+struct Pair {
+    joints: [usize; 2],
+    places: Vec<[usize; 2]>,
+}
+
+/// What a row leaves on a link.
+#[derive(Clone, Copy)]
+struct Wave<S, const N: usize> {
+    /// f on the body.
+    force: [S; N],
+    /// M̂⁻¹ f.
+    response: [S; N],
+    /// e of its joint.
+    gap: [S; N],
+    /// S⁻¹ e.
+    balance: [S; N],
+}
+
+/// The closing joints with their waves and the factors of L T⁻¹ Lᵀ.
+#[derive(Clone)]
+pub(super) struct Loops<S, const N: usize> {
+    closing: Vec<Closing>,
+    pairs: Vec<Pair>,
+    waves: Vec<Wave<S, N>>,
+    /// Forces on the bodies of the links, under way.
+    forces: Vec<[S; N]>,
+    link_of: Vec<usize>,
+    matrix: Envelope<S>,
+    rhs: Vec<S>,
+}
+
+impl<S: Scalar, const N: usize> Loops<S, N> {
+    /// Plans the rows of the joints `joints`, or `None` if sparse LU serves better.
+    pub fn plan<M>(
+        model: &Model<M>,
+        numbering: &Numbering,
+        links: &[Link],
+        link_of: &[usize],
+        joints: &[usize],
+    ) -> Option<Self> {
+        let (mut closing, mut rows, mut waves) = (Vec::<Closing>::new(), 0, 0);
+        for &j in joints {
+            let joint = &model.joints[j];
+            let sides = [(Some(joint.body_a), true), (joint.body_b, false)];
+            let moves = |body: &usize| numbering.mobility(*body).unknowns() > 0;
+            let ends = sides.map(|(body, is_a)| Some((body.filter(moves)?, is_a)));
+            let mut path = Vec::new();
+            for (body, _) in ends.iter().flatten() {
+                let mut next = Some(*body);
+                while let Some(body) = next {
+                    path.push(link_of[body]);
+                    next = links[link_of[body]].joint.and_then(|(_, _, parent)| parent);
+                }
+            }
+            path.sort_unstable();
+            path.dedup();
+            let count = numbering.rows(j).len();
+            let from = waves;
+            waves += count * path.len();
+            closing.push(Closing {
+                joint: j,
+                ends,
+                rows: rows..rows + count,
+                path,
+                waves: from,
+            });
+            rows += count;
+        }
+        let mut work = waves;
+        let mut pairs = Vec::new();
+        let mut first = Vec::new();
+        for (c, later) in closing.iter().enumerate() {
+            let mut least = later.rows.start;
+            for (d, other) in closing[..=c].iter().enumerate() {
+                let places = common(&later.path, &other.path);
+                if !places.is_empty() {
+                    least = least.min(other.rows.start);
+                    work += places.len() * later.rows.len() * other.rows.len() / N;
+                    pairs.push(Pair {
+                        joints: [c, d],
+                        places,
+                    });
+                }
+            }
+            work += later.rows.len() * (later.rows.end - least) / N;
+            first.extend(later.rows.clone().map(|_| least));
+        }
+        if work > MOST_WORK * links.len() {
+            return None;
+        }
+        let zero = [S::zero(); N];
+        let none = Wave {
+            force: zero,
+            response: zero,
+            gap: zero,
+            balance: zero,
+        };
+        Some(Self {
+            closing,
+            pairs,
+            waves: vec![none; waves],
+            forces: vec![zero; links.len()],
+            link_of: link_of.to_vec(),
+            matrix: Envelope::new(first),
+            rhs: vec![S::zero(); rows],
+        })
+    }
+
+    /// The closing joints.
+    pub fn joints(&self) -> impl Iterator<Item = usize> + '_ {
+        self.closing.iter().map(|closing| closing.joint)
+    }
+
+    /// Operations of a factorisation.
+    pub fn operations(&self, numbering: &Numbering, links: &[Link]) -> usize {
+        let sweep = |closing: &Closing| {
+            let link = |&l: &usize| {
+                let m = numbering.mobility(links[l].body).unknowns();
+                let n = (links[l].joint).map_or(0, |(joint, ..)| numbering.rows(joint).len());
+                2 * (m * m + 2 * m * n + n * n)
+            };
+            closing.rows.len() * closing.path.iter().map(link).sum::<usize>()
+        };
+        let product = |pair: &Pair| {
+            let [c, d] = pair.joints.map(|c| self.closing[c].rows.len());
+            4 * N * c * d * pair.places.len()
+        };
+        let sweeps: usize = self.closing.iter().map(sweep).sum();
+        sweeps + self.pairs.iter().map(product).sum::<usize>() + self.matrix.operations()
+    }
+
+    /// Sweeps the rows through the factors of the forest and decomposes L T⁻¹ Lᵀ.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] with the place (n_v + row) of a row that follows from the others.
+    pub fn factorise(
+        &mut self,
+        numbering: &Numbering,
+        gradients: &[RowGradient<S>],
+        (links, factors): (&[Link], &[Factors<S, N>]),
+    ) -> Result<(), SingularMatrix> {
+        for closing in &self.closing {
+            let length = closing.path.len();
+            for (i, row) in numbering.rows(closing.joint).enumerate() {
+                for &l in &closing.path {
+                    self.forces[l] = [S::zero(); N];
+                }
+                for &(body, is_a) in closing.ends.iter().flatten() {
+                    let mobility = numbering.mobility(body);
+                    self.forces[self.link_of[body]] = reduced(&gradients[row], is_a, mobility);
+                }
+                let from = closing.waves + i * length;
+                for (wave, &l) in self.waves[from..from + length]
+                    .iter_mut()
+                    .zip(&closing.path)
+                {
+                    let (link, factors) = (&links[l], &factors[l]);
+                    let force = self.forces[l];
+                    let m = size::<N>(numbering, link.body);
+                    wave.force = force;
+                    wave.response = force;
+                    solve(&factors.inertia, &mut wave.response, m);
+                    let Some((joint, _, parent)) = link.joint else {
+                        continue;
+                    };
+                    let n = numbering.rows(joint).len();
+                    for (gap, lever) in wave.gap[..n].iter_mut().zip(&factors.lever) {
+                        *gap = dot(lever, &force);
+                    }
+                    wave.balance = wave.gap;
+                    solve(&factors.schur, &mut wave.balance, n);
+                    if let Some(parent) = parent {
+                        let to = &mut self.forces[self.link_of[parent]];
+                        for (&e, above) in wave.balance[..n].iter().zip(&factors.above) {
+                            axpy(to, -e, above);
+                        }
+                    }
+                }
+            }
+        }
+        self.assemble();
+        let row = self.matrix.decompose();
+        row.map_err(|row| SingularMatrix {
+            column: numbering.velocities() + self.row(numbering, row),
+        })
+    }
+
+    /// The constraint row that stands at `row` of the closing ones.
+    fn row(&self, numbering: &Numbering, row: usize) -> usize {
+        let closing = self.closing.iter().find(|c| c.rows.contains(&row));
+        closing.map_or(0, |c| numbering.rows(c.joint).start + row - c.rows.start)
+    }
+
+    fn assemble(&mut self) {
+        self.matrix.clear();
+        for Pair { joints, places } in &self.pairs {
+            let [c, d] = joints.map(|c| &self.closing[c]);
+            for (i, row) in c.rows.clone().enumerate() {
+                for (k, column) in d.rows.clone().enumerate() {
+                    if column > row {
+                        break;
+                    }
+                    let (mut sum, mut size) = (S::zero(), 0.0);
+                    for &[p, q] in places {
+                        let a = &self.waves[c.waves + i * c.path.len() + p];
+                        let b = &self.waves[d.waves + k * d.path.len() + q];
+                        let inertial = dot(&a.force, &b.response);
+                        size += inertial.re();
+                        sum += inertial - dot(&a.gap, &b.balance);
+                    }
+                    self.matrix.set(row, column, sum, size);
+                }
+            }
+        }
+    }
+
+    /// Finds μ from `x` and `multipliers` as the forward sweep of the forest leaves them (f̂_b, and
+    /// S⁻¹ ê_j; g in the closing rows), and takes Lᵀ μ, swept, off them.
+    pub fn close(
+        &mut self,
+        numbering: &Numbering,
+        links: &[Link],
+        x: &mut [S],
+        multipliers: &mut [S],
+    ) {
+        for closing in &self.closing {
+            let rows = numbering.rows(closing.joint);
+            for (i, row) in rows.enumerate() {
+                let mut sum = -multipliers[row];
+                let waves = &self.waves[closing.waves + i * closing.path.len()..];
+                for (wave, &l) in waves.iter().zip(&closing.path) {
+                    let link = &links[l];
+                    let m = size::<N>(numbering, link.body);
+                    sum += dot(
+                        &wave.response,
+                        &block(&x[numbering.unknown(link.body)..], m),
+                    );
+                    if let Some((joint, ..)) = link.joint {
+                        sum -= product(&multipliers[numbering.rows(joint)], &wave.gap);
+                    }
+                }
+                self.rhs[closing.rows.start + i] = sum;
+            }
+        }
+        self.matrix.solve(&mut self.rhs);
+        for closing in &self.closing {
+            let rows = numbering.rows(closing.joint);
+            for (i, row) in rows.enumerate() {
+                let mu = self.rhs[closing.rows.start + i];
+                multipliers[row] = mu;
+                let waves = &self.waves[closing.waves + i * closing.path.len()..];
+                for (wave, &l) in waves.iter().zip(&closing.path) {
+                    let link = &links[l];
+                    let m = size::<N>(numbering, link.body);
+                    let at = numbering.unknown(link.body);
+                    axpy(&mut x[at..at + m], -mu, &wave.force);
+                    if let Some((joint, ..)) = link.joint {
+                        let own = multipliers[numbering.rows(joint)].iter_mut();
+                        own.zip(&wave.balance).for_each(|(e, &b)| *e -= b * mu);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Places of the entries that two ascending lists share.
+fn common(a: &[usize], b: &[usize]) -> Vec<[usize; 2]> {
+    let mut found = Vec::new();
+    let (mut p, mut q) = (0, 0);
+    while let (Some(x), Some(y)) = (a.get(p), b.get(q)) {
+        if x == y {
+            found.push([p, q]);
+        }
+        (p, q) = (p + usize::from(x <= y), q + usize::from(y <= x));
+    }
+    found
+}
