@@ -6,6 +6,7 @@ use super::nlp::Nlp;
 use super::outcome::{Counts, Kkt, Outcome, Scaling, Status};
 use super::program::{Point, Program, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
+use super::scaling::Units;
 use super::state::SavedState;
 use super::trust_region::Ending;
 use super::verdict::{
@@ -25,17 +26,28 @@ pub(super) struct Finish {
     pub scaled: f64,
     /// Whether the conditions hold in the units of the user and no fall was found nearby.
     pub confirmed: bool,
-    /// Scale of the objective to which all this belongs.
-    pub scale: f64,
+    /// Units to which all this belongs.
+    pub units: Units,
     pub b: QuasiNewton,
     pub barrier: f64,
     pub radius: f64,
 }
 
 impl Finish {
-    /// Brings the program back to the scale in which this was found.
-    pub fn restore_scale(&self, program: &mut Program<'_>) {
-        program.rescale(self.scale / program.scaling.objective);
+    /// Brings the program back to the units in which this was found.
+    pub fn restore_units(&self, program: &mut Program<'_>) {
+        program.set_units(&self.units);
+    }
+
+    /// Whether `other`, feasible, has an objective that is less by more than the tolerance.
+    pub fn is_worse_than(&self, other: &Finish, program: &Program<'_>) -> bool {
+        let (mine, theirs) = (self.objective(), other.objective());
+        mine - theirs > program.options.tolerance * theirs.abs().max(program.unit_of_objective())
+    }
+
+    /// The objective in the unit of the user.
+    fn objective(&self) -> f64 {
+        self.point.f / self.units.objective
     }
 
     fn kkt(&self, program: &Program<'_>) -> Kkt {
@@ -105,12 +117,19 @@ impl Finish {
     }
 }
 
-/// Replaces the point of a run that did not converge by a better one it passed through.
+/// Replaces the point of a run that did not converge by a better one it passed through; better by more
+/// than the tolerance, it shows that there was something to gain.
 pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
-    let settled = matches!(
-        finish.status,
-        Status::Converged | Status::AtPrecision | Status::Infeasible { .. }
-    ) || finish.status == Status::Stalled && finish.is_solved(program);
+    let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. })
+        || finish.status == Status::Stalled && finish.is_solved(program);
+    let at_precision = finish.status == Status::AtPrecision;
+    let f = finish.point.f.abs();
+    let unit = f.max(program.unit_of_objective() * program.scaling.objective);
+    let worth = if at_precision {
+        program.options.tolerance * unit
+    } else {
+        0.0
+    };
     let limit = program.options.constraint_tolerance;
     // What a violation within the tolerance gains is not counted.
     let y = &finish.multipliers.y;
@@ -122,7 +141,7 @@ pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
     let rank = |p: &Point| (program.worst_violation(&p.c).0.max(limit), value(p));
     let found = program.best.clone().filter(|best| {
         let (new, old) = (rank(best), rank(&finish.point));
-        !settled && (new.0 < old.0 || (new.0 == old.0 && new.1 < old.1))
+        !settled && (new.0 < old.0 || (new.0 == old.0 && new.1 < old.1 - worth))
     });
     let Some(point) = found else {
         return finish;
@@ -133,7 +152,13 @@ pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
     let y = &finish.multipliers.y;
     let multipliers = ScaledMultipliers::polished(program, &point, &slopes, y);
     let scaled = scaled_residual(program, &point, &slopes, &multipliers);
+    let status = if at_precision {
+        Status::Stalled
+    } else {
+        finish.status.clone()
+    };
     Finish {
+        status,
         point,
         slopes,
         multipliers,
@@ -170,7 +195,7 @@ pub(super) fn unfinished(program: &Program<'_>, point: Point, slopes: Slopes) ->
         b: QuasiNewton::new(point.x.len(), options.dense_limit, options.memory),
         scaled: scaled_residual(program, &point, &slopes, &multipliers),
         confirmed: false,
-        scale: program.scaling.objective,
+        units: program.units(),
         multipliers,
         point,
         slopes,

@@ -11,7 +11,7 @@ use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
 use super::trust_region::{Ending, Goal, TrustRegion};
-use super::verdict::{ScaledMultipliers, UNIT_OF_OBJECTIVE, Verdict, is_at_precision, judge};
+use super::verdict::{ScaledMultipliers, Verdict, is_at_precision, judge};
 
 /// Multipliers of bounds stay within this factor of μ/distance.
 const MULTIPLIER_BAND: f64 = 1e10;
@@ -327,7 +327,7 @@ impl InteriorPoint {
         }
         let z = self.multipliers(program);
         let gap: f64 = self.at.products(&self.layout).iter().sum();
-        let least = UNIT_OF_OBJECTIVE * program.typical_gradient() * program.scaling.objective;
+        let least = program.unit_of_objective() * program.scaling.objective;
         let unit = self.at.point.f.abs().max(least);
         let (point, slopes) = (&self.at.point, &self.at.slopes);
         if gap > 0.1 * program.options.tolerance * unit {

@@ -16,6 +16,7 @@ mod outcome;
 mod program;
 mod quasi_newton;
 mod refined_qp;
+mod renewal;
 mod scaling;
 mod solve;
 mod split_qp;

@@ -96,6 +96,8 @@ pub(super) struct Program<'a> {
     user_row_upper: Vec<f64>,
     template: Vec<f64>,
     pub scaling: Scaling,
+    /// Factor by which the units of all variables were changed on the way.
+    pub length: f64,
     pub counts: Counts,
     pub failed: Vec<FailedDesign>,
     started: Instant,
@@ -104,7 +106,7 @@ pub(super) struct Program<'a> {
     /// Iterations and evaluations allowed to the method that runs.
     allowed: Allowed,
     /// First point reported, and its objective in the units of the user.
-    first: Option<(DVector<f64>, f64)>,
+    pub(super) first: Option<(DVector<f64>, f64)>,
     /// Best point reported: feasible with the least objective, or least infeasible.
     pub best: Option<Point>,
 }
@@ -164,6 +166,7 @@ impl<'a> Program<'a> {
             rows,
             template,
             scaling,
+            length: 1.0,
             counts: Counts::default(),
             failed: Vec::new(),
             started: Instant::now(),
@@ -255,8 +258,7 @@ impl<'a> Program<'a> {
         let norm = free.iter().map(|&i| objective[i].abs()).fold(0.0, f64::max);
         let reach = DVector::from_fn(free.len(), |k, _| {
             let width = self.upper[k] - self.lower[k];
-            let size = x[k].abs().max(1.0);
-            if width.is_finite() { width } else { size }
+            width.min(x[k].abs().max(1.0))
         });
         drop_rounding(&mut g, &reach);
         for r in 0..rows.len() {

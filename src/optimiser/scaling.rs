@@ -1,9 +1,11 @@
 //! Scale factors of the functions, and the units in which their derivatives count as small.
 
+use std::ops::RangeInclusive;
+
 use nalgebra::DVector;
 
 use super::outcome::Scaling;
-use super::program::{Point, Program, Slopes};
+use super::program::{Point, Program, Slopes, Trouble};
 
 /// An objective whose gradient at the start is below `FLAT` is multiplied until it is `LIFTED`, lest
 /// a start on a plateau be taken for a solution.
@@ -14,18 +16,32 @@ const LARGEST_LIFT: f64 = 1e12;
 /// Least factor by which a scale is changed on the way.
 const WORTHWHILE: f64 = 10.0;
 
+/// Sizes of a point for which the units of the variables are kept when a run begins anew.
+const NEAR_ONE: RangeInclusive<f64> = 1e-3..=1e3;
+
 /// Points that count as the first ones of a run.
 const FIRST_POINTS: usize = 12;
 
 /// Gradients among those of the first points that do not count because they are too large.
 const LARGEST_LEFT_OUT: usize = 2;
 
+/// Units of a scaled program.
+#[derive(Clone, Debug)]
+pub(super) struct Units {
+    pub objective: f64,
+    constraints: Vec<f64>,
+    /// [`Program::length`].
+    length: f64,
+}
+
 impl Program<'_> {
-    /// Sets the scale factors of functions from unscaled derivatives `slopes` and rescales both.
+    /// Sets the scale factors of functions from derivatives `slopes` and changes point and slopes to
+    /// them.
     pub fn scale(&mut self, point: &mut Point, slopes: &mut Slopes) {
         let limit = self.options.scaling_gradient;
-        let norm = slopes.g.amax();
-        self.scaling.objective = if norm > limit {
+        let mut units = self.units();
+        let norm = slopes.g.amax() / self.scaling.objective;
+        units.objective = if norm > limit {
             limit / norm
         } else if norm > 0.0 && norm < FLAT {
             (LIFTED / norm).min(LARGEST_LIFT)
@@ -33,23 +49,38 @@ impl Program<'_> {
             1.0
         };
         for (k, &j) in self.rows.iter().enumerate() {
-            let norm = slopes.a.row(k).amax();
-            self.scaling.constraints[j] = if norm > limit {
+            let norm = slopes.a.row(k).amax() / self.scaling.constraints[j];
+            units.constraints[j] = if norm > limit {
                 (limit / norm).max(1e-8)
             } else {
                 1.0
             };
         }
-        self.apply_scaling(point, slopes);
+        self.change_units(&units, point, slopes);
     }
 
     /// Uses scale factors and typical gradient of an earlier run on the same objective.
     pub fn adopt_scaling(&mut self, saved: &Scaling, point: &mut Point, slopes: &mut Slopes) {
         // So many that later points cannot lower it.
         self.gradient_norms = vec![saved.typical_gradient; LARGEST_LEFT_OUT + 1];
-        self.scaling.objective = saved.objective;
-        self.scaling.constraints.clone_from(&saved.constraints);
-        self.apply_scaling(point, slopes);
+        let units = Units {
+            objective: saved.objective,
+            constraints: saved.constraints.clone(),
+            length: self.length * self.ratio_of_variables(saved),
+        };
+        self.change_units(&units, point, slopes);
+    }
+
+    /// Factor by which all units of variables in `saved` differ from the present ones; 1 if not all do.
+    fn ratio_of_variables(&self, saved: &Scaling) -> f64 {
+        let ratio = |&i: &usize| saved.variables[i] / self.scaling.variables[i];
+        let first = self.free.first().map_or(1.0, ratio);
+        let same = |i: &usize| (ratio(i) - first).abs() <= 1e-9 * first;
+        if self.free.iter().all(same) {
+            first
+        } else {
+            1.0
+        }
     }
 
     /// Factor by which the scale of the objective has to change to suit a point of gradient `g` and
@@ -69,18 +100,74 @@ impl Program<'_> {
         }
     }
 
-    fn apply_scaling(&mut self, point: &mut Point, slopes: &mut Slopes) {
-        point.f *= self.scaling.objective;
-        slopes.g *= self.scaling.objective;
-        slopes.fixed_g *= self.scaling.objective;
+    /// The units in use.
+    pub fn units(&self) -> Units {
+        Units {
+            objective: self.scaling.objective,
+            constraints: self.scaling.constraints.clone(),
+            length: self.length,
+        }
+    }
+
+    /// Changes to `units`, with bounds and the best point; that of the run is left to the caller.
+    pub fn set_units(&mut self, units: &Units) {
+        self.rescale(units.objective / self.scaling.objective);
         for (k, &j) in self.rows.iter().enumerate() {
-            let factor = self.scaling.constraints[j];
+            let factor = units.constraints[j] / self.scaling.constraints[j];
             self.row_lower[k] *= factor;
             self.row_upper[k] *= factor;
+            if let Some(best) = &mut self.best {
+                best.c[k] *= factor;
+            }
+        }
+        self.scaling.constraints.clone_from(&units.constraints);
+        let length = units.length / self.length;
+        self.length = units.length;
+        for &i in &self.free {
+            self.scaling.variables[i] *= length;
+        }
+        self.lower /= length;
+        self.upper /= length;
+        if let Some(best) = &mut self.best {
+            best.x /= length;
+        }
+        if let Some((x, _)) = &mut self.first {
+            *x /= length;
+        }
+    }
+
+    /// Changes program, point and slopes to `units`.
+    fn change_units(&mut self, units: &Units, point: &mut Point, slopes: &mut Slopes) {
+        let objective = units.objective / self.scaling.objective;
+        let length = units.length / self.length;
+        point.x /= length;
+        point.f *= objective;
+        slopes.g *= objective * length;
+        slopes.fixed_g *= objective;
+        for (k, &j) in self.rows.iter().enumerate() {
+            let factor = units.constraints[j] / self.scaling.constraints[j];
             point.c[k] *= factor;
-            slopes.a.row_mut(k).scale_mut(factor);
+            slopes.a.row_mut(k).scale_mut(factor * length);
             slopes.fixed_a.row_mut(k).scale_mut(factor);
         }
+        self.set_units(units);
+    }
+
+    /// Fresh units at a point where a method stalled: its size becomes the unit of the variables where
+    /// it is far from one, functions are scaled by their derivatives there, and those of other points
+    /// no longer count. Returns the point and its derivatives in these units.
+    pub fn renew(&mut self, mut point: Point) -> Result<(Point, Slopes), Trouble> {
+        let size = point.x.amax();
+        if size > 0.0 && !NEAR_ONE.contains(&size) {
+            let mut units = self.units();
+            units.length *= size;
+            self.set_units(&units);
+            point.x /= size;
+        }
+        self.gradient_norms.clear();
+        let mut slopes = self.gradients(&point.x)?;
+        self.scale(&mut point, &mut slopes);
+        Ok((point, slopes))
     }
 
     /// Records gradients and zero rows and columns for the scaling report, before scaling.
@@ -128,7 +215,15 @@ impl Program<'_> {
         let typical = early.max(largest(all, usize::MAX));
         if typical > 0.0 { typical } else { 1.0 }
     }
+
+    /// The unit of an objective that vanishes, in that of the user.
+    pub fn unit_of_objective(&self) -> f64 {
+        UNIT_OF_OBJECTIVE * self.typical_gradient() * self.length
+    }
 }
+
+/// Part of the typical gradient, over one unit, that is the unit of an objective that vanishes.
+const UNIT_OF_OBJECTIVE: f64 = 0.01;
 
 /// Sets derivatives to zero that are nothing but rounding: over the `reach` of its variable each
 /// changes the function by less than the rounding of its largest change.

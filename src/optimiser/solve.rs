@@ -12,6 +12,7 @@ use super::observer::{Observer, Phase};
 use super::options::{Method, Options};
 use super::outcome::{Outcome, Status};
 use super::program::{Point, Program, Progress, Slopes, Trouble};
+use super::renewal::renewed;
 use super::start::{Around, first_point, look_around};
 use super::state::SavedState;
 use super::trust_region::{Ending, Goal, TrustRegion};
@@ -205,7 +206,7 @@ fn auto(
     push: f64,
 ) -> Finish {
     program.allow(FIRST_SHARE);
-    let (start, scale) = (first.clone(), program.scaling.objective);
+    let (start, units) = (first.clone(), program.units());
     let mut kept = attempt(program, Method::InteriorPoint, first, saved, push);
     program.allow(1.0);
     for (from_best, share) in [(true, SECOND_SHARE), (false, 1.0)] {
@@ -214,6 +215,7 @@ fn auto(
             Status::Stalled
                 | Status::IterationLimit
                 | Status::EvaluationLimit
+                | Status::AtPrecision
                 | Status::Infeasible { .. }
         );
         if !hopeless || kept.is_solved(program) {
@@ -223,7 +225,7 @@ fn auto(
         if from_best && matches!(kept.status, Status::Infeasible { .. }) {
             continue;
         }
-        program.rescale(scale / program.scaling.objective);
+        program.set_units(&units);
         let place = match program.best.clone().filter(|_| from_best) {
             None => start.clone(),
             Some(best) => match program.gradients(&best.x) {
@@ -233,15 +235,20 @@ fn auto(
         };
         program.allow(share);
         let next = attempt(program, Method::TrustRegion, place, None, push);
-        // A verdict is worth more than having found none.
+        // A verdict is worth more than having found none, and no verdict more than a better point.
         let undecided = matches!(
             next.status,
             Status::Stalled | Status::IterationLimit | Status::EvaluationLimit
         ) && !next.is_solved(program);
-        if !(undecided && matches!(kept.status, Status::Infeasible { .. })) {
+        let keep = match kept.status {
+            Status::Infeasible { .. } => undecided,
+            Status::AtPrecision => undecided || next.is_worse_than(&kept, program),
+            _ => false,
+        };
+        if !keep {
             kept = next;
         }
-        kept.restore_scale(program);
+        kept.restore_units(program);
     }
     kept
 }
@@ -258,6 +265,14 @@ fn interior_point(
         let multipliers = scaled_multipliers(program, &saved.multipliers);
         method.adopt(&multipliers, saved.quasi_newton.clone(), saved.barrier);
     }
+    let finish = finish_interior_point(program, method);
+    renewed(program, finish, |program, (point, slopes)| {
+        let method = InteriorPoint::new(program, point, slopes, RESUMED_PUSH);
+        finish_interior_point(program, method)
+    })
+}
+
+fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -> Finish {
     let mut result = method.run(program);
     while let Ok(Ending::Misscaled | Ending::Stalled) = result
         && let Some(factor) = method.better_scale(program)
@@ -308,14 +323,13 @@ fn interior_point(
         multipliers,
         scaled,
         confirmed: false,
-        scale: program.scaling.objective,
+        units: program.units(),
         point,
         slopes,
         b: method.b,
         barrier: method.barrier.mu,
         radius: program.options.initial_radius,
     }
-    .with_stall_named(program)
 }
 
 fn trust_region(
@@ -332,6 +346,14 @@ fn trust_region(
         }
         method.radius = saved.radius;
     }
+    let finish = finish_trust_region(program, method);
+    renewed(program, finish, |program, (point, slopes)| {
+        let method = TrustRegion::new(program, point, slopes, Goal::Optimum);
+        finish_trust_region(program, method)
+    })
+}
+
+fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> Finish {
     let mut result = optimise(program, &mut method);
     for _ in 0..FEASIBILITY_PHASES {
         let limit = program.options.constraint_tolerance;
@@ -357,14 +379,13 @@ fn trust_region(
         multipliers: method.multipliers(program),
         scaled: method.optimality(program),
         confirmed: false,
-        scale: program.scaling.objective,
+        units: program.units(),
         point: method.point,
         slopes: method.slopes,
         b: method.b,
         barrier: program.options.initial_barrier,
         radius: method.radius,
     }
-    .with_stall_named(program)
 }
 
 /// Runs the trust region, and again in better units where those of the start do not suit its end.

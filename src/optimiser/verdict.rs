@@ -131,10 +131,8 @@ fn least_squares(
     Some(all)
 }
 
-/// Parts of the typical gradient that are the unit of forces where the gradient vanishes, and of the
-/// objective where that does.
+/// Part of the typical gradient that is the unit of forces where the gradient vanishes.
 const UNIT: f64 = 0.1;
-pub(super) const UNIT_OF_OBJECTIVE: f64 = 0.01;
 
 /// The size of forces, in the units of the user: that of the gradient or, where it vanishes, of those
 /// at other points of the run.
@@ -184,7 +182,7 @@ pub(super) fn kkt(
             complementarity += z.y[k].abs() * distance.abs() / unit_f;
         }
     }
-    let least = UNIT_OF_OBJECTIVE * program.typical_gradient();
+    let least = program.unit_of_objective();
     Kkt {
         violation: program.worst_violation(&point.c).0,
         stationarity,

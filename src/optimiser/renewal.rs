@@ -1,0 +1,54 @@
+//! Going on from where a method stalled, in units that suit this very point.
+
+use super::ending::Finish;
+use super::outcome::Status;
+use super::program::{Point, Program, Slopes, Trouble};
+
+/// How often a method begins anew in the units of the point where it stalled.
+const RENEWALS: usize = 6;
+
+/// Runs again from a feasible point where `finish` stalled, with fresh units, a fresh quasi-Newton
+/// matrix and derivatives of points near it alone, as long as that gains anything. Only where it does
+/// not, the end may be called [`Status::AtPrecision`].
+pub(super) fn renewed(
+    program: &mut Program<'_>,
+    mut finish: Finish,
+    run: impl Fn(&mut Program<'_>, (Point, Slopes)) -> Finish,
+) -> Finish {
+    let limit = program.options.constraint_tolerance;
+    let norms = program.gradient_norms.clone();
+    for _ in 0..RENEWALS {
+        if finish.status != Status::Stalled || finish.is_solved(program) {
+            return finish;
+        }
+        let is_feasible = |p: &Point| program.worst_violation(&p.c).0 <= limit;
+        let places = [Some(&finish.point), program.best.as_ref()];
+        let Some(place) = places.into_iter().flatten().find(|p| is_feasible(p)) else {
+            return finish;
+        };
+        let (place, unit_f) = (place.clone(), program.scaling.objective);
+        let before = place.f / unit_f;
+        let next = match program.renew(place) {
+            Ok(first) => run(program, first),
+            Err(trouble) => {
+                finish.restore_units(program);
+                if let Trouble::Halt(status) = trouble {
+                    finish.status = status;
+                }
+                return finish;
+            }
+        };
+        let gain = before - next.point.f / program.scaling.objective;
+        let unit = before.abs().max(program.unit_of_objective());
+        let worth = program.options.tolerance * unit;
+        let lost = program.worst_violation(&next.point.c).0 > limit;
+        if !next.is_solved(program) && (lost || gain <= worth) {
+            // Nothing is left to gain: the residuals may be rounding beside what the run has seen.
+            finish.restore_units(program);
+            program.gradient_norms.extend(&norms);
+            return finish.with_stall_named(program);
+        }
+        finish = next;
+    }
+    finish
+}
