@@ -94,6 +94,9 @@ fn options(problem: &Problem) -> Options {
     Options {
         method: given.method.unwrap_or(default.method),
         tolerance: given.tolerance.unwrap_or(default.tolerance),
+        constraint_tolerance: given
+            .constraint_tolerance
+            .unwrap_or(default.constraint_tolerance),
         max_iterations: given.iterations.unwrap_or(default.max_iterations),
         max_evaluations: given.evaluations.unwrap_or(default.max_evaluations),
         max_seconds: given.seconds,

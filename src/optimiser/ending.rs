@@ -50,6 +50,24 @@ impl Finish {
         self.point.f / self.units.objective
     }
 
+    /// An infeasible end, at a point where the largest violation is least.
+    pub fn infeasible_at(self, program: &Program<'_>, point: Point, slopes: Slopes) -> Finish {
+        let (violation, j) = program.worst_violation(&point.c);
+        let y = DVector::zeros(point.c.len());
+        let multipliers = ScaledMultipliers::polished(program, &point, &slopes, &y);
+        Finish {
+            status: Status::Infeasible {
+                constraint: program.constraint_name(j),
+                violation,
+            },
+            scaled: scaled_residual(program, &point, &slopes, &multipliers),
+            multipliers,
+            point,
+            slopes,
+            ..self
+        }
+    }
+
     fn kkt(&self, program: &Program<'_>) -> Kkt {
         kkt(
             program,
@@ -130,7 +148,6 @@ pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
     } else {
         0.0
     };
-    let limit = program.options.constraint_tolerance;
     // What a violation within the tolerance gains is not counted.
     let y = &finish.multipliers.y;
     let value = |p: &Point| {
@@ -138,7 +155,7 @@ pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
             .map(|k| y[k].abs() * program.row_violation(&p.c, k))
             .sum::<f64>()
     };
-    let rank = |p: &Point| (program.worst_violation(&p.c).0.max(limit), value(p));
+    let rank = |p: &Point| (program.relative_violation(&p.c).max(1.0), value(p));
     let found = program.best.clone().filter(|best| {
         let (new, old) = (rank(best), rank(&finish.point));
         !settled && (new.0 < old.0 || (new.0 == old.0 && new.1 < old.1 - worth))
@@ -170,7 +187,7 @@ pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
 /// The only point there is, where all variables are fixed.
 pub(super) fn without_freedom(program: &Program<'_>, point: Point, slopes: Slopes) -> Finish {
     let (violation, j) = program.worst_violation(&point.c);
-    let feasible = violation <= program.options.constraint_tolerance;
+    let feasible = program.is_feasible(&point.c);
     let status = if feasible {
         Status::Converged
     } else {

@@ -344,7 +344,7 @@ impl InteriorPoint {
         failures: usize,
     ) -> Result<Option<Ending>, Trouble> {
         let theta = self.theta();
-        let small = 1e-2 * program.options.tolerance;
+        let small = 1e-2 * program.options.tolerance.min(program.least_allowed());
         if theta <= small || failures > 3 {
             if failures == 1 && !self.b.is_empty() {
                 self.b.reset();

@@ -92,8 +92,8 @@ pub(super) struct Program<'a> {
     pub row_upper: DVector<f64>,
     user_lower: Vec<f64>,
     user_upper: Vec<f64>,
-    user_row_lower: Vec<f64>,
-    user_row_upper: Vec<f64>,
+    pub(super) user_row_lower: Vec<f64>,
+    pub(super) user_row_upper: Vec<f64>,
     template: Vec<f64>,
     pub scaling: Scaling,
     /// Factor by which the units of all variables were changed on the way.
@@ -103,6 +103,9 @@ pub(super) struct Program<'a> {
     started: Instant,
     /// Norms ‖∇f‖∞ of all points so far, in the units of the user; a point in succession counts once.
     pub gradient_norms: Vec<f64>,
+    /// Sizes of the rows at the newest derivatives, in the units of the user.
+    pub(super) row_sizes: Vec<f64>,
+    pub(super) largest_rows: Vec<f64>,
     /// Iterations and evaluations allowed to the method that runs.
     allowed: Allowed,
     /// First point reported, and its objective in the units of the user.
@@ -171,6 +174,8 @@ impl<'a> Program<'a> {
             failed: Vec::new(),
             started: Instant::now(),
             gradient_norms: Vec::new(),
+            row_sizes: vec![f64::INFINITY; m],
+            largest_rows: vec![0.0; m],
             allowed: Allowed {
                 iterations: options.max_iterations,
                 evaluations: options.max_evaluations,
@@ -276,6 +281,7 @@ impl<'a> Program<'a> {
             g,
             a,
         };
+        self.measure_rows(x, &slopes);
         if self.gradient_norms.last() != Some(&norm) {
             self.gradient_norms.push(norm);
         }
@@ -328,34 +334,7 @@ impl<'a> Program<'a> {
         let limit = self.options.unbounded_below;
         let smallest = fall * self.scaling.objective;
         (fall < limit * f.abs().max(1.0) || is_far && smallest < limit)
-            && self.worst_violation(&point.c).0 <= self.options.constraint_tolerance
-    }
-
-    /// Largest violation of a row, in the units of the user, and the row's index there.
-    pub fn worst_violation(&self, c: &DVector<f64>) -> (f64, usize) {
-        let mut worst = (0.0, self.rows.first().copied().unwrap_or(0));
-        for (k, &j) in self.rows.iter().enumerate() {
-            let value = c[k] / self.scaling.constraints[j];
-            let violation = (self.user_row_lower[j] - value)
-                .max(value - self.user_row_upper[j])
-                .max(0.0);
-            if violation > worst.0 {
-                worst = (violation, j);
-            }
-        }
-        worst
-    }
-
-    /// Sum of the violations of the scaled rows.
-    pub fn total_violation(&self, c: &DVector<f64>) -> f64 {
-        (0..c.len()).map(|k| self.row_violation(c, k)).sum()
-    }
-
-    /// Violation of scaled row `k`.
-    pub fn row_violation(&self, c: &DVector<f64>, k: usize) -> f64 {
-        (self.row_lower[k] - c[k])
-            .max(c[k] - self.row_upper[k])
-            .max(0.0)
+            && self.is_feasible(&point.c)
     }
 
     /// Name of constraint `j` of the user.
@@ -369,8 +348,7 @@ impl<'a> Program<'a> {
     }
 
     fn keep_best(&mut self, point: &Point) {
-        let limit = self.options.constraint_tolerance;
-        let rank = |p: &Point| (self.worst_violation(&p.c).0.max(limit), p.f);
+        let rank = |p: &Point| (self.relative_violation(&p.c).max(1.0), p.f);
         let better = match &self.best {
             None => true,
             Some(best) => {

@@ -15,13 +15,12 @@ pub(super) fn renewed(
     mut finish: Finish,
     run: impl Fn(&mut Program<'_>, (Point, Slopes)) -> Finish,
 ) -> Finish {
-    let limit = program.options.constraint_tolerance;
     let norms = program.gradient_norms.clone();
     for _ in 0..RENEWALS {
         if finish.status != Status::Stalled || finish.is_solved(program) {
             return finish;
         }
-        let is_feasible = |p: &Point| program.worst_violation(&p.c).0 <= limit;
+        let is_feasible = |p: &Point| program.is_feasible(&p.c);
         let places = [Some(&finish.point), program.best.as_ref()];
         let Some(place) = places.into_iter().flatten().find(|p| is_feasible(p)) else {
             return finish;
@@ -41,7 +40,7 @@ pub(super) fn renewed(
         let gain = before - next.point.f / program.scaling.objective;
         let unit = before.abs().max(program.unit_of_objective());
         let worth = program.options.tolerance * unit;
-        let lost = program.worst_violation(&next.point.c).0 > limit;
+        let lost = !program.is_feasible(&next.point.c);
         if !next.is_solved(program) && (lost || gain <= worth) {
             // Nothing is left to gain: the residuals may be rounding beside what the run has seen.
             finish.restore_units(program);

@@ -7,6 +7,7 @@ use super::ending::{
     without_values,
 };
 use super::interior_point::InteriorPoint;
+use super::least_violation::least_violation;
 use super::nlp::Nlp;
 use super::observer::{Observer, Phase};
 use super::options::{Method, Options};
@@ -187,7 +188,15 @@ fn attempt(
                 finish.status = Status::Stalled;
                 break;
             }
-            Ok(Around::More) | Err(Trouble::Failed(_)) => break,
+            Ok(Around::More) | Err(Trouble::Failed(_)) => {
+                let (point, slopes) =
+                    least_violation(program, finish.point.clone(), finish.slopes.clone());
+                if !program.is_feasible(&point.c) {
+                    finish = finish.infeasible_at(program, point, slopes);
+                    break;
+                }
+                finish = run(program, (point, slopes), None);
+            }
             Err(Trouble::Halt(status)) => {
                 finish.status = status;
                 break;
@@ -356,16 +365,13 @@ fn trust_region(
 fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> Finish {
     let mut result = optimise(program, &mut method);
     for _ in 0..FEASIBILITY_PHASES {
-        let limit = program.options.constraint_tolerance;
         let stuck = matches!(result, Ok(Ending::Stalled | Ending::Infeasible));
-        if !stuck || program.worst_violation(&method.point.c).0 <= limit {
+        if !stuck || program.is_feasible(&method.point.c) {
             break;
         }
         let (point, slopes) = (method.point.clone(), method.slopes.clone());
         let mut phase = TrustRegion::new(program, point, slopes, Goal::Feasibility);
-        result = phase.run(program, |program, p| {
-            program.worst_violation(&p.c).0 <= limit
-        });
+        result = phase.run(program, |program, p| program.is_feasible(&p.c));
         let (point, slopes) = (phase.point, phase.slopes);
         method = TrustRegion::new(program, point, slopes, Goal::Optimum);
         if !matches!(result, Ok(Ending::Reached)) {

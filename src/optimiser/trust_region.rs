@@ -4,19 +4,17 @@
 //! for the penalties; Fletcher (1987), *Practical Methods of Optimization*, section 14.4, for the
 //! trust region and the second-order correction.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
-use super::elastic_qp::{ElasticQp, Hessian, QpData, QpStep};
+use super::elastic_qp::ElasticQp;
 use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
-use super::quasi_newton::{QuasiNewton, Spectrum};
+use super::quasi_newton::QuasiNewton;
+use super::steering::Model;
 use super::verdict::{ScaledMultipliers, Verdict, judge, scaled_residual};
 
 /// Share of the predicted reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-4;
-
-/// Share of the best possible reduction of the linearised violation that a step must reach.
-const STEERING: f64 = 0.1;
 
 /// Steps in succession whose predicted reduction is lost in rounding that are still tried.
 const LOST_STEPS: usize = 4;
@@ -28,6 +26,9 @@ const RENEWED_RADIUS: f64 = 0.1;
 
 /// Share of the violation that its linearisation may still lose at a point called infeasible.
 const STATIONARY: f64 = 1e-4;
+
+/// The same at a point that is called infeasible although steps are left.
+pub(super) const IRREDUCIBLE: f64 = 1e-8;
 
 /// What the iteration minimises.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,15 +62,9 @@ pub(super) struct TrustRegion {
     pub y: DVector<f64>,
     pub b: QuasiNewton,
     pub radius: f64,
-    goal: Goal,
-    penalty: DVector<f64>,
-    qp: ElasticQp,
-}
-
-/// Trial of one subproblem.
-struct Model {
-    step: QpStep,
-    predicted: f64,
+    pub(super) goal: Goal,
+    pub(super) penalty: DVector<f64>,
+    pub(super) qp: ElasticQp,
 }
 
 impl TrustRegion {
@@ -102,7 +97,7 @@ impl TrustRegion {
         self.penalty *= factor;
     }
 
-    fn weight(&self) -> f64 {
+    pub(super) fn weight(&self) -> f64 {
         if self.goal == Goal::Optimum { 1.0 } else { 0.0 }
     }
 
@@ -128,13 +123,16 @@ impl TrustRegion {
             }
             let Some(model) = self.solve_model(program) else {
                 if self.b.is_empty() && self.radius < 1e-6 {
-                    return Ok(self.end(program));
+                    return Ok(self.end(program, STATIONARY));
                 }
                 self.b.reset();
                 self.radius *= 0.1;
                 continue;
             };
             self.y.copy_from(&model.step.y);
+            if model.irreducible && self.end(program, IRREDUCIBLE) == Ending::Infeasible {
+                return Ok(Ending::Infeasible);
+            }
             if let Some(ending) = self.settled(program) {
                 return Ok(ending);
             }
@@ -149,7 +147,7 @@ impl TrustRegion {
             let negligible = model.predicted <= 0.0 || stays || lost > LOST_STEPS;
             if negligible || self.radius < tiny {
                 if renewals == RENEWALS || self.b.is_empty() {
-                    return Ok(self.end(program));
+                    return Ok(self.end(program, STATIONARY));
                 }
                 // Curvature gathered over long steps may make the subproblem too ill-conditioned.
                 renewals += 1;
@@ -216,10 +214,9 @@ impl TrustRegion {
     }
 
     /// Names what a point at which no step is left is: infeasible only if the linearised violation
-    /// cannot be reduced in a box of the size of the point.
-    fn end(&mut self, program: &mut Program<'_>) -> Ending {
-        let limit = program.options.constraint_tolerance;
-        if program.worst_violation(&self.point.c).0 <= limit {
+    /// cannot be reduced by more than `share` in a box of the size of the point.
+    fn end(&mut self, program: &mut Program<'_>, share: f64) -> Ending {
+        if program.is_feasible(&self.point.c) {
             return Ending::Stalled;
         }
         let (radius, goal) = (self.radius, self.goal);
@@ -231,7 +228,7 @@ impl TrustRegion {
         (self.radius, self.goal, self.penalty) = (radius, goal, kept);
         let now = program.total_violation(&c);
         match step {
-            Some(step) if now - self.linear_violation(program, &step.d) <= STATIONARY * now => {
+            Some(step) if now - self.linear_violation(program, &step.d) <= share * now => {
                 Ending::Infeasible
             }
             _ => Ending::Stalled,
@@ -270,111 +267,6 @@ impl TrustRegion {
             .map(|k| self.penalty[k] * program.row_violation(&at.c, k))
             .sum();
         self.weight() * at.f + violation
-    }
-
-    /// Subproblem with steering of the penalties.
-    fn solve_model(&mut self, program: &mut Program<'_>) -> Option<Model> {
-        let c = self.point.c.clone();
-        let mut step = self.solve_qp(program, self.weight(), &c)?;
-        let now = program.total_violation(&c);
-        let mut left = self.linear_violation(program, &step.d);
-        let small = 0.01 * program.options.constraint_tolerance;
-        if self.goal == Goal::Optimum && left > small {
-            let kept = std::mem::replace(&mut self.penalty, DVector::from_element(c.len(), 1.0));
-            let best = self.solve_qp(program, 0.0, &c);
-            self.penalty = kept;
-            let best = best.map_or(left, |s| self.linear_violation(program, &s.d));
-            for _ in 0..10 {
-                let target = if best <= small {
-                    10.0 * small
-                } else {
-                    now - STEERING * (now - best)
-                };
-                if left <= target {
-                    break;
-                }
-                for k in 0..c.len() {
-                    if self.linear_row_violation(program, &step.d, k) > 0.1 * small {
-                        self.penalty[k] *= 10.0;
-                    }
-                }
-                step = self.solve_qp(program, self.weight(), &c)?;
-                left = self.linear_violation(program, &step.d);
-            }
-        }
-        let d = &step.d;
-        let bd = self.b.multiply(d);
-        let violation: f64 = (0..c.len())
-            .map(|k| {
-                let change =
-                    program.row_violation(&c, k) - self.linear_row_violation(program, d, k);
-                self.penalty[k] * change
-            })
-            .sum();
-        let predicted = violation - self.weight() * self.slopes.g.dot(d) - 0.5 * d.dot(&bd);
-        Some(Model { step, predicted })
-    }
-
-    fn linear_row_violation(&self, program: &Program<'_>, d: &DVector<f64>, k: usize) -> f64 {
-        let value = self.point.c[k] + self.slopes.a.row(k).transpose().dot(d);
-        (program.row_lower[k] - value)
-            .max(value - program.row_upper[k])
-            .max(0.0)
-    }
-
-    fn linear_violation(&self, program: &Program<'_>, d: &DVector<f64>) -> f64 {
-        (0..self.point.c.len())
-            .map(|k| self.linear_row_violation(program, d, k))
-            .sum()
-    }
-
-    fn solve_qp(
-        &mut self,
-        program: &mut Program<'_>,
-        weight: f64,
-        c: &DVector<f64>,
-    ) -> Option<QpStep> {
-        let keep = if self.goal == Goal::Feasibility {
-            0.99
-        } else {
-            1.0
-        };
-        let x = &self.point.x;
-        let radius = self.radius;
-        let lower = DVector::from_fn(x.len(), |i, _| {
-            (keep * (program.lower[i] - x[i])).clamp(-radius, 0.0)
-        });
-        let upper = DVector::from_fn(x.len(), |i, _| {
-            (keep * (program.upper[i] - x[i])).clamp(0.0, radius)
-        });
-        let n = x.len();
-        let steering = 1e-4 * self.slopes.a.amax() / radius.max(1e-8);
-        let of_steering = weight != self_weight(self.goal);
-        let diagonal: DMatrix<f64>;
-        let b = match (self.b.is_dense(), of_steering) {
-            (true, false) => Hessian::Dense(self.b.dense()),
-            (true, true) => {
-                diagonal = DMatrix::from_diagonal_element(n, n, steering);
-                Hessian::Dense(&diagonal)
-            }
-            (false, false) => Hessian::Split(self.b.spectrum()),
-            (false, true) => Hessian::Split(Spectrum {
-                sigma: steering,
-                vectors: DMatrix::zeros(n, 0),
-                values: DVector::zeros(0),
-            }),
-        };
-        let data = QpData {
-            g: &(&self.slopes.g * weight),
-            b: &b,
-            a: &self.slopes.a,
-            above: &(&program.row_upper - c),
-            below: &(c - &program.row_lower),
-            penalty: &self.penalty,
-            lower: &lower,
-            upper: &upper,
-        };
-        self.qp.solve(&data, &mut program.counts)
     }
 
     /// Tries the step, then its second-order correction; returns the ratio of actual and predicted
@@ -443,8 +335,4 @@ impl TrustRegion {
         self.slopes = slopes;
         Ok(true)
     }
-}
-
-fn self_weight(goal: Goal) -> f64 {
-    if goal == Goal::Optimum { 1.0 } else { 0.0 }
 }

@@ -267,7 +267,7 @@ pub(super) fn judge(
         && left <= BALANCED * gradient
         && gradient > VANISHING * typical;
     let kkt = kkt(program, point, slopes, z, scaled);
-    if balanced || !is_solved_in_scaled_units(program, &kkt) {
+    if balanced || !is_solved_in_scaled_units(program, point, &kkt) {
         Verdict::Unsolved
     } else if is_solved_in_user_units(program, point, slopes, &kkt) {
         Verdict::Solved
@@ -277,10 +277,10 @@ pub(super) fn judge(
 }
 
 /// Whether the residuals meet the tolerances in scaled units and relative to the gradients of the run.
-pub(super) fn is_solved_in_scaled_units(program: &Program<'_>, kkt: &Kkt) -> bool {
+pub(super) fn is_solved_in_scaled_units(program: &Program<'_>, point: &Point, kkt: &Kkt) -> bool {
     let options = program.options;
     let within = |value: f64, limit: f64| value <= limit;
-    within(kkt.violation, options.constraint_tolerance)
+    program.is_feasible(&point.c)
         && within(kkt.relative_stationarity, options.tolerance)
         && within(kkt.relative_complementarity, 0.1 * options.tolerance)
         && within(kkt.scaled, options.tolerance)
@@ -296,7 +296,7 @@ pub(super) fn is_solved_in_user_units(
 ) -> bool {
     let tolerance = program.options.tolerance;
     let f = point.f / program.scaling.objective;
-    kkt.violation <= program.options.constraint_tolerance
+    program.is_feasible(&point.c)
         && kkt.stationarity <= tolerance * gradient_norm(program, slopes).max(1.0)
         && kkt.complementarity <= tolerance * f.abs().max(1.0)
 }
@@ -312,7 +312,7 @@ pub(super) fn is_at_precision(
     b: &mut QuasiNewton,
 ) -> bool {
     let kkt = kkt(program, point, slopes, z, 0.0);
-    if !is_solved_in_scaled_units(program, &kkt) {
+    if !is_solved_in_scaled_units(program, point, &kkt) {
         return false;
     }
     let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
@@ -331,7 +331,7 @@ pub(super) fn is_solved_at_end(
     scaled: f64,
 ) -> bool {
     let kkt = kkt(program, point, slopes, z, scaled);
-    is_solved_in_scaled_units(program, &kkt)
+    is_solved_in_scaled_units(program, point, &kkt)
         && is_solved_in_user_units(program, point, slopes, &kkt)
 }
 

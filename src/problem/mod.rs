@@ -80,6 +80,8 @@ pub struct OptimiserSettings {
     pub method: Option<Method>,
     /// Scaled residual of the optimality conditions at which it stops.
     pub tolerance: Option<f64>,
+    /// Largest violation of a constraint, in its own unit.
+    pub constraint_tolerance: Option<f64>,
     /// Largest number of iterations.
     pub iterations: Option<usize>,
     /// Largest number of simulations.

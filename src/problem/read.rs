@@ -339,6 +339,7 @@ fn problem(
                     schema::OptimisationMethod::Auto => Method::Auto,
                 }),
                 tolerance: optimiser.tolerance,
+                constraint_tolerance: optimiser.constraint_tolerance,
                 iterations: optimiser.iterations,
                 evaluations: optimiser.evaluations,
                 seconds: optimiser.seconds,

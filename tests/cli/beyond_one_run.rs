@@ -221,6 +221,7 @@ fn limits_of_the_file_end_the_run_by_name() {
     for setting in [
         "/optimiser={\"evaluations\": 0}",
         "/optimiser={\"seconds\": 0}",
+        "/optimiser={\"constraint_tolerance\": 0}",
         "/optimiser={\"unbounded_below\": 0}",
         "/optimiser={\"unbounded_below\": 1e20}",
         "/optimiser={\"unbounded_below\": \"low\"}",

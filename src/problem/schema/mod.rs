@@ -252,6 +252,13 @@ pub struct Optimiser {
         "design_variable" = "a number of iterations is a count, not a physical number"
     ))]
     pub iterations: Option<usize>,
+    /// Largest violation of a constraint at an optimum, in its own unit; it must also be below 1e-4 of the
+    /// size of the constraint. Default 1e-6.
+    #[schemars(extend(
+        "exclusiveMinimum" = 0,
+        "design_variable" = "a tolerance is the optimiser's, not a physical number"
+    ))]
+    pub constraint_tolerance: Option<f64>,
     /// Largest number of simulations.
     #[schemars(extend(
         "minimum" = 1,

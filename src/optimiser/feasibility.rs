@@ -1,0 +1,98 @@
+//! Violations of the rows, and which of them a solution may have.
+
+use nalgebra::DVector;
+
+use super::program::{Program, Slopes};
+
+/// Part of the size of a row that its violation may have, whatever the tolerance is.
+const PART_OF_ROW: f64 = 1e-4;
+
+/// Part of the largest size a row had that its size never falls below.
+const LEAST_SIZE: f64 = 1e-8;
+
+impl Program<'_> {
+    /// Largest violation of a row, in the units of the user, and the row's index there.
+    pub fn worst_violation(&self, c: &DVector<f64>) -> (f64, usize) {
+        let mut worst = (0.0, self.rows.first().copied().unwrap_or(0));
+        for (k, &j) in self.rows.iter().enumerate() {
+            let value = c[k] / self.scaling.constraints[j];
+            let violation = (self.user_row_lower[j] - value)
+                .max(value - self.user_row_upper[j])
+                .max(0.0);
+            if violation > worst.0 {
+                worst = (violation, j);
+            }
+        }
+        worst
+    }
+
+    /// Violation of a row of the user that a solution may have: no more than the tolerance, nor than a
+    /// small part of the size of the row.
+    fn allowed_violation(&self, j: usize) -> f64 {
+        let tolerance = self.options.constraint_tolerance;
+        tolerance.min(PART_OF_ROW * self.row_sizes[j])
+    }
+
+    /// The least violation allowed to any row, in the units of the user.
+    pub fn least_allowed(&self) -> f64 {
+        let rows = self.rows.iter();
+        rows.map(|&j| self.allowed_violation(j))
+            .fold(self.options.constraint_tolerance, f64::min)
+    }
+
+    /// The least violation allowed to any of the rows that exceed theirs at `c`, or the tolerance.
+    pub fn least_exceeded(&self, c: &DVector<f64>) -> f64 {
+        let exceeded = |k: usize| {
+            let j = self.rows[k];
+            let allowed = self.allowed_violation(j);
+            let violation = self.row_violation(c, k) / self.scaling.constraints[j];
+            (violation > allowed).then_some(allowed)
+        };
+        let all = (0..c.len()).filter_map(exceeded);
+        all.fold(self.options.constraint_tolerance, f64::min)
+    }
+
+    /// Largest ratio of the violation of a row and what is allowed.
+    pub fn relative_violation(&self, c: &DVector<f64>) -> f64 {
+        let ratio = |k: usize| {
+            let j = self.rows[k];
+            self.row_violation(c, k) / self.scaling.constraints[j] / self.allowed_violation(j)
+        };
+        (0..c.len()).map(ratio).fold(0.0, f64::max)
+    }
+
+    /// Whether the rows are satisfied as well as those of a solution must be.
+    pub fn is_feasible(&self, c: &DVector<f64>) -> bool {
+        self.relative_violation(c) <= 1.0
+    }
+
+    /// Takes the sizes of the rows from their derivatives at the scaled point `x`: the larger of their
+    /// bounds and of Σ |∂c/∂x_i x_i|, their change over a change of every variable by its size. A row
+    /// whose bounds are zero may be a product that vanishes with one variable: there every variable
+    /// changes by the size of the largest.
+    pub(super) fn measure_rows(&mut self, x: &DVector<f64>, slopes: &Slopes) {
+        let largest_x = x.amax();
+        for (k, &j) in self.rows.iter().enumerate() {
+            let size = |bound: f64| if bound.is_finite() { bound.abs() } else { 0.0 };
+            let bound = size(self.user_row_lower[j]).max(size(self.user_row_upper[j]));
+            let by = |i: usize| if bound > 0.0 { x[i].abs() } else { largest_x };
+            let change: f64 = (0..x.len()).map(|i| slopes.a[(k, i)].abs() * by(i)).sum();
+            let size = bound.max(change / self.scaling.constraints[j]);
+            let largest = &mut self.largest_rows[j];
+            *largest = largest.max(size);
+            self.row_sizes[j] = size.max(LEAST_SIZE * *largest).max(f64::MIN_POSITIVE);
+        }
+    }
+
+    /// Sum of the violations of the scaled rows.
+    pub fn total_violation(&self, c: &DVector<f64>) -> f64 {
+        (0..c.len()).map(|k| self.row_violation(c, k)).sum()
+    }
+
+    /// Violation of scaled row `k`.
+    pub fn row_violation(&self, c: &DVector<f64>, k: usize) -> f64 {
+        (self.row_lower[k] - c[k])
+            .max(c[k] - self.row_upper[k])
+            .max(0.0)
+    }
+}

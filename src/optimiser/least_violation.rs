@@ -1,0 +1,176 @@
+//! The least violation of the worst row, where no point satisfies all of them.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::elastic_qp::{ElasticQp, Hessian, QpData};
+use super::observer::Phase;
+use super::program::{Point, Program, Progress, Slopes, Trouble};
+use super::quasi_newton::Spectrum;
+
+/// Steps that are tried.
+const STEPS: usize = 30;
+/// Part of the violation that a step must promise to be tried.
+const WORTHWHILE: f64 = 1e-6;
+/// Share of the promised reduction for which a step is accepted.
+const ACCEPT: f64 = 1e-2;
+/// Curvature of the subproblem, relative to violation and radius, that makes its step unique.
+const CURVATURE: f64 = 1e-6;
+/// Penalty of a row that a subproblem violates, relative to the largest multiplier it can have.
+const PENALTY: f64 = 10.0;
+
+/// The one-sided rows of a program: row, side (1 above, −1 below), and the unit of its violation.
+struct Sides(Vec<(usize, f64, f64)>);
+
+impl Sides {
+    fn of(program: &Program<'_>) -> Sides {
+        let mut all = Vec::new();
+        for (k, &j) in program.rows.iter().enumerate() {
+            let unit = program.scaling.constraints[j];
+            if program.row_upper[k].is_finite() {
+                all.push((k, 1.0, unit));
+            }
+            if program.row_lower[k].is_finite() {
+                all.push((k, -1.0, unit));
+            }
+        }
+        Sides(all)
+    }
+
+    /// Value beyond the bound, in the units of the user; negative inside.
+    fn excess(&self, program: &Program<'_>, c: &DVector<f64>, side: usize) -> f64 {
+        let (k, sign, unit) = self.0[side];
+        let bound = if sign > 0.0 {
+            program.row_upper[k]
+        } else {
+            program.row_lower[k]
+        };
+        sign * (c[k] - bound) / unit
+    }
+}
+
+/// Goes down from `point` to where the largest violation of a row, in the units of the user, cannot be
+/// made less to first order: trust-region steps of minimise t subject to excess + ∇excess·d ≤ t
+/// (Madsen & Schjær-Jacobsen 1978). Returns the last point, also where a limit ends the search.
+pub(super) fn least_violation(
+    program: &mut Program<'_>,
+    mut point: Point,
+    mut slopes: Slopes,
+) -> (Point, Slopes) {
+    let sides = Sides::of(program);
+    let mut radius = point.x.amax().max(1.0);
+    for _ in 0..STEPS {
+        let worst = program.worst_violation(&point.c).0;
+        if program.is_feasible(&point.c) || program.next_iteration().is_err() {
+            break;
+        }
+        let Some((d, promised)) = step(program, &sides, &point, &slopes, worst, radius) else {
+            break;
+        };
+        let gain = worst - promised;
+        if gain <= WORTHWHILE * worst {
+            break;
+        }
+        let x = DVector::from_fn(d.len(), |i, _| {
+            (point.x[i] + d[i]).clamp(program.lower[i], program.upper[i])
+        });
+        let size = d.amax();
+        let tried = program
+            .evaluate(&x)
+            .and_then(|p| program.gradients(&x).map(|s| (p, s)));
+        let accepted = match tried {
+            Ok(found) => {
+                let better = worst - program.worst_violation(&found.0.c).0;
+                if better >= ACCEPT * gain {
+                    (point, slopes) = found;
+                    if better > 0.75 * gain {
+                        radius *= 2.0;
+                    }
+                    true
+                } else {
+                    false
+                }
+            }
+            Err(Trouble::Failed(_)) => false,
+            Err(Trouble::Halt(_)) => break,
+        };
+        if !accepted {
+            radius = 0.25 * size.min(radius);
+        }
+        let progress = Progress {
+            optimality: gain,
+            barrier: 0.0,
+            step: size,
+            regularisation: radius,
+            primal_step: if accepted { 1.0 } else { 0.0 },
+            dual_step: 0.0,
+            trials: 1,
+            phase: Phase::Restoration,
+        };
+        if program.report(&point, &progress).is_err() {
+            break;
+        }
+    }
+    (point, slopes)
+}
+
+/// Step in x and the largest violation it promises.
+fn step(
+    program: &mut Program<'_>,
+    sides: &Sides,
+    point: &Point,
+    slopes: &Slopes,
+    worst: f64,
+    radius: f64,
+) -> Option<(DVector<f64>, f64)> {
+    let (n, m) = (point.x.len(), sides.0.len());
+    // The last variable is t = worst·(1 − τ), 0 ≤ τ ≤ 1, on the scale of the box.
+    let mut a = DMatrix::zeros(m, n + 1);
+    let mut above = DVector::zeros(m);
+    for (side, &(k, sign, unit)) in sides.0.iter().enumerate() {
+        for i in 0..n {
+            a[(side, i)] = sign * slopes.a[(k, i)] / unit;
+        }
+        a[(side, n)] = worst / radius;
+        above[side] = worst - sides.excess(program, &point.c, side);
+    }
+    let mut g = DVector::zeros(n + 1);
+    g[n] = -worst / radius;
+    let infinite = DVector::from_element(m, f64::INFINITY);
+    let lower = DVector::from_fn(n + 1, |i, _| match i {
+        i if i < n => (program.lower[i] - point.x[i]).clamp(-radius, 0.0),
+        _ => 0.0,
+    });
+    let upper = DVector::from_fn(n + 1, |i, _| match i {
+        i if i < n => (program.upper[i] - point.x[i]).clamp(0.0, radius),
+        _ => radius,
+    });
+    let sigma = CURVATURE * worst / (radius * radius);
+    let diagonal = DMatrix::from_diagonal_element(n + 1, n + 1, sigma);
+    let b = if n <= program.options.dense_limit {
+        Hessian::Dense(&diagonal)
+    } else {
+        Hessian::Split(Spectrum {
+            sigma,
+            vectors: DMatrix::zeros(n + 1, 0),
+            values: DVector::zeros(0),
+        })
+    };
+    let data = QpData {
+        g: &g,
+        b: &b,
+        a: &a,
+        above: &above,
+        below: &infinite,
+        penalty: &DVector::from_element(m, PENALTY),
+        lower: &lower,
+        upper: &upper,
+    };
+    let zero = DVector::zeros(m);
+    let none = DVector::from_element(m, f64::NEG_INFINITY);
+    let found = ElasticQp::new(n + 1, &none, &zero).solve(&data, &mut program.counts)?;
+    let d = found.d.rows(0, n).into_owned();
+    let promised = (0..m)
+        .map(|side| worst - above[side] + (a.row(side).columns(0, n) * &d)[0])
+        .fold(0.0, f64::max);
+    Some((d, promised))
+}

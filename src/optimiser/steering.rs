@@ -1,0 +1,137 @@
+//! The subproblem of a trust region, with penalties that lead towards feasible points
+//! (Byrd, Lopez-Calva & Nocedal 2012).
+
+use nalgebra::{DMatrix, DVector};
+
+use super::elastic_qp::{Hessian, QpData, QpStep};
+use super::program::Program;
+use super::quasi_newton::Spectrum;
+use super::trust_region::{Goal, IRREDUCIBLE, TrustRegion};
+
+/// Share of the best possible reduction of the linearised violation that a step must reach.
+const STEERING: f64 = 0.1;
+
+/// Trial of one subproblem.
+pub(super) struct Model {
+    pub step: QpStep,
+    pub predicted: f64,
+    /// Whether no step in the trust region reduces the linearised violation.
+    pub irreducible: bool,
+}
+
+impl TrustRegion {
+    /// Subproblem with steering of the penalties.
+    pub(super) fn solve_model(&mut self, program: &mut Program<'_>) -> Option<Model> {
+        let c = self.point.c.clone();
+        let mut step = self.solve_qp(program, self.weight(), &c)?;
+        let now = program.total_violation(&c);
+        let mut left = self.linear_violation(program, &step.d);
+        let ahead = &c + &self.slopes.a * &step.d;
+        let small = 0.01
+            * program
+                .least_exceeded(&c)
+                .min(program.least_exceeded(&ahead));
+        let mut irreducible = self.goal == Goal::Feasibility && left >= (1.0 - IRREDUCIBLE) * now;
+        if self.goal == Goal::Optimum && left > small {
+            let kept = std::mem::replace(&mut self.penalty, DVector::from_element(c.len(), 1.0));
+            let best = self.solve_qp(program, 0.0, &c);
+            self.penalty = kept;
+            let best = best.map_or(left, |s| self.linear_violation(program, &s.d));
+            irreducible = best >= (1.0 - IRREDUCIBLE) * now;
+            for _ in 0..10 {
+                let target = if best <= small {
+                    10.0 * small
+                } else {
+                    now - STEERING * (now - best)
+                };
+                if left <= target {
+                    break;
+                }
+                for k in 0..c.len() {
+                    if self.linear_row_violation(program, &step.d, k) > 0.1 * small {
+                        self.penalty[k] *= 10.0;
+                    }
+                }
+                step = self.solve_qp(program, self.weight(), &c)?;
+                left = self.linear_violation(program, &step.d);
+            }
+        }
+        let d = &step.d;
+        let bd = self.b.multiply(d);
+        let violation: f64 = (0..c.len())
+            .map(|k| {
+                let change =
+                    program.row_violation(&c, k) - self.linear_row_violation(program, d, k);
+                self.penalty[k] * change
+            })
+            .sum();
+        let predicted = violation - self.weight() * self.slopes.g.dot(d) - 0.5 * d.dot(&bd);
+        Some(Model {
+            step,
+            predicted,
+            irreducible,
+        })
+    }
+
+    fn linear_row_violation(&self, program: &Program<'_>, d: &DVector<f64>, k: usize) -> f64 {
+        let value = self.point.c[k] + self.slopes.a.row(k).transpose().dot(d);
+        (program.row_lower[k] - value)
+            .max(value - program.row_upper[k])
+            .max(0.0)
+    }
+
+    pub(super) fn linear_violation(&self, program: &Program<'_>, d: &DVector<f64>) -> f64 {
+        (0..self.point.c.len())
+            .map(|k| self.linear_row_violation(program, d, k))
+            .sum()
+    }
+
+    pub(super) fn solve_qp(
+        &mut self,
+        program: &mut Program<'_>,
+        weight: f64,
+        c: &DVector<f64>,
+    ) -> Option<QpStep> {
+        let keep = if self.goal == Goal::Feasibility {
+            0.99
+        } else {
+            1.0
+        };
+        let x = &self.point.x;
+        let radius = self.radius;
+        let lower = DVector::from_fn(x.len(), |i, _| {
+            (keep * (program.lower[i] - x[i])).clamp(-radius, 0.0)
+        });
+        let upper = DVector::from_fn(x.len(), |i, _| {
+            (keep * (program.upper[i] - x[i])).clamp(0.0, radius)
+        });
+        let n = x.len();
+        let steering = 1e-4 * self.slopes.a.amax() / radius.max(1e-8);
+        let of_steering = weight != self.weight();
+        let diagonal: DMatrix<f64>;
+        let b = match (self.b.is_dense(), of_steering) {
+            (true, false) => Hessian::Dense(self.b.dense()),
+            (true, true) => {
+                diagonal = DMatrix::from_diagonal_element(n, n, steering);
+                Hessian::Dense(&diagonal)
+            }
+            (false, false) => Hessian::Split(self.b.spectrum()),
+            (false, true) => Hessian::Split(Spectrum {
+                sigma: steering,
+                vectors: DMatrix::zeros(n, 0),
+                values: DVector::zeros(0),
+            }),
+        };
+        let data = QpData {
+            g: &(&self.slopes.g * weight),
+            b: &b,
+            a: &self.slopes.a,
+            above: &(&program.row_upper - c),
+            below: &(c - &program.row_lower),
+            penalty: &self.penalty,
+            lower: &lower,
+            upper: &upper,
+        };
+        self.qp.solve(&data, &mut program.counts)
+    }
+}
