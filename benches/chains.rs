@@ -85,8 +85,12 @@ fn main() -> Result<(), IntegrationFailure> {
         };
         // Equal steps, so that every length of chain does the same work a step.
         let steps = 40;
-        for (name, method, duration) in [("dop853", Method::Dop853, 0.1), ("bdf2, 1 ms", bdf, 0.04)]
-        {
+        let radau = Method::Radau { stages: 3 };
+        for (name, method, duration) in [
+            ("dop853", Method::Dop853, 0.1),
+            ("bdf2, 1 ms", bdf, 0.04),
+            ("radau3, 1 ms", radau, 0.04),
+        ] {
             let mut problem = problem(bars, duration);
             problem.simulation.spacing = Spacing::Steps(steps);
             problem.simulation.method = Some(method);

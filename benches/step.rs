@@ -35,7 +35,8 @@ impl Halted {
         let Tape::Implicit(tape) = &run.tape else {
             unreachable!("BDF is an implicit method");
         };
-        let stage = tape.steps[tape.steps.len() / 2][0].clone();
+        let mut stage = Stage::zero(&run.numbering);
+        tape.read_end(tape.steps() / 2, &mut stage);
         Self {
             model: case.scene.model,
             run,

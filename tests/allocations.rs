@@ -1,10 +1,10 @@
-//! The time loop of the explicit method allocates nothing, forwards and backwards: runs of n and of
-//! 2 n kept steps make as many allocations, as their history is given room before.
+//! The time loops allocate nothing, forwards and backwards: runs of n and of 2 n kept steps make as many
+//! allocations, as their history is given room before.
 
 use dhat::HeapStats;
 use flexbody::adjoint::gradients;
 use flexbody::functions::Scene;
-use flexbody::integrate::{Method, Samples, Settings, simulate};
+use flexbody::integrate::{Grid, Method, Samples, Settings, Spacing, Start, simulate};
 use flexbody::problem::Problem;
 use std::path::Path;
 use std::sync::{Mutex, OnceLock};
@@ -33,38 +33,113 @@ fn scene(path: &str) -> Scene<f64> {
     problem.scene(&problem.start())
 }
 
-/// Allocations of a run of so many steps and of its adjoint, samples between the steps included.
-fn of_steps(scene: &Scene<f64>, duration: f64, steps: usize, keep_stages: bool) -> [u64; 2] {
-    let mut settings = Settings::steps(Method::Dop853, steps);
-    settings.samples = Samples::Uniform(3 * steps);
-    settings.keep_stages = keep_stages;
+/// Allocations of a run and of its adjoint, samples between the steps included, and its steps.
+fn of_run(scene: &Scene<f64>, duration: f64, settings: &Settings) -> ([u64; 2], Grid) {
     let mut run = None;
     let forwards = allocations(|| {
-        run = Some(simulate(&scene.model, duration, &settings).expect("runs"));
+        run = Some(simulate(&scene.model, duration, settings).expect("runs"));
     });
     let run = run.expect("it ran");
     let backwards = allocations(|| gradients(scene, &run, &[0]).expect("differentiates"));
-    [forwards, backwards]
+    ([forwards, backwards], run.grid)
+}
+
+/// As [`of_run`] for so many equal steps.
+fn of_steps(scene: &Scene<f64>, duration: f64, steps: usize, method: Method) -> [u64; 2] {
+    let mut settings = Settings::steps(method, steps);
+    if method.is_adaptive() {
+        settings.samples = Samples::Uniform(3 * steps);
+    }
+    of_run(scene, duration, &settings).0
 }
 
 /// Allocations that the vectors of the backward march may differ by.
 const GROWTH: u64 = 10;
 
+/// Scenes with a tree, in a plane and in space, and with loops.
+const SCENES: [(&str, f64); 3] = [
+    ("problems/trebuchet.json", 1.0),
+    ("problems/triple_pendulum.json", 0.5),
+    ("problems/benchmarks/andrews_squeezer.json", 0.004),
+];
+
+fn assert_none(what: &str, few: [u64; 2], many: [u64; 2]) {
+    assert!(many[0] <= few[0], "{what}: forwards {few:?}, {many:?}");
+    // The vectors that are used again grow until each has had its largest size.
+    let more = many[1].saturating_sub(few[1]);
+    assert!(more <= GROWTH, "{what}: backwards {few:?}, {many:?}");
+}
+
 #[test]
-fn steps_allocate_nothing() {
+fn explicit_steps_allocate_nothing() {
     let _one = profiler().lock().expect("no test panicked");
-    for (path, duration) in [
-        ("problems/trebuchet.json", 1.0),
-        ("problems/triple_pendulum.json", 0.5),
-        ("problems/benchmarks/andrews_squeezer.json", 0.004),
-    ] {
+    for (path, duration) in SCENES {
         let scene = scene(path);
         for keep_stages in [true, false] {
-            let [few, many] = [40, 80].map(|n| of_steps(&scene, duration, n, keep_stages));
-            assert!(many[0] <= few[0], "{path}: forwards {few:?}, {many:?}");
-            // The vectors that are used again grow until each has had its largest size.
-            let more = many[1].saturating_sub(few[1]);
-            assert!(more <= GROWTH, "{path}: backwards {few:?}, {many:?}");
+            let [few, many] = [40, 80].map(|steps| {
+                let mut settings = Settings::steps(Method::Dop853, steps);
+                settings.samples = Samples::Uniform(3 * steps);
+                settings.keep_stages = keep_stages;
+                of_run(&scene, duration, &settings).0
+            });
+            assert_none(path, few, many);
         }
+    }
+}
+
+/// The implicit methods, Radau's start of a formula included.
+fn implicit() -> [Method; 5] {
+    [
+        Method::Radau { stages: 2 },
+        Method::Radau { stages: 3 },
+        Method::Bdf {
+            order: 2,
+            start: Start::RisingOrder,
+        },
+        Method::Bdf {
+            order: 4,
+            start: Start::Radau,
+        },
+        Method::GeneralisedAlpha { radius: 0.8 },
+    ]
+}
+
+#[test]
+fn implicit_steps_allocate_nothing() {
+    let _one = profiler().lock().expect("no test panicked");
+    for (path, duration) in SCENES {
+        let scene = scene(path);
+        for method in implicit() {
+            let of = |steps| of_steps(&scene, duration, steps, method);
+            assert_none(&format!("{path}, {method:?}"), of(400), of(800));
+        }
+    }
+}
+
+/// Vectors of the history, which grow with steps that are chosen on the way.
+const HISTORY: u64 = 9;
+
+#[test]
+fn steps_that_follow_the_error_allocate_their_history_only() {
+    let _one = profiler().lock().expect("no test panicked");
+    for (path, duration) in SCENES {
+        let scene = scene(path);
+        let mut settings = Settings::steps(Method::Radau { stages: 3 }, 1);
+        settings.samples = Samples::StepEnds;
+        let [few, many] = [1e-6, 1e-9].map(|tolerance| {
+            settings.spacing = Spacing::Tolerance(tolerance);
+            of_run(&scene, duration, &settings)
+        });
+        let ratio = many.1.steps() as f64 / few.1.steps() as f64;
+        assert!(ratio > 2.0, "{path}: {ratio}");
+        let doublings = ratio.log2().ceil() as u64 + 1;
+        let more = many.0[0].saturating_sub(few.0[0]);
+        assert!(more <= HISTORY * doublings, "{path}: {few:?}, {many:?}");
+        // The same steps, kept, and each of them halved.
+        let [few, many] = [few.1.halved(), few.1.halved().halved()].map(|grid| {
+            settings.spacing = Spacing::Frozen(grid);
+            of_run(&scene, duration, &settings).0
+        });
+        assert_none(path, few, many);
     }
 }

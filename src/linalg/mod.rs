@@ -2,6 +2,7 @@
 
 pub mod pattern;
 mod replay;
+mod scaling;
 pub mod sparse_lu;
 
 pub use pattern::{Emit, Pattern, SparseMatrix};

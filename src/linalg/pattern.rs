@@ -5,7 +5,6 @@
 //! adding an entry is one indexed addition. Entries at the same place add up.
 
 use crate::math::{Mat3, Scalar, Vec3};
-use std::collections::BTreeSet;
 
 /// Receives the entries of an assembly, in its fixed order.
 pub trait Emit<S: Scalar> {
@@ -48,7 +47,19 @@ pub trait Emit<S: Scalar> {
 pub struct Pattern {
     column_starts: Vec<usize>,
     rows: Vec<usize>,
-    slots: Vec<u32>,
+    record: Record,
+}
+
+/// Where the entries of an assembly go, in its order.
+#[derive(Clone, Debug)]
+enum Record {
+    /// The slot of each.
+    Whole(Vec<u32>),
+    /// Each goes to the slots between two starts, with a weight for each slot.
+    Shared {
+        starts: Vec<u32>,
+        shares: Vec<(u32, f64)>,
+    },
 }
 
 /// Collects the places that an assembly touches.
@@ -65,30 +76,59 @@ impl Pattern {
     pub fn record<S: Scalar>(n: usize, assemble: impl FnOnce(&mut dyn Emit<S>)) -> Self {
         let mut recorder = Recorder(Vec::new());
         assemble(&mut recorder);
-        let places: BTreeSet<_> = recorder.0.iter().copied().collect();
+        let (column_starts, sorted) = Self::sort(n, &recorder.0);
+        let slots = recorder.0.iter().map(|place| slot(&sorted, place));
+        Self {
+            record: Record::Whole(slots.collect()),
+            column_starts,
+            rows: sorted.into_iter().map(|(_, row)| row).collect(),
+        }
+    }
+
+    /// Records the pattern of order `n` of Bᵀ A B for an assembly of A, of which B is given by row:
+    /// `shares` are the columns of its non-zeros and these (a zero counts as none).
+    pub fn record_reduced<S: Scalar>(
+        n: usize,
+        shares: impl Fn(usize) -> [(usize, f64); 2],
+        assemble: impl FnOnce(&mut dyn Emit<S>),
+    ) -> Self {
+        let mut recorder = Recorder(Vec::new());
+        assemble(&mut recorder);
+        let (mut starts, mut places, mut weights) = (vec![0], Vec::new(), Vec::new());
+        for &(column, row) in &recorder.0 {
+            for (i, x) in shares(row) {
+                for (j, y) in shares(column) {
+                    if x * y != 0.0 {
+                        places.push((j, i));
+                        weights.push(x * y);
+                    }
+                }
+            }
+            starts.push(u32::try_from(places.len()).expect("fewer than 2^32 entries"));
+        }
+        let (column_starts, sorted) = Self::sort(n, &places);
+        let slots = places.iter().map(|place| slot(&sorted, place));
+        let shares = slots.zip(weights).collect();
+        Self {
+            record: Record::Shared { starts, shares },
+            column_starts,
+            rows: sorted.into_iter().map(|(_, row)| row).collect(),
+        }
+    }
+
+    /// Column starts, and the distinct places (column, row) in order.
+    fn sort(n: usize, places: &[(usize, usize)]) -> (Vec<usize>, Vec<(usize, usize)>) {
+        let mut sorted = places.to_vec();
+        sorted.sort_unstable();
+        sorted.dedup();
         let mut column_starts = vec![0; n + 1];
-        for &(column, _) in &places {
+        for &(column, _) in &sorted {
             column_starts[column + 1] += 1;
         }
         for j in 0..n {
             column_starts[j + 1] += column_starts[j];
         }
-        let sorted: Vec<(usize, usize)> = places.into_iter().collect();
-        let slots = recorder
-            .0
-            .iter()
-            .map(|place| {
-                let slot = sorted
-                    .binary_search(place)
-                    .expect("every place was recorded");
-                u32::try_from(slot).expect("fewer than 2^32 entries")
-            })
-            .collect();
-        Self {
-            column_starts,
-            rows: sorted.into_iter().map(|(_, row)| row).collect(),
-            slots,
-        }
+        (column_starts, sorted)
     }
 
     /// Order of the matrix.
@@ -106,10 +146,34 @@ impl Pattern {
         &self.column_starts
     }
 
+    /// Entries that stand where those of `other`, a part of this pattern, do.
+    ///
+    /// # Panics
+    /// If an entry of the other is none of this.
+    pub fn slots_of(&self, other: &Self) -> Vec<usize> {
+        let mut slots = Vec::with_capacity(other.entries());
+        for j in 0..other.order() {
+            let own = self.column_starts[j]..self.column_starts[j + 1];
+            for row in &other.rows[other.column_starts[j]..other.column_starts[j + 1]] {
+                let at = self.rows[own.clone()].binary_search(row);
+                slots.push(own.start + at.expect("the other pattern is a part of this"));
+            }
+        }
+        slots
+    }
+
     /// Row of each entry.
     pub fn rows(&self) -> &[usize] {
         &self.rows
     }
+}
+
+/// Where a place stands among those of a pattern.
+fn slot(sorted: &[(usize, usize)], place: &(usize, usize)) -> u32 {
+    let slot = sorted
+        .binary_search(place)
+        .expect("every place was recorded");
+    u32::try_from(slot).expect("fewer than 2^32 entries")
 }
 
 /// A matrix in a static pattern.
@@ -121,6 +185,7 @@ pub struct SparseMatrix<S> {
     pub values: Vec<S>,
 }
 
+/// Adds the entries to their slots.
 struct Replay<'a, S> {
     slots: std::slice::Iter<'a, u32>,
     values: &'a mut [S],
@@ -136,6 +201,24 @@ impl<S: Scalar> Emit<S> for Replay<'_, S> {
     }
 }
 
+/// Adds the entries to the slots that they have shares in.
+struct SharedReplay<'a, S> {
+    starts: &'a [u32],
+    shares: &'a [(u32, f64)],
+    next: usize,
+    values: &'a mut [S],
+}
+
+impl<S: Scalar> Emit<S> for SharedReplay<'_, S> {
+    fn add(&mut self, _: usize, _: usize, value: S) {
+        let own = self.starts[self.next] as usize..self.starts[self.next + 1] as usize;
+        for &(slot, weight) in &self.shares[own] {
+            self.values[slot as usize] += value * weight;
+        }
+        self.next += 1;
+    }
+}
+
 impl<S: Scalar> SparseMatrix<S> {
     /// A matrix of zeros.
     pub fn new(pattern: Pattern) -> Self {
@@ -146,24 +229,49 @@ impl<S: Scalar> SparseMatrix<S> {
     /// Replaces the values by those that the recorded assembly emits now.
     pub fn assemble(&mut self, assemble: impl FnOnce(&mut dyn Emit<S>)) {
         self.values.fill(S::zero());
-        let mut replay = Replay {
-            slots: self.pattern.slots.iter(),
-            values: &mut self.values,
+        let values = &mut self.values[..];
+        let whole = match &self.pattern.record {
+            Record::Whole(slots) => {
+                let slots = slots.iter();
+                let mut replay = Replay { slots, values };
+                assemble(&mut replay);
+                replay.slots.next().is_none()
+            }
+            Record::Shared { starts, shares } => {
+                let mut replay = SharedReplay {
+                    starts,
+                    shares,
+                    next: 0,
+                    values,
+                };
+                assemble(&mut replay);
+                replay.next + 1 == starts.len()
+            }
         };
-        assemble(&mut replay);
-        debug_assert!(
-            replay.slots.next().is_none(),
-            "an assembly emits as often as recorded"
-        );
+        debug_assert!(whole, "an assembly emits as often as recorded");
+    }
+
+    /// Emits every entry, moved down and to the right by `at` and scaled by `scale`.
+    pub fn emit(&self, at: (usize, usize), scale: S, emit: &mut dyn Emit<S>) {
+        let starts = self.pattern.column_starts();
+        for j in 0..self.pattern.order() {
+            for k in starts[j]..starts[j + 1] {
+                emit.add(
+                    at.0 + self.pattern.rows[k],
+                    at.1 + j,
+                    self.values[k] * scale,
+                );
+            }
+        }
     }
 
     /// The product Aᵀ x.
-    pub fn multiply_transposed(&self, x: &[S]) -> Vec<S> {
-        let column = |j: usize| self.pattern.column_starts[j]..self.pattern.column_starts[j + 1];
-        let entry = |k: usize| self.values[k] * x[self.pattern.rows[k]];
-        (0..x.len())
-            .map(|j| column(j).fold(S::zero(), |sum, k| sum + entry(k)))
-            .collect()
+    pub fn multiply_transposed(&self, x: &[S], out: &mut [S]) {
+        for (j, out) in out.iter_mut().enumerate().take(self.pattern.order()) {
+            let own = self.pattern.column_starts[j]..self.pattern.column_starts[j + 1];
+            let entries = self.values[own.clone()].iter().zip(&self.pattern.rows[own]);
+            *out = entries.fold(S::zero(), |sum, (&value, &row)| sum + value * x[row]);
+        }
     }
 
     /// The product A x.
@@ -199,5 +307,27 @@ mod tests {
             assert_eq!(y, [4.0 * scale + 1.0, 2.0 * scale, 0.0, 0.0]);
         }
         assert_eq!(matrix.pattern.entries(), 6);
+    }
+
+    /// B has the rows (0.6, 0.8), (0, 0) and (1, 0).
+    #[test]
+    fn shares_reduce_a_matrix() {
+        let rows = [[0.6, 0.8], [0.0, 0.0], [1.0, 0.0]];
+        let shares = |i: usize| [(0, rows[i][0]), (1, rows[i][1])];
+        let entry = |i: usize, j: usize| (1 + 3 * i + j) as f64;
+        let assembly = |emit: &mut dyn Emit<f64>| {
+            for k in 0..9 {
+                emit.add(k / 3, k % 3, entry(k / 3, k % 3));
+            }
+        };
+        let mut matrix = SparseMatrix::new(Pattern::record_reduced(2, shares, assembly));
+        matrix.assemble(assembly);
+        for (c, unit) in [[1.0, 0.0], [0.0, 1.0]].iter().enumerate() {
+            let column = matrix.multiply(unit);
+            for (r, found) in column.iter().enumerate() {
+                let all = (0..9).map(|k| rows[k / 3][r] * entry(k / 3, k % 3) * rows[k % 3][c]);
+                assert!((found - all.sum::<f64>()).abs() < 1e-14);
+            }
+        }
     }
 }

@@ -6,8 +6,10 @@
 //! Palamadai Natarajan 2010). A pivot that has become too small ends the replay.
 
 use super::pattern::{Pattern, SparseMatrix};
+use super::scaling::{Scaling, size};
 use crate::math::Scalar;
-use std::collections::BTreeSet;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// A pivot smaller than this part of the largest candidate of its column is refused.
 const THRESHOLD: f64 = 0.1;
@@ -37,6 +39,12 @@ impl<S: Scalar> Triangle<S> {
         }
     }
 
+    fn clear(&mut self) {
+        self.starts.truncate(1);
+        self.rows.clear();
+        self.values.clear();
+    }
+
     fn close_column(&mut self) {
         self.starts.push(self.rows.len());
         self.values.resize(self.rows.len(), S::zero());
@@ -53,7 +61,8 @@ impl<S: Scalar> Triangle<S> {
     }
 }
 
-/// Planned elimination and the factors of the latest matrix: P A Q = L U, L with unit diagonal.
+/// Planned elimination and the factors of the latest matrix: P R A C Q = L U, L with unit diagonal, R
+/// and C of powers of two.
 pub(super) struct Replay<S> {
     /// Column of the matrix that is eliminated j-th.
     columns: Vec<usize>,
@@ -61,46 +70,81 @@ pub(super) struct Replay<S> {
     pivot_rows: Vec<usize>,
     /// Rows of the matrix's entries in pivot order, entry by entry.
     entry_rows: Vec<u32>,
+    scaling: Scaling,
     lower: Triangle<S>,
     upper: Triangle<S>,
     /// Reciprocals of the pivots.
     inverse_pivots: Vec<S>,
     work: Vec<S>,
+    /// Where each row of the matrix stands in pivot order.
+    place: Vec<u32>,
+    /// For planning: the column that each row was last met in, and rows that are to come.
+    seen: Vec<u32>,
+    heap: BinaryHeap<Reverse<u32>>,
 }
 
 impl<S: Scalar> Replay<S> {
-    /// Plans the elimination: pivot j stands in row `pivot_rows[j]` and column `columns[j]`.
-    pub fn plan(pattern: &Pattern, pivot_rows: &[usize], columns: &[usize]) -> Self {
+    /// Eliminates the columns of matrices of this pattern in the given order; not planned yet.
+    pub fn new(pattern: &Pattern, columns: &[usize]) -> Self {
         let n = pattern.order();
-        let mut place = vec![0_u32; n];
-        for (j, &row) in pivot_rows.iter().enumerate() {
-            place[row] = j as u32;
-        }
-        let entry_rows: Vec<u32> = pattern.rows().iter().map(|&i| place[i]).collect();
-        let mut lower = Triangle::new();
-        let mut upper = Triangle::new();
-        for (j, &column) in columns.iter().enumerate() {
-            let entries = pattern.column_starts()[column]..pattern.column_starts()[column + 1];
-            let mut fill: BTreeSet<u32> = entry_rows[entries].iter().copied().collect();
-            let mut next = 0;
-            while let Some(&k) = fill.range(next..j as u32).next() {
-                fill.extend(lower.rows(k as usize));
-                next = k + 1;
-            }
-            let j = j as u32;
-            upper.rows.extend(fill.range(..j));
-            lower.rows.extend(fill.range(j + 1..));
-            upper.close_column();
-            lower.close_column();
-        }
         Self {
             columns: columns.to_vec(),
-            pivot_rows: pivot_rows.to_vec(),
-            entry_rows,
-            lower,
-            upper,
+            pivot_rows: vec![0; n],
+            entry_rows: vec![0; pattern.entries()],
+            scaling: Scaling::new(pattern),
+            lower: Triangle::new(),
+            upper: Triangle::new(),
             inverse_pivots: vec![S::zero(); n],
             work: vec![S::zero(); n],
+            place: vec![0; n],
+            seen: vec![u32::MAX; n],
+            heap: BinaryHeap::new(),
+        }
+    }
+
+    /// Plans the elimination with pivot j in row `pivot_rows[j]` of a matrix that is scaled like this.
+    pub fn plan(&mut self, pattern: &Pattern, scaling: &Scaling, pivot_rows: &[usize]) {
+        self.scaling.set(scaling);
+        self.pivot_rows.copy_from_slice(pivot_rows);
+        for (j, &row) in pivot_rows.iter().enumerate() {
+            self.place[row] = j as u32;
+        }
+        for (own, &row) in self.entry_rows.iter_mut().zip(pattern.rows()) {
+            *own = self.place[row];
+        }
+        let Self {
+            lower,
+            upper,
+            seen,
+            heap,
+            ..
+        } = self;
+        seen.fill(u32::MAX);
+        lower.clear();
+        upper.clear();
+        for (j, &column) in self.columns.iter().enumerate() {
+            let j = j as u32;
+            let entries = pattern.column_starts()[column]..pattern.column_starts()[column + 1];
+            let mut add = |rows: &[u32], heap: &mut BinaryHeap<Reverse<u32>>| {
+                for &i in rows {
+                    if seen[i as usize] != j {
+                        seen[i as usize] = j;
+                        heap.push(Reverse(i));
+                    }
+                }
+            };
+            add(&self.entry_rows[entries], heap);
+            // Fill is made below what makes it, so that rows come in ascending order.
+            while let Some(Reverse(i)) = heap.pop() {
+                if i < j {
+                    upper.rows.push(i);
+                    add(lower.rows(i as usize), heap);
+                } else if i > j {
+                    lower.rows.push(i);
+                }
+            }
+            upper.close_column();
+            lower.close_column();
         }
     }
 
@@ -118,6 +162,17 @@ impl<S: Scalar> Replay<S> {
         (entries, (0..n).map(column).sum())
     }
 
+    /// The smallest pivot of the scaled matrix, and its column.
+    pub fn smallest_pivot(&self) -> (f64, usize) {
+        let mut found = (0.0, 0);
+        for (&inverse, &column) in self.inverse_pivots.iter().zip(&self.columns) {
+            if size(inverse) > found.0 {
+                found = (size(inverse), column);
+            }
+        }
+        (1.0 / found.0, found.1)
+    }
+
     /// Eliminates the values of `matrix`, whose pattern was planned for.
     ///
     /// # Errors
@@ -127,7 +182,7 @@ impl<S: Scalar> Replay<S> {
         let x = &mut self.work;
         for (j, &column) in self.columns.iter().enumerate() {
             for k in starts[column]..starts[column + 1] {
-                x[self.entry_rows[k] as usize] = matrix.values[k];
+                x[self.entry_rows[k] as usize] = matrix.values[k] * self.scaling.entries[k];
             }
             let at = self.upper.starts[j]..self.upper.starts[j + 1];
             for (&k, value) in self.upper.rows[at.clone()]
@@ -149,10 +204,10 @@ impl<S: Scalar> Replay<S> {
                 .zip(&mut self.lower.values[at])
             {
                 let v = std::mem::replace(&mut x[i as usize], S::zero());
-                largest = largest.max(v.re().abs());
+                largest = largest.max(size(v));
                 *value = v * inverse;
             }
-            let size = pivot.re().abs();
+            let size = size(pivot);
             if !size.is_finite() || size <= f64::MIN_POSITIVE || size < THRESHOLD * largest {
                 x.fill(S::zero());
                 return Err(BadPivot {
@@ -169,7 +224,7 @@ impl<S: Scalar> Replay<S> {
     pub fn solve(&mut self, b: &mut [S]) {
         let x = &mut self.work;
         for (x, &row) in x.iter_mut().zip(&self.pivot_rows) {
-            *x = b[row];
+            *x = b[row] * self.scaling.rows[row];
         }
         for j in 0..x.len() {
             let u = x[j];
@@ -185,7 +240,7 @@ impl<S: Scalar> Replay<S> {
             }
         }
         for (x, &column) in x.iter_mut().zip(&self.columns) {
-            b[column] = std::mem::replace(x, S::zero());
+            b[column] = std::mem::replace(x, S::zero()) * self.scaling.columns[column];
         }
     }
 
@@ -193,7 +248,7 @@ impl<S: Scalar> Replay<S> {
     pub fn solve_transposed(&mut self, b: &mut [S]) {
         let x = &mut self.work;
         for (x, &column) in x.iter_mut().zip(&self.columns) {
-            *x = b[column];
+            *x = b[column] * self.scaling.columns[column];
         }
         for j in 0..x.len() {
             let sum = self
@@ -209,7 +264,7 @@ impl<S: Scalar> Replay<S> {
                 .fold(x[j], |sum, (i, l)| sum - l * x[i]);
         }
         for (x, &row) in x.iter_mut().zip(&self.pivot_rows) {
-            b[row] = std::mem::replace(x, S::zero());
+            b[row] = std::mem::replace(x, S::zero()) * self.scaling.rows[row];
         }
     }
 }

@@ -3,6 +3,7 @@
 
 use super::pattern::{Pattern, SparseMatrix};
 use super::replay::Replay;
+use super::scaling::Scaling;
 use crate::math::Scalar;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::lu::{LuSymbolicParams, SymbolicLu, factorize_symbolic_lu, simplicial};
@@ -25,12 +26,64 @@ pub struct SingularMatrix {
     pub column: usize,
 }
 
-/// LU factors P A Q = L U; Q (COLAMD) depends on the pattern only, P on the values.
+/// LU factors P R A C Q = L U; Q (COLAMD) depends on the pattern only; P, R and C depend on the values.
 ///
-/// P is found by partial pivoting at the first matrix and kept while its pivots stay good.
+/// R and C are powers of two that make the largest entries of all rows and columns alike. They and P,
+/// which is found by partial pivoting, are those of the first matrix and kept while their pivots stay
+/// good; what is found anew is put where the old was, so that factorisations allocate nothing.
 pub struct SparseLu<S> {
     symbolic: SymbolicLu<usize>,
+    pivoting: Pivoting<S>,
     replay: Option<Replay<S>>,
+    /// Right-hand side and correction of a refined solution.
+    refined: [Vec<S>; 2],
+}
+
+/// The search for pivots, with what it needs again each time.
+struct Pivoting<S> {
+    scaling: Scaling,
+    scaled: Vec<S>,
+    factors: simplicial::SimplicialLu<usize, S>,
+    rows: Vec<usize>,
+    inverse: Vec<usize>,
+    scratch: MemBuffer,
+}
+
+impl<S: SolveScalar> Pivoting<S> {
+    fn new(pattern: &Pattern) -> Self {
+        let n = pattern.order();
+        let scratch = simplicial::factorize_simplicial_numeric_lu_scratch::<usize, S>(n, n);
+        Self {
+            scaling: Scaling::new(pattern),
+            scaled: vec![S::zero(); pattern.entries()],
+            factors: simplicial::SimplicialLu::new(),
+            rows: vec![0; n],
+            inverse: vec![0; n],
+            scratch: MemBuffer::new(scratch),
+        }
+    }
+
+    /// Scales a matrix and finds the rows of the pivots that partial pivoting chooses.
+    fn search(
+        &mut self,
+        matrix: &SparseMatrix<S>,
+        symbolic: &SymbolicLu<usize>,
+    ) -> Result<(), SingularMatrix> {
+        self.scaling.fit(matrix);
+        let scales = matrix.values.iter().zip(&self.scaling.entries);
+        for (scaled, (&x, &by)) in self.scaled.iter_mut().zip(scales) {
+            *scaled = x * by;
+        }
+        simplicial::factorize_simplicial_numeric_lu(
+            &mut self.rows,
+            &mut self.inverse,
+            &mut self.factors,
+            SparseColMatRef::new(structure(&matrix.pattern), &self.scaled),
+            symbolic.col_perm(),
+            MemStack::new(&mut self.scratch),
+        )
+        .map_err(|_| SingularMatrix { column: 0 })
+    }
 }
 
 impl<S: SolveScalar> SparseLu<S> {
@@ -41,16 +94,19 @@ impl<S: SolveScalar> SparseLu<S> {
     pub fn new(pattern: &Pattern) -> Self {
         let symbolic = factorize_symbolic_lu(structure(pattern), LuSymbolicParams::default())
             .expect("the analysis fails only when memory is exhausted");
+        let n = pattern.order();
         Self {
             symbolic,
+            pivoting: Pivoting::new(pattern),
             replay: None,
+            refined: [vec![S::zero(); n], vec![S::zero(); n]],
         }
     }
 
     /// Factorises `matrix`, which has the analysed pattern.
     ///
     /// # Errors
-    /// [`SingularMatrix`] if a pivot is zero or not finite.
+    /// [`SingularMatrix`] if a pivot of the scaled matrix is zero or not finite.
     pub fn factorise(&mut self, matrix: &SparseMatrix<S>) -> Result<(), SingularMatrix> {
         if let Some(replay) = &mut self.replay {
             match replay.factorise(matrix) {
@@ -59,30 +115,15 @@ impl<S: SolveScalar> SparseLu<S> {
                 Err(_) => {}
             }
         }
-        let pivot_rows = self.pivot_rows(matrix)?;
+        self.pivoting.search(matrix, &self.symbolic)?;
         let columns = self.symbolic.col_perm().arrays().0;
-        let replay = Replay::plan(&matrix.pattern, &pivot_rows, columns);
-        self.replay
-            .insert(replay)
+        let replay = self
+            .replay
+            .get_or_insert_with(|| Replay::new(&matrix.pattern, columns));
+        replay.plan(&matrix.pattern, &self.pivoting.scaling, &self.pivoting.rows);
+        replay
             .factorise(matrix)
             .map_err(|bad| SingularMatrix { column: bad.column })
-    }
-
-    /// Rows of the pivots that partial pivoting chooses.
-    fn pivot_rows(&self, matrix: &SparseMatrix<S>) -> Result<Vec<usize>, SingularMatrix> {
-        let n = matrix.pattern.order();
-        let (mut rows, mut inverse) = (vec![0; n], vec![0; n]);
-        let scratch = simplicial::factorize_simplicial_numeric_lu_scratch::<usize, S>(n, n);
-        simplicial::factorize_simplicial_numeric_lu(
-            &mut rows,
-            &mut inverse,
-            &mut simplicial::SimplicialLu::new(),
-            SparseColMatRef::new(structure(&matrix.pattern), &matrix.values),
-            self.symbolic.col_perm(),
-            MemStack::new(&mut MemBuffer::new(scratch)),
-        )
-        .map_err(|_| SingularMatrix { column: 0 })?;
-        Ok(rows)
     }
 
     /// Entries of both factors, and floating-point operations of a factorisation.
@@ -116,14 +157,26 @@ impl<S: SolveScalar> SparseLu<S> {
         self.factors().solve_transposed(b);
     }
 
+    /// Size of the smallest pivot of the scaled matrix, whose entries are at most 1, and its column.
+    ///
+    /// # Panics
+    /// If no matrix was factorised.
+    pub fn smallest_pivot(&mut self) -> (f64, usize) {
+        self.factors().smallest_pivot()
+    }
+
     /// Solves Aᵀ x = b in place for the matrix A that was factorised last, with two steps of
     /// iterative refinement: the error of x is then that of its residual in each equation, however
     /// badly the pivots have grown (Skeel 1980).
+    ///
+    /// # Panics
+    /// If no matrix was factorised.
     pub fn solve_transposed_refined(&mut self, matrix: &SparseMatrix<S>, b: &mut [S]) {
-        let rhs = b.to_vec();
+        let [mut rhs, mut correction] = std::mem::take(&mut self.refined);
+        rhs.copy_from_slice(b);
         self.solve_transposed(b);
         for _ in 0..REFINEMENTS {
-            let mut correction = matrix.multiply_transposed(b);
+            matrix.multiply_transposed(b, &mut correction);
             for (r, &b) in correction.iter_mut().zip(&rhs) {
                 *r = b - *r;
             }
@@ -132,6 +185,7 @@ impl<S: SolveScalar> SparseLu<S> {
                 *x += *d;
             }
         }
+        self.refined = [rhs, correction];
     }
 }
 
@@ -182,6 +236,40 @@ mod tests {
             lu.solve_transposed(&mut x);
             let oracle = dense.transpose().lu().solve(&b).expect("regular");
             assert!((DVector::from_vec(x) - oracle).camax() < 1e-11);
+        }
+    }
+
+    /// Rows and columns in units that differ by up to 1e40, which without scaling leave no pivot: 1 is
+    /// lost beside 1e30.
+    #[test]
+    fn units_do_not_make_a_matrix_singular() {
+        let rows = [1e30, 1.0, 1e-12, 1e8];
+        let columns = [1.0, 1e-20, 1e14, 1e5];
+        let plain = |i: usize, j: usize| 1.0 / (1 + (3 * i + 5 * j) % 7) as f64;
+        let assembly = |emit: &mut dyn Emit<f64>| {
+            for k in 0..16 {
+                let (i, j) = (k / 4, k % 4);
+                emit.add(i, j, rows[i] * plain(i, j) * columns[j]);
+            }
+        };
+        let mut matrix = SparseMatrix::new(Pattern::record(4, assembly));
+        matrix.assemble(assembly);
+        let mut lu = SparseLu::new(&matrix.pattern);
+        lu.factorise(&matrix).expect("regular");
+        assert!(lu.smallest_pivot().0 > 1e-2);
+        let exact = [1.0, -2.0, 3.0, -4.0];
+        let scaled: Vec<f64> = exact.iter().zip(columns).map(|(x, c)| x / c).collect();
+        let mut x = matrix.multiply(&scaled);
+        lu.solve(&mut x);
+        for (j, x) in x.iter().enumerate() {
+            assert!((x * columns[j] - exact[j]).abs() < 1e-12, "{x}");
+        }
+        let scaled: Vec<f64> = exact.iter().zip(rows).map(|(x, r)| x / r).collect();
+        let mut x = vec![0.0; 4];
+        matrix.multiply_transposed(&scaled, &mut x);
+        lu.solve_transposed(&mut x);
+        for (i, x) in x.iter().enumerate() {
+            assert!((x * rows[i] - exact[i]).abs() < 1e-12, "{x}");
         }
     }
 

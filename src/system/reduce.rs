@@ -261,34 +261,32 @@ struct Reduced<'a, S> {
     emit: &'a mut dyn Emit<S>,
 }
 
-impl<S> Reduced<'_, S> {
-    /// The reduced places that an unreduced one has a share in, and its shares.
-    fn shares(&self, place: usize) -> [(usize, f64); 2] {
-        let (nv, nu) = (self.numbering.velocities(), self.numbering.unknowns());
-        let part = place / nv.max(1);
-        if part >= self.parts {
-            return [(place - self.parts * (nv - nu), 1.0), (0, 0.0)];
-        }
-        let within = place % nv;
-        let (body, k) = (within / 6, within % 6);
-        let at = part * nu + self.numbering.unknown(body);
-        match self.numbering.mobility(body) {
-            Mobility::Spatial => [(at + k, 1.0), (0, 0.0)],
-            Mobility::Point if k < 3 => [(at + k, 1.0), (0, 0.0)],
-            Mobility::Point | Mobility::Fixed => [(0, 0.0), (0, 0.0)],
-            Mobility::Planar {
-                along: [t1, t2], ..
-            } if k < 3 => [(at, t1[k]), (at + 1, t2[k])],
-            Mobility::Planar { normal, .. } => [(at + 2, normal[k - 3]), (0, 0.0)],
-        }
+/// The reduced places that an unreduced one has a share in, and its shares: a row of B.
+pub fn shares(numbering: &Numbering, parts: usize, place: usize) -> [(usize, f64); 2] {
+    let (nv, nu) = (numbering.velocities(), numbering.unknowns());
+    let part = place / nv.max(1);
+    if part >= parts {
+        return [(place - parts * (nv - nu), 1.0), (0, 0.0)];
+    }
+    let within = place % nv;
+    let (body, k) = (within / 6, within % 6);
+    let at = part * nu + numbering.unknown(body);
+    match numbering.mobility(body) {
+        Mobility::Spatial => [(at + k, 1.0), (0, 0.0)],
+        Mobility::Point if k < 3 => [(at + k, 1.0), (0, 0.0)],
+        Mobility::Point | Mobility::Fixed => [(0, 0.0), (0, 0.0)],
+        Mobility::Planar {
+            along: [t1, t2], ..
+        } if k < 3 => [(at, t1[k]), (at + 1, t2[k])],
+        Mobility::Planar { normal, .. } => [(at + 2, normal[k - 3]), (0, 0.0)],
     }
 }
 
 impl<S: Scalar> Emit<S> for Reduced<'_, S> {
     fn add(&mut self, row: usize, column: usize, value: S) {
         // The shares do not depend on values: an entry without one is never emitted.
-        let columns = self.shares(column);
-        for (i, x) in self.shares(row) {
+        let columns = shares(self.numbering, self.parts, column);
+        for (i, x) in shares(self.numbering, self.parts, row) {
             for (j, y) in columns {
                 if x * y != 0.0 {
                     self.emit.add(i, j, value * (x * y));

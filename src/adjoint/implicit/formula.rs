@@ -1,36 +1,50 @@
 //! A step of a formula, backwards.
 
-use super::sweep::{Sweep, add, move_back, rates_of, work, zero};
+use super::sweep::{Pair, Sweep, add, add_state, clear, copy, move_back, pair, rates_of, work};
+use crate::adjoint::sensitivity::add_scaled;
 use crate::integrate::WorkCounts;
 use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::formula::Formula;
 use crate::integrate::implicit::ggl::Equations;
+use crate::integrate::implicit::split::SplitMatrix;
 use crate::linalg::{REFINED_SOLVES, SparseLu, SparseMatrix};
 use crate::model::Model;
 use crate::system::{Numbering, bodies};
 
-/// The iteration matrix, which every step fills again.
+/// The iteration matrix, which every step fills again, and vectors that every function does.
 pub(super) struct Plan<'a> {
     model: &'a Model<f64>,
     numbering: &'a Numbering,
     equations: Equations<'a, f64>,
     matrix: SparseMatrix<f64>,
-    /// The matrix with the rates held.
-    held: SparseMatrix<f64>,
+    split: SplitMatrix,
     factors: SparseLu<f64>,
+    /// Cotangents of the increment, of all that stands at the stage, and of the rates by the adjoint.
+    increment: Pair,
+    total: Pair,
+    own: Pair,
+    psi: Vec<f64>,
+    change: Vec<f64>,
 }
 
 impl<'a> Plan<'a> {
     pub fn new(model: &'a Model<f64>, numbering: &'a Numbering) -> Self {
         let mut equations = Equations::new(model, numbering);
-        let pattern = equations.pattern(&Stage::zero(numbering).instant());
+        let split = SplitMatrix::new(&mut equations, &Stage::zero(numbering));
+        let matrix = split.held.clone();
+        let length = equations.length();
         Self {
             model,
             numbering,
             equations,
-            factors: SparseLu::new(&pattern),
-            held: SparseMatrix::new(pattern.clone()),
-            matrix: SparseMatrix::new(pattern),
+            factors: SparseLu::new(&matrix.pattern),
+            matrix,
+            split,
+            increment: pair(numbering),
+            total: pair(numbering),
+            own: pair(numbering),
+            psi: vec![0.0; length],
+            change: vec![0.0; length],
         }
     }
 
@@ -51,56 +65,56 @@ impl<'a> Plan<'a> {
         let at = stage.instant();
         let c = formula.lead / h;
         let equations = &mut self.equations;
-        self.matrix
-            .assemble(|emit| equations.jacobian(&at, h, c, emit));
-        self.held
-            .assemble(|emit| equations.jacobian(&at, h, 0.0, emit));
+        self.split.assemble(equations, &at, h);
+        self.split.fill(formula.lead, &mut self.matrix);
         self.factors
             .factorise(&self.matrix)
             .map_err(|singular| equations.describe_reduced(singular.column))?;
         counts.factorisations += 1;
         for sweep in sweeps {
             // By the increment Δ: the rates' and the memory's part.
-            let mut by_increment = zero(&sweep.rates);
-            add(&mut by_increment, c, &sweep.rates);
-            for ((f, _), later) in formula.memory.iter().zip(&sweep.memory) {
-                add(&mut by_increment, *f, later);
+            let (by_increment, total) = (&mut self.increment, &mut self.total);
+            clear(by_increment);
+            add(by_increment, c, &sweep.rates);
+            let [memory_q, memory_v] = &sweep.memory;
+            for ((f, _), (q, v)) in (formula.memory().iter()).zip(memory_q.iter().zip(memory_v)) {
+                add_scaled(&mut by_increment.0, *f, q);
+                add_scaled(&mut by_increment.1, *f, v);
             }
-            let mut total = (sweep.of.q.value.clone(), sweep.of.v.value.clone());
-            add(&mut total, 1.0, &by_increment);
-            let mut psi = vec![0.0; equations.length()];
+            copy(total, by_increment);
+            add_state(total, &sweep.of);
+            let (psi, change) = (&mut self.psi, &mut self.change);
+            psi.fill(0.0);
             bodies::tangent_of_cotangent(numbering, &stage.q, &total.0, &mut psi[..nv]);
             psi[nv..2 * nv].copy_from_slice(&total.1);
             psi.iter_mut().for_each(|x| *x = -*x);
-            equations.scale_columns(h, &mut psi);
-            equations.compress(&mut psi);
+            equations.scale_columns(h, psi);
+            equations.compress(psi);
             let reduced = &mut psi[..equations.order()];
             self.factors.solve_transposed_refined(&self.matrix, reduced);
-            let mut change = self.held.multiply_transposed(reduced);
-            equations.expand(&mut psi);
-            change.resize(psi.len(), 0.0);
-            equations.expand(&mut change);
-            equations.unscale_columns(h, &mut change);
-            equations.scale_rows(h, &mut psi);
+            change.fill(0.0);
+            self.split.held.multiply_transposed(reduced, change);
+            equations.expand(psi);
+            equations.expand(change);
+            equations.unscale_columns(h, change);
+            equations.scale_rows(h, psi);
             counts.solves += REFINED_SOLVES;
-            let by_time = equations.pull_back(&at, &psi, &mut sweep.of.cot.model);
+            let by_time = equations.pull_back(&at, psi, &mut sweep.of.cot.model);
             sweep.of.by_duration += end * by_time;
 
-            let own = rates_of(model, numbering, &stage.q, &psi);
-            add(&mut total, c, &own);
-            move_back(&mut sweep.of, numbering, stage, &change, &total.0);
-            add(&mut sweep.rates, 1.0, &own);
+            let own = &mut self.own;
+            rates_of(model, numbering, &stage.q, psi, own);
+            add(total, c, own);
+            move_back(sweep, numbering, stage, change, &total.0);
+            add(&mut sweep.rates, 1.0, own);
             sweep.of.by_duration -= width * work(&sweep.rates, stage) / h;
-            let earlier = (0..sweep.memory.len()).map(|j| {
-                let mut out = zero(&own);
-                add(&mut out, formula.past[j] / h, &sweep.rates);
-                for ((_, row), later) in formula.memory.iter().zip(&sweep.memory) {
-                    add(&mut out, row[j], later);
+            let rates = [&sweep.rates.0, &sweep.rates.1];
+            for (memory, rates) in sweep.memory.iter_mut().zip(rates) {
+                for (k, rate) in rates.iter().enumerate() {
+                    formula.recall(rate / h, memory, k);
                 }
-                out
-            });
-            sweep.memory = earlier.collect();
-            sweep.rates = zero(&own);
+            }
+            clear(&mut sweep.rates);
         }
         Ok(())
     }

@@ -28,9 +28,9 @@ mod sweep;
 use super::AdjointRun;
 use super::sensitivity::Sensitivity;
 use crate::functions::Scene;
-use crate::integrate::implicit::Tape;
 use crate::integrate::implicit::formula::{Formula, remembers_start};
 use crate::integrate::implicit::radau::Scheme;
+use crate::integrate::implicit::{Stage, Tape};
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
 use crate::system::kkt::SaddlePoint;
 use sweep::Sweep;
@@ -45,23 +45,26 @@ pub(super) fn gradients(
     let (model, numbering) = (&scene.model, &run.numbering);
     let scheme = Scheme::of(run.method);
     let stages = scheme.stages();
-    let new = |&own: &usize| Sweep::new(Sensitivity::new(scene, run, own), run.method, stages);
+    let new = |&own: &usize| {
+        let of = Sensitivity::new(scene, run, own);
+        Sweep::new(of, numbering, (run.method, stages))
+    };
     let mut sweeps: Vec<Sweep> = which.iter().map(new).collect();
     let mut one = None;
     let mut coupled = None;
     let mut counts = WorkCounts::default();
     let mut sample = run.last();
+    let mut from = Stage::zero(numbering);
+    let mut stages = vec![from.clone(); stages];
     for k in (1..=run.grid.steps()).rev() {
         let (width, end) = (run.grid.width(k), run.grid.ends()[k]);
         let h = run.duration * width;
-        let from = match k {
-            1 => &tape.start,
-            _ => &tape.steps[k - 2][tape.steps[k - 2].len() - 1],
-        };
-        let step = &tape.steps[k - 1];
+        tape.read_end(k - 1, &mut from);
+        let count = tape.read(k, &mut stages);
+        let step = &stages[..count];
         while run.places[sample].step() == k {
             for sweep in &mut sweeps {
-                sweep.sample(scene, run, sample, (&scheme, from, step), width);
+                sweep.sample(scene, run, sample, (&scheme, &from, step), width);
             }
             sample -= 1;
         }

@@ -1,43 +1,102 @@
 //! A step of Radau IIA, backwards: the coupled system of all stages.
 
-use super::sweep::{Pair, Sweep, add, move_back, rates_of, work, zero};
+use super::sweep::{Pair, Sweep, add, add_state, clear, copy, move_back, pair, rates_of, work};
+use crate::adjoint::sensitivity::add_scaled;
 use crate::integrate::WorkCounts;
 use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::ggl::Equations;
 use crate::integrate::implicit::radau::Scheme;
+use crate::integrate::implicit::split::SplitMatrix;
 use crate::linalg::{Emit, Pattern, REFINED_SOLVES, SparseLu, SparseMatrix};
 use crate::model::Model;
 use crate::system::{Numbering, bodies};
 
-/// The coupled matrix, which every step fills again.
+/// The coupled matrix, which every step fills again, and vectors that every function does.
 pub(super) struct Plan<'a> {
     model: &'a Model<f64>,
     numbering: &'a Numbering,
     scheme: &'a Scheme,
     equations: Equations<'a, f64>,
+    blocks: Blocks,
     matrix: SparseMatrix<f64>,
-    /// The matrix of one stage with the rates held.
-    held: SparseMatrix<f64>,
     factors: SparseLu<f64>,
+    /// Cotangents of the increments, and of the rates of a stage by its adjoint.
+    by: Vec<Pair>,
+    own: Pair,
+    /// Adjoint of all stages, and that of one in velocity numbering.
+    psi: Vec<f64>,
+    part: Vec<f64>,
+    /// What the equations of each stage say of its state.
+    changes: Vec<Vec<f64>>,
+}
+
+/// What the coupled matrix consists of, each in the unknowns of one stage.
+struct Blocks {
+    /// The matrix of each stage.
+    stages: Vec<SplitMatrix>,
+    /// The derivative of the rates of stage i in the increments of stage j, all i for the first j.
+    beside: Vec<SparseMatrix<f64>>,
+}
+
+impl Blocks {
+    fn new(equations: &mut Equations<f64>, scheme: &Scheme, zero: &Stage<f64>) -> Self {
+        let one = SplitMatrix::new(equations, zero);
+        let count = scheme.stages();
+        Self {
+            beside: vec![one.rates.clone(); count * count],
+            stages: vec![one; count],
+        }
+    }
+
+    /// Assembles all blocks at the stages of a step of size h.
+    fn assemble(&mut self, equations: &mut Equations<f64>, stages: &[Stage<f64>], h: f64) {
+        for (i, stage) in stages.iter().enumerate() {
+            self.stages[i].assemble(equations, &stage.instant(), h);
+            for (j, other) in stages.iter().enumerate().filter(|(j, _)| *j != i) {
+                self.beside[i * stages.len() + j]
+                    .assemble(|emit| equations.emit_rates(&stage.q, &other.q, emit));
+            }
+        }
+    }
+
+    /// Emits the matrix of all stages.
+    fn emit(&self, scheme: &Scheme, emit: &mut dyn Emit<f64>) {
+        let count = self.stages.len();
+        for (i, own) in self.stages.iter().enumerate() {
+            let n = own.held.pattern.order();
+            own.held.emit((i * n, i * n), 1.0, emit);
+            for j in 0..count {
+                let block = match j == i {
+                    true => &own.rates,
+                    false => &self.beside[i * count + j],
+                };
+                block.emit((i * n, j * n), scheme.rates[i][j], emit);
+            }
+        }
+    }
 }
 
 impl<'a> Plan<'a> {
     pub fn new(model: &'a Model<f64>, numbering: &'a Numbering, scheme: &'a Scheme) -> Self {
         let mut equations = Equations::new(model, numbering);
-        let zeros = vec![Stage::zero(numbering); scheme.stages()];
-        let held = SparseMatrix::new(equations.pattern(&zeros[0].instant()));
-        let order = scheme.stages() * equations.order();
-        let pattern = Pattern::record(order, |emit: &mut dyn Emit<f64>| {
-            emit_stages(&mut equations, scheme, &zeros, 1.0, emit);
-        });
+        let zero = Stage::zero(numbering);
+        let blocks = Blocks::new(&mut equations, scheme, &zero);
+        let (count, length) = (scheme.stages(), equations.length());
+        let order = count * equations.order();
+        let pattern = Pattern::record(order, |emit| blocks.emit(scheme, emit));
         Self {
             model,
             numbering,
             scheme,
             equations,
+            blocks,
             factors: SparseLu::new(&pattern),
-            held,
             matrix: SparseMatrix::new(pattern),
+            by: vec![pair(numbering); count],
+            own: pair(numbering),
+            psi: vec![0.0; order],
+            part: vec![0.0; length],
+            changes: vec![vec![0.0; length]; count],
         }
     }
 
@@ -55,79 +114,77 @@ impl<'a> Plan<'a> {
         let (model, numbering, scheme) = (self.model, self.numbering, self.scheme);
         let (nv, n) = (numbering.velocities(), self.equations.order());
         let equations = &mut self.equations;
-        self.matrix
-            .assemble(|emit| emit_stages(equations, scheme, stages, h, emit));
+        self.blocks.assemble(equations, stages, h);
+        let blocks = &self.blocks;
+        self.matrix.assemble(|emit| blocks.emit(scheme, emit));
         self.factors
             .factorise(&self.matrix)
             .map_err(|singular| equations.describe_reduced(singular.column % n))?;
         counts.factorisations += 1;
         let last = stages.len() - 1;
+        let (psi, part, by) = (&mut self.psi, &mut self.part, &mut self.by);
         for sweep in sweeps {
             // The step leaves its increment in front of a formula's memory.
-            if !sweep.memory.is_empty() {
-                let newest = sweep.memory.remove(0);
-                add(&mut sweep.increments[last], 1.0, &newest);
-                sweep.memory.push(zero(&newest));
+            let newest = &mut sweep.increments[last];
+            let newest = [&mut newest.0, &mut newest.1];
+            for (memory, increment) in sweep.memory.iter_mut().zip(newest) {
+                if let Some(newest) = memory.first_mut() {
+                    add_scaled(increment, 1.0, newest);
+                    newest.fill(0.0);
+                    memory.rotate_left(1);
+                }
             }
             // By the increments Z_j: their own and the rates' part.
-            let mut by: Vec<Pair> = sweep.increments.clone();
-            spread(scheme, last, &sweep.rates, h, &mut by);
-            let mut psi = Vec::with_capacity(stages.len() * n);
-            let mut part = vec![0.0; equations.length()];
-            for (j, (stage, by)) in stages.iter().zip(&by).enumerate() {
-                let mut total = by.clone();
+            for (by, own) in by.iter_mut().zip(&sweep.increments) {
+                copy(by, own);
+            }
+            spread(scheme, last, &sweep.rates, h, by);
+            for (j, (stage, by)) in stages.iter().zip(&*by).enumerate() {
+                let total = &mut self.own;
+                copy(total, by);
                 if j == last {
-                    let end = (sweep.of.q.value.clone(), sweep.of.v.value.clone());
-                    add(&mut total, 1.0, &end);
+                    add_state(total, &sweep.of);
                 }
                 part.fill(0.0);
                 bodies::tangent_of_cotangent(numbering, &stage.q, &total.0, &mut part[..nv]);
                 part[nv..2 * nv].copy_from_slice(&total.1);
                 part.iter_mut().for_each(|x| *x = -*x);
-                equations.scale_columns(h, &mut part);
-                equations.compress(&mut part);
-                psi.extend_from_slice(&part[..n]);
+                equations.scale_columns(h, part);
+                equations.compress(part);
+                psi[j * n..(j + 1) * n].copy_from_slice(&part[..n]);
             }
-            self.factors
-                .solve_transposed_refined(&self.matrix, &mut psi);
+            self.factors.solve_transposed_refined(&self.matrix, psi);
             counts.solves += REFINED_SOLVES;
             let mut slope = 0.0;
-            let mut changes = Vec::with_capacity(stages.len());
-            for (i, stage) in stages.iter().enumerate() {
+            for (i, (stage, change)) in stages.iter().zip(&mut self.changes).enumerate() {
                 let reduced = &psi[i * n..(i + 1) * n];
-                let at = stage.instant();
-                self.held
-                    .assemble(|emit| equations.jacobian(&at, h, 0.0, emit));
-                let mut change = self.held.multiply_transposed(reduced);
-                change.resize(part.len(), 0.0);
-                equations.expand(&mut change);
-                equations.unscale_columns(h, &mut change);
-                changes.push(change);
+                change.fill(0.0);
+                let held = &self.blocks.stages[i].held;
+                held.multiply_transposed(reduced, change);
+                equations.expand(change);
+                equations.unscale_columns(h, change);
                 part[..n].copy_from_slice(reduced);
-                equations.expand(&mut part);
-                equations.scale_rows(h, &mut part);
+                equations.expand(part);
+                equations.scale_rows(h, part);
                 let cot = &mut sweep.of.cot.model;
-                let by_time = equations.pull_back(&stage.instant(), &part, cot);
+                let by_time = equations.pull_back(&stage.instant(), part, cot);
                 sweep.of.by_duration += (end - width * (1.0 - scheme.nodes[i])) * by_time;
-                let own = rates_of(model, numbering, &stage.q, &part);
-                spread(scheme, i, &own, h, &mut by);
-                slope += work(&own, stage);
+                let own = &mut self.own;
+                rates_of(model, numbering, &stage.q, part, own);
+                spread(scheme, i, own, h, by);
+                slope += work(own, stage);
             }
             slope += work(&sweep.rates, &stages[last]);
             sweep.of.by_duration -= width * slope / h;
-            add(
-                &mut by[last],
-                1.0,
-                &(sweep.of.q.value.clone(), sweep.of.v.value.clone()),
-            );
-            for ((stage, change), total) in stages.iter().zip(&changes).zip(&by) {
-                move_back(&mut sweep.of, numbering, stage, change, &total.0);
+            add_state(&mut by[last], &sweep.of);
+            for ((stage, change), total) in stages.iter().zip(&self.changes).zip(&*by) {
+                move_back(sweep, numbering, stage, change, &total.0);
             }
-            let before = std::mem::replace(&mut sweep.before, zero(&by[0]));
-            sweep.of.q.add(1.0, &before.0);
-            sweep.of.v.add(1.0, &before.1);
-            sweep.rates = zero(&by[0]);
-            sweep.increments = by.iter().map(zero).collect();
+            sweep.of.q.add(1.0, &sweep.before.0);
+            sweep.of.v.add(1.0, &sweep.before.1);
+            clear(&mut sweep.before);
+            clear(&mut sweep.rates);
+            sweep.increments.iter_mut().for_each(clear);
         }
         Ok(())
     }
@@ -137,36 +194,5 @@ impl<'a> Plan<'a> {
 fn spread(scheme: &Scheme, i: usize, rates: &Pair, h: f64, by: &mut [Pair]) {
     for (by, d) in by.iter_mut().zip(&scheme.rates[i]) {
         add(by, d / h, rates);
-    }
-}
-
-/// Emits the matrix of all stages, scaled as the equations of one.
-fn emit_stages(
-    equations: &mut Equations<f64>,
-    scheme: &Scheme,
-    stages: &[Stage<f64>],
-    h: f64,
-    emit: &mut dyn Emit<f64>,
-) {
-    let n = equations.order();
-    for (i, stage) in stages.iter().enumerate() {
-        let at = stage.instant();
-        let own = &mut At(emit, i * n, i * n);
-        equations.jacobian(&at, h, scheme.rates[i][i] / h, own);
-        for (j, other) in stages.iter().enumerate() {
-            if j != i {
-                let beside = &mut At(emit, i * n, j * n);
-                equations.emit_rates(&at, &other.q, scheme.rates[i][j], beside);
-            }
-        }
-    }
-}
-
-/// Emits every entry further down and to the right.
-struct At<'a>(&'a mut dyn Emit<f64>, usize, usize);
-
-impl Emit<f64> for At<'_> {
-    fn add(&mut self, row: usize, column: usize, value: f64) {
-        self.0.add(row + self.1, column + self.2, value);
     }
 }

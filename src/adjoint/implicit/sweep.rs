@@ -21,23 +21,32 @@ pub(super) struct Sweep<'a> {
     pub of: Sensitivity<'a>,
     /// Cotangents of the rates at the step's end (at the start of all steps: of the initial rates).
     pub rates: Pair,
-    /// Cotangents of the formula's memory after the step.
-    pub memory: Vec<Pair>,
+    /// Cotangents of the formula's memory after the step, of q and of v.
+    pub memory: [Vec<Vec<f64>>; 2],
     /// Cotangents of the increments of the stages, by the dense output.
     pub increments: Vec<Pair>,
     /// Cotangents of the state at the step's start, by the dense output.
     pub before: Pair,
+    /// Cotangent of the positions at a sample, and the motion there.
+    q: Vec<f64>,
+    at: Stage<f64>,
 }
 
 impl<'a> Sweep<'a> {
-    pub fn new(of: Sensitivity<'a>, method: Method, stages: usize) -> Self {
-        let zero = || (vec![0.0; of.q.value.len()], vec![0.0; of.v.value.len()]);
+    pub fn new(
+        of: Sensitivity<'a>,
+        numbering: &Numbering,
+        (method, stages): (Method, usize),
+    ) -> Self {
+        let lengths = [numbering.positions(), numbering.velocities()];
         Self {
-            rates: zero(),
-            memory: (0..memory_size(method)).map(|_| zero()).collect(),
-            increments: (0..stages).map(|_| zero()).collect(),
-            before: zero(),
+            rates: pair(numbering),
+            memory: lengths.map(|n| vec![vec![0.0; n]; memory_size(method)]),
+            increments: vec![pair(numbering); stages],
+            before: pair(numbering),
             of,
+            q: vec![0.0; numbering.positions()],
+            at: Stage::zero(numbering),
         }
     }
 
@@ -56,25 +65,26 @@ impl<'a> Sweep<'a> {
         }
         let numbering = &run.numbering;
         let [y, v, a] = &self.of.sample;
-        let mut q = vec![0.0; numbering.positions()];
+        let q = &mut self.q;
+        q.fill(0.0);
         match run.places[k] {
             Place::Inside { theta, .. } => {
                 let h = run.duration * width;
-                let at = dense(scheme, from, stages, h, theta);
-                bodies::add_unit_cotangent(numbering, &at.q, y, &mut q);
+                dense(scheme, from, stages, h, theta, &mut self.at);
+                bodies::add_unit_cotangent(numbering, &self.at.q, y, q);
                 let (w, rate) = scheme.dense_weights(theta);
                 for (i, (by_q, by_v)) in self.increments.iter_mut().enumerate() {
-                    add_scaled(by_q, w[i], &q);
+                    add_scaled(by_q, w[i], q);
                     add_scaled(by_v, w[i], v);
                     add_scaled(by_v, rate[i] / h, a);
                 }
-                self.of.by_duration -= width * dot(a, &at.vdot) / h;
-                add_scaled(&mut self.before.0, 1.0, &q);
+                self.of.by_duration -= width * dot(a, &self.at.vdot) / h;
+                add_scaled(&mut self.before.0, 1.0, q);
                 add_scaled(&mut self.before.1, 1.0, v);
             }
             Place::Node(_) => {
-                bodies::rates_cotangent(numbering, run.q(k), y, &mut q);
-                self.of.q.add(1.0, &q);
+                bodies::rates_cotangent(numbering, run.q(k), y, q);
+                self.of.q.add(1.0, q);
                 self.of.v.add(1.0, v);
                 add_scaled(&mut self.rates.1, 1.0, a);
             }
@@ -83,10 +93,11 @@ impl<'a> Sweep<'a> {
 
     /// Hands the cotangents of a memory that started as h times the initial rates on to these.
     pub fn starting_memory(&mut self, start: &Stage<f64>, h: f64, width: f64) {
-        for (q, v) in std::mem::take(&mut self.memory) {
-            add_scaled(&mut self.rates.0, h, &q);
-            add_scaled(&mut self.rates.1, h, &v);
-            self.of.by_duration += width * (dot(&q, &start.qdot) + dot(&v, &start.vdot));
+        let [by_q, by_v] = &self.memory;
+        for (q, v) in by_q.iter().zip(by_v) {
+            add_scaled(&mut self.rates.0, h, q);
+            add_scaled(&mut self.rates.1, h, v);
+            self.of.by_duration += width * (dot(q, &start.qdot) + dot(v, &start.vdot));
         }
     }
 
@@ -108,15 +119,15 @@ impl<'a> Sweep<'a> {
 /// its increment and rates) along the Euler parameters, which the equations do not see, is taken
 /// from it directly.
 pub(super) fn move_back(
-    of: &mut Sensitivity,
+    sweep: &mut Sweep,
     numbering: &Numbering,
     stage: &Stage<f64>,
     change: &[f64],
     total: &[f64],
 ) {
     let nv = numbering.velocities();
-    let mut q = vec![0.0; stage.q.len()];
-    bodies::rates_cotangent(numbering, &stage.q, &change[..nv], &mut q);
+    let (of, q) = (&mut sweep.of, &mut sweep.q);
+    bodies::rates_cotangent(numbering, &stage.q, &change[..nv], q);
     for body in 0..numbering.bodies() {
         let o = numbering.position(body) + 3;
         let (p, along) = (&stage.q[o..o + 4], &total[o..o + 4]);
@@ -125,7 +136,7 @@ pub(super) fn move_back(
             q[o + k] -= radial * p[k];
         }
     }
-    of.q.add(1.0, &q);
+    of.q.add(1.0, q);
     of.v.add(1.0, &change[nv..2 * nv]);
 }
 
@@ -135,12 +146,11 @@ pub(super) fn rates_of(
     numbering: &Numbering,
     q: &[f64],
     psi: &[f64],
-) -> Pair {
+    by: &mut Pair,
+) {
     let nv = numbering.velocities();
-    let mut by = (vec![0.0; q.len()], vec![0.0; nv]);
     bodies::rates_cotangent(numbering, q, &psi[..nv], &mut by.0);
     bodies::mass_product(model, numbering, &psi[nv..2 * nv], &mut by.1);
-    by
 }
 
 /// Adds `scale` times a pair.
@@ -149,9 +159,30 @@ pub(super) fn add(out: &mut Pair, scale: f64, x: &Pair) {
     add_scaled(&mut out.1, scale, &x.1);
 }
 
-/// All zero, as large as `like`.
-pub(super) fn zero(like: &Pair) -> Pair {
-    (vec![0.0; like.0.len()], vec![0.0; like.1.len()])
+/// Adds the cotangents of a state.
+pub(super) fn add_state(out: &mut Pair, of: &Sensitivity) {
+    add_scaled(&mut out.0, 1.0, &of.q.value);
+    add_scaled(&mut out.1, 1.0, &of.v.value);
+}
+
+/// A pair of zeros.
+pub(super) fn pair(numbering: &Numbering) -> Pair {
+    (
+        vec![0.0; numbering.positions()],
+        vec![0.0; numbering.velocities()],
+    )
+}
+
+/// Makes a pair all zero.
+pub(super) fn clear(x: &mut Pair) {
+    x.0.fill(0.0);
+    x.1.fill(0.0);
+}
+
+/// Makes a pair equal to another.
+pub(super) fn copy(out: &mut Pair, x: &Pair) {
+    out.0.copy_from_slice(&x.0);
+    out.1.copy_from_slice(&x.1);
 }
 
 /// κ · ẏ.

@@ -10,16 +10,20 @@
 //! step, and make one backward march serve all formulas.
 
 use crate::integrate::settings::{Method, Start};
+use crate::math::Scalar;
+
+/// Most memory vectors of a formula.
+const MOST: usize = 5;
 
 /// Coefficients of a step; they do not depend on its size.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Formula {
     /// c.
     pub lead: f64,
-    /// e_j.
-    pub past: Vec<f64>,
-    /// (f_i, F_i1 … F_im) for each memory vector.
-    pub memory: Vec<(f64, Vec<f64>)>,
+    /// Number m of memory vectors.
+    slots: usize,
+    past: [f64; MOST],
+    memory: [(f64, [f64; MOST]); MOST],
 }
 
 impl Formula {
@@ -34,16 +38,18 @@ impl Formula {
         };
         let slots = kept - 1;
         let shifted = |i: usize| {
-            let mut row = vec![0.0; slots];
+            let mut row = [0.0; MOST];
             if i > 0 {
                 row[i - 1] = 1.0;
             }
             (if i == 0 { 1.0 } else { 0.0 }, row)
         };
+        // Beyond the order the weights are empty sums.
         Self {
             lead: weight(0),
-            past: (1..=slots).map(weight).collect(),
-            memory: (0..slots).map(shifted).collect(),
+            slots,
+            past: std::array::from_fn(|j| weight(j + 1)),
+            memory: std::array::from_fn(shifted),
         }
     }
 
@@ -61,14 +67,57 @@ impl Formula {
         let gamma = 0.5 + alpha_f - alpha_m;
         let keep = -(1.0 - gamma) / gamma;
         let lead = (1.0 - alpha_m) / ((1.0 - alpha_f) * gamma);
-        let past = vec![
-            ((1.0 - alpha_m) * keep + alpha_m) / (1.0 - alpha_f),
-            -alpha_f / (1.0 - alpha_f),
-        ];
+        let mut past = [0.0; MOST];
+        past[0] = ((1.0 - alpha_m) * keep + alpha_m) / (1.0 - alpha_f);
+        past[1] = -alpha_f / (1.0 - alpha_f);
+        let mut first = [0.0; MOST];
+        first[0] = keep;
+        let mut memory = [(0.0, [0.0; MOST]); MOST];
+        memory[0] = (1.0 / gamma, first);
+        memory[1] = (lead, past);
         Self {
             lead,
-            memory: vec![(1.0 / gamma, vec![keep, 0.0]), (lead, past.clone())],
+            slots: 2,
             past,
+            memory,
+        }
+    }
+
+    /// e_j.
+    pub fn past(&self) -> &[f64] {
+        &self.past[..self.slots]
+    }
+
+    /// (f_i, F_i1 … F_im) for each memory vector; what follows in a row is zero.
+    pub fn memory(&self) -> &[(f64, [f64; MOST])] {
+        &self.memory[..self.slots]
+    }
+
+    /// Moves component k of the memory past a step with the increment `delta`.
+    pub fn remember<S: Scalar>(&self, delta: S, memory: &mut [Vec<S>], k: usize) {
+        let mut old = [S::zero(); MOST];
+        for (old, m) in old.iter_mut().zip(&*memory) {
+            *old = m[k];
+        }
+        for ((f, row), m) in self.memory().iter().zip(memory) {
+            let terms = row.iter().zip(&old).filter(|(f, _)| **f != 0.0);
+            m[k] = terms.fold(delta * *f, |sum, (&f, &m)| sum + m * f);
+        }
+    }
+
+    /// The transpose of [`Formula::remember`] and of the rates' part: replaces component k of the
+    /// cotangents of the memory after the step by that of the memory before it, given the cotangent
+    /// `rate` of h times the rates.
+    pub fn recall(&self, rate: f64, memory: &mut [Vec<f64>], k: usize) {
+        let mut later = [0.0; MOST];
+        for (later, m) in later.iter_mut().zip(&*memory) {
+            *later = m[k];
+        }
+        for (j, m) in memory.iter_mut().enumerate() {
+            let terms = self.memory().iter().zip(&later);
+            m[k] = terms.fold(self.past[j] * rate, |sum, ((_, row), later)| {
+                sum + row[j] * later
+            });
         }
     }
 
@@ -112,7 +161,7 @@ mod tests {
     fn bdf_coefficients_are_the_known_ones() {
         let bdf = |order| Formula::bdf(order, order);
         assert_eq!(bdf(1).lead, 1.0);
-        assert_eq!((bdf(2).lead, bdf(2).past), (1.5, vec![-0.5]));
+        assert_eq!((bdf(2).lead, bdf(2).past()), (1.5, &[-0.5][..]));
         assert!((bdf(3).lead - 11.0 / 6.0).abs() < 1e-15);
         // BDF6 in values begins 147/60, −360/60, 450/60.
         let six = bdf(6);
@@ -136,7 +185,7 @@ mod tests {
         }
         let formula = Formula::generalised_alpha(0.8);
         // y = t² with exact rates in the memory after the first step's transient: y = t is exact.
-        let rate = formula.lead + formula.past.iter().sum::<f64>();
+        let rate = formula.lead + formula.past().iter().sum::<f64>();
         assert!((rate - 1.0).abs() < 1e-15);
     }
 }

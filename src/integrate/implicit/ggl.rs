@@ -13,7 +13,7 @@
 //! m being the mean mass (rows times h, h²/m, 1, h; columns v, λ, μ divided by h, h²/m, h).
 
 use crate::linalg::{Emit, Pattern};
-use crate::math::Scalar;
+use crate::math::{Mat3, Scalar};
 use crate::model::Model;
 use crate::system::bodies::{self, Motion, all_force_balances, velocities_of, velocity_of_rates};
 use crate::system::constraint::RowGradient;
@@ -53,6 +53,8 @@ pub struct Equations<'a, S> {
     motions: Vec<Motion<S>>,
     gradients: Vec<RowGradient<S>>,
     loads: Vec<S>,
+    /// Motions with virtual velocities, for pull-backs.
+    moving: Vec<Motion<S>>,
     /// Mass that the dynamics are divided by and the multipliers λ counted in (kg).
     mass: f64,
 }
@@ -75,6 +77,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
             motions: Vec::new(),
             gradients: Vec::new(),
             loads: vec![S::zero(); numbering.velocities()],
+            moving: Vec::new(),
             mass: typical_mass(model),
         }
     }
@@ -162,22 +165,31 @@ impl<'a, S: Scalar> Equations<'a, S> {
         }
     }
 
-    /// Records the pattern of the iteration matrix.
+    /// Records the pattern of the iteration matrix, which is in the unknowns of the bodies.
     pub fn pattern(&mut self, at: &Instant<S>) -> Pattern {
         self.visit(at);
         let this = &*self;
-        Pattern::record(self.order(), |emit: &mut dyn Emit<S>| {
-            let assemble = |emit: &mut dyn Emit<S>| this.emit(at, S::one(), S::one(), emit);
-            reduce::emit_reduced(this.numbering, PARTS, emit, assemble);
-        })
+        this.record(|emit| this.emit(at, S::one(), S::one(), emit))
     }
 
-    /// Emits the scaled iteration matrix for ∂q̇/∂q = ∂v̇/∂v = c.
+    /// Records the pattern of [`Equations::emit_rates`].
+    pub fn pattern_of_rates(&self) -> Pattern {
+        self.record(|emit| self.emit_own_rates(emit))
+    }
+
+    fn record(&self, assemble: impl FnOnce(&mut dyn Emit<S>)) -> Pattern {
+        if self.numbering.is_reduced() {
+            let shares = |place| reduce::shares(self.numbering, PARTS, place);
+            Pattern::record_reduced(self.order(), shares, assemble)
+        } else {
+            Pattern::record(self.order(), assemble)
+        }
+    }
+
+    /// Emits the scaled iteration matrix for ∂q̇/∂q = ∂v̇/∂v = c, in velocity numbering.
     pub fn jacobian(&mut self, at: &Instant<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
         self.visit(at);
-        reduce::emit_reduced(self.numbering, PARTS, emit, |emit| {
-            self.emit(at, h, c, emit);
-        });
+        self.emit(at, h, c, emit);
     }
 
     fn emit(&self, at: &Instant<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
@@ -223,23 +235,27 @@ impl<'a, S: Scalar> Equations<'a, S> {
         }
     }
 
-    /// Emits the scaled derivative in the unknowns of another stage with positions `q`, of which the
-    /// rates here contain `d` / h times the tangent: d (P(q_here) T(q), M).
-    pub fn emit_rates(&self, at: &Instant<S>, q: &[S], d: f64, emit: &mut dyn Emit<S>) {
-        reduce::emit_reduced(self.numbering, PARTS, emit, |emit| {
-            self.emit_all_rates(at, q, d, emit);
+    /// Emits the scaled derivative in the unknowns of another stage with positions `other`, of which
+    /// h times the rates at the positions `q` contain the tangent: (P(q) T(q'), M).
+    pub fn emit_rates(&self, q: &[S], other: &[S], emit: &mut dyn Emit<S>) {
+        self.emit_rates_turned(emit, |i| {
+            let o = self.numbering.position(i);
+            bodies::turn_between(&q[o..], &other[o..])
         });
     }
 
-    fn emit_all_rates(&self, at: &Instant<S>, q: &[S], d: f64, emit: &mut dyn Emit<S>) {
+    /// As [`Equations::emit_rates`] for the stage itself: (1, M).
+    pub fn emit_own_rates(&self, emit: &mut dyn Emit<S>) {
+        self.emit_rates_turned(emit, |_| Mat3::identity());
+    }
+
+    fn emit_rates_turned(&self, emit: &mut dyn Emit<S>, turned: impl Fn(usize) -> Mat3<S>) {
         let [y, v, ..] = self.starts();
-        let d = S::from(d);
+        let by_mass = S::from(1.0 / self.mass);
         for (i, body) in self.model.bodies.iter().enumerate() {
-            let (o, u) = (self.numbering.position(i), self.numbering.velocity(i));
-            let turned = bodies::turn_between(&at.q[o..], &q[o..]);
-            emit.add_identity(y + u, y + u, d);
-            emit.add_block(y + u + 3, y + u + 3, &(turned * d));
-            let by_mass = d / self.mass;
+            let u = self.numbering.velocity(i);
+            emit.add_identity(y + u, y + u, S::one());
+            emit.add_block(y + u + 3, y + u + 3, &turned(i));
             emit.add_identity(v + u, v + u, body.mass * by_mass);
             emit.add_block(v + u + 3, v + u + 3, &(body.inertia * by_mass));
         }
@@ -328,7 +344,9 @@ impl Equations<'_, f64> {
                 &mut cot.gravity,
             );
         }
-        let minus: Vec<f64> = psi2.iter().map(|x| -x).collect();
+        for (minus, psi) in self.loads.iter_mut().zip(psi2) {
+            *minus = -psi;
+        }
         let mut by_time = 0.0;
         let mut out = LoadCotangent {
             y: None,
@@ -336,7 +354,14 @@ impl Equations<'_, f64> {
             time: &mut by_time,
             model: cot,
         };
-        loads::pull_back(model, numbering, &self.motions, at.time, &minus, &mut out);
+        loads::pull_back(
+            model,
+            numbering,
+            &self.motions,
+            at.time,
+            &self.loads,
+            &mut out,
+        );
         let mut pull = |motions: &[Motion<f64>], cotangents: [Option<&[f64]>; 4]| {
             let mut out = JointCotangent {
                 y: None,
@@ -347,16 +372,18 @@ impl Equations<'_, f64> {
                 joints::pull_back(model, numbering, (motions, at.time), cotangents, &mut out);
         };
         // λᵀ G ψ_2 beside Φ and G v, and μᵀ G ψ_1 unless the motion needs no μ.
-        let virtually = |psi: &[f64]| -> Vec<Motion<f64>> {
+        let (motions, moving) = (&self.motions, &mut self.moving);
+        let mut virtually = |psi: &[f64], cotangents: [Option<&[f64]>; 4]| {
             let at = |(i, motion): (usize, &Motion<f64>)| {
                 motion.virtually(&psi[numbering.velocity(i)..])
             };
-            self.motions.iter().enumerate().map(at).collect()
+            moving.clear();
+            moving.extend(motions.iter().enumerate().map(at));
+            pull(moving, cotangents);
         };
-        let cotangents = [Some(psi3), Some(psi4), None, Some(at.lambda)];
-        pull(&virtually(psi2), cotangents);
+        virtually(psi2, [Some(psi3), Some(psi4), None, Some(at.lambda)]);
         if at.mu.iter().any(|&x| x != 0.0) {
-            pull(&virtually(psi1), [None, None, None, Some(at.mu)]);
+            virtually(psi1, [None, None, None, Some(at.mu)]);
         }
         by_time
     }

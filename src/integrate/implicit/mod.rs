@@ -1,6 +1,7 @@
 //! Implicit methods on the GGL-stabilised equations: Radau IIA, and one-stage formulas with a
 //! memory (BDF, generalised-α).
 
+mod estimate;
 pub mod formula;
 pub mod ggl;
 pub mod march;
@@ -8,9 +9,13 @@ pub mod newton;
 pub mod predict;
 pub mod radau;
 mod scales;
+pub mod split;
 pub mod stage_newton;
+pub mod tape;
 
-use crate::math::{Complex64, Scalar};
+pub use tape::Tape;
+
+use crate::math::Scalar;
 use crate::system::{Numbering, bodies, reduce};
 use ggl::Instant;
 
@@ -93,6 +98,61 @@ impl<S: Scalar> Stage<S> {
         reduce::hold(numbering, before, positions, (&mut self.v, &mut self.dv));
     }
 
+    /// Its vectors, the time as the last.
+    pub(super) fn parts(&self) -> [&[S]; 9] {
+        [
+            &self.q,
+            &self.v,
+            &self.dq,
+            &self.dv,
+            &self.lambda,
+            &self.mu,
+            &self.qdot,
+            &self.vdot,
+            std::slice::from_ref(&self.time),
+        ]
+    }
+
+    /// Takes the vectors of another stage of the same system.
+    pub(super) fn set_parts(&mut self, parts: [&[S]; 9]) {
+        for (own, part) in self.parts_mut().into_iter().zip(parts) {
+            own.copy_from_slice(part);
+        }
+    }
+
+    fn parts_mut(&mut self) -> [&mut [S]; 9] {
+        [
+            &mut self.q,
+            &mut self.v,
+            &mut self.dq,
+            &mut self.dv,
+            &mut self.lambda,
+            &mut self.mu,
+            &mut self.qdot,
+            &mut self.vdot,
+            std::slice::from_mut(&mut self.time),
+        ]
+    }
+
+    /// Becomes equal to another stage of the same system.
+    pub fn set(&mut self, other: &Self) {
+        self.set_parts(other.parts());
+    }
+
+    /// Whether all its numbers are finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.parts().into_iter().flatten().all(|x| x.is_finite())
+    }
+
+    /// Puts the real part into `out`.
+    pub(super) fn real_into(&self, out: &mut Stage<f64>) {
+        for (own, part) in out.parts_mut().into_iter().zip(self.parts()) {
+            for (own, x) in own.iter_mut().zip(part) {
+                *own = x.re();
+            }
+        }
+    }
+
     /// The real part.
     pub fn real(&self) -> Stage<f64> {
         let part = |all: &[S]| all.iter().map(|x| x.re()).collect();
@@ -106,39 +166,6 @@ impl<S: Scalar> Stage<S> {
             qdot: part(&self.qdot),
             vdot: part(&self.vdot),
             time: self.time.re(),
-        }
-    }
-}
-
-/// What the adjoint needs: the state at the start and the stages of every step, one for a formula,
-/// all for Radau IIA; the last stage stands at the step's end.
-#[derive(Clone, Debug)]
-pub struct Tape<S> {
-    /// The start, with the rates there.
-    pub start: Stage<S>,
-    /// Steps 1 … N.
-    pub steps: Vec<Vec<Stage<S>>>,
-}
-
-impl<S> Tape<S> {
-    /// How many numbers it holds.
-    pub fn numbers(&self) -> usize {
-        let stage = |x: &Stage<S>| {
-            let states = [&x.q, &x.v, &x.dq, &x.dv, &x.lambda, &x.mu, &x.qdot, &x.vdot];
-            states.map(Vec::len).into_iter().sum::<usize>() + 1
-        };
-        let steps: usize = self.steps.iter().flatten().map(stage).sum();
-        stage(&self.start) + steps
-    }
-}
-
-impl Tape<Complex64> {
-    /// The real part.
-    pub fn real(&self) -> Tape<f64> {
-        let step = |stages: &Vec<Stage<Complex64>>| stages.iter().map(Stage::real).collect();
-        Tape {
-            start: self.start.real(),
-            steps: self.steps.iter().map(step).collect(),
         }
     }
 }

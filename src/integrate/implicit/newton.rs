@@ -1,6 +1,7 @@
 //! Newton's method for one implicit step, with the iteration matrix kept while it converges.
 
 use super::Stage;
+use super::formula::Formula;
 use super::ggl::Equations;
 use super::scales::SceneScale;
 use crate::integrate::failure::IntegrationFailure;
@@ -35,6 +36,28 @@ pub struct History<S> {
 }
 
 impl<S: Scalar> History<S> {
+    /// Nothing remembered yet.
+    pub fn new(numbering: &Numbering) -> Self {
+        Self {
+            c: S::zero(),
+            qdot: vec![S::zero(); numbering.positions()],
+            vdot: vec![S::zero(); numbering.velocities()],
+        }
+    }
+
+    /// What a formula makes of its memory, of q and of v, in a step of size h:
+    /// h ẏ = c Δ + Σ e_j m_j.
+    pub fn set(&mut self, formula: &Formula, memory: &[Vec<Vec<S>>; 2], h: S) {
+        self.c = S::from(formula.lead) / h;
+        for (rates, memory) in [&mut self.qdot, &mut self.vdot].into_iter().zip(memory) {
+            rates.fill(S::zero());
+            for (e, m) in formula.past().iter().zip(memory) {
+                let e = S::from(*e) / h;
+                rates.iter_mut().zip(m).for_each(|(out, &m)| *out += e * m);
+            }
+        }
+    }
+
     /// Sets q̇ and v̇ from the increments.
     fn rates(&self, x: &mut Stage<S>) {
         for (out, (&d, &past)) in x.qdot.iter_mut().zip(x.dq.iter().zip(&self.qdot)) {

@@ -4,14 +4,114 @@ use super::Stage;
 use super::radau::Scheme;
 use crate::linalg::SolveScalar;
 use crate::system::{Numbering, bodies};
-use std::collections::VecDeque;
 
-/// The end of the last step, that step's size and stages, and the ends of the latest steps, newest
-/// first, for a formula.
+/// Steps whose ends a formula's start is extrapolated from.
+const RECENT: usize = 3;
+
+/// What is behind the step to come.
 pub(super) struct Past<S> {
+    /// The end of the last step.
     pub from: Stage<S>,
-    pub before: Option<(S, Vec<Stage<S>>)>,
-    pub recent: VecDeque<Stage<S>>,
+    /// Size and stages of the last step, if it was one of Radau IIA.
+    before: Option<S>,
+    stages: Vec<Stage<S>>,
+    /// Ends of the latest steps, newest first, and how many there are yet.
+    recent: [Stage<S>; RECENT],
+    known: usize,
+    /// A tangent step of the positions.
+    tangent: Vec<S>,
+}
+
+impl<S: SolveScalar> Past<S> {
+    /// Before the first step, which starts at `from`; a step has at most `stages` stages.
+    pub fn new(numbering: &Numbering, from: Stage<S>, stages: usize) -> Self {
+        let zero = Stage::zero(numbering);
+        Self {
+            from,
+            before: None,
+            stages: vec![zero.clone(); stages],
+            recent: std::array::from_fn(|_| zero.clone()),
+            known: 0,
+            tangent: zero.v,
+        }
+    }
+
+    /// Moves past a step of size h, of which `count` of the `stages` were used; others take their
+    /// place.
+    pub fn advance(&mut self, h: S, stages: &mut Vec<Stage<S>>, count: usize) {
+        self.from.set(&stages[count - 1]);
+        self.recent.rotate_right(1);
+        self.recent[0].set(&self.from);
+        self.known = (self.known + 1).min(RECENT);
+        self.before = (count == stages.len()).then_some(h);
+        std::mem::swap(&mut self.stages, stages);
+    }
+
+    /// Where Newton's method starts in a step of size h of Radau IIA: the stages' polynomial of the
+    /// last step, extrapolated; in the first step a Taylor polynomial.
+    pub fn predict_stages(
+        &mut self,
+        numbering: &Numbering,
+        scheme: &Scheme,
+        h: S,
+        out: &mut [Stage<S>],
+    ) {
+        for (&c, far) in scheme.nodes.iter().zip(out) {
+            let Some(before) = self.before else {
+                self.taylor(numbering, h * c, far);
+                continue;
+            };
+            let theta = 1.0 + c * h.re() / before.re();
+            dense(scheme, &self.from, &self.stages, before, theta, far);
+            // The polynomial starts where the last step did.
+            let last = &self.stages[self.stages.len() - 1];
+            for (x, d) in [(&mut far.q, &last.dq), (&mut far.dq, &last.dq)] {
+                x.iter_mut().zip(d).for_each(|(x, &d)| *x -= d);
+            }
+            for (x, d) in [(&mut far.v, &last.dv), (&mut far.dv, &last.dv)] {
+                x.iter_mut().zip(d).for_each(|(x, &d)| *x -= d);
+            }
+            bodies::normalise(numbering, &mut far.q, &mut far.dq);
+        }
+    }
+
+    /// A Taylor polynomial over the time `h`, multipliers held.
+    pub fn taylor(&mut self, numbering: &Numbering, h: S, out: &mut Stage<S>) {
+        let from = &self.from;
+        out.set(from);
+        out.dq.fill(S::zero());
+        let rates = from.v.iter().zip(&from.vdot);
+        for (step, (&v, &a)) in self.tangent.iter_mut().zip(rates) {
+            *step = h * (v + h * a * 0.5);
+        }
+        bodies::advance(numbering, &mut out.q, &mut out.dq, &self.tangent);
+        for (i, &a) in from.vdot.iter().enumerate() {
+            out.dv[i] = h * a;
+            out.v[i] += h * a;
+        }
+    }
+
+    /// Where Newton's method starts for a formula of equal steps: cubic extrapolation of q and v and
+    /// quadratic of λ and μ once three increments are known, before that a Taylor polynomial.
+    pub fn predict(&mut self, numbering: &Numbering, h: S, out: &mut Stage<S>) {
+        if self.known < RECENT {
+            return self.taylor(numbering, h, out);
+        }
+        out.set(&self.from);
+        let [one, two, three] = &self.recent;
+        let extrapolate = |out: &mut [S], pick: fn(&Stage<S>) -> &Vec<S>| {
+            for (j, out) in out.iter_mut().enumerate() {
+                *out = (pick(one)[j] - pick(two)[j]) * 3.0 + pick(three)[j];
+            }
+        };
+        extrapolate(&mut out.dq, |stage| &stage.dq);
+        extrapolate(&mut out.dv, |stage| &stage.dv);
+        extrapolate(&mut out.lambda, |stage| &stage.lambda);
+        extrapolate(&mut out.mu, |stage| &stage.mu);
+        out.q.iter_mut().zip(&out.dq).for_each(|(q, &d)| *q += d);
+        out.v.iter_mut().zip(&out.dv).for_each(|(v, &d)| *v += d);
+        bodies::normalise(numbering, &mut out.q, &mut out.dq);
+    }
 }
 
 /// The collocation polynomial at the fraction θ of a step of size h (beyond the step for θ > 1):
@@ -23,10 +123,11 @@ pub fn dense<S: SolveScalar>(
     stages: &[Stage<S>],
     h: S,
     theta: f64,
-) -> Stage<S> {
+    out: &mut Stage<S>,
+) {
     let (w, rate) = scheme.dense_weights(theta);
     let plain = scheme.stage_weights(theta);
-    let mut out = from.clone();
+    out.set(from);
     for x in [
         &mut out.lambda,
         &mut out.mu,
@@ -50,73 +151,4 @@ pub fn dense<S: SolveScalar>(
         add(&mut out.lambda, S::from(plain[i]), &stage.lambda);
         add(&mut out.mu, S::from(plain[i]), &stage.mu);
     }
-    out
-}
-
-/// Where Newton's method starts: the stages' polynomial of the last step, extrapolated; in the
-/// first step a Taylor polynomial.
-pub(super) fn predict_stages<S: SolveScalar>(
-    numbering: &Numbering,
-    scheme: &Scheme,
-    past: &Past<S>,
-    h: S,
-) -> Vec<Stage<S>> {
-    let known = past.before.as_ref();
-    let stage = |&c: &f64| match known.filter(|(_, stages)| stages.len() == scheme.stages()) {
-        Some((before, stages)) => {
-            let theta = 1.0 + c * h.re() / before.re();
-            let last = &stages[stages.len() - 1];
-            let mut far = dense(scheme, &past.from, stages, *before, theta);
-            // The polynomial starts where the last step did.
-            for (x, d) in [(&mut far.q, &last.dq), (&mut far.dq, &last.dq)] {
-                x.iter_mut().zip(d).for_each(|(x, &d)| *x -= d);
-            }
-            for (x, d) in [(&mut far.v, &last.dv), (&mut far.dv, &last.dv)] {
-                x.iter_mut().zip(d).for_each(|(x, &d)| *x -= d);
-            }
-            bodies::normalise(numbering, &mut far.q, &mut far.dq);
-            far
-        }
-        None => taylor(numbering, &past.from, h * c),
-    };
-    scheme.nodes.iter().map(stage).collect()
-}
-
-/// A Taylor polynomial over the time `h`, multipliers held.
-pub(super) fn taylor<S: SolveScalar>(numbering: &Numbering, from: &Stage<S>, h: S) -> Stage<S> {
-    let mut out = from.clone();
-    out.dq.fill(S::zero());
-    let step: Vec<S> = (from.v.iter().zip(&from.vdot))
-        .map(|(&v, &a)| h * (v + h * a * 0.5))
-        .collect();
-    bodies::advance(numbering, &mut out.q, &mut out.dq, &step);
-    for (i, &a) in from.vdot.iter().enumerate() {
-        out.dv[i] = h * a;
-        out.v[i] += h * a;
-    }
-    out
-}
-
-/// Where Newton's method starts for a formula of equal steps: cubic extrapolation of q and v and
-/// quadratic of λ and μ once three increments are known, before that a Taylor polynomial.
-pub(super) fn predict<S: SolveScalar>(numbering: &Numbering, past: &Past<S>, h: S) -> Stage<S> {
-    let (Some(one), Some(two), Some(three)) =
-        (past.recent.front(), past.recent.get(1), past.recent.get(2))
-    else {
-        return taylor(numbering, &past.from, h);
-    };
-    let mut out = past.from.clone();
-    let extrapolate = |out: &mut [S], pick: fn(&Stage<S>) -> &Vec<S>| {
-        for (j, out) in out.iter_mut().enumerate() {
-            *out = (pick(one)[j] - pick(two)[j]) * 3.0 + pick(three)[j];
-        }
-    };
-    extrapolate(&mut out.dq, |stage| &stage.dq);
-    extrapolate(&mut out.dv, |stage| &stage.dv);
-    extrapolate(&mut out.lambda, |stage| &stage.lambda);
-    extrapolate(&mut out.mu, |stage| &stage.mu);
-    out.q.iter_mut().zip(&out.dq).for_each(|(q, &d)| *q += d);
-    out.v.iter_mut().zip(&out.dv).for_each(|(v, &d)| *v += d);
-    bodies::normalise(numbering, &mut out.q, &mut out.dq);
-    out
 }

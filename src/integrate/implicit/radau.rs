@@ -9,6 +9,8 @@ use crate::integrate::settings::Method;
 use crate::math::Complex64;
 use nalgebra::{DMatrix, DVector};
 
+/// Most stages of a method.
+const MOST: usize = 3;
 /// Stages of the method that a formula of several steps begins with.
 const STARTING_STAGES: usize = 3;
 
@@ -112,19 +114,25 @@ impl Scheme {
     }
 
     /// Weights of Z_i in y(θ) − y_n, the polynomial through the start and the stages, and their
-    /// derivatives by θ.
-    pub fn dense_weights(&self, theta: f64) -> (Vec<f64>, Vec<f64>) {
-        let nodes: Vec<f64> = std::iter::once(0.0)
-            .chain(self.nodes.iter().copied())
-            .collect();
-        (1..nodes.len()).map(|i| lagrange(&nodes, i, theta)).unzip()
+    /// derivatives by θ; zero beyond the stages.
+    pub fn dense_weights(&self, theta: f64) -> ([f64; MOST], [f64; MOST]) {
+        let (mut values, mut slopes) = ([0.0; MOST], [0.0; MOST]);
+        for (i, &node) in self.nodes.iter().enumerate() {
+            // 1 at the node and 0 at the others, times what is 1 at the node and 0 at the start.
+            let (value, slope) = lagrange(&self.nodes, i, theta);
+            values[i] = value * theta / node;
+            slopes[i] = (slope * theta + value) / node;
+        }
+        (values, slopes)
     }
 
     /// Weights of the stages themselves in their polynomial, which has no value at the start.
-    pub fn stage_weights(&self, theta: f64) -> Vec<f64> {
-        (0..self.stages())
-            .map(|i| lagrange(&self.nodes, i, theta).0)
-            .collect()
+    pub fn stage_weights(&self, theta: f64) -> [f64; MOST] {
+        let mut weights = [0.0; MOST];
+        for (i, weight) in weights.iter_mut().enumerate().take(self.stages()) {
+            *weight = lagrange(&self.nodes, i, theta).0;
+        }
+        weights
     }
 }
 

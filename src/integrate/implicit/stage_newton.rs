@@ -5,6 +5,7 @@ use super::Stage;
 use super::ggl::Equations;
 use super::radau::Scheme;
 use super::scales::{Scales, SceneScale};
+use super::split::SplitMatrix;
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::trajectory::WorkCounts;
 use crate::linalg::{SolveScalar, SparseLu, SparseMatrix};
@@ -26,6 +27,8 @@ const DIVERGENT: f64 = 0.9;
 /// Relative change of the step size that the kept factors do not feel.
 const SAME_STEP: f64 = 1e-6;
 const ITERATIONS: usize = 20;
+/// Pivot of a scaled matrix that is as good as none.
+const NEARLY_SINGULAR: f64 = 1e-10;
 /// Iterations that let an infinitesimal part converge after the real one.
 const INFINITESIMAL_ITERATIONS: usize = 12;
 
@@ -36,9 +39,7 @@ pub struct StageNewton<'a, S> {
     real: Equations<'a, f64>,
     numbering: &'a Numbering,
     scheme: &'a Scheme,
-    /// The matrix with the rates held, and with h ∂Ẏ/∂Y = 1.
-    held: SparseMatrix<f64>,
-    unit: SparseMatrix<f64>,
+    split: SplitMatrix,
     /// The matrix of the real eigenvalue, or of the error's filter where there is none.
     real_mode: Option<(SparseMatrix<f64>, SparseLu<f64>)>,
     complex_mode: (SparseMatrix<Complex64>, SparseLu<Complex64>),
@@ -49,6 +50,11 @@ pub struct StageNewton<'a, S> {
     updates: Vec<Vec<S>>,
     real_rhs: Vec<f64>,
     complex_rhs: Vec<Complex64>,
+    /// Where the iterations of a step start, and the stage that the matrices are made at.
+    predicted: Vec<Stage<S>>,
+    middle: Stage<f64>,
+    /// Combinations of increments of q and v, for the error.
+    combined: [Vec<f64>; 2],
 }
 
 impl<'a, S: SolveScalar> StageNewton<'a, S> {
@@ -62,7 +68,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         estimates: bool,
     ) -> Self {
         let mut equations = Equations::new(real, numbering);
-        let pattern = equations.pattern(&Stage::zero(numbering).instant());
+        let zero = Stage::zero(numbering);
+        let split = SplitMatrix::new(&mut equations, &zero);
+        let pattern = split.held.pattern.clone();
         let n = equations.length();
         let real_mode = (scheme.modes[0].is_real() || estimates).then(|| {
             let matrix = SparseMatrix::new(pattern.clone());
@@ -73,16 +81,21 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             real: equations,
             numbering,
             scheme,
-            held: SparseMatrix::new(pattern.clone()),
-            unit: SparseMatrix::new(pattern.clone()),
+            split,
             real_mode,
-            complex_mode: (SparseMatrix::new(pattern.clone()), SparseLu::new(&pattern)),
+            complex_mode: {
+                let factors = SparseLu::new(&pattern);
+                (SparseMatrix::new(pattern), factors)
+            },
             factored: None,
             scale: SceneScale::of(model),
             residuals: vec![vec![S::zero(); n]; scheme.stages()],
             updates: vec![vec![S::zero(); n]; scheme.stages()],
             real_rhs: vec![0.0; n],
             complex_rhs: vec![Complex64::new(0.0, 0.0); n],
+            predicted: vec![Stage::zero(numbering); scheme.stages()],
+            combined: [vec![0.0; zero.q.len()], vec![0.0; zero.v.len()]],
+            middle: zero,
         }
     }
 
@@ -104,9 +117,13 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             self.factorise(stages, h.re(), at, counts)?;
             return self.iterate(stages, h, at, counts);
         }
-        let predicted = stages.to_vec();
+        for (predicted, stage) in self.predicted.iter_mut().zip(&*stages) {
+            predicted.set(stage);
+        }
         self.iterate(stages, h, at, counts).or_else(|_| {
-            stages.clone_from_slice(&predicted);
+            for (stage, predicted) in stages.iter_mut().zip(&self.predicted) {
+                stage.set(predicted);
+            }
             self.factorise(stages, h.re(), at, counts)?;
             self.iterate(stages, h, at, counts)
         })
@@ -166,7 +183,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             previous = size;
         }
         self.factored = None;
-        Err(self.stalled(stages, h, at))
+        Err(self.stalled(stages, h, at, counts))
     }
 
     /// Whether the residuals are round-off, however large the changes are that a nearly singular
@@ -275,42 +292,31 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         counts: &mut WorkCounts,
     ) -> Result<(), IntegrationFailure> {
         self.set_rates(stages, S::from(h));
-        let middle = stages[(stages.len() - 1) / 2].real();
-        let at = middle.instant();
+        stages[(stages.len() - 1) / 2].real_into(&mut self.middle);
         let Self {
-            real,
-            held,
-            unit,
+            split,
             real_mode,
             complex_mode,
             ..
         } = self;
-        held.assemble(|emit| real.jacobian(&at, h, 0.0, emit));
-        unit.assemble(|emit| real.jacobian(&at, h, 1.0 / h, emit));
+        split.assemble(&mut self.real, &self.middle.instant(), h);
         // The matrix is affine in the eigenvalue.
-        let rate = |i: usize| unit.values[i] - held.values[i];
         let mut found = Ok(());
         for mode in &self.scheme.modes {
             counts.factorisations += 1;
             let factors = if let (true, Some((matrix, factors))) = (mode.is_real(), &mut *real_mode)
             {
-                for (i, value) in matrix.values.iter_mut().enumerate() {
-                    *value = held.values[i] + mode.value.re * rate(i);
-                }
+                split.fill(mode.value.re, matrix);
                 factors.factorise(matrix)
             } else {
                 let (matrix, factors) = &mut *complex_mode;
-                for (i, value) in matrix.values.iter_mut().enumerate() {
-                    *value = mode.value * rate(i) + held.values[i];
-                }
+                split.fill(mode.value, matrix);
                 factors.factorise(matrix)
             };
             found = found.and(factors);
         }
         if let (false, Some((matrix, factors))) = (self.scheme.modes[0].is_real(), real_mode) {
-            for (i, value) in matrix.values.iter_mut().enumerate() {
-                *value = held.values[i] + rate(i) / self.scheme.error.0;
-            }
+            split.fill(1.0 / self.scheme.error.0, matrix);
             counts.factorisations += 1;
             found = found.and(factors.factorise(matrix));
         }
@@ -326,27 +332,37 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     /// filtered by the real matrix, (K δ) = B (b̂_0 h ẏ_n + Σ e_i Z_i) / (b̂_0 h) in the equations
     /// of motion and 0 in the constraints (Hairer & Wanner 1996, eq. IV.8.19 and 20). `rates` are
     /// the rates (q̇, v̇) at the start.
-    pub fn error(&mut self, stages: &[Stage<S>], (qdot, vdot): (&[f64], &[f64]), h: f64) -> &[f64] {
+    pub fn error(
+        &mut self,
+        stages: &[Stage<f64>],
+        (qdot, vdot): (&[f64], &[f64]),
+        h: f64,
+    ) -> &[f64] {
         let numbering = self.numbering;
         let nv = numbering.velocities();
         let (first, weights) = &self.scheme.error;
-        let mut dq: Vec<f64> = qdot.iter().map(|x| first * h * x).collect();
-        let mut dv: Vec<f64> = vdot.iter().map(|x| first * h * x).collect();
+        let [dq, dv] = &mut self.combined;
+        let start = |out: &mut [f64], rates: &[f64]| {
+            let rates = out.iter_mut().zip(rates);
+            rates.for_each(|(out, x)| *out = first * h * x);
+        };
+        start(dq, qdot);
+        start(dv, vdot);
         for (stage, e) in stages.iter().zip(weights) {
             dq.iter_mut()
                 .zip(&stage.dq)
-                .for_each(|(out, z)| *out += e * z.re());
+                .for_each(|(out, z)| *out += e * z);
             dv.iter_mut()
                 .zip(&stage.dv)
-                .for_each(|(out, z)| *out += e * z.re());
+                .for_each(|(out, z)| *out += e * z);
         }
-        let end: Vec<f64> = stages[stages.len() - 1].q.iter().map(|x| x.re()).collect();
+        let end = &stages[stages.len() - 1].q;
         self.real_rhs.fill(0.0);
         let (f1, rest) = self.real_rhs.split_at_mut(nv);
-        bodies::velocity_of_rates(numbering, &end, &dq, f1);
+        bodies::velocity_of_rates(numbering, end, dq, f1);
         f1.iter_mut().for_each(|x| *x /= *first);
         // Rows of the dynamics are scaled by h² / m, those of the kinematics by h.
-        bodies::mass_product(self.real.model(), numbering, &dv, &mut rest[..nv]);
+        bodies::mass_product(self.real.model(), numbering, dv, &mut rest[..nv]);
         let scale = h / (first * self.real.mass());
         rest[..nv].iter_mut().for_each(|x| *x *= scale);
         if let Some((_, factors)) = &mut self.real_mode {
@@ -367,12 +383,32 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         }
     }
 
+    /// Why the iterations failed: a singular position if the matrix is nearly singular where they
+    /// ended.
     fn stalled(
         &mut self,
         stages: &mut [Stage<S>],
         h: S,
         (step, time): (usize, f64),
+        counts: &mut WorkCounts,
     ) -> IntegrationFailure {
+        if stages.iter().all(Stage::is_finite) {
+            if let Err(singular) = self.factorise(stages, h.re(), (step, time), counts) {
+                return singular;
+            }
+            self.factored = None;
+            let complex = self.complex_mode.1.smallest_pivot();
+            let real = self.real_mode.as_mut();
+            let real = real.map_or(complex, |(_, factors)| factors.smallest_pivot());
+            let least = if real.0 < complex.0 { real } else { complex };
+            if least.0 < NEARLY_SINGULAR {
+                return IntegrationFailure::Singular {
+                    time,
+                    step,
+                    place: self.real.describe_reduced(least.1),
+                };
+            }
+        }
         self.set_rates(stages, h);
         let (mut worst, mut largest) = (0, 0.0_f64);
         for (stage, residual) in stages.iter().zip(&mut self.residuals) {

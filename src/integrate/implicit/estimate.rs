@@ -1,0 +1,107 @@
+//! The estimated error of a step of Radau IIA.
+
+use super::Stage;
+use super::predict::dense;
+use super::radau::Scheme;
+use super::stage_newton::StageNewton;
+use crate::integrate::control::Scale;
+use crate::integrate::trajectory::WorkCounts;
+use crate::linalg::SolveScalar;
+use crate::model::Model;
+use crate::system::accelerations::Accelerations;
+use crate::system::{Motion, Numbering, bodies, joints};
+
+/// Estimates errors, with what that needs again in every step.
+pub(super) struct Estimate<'a> {
+    model: &'a Model<f64>,
+    numbering: &'a Numbering,
+    scheme: &'a Scheme,
+    /// True rates at the start of a step.
+    field: Accelerations<'a, f64>,
+    /// The start and the stages of the step, and its middle.
+    from: Stage<f64>,
+    stages: Vec<Stage<f64>>,
+    middle: Stage<f64>,
+    motions: Vec<Motion<f64>>,
+    rows: Vec<f64>,
+}
+
+impl<'a> Estimate<'a> {
+    pub fn new(model: &'a Model<f64>, numbering: &'a Numbering, scheme: &'a Scheme) -> Self {
+        let zero = Stage::zero(numbering);
+        Self {
+            model,
+            numbering,
+            scheme,
+            field: Accelerations::new(model, numbering),
+            stages: vec![zero.clone(); scheme.stages()],
+            middle: zero.clone(),
+            from: zero,
+            motions: Vec::new(),
+            rows: vec![0.0; numbering.constraints()],
+        }
+    }
+
+    /// Adds the work so far.
+    pub fn count(&self, counts: &mut WorkCounts) {
+        counts.factorisations += self.field.factorisations;
+        counts.solves += self.field.solves;
+    }
+
+    /// Estimated error of the step that `newton` just made, relative to the scene's scale.
+    pub fn error<S: SolveScalar>(
+        &mut self,
+        newton: &mut StageNewton<S>,
+        (from, stages): (&Stage<S>, &[Stage<S>]),
+        h: f64,
+        scale: &Scale,
+    ) -> f64 {
+        let numbering = self.numbering;
+        from.real_into(&mut self.from);
+        for (own, stage) in self.stages.iter_mut().zip(stages) {
+            stage.real_into(own);
+        }
+        let Stage {
+            q,
+            v,
+            qdot,
+            vdot,
+            lambda,
+            time,
+            ..
+        } = &mut self.from;
+        bodies::rates(numbering, q, v, qdot);
+        self.field.stand(q, v, *time);
+        if self.field.factorise().is_err() {
+            return f64::NAN;
+        }
+        self.field.accelerations(vdot, lambda);
+        let found = newton.error(&self.stages, (&qdot[..], &vdot[..]), h);
+        let nv = v.len();
+        let end = &self.stages[self.stages.len() - 1].v;
+        let speeds = scale.speeds(numbering, &v[..], end);
+        let error = scale
+            .tangent_square(&found[..nv], &found[nv..], h, speeds)
+            .sqrt();
+        if (self.model.joints.iter()).all(|joint| joint.drives.is_empty()) {
+            return error;
+        }
+        error.max(self.drift(h, (scale, speeds)))
+    }
+
+    /// How far the middle of a step is off the joints, relative to the scene's scale. The stages are
+    /// on them: motion that is prescribed has no other error to be seen.
+    fn drift(&mut self, h: f64, (scale, speeds): (&Scale, [f64; 2])) -> f64 {
+        let (model, numbering) = (self.model, self.numbering);
+        let middle = &mut self.middle;
+        dense(self.scheme, &self.from, &self.stages, h, 0.5, middle);
+        bodies::bring_to_unit(numbering, &mut middle.q);
+        Motion::all(numbering, &middle.q, &middle.v, &mut self.motions);
+        let at = (&self.motions[..], self.from.time + 0.5 * h);
+        let largest = |rows: &[f64]| rows.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        joints::values(model, numbering, at, &mut self.rows);
+        let open = largest(&self.rows) / scale.length;
+        joints::rates(model, numbering, at, &mut self.rows);
+        open.max(largest(&self.rows) / speeds[0])
+    }
+}

@@ -1,0 +1,49 @@
+//! The iteration matrix as a sum: what depends on the state, and the constant derivative in the rates.
+
+use super::Stage;
+use super::ggl::{Equations, Instant};
+use crate::linalg::SparseMatrix;
+use crate::math::Scalar;
+
+/// The iteration matrix K = H + c h B of equations whose rates change by c times the change of the
+/// state: H with the rates held, and B = (1, M) in the rows of kinematics and dynamics, as these are
+/// scaled. One assembly of H serves every c.
+#[derive(Clone, Debug)]
+pub struct SplitMatrix {
+    /// H.
+    pub held: SparseMatrix<f64>,
+    /// B, in a pattern of its own.
+    pub rates: SparseMatrix<f64>,
+    /// Slots of its entries in H.
+    slots: Vec<usize>,
+}
+
+impl SplitMatrix {
+    /// Plans the matrix of `equations`; `zero` is any stage of theirs.
+    pub fn new(equations: &mut Equations<f64>, zero: &Stage<f64>) -> Self {
+        let held = SparseMatrix::new(equations.pattern(&zero.instant()));
+        let mut rates = SparseMatrix::new(equations.pattern_of_rates());
+        rates.assemble(|emit| equations.emit_own_rates(emit));
+        Self {
+            slots: held.pattern.slots_of(&rates.pattern),
+            held,
+            rates,
+        }
+    }
+
+    /// Assembles H at an instant in a step of size h.
+    pub fn assemble(&mut self, equations: &mut Equations<f64>, at: &Instant<f64>, h: f64) {
+        self.held
+            .assemble(|emit| equations.jacobian(at, h, 0.0, emit));
+    }
+
+    /// Fills `out`, which has the pattern of H, with H + c h B.
+    pub fn fill<S: Scalar>(&self, ch: S, out: &mut SparseMatrix<S>) {
+        for (out, &value) in out.values.iter_mut().zip(&self.held.values) {
+            *out = S::from(value);
+        }
+        for (&slot, &value) in self.slots.iter().zip(&self.rates.values) {
+            out.values[slot] += ch * value;
+        }
+    }
+}

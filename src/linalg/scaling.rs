@@ -1,0 +1,77 @@
+//! Scaling of the rows and columns of a matrix, so that elimination compares like with like.
+
+use super::pattern::{Pattern, SparseMatrix};
+use crate::math::Scalar;
+
+/// Largest exponent of a scale.
+const MOST: f64 = 500.0;
+
+/// Powers of two R and C, which make the largest entries of the rows and columns of R A C lie between
+/// 1/2 and 1: whatever units a row or column is in, elimination then compares it with the others
+/// (Golub & Van Loan 2013, section 3.5.2), and scaling itself makes no round-off.
+#[derive(Clone, Debug)]
+pub(super) struct Scaling {
+    /// R.
+    pub rows: Vec<f64>,
+    /// C.
+    pub columns: Vec<f64>,
+    /// What each entry is multiplied by.
+    pub entries: Vec<f64>,
+}
+
+impl Scaling {
+    /// No scaling yet.
+    pub fn new(pattern: &Pattern) -> Self {
+        Self {
+            rows: vec![1.0; pattern.order()],
+            columns: vec![1.0; pattern.order()],
+            entries: vec![1.0; pattern.entries()],
+        }
+    }
+
+    /// Becomes equal to another scaling of the same pattern.
+    pub fn set(&mut self, other: &Self) {
+        self.rows.copy_from_slice(&other.rows);
+        self.columns.copy_from_slice(&other.columns);
+        self.entries.copy_from_slice(&other.entries);
+    }
+
+    /// Scales for a matrix: first its rows, then the columns of what that makes.
+    pub fn fit<S: Scalar>(&mut self, matrix: &SparseMatrix<S>) {
+        let pattern = &matrix.pattern;
+        self.rows.fill(0.0);
+        for (&row, &value) in pattern.rows().iter().zip(&matrix.values) {
+            self.rows[row] = self.rows[row].max(size(value));
+        }
+        for row in &mut self.rows {
+            *row = scale(*row);
+        }
+        let starts = pattern.column_starts().windows(2);
+        for (column, own) in self.columns.iter_mut().zip(starts) {
+            let own = own[0]..own[1];
+            let mut largest = 0.0_f64;
+            for k in own.clone() {
+                self.entries[k] = self.rows[pattern.rows()[k]];
+                largest = largest.max(size(matrix.values[k]) * self.entries[k]);
+            }
+            *column = scale(largest);
+            for entry in &mut self.entries[own] {
+                *entry *= *column;
+            }
+        }
+    }
+}
+
+/// Size of a number as pivoting sees it, |Re x| + |Im x|; NaN of NaN.
+pub(super) fn size<S: Scalar>(x: S) -> f64 {
+    x.re().abs() + x.infinitesimal().abs()
+}
+
+/// The power of two that brings `largest` between 1/2 and 1; 1 where there is nothing to be scaled.
+fn scale(largest: f64) -> f64 {
+    if largest > 0.0 && largest.is_finite() {
+        (-(largest.log2().floor() + 1.0)).clamp(-MOST, MOST).exp2()
+    } else {
+        1.0
+    }
+}
