@@ -13,6 +13,7 @@ use super::joints::{self, JointCotangent};
 use super::kkt::{Elimination, SaddlePoint};
 use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
+use super::planar::PlanarJoints;
 use super::reduce;
 use super::tree::Tree;
 use crate::linalg::{SingularMatrix, SolveScalar};
@@ -27,6 +28,8 @@ pub struct Accelerations<'a, S> {
     /// Motions of the bodies where the solver stands.
     pub motions: Vec<Motion<S>>,
     gradients: Vec<RowGradient<S>>,
+    /// The joints, if the scene is planar.
+    planar: Option<PlanarJoints<S>>,
     /// Motions with accelerations and virtual velocities, for the pull-back.
     moving: Vec<Motion<S>>,
     /// Time where the solver stands (s).
@@ -57,6 +60,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             numbering,
             motions: Vec::new(),
             gradients: Vec::new(),
+            planar: PlanarJoints::of(model),
             moving: Vec::new(),
             time: S::zero(),
             solver,
@@ -84,18 +88,27 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     pub fn stand(&mut self, q: &[S], v: &[S], time: S) {
         self.time = time;
         Motion::all_normalised(self.numbering, q, v, &mut self.motions);
-        joints::gradients(
-            self.model,
-            self.numbering,
-            (&self.motions, time),
-            &mut self.gradients,
-        );
+        match &mut self.planar {
+            Some(planar) => {
+                planar.stand(&self.motions);
+                planar.gradients(&mut self.gradients);
+            }
+            None => joints::gradients(
+                self.model,
+                self.numbering,
+                (&self.motions, time),
+                &mut self.gradients,
+            ),
+        }
     }
 
     /// Changes the velocities, the position kept.
     pub fn set_velocities(&mut self, v: &[S]) {
         for (body, motion) in self.motions.iter_mut().enumerate() {
             (motion.velocity, motion.omega) = velocities_of(&v[self.numbering.velocity(body)..]);
+        }
+        if let Some(planar) = &mut self.planar {
+            planar.set_velocities(self.numbering, v);
         }
     }
 
@@ -189,8 +202,13 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         let (upper, lower) = rhs.split_at_mut(nv);
         a.fill(S::zero());
         all_force_balances(self.model, self.numbering, &self.motions, a, upper);
-        let at = (&self.motions[..], self.time);
-        joints::accelerations(self.model, self.numbering, at, lower);
+        match &self.planar {
+            Some(planar) => planar.accelerations(self.numbering, lower),
+            None => {
+                let at = (&self.motions[..], self.time);
+                joints::accelerations(self.model, self.numbering, at, lower);
+            }
+        }
         rhs.iter_mut().for_each(|x| *x = -*x);
         let forces = &mut rhs[..nv];
         loads::add_forces(self.model, self.numbering, &self.motions, self.time, forces);
@@ -285,20 +303,9 @@ impl Accelerations<'_, f64> {
             }
         }
         // χᵀ (G a + bias) and λᵀ G ψ in one pass.
-        let moving = self.motions.iter().enumerate().map(|(i, motion)| {
-            let o = numbering.velocity(i);
-            motion.accelerated(&a[o..]).virtually(&psi[o..])
-        });
-        self.moving.clear();
-        self.moving.extend(moving);
-        let mut out = JointCotangent {
-            y: Some(y),
-            v: Some(v),
-            model: cot,
-        };
         let cotangents = [None, None, Some(&psi[nv..]), Some(lambda)];
-        let at = (&self.moving[..], self.time);
-        by_time += joints::pull_back(model, numbering, at, cotangents, &mut out);
+        let moving = (Some(a), Some(&psi[..nv]));
+        by_time += self.pull_rows(moving, cotangents, (y, Some(v)), cot);
         self.rhs = psi;
         by_time
     }
@@ -313,53 +320,49 @@ impl Accelerations<'_, f64> {
         cot: &mut Model<f64>,
     ) -> f64 {
         let cotangents = [None, None, None, Some(lambda)];
-        self.pull_moving(|motion, at| motion.virtually(&w[at..]), cotangents, y, cot)
+        self.pull_rows((None, Some(w)), cotangents, (y, None), cot)
     }
 
-    /// As [`Accelerations::pull_rate`] for χᵀ (G v + Φ_t) at the velocities v.
-    pub fn pull_rates(
-        &mut self,
-        v: &[f64],
-        chi: &[f64],
-        y: &mut [f64],
-        cot: &mut Model<f64>,
-    ) -> f64 {
-        let moving = |motion: &Motion<f64>, at: usize| {
-            let (velocity, omega) = velocities_of(&v[at..]);
-            Motion {
-                velocity,
-                omega,
-                ..*motion
-            }
-        };
-        self.pull_moving(moving, [None, Some(chi), None, None], y, cot)
+    /// As [`Accelerations::pull_rate`] for χᵀ (G v + Φ_t) at the velocities where the solver stands.
+    pub fn pull_rates(&mut self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
+        let cotangents = [None, Some(chi), None, None];
+        self.pull_rows((None, None), cotangents, (y, None), cot)
     }
 
     /// As [`Accelerations::pull_rate`] for χᵀ Φ(q, t).
     pub fn pull_constraints(&mut self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
         let cotangents = [Some(chi), None, None, None];
-        self.pull_moving(|motion, _| *motion, cotangents, y, cot)
+        self.pull_rows((None, None), cotangents, (y, None), cot)
     }
 
-    /// Pulls the rows' cotangents back at motions that are made of each body's and of where its
-    /// velocities stand.
-    fn pull_moving(
+    /// Pulls the rows' cotangents back where the bodies have these accelerations and virtual
+    /// velocities, zero where they are not given.
+    fn pull_rows(
         &mut self,
-        moving: impl Fn(&Motion<f64>, usize) -> Motion<f64>,
+        (a, w): (Option<&[f64]>, Option<&[f64]>),
         cotangents: [Option<&[f64]>; 4],
-        y: &mut [f64],
+        (y, v): (&mut [f64], Option<&mut [f64]>),
         cot: &mut Model<f64>,
     ) -> f64 {
         let (model, numbering) = (self.model, self.numbering);
-        let motions = self.motions.iter().enumerate();
-        self.moving.clear();
-        self.moving
-            .extend(motions.map(|(i, motion)| moving(motion, numbering.velocity(i))));
         let mut out = JointCotangent {
             y: Some(y),
-            v: None,
+            v,
             model: cot,
         };
+        // Values depend on what is across the plane as well.
+        if let (Some(planar), [None, rates @ ..]) = (&mut self.planar, cotangents) {
+            planar.set_moving(numbering, a, w);
+            planar.pull_back(numbering, rates, &mut out);
+            return 0.0;
+        }
+        let moving = self.motions.iter().enumerate().map(|(i, motion)| {
+            let o = numbering.velocity(i);
+            let motion = a.map_or(*motion, |a| motion.accelerated(&a[o..]));
+            w.map_or(motion, |w| motion.virtually(&w[o..]))
+        });
+        self.moving.clear();
+        self.moving.extend(moving);
         let at = (&self.moving[..], self.time);
         joints::pull_back(model, numbering, at, cotangents, &mut out)
     }

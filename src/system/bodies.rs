@@ -124,17 +124,23 @@ impl<S: Scalar> Motion<S> {
 }
 
 /// The linear and the angular part of six velocity (or tangent) coordinates.
+#[inline]
 pub fn velocities_of<S: Scalar>(v: &[S]) -> (Vec3<S>, Vec3<S>) {
+    let v = &v[..6];
     (Vec3::new(v[0], v[1], v[2]), Vec3::new(v[3], v[4], v[5]))
 }
 
 /// The position and the Euler-parameter part of seven position coordinates.
+#[inline]
 pub fn positions_of<S: Scalar>(q: &[S]) -> (Vec3<S>, Quat<S>) {
+    let q = &q[..7];
     (Vec3::new(q[0], q[1], q[2]), [q[3], q[4], q[5], q[6]])
 }
 
 /// Adds a linear and an angular part to six coordinates.
+#[inline]
 pub fn add6<S: Scalar>(out: &mut [S], linear: &Vec3<S>, angular: &Vec3<S>) {
+    let out = &mut out[..6];
     for i in 0..3 {
         out[i] += linear[i];
         out[3 + i] += angular[i];
@@ -142,7 +148,9 @@ pub fn add6<S: Scalar>(out: &mut [S], linear: &Vec3<S>, angular: &Vec3<S>) {
 }
 
 /// Adds a position and an Euler-parameter part to seven coordinates.
+#[inline]
 pub fn add7<S: Scalar>(out: &mut [S], position: &Vec3<S>, orientation: &Quat<S>) {
+    let out = &mut out[..7];
     for i in 0..3 {
         out[i] += position[i];
     }

@@ -17,6 +17,8 @@ pub mod loads;
 pub mod marker;
 pub mod numbering;
 pub mod observe;
+pub mod planar;
+mod planar_pull_back;
 pub mod rank;
 pub mod reaction;
 pub mod reduce;

@@ -54,7 +54,7 @@ pub(super) fn pull_back(
     }
     let mut more = room.zeros(nv);
     let mut by_time = field.pull_rate(&psi[..nv], data.sigma, &mut more, cot);
-    by_time += field.pull_rates(to.v, &psi[nv..], &mut more, cot);
+    by_time += field.pull_rates(&psi[nv..], &mut more, cot);
     y.iter_mut().zip(&more).for_each(|(y, &m)| *y += m);
 
     // M T⁺ (q − q~) + Gᵀs = 0, Φ(q, t) = 0: its matrix differs from the factorised one by terms X of

@@ -1,0 +1,374 @@
+//! The joints of a planar scene: what [`super::joints`] finds in space, from the two components of
+//! every marker that lie in the plane.
+//!
+//! With J a quarter turn, A = [R b1, R b2] the body's plane basis in that of the scene, and s the two
+//! components of a vector in the body,
+//!
+//! ```text
+//! ρ = A s,   ρ' = A J s,   ρ̇ = ω ρ',   ρ̈ = α ρ' − ω² ρ,   ∂ρ/∂θ = ρ',   ∂ρ'/∂θ = −ρ
+//! ```
+//!
+//! Rates and second derivatives of the rows do not depend on what is across the plane. Their values do,
+//! by what the frames have of it, and stay with [`super::joints`].
+
+use super::bodies::Motion;
+use super::constraint::RowGradient;
+use super::numbering::Numbering;
+use super::reduce::along;
+use crate::math::{Scalar, Vec3};
+use crate::model::{ConstraintRow, Joint, JointFrame, Mobility, Model};
+use nalgebra::Vector2;
+
+/// A vector in a plane.
+pub(super) type Vec2<S> = Vector2<S>;
+
+/// The joints of a planar scene without drives, and where its bodies stand.
+#[derive(Clone)]
+pub struct PlanarJoints<S> {
+    /// Two orthonormal directions of the plane, ground axes.
+    pub(super) along: [Vec3<f64>; 2],
+    /// The planes of the bodies, then that of the ground.
+    pub(super) planes: Vec<BodyPlane>,
+    pub(super) joints: Vec<PlanarJoint<S>>,
+    /// Motions of the bodies, then that of the ground.
+    pub(super) motions: Vec<PlanarMotion<S>>,
+}
+
+/// The plane of a scene in the axes of a body.
+#[derive(Clone, Copy)]
+pub(super) struct BodyPlane {
+    /// Two orthonormal directions b1, b2 = n × b1.
+    pub(super) along: [Vec3<f64>; 2],
+    /// The normal n.
+    pub(super) normal: Vec3<f64>,
+}
+
+/// A joint in the plane.
+#[derive(Clone)]
+pub(super) struct PlanarJoint<S> {
+    pub(super) body_a: usize,
+    /// The ground stands behind the bodies.
+    pub(super) body_b: usize,
+    pub(super) a: PlanarFrame<S>,
+    pub(super) b: PlanarFrame<S>,
+    /// Length of a rod.
+    pub(super) length: S,
+    pub(super) rows: Vec<ConstraintRow>,
+    /// Whether a row looks at the distance of the points.
+    pub(super) points: bool,
+}
+
+/// Point and axes of a joint's frame, in the plane of its body.
+#[derive(Clone, Copy)]
+pub(super) struct PlanarFrame<S> {
+    pub(super) point: Vec2<S>,
+    pub(super) axes: [Vec2<S>; 3],
+}
+
+/// Motion of a body in the plane of the scene.
+#[derive(Clone, Copy)]
+pub(super) struct PlanarMotion<S> {
+    position: Vec2<S>,
+    /// The columns of A.
+    pub(super) turn: [Vec2<S>; 2],
+    velocity: Vec2<S>,
+    pub(super) omega: S,
+    acceleration: Vec2<S>,
+    pub(super) alpha: S,
+    virtual_velocity: Vec2<S>,
+    pub(super) virtual_omega: S,
+}
+
+/// Value, velocity, acceleration and virtual velocity of a marker.
+#[derive(Clone, Copy)]
+pub(super) struct Jet<S> {
+    pub(super) x: Vec2<S>,
+    pub(super) rate: Vec2<S>,
+    pub(super) acceleration: Vec2<S>,
+    pub(super) virtual_rate: Vec2<S>,
+}
+
+impl BodyPlane {
+    /// The plane across the unit vector n.
+    fn across(normal: Vec3<f64>) -> Self {
+        let mut farthest = Vec3::zeros();
+        farthest[normal.iamin()] = 1.0;
+        let first = normal.cross(&farthest).normalize();
+        Self {
+            along: [first, normal.cross(&first)],
+            normal,
+        }
+    }
+
+    fn components<S: Scalar>(&self, x: &Vec3<S>) -> Vec2<S> {
+        Vec2::new(along(x, &self.along[0]), along(x, &self.along[1]))
+    }
+
+    fn frame<S: Scalar>(&self, frame: &JointFrame<S>) -> PlanarFrame<S> {
+        PlanarFrame {
+            point: self.components(&frame.point),
+            axes: frame.axes.map(|axis| self.components(&axis)),
+        }
+    }
+}
+
+/// The vector in space with the components `x` along two directions.
+pub(super) fn spatial<S: Scalar>([t1, t2]: &[Vec3<f64>; 2], x: &Vec2<S>) -> Vec3<S> {
+    Vec3::new(
+        x.x * t1.x + x.y * t2.x,
+        x.x * t1.y + x.y * t2.y,
+        x.x * t1.z + x.y * t2.z,
+    )
+}
+
+impl<S: Scalar> PlanarMotion<S> {
+    /// At rest in the origin.
+    fn ground() -> Self {
+        let (zero, one) = (S::zero(), S::one());
+        Self {
+            position: Vec2::zeros(),
+            turn: [Vec2::new(one, zero), Vec2::new(zero, one)],
+            velocity: Vec2::zeros(),
+            omega: zero,
+            acceleration: Vec2::zeros(),
+            alpha: zero,
+            virtual_velocity: Vec2::zeros(),
+            virtual_omega: zero,
+        }
+    }
+
+    /// ρ and ρ' of a vector in the body.
+    pub(super) fn turned(&self, s: &Vec2<S>) -> (Vec2<S>, Vec2<S>) {
+        let [c1, c2] = &self.turn;
+        (c1 * s.x + c2 * s.y, c2 * s.x - c1 * s.y)
+    }
+
+    /// A direction of the body in motion.
+    pub(super) fn direction(&self, s: &Vec2<S>) -> Jet<S> {
+        let (x, across) = self.turned(s);
+        Jet {
+            x,
+            rate: across * self.omega,
+            acceleration: across * self.alpha - x * (self.omega * self.omega),
+            virtual_rate: across * self.virtual_omega,
+        }
+    }
+
+    /// A point of the body in motion.
+    fn point(&self, s: &Vec2<S>) -> Jet<S> {
+        let mut jet = self.direction(s);
+        jet.x += self.position;
+        jet.rate += self.velocity;
+        jet.acceleration += self.acceleration;
+        jet.virtual_rate += self.virtual_velocity;
+        jet
+    }
+}
+
+impl<S: Scalar> Jet<S> {
+    pub(super) fn zero() -> Self {
+        Self {
+            x: Vec2::zeros(),
+            rate: Vec2::zeros(),
+            acceleration: Vec2::zeros(),
+            virtual_rate: Vec2::zeros(),
+        }
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        Self {
+            x: self.x - other.x,
+            rate: self.rate - other.rate,
+            acceleration: self.acceleration - other.acceleration,
+            virtual_rate: self.virtual_rate - other.virtual_rate,
+        }
+    }
+}
+
+impl<S: Scalar> PlanarJoints<S> {
+    /// The joints of `model`, if all its bodies move in one plane and no joint is driven.
+    pub fn of(model: &Model<S>) -> Option<Self> {
+        let mut plane = None;
+        let mut planes = Vec::with_capacity(model.bodies.len() + 1);
+        for body in &model.bodies {
+            let Mobility::Planar { along, normal } = body.mobility else {
+                return None;
+            };
+            if *plane.get_or_insert(along) != along {
+                return None;
+            }
+            planes.push(BodyPlane::across(normal));
+        }
+        let along = plane?;
+        planes.push(BodyPlane {
+            along,
+            normal: along[0].cross(&along[1]),
+        });
+        let joint = |joint: &Joint<S>| {
+            let body_b = joint.body_b.unwrap_or(model.bodies.len());
+            let rows: Vec<ConstraintRow> = joint.rows().collect();
+            let direction =
+                |row: &ConstraintRow| matches!(row, ConstraintRow::Perpendicular { .. });
+            PlanarJoint {
+                body_a: joint.body_a,
+                body_b,
+                a: planes[joint.body_a].frame(&joint.frame_a),
+                b: planes[body_b].frame(&joint.frame_b),
+                length: joint.frame_a.length,
+                points: !rows.iter().all(direction),
+                rows,
+            }
+        };
+        let joints = model.joints.iter().map(joint).collect();
+        let driven = model.joints.iter().any(|joint| !joint.drives.is_empty());
+        (!driven).then(|| Self {
+            along,
+            joints,
+            motions: vec![PlanarMotion::ground(); planes.len()],
+            planes,
+        })
+    }
+
+    /// The components of ground axis k.
+    pub(super) fn ground_axis(&self, k: usize) -> Vec2<S> {
+        Vec2::new(S::from(self.along[0][k]), S::from(self.along[1][k]))
+    }
+
+    /// Moves to where the bodies are, with their velocities; accelerations and virtual velocities are
+    /// zero.
+    pub fn stand(&mut self, motions: &[Motion<S>]) {
+        let [t1, t2] = &self.along;
+        let plane = |x: &Vec3<S>| Vec2::new(along(x, t1), along(x, t2));
+        for ((at, motion), body) in self.motions.iter_mut().zip(motions).zip(&self.planes) {
+            *at = PlanarMotion {
+                position: plane(&motion.position),
+                turn: body
+                    .along
+                    .map(|b| plane(&(motion.rotation * b.map(S::from)))),
+                velocity: plane(&motion.velocity),
+                omega: along(&motion.omega, &body.normal),
+                ..PlanarMotion::ground()
+            };
+        }
+    }
+
+    /// Takes the velocities of the motions, the positions kept.
+    pub fn set_velocities(&mut self, numbering: &Numbering, v: &[S]) {
+        for body in 0..numbering.bodies() {
+            (self.motions[body].velocity, self.motions[body].omega) =
+                self.planar(body, &v[numbering.velocity(body)..]);
+        }
+    }
+
+    /// Takes accelerations and virtual velocities, zero where they are not given.
+    pub fn set_moving(&mut self, numbering: &Numbering, a: Option<&[S]>, w: Option<&[S]>) {
+        let rest = (Vec2::zeros(), S::zero());
+        for body in 0..numbering.bodies() {
+            let o = numbering.velocity(body);
+            let accelerations = a.map_or(rest, |a| self.planar(body, &a[o..]));
+            let virtually = w.map_or(rest, |w| self.planar(body, &w[o..]));
+            let at = &mut self.motions[body];
+            (at.acceleration, at.alpha) = accelerations;
+            (at.virtual_velocity, at.virtual_omega) = virtually;
+        }
+    }
+
+    /// The part in the plane of six velocity coordinates.
+    fn planar(&self, body: usize, six: &[S]) -> (Vec2<S>, S) {
+        let (linear, angular) = super::bodies::velocities_of(six);
+        let [t1, t2] = &self.along;
+        let linear = Vec2::new(along(&linear, t1), along(&linear, t2));
+        (linear, along(&angular, &self.planes[body].normal))
+    }
+
+    /// Gradients of all rows, as [`super::joints::gradients`] finds them but for torques across the
+    /// normal.
+    pub fn gradients(&self, out: &mut Vec<RowGradient<S>>) {
+        out.clear();
+        for joint in &self.joints {
+            let (ma, mb) = (&self.motions[joint.body_a], &self.motions[joint.body_b]);
+            let (ra, across_a) = ma.turned(&joint.a.point);
+            let (rb, across_b) = mb.turned(&joint.b.point);
+            let d = ma.position + ra - mb.position - rb;
+            let torques = |a: S, b: S| {
+                let normal = |body: usize| self.planes[body].normal.map(S::from);
+                (normal(joint.body_a) * a, normal(joint.body_b) * b)
+            };
+            for &row in &joint.rows {
+                let (force, (torque_a, torque_b)) = match row {
+                    ConstraintRow::Coincident(k) => {
+                        let e = self.ground_axis(k);
+                        let mut force = Vec3::zeros();
+                        force[k] = S::one();
+                        (force, torques(e.dot(&across_a), -e.dot(&across_b)))
+                    }
+                    ConstraintRow::Perpendicular { a, b } => {
+                        let (u, across_u) = ma.turned(&joint.a.axes[a]);
+                        let (w, across_w) = mb.turned(&joint.b.axes[b]);
+                        (Vec3::zeros(), torques(across_u.dot(&w), u.dot(&across_w)))
+                    }
+                    ConstraintRow::Sliding { a } => {
+                        let (u, across_u) = ma.turned(&joint.a.axes[a]);
+                        let by_a = across_u.dot(&d) + u.dot(&across_a);
+                        (spatial(&self.along, &u), torques(by_a, -u.dot(&across_b)))
+                    }
+                    ConstraintRow::Distance => {
+                        let u = d / joint.length;
+                        let by = torques(u.dot(&across_a), -u.dot(&across_b));
+                        (spatial(&self.along, &u), by)
+                    }
+                };
+                out.push(RowGradient {
+                    force,
+                    torque_a,
+                    torque_b,
+                });
+            }
+        }
+    }
+
+    /// Second derivatives Φ̈ at the accelerations taken last: the biases if these are zero.
+    pub fn accelerations(&self, numbering: &Numbering, out: &mut [S]) {
+        for (j, joint) in self.joints.iter().enumerate() {
+            let d = self.distance(joint);
+            for (out, &row) in out[numbering.rows(j)].iter_mut().zip(&joint.rows) {
+                let (u, w, scale) = match row {
+                    ConstraintRow::Coincident(k) => {
+                        *out = self.ground_axis(k).dot(&d.acceleration);
+                        continue;
+                    }
+                    ConstraintRow::Perpendicular { a, b } => {
+                        let (u, w) = self.axes(joint, a, b);
+                        (u, w, S::one())
+                    }
+                    ConstraintRow::Sliding { a } => {
+                        let u = self.motions[joint.body_a].direction(&joint.a.axes[a]);
+                        (u, d, S::one())
+                    }
+                    ConstraintRow::Distance => (d, d, S::from(0.5) / joint.length),
+                };
+                let ends = u.acceleration.dot(&w.x) + u.x.dot(&w.acceleration);
+                *out = (ends + u.rate.dot(&w.rate) * 2.0) * scale;
+            }
+        }
+    }
+
+    /// The distance of a joint's points in motion, if a row looks at it.
+    pub(super) fn distance(&self, joint: &PlanarJoint<S>) -> Jet<S> {
+        match joint.points {
+            true => {
+                let a = self.motions[joint.body_a].point(&joint.a.point);
+                a.minus(&self.motions[joint.body_b].point(&joint.b.point))
+            }
+            false => Jet::zero(),
+        }
+    }
+
+    /// Axis `a` of the frame on body A and axis `b` of that on body B, in motion.
+    pub(super) fn axes(&self, joint: &PlanarJoint<S>, a: usize, b: usize) -> (Jet<S>, Jet<S>) {
+        (
+            self.motions[joint.body_a].direction(&joint.a.axes[a]),
+            self.motions[joint.body_b].direction(&joint.b.axes[b]),
+        )
+    }
+}

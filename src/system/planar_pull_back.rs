@@ -1,0 +1,200 @@
+//! How cotangents of the rows of a planar scene come back to states and parameters: what
+//! [`super::joints::pull_back`] does in space, for rates and second derivatives.
+
+use super::bodies::add6;
+use super::joints::JointCotangent;
+use super::numbering::Numbering;
+use super::planar::{Jet, PlanarFrame, PlanarJoint, PlanarJoints, PlanarMotion, Vec2, spatial};
+use crate::model::{ConstraintRow, JointFrame};
+
+/// Cotangents of a row's rate, second derivative and virtual rate.
+#[derive(Clone, Copy)]
+struct RowCotangent {
+    rate: f64,
+    acceleration: f64,
+    virtual_rate: f64,
+}
+
+impl RowCotangent {
+    /// The cotangent that one factor of a product leaves on the other.
+    fn times(&self, factor: &Jet<f64>) -> Jet<f64> {
+        Jet {
+            x: factor.rate * self.rate
+                + factor.acceleration * self.acceleration
+                + factor.virtual_rate * self.virtual_rate,
+            rate: factor.x * self.rate + factor.rate * (self.acceleration * 2.0),
+            acceleration: factor.x * self.acceleration,
+            virtual_rate: factor.x * self.virtual_rate,
+        }
+    }
+}
+
+/// Cotangents of one side of a joint.
+#[derive(Clone, Copy)]
+struct SideCotangent {
+    position: Vec2<f64>,
+    theta: f64,
+    velocity: Vec2<f64>,
+    omega: f64,
+    frame: PlanarFrame<f64>,
+}
+
+impl SideCotangent {
+    fn zero() -> Self {
+        Self {
+            position: Vec2::zeros(),
+            theta: 0.0,
+            velocity: Vec2::zeros(),
+            omega: 0.0,
+            frame: PlanarFrame {
+                point: Vec2::zeros(),
+                axes: [Vec2::zeros(); 3],
+            },
+        }
+    }
+
+    /// Pulls the cotangent of a direction in motion back; returns that of its components in the body.
+    fn direction(&mut self, at: &PlanarMotion<f64>, s: &Vec2<f64>, cot: &Jet<f64>) -> Vec2<f64> {
+        let (x, across) = at.turned(s);
+        // ρ and ρ' with all that they make.
+        let by_x = cot.x - cot.acceleration * (at.omega * at.omega);
+        let by_across =
+            cot.rate * at.omega + cot.acceleration * at.alpha + cot.virtual_rate * at.virtual_omega;
+        self.theta += by_x.dot(&across) - by_across.dot(&x);
+        self.omega += cot.rate.dot(&across) - cot.acceleration.dot(&x) * (2.0 * at.omega);
+        let [c1, c2] = &at.turn;
+        Vec2::new(
+            c1.dot(&by_x) + c2.dot(&by_across),
+            c2.dot(&by_x) - c1.dot(&by_across),
+        )
+    }
+
+    /// Pulls the cotangent of axis i back.
+    fn axis(&mut self, at: &PlanarMotion<f64>, frame: &PlanarFrame<f64>, i: usize, cot: &Jet<f64>) {
+        let by = self.direction(at, &frame.axes[i], cot);
+        self.frame.axes[i] += by;
+    }
+
+    /// Pulls the cotangent of the point back.
+    fn point(&mut self, at: &PlanarMotion<f64>, frame: &PlanarFrame<f64>, cot: &Jet<f64>) {
+        let by = self.direction(at, &frame.point, cot);
+        self.frame.point += by;
+        self.position += cot.x;
+        self.velocity += cot.rate;
+    }
+}
+
+impl PlanarJoints<f64> {
+    /// Pulls cotangents of the rates, second derivatives and virtual rates of all rows (in this
+    /// order, each optional) back to tangent positions, velocities and the parameters of the
+    /// joints, the accelerations and virtual velocities held.
+    pub fn pull_back(
+        &self,
+        numbering: &Numbering,
+        cotangents: [Option<&[f64]>; 3],
+        out: &mut JointCotangent,
+    ) {
+        let at = |which: usize, i: usize| cotangents[which].map_or(0.0, |c| c[i]);
+        for (j, joint) in self.joints.iter().enumerate() {
+            let first = numbering.rows(j).start;
+            let cot = |i: usize| RowCotangent {
+                rate: at(0, first + i),
+                acceleration: at(1, first + i),
+                virtual_rate: at(2, first + i),
+            };
+            let (by_a, by_b, by_length) = self.pull_joint(joint, cot);
+            let own = &mut out.model.joints[j];
+            own.frame_a.length += by_length;
+            self.add_frame(joint.body_a, &by_a.frame, &mut own.frame_a);
+            self.add_frame(joint.body_b, &by_b.frame, &mut own.frame_b);
+            for (body, by) in [(joint.body_a, &by_a), (joint.body_b, &by_b)] {
+                if body == numbering.bodies() {
+                    continue;
+                }
+                let (o, normal) = (numbering.velocity(body), self.planes[body].normal);
+                let linear = |x: &Vec2<f64>| spatial(&self.along, x);
+                if let Some(y) = out.y.as_deref_mut() {
+                    add6(&mut y[o..], &linear(&by.position), &(normal * by.theta));
+                }
+                if let Some(v) = out.v.as_deref_mut() {
+                    add6(&mut v[o..], &linear(&by.velocity), &(normal * by.omega));
+                }
+            }
+        }
+    }
+
+    fn pull_joint(
+        &self,
+        joint: &PlanarJoint<f64>,
+        cot: impl Fn(usize) -> RowCotangent,
+    ) -> (SideCotangent, SideCotangent, f64) {
+        let (at_a, at_b) = (&self.motions[joint.body_a], &self.motions[joint.body_b]);
+        let (mut by_a, mut by_b) = (SideCotangent::zero(), SideCotangent::zero());
+        let d = self.distance(joint);
+        let mut by_distance = Jet::zero();
+        let mut by_length = 0.0;
+        for (i, &row) in joint.rows.iter().enumerate() {
+            let cot = cot(i);
+            match row {
+                ConstraintRow::Coincident(k) => {
+                    let e = self.ground_axis(k);
+                    by_distance.rate += e * cot.rate;
+                    by_distance.acceleration += e * cot.acceleration;
+                    by_distance.virtual_rate += e * cot.virtual_rate;
+                }
+                ConstraintRow::Perpendicular { a, b } => {
+                    let (u, w) = self.axes(joint, a, b);
+                    by_a.axis(at_a, &joint.a, a, &cot.times(&w));
+                    by_b.axis(at_b, &joint.b, b, &cot.times(&u));
+                }
+                ConstraintRow::Sliding { a } => {
+                    let u = at_a.direction(&joint.a.axes[a]);
+                    by_a.axis(at_a, &joint.a, a, &cot.times(&d));
+                    by_distance.add(&cot.times(&u));
+                }
+                ConstraintRow::Distance => {
+                    // d · d / (2 L): both factors are d.
+                    by_distance.add(&cot.times(&d).scaled(1.0 / joint.length));
+                    let squares = d.x.dot(&d.rate) * cot.rate
+                        + (d.x.dot(&d.acceleration) + d.rate.dot(&d.rate)) * cot.acceleration
+                        + d.x.dot(&d.virtual_rate) * cot.virtual_rate;
+                    by_length -= squares / (joint.length * joint.length);
+                }
+            }
+        }
+        if joint.points {
+            by_a.point(at_a, &joint.a, &by_distance);
+            by_b.point(at_b, &joint.b, &by_distance.scaled(-1.0));
+        }
+        (by_a, by_b, by_length)
+    }
+
+    /// Adds what the components in a body's plane are in the body's axes.
+    fn add_frame(&self, body: usize, by: &PlanarFrame<f64>, out: &mut JointFrame<f64>) {
+        let along = &self.planes[body].along;
+        out.point += spatial(along, &by.point);
+        for (out, by) in out.axes.iter_mut().zip(&by.axes) {
+            if *by != Vec2::zeros() {
+                *out += spatial(along, by);
+            }
+        }
+    }
+}
+
+impl Jet<f64> {
+    fn add(&mut self, other: &Self) {
+        self.x += other.x;
+        self.rate += other.rate;
+        self.acceleration += other.acceleration;
+        self.virtual_rate += other.virtual_rate;
+    }
+
+    fn scaled(&self, scale: f64) -> Self {
+        Self {
+            x: self.x * scale,
+            rate: self.rate * scale,
+            acceleration: self.acceleration * scale,
+            virtual_rate: self.virtual_rate * scale,
+        }
+    }
+}
