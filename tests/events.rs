@@ -1,10 +1,12 @@
 //! Runs that end at an event: closed forms of time, place and derivatives, and gradients against the
 //! complex step by several methods.
 
-use flexbody::driver::{Evaluated, check, simulate};
+use flexbody::driver::{Evaluated, Journal, Optimisation, check, optimise, simulate};
 use flexbody::integrate::IntegrationFailure;
 use flexbody::problem::Problem;
+use flexbody::report::{Optimum, summary};
 use serde_json::{Value, json};
+use std::ops::ControlFlow;
 
 fn problem(file: &Value) -> Problem {
     Problem::parse(&file.to_string(), "scene.json", &[]).unwrap_or_else(|faults| panic!("{faults}"))
@@ -160,4 +162,76 @@ fn gradients_are_those_of_the_complex_step() {
             assert!(off <= 1e-12 * largest, "{method}: {derivative:?}");
         }
     }
+}
+
+fn optimised(file: &Value) -> (Problem, Optimisation) {
+    let problem = problem(file);
+    let mut progress = |_: &_| ControlFlow::Continue(());
+    let done = optimise(&problem, "", None, Journal::default(), &mut progress);
+    (problem, done.expect("has an objective"))
+}
+
+fn design(problem: &Problem, done: &Optimisation) -> Vec<f64> {
+    let value = |name: &String| done.optimum.design[name].value;
+    problem.variables.iter().map(|v| value(&v.name)).collect()
+}
+
+/// The longest throw ends with the time that is waited for, the softest one touches its height: with steps
+/// of their own, both still end at their event.
+#[test]
+fn an_optimum_ends_at_its_event_by_steps_of_its_own_too() {
+    let until = |reaches: f64| json!({"measure": height(), "reaches": reaches});
+    for (spacing, value) in [("tolerance", json!(1e-6)), ("steps", json!(40))] {
+        let mut simulation = json!({"duration": 3, "until": until(-1.5)});
+        simulation[spacing] = value.clone();
+        let mut file = throw(simulation);
+        file["variables"] =
+            json!({"speed": {"path": "/bodies/ball/velocity/linear/1", "lower": 1, "upper": 40}});
+        file["objective"] = json!({"maximise": "x"});
+        file["optimiser"] = json!({"evaluations": 100});
+        let (long, done) = optimised(&file);
+        let x = design(&long, &done);
+        let at =
+            simulate(&long, &x).unwrap_or_else(|failure| panic!("{spacing} {value}: {failure}"));
+        let duration = at.at.run.duration;
+        assert!(
+            duration > 2.8 && duration <= 3.0,
+            "{spacing} {value}: {duration}"
+        );
+
+        file["simulation"]["until"] = until(1.0);
+        file["bodies"]["ball"]["velocity"]["linear"] = json!([3, 8, 0]);
+        file["functions"] = json!({"pace": {"final": {"speed": {"body": "ball"}}}});
+        file["objective"] = json!({"minimise": "pace"});
+        let (soft, done) = optimised(&file);
+        let x = design(&soft, &done);
+        simulate(&soft, &x).unwrap_or_else(|failure| panic!("{spacing} {value}: {failure}"));
+        // At its height the ball goes on along: 3 m/s.
+        let pace = done.optimum.objective.value;
+        assert!((3.0..3.1).contains(&pace), "{spacing} {value}: {pace}");
+    }
+}
+
+/// A start without values is none of the optimum's.
+#[test]
+fn a_start_that_misses_its_event_has_no_objective() {
+    // The height that is reached by 4 m/s is 0.8155 m.
+    let mut file = throw(json!({"duration": 3, "until": {"measure": height(), "reaches": 0.82}}));
+    file["variables"] =
+        json!({"speed": {"path": "/bodies/ball/velocity/linear/1", "lower": 4, "upper": 10}});
+    file["objective"] = json!({"minimise": "x"});
+    let (_, done) = optimised(&file);
+    assert!(done.outcome.converged() && done.start.is_none());
+    assert_eq!(done.optimum.start_objective, None);
+    let told = done.optimum.warnings.iter();
+    let told: Vec<_> = told
+        .filter(|w| w.contains("not known at the start"))
+        .collect();
+    assert!(
+        told.len() == 1 && told[0].contains("does not reach 0.82"),
+        "{told:?}"
+    );
+    let text = done.optimum.to_json().expect("is written");
+    assert_eq!(Optimum::from_json(&text).expect("is read"), done.optimum);
+    assert!(summary(&done.optimum).contains("x: not known → "));
 }

@@ -61,7 +61,7 @@ fn optimum() -> Optimum {
             true_maximum: Some(867.7),
             estimated_error: Some(0.003),
         },
-        start_objective: 546.507,
+        start_objective: Some(546.507),
         design: [
             (
                 "counterweight".to_owned(),
@@ -344,7 +344,7 @@ fn missing_and_extra_names_and_nan_are_differences() {
         .insert("length".into(), optimum().design[0].clone());
     new.constraints.clear();
     new.objective.true_maximum = None;
-    new.start_objective = f64::NAN;
+    new.start_objective = Some(f64::NAN);
     let comparison = compare(&new, &optimum(), &Tolerances::default());
     assert_eq!(
         moved(&comparison),

@@ -3,9 +3,11 @@
 
 use flexbody::driver::evaluate::Evaluated;
 use flexbody::driver::integration::Integration;
-use flexbody::driver::simulate;
+use flexbody::driver::{Evaluator, Journal, simulate};
 use flexbody::integrate::{Method, Spacing};
+use flexbody::optimiser::Nlp;
 use flexbody::problem::{Override, Problem};
+use flexbody::report::evaluations::{EvaluationRecord, Found};
 use std::path::Path;
 
 fn load(name: &str, changes: &[&str]) -> Problem {
@@ -134,4 +136,50 @@ fn a_short_load_is_not_stepped_over() {
     let motion = simulate(&problem, &[]).expect("runs");
     let x = motion.at.function(0).value;
     assert!((x - 4.9).abs() < 1e-12, "{x}");
+}
+
+/// A weight on a damped spring.
+const SAG: &str = r#"{
+  "version": 1, "name": "sag",
+  "bodies": {"weight": {"shape": "point", "mass": 1, "place": {"at": [0, -1, 0]}}},
+  "loads": {"spring": {"spring": {"between": ["weight", "ground"],
+    "at": {"a": [0, 0, 0], "b": [0, 0, 0]}, "rest_length": 1, "stiffness": 100, "damping": 10}}},
+  "simulation": {"duration": 1, "steps": 200},
+  "functions": {"height": {"final": {"position": {"body": "weight", "direction": [0, 1, 0]}}}},
+  "variables": {"stiffness": {"path": "/loads/spring/spring/stiffness", "lower": 0, "scale": 1}},
+  "objective": {"maximise": "height"}
+}"#;
+
+/// Where one design is stiff for explicit steps of the given size, another method goes on, in a run too
+/// that has that design from the record of an earlier one.
+#[test]
+fn a_method_that_took_over_stays_in_a_resumed_run() {
+    let problem = Problem::parse(SAG, "sag.json", &[]).expect("no faults");
+    let run = |earlier: &[EvaluationRecord]| {
+        let mut records = earlier.to_vec();
+        let journal = Journal::new(earlier.to_vec(), |record| records.push(record));
+        let mut program = Evaluator::new(&problem, journal).expect("has an objective");
+        let mut found = Vec::new();
+        for stiffness in [100.0, 2e6, 150.0] {
+            let values = program.evaluate(&[stiffness]).expect("runs");
+            let gradients = program.gradients(&[stiffness]).expect("differentiates");
+            found.extend([values.objective, gradients.objective[0]].map(f64::to_bits));
+        }
+        let (settings, reason) = program.integration.chosen().expect("is chosen");
+        let end = (settings.method, reason.to_owned(), program.counts());
+        drop(program);
+        (found, end, records)
+    };
+    let whole = run(&[]);
+    let (_, (method, reason, _), records) = &whole;
+    assert_eq!(*method, Method::Radau { stages: 3 });
+    assert!(reason.contains("the scene is stiff"), "{reason}");
+    let steps = |record: &&EvaluationRecord| matches!(record.found, Found::Steps(_));
+    assert_eq!(
+        (records.len(), records.iter().filter(steps).count()),
+        (8, 2)
+    );
+    for known in (0..=records.len()).filter(|&k| k == 0 || !steps(&&records[k - 1])) {
+        assert!(run(&records[..known]) == whole, "with {known} records");
+    }
 }

@@ -13,7 +13,8 @@ use std::path::PathBuf;
     version,
     args_conflicts_with_subcommands = true,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done; 1 not converged, or a check or comparison failed; \
+    after_help = "Exit codes: 0 done; 1 not converged, or a check (--second-order too) or \
+                  comparison failed; \
                   2 bad input; 3 numerical failure; 130 interrupted."
 )]
 pub struct Arguments {
@@ -35,13 +36,16 @@ pub struct Course {
     /// evaluations are not repeated. Settings of the optimiser may differ.
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
-    /// Starts from the design of another optimum.json (or its directory), by names of variables.
+    /// Starts from the design of another optimum.json (or its directory), by names of variables; with the
+    /// state.json beside it if that is of the same design.
     #[arg(long, value_name = "FILE")]
     pub from: Option<PathBuf>,
-    /// Optimises from this many starts, spread evenly between the bounds, and keeps the best.
+    /// Optimises from this many starts, spread evenly between the bounds, and keeps the best; writes all
+    /// optima to optima.csv.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub starts: Option<u32>,
-    /// Checks by differences of gradients whether the optimum is a minimum of second order.
+    /// Checks by differences of gradients whether the optimum is a minimum of second order; exit code 1 if
+    /// it is none.
     #[arg(long)]
     pub second_order: bool,
 }

@@ -23,7 +23,7 @@ use std::process::ExitCode;
 
 /// Done.
 const DONE: u8 = 0;
-/// Did not converge, or a check or comparison failed.
+/// Did not converge, or not to an optimum, or a check or comparison failed.
 const NOT_REACHED: u8 = 1;
 /// Bad input.
 const BAD_INPUT: u8 = 2;

@@ -10,7 +10,10 @@ use super::{
 use crate::driver::{self, Optimisation, WarmStart, figures, multi_start};
 use crate::optimiser::{Counts, Status};
 use crate::problem::Problem;
-use crate::report::{History, ReportError, atomic_write, prepare_directory, summary, write_all};
+use crate::report::optimum::Curvature;
+use crate::report::{
+    History, HistoryLog, ReportError, atomic_write, prepare_directory, summary, write_all,
+};
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -23,6 +26,8 @@ const OPTIMUM: &str = "optimum.json";
 const PARTIAL: &str = "history.partial.csv";
 /// What another run can start from.
 const STATE: &str = "state.json";
+/// The distinct optima of several starts.
+const OPTIMA: &str = "optima.csv";
 
 /// Optimises a problem and writes its results.
 pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
@@ -52,7 +57,7 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
             from.display()
         )));
     }
-    prepare_directory(&directory).map_err(Failure::bad_input)?;
+    let _held = prepare_directory(&directory).map_err(Failure::bad_input)?;
     let records = Records::new(&directory, resume, starts.is_some())?;
     let stop = Arc::new(AtomicBool::new(false));
     let interrupted = Arc::clone(&stop);
@@ -65,11 +70,11 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
     });
     let stopped = || stop.load(Ordering::Relaxed);
 
-    let (problem, mut done, start) = match starts {
+    let (problem, mut done, start, optima) = match starts {
         Some(starts) => {
-            let run = several(&problem, &starts, &records, &stopped, job.quiet)?;
+            let (run, optima) = several(&problem, &starts, &records, &stopped, job.quiet)?;
             let done = run.solved.complete(&run.problem, &file);
-            (run.problem, done, Start::OneOf(run.start))
+            (run.problem, done, Start::OneOf(run.start), Some(optima))
         }
         None => {
             let done = one(
@@ -80,15 +85,20 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
                 &stopped,
                 job.quiet,
             )?;
-            (problem, done, Start::Only)
+            (problem, done, Start::Only, None)
         }
     };
     match &done.outcome.status {
         Status::UndefinedStart { what } => return Err(Failure::new(NUMERICAL_FAILURE, what)),
         Status::IllPosed { what } => return Err(Failure::bad_input(what)),
+        _ if !done.outcome.objective.is_finite() => {
+            let message = &done.optimum.message;
+            let what = format!("{}: {message} before the start had values", problem.name);
+            return Err(Failure::new(NOT_REACHED, what));
+        }
         _ => {}
     }
-    let recorded = write(&problem, &done, &directory)?;
+    let recorded = write(&problem, &done, optima, &directory)?;
     // What goes wrong from here on loses nothing.
     let checked = match course.second_order {
         true => second_order(&problem, &mut done, &directory, (&records, start), &stopped),
@@ -106,7 +116,15 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
     if stopped() {
         return Ok(INTERRUPTED);
     }
+    let second = done.optimum.second_order.as_ref();
     match done.outcome.status {
+        Status::Converged if second.is_some_and(|s| s.curvature == Curvature::NoOptimum) => {
+            if job.quiet {
+                let what = "second order: no local optimum, it improves along a free direction";
+                tell(&format!("{}: {what}\n", problem.name));
+            }
+            Ok(NOT_REACHED)
+        }
         Status::Converged => Ok(DONE),
         Status::Interrupted => Ok(INTERRUPTED),
         _ => {
@@ -133,6 +151,7 @@ fn spread(problem: &Problem, count: u32) -> Result<Vec<Vec<f64>>, Failure> {
 fn write(
     problem: &Problem,
     done: &Optimisation,
+    optima: Option<String>,
     directory: &Path,
 ) -> Result<Result<(), ReportError>, Failure> {
     let mut files = figures::of_optimisation(problem, done);
@@ -147,6 +166,8 @@ fn write(
     if let Some(text) = state.and_then(|state| serde_json::to_vec(&state).ok()) {
         files.push((STATE, text));
     }
+    let several = optima.is_some();
+    files.extend(optima.map(|text| (OPTIMA, text.into_bytes())));
     let files: Vec<(PathBuf, Vec<u8>)> = files
         .into_iter()
         .map(|(name, bytes)| (directory.join(name), bytes))
@@ -154,6 +175,10 @@ fn write(
     write_all(&files).map_err(Failure::bad_input)?;
     // The whole history stands beside it now; a file that stays does no harm.
     let _ = std::fs::remove_file(directory.join(PARTIAL));
+    if !several {
+        // Those of an earlier run.
+        let _ = std::fs::remove_file(directory.join(OPTIMA));
+    }
     Ok(record.map(drop))
 }
 
@@ -219,7 +244,8 @@ fn complete(problem: &Problem, job: &Job) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Moves the start to the design of another optimum; its state, if it is there and fits.
+/// Moves the start to the design of another optimum; its state, if it is there, of that very design, and
+/// fits.
 fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<WarmStart>, Failure> {
     let (record, optimum) = record(from)?;
     let mut start = problem.start();
@@ -251,7 +277,7 @@ fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<WarmStart>, F
     problem.restart(&start);
     let state = std::fs::read(record.with_file_name(STATE)).ok();
     let state = state.and_then(|text| serde_json::from_slice::<WarmStart>(&text).ok());
-    Ok(state.filter(|state| state.fits(problem)))
+    Ok(state.filter(|state| state.fits(problem) && state.is_at(&start)))
 }
 
 /// One optimisation, its evaluations and iterations on the disk as they happen.
@@ -270,6 +296,7 @@ fn one(
         tell(&records.resumed(opened.known));
         tell(&changed(&opened.changes));
     }
+    let mut log = HistoryLog::new(&directory.join(PARTIAL));
     let unwritable: RefCell<Option<ReportError>> = RefCell::new(None);
     let fault = Mutex::new(None);
     let has_failed = || fault.lock().is_ok_and(|error| error.is_some());
@@ -277,10 +304,7 @@ fn one(
         if !quiet {
             show(history);
         }
-        let saved = history
-            .to_csv()
-            .and_then(|text| atomic_write(&directory.join(PARTIAL), text.as_bytes()));
-        if let Err(error) = saved {
+        if let Err(error) = log.append(history) {
             unwritable.borrow_mut().get_or_insert(error);
         }
         if stopped() || has_failed() || unwritable.borrow().is_some() {

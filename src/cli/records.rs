@@ -1,10 +1,11 @@
 //! The record of the evaluations of a run: begun, or gone on with.
 
 use super::{Failure, tell};
+use crate::driver::integration::FIRST_DESIGN;
 use crate::driver::{Journal, journal};
 use crate::problem::Problem;
 use crate::report::ReportError;
-use crate::report::evaluations::{Earlier, EvaluationLog, EvaluationRecord, Found};
+use crate::report::evaluations::{Earlier, EvaluationLog, EvaluationRecord, Found, StepsInUse};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -136,8 +137,15 @@ impl Opened {
     pub fn journal(self, fault: &Mutex<Option<ReportError>>, quiet: bool) -> Journal<'_> {
         let mut log = self.log;
         Journal::new(self.earlier, move |evaluation| {
-            if let (false, Found::Steps(steps)) = (quiet, &evaluation.found) {
-                let count = steps.ends.len().saturating_sub(1);
+            // That equal steps are taken, and by which method, goes without saying until it changes.
+            let told = |steps: &StepsInUse| !steps.ends.is_empty() || steps.reason != FIRST_DESIGN;
+            if let (false, Found::Steps(steps)) = (quiet, &evaluation.found)
+                && told(steps)
+            {
+                let count = match steps.ends.len() {
+                    0 => "equal".into(),
+                    ends => (ends - 1).to_string(),
+                };
                 tell(&format!(
                     "{count} steps by {}: {}\n",
                     steps.method, steps.reason

@@ -5,19 +5,20 @@ use super::{Failure, INTERRUPTED, print, tell};
 use crate::driver::multi_start::{self, LocalOptimum, Run};
 use crate::driver::{self, Journal};
 use crate::problem::Problem;
-use crate::report::ReportError;
+use crate::report::{FoundOptimum, ReportError, optima_csv};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Optimisations from several starts: the best one, after a table of the distinct optima. Every
-/// evaluation is on the disk as soon as it is known, in a file for each start.
+/// Optimisations from several starts: the best one, and the distinct optima as comma separated values,
+/// after a table of them. Every evaluation is on the disk as soon as it is known, in a file for each
+/// start.
 pub fn several(
     problem: &Problem,
     starts: &[Vec<f64>],
     records: &Records,
     stopped: &(dyn Fn() -> bool + Sync),
     quiet: bool,
-) -> Result<Run, Failure> {
+) -> Result<(Run, String), Failure> {
     let fault: Mutex<Option<ReportError>> = Mutex::new(None);
     let told = AtomicBool::new(quiet);
     let known = AtomicUsize::new(0);
@@ -49,11 +50,28 @@ pub fn several(
     }
     if !quiet {
         tell(&records.resumed(known.load(Ordering::Relaxed)));
-        let optima = multi_start::distinct(problem, &runs);
-        print(&table_of_optima(&runs, &optima))?;
     }
+    let optima = multi_start::distinct(problem, &runs);
+    if !quiet {
+        print(&table_of_optima((&runs, starts.len()), &optima))?;
+    }
+    let found = optima.iter().map(|optimum| {
+        let run = &runs[optimum.run];
+        FoundOptimum {
+            start: run.start + 1,
+            starts: optimum.found_by,
+            objective: run.solved.objective(),
+            design: run.design(),
+        }
+    });
+    let found: Vec<FoundOptimum> = found.collect();
     match multi_start::best(&runs) {
-        Some(best) => Ok(runs.swap_remove(best)),
+        Some(best) => {
+            let run = runs.swap_remove(best);
+            let history = &run.solved.history;
+            let text = optima_csv(&history.objective, &history.variables, &found);
+            Ok((run, text.map_err(Failure::numerical)?))
+        }
         None if stopped() => {
             let what = "interrupted before the first evaluation";
             Err(Failure::new(INTERRUPTED, what))
@@ -63,12 +81,14 @@ pub fn several(
 }
 
 /// Distinct optima, best first.
-fn table_of_optima(runs: &[Run], optima: &[LocalOptimum]) -> String {
+fn table_of_optima((runs, starts): (&[Run], usize), optima: &[LocalOptimum]) -> String {
     let converged: usize = optima.iter().map(|optimum| optimum.found_by).sum();
+    let left_out = match starts - runs.len() {
+        0 => String::new(),
+        n => format!(" ({n} not begun)"),
+    };
     let mut text = format!(
-        "{} of {} starts converged, to {} distinct optima\n",
-        converged,
-        runs.len(),
+        "{converged} of {starts} starts converged{left_out}, to {} distinct optima\n",
         optima.len()
     );
     for (k, found) in optima.iter().enumerate() {

@@ -3,7 +3,7 @@
 use super::arguments::Suite;
 use super::{DONE, Failure, NOT_REACHED, print, tell};
 use crate::driver::stress::{is_named, names, stress as run};
-use crate::report::{StressRow, write_all};
+use crate::report::{StressRow, prepare_directory, write_all};
 use std::path::Path;
 
 /// Runs the stress suite and writes its table.
@@ -22,17 +22,22 @@ pub fn stress(asked: &Suite) -> Result<u8, Failure> {
             families.join(", ")
         )));
     }
+    let directory = match (&asked.output, &asked.only) {
+        (Some(directory), _) => Some(directory.as_path()),
+        (None, None) => Some(Path::new("results/stability")),
+        (None, Some(_)) => None,
+    };
+    // Held, and known to take files, before the work is done.
+    let _held = match directory {
+        Some(directory) => Some(prepare_directory(directory).map_err(Failure::bad_input)?),
+        None => None,
+    };
     let seen = |row: &StressRow| {
         if !asked.quiet {
             tell(&line(row));
         }
     };
     let table = run(wanted, asked.seconds, &seen);
-    let directory = match (&asked.output, &asked.only) {
-        (Some(directory), _) => Some(directory.as_path()),
-        (None, None) => Some(Path::new("results/stability")),
-        (None, Some(_)) => None,
-    };
     if let Some(directory) = directory {
         let files = [
             ("stability.md", table.to_markdown()),

@@ -21,14 +21,19 @@ pub fn measure(asked: &Measurement) -> Result<u8, Failure> {
         Some(directory) => directory.clone(),
         None => Path::new("results/work-precision").join(&problem.name),
     };
-    prepare_directory(&directory).map_err(Failure::bad_input)?;
+    let _held = prepare_directory(&directory).map_err(Failure::bad_input)?;
+    let without_event = without_event(&problem);
+    if let (Some(note), false) = (&without_event, job.quiet) {
+        tell(&format!("{note}\n"));
+    }
     let mut seen = |row: &PrecisionRow| {
         if !job.quiet {
             tell(&line(row));
         }
     };
-    let measured =
+    let mut measured =
         work_precision(&problem, &problem.start(), &plan, &mut seen).map_err(Failure::numerical)?;
+    measured.notes.extend(without_event);
     let figure = plots::work_precision(&measured).map_err(Failure::numerical)?;
     let files: Vec<(PathBuf, Vec<u8>)> = [
         ("work_precision.csv", measured.to_csv()),
@@ -45,6 +50,19 @@ pub fn measure(asked: &Measurement) -> Result<u8, Failure> {
         tell(&format!("results in {}\n", directory.display()));
     }
     Ok(DONE)
+}
+
+/// What is told of a scene that ends at an event.
+fn without_event(problem: &Problem) -> Option<String> {
+    let scene = problem.scene::<f64>(&problem.start());
+    let until = scene.until?;
+    Some(format!(
+        "the motion is measured over the whole duration, {} s: the event that would end it, the {} that \
+         reaches {}, is left out",
+        scene.duration,
+        until.describe(),
+        until.value
+    ))
 }
 
 fn plan(asked: &Measurement, problem: &Problem) -> Result<Plan, Failure> {

@@ -10,6 +10,9 @@ use crate::math::scalar::COMPLEX_STEP;
 use crate::problem::Problem;
 use rayon::prelude::*;
 
+/// Part of its terms below which a derivative lacks digits that they lost.
+const SMALL: f64 = 1e-3;
+
 /// One derivative, computed twice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckedDerivative {
@@ -35,11 +38,22 @@ impl CheckedDerivative {
         relative(self.adjoint, self.complex_step)
     }
 
-    /// Whether the derivative is nothing but the round-off of terms that cancel: both values and
-    /// their difference are below 64 ε times the terms.
+    /// Whether the derivative is nothing but the round-off of terms that cancel: both values are below
+    /// 64 ε times the terms.
     pub fn is_round_off(&self) -> bool {
-        let floor = 64.0 * f64::EPSILON * self.terms;
+        let floor = self.round_off();
         self.adjoint.abs() <= floor && self.complex_step.abs() <= floor
+    }
+
+    /// Whether the derivative is small beside its terms, below 1e-3 of them, and its two values differ by
+    /// no more than their round-off, 64 ε times the terms.
+    pub fn differs_by_round_off(&self) -> bool {
+        let small = self.complex_step.abs() <= SMALL * self.terms;
+        small && (self.adjoint - self.complex_step).abs() <= self.round_off()
+    }
+
+    fn round_off(&self) -> f64 {
+        64.0 * f64::EPSILON * self.terms
     }
 
     /// How far round-off in the motion moves the derivative, relative to it.
@@ -134,4 +148,32 @@ fn complex_step(
         derivatives: scene.functions.iter().map(derivative).collect(),
         run: run.real(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A small derivative may differ by the last digits of large ones, and by no more.
+    #[test]
+    fn a_difference_is_judged_by_the_terms() {
+        let pair = |adjoint: f64, complex_step: f64| CheckedDerivative {
+            function: 0,
+            variable: 0,
+            adjoint,
+            complex_step,
+            terms: 1.0,
+            in_use: adjoint,
+        };
+        let small = pair(1e-12 + 5e-15, 1e-12);
+        assert!(!small.is_round_off() && small.differs_by_round_off());
+        assert!(small.relative_difference() > 1e-3);
+        let wrong = pair(1e-12 + 5e-14, 1e-12);
+        assert!(!wrong.is_round_off() && !wrong.differs_by_round_off());
+        let nothing = pair(1e-15, -1e-15);
+        assert!(nothing.is_round_off() && nothing.differs_by_round_off());
+        assert!(!pair(f64::NAN, 0.0).differs_by_round_off());
+        // One that is not small has all its digits.
+        assert!(!pair(0.1 + 5e-15, 0.1).differs_by_round_off());
+    }
 }

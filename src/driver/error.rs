@@ -13,7 +13,7 @@
 //! the two may be of any size and sign.
 
 use super::evaluate::Evaluated;
-use super::event;
+use super::event::{self, Admit};
 use super::integration::{Integration, looks_at_the_whole};
 use crate::integrate::{IntegrationFailure, Samples, Settings, Spacing, Trajectory};
 use crate::problem::{Problem, Simulation};
@@ -63,7 +63,7 @@ pub fn estimate(
     let sums = |f: &usize| looks_at_the_whole(&at.scene.functions[*f]);
     let finer = halved(&at.run, which.iter().any(sums));
     let mut scene = at.scene.clone();
-    let run = event::settle(&mut scene, &finer, at.run.duration)?;
+    let run = event::settle(&mut scene, &finer, at.run.duration, Admit::Late)?;
     let x = at.x.clone();
     let mut fine = Evaluated { x, scene, run };
     let numbers = |of: &Evaluated, which: &[usize]| -> Result<Vec<Vec<f64>>, IntegrationFailure> {

@@ -1,7 +1,7 @@
 //! Functions and gradients of a problem at a design: one simulation, one backward march.
 
 use super::integration::{Integration, Refresh};
-use super::journal::{Journal, bits};
+use super::journal::{Account, Journal, bits};
 use crate::adjoint;
 use crate::functions::{Scene, evaluate};
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
@@ -9,6 +9,7 @@ use crate::math::Dual;
 use crate::model::RigidBody;
 use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
 use crate::problem::{Problem, Sense};
+use crate::report::evaluations::Work;
 use nalgebra::DMatrix;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -187,12 +188,12 @@ pub struct Evaluator<'a> {
     /// The steps in use.
     pub integration: Integration,
     journal: Journal<'a>,
-    /// Which choice of steps of the journal `integration` goes by.
+    /// Which choice of steps of the journal `integration` goes by, and the evaluation of the record
+    /// whose event it knows.
     choice: Option<usize>,
+    latest: Option<usize>,
     /// What the functions of each design were found with.
     pub judgements: Judgements,
-    /// Work of all simulations and gradients so far.
-    pub counts: WorkCounts,
 }
 
 impl<'a> Evaluator<'a> {
@@ -212,8 +213,8 @@ impl<'a> Evaluator<'a> {
             integration: Integration::new(problem, &scene, false, true),
             journal,
             choice: None,
+            latest: None,
             judgements: Judgements::default(),
-            counts: WorkCounts::default(),
         })
     }
 
@@ -228,15 +229,25 @@ impl<'a> Evaluator<'a> {
         std::iter::once(self.objective).chain(constraints).collect()
     }
 
-    /// Takes the steps that the journal has come to.
+    /// Work of all simulations and gradients so far, those that the journal knew included.
+    pub fn counts(&self) -> Work {
+        self.journal.work()
+    }
+
+    /// Takes the steps and the event that the journal has come to.
     fn follow(&mut self) {
         let choice = self.journal.choice();
-        if choice == self.choice {
-            return;
+        if choice != self.choice {
+            self.choice = choice;
+            if let Some(kept) = self.journal.steps() {
+                self.integration.restore(kept);
+            }
         }
-        self.choice = choice;
-        if let Some((method, grid, refreshes)) = self.journal.steps() {
-            self.integration.restore(method, grid, refreshes);
+        if let Some((place, event)) = self.journal.latest()
+            && self.latest != Some(place)
+        {
+            self.latest = Some(place);
+            self.integration.event = event;
         }
     }
 
@@ -251,21 +262,26 @@ impl<'a> Evaluator<'a> {
 /// The simulated design `x`: the last one, or a new one.
 fn at<'e>(
     last: &'e mut Option<Evaluated>,
-    (integration, refreshed): (&mut Integration, &mut Option<Refresh>),
-    counts: &mut WorkCounts,
+    (integration, account): (&mut Integration, &mut Account),
     problem: &Problem,
     x: &[f64],
 ) -> Result<&'e Evaluated, IntegrationFailure> {
-    let evaluated = match last.take().filter(|last| last.x == x) {
-        Some(known) => known,
+    let found = match last.take().filter(|last| last.x == x) {
+        Some(known) => Ok(known),
         None => {
-            let (evaluated, refresh) = Evaluated::with(integration, problem, x)?;
-            *refreshed = refresh;
-            *counts += evaluated.run.counts;
-            evaluated
+            integration.settled = account.settled;
+            Evaluated::with(integration, problem, x).map(|(evaluated, refresh)| {
+                account.refresh = refresh;
+                if !account.repeated {
+                    account.work += evaluated.run.counts;
+                }
+                evaluated
+            })
         }
     };
-    Ok(last.insert(evaluated))
+    integration.settled = None;
+    account.event = integration.event;
+    Ok(last.insert(found?))
 }
 
 impl Nlp for Evaluator<'_> {
@@ -312,11 +328,11 @@ impl Nlp for Evaluator<'_> {
     fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
         let x = unscaled(self.problem, x);
         let functions = self.functions();
-        let (problem, last, counts) = (self.problem, &mut self.last, &mut self.counts);
+        let (problem, last) = (self.problem, &mut self.last);
         let integration = &mut self.integration;
-        let found = self.journal.values(&x, |refresh| {
-            let steps = (integration, refresh);
-            let at = at(last, steps, counts, problem, &x).map_err(|failure| failure.to_string())?;
+        let found = self.journal.values(&x, |account| {
+            let steps = (integration, account);
+            let at = at(last, steps, problem, &x).map_err(|failure| failure.to_string())?;
             Ok(functions.iter().map(|&f| at.function(f).value).collect())
         });
         self.follow();
@@ -338,14 +354,13 @@ impl Nlp for Evaluator<'_> {
         let problem = self.problem;
         let x = unscaled(problem, x);
         let functions = self.functions();
-        let (last, counts) = (&mut self.last, &mut self.counts);
-        let integration = &mut self.integration;
-        let found = self.journal.gradients(&x, |refresh| {
-            let steps = (integration, refresh);
-            let at = at(last, steps, counts, problem, &x).map_err(|failure| failure.to_string())?;
+        let (last, integration) = (&mut self.last, &mut self.integration);
+        let found = self.journal.gradients(&x, |account| {
+            let steps = (integration, &mut *account);
+            let at = at(last, steps, problem, &x).map_err(|failure| failure.to_string())?;
             let found = at.gradients(problem, &functions);
             let (gradients, work) = found.map_err(|failure| failure.to_string())?;
-            *counts += work;
+            account.work += work;
             Ok(gradients)
         });
         self.follow();

@@ -24,6 +24,21 @@ const SETTLED: f64 = 1e-11;
 /// Longest step of the secant method, relative to the duration.
 const LONGEST: f64 = 0.2;
 
+/// Which events end a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Admit {
+    /// Those a little after the scene's duration too.
+    Late,
+    /// Those within it.
+    InTime,
+    /// Those that come before its end by this part of it, and are no touch that samples at other
+    /// instants would miss: steps that are chosen for the design alone find them too.
+    Certain {
+        /// The part.
+        margin: f64,
+    },
+}
+
 /// About when the event comes: the first change of sign of g − c over a run for as long as it is
 /// waited for, interpolated.
 ///
@@ -59,11 +74,12 @@ fn side(gaps: &[f64]) -> f64 {
 /// Sets the scene's duration.
 ///
 /// # Errors
-/// If a run fails, or the event is not found, or comes earlier as well.
+/// If a run fails, or the event is not found, or not admitted.
 pub fn settle(
     scene: &mut Scene<f64>,
     settings: &Settings,
     guess: f64,
+    admit: Admit,
 ) -> Result<Trajectory<f64>, IntegrationFailure> {
     let Some(until) = scene.until.clone() else {
         return simulate(&scene.model, scene.duration, settings);
@@ -105,6 +121,17 @@ pub fn settle(
                 (known, change) = (None, f64::INFINITY);
                 continue;
             }
+            let admitted = match admit {
+                Admit::Late => true,
+                Admit::InTime => duration <= waited,
+                // The samples by which it is first looked for are those of the whole time.
+                Admit::Certain { margin } => {
+                    duration <= waited * (1.0 - margin) && !touches(&gaps, waited / duration)
+                }
+            };
+            if !admitted {
+                return Err(lost(best));
+            }
             run.counts = counts;
             scene.duration = duration;
             return Ok(run);
@@ -117,6 +144,17 @@ pub fn settle(
         }
     }
     Err(lost(best))
+}
+
+/// Whether g − c, which is zero at the end, would turn back within `spacing` samples.
+fn touches(gaps: &[f64], spacing: f64) -> bool {
+    let [.., a, b, c] = gaps else {
+        return false;
+    };
+    let (before, last) = (b - a, c - b);
+    // The first differences fall by a constant: the turn is last / (before − last) samples ahead.
+    let bend = before - last;
+    last * bend > 0.0 && last.abs() < spacing * bend.abs()
 }
 
 /// ∂g/∂T of a scene's event at the duration `duration`, by the complex step.

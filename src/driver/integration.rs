@@ -2,7 +2,7 @@
 //! follow the error are kept until it no longer suffices, so that functions are smooth in the
 //! design.
 
-use super::event;
+use super::event::{self, Admit};
 use crate::functions::{Function, Reduction, Scene};
 use crate::integrate::{
     Chosen, Grid, IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, choice,
@@ -14,6 +14,14 @@ use crate::problem::Problem;
 const SAMPLES: usize = 1000;
 /// Step error of kept steps, relative to the tolerance, at which they are chosen anew.
 const REFRESH: f64 = 10.0;
+/// Part of the longest duration, relative to the tolerance and absolute, before the end of which an
+/// event on kept steps counts; steps of the design itself decide on one in between.
+const LATE: f64 = 1e3;
+const LEAST_LATE: f64 = 1e-9;
+const MOST_LATE: f64 = 0.05;
+
+/// Why steps are chosen for the first time.
+pub const FIRST_DESIGN: &str = "first design";
 
 /// The method and the steps that are in use.
 #[derive(Clone, Debug)]
@@ -29,7 +37,21 @@ pub struct Integration {
     pub unlowered: usize,
     keep_stages: bool,
     /// When the event came in the last run, if the scene has one (s).
-    event: Option<f64>,
+    pub event: Option<f64>,
+    /// When it comes in the next run, if that is known to the last bit (s).
+    pub settled: Option<f64>,
+}
+
+/// Method and steps that were chosen before.
+pub struct KeptSteps {
+    /// The method.
+    pub method: Method,
+    /// Why, where that is not what it is used for in general.
+    pub reason: Option<String>,
+    /// Its steps; `None` for equal ones.
+    pub grid: Option<Grid>,
+    /// How often others had been chosen before.
+    pub refreshes: usize,
 }
 
 /// A change of the steps in use.
@@ -37,8 +59,10 @@ pub struct Integration {
 pub struct Refresh {
     /// Name of the method.
     pub method: String,
-    /// The new steps.
-    pub grid: Grid,
+    /// Why the method, where that is not what it is used for in general.
+    pub method_reason: Option<String>,
+    /// The new steps; `None` for equal ones.
+    pub grid: Option<Grid>,
     /// Why.
     pub reason: String,
 }
@@ -65,6 +89,7 @@ impl Integration {
             unlowered: 0,
             keep_stages: gradients,
             event: None,
+            settled: None,
         }
     }
 
@@ -100,16 +125,19 @@ impl Integration {
         }
     }
 
-    /// Goes on with steps that were chosen before, after so many others.
-    pub fn restore(&mut self, method: Method, grid: Grid, refreshes: usize) {
-        self.refreshes = refreshes;
-        let settings = Settings {
-            method,
-            spacing: Spacing::Frozen(grid),
+    /// Goes on with steps that were chosen before.
+    pub fn restore(&mut self, kept: KeptSteps) {
+        self.refreshes = kept.refreshes;
+        let mut settings = Settings {
+            method: kept.method,
             ..self.wanted()
         };
-        let reason = choice::reason(self.method.is_some(), method);
-        self.chosen = Some((settings, reason.into()));
+        if let Some(grid) = kept.grid {
+            settings.spacing = Spacing::Frozen(grid);
+        }
+        let general = || choice::reason(self.method.is_some(), kept.method).into();
+        let reason = kept.reason.unwrap_or_else(general);
+        self.chosen = Some((settings, reason));
     }
 
     /// What is wrong with the method in use for a scene whose steps it made, if anything.
@@ -137,12 +165,13 @@ impl Integration {
         &mut self,
         scene: &mut Scene<f64>,
     ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {
+        let settled = self.settled.take();
         let why = match (&self.chosen, &self.spacing) {
-            (None, _) => "first design".into(),
+            (None, _) => FIRST_DESIGN.into(),
             (Some((settings, _)), Spacing::Tolerance(tolerance)) => {
-                match self.run(scene, settings) {
+                match self.run(scene, settings, settled) {
                     Ok(run) if run.step_error <= REFRESH * tolerance => {
-                        return Ok((self.keep(run), None));
+                        return Ok((self.keep(scene, run), None));
                     }
                     Ok(run) => format!(
                         "a step's error of {:.1e} exceeds {REFRESH} times the tolerance",
@@ -151,12 +180,12 @@ impl Integration {
                     Err(failure) => failure.to_string(),
                 }
             }
-            (Some((settings, _)), _) => match self.run(scene, settings) {
+            (Some((settings, _)), _) => match self.run(scene, settings, settled) {
                 Err(failure @ IntegrationFailure::Stiff { .. }) if self.method.is_none() => {
                     failure.to_string()
                 }
                 Err(failure @ IntegrationFailure::NotReached { .. }) => failure.to_string(),
-                found => return Ok((self.keep(found?), None)),
+                found => return Ok((self.keep(scene, found?), None)),
             },
         };
         let wanted = self.wanted();
@@ -174,31 +203,42 @@ impl Integration {
         } = simulate_by(&scene.model, guess, self.method, &wanted)?;
         if scene.until.is_some() {
             scene.duration = waited;
-            run = event::settle(scene, &settings, guess)?;
+            run = event::settle(scene, &settings, guess, Admit::InTime)?;
         }
-        let changed = match &settings.spacing {
-            Spacing::Frozen(grid) => Some(Refresh {
-                method: settings.method.name(),
-                grid: grid.clone(),
-                reason: why,
-            }),
+        let grid = match &settings.spacing {
+            Spacing::Frozen(grid) => Some(grid.clone()),
             Spacing::Steps(_) | Spacing::Tolerance(_) => None,
         };
-        self.refreshes += usize::from(self.chosen.is_some());
+        let before = self.chosen.as_ref().map(|(before, _)| before.method);
+        // Equal steps are always the same: only their method may change, where none is given.
+        let anew = grid.is_some() || before != Some(settings.method);
+        let general = choice::reason(self.method.is_some(), settings.method);
+        let changed = (grid.is_some() || (anew && self.method.is_none())).then(|| Refresh {
+            method: settings.method.name(),
+            method_reason: Some(reason.clone()).filter(|reason| reason != general),
+            grid,
+            reason: why,
+        });
+        self.refreshes += usize::from(self.chosen.is_some() && anew);
         self.chosen = Some((settings, reason));
-        Ok((self.keep(run), changed))
+        Ok((self.keep(scene, run), changed))
     }
 
-    /// A run on the steps in use, up to the event if there is one; where it came before, if that is
-    /// known, or else found anew.
+    /// A run on the steps in use, up to the event if there is one: at `settled`, or near where it came
+    /// before, if that is known, or else found anew.
     fn run(
         &self,
         scene: &mut Scene<f64>,
         settings: &Settings,
+        settled: Option<f64>,
     ) -> Result<Trajectory<f64>, IntegrationFailure> {
         let Some(until) = &scene.until else {
             return simulate(&scene.model, scene.duration, settings);
         };
+        if let Some(event) = settled {
+            scene.duration = event;
+            return simulate(&scene.model, event, settings);
+        }
         let guess = match self.event {
             Some(event) => event,
             None => {
@@ -206,12 +246,17 @@ impl Integration {
                 event::first(until, &all, &until.gaps(&scene.model, &all))?
             }
         };
-        event::settle(scene, settings, guess)
+        // Steps that are chosen for this very design may tell otherwise, by their errors.
+        let margin = match self.spacing {
+            Spacing::Tolerance(tolerance) => (LATE * tolerance).clamp(LEAST_LATE, MOST_LATE),
+            Spacing::Steps(_) | Spacing::Frozen(_) => LEAST_LATE,
+        };
+        event::settle(scene, settings, guess, Admit::Certain { margin })
     }
 
     /// Keeps when the event came.
-    fn keep(&mut self, run: Trajectory<f64>) -> Trajectory<f64> {
-        self.event = Some(run.duration);
+    fn keep(&mut self, scene: &Scene<f64>, run: Trajectory<f64>) -> Trajectory<f64> {
+        self.event = scene.until.as_ref().map(|_| run.duration);
         run
     }
 }

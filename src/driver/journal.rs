@@ -1,9 +1,9 @@
 //! What is known of a problem from an earlier run, and where new evaluations are written.
 
-use super::integration::Refresh;
-use crate::integrate::{Grid, Method};
+use super::integration::{KeptSteps, Refresh};
+use crate::integrate::{Grid, Method, WorkCounts};
 use crate::problem::Problem;
-use crate::report::evaluations::{EvaluationRecord, Found, Head, StepsInUse};
+use crate::report::evaluations::{EvaluationRecord, Found, Head, StepsInUse, Work};
 use serde_json::{Map, Value};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
@@ -19,13 +19,48 @@ const SETTINGS: [&str; 5] = ["$schema", "name", "description", "optimiser", "plo
 /// is evaluated twice.
 #[derive(Default)]
 pub struct Journal<'a> {
-    /// By whether they are gradients, and by the bits of the design: what was found, and the steps
-    /// that were in use then.
-    known: HashMap<(bool, Vec<u64>), (Found, Option<usize>)>,
+    /// By whether they are gradients, and by the bits of the design.
+    known: HashMap<(bool, Vec<u64>), Known>,
+    /// How many evaluations there are.
+    count: usize,
     /// All choices of steps, and the one that the evaluations so far have led to.
     choices: Vec<Choice>,
     in_use: Option<usize>,
+    /// The latest evaluation of the record that was asked for, and when the event had come by then.
+    latest: Option<(usize, Option<f64>)>,
+    /// The design of that evaluation: the one that was simulated last.
+    simulated: Vec<u64>,
+    /// Work of all evaluations that were asked for.
+    work: Work,
     record: Option<Box<dyn FnMut(EvaluationRecord) + 'a>>,
+}
+
+/// An evaluation that is known.
+struct Known {
+    found: Found,
+    /// Its number in the record.
+    place: usize,
+    /// The choice of steps that was in use then.
+    steps: Option<usize>,
+    event: Option<f64>,
+    /// What it took, until that is counted.
+    work: Work,
+}
+
+/// What an evaluation tells besides what it finds.
+#[derive(Default)]
+pub struct Account {
+    /// Before: when the event comes at this very design with the steps in use, if that is known (s).
+    pub settled: Option<f64>,
+    /// Before: whether another process simulated this very design just before it ended. That it is
+    /// simulated once more is no work of the run, which a run that goes on would not have.
+    pub repeated: bool,
+    /// The choice of steps that it led to.
+    pub refresh: Option<Refresh>,
+    /// When the event came in the last motion, if the scene ends at one (s).
+    pub event: Option<f64>,
+    /// What it took.
+    pub work: WorkCounts,
 }
 
 /// Steps that were chosen, or taken up again.
@@ -42,14 +77,26 @@ impl<'a> Journal<'a> {
             record: Some(Box::new(record)),
             ..Self::default()
         };
-        for EvaluationRecord { design, found } in earlier {
+        for EvaluationRecord {
+            design,
+            found,
+            event,
+            work,
+        } in earlier
+        {
             match found {
                 Found::Steps(steps) => journal.choose(steps),
                 found => {
                     let of_gradients = matches!(found, Found::Gradients(_) | Found::NoGradients(_));
-                    let steps = journal.choices.len().checked_sub(1);
-                    let key = (of_gradients, bits(&design));
-                    journal.known.insert(key, (found, steps));
+                    let known = Known {
+                        found,
+                        place: journal.count,
+                        steps: journal.choices.len().checked_sub(1),
+                        event,
+                        work,
+                    };
+                    journal.count += 1;
+                    journal.known.insert((of_gradients, bits(&design)), known);
                 }
             }
         }
@@ -61,11 +108,26 @@ impl<'a> Journal<'a> {
         self.in_use
     }
 
-    /// Method and steps of the choice in use, and how often others had been chosen before it.
-    pub fn steps(&self) -> Option<(Method, Grid, usize)> {
+    /// Method and steps of the choice in use.
+    pub fn steps(&self) -> Option<KeptSteps> {
         let Choice { steps, refreshes } = &self.choices[self.in_use?];
-        let method = Method::adaptive(&steps.method)?;
-        Some((method, Grid::from_ends(steps.ends.clone())?, *refreshes))
+        Some(KeptSteps {
+            method: Method::adaptive(&steps.method)?,
+            reason: steps.method_reason.clone(),
+            grid: Grid::from_ends(steps.ends.clone()),
+            refreshes: *refreshes,
+        })
+    }
+
+    /// The number of the latest evaluation of the record that was asked for, and when the event had come
+    /// in the last motion by then (s).
+    pub fn latest(&self) -> Option<(usize, Option<f64>)> {
+        self.latest
+    }
+
+    /// Work of all evaluations that were asked for, those that were known included.
+    pub fn work(&self) -> Work {
+        self.work
     }
 
     fn choose(&mut self, steps: StepsInUse) {
@@ -84,7 +146,7 @@ impl<'a> Journal<'a> {
     pub fn values(
         &mut self,
         design: &[f64],
-        evaluate: impl FnOnce(&mut Option<Refresh>) -> Result<Vec<f64>, String>,
+        evaluate: impl FnOnce(&mut Account) -> Result<Vec<f64>, String>,
     ) -> Result<Vec<f64>, String> {
         match self.recall(false, design) {
             Some(Found::Values(values)) => return Ok(values),
@@ -95,14 +157,16 @@ impl<'a> Journal<'a> {
             Some(x) => Err(format!("a value is {x}")),
             None => Ok(values),
         };
-        let mut refresh = None;
-        let found = evaluate(&mut refresh).and_then(finite);
-        self.refreshed(design, refresh);
+        let mut account = Account {
+            repeated: self.simulated == bits(design),
+            ..Account::default()
+        };
+        let found = evaluate(&mut account).and_then(finite);
         let recorded = match &found {
             Ok(values) => Found::Values(values.clone()),
             Err(why) => Found::NoValues(why.clone()),
         };
-        self.learn(false, design, recorded);
+        self.learn(false, design, recorded, account);
         found
     }
 
@@ -110,7 +174,7 @@ impl<'a> Journal<'a> {
     pub fn gradients(
         &mut self,
         design: &[f64],
-        evaluate: impl FnOnce(&mut Option<Refresh>) -> Result<Vec<Vec<f64>>, String>,
+        evaluate: impl FnOnce(&mut Account) -> Result<Vec<Vec<f64>>, String>,
     ) -> Result<Vec<Vec<f64>>, String> {
         match self.recall(true, design) {
             Some(Found::Gradients(gradients)) => return Ok(gradients),
@@ -122,28 +186,62 @@ impl<'a> Journal<'a> {
                 Some(x) => Err(format!("a derivative is {x}")),
                 None => Ok(gradients),
             };
-        let mut refresh = None;
-        let found = evaluate(&mut refresh).and_then(finite);
-        self.refreshed(design, refresh);
+        let mut account = Account {
+            settled: self.settled(design),
+            repeated: self.simulated == bits(design),
+            ..Account::default()
+        };
+        let found = evaluate(&mut account).and_then(finite);
         let recorded = match &found {
             Ok(gradients) => Found::Gradients(gradients.clone()),
             Err(why) => Found::NoGradients(why.clone()),
         };
-        self.learn(true, design, recorded);
+        self.learn(true, design, recorded, account);
         found
+    }
+
+    /// When the event comes at a design whose values are known by the steps in use.
+    fn settled(&self, design: &[f64]) -> Option<f64> {
+        let known = self.known.get(&(false, bits(design)))?;
+        let judged = matches!(known.found, Found::Values(_)) && known.steps == self.in_use;
+        known.event.filter(|_| judged)
     }
 
     /// What is known of a design; the steps in use are then at least those of that time.
     fn recall(&mut self, of_gradients: bool, design: &[f64]) -> Option<Found> {
-        let (found, steps) = self.known.get(&(of_gradients, bits(design)))?;
-        self.in_use = self.in_use.max(*steps);
-        Some(found.clone())
+        let design = bits(design);
+        let known = self.known.get_mut(&(of_gradients, design.clone()))?;
+        self.in_use = self.in_use.max(known.steps);
+        if self.latest.is_none_or(|(place, _)| place < known.place) {
+            self.latest = Some((known.place, known.event));
+            self.simulated = design;
+        }
+        self.work += std::mem::take(&mut known.work);
+        Some(known.found.clone())
     }
 
-    fn learn(&mut self, of_gradients: bool, design: &[f64], found: Found) {
-        let key = (of_gradients, bits(design));
-        self.known.insert(key, (found.clone(), self.in_use));
-        self.write(design, found);
+    fn learn(&mut self, of_gradients: bool, design: &[f64], found: Found, account: Account) {
+        self.refreshed(design, account.refresh);
+        let (event, place) = (account.event, self.count);
+        let work = Work::from(account.work);
+        self.work += work;
+        self.latest = Some((place, event));
+        self.simulated = bits(design);
+        self.count += 1;
+        let known = Known {
+            found: found.clone(),
+            place,
+            steps: self.in_use,
+            event,
+            work: Work::default(),
+        };
+        self.known.insert((of_gradients, bits(design)), known);
+        self.write(EvaluationRecord {
+            design: design.to_vec(),
+            found,
+            event,
+            work,
+        });
     }
 
     /// Writes a change of the steps in use, before what was found with them. Where an earlier run went
@@ -152,15 +250,16 @@ impl<'a> Journal<'a> {
         let left = |k: &usize| k + 1 < self.choices.len();
         if let Some(Refresh {
             method,
+            method_reason,
             grid,
             reason,
         }) = refresh
         {
-            let ends = grid.ends().to_vec();
             let steps = StepsInUse {
                 method,
+                method_reason,
                 reason,
-                ends,
+                ends: grid.map_or_else(Vec::new, |grid| grid.ends().to_vec()),
             };
             self.take(design, steps);
         } else if let Some(k) = self.in_use.filter(left) {
@@ -175,15 +274,17 @@ impl<'a> Journal<'a> {
     fn take(&mut self, design: &[f64], steps: StepsInUse) {
         self.choose(steps.clone());
         self.in_use = Some(self.choices.len() - 1);
-        self.write(design, Found::Steps(steps));
+        self.write(EvaluationRecord {
+            design: design.to_vec(),
+            found: Found::Steps(steps),
+            event: None,
+            work: Work::default(),
+        });
     }
 
-    fn write(&mut self, design: &[f64], found: Found) {
+    fn write(&mut self, evaluation: EvaluationRecord) {
         if let Some(record) = &mut self.record {
-            record(EvaluationRecord {
-                design: design.to_vec(),
-                found,
-            });
+            record(evaluation);
         }
     }
 }
@@ -224,8 +325,11 @@ mod tests {
             found: Found::Steps(StepsInUse {
                 method: "dop853".into(),
                 reason: "first design".into(),
+                method_reason: None,
                 ends: ends.to_vec(),
             }),
+            event: None,
+            work: Work::default(),
         }
     }
 
@@ -233,6 +337,8 @@ mod tests {
         EvaluationRecord {
             design: vec![x],
             found: Found::Values(vec![x]),
+            event: None,
+            work: Work::default(),
         }
     }
 
@@ -244,12 +350,12 @@ mod tests {
         let earlier = vec![steps(&coarse), value(1.0), steps(&fine), value(2.0)];
         let mut written = Vec::new();
         let mut journal = Journal::new(earlier.clone(), |record| written.push(record));
-        let never = |_: &mut Option<Refresh>| -> Result<Vec<f64>, String> { panic!("is known") };
+        let never = |_: &mut Account| -> Result<Vec<f64>, String> { panic!("is known") };
         assert!(journal.steps().is_none());
         assert_eq!(journal.values(&[1.0], never), Ok(vec![1.0]));
         let in_use = |journal: &Journal<'_>| {
-            let (_, grid, refreshes) = journal.steps().expect("chosen");
-            (grid.ends().to_vec(), refreshes)
+            let kept = journal.steps().expect("chosen");
+            (kept.grid.expect("ends").ends().to_vec(), kept.refreshes)
         };
         assert_eq!(in_use(&journal), (coarse.to_vec(), 0));
         for x in [3.0, 4.0] {
@@ -275,5 +381,44 @@ mod tests {
             assert_eq!(journal.values(&[x], never), Ok(vec![x]));
             assert_eq!(in_use(&journal), (ends.to_vec(), refreshes));
         }
+    }
+
+    /// Events and work are those of the evaluations that were asked for, each counted once, and the last
+    /// of them in the record says where the next event is looked for.
+    #[test]
+    fn events_and_work_are_those_of_the_course() {
+        let known = |x: f64, event: f64| EvaluationRecord {
+            event: Some(event),
+            work: Work {
+                steps: 10,
+                ..Work::default()
+            },
+            ..value(x)
+        };
+        let mut written = Vec::new();
+        let earlier = vec![known(1.0, 0.1), known(2.0, 0.2), known(3.0, 0.3)];
+        let mut journal = Journal::new(earlier, |record| written.push(record));
+        let never = |_: &mut Account| -> Result<Vec<f64>, String> { panic!("is known") };
+        for (x, latest) in [(2.0, (1, Some(0.2))), (1.0, (1, Some(0.2)))] {
+            for _ in 0..2 {
+                assert_eq!(journal.values(&[x], never), Ok(vec![x]));
+                assert_eq!(journal.latest(), Some(latest));
+            }
+        }
+        assert_eq!(journal.work().steps, 20);
+        // Where the values are known, the event is where they were found.
+        let gradients = |account: &mut Account| {
+            assert_eq!(account.settled, Some(0.1));
+            account.event = Some(0.1);
+            account.work.steps = 5;
+            Ok(vec![vec![1.0]])
+        };
+        assert_eq!(journal.gradients(&[1.0], gradients), Ok(vec![vec![1.0]]));
+        assert_eq!(journal.values(&[3.0], never), Ok(vec![3.0]));
+        assert_eq!(journal.latest(), Some((3, Some(0.1))));
+        assert_eq!(journal.work().steps, 35);
+        drop(journal);
+        assert_eq!(written.len(), 1);
+        assert_eq!((written[0].event, written[0].work.steps), (Some(0.1), 5));
     }
 }

@@ -6,10 +6,12 @@ use super::optimise::{Solved, solve};
 use crate::problem::{Problem, Sense, Variable};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
+use std::time::Instant;
 
 /// Designs closer than this part of each variable's bounds are the same optimum.
 const SAME_DESIGN: f64 = 1e-3;
-/// As for designs, for the objective, relative.
+/// As for designs, for the objective, relative to it or to how much the runs improved it, whichever is
+/// larger.
 const SAME_OBJECTIVE: f64 = 1e-6;
 
 /// Largest violation of a design that counts as feasible.
@@ -71,18 +73,26 @@ pub fn started_at(problem: &Problem, start: &[f64]) -> Problem {
 
 /// Optimises from every start, in parallel; runs are in the order of the starts. `stopped` is asked
 /// before every run and after every iteration; `open` gives the journal of a start, by its number and
-/// problem, or `None` if there can be none, and the start is left out.
+/// problem, or `None` if there can be none, and the start is left out. The time limit of the problem is
+/// that of all runs together: starts that have not begun by then are left out, but for the first.
 pub fn multi_start<'j>(
     problem: &Problem,
     starts: &[Vec<f64>],
     stopped: &(dyn Fn() -> bool + Sync),
     open: &'j (dyn Fn(usize, &Problem) -> Option<Journal<'j>> + Sync),
 ) -> Vec<Run> {
+    let begun = Instant::now();
     let run = |(start, design): (usize, &Vec<f64>)| {
         if stopped() {
             return None;
         }
-        let problem = started_at(problem, design);
+        let mut problem = started_at(problem, design);
+        if let Some(seconds) = &mut problem.optimiser.seconds {
+            *seconds = (*seconds - begun.elapsed().as_secs_f64()).max(0.0);
+            if *seconds == 0.0 && start > 0 {
+                return None;
+            }
+        }
         let journal = open(start, &problem)?;
         let mut progress = |_: &_| {
             if stopped() {
@@ -103,6 +113,7 @@ pub fn multi_start<'j>(
 
 /// Distinct optima of the converged runs, best first.
 pub fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
+    let size = improvement(runs);
     let mut found: Vec<LocalOptimum> = Vec::new();
     for (k, run) in runs.iter().enumerate() {
         if !run.solved.outcome.converged() {
@@ -110,7 +121,7 @@ pub fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
         }
         let known = found
             .iter_mut()
-            .find(|other| same(problem, run, &runs[other.run]));
+            .find(|other| same(problem, size, run, &runs[other.run]));
         match known {
             Some(other) => other.found_by += 1,
             None => found.push(LocalOptimum {
@@ -148,9 +159,23 @@ pub fn best(runs: &[Run]) -> Option<usize> {
     })
 }
 
-fn same(problem: &Problem, a: &Run, b: &Run) -> bool {
+/// By how much the converged runs changed the objective: the median, which a start that is far off does
+/// not move.
+fn improvement(runs: &[Run]) -> f64 {
+    let converged = runs.iter().filter(|run| run.solved.outcome.converged());
+    let change = |run: &Run| {
+        let first = run.solved.history.rows.first()?.objective;
+        Some((first - run.solved.objective()).abs()).filter(|change| change.is_finite())
+    };
+    let mut changes: Vec<f64> = converged.filter_map(change).collect();
+    changes.sort_by(f64::total_cmp);
+    changes.get(changes.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Whether two runs ended at the same optimum; `size` is a change of the objective that matters.
+fn same(problem: &Problem, size: f64, a: &Run, b: &Run) -> bool {
     let (f, g) = (a.solved.objective(), b.solved.objective());
-    let close = (f - g).abs() <= SAME_OBJECTIVE * f.abs().max(g.abs());
+    let close = (f - g).abs() <= SAME_OBJECTIVE * f.abs().max(g.abs()).max(size);
     let designs = a.design().into_iter().zip(b.design());
     close
         && problem.variables.iter().zip(designs).all(|(v, (x, y))| {

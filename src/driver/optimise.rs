@@ -5,9 +5,9 @@ use super::integration::Integration;
 use super::journal::{Journal, bits};
 use super::record::record;
 use super::simulate::{Simulation, simulate, simulate_with};
-use crate::integrate::WorkCounts;
-use crate::optimiser::{self, Observer, Options, Outcome, Phase, Row, SavedState};
+use crate::optimiser::{self, Observer, Options, Outcome, Phase, Row, SavedState, Status};
 use crate::problem::Problem;
+use crate::report::evaluations::Work;
 use crate::report::history::{Column, History, HistoryRow};
 use crate::report::optimum::Optimum;
 use std::ops::ControlFlow;
@@ -21,7 +21,7 @@ pub struct Solved {
     /// The steps in use at the end.
     pub integration: Integration,
     sign: f64,
-    counts: WorkCounts,
+    counts: Work,
 }
 
 /// An optimisation that has ended.
@@ -74,15 +74,27 @@ pub fn solve<'a>(
         progress,
     };
     let options = options(problem);
-    let outcome = match from {
-        Some(state) => optimiser::resume(&mut program, &options, &mut recorder, state),
-        None => optimiser::solve(&mut program, &options, &mut recorder),
+    let mut run = |options: &Options, observer: &mut dyn Observer| match from {
+        Some(state) => optimiser::resume(&mut program, options, observer, state),
+        None => optimiser::solve(&mut program, options, observer),
     };
+    let mut outcome = run(&options, &mut recorder);
+    if outcome.status == Status::TimeLimit && !outcome.objective.is_finite() {
+        // However short the time, the start is evaluated, so that there are values to record.
+        let untimed = Options {
+            max_seconds: None,
+            ..options
+        };
+        outcome = run(&untimed, &mut StartOnly(&mut recorder));
+        if outcome.status == Status::Interrupted {
+            outcome.status = Status::TimeLimit;
+        }
+    }
     Some(Solved {
         outcome,
         history: recorder.history,
         sign,
-        counts: program.counts,
+        counts: program.counts(),
         integration: program.integration,
     })
 }
@@ -113,7 +125,7 @@ impl Solved {
 
     /// Simulates both ends and makes the record.
     pub fn complete(self, problem: &Problem, file: &str) -> Optimisation {
-        let start = simulate(problem, &problem.start()).ok();
+        let start = simulate(problem, &problem.start());
         let refreshes = self.integration.refreshes;
         // With the steps that its values were found with.
         let mut whole = self.integration.clone();
@@ -126,14 +138,14 @@ impl Solved {
             &self.outcome,
             self.sign,
             (self.counts, refreshes),
-            [start.as_ref(), end.as_ref()],
+            (&start, end.as_ref()),
         );
         Optimisation {
             outcome: self.outcome,
             optimum,
             history: self.history,
             integration: self.integration,
-            start,
+            start: start.ok(),
             end,
         }
     }
@@ -171,6 +183,17 @@ struct Recorder<'a> {
     history: History,
     judgements: Judgements,
     progress: &'a mut dyn FnMut(&History) -> ControlFlow<()>,
+}
+
+/// Ends a run at its start.
+struct StartOnly<'a, 'b>(&'a mut Recorder<'b>);
+
+impl Observer for StartOnly<'_, '_> {
+    fn iteration(&mut self, row: &Row<'_>) -> ControlFlow<()> {
+        // The run is over, whatever is said of this row.
+        let _ = self.0.iteration(row);
+        ControlFlow::Break(())
+    }
 }
 
 impl Observer for Recorder<'_> {

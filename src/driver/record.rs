@@ -3,9 +3,10 @@
 use super::error;
 use super::evaluate::unscaled;
 use super::simulate::Simulation;
-use crate::integrate::WorkCounts;
+use crate::integrate::IntegrationFailure;
 use crate::optimiser::{self, Outcome, Status};
 use crate::problem::{Problem, Sense};
+use crate::report::evaluations::Work;
 use crate::report::optimum as report;
 use crate::report::optimum::{
     Activity, ConstraintValue, Counts, DesignValue, Kkt, KktResiduals, Multipliers, Objective,
@@ -61,8 +62,8 @@ pub(super) fn record(
     file: &str,
     outcome: &Outcome,
     sign: f64,
-    (work, refreshes): (WorkCounts, usize),
-    ends: [Option<&Simulation>; 2],
+    (work, refreshes): (Work, usize),
+    (start, end): (&Result<Simulation, IntegrationFailure>, Option<&Simulation>),
 ) -> Optimum {
     let (status, sentence) = verdict(&outcome.status);
     let x = unscaled(problem, &outcome.x);
@@ -70,11 +71,21 @@ pub(super) fn record(
         .objective
         .expect("only a problem with an objective is optimised");
     let maximise = objective.sense == Sense::Maximise;
-    let at_end = ends[1].map(|end| end.at.function(objective.function));
+    let at_end = end.map(|end| end.at.function(objective.function));
     let value = sign * outcome.objective;
-    let start_objective =
-        ends[0].map_or(value, |start| start.at.function(objective.function).value);
-    let estimate = ends[1].and_then(|end| {
+    let mut warnings = Vec::new();
+    let start_objective = match start {
+        Ok(start) => Ok(start.at.function(objective.function).value),
+        Err(failure) => Err(failure.to_string()),
+    };
+    let start_objective = start_objective
+        .and_then(|value| match value.is_finite() {
+            true => Ok(value),
+            false => Err(format!("it is {value}")),
+        })
+        .map_err(|why| warnings.push(format!("the objective is not known at the start: {why}")))
+        .ok();
+    let estimate = end.and_then(|end| {
         let found = error::estimate(problem, &end.at, &[objective.function], false);
         found.ok()?.into_iter().next().map(|found| found.value)
     });
@@ -95,7 +106,6 @@ pub(super) fn record(
         lower_bounds: bounds(&outcome.multipliers.lower_bounds),
         upper_bounds: bounds(&outcome.multipliers.upper_bounds),
     };
-    let mut warnings = Vec::new();
     if let Some(end) = &at_end
         && end.peak_sharpness > 1.0
     {
@@ -105,7 +115,7 @@ pub(super) fn record(
             problem.function_names[objective.function], end.peak_sharpness
         ));
     }
-    warnings.extend(ends[1].and_then(|end| end.warning.clone()));
+    warnings.extend(end.and_then(|end| end.warning.clone()));
     let scaling = &outcome.scaling;
     let zero = |names: &[String], what: &str| {
         (!names.is_empty()).then(|| format!("{what} at the start: {}", names.join(", ")))
@@ -168,7 +178,7 @@ pub(super) fn record(
         },
         scaling: scaling_record(problem, outcome),
         second_order: None,
-        integration: ends[1].map(|end| report::Integration {
+        integration: end.map(|end| report::Integration {
             method: end.at.run.method.name(),
             reason: end.reason.clone(),
             steps: end.at.run.grid.steps() as u64,

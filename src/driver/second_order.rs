@@ -114,7 +114,15 @@ pub fn second_order(
         weak,
     }
     .held();
-    let curvature = reduced.judge();
+    let (curvature, falling) = reduced.judge();
+    let descent = falling.map(|direction| {
+        let mut changes = vec![0.0; problem.variables.len()];
+        for (part, &i) in direction.iter().zip(&free) {
+            changes[i] = part * problem.variables[i].scale;
+        }
+        let names = problem.variables.iter().map(|v| v.name.clone());
+        names.zip(changes).collect()
+    });
     let mut eigenvalues: Vec<f64> = match curvature {
         Curvature::NoFreeDirection => Vec::new(),
         _ => reduced
@@ -129,6 +137,7 @@ pub fn second_order(
         eigenvalues,
         uncertainty,
         curvature,
+        descent,
         weakly_active: reduced.weak.into_iter().map(|weak| weak.name).collect(),
     }))
 }
@@ -244,21 +253,24 @@ impl Reduced {
         }
     }
 
-    fn judge(&self) -> Curvature {
+    /// What follows, and a feasible direction of negative curvature if there is one.
+    fn judge(&self) -> (Curvature, Option<DVector<f64>>) {
         if self.basis.ncols() == 0 {
-            return Curvature::NoFreeDirection;
+            return (Curvature::NoFreeDirection, None);
         }
         let eigen = self.hessian.clone().symmetric_eigen();
         let values = &eigen.eigenvalues;
         if values.iter().all(|&value| value > self.uncertainty) {
-            return Curvature::StrictOptimum;
+            return (Curvature::StrictOptimum, None);
         }
-        let falling = |k: &usize| values[*k] < -self.uncertainty;
-        let (mut falls, mut outside) = (false, false);
-        for k in (0..values.len()).filter(falling) {
-            match self.admits(&(&self.basis * eigen.eigenvectors.column(k)), values[k]) {
-                true => falls = true,
-                false => outside = true,
+        let mut falling: Vec<usize> = (0..values.len()).collect();
+        falling.retain(|&k| values[k] < -self.uncertainty);
+        falling.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+        let mut descent = None;
+        for &k in &falling {
+            let direction = &self.basis * eigen.eigenvectors.column(k);
+            if let Some(sign) = self.admits(&direction, values[k]) {
+                descent = descent.or(Some(direction * sign));
             }
         }
         // The face of the cone along which all that is weakly active stays active.
@@ -267,25 +279,28 @@ impl Reduced {
         });
         let face = null_space(&faces);
         if face.ncols() > 0 {
-            let along = face.tr_mul(&self.hessian) * &face;
-            falls |= along.symmetric_eigenvalues().min() < -self.uncertainty;
+            let along = (face.tr_mul(&self.hessian) * &face).symmetric_eigen();
+            let (least, value) = along.eigenvalues.argmin();
+            if value < -self.uncertainty && descent.is_none() {
+                descent = Some(&self.basis * (&face * along.eigenvectors.column(least)));
+            }
         }
-        match (falls, outside) {
-            (true, _) => Curvature::NoOptimum,
-            (false, true) => Curvature::NotDecided,
-            (false, false) => Curvature::Flat,
+        match (&descent, falling.is_empty()) {
+            (Some(_), _) => (Curvature::NoOptimum, descent),
+            (None, false) => (Curvature::NotDecided, None),
+            (None, true) => (Curvature::Flat, None),
         }
     }
 
-    /// Whether a direction of negative curvature, followed either way, is in the cone, and what little
-    /// force there is gives way within the length of the differences.
-    fn admits(&self, direction: &DVector<f64>, curvature: f64) -> bool {
-        let along = |sign: f64| {
-            let part = |w: &Weak| sign * w.inwards.dot(direction);
+    /// Which way a direction of negative curvature, if either, is in the cone, and what little force there
+    /// is gives way within the length of the differences.
+    fn admits(&self, direction: &DVector<f64>, curvature: f64) -> Option<f64> {
+        let along = |sign: &f64| {
+            let part = |w: &Weak| *sign * w.inwards.dot(direction);
             let rise: f64 = self.weak.iter().map(|w| w.force * part(w)).sum();
             self.weak.iter().all(|w| part(w) >= -ALONG) && rise <= -curvature * STEP
         };
-        along(1.0) || along(-1.0)
+        [1.0, -1.0].into_iter().find(along)
     }
 }
 
@@ -339,7 +354,7 @@ mod tests {
     /// f = ½ xᵀHx at 0: over the plane, over x ≥ 0, over x, y ≥ 0.
     #[test]
     fn a_cone_is_judged_by_its_own_directions() {
-        let verdict = |hessian, weak| reduced(hessian, weak).judge();
+        let verdict = |hessian, weak| reduced(hessian, weak).judge().0;
         let half = || vec![weak([1.0, 0.0], 0.0)];
         let quarter = || vec![weak([1.0, 0.0], 0.0), weak([0.0, 1.0], 0.0)];
         let bowl = [1.0, 0.0, 0.0, 2.0];
@@ -348,6 +363,10 @@ mod tests {
         assert_eq!(verdict(bowl, quarter()), Curvature::StrictOptimum);
         assert_eq!(verdict(within, vec![]), Curvature::NoOptimum);
         assert_eq!(verdict(within, quarter()), Curvature::NoOptimum);
+        let (_, descent) = reduced(within, quarter()).judge();
+        let half_root = 0.5_f64.sqrt();
+        let inwards = DVector::from_column_slice(&[half_root, half_root]);
+        assert!((descent.expect("falls") - inwards).amax() < 1e-14);
         assert_eq!(verdict(across, vec![]), Curvature::NoOptimum);
         assert_eq!(verdict(across, half()), Curvature::NoOptimum);
         // xy over x, y ≥ 0 is a minimum, but not by what its eigenvectors say.
@@ -365,12 +384,12 @@ mod tests {
             (1e-5, Curvature::NoOptimum),
         ] {
             let found = reduced([-1.0, 0.0, 0.0, 1.0], vec![weak([1.0, 0.0], force)]).held();
-            assert_eq!(found.judge(), curvature, "{force}");
+            assert_eq!(found.judge().0, curvature, "{force}");
             assert_eq!(found.weak.len(), usize::from(force < 1e-4));
         }
         let held = vec![weak([1.0, 0.0], 1.0), weak([0.0, 1.0], 1.0)];
         let vertex = reduced([1.0, 0.0, 0.0, 1.0], held).held();
-        assert_eq!(vertex.judge(), Curvature::NoFreeDirection);
+        assert_eq!(vertex.judge(), (Curvature::NoFreeDirection, None));
     }
 
     #[test]

@@ -4,6 +4,9 @@ use crate::optimiser::{Outcome, SavedState};
 use crate::problem::{Problem, Sense};
 use serde::{Deserialize, Serialize};
 
+/// Difference of a design from itself, scaled and scaled back, relative to it.
+const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
 /// The optimiser's state at the end of a run, and what it belongs to: `state.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -28,6 +31,16 @@ impl WarmStart {
             objective: objective(problem),
             state: outcome.state.clone()?,
         })
+    }
+
+    /// Whether the state is that of `design`, in the units of the problem file: equal but for the
+    /// round-off of the scales.
+    pub fn is_at(&self, design: &[f64]) -> bool {
+        let point = self.variables.iter().zip(&self.state.x);
+        let same = |((_, scale), x): (&(String, f64), &f64), d: &f64| {
+            (scale * x - d).abs() <= ROUND_OFF * d.abs()
+        };
+        design.len() == self.state.x.len() && point.zip(design).all(|(p, d)| same(p, d))
     }
 
     /// Whether the state can be used for `problem`: same variables, scales, constraints and objective,
@@ -110,6 +123,9 @@ mod tests {
             state: state(),
         };
         assert!(warm.fits(&lowest));
+        let x = 0.5 * lowest.variables[0].scale;
+        assert!(warm.is_at(&[x]) && warm.is_at(&[x * (1.0 + f64::EPSILON)]));
+        assert!(!warm.is_at(&[x * (1.0 + 1e-14)]) && !warm.is_at(&[x, x]));
         assert!(!warm.fits(&problem(r#"{"maximise": "height"}"#)));
         assert!(!warm.fits(&problem(r#"{"minimise": "reach"}"#)));
         let mut damaged = warm.clone();

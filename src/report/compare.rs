@@ -230,18 +230,18 @@ fn objective_rows(rows: &mut Vec<Row>, new: &Optimum, baseline: &Optimum, tolera
         &word(b.sense),
     ));
     let tolerance = tolerances.objective;
-    let mut number = |name: &str, a: f64, b: f64| {
+    let number = |name: &str, a: f64, b: f64| {
         let size = b.abs().max(1e-12);
-        rows.push(number_row("objective", name, a, b, size, tolerance));
+        number_row("objective", name, a, b, size, tolerance)
     };
-    number("value", a.value, b.value);
-    number(
-        "at the start",
-        new.start_objective,
-        baseline.start_objective,
-    );
+    rows.push(number("value", a.value, b.value));
+    match (new.start_objective, baseline.start_objective) {
+        (Some(a), Some(b)) => rows.push(number("at the start", a, b)),
+        (None, None) => {}
+        (a, b) => rows.push(lone_row("objective", "at the start", a, b)),
+    }
     match (a.true_maximum, b.true_maximum) {
-        (Some(a), Some(b)) => number("true maximum", a, b),
+        (Some(a), Some(b)) => rows.push(number("true maximum", a, b)),
         (None, None) => {}
         (a, b) => rows.push(lone_row("objective", "true maximum", a, b)),
     }

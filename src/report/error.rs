@@ -13,6 +13,16 @@ pub enum ReportError {
         /// What the operating system said.
         source: std::io::Error,
     },
+    /// Another run writes its results to the directory.
+    #[error(
+        "{}: found a run that is writing its results there, expected none: wait for its end, or give \
+         another --output",
+        path.display()
+    )]
+    InUse {
+        /// The directory; nothing in it has changed.
+        path: PathBuf,
+    },
     /// The operating system refused to read.
     #[error("cannot read {}: {source}", path.display())]
     Read {

@@ -1,6 +1,7 @@
 //! Files written whole or not at all, and read with the path in the error.
 
 use super::ReportError;
+use std::fs::{File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -40,9 +41,15 @@ pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), ReportError> {
     prepared.into_iter().try_for_each(finish)?;
     // The names are on the disk only when the directories are.
     #[cfg(unix)]
-    for (path, _) in files {
+    for (k, (path, _)) in files.iter().enumerate() {
         let directory = directory(path);
-        std::fs::File::open(directory)
+        if files[..k]
+            .iter()
+            .any(|(path, _)| self::directory(path) == directory)
+        {
+            continue;
+        }
+        File::open(directory)
             .and_then(|opened| opened.sync_all())
             .map_err(|source| ReportError::Write {
                 path: directory.to_path_buf(),
@@ -105,17 +112,47 @@ fn finish(prepared: Prepared) -> Result<(), ReportError> {
         })
 }
 
-/// Makes sure, before work is done for it, that a directory takes files: makes it if need be, and
-/// removes the temporary files of runs that were killed there.
+/// A directory that no other run writes its results to until this is dropped or the process has ended,
+/// by whatever cause.
+#[derive(Debug)]
+#[must_use]
+pub struct HeldDirectory {
+    /// Locked as long as it is open; `None` where the file system has no locks.
+    _lock: Option<File>,
+}
+
+fn hold(path: &Path) -> Result<HeldDirectory, ReportError> {
+    // A directory can be locked itself where it can be opened.
+    #[cfg(unix)]
+    let opened = File::open(path);
+    #[cfg(not(unix))]
+    let opened = File::create(path.join(".flexbody.lock"));
+    let file = opened.map_err(|source| ReportError::Write {
+        path: path.to_path_buf(),
+        source,
+    })?;
+    match file.try_lock() {
+        Ok(()) => Ok(HeldDirectory { _lock: Some(file) }),
+        Err(TryLockError::WouldBlock) => Err(ReportError::InUse {
+            path: path.to_path_buf(),
+        }),
+        Err(TryLockError::Error(_)) => Ok(HeldDirectory { _lock: None }),
+    }
+}
+
+/// Makes sure, before work is done for it, that a directory takes files: makes it if need be, holds it
+/// against other runs, and removes the temporary files of runs that were killed there.
 ///
 /// # Errors
-/// [`ReportError::Write`] with the path of the directory.
-pub fn prepare_directory(path: &Path) -> Result<(), ReportError> {
+/// [`ReportError::InUse`] if another run holds it, with nothing changed, or [`ReportError::Write`], with
+/// the path of the directory.
+pub fn prepare_directory(path: &Path) -> Result<HeldDirectory, ReportError> {
     let fault = |source| ReportError::Write {
         path: path.to_path_buf(),
         source,
     };
     std::fs::create_dir_all(path).map_err(fault)?;
+    let held = hold(path)?;
     for entry in std::fs::read_dir(path).map_err(fault)?.flatten() {
         let name = entry.file_name();
         let name = name.to_string_lossy();
@@ -124,7 +161,8 @@ pub fn prepare_directory(path: &Path) -> Result<(), ReportError> {
             let _ = std::fs::remove_file(entry.path());
         }
     }
-    new_file(path).map(drop).map_err(fault)
+    new_file(path).map_err(fault)?;
+    Ok(held)
 }
 
 /// Reads a text file.

@@ -2,6 +2,9 @@
 
 use super::ReportError;
 use super::csv;
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
 /// Name and unit of a column.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,8 +66,8 @@ pub struct History {
     pub rows: Vec<HistoryRow>,
 }
 
-const OBJECTIVE: &str = "objective: ";
-const VARIABLE: &str = "variable: ";
+pub(super) const OBJECTIVE: &str = "objective: ";
+pub(super) const VARIABLE: &str = "variable: ";
 const CONSTRAINT: &str = "constraint: ";
 /// Columns before the design variables; `objective` is followed by its name.
 const FIXED: [&str; 14] = [
@@ -96,6 +99,14 @@ impl History {
     /// [`ReportError::History`] if a row has not one entry for each variable and constraint, or
     /// if a unit contains a square bracket.
     pub fn to_csv(&self) -> Result<String, ReportError> {
+        let mut text = self.header()?;
+        for i in 0..self.rows.len() {
+            self.write_row(&mut text, i)?;
+        }
+        Ok(text)
+    }
+
+    fn header(&self) -> Result<String, ReportError> {
         let mut header: Vec<String> = Vec::new();
         for fixed in FIXED {
             header.push(match fixed {
@@ -111,22 +122,24 @@ impl History {
         }
         let mut text = String::new();
         csv::write_record(&mut text, header.iter().map(String::as_str));
-        for (i, row) in self.rows.iter().enumerate() {
-            let found = (row.design.len(), row.constraints.len());
-            let expected = (self.variables.len(), self.constraints.len());
-            if found != expected {
-                let count =
-                    |(n, m): (usize, usize)| format!("{n} design and {m} constraint values");
-                return Err(ReportError::History {
-                    line: i + 2,
-                    found: count(found),
-                    expected: count(expected),
-                });
-            }
-            let fields = row.fields();
-            csv::write_record(&mut text, fields.iter().map(String::as_str));
-        }
         Ok(text)
+    }
+
+    fn write_row(&self, text: &mut String, i: usize) -> Result<(), ReportError> {
+        let row = &self.rows[i];
+        let found = (row.design.len(), row.constraints.len());
+        let expected = (self.variables.len(), self.constraints.len());
+        if found != expected {
+            let count = |(n, m): (usize, usize)| format!("{n} design and {m} constraint values");
+            return Err(ReportError::History {
+                line: i + 2,
+                found: count(found),
+                expected: count(expected),
+            });
+        }
+        let fields = row.fields();
+        csv::write_record(text, fields.iter().map(String::as_str));
+        Ok(())
     }
 
     /// Reads back what [`History::to_csv`] wrote.
@@ -190,6 +203,47 @@ impl History {
     }
 }
 
+/// The table of a run that goes on: a row is appended when it is known, and what was written before is
+/// not touched. If the process is killed, a last row may be there in part.
+#[derive(Debug)]
+pub struct HistoryLog {
+    path: PathBuf,
+    file: Option<File>,
+}
+
+impl HistoryLog {
+    /// A table that will be in the file `path`, begun anew with the first row.
+    pub fn new(path: &Path) -> Self {
+        Self {
+            path: path.to_path_buf(),
+            file: None,
+        }
+    }
+
+    /// Appends the last row of `history`, after the header if it is the first that is appended.
+    ///
+    /// # Errors
+    /// [`ReportError::Write`] with the path, or as [`History::to_csv`].
+    pub fn append(&mut self, history: &History) -> Result<(), ReportError> {
+        let Some(last) = history.rows.len().checked_sub(1) else {
+            return Ok(());
+        };
+        let fault = |source| ReportError::Write {
+            path: self.path.clone(),
+            source,
+        };
+        let (mut text, file) = match &mut self.file {
+            Some(file) => (String::new(), file),
+            None => {
+                let file = File::create(&self.path).map_err(fault)?;
+                (history.header()?, self.file.insert(file))
+            }
+        };
+        history.write_row(&mut text, last)?;
+        file.write_all(text.as_bytes()).map_err(fault)
+    }
+}
+
 impl Column {
     /// A column by name and unit.
     pub fn new(name: &str, unit: Option<&str>) -> Column {
@@ -201,7 +255,7 @@ impl Column {
 
     /// `NAME [UNIT]`; a name without unit that ends with a bracket gets `[]`, so that reading is
     /// unambiguous.
-    fn heading(&self, prefix: &str) -> Result<String, ReportError> {
+    pub(super) fn heading(&self, prefix: &str) -> Result<String, ReportError> {
         let unit = match &self.unit {
             Some(unit) if unit.contains(['[', ']']) => {
                 return Err(fault(
@@ -306,7 +360,7 @@ impl HistoryRow {
 }
 
 /// The shortest decimal that reads back as the same number; nothing if it is not finite.
-fn exact(value: f64) -> String {
+pub(super) fn exact(value: f64) -> String {
     if value.is_finite() {
         format!("{value:?}")
     } else {
@@ -319,5 +373,52 @@ fn fault(line: usize, found: &str, expected: &str) -> ReportError {
         line,
         found: found.to_owned(),
         expected: expected.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every row is appended once: what stands there stays, in the same file, and is the table so far.
+    #[test]
+    fn a_table_grows_by_its_last_row() {
+        let mut history = History {
+            objective: Column::new("range", Some("m")),
+            variables: vec![Column::new("mass", Some("kg"))],
+            constraints: Vec::new(),
+            rows: Vec::new(),
+        };
+        let directory = tempfile::tempdir().expect("a directory");
+        let path = directory.path().join("history.partial.csv");
+        std::fs::write(&path, "of an earlier run").expect("is written");
+        let mut log = HistoryLog::new(&path);
+        let mut first = None;
+        for iteration in 0..4 {
+            history.rows.push(HistoryRow {
+                iteration,
+                evaluations: iteration + 1,
+                objective: 0.1 + iteration as f64,
+                infeasibility: 0.0,
+                optimality: f64::NAN,
+                barrier: 0.1,
+                step_norm: 1.0,
+                dual_step: 1.0,
+                primal_step: 1.0,
+                regularisation: 0.0,
+                line_search_trials: 1,
+                phase: "regular".into(),
+                steps: None,
+                refreshes: Some(0),
+                design: vec![2.0],
+                constraints: Vec::new(),
+            });
+            log.append(&history).expect("is written");
+            let text = std::fs::read_to_string(&path).expect("is read");
+            assert_eq!(text, history.to_csv().expect("is a table"));
+            let reader = first.get_or_insert_with(|| File::open(&path).expect("is opened"));
+            let same = reader.metadata().expect("is there").len();
+            assert_eq!(same, text.len() as u64, "the file is the same");
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! What a run leaves behind: records, their comparison, figures and the text at the end.
 //!
 //! Everything here is a pure function of plain `f64` data, so that the figures can be redrawn
-//! from the record; only [`files`] and [`evaluations`] touch the disk.
+//! from the record; only [`files`], [`evaluations`] and [`HistoryLog`] touch the disk.
 //!
 //! | File | Content |
 //! |---|---|
@@ -9,6 +9,7 @@
 //! | [`evaluations`] | every evaluation, `evaluations.jsonl` |
 //! | [`explain`] | what is left out of a scene and what is left |
 //! | [`history`] | the iterations of an optimisation, `history.csv` |
+//! | [`optima`] | the distinct optima of several starts, `optima.csv` |
 //! | [`optimum`] | the end of an optimisation, `optimum.json` |
 //! | [`mod@compare`] | an optimum against a committed baseline |
 //! | [`mod@summary`] | the text that a person reads at the end |
@@ -25,6 +26,7 @@ pub mod explain;
 pub mod files;
 pub mod history;
 mod number;
+pub mod optima;
 pub mod optimum;
 pub mod plots;
 pub mod positions;
@@ -36,8 +38,9 @@ pub mod work_precision;
 pub use compare::{Comparison, Tolerances, compare};
 pub use error::ReportError;
 pub use explain::{Explanation, FunctionUse, SystemSize};
-pub use files::{atomic_write, prepare_directory, read_text, write_all};
-pub use history::{Column, History, HistoryRow};
+pub use files::{HeldDirectory, atomic_write, prepare_directory, read_text, write_all};
+pub use history::{Column, History, HistoryLog, HistoryRow};
+pub use optima::{FoundOptimum, optima_csv};
 pub use optimum::Optimum;
 pub use stress::{StressFamily, StressOutcome, StressRow, StressTable};
 pub use summary::summary;

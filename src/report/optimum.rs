@@ -17,8 +17,9 @@ pub struct Optimum {
     pub message: String,
     /// The objective at the optimum.
     pub objective: Objective,
-    /// The objective at the start.
-    pub start_objective: f64,
+    /// The objective at the start, unless it is not defined there; a warning then says why.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start_objective: Option<f64>,
     /// Design variables by name.
     pub design: IndexMap<String, DesignValue>,
     /// Constraints by name.
@@ -211,6 +212,10 @@ pub struct SecondOrder {
     pub uncertainty: f64,
     /// What follows.
     pub curvature: Curvature,
+    /// A feasible direction along which the objective improves, if there is one: the change of each
+    /// variable, in its unit, of a step whose length is one in scaled variables.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub descent: Option<IndexMap<String, f64>>,
     /// Variables at a bound, and constraints, that are active without force: their multiplier is zero or
     /// next to it, and the eigenvalues are those with them left free.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

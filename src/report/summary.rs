@@ -27,7 +27,7 @@ pub fn summary(optimum: &Optimum) -> String {
         significant(complementarity, 2),
     ));
     if let Some(second) = &optimum.second_order {
-        text.push_str(&curvature(second));
+        text.push_str(&curvature(second, optimum));
     }
     text.push_str(&work(optimum));
     for warning in &optimum.warnings {
@@ -43,15 +43,15 @@ fn objective(optimum: &Optimum) -> String {
         Sense::Maximise => "Maximised",
     };
     let unit = with_space(objective.unit.as_deref());
+    let start = optimum.start_objective;
     let mut text = format!(
         "{verb} {}: {} → {}{unit}",
         objective.function,
-        significant(optimum.start_objective, 8),
+        start.map_or_else(|| "not known".to_owned(), |start| significant(start, 8)),
         significant(objective.value, 8),
     );
-    let change = objective.value - optimum.start_objective;
-    if optimum.start_objective != 0.0 {
-        let percent = 100.0 * change / optimum.start_objective.abs();
+    if let Some(start) = start.filter(|start| *start != 0.0) {
+        let percent = 100.0 * (objective.value - start) / start.abs();
         text.push_str(&format!(" ({percent:+.1} %)"));
     }
     text.push('\n');
@@ -157,7 +157,7 @@ fn sensitivity(optimum: &Optimum, constraint: &super::optimum::ConstraintValue) 
 }
 
 /// What the reduced Hessian says.
-fn curvature(second: &SecondOrder) -> String {
+fn curvature(second: &SecondOrder, optimum: &Optimum) -> String {
     let verdict = match second.curvature {
         Curvature::NoFreeDirection => "bounds and constraints leave no free direction",
         Curvature::StrictOptimum => "a strict local optimum",
@@ -188,6 +188,14 @@ fn curvature(second: &SecondOrder) -> String {
         ));
     }
     text.push('\n');
+    if let Some(descent) = &second.descent {
+        let part = |(name, change): (&String, &f64)| {
+            let unit = optimum.design.get(name).and_then(|d| d.unit.as_deref());
+            format!("{name} {change:+.3e}{}", with_space(unit))
+        };
+        let parts: Vec<String> = descent.iter().map(part).collect();
+        text.push_str(&format!("  it improves along {}\n", parts.join(", ")));
+    }
     if !second.weakly_active.is_empty() {
         let names = second.weakly_active.join(", ");
         text.push_str(&format!("  active without force: {names}\n"));

@@ -1,9 +1,10 @@
 //! What is asked of an optimum besides finding it: another start, many starts, its curvature.
 
-use crate::program::{HAMMER, expect, json, read, scratch};
+use crate::program::{HAMMER, expect, files, json, read, scratch};
 use flexbody::driver::evaluate::Evaluated;
 use flexbody::driver::{Journal, Optimisation, optimise, second_order};
 use flexbody::problem::Problem;
+use flexbody::report::files::prepare_directory;
 use flexbody::report::optimum::{Curvature, SecondOrder};
 use std::ops::ControlFlow;
 
@@ -242,4 +243,107 @@ fn the_time_of_the_quadratic_programs_is_told() {
     assert!(line.contains(" quadratic programs "), "{line}");
     let record = json(&read(&at.path().join("out/optimum.json")));
     assert!(record["counts"]["quadratic_programs"].as_u64() > Some(0));
+}
+
+/// The design of the file counts, whatever state stands beside it.
+#[test]
+fn a_start_from_an_edited_optimum_is_at_its_design() {
+    let at = scratch();
+    expect(0, at.path(), &[HAMMER, "--output", "cold", "--quiet"]);
+    let path = at.path().join("cold/optimum.json");
+    let mut record = json(&read(&path));
+    let wanted = [1.5, 0.3];
+    for (name, value) in ["head mass", "reach"].into_iter().zip(wanted) {
+        record["design"][name]["value"] = value.into();
+    }
+    std::fs::write(&path, record.to_string()).expect("is edited");
+    let warm = [HAMMER, "--from", "cold", "--output", "warm", "--quiet"];
+    expect(0, at.path(), &warm);
+    let evaluations = read(&at.path().join("warm/evaluations.jsonl"));
+    let mut lines = evaluations.lines().skip(1).map(json);
+    let first = lines.find(|line| line["values"].is_array());
+    let design = &first.expect("an evaluation")["design"];
+    for (k, wanted) in wanted.into_iter().enumerate() {
+        let x = design[k].as_f64().expect("a number");
+        assert!((x - wanted).abs() < 1e-14, "{design}");
+    }
+}
+
+/// A ball at rest has the least energy where the most is asked for: it is stationary all the same.
+const REST: &str = r#"{
+  "version": 1, "name": "rest", "gravity": [0, 0, 0],
+  "bodies": {"ball": {"shape": "point", "mass": 2, "velocity": {"linear": [0, 0, 0]}}},
+  "simulation": {"duration": 1, "steps": 10},
+  "functions": {"energy": {"final": {"energy": "kinetic"}}},
+  "variables": {"along": {"path": "/bodies/ball/velocity/linear/0", "lower": -2, "upper": 3}},
+  "objective": {"maximise": "energy"}
+}"#;
+
+#[test]
+fn a_stationary_point_that_is_no_optimum_fails_the_check() {
+    let at = scratch();
+    std::fs::write(at.path().join("rest.json"), REST).expect("is written");
+    let run = |code: i32, how: &[&str]| {
+        let arguments = [&["rest.json", "--output", "out"], how].concat();
+        expect(code, at.path(), &arguments)
+    };
+    run(0, &[]);
+    let ran = run(1, &["--second-order"]);
+    assert!(
+        ran.out.contains("Second order: no local optimum"),
+        "{}",
+        ran.out
+    );
+    assert!(ran.out.contains("it improves along along "), "{}", ran.out);
+    let found = json(&read(&at.path().join("out/optimum.json")));
+    let descent = found["second_order"]["descent"]["along"].as_f64();
+    assert!(descent.expect("a number").abs() > 0.1, "{found}");
+    let ran = run(1, &["--second-order", "--quiet"]);
+    assert!(ran.err.contains("no local optimum"), "{}", ran.err);
+}
+
+#[test]
+fn a_time_limit_that_is_over_at_once_leaves_the_values_of_the_start() {
+    let at = scratch();
+    let limit = ["--set", "/optimiser={\"seconds\": 1e-9}", "--output", "out"];
+    let ran = expect(1, at.path(), &[&[HAMMER][..], &limit].concat());
+    assert!(!(ran.out + &ran.err).contains("NaN"));
+    let record = json(&read(&at.path().join("out/optimum.json")));
+    assert_eq!(record["status"], "time_limit");
+    for name in ["head mass", "reach"] {
+        let design = &record["design"][name];
+        let [x, start] = ["value", "start"].map(|key| design[key].as_f64().expect("a number"));
+        assert!((x - start).abs() <= 1e-15, "{design}");
+    }
+    let [value, start] = [&record["objective"]["value"], &record["start_objective"]]
+        .map(|number| number.as_f64().expect("a number"));
+    assert!((value - start).abs() <= 1e-9 * start.abs(), "{record}");
+}
+
+/// Another run in the same directory is refused, with nothing changed, as long as the first one lives.
+#[test]
+fn a_directory_has_one_run_at_a_time() {
+    let at = scratch();
+    let directory = at.path().join("out");
+    let run = |code: i32, how: &[&str]| {
+        let arguments = [&[HAMMER, "--quiet"], how].concat();
+        expect(code, at.path(), &arguments)
+    };
+    run(0, &["--output", "out"]);
+    let before = files(&directory);
+    let held = prepare_directory(&directory).expect("is free");
+    for how in [["--output", "out"], ["--resume", "out"]] {
+        let ran = run(2, &how);
+        assert!(
+            ran.err.contains("out: found a run that is writing"),
+            "{}",
+            ran.err
+        );
+        assert!(files(&directory) == before);
+    }
+    // Its record may be read.
+    run(0, &["--resume", "out", "--output", "other"]);
+    drop(held);
+    run(0, &["--resume", "out"]);
+    assert!(files(&directory) == before);
 }

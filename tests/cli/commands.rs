@@ -228,7 +228,7 @@ fn plot_redraws_the_same_figures() {
     let after = files(&drawn);
     assert_eq!(after.len(), before.len());
     for (path, content) in &before {
-        assert!(after[path] == *content, "{}", path.display());
+        assert!(after[path] == *content, "{path}");
     }
     std::fs::remove_file(drawn.join("history.csv")).expect("is removed");
     let ran = expect(2, at.path(), &["plot", "drawn"]);

@@ -1,5 +1,6 @@
 //! The program `optimize`, run as a user runs it.
 
+mod before_work;
 mod beyond_one_run;
 mod commands;
 mod program;

@@ -2,8 +2,9 @@
 
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Instant;
 use tempfile::TempDir;
 
 pub const HAMMER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/hammer.json");
@@ -42,26 +43,25 @@ pub fn expect(code: i32, directory: &Path, arguments: &[&str]) -> Ran {
     ran
 }
 
-/// All files below a directory with their content.
-pub fn files(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+/// All files below a directory, by their paths in it, with their content.
+pub fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();
     for entry in std::fs::read_dir(directory).expect("a directory") {
-        let path = entry.expect("an entry").path();
+        let entry = entry.expect("an entry");
+        let (path, name) = (entry.path(), entry.file_name());
+        let name = name.to_string_lossy().into_owned();
         if path.is_dir() {
-            all.extend(files(&path));
+            let inner = files(&path).into_iter();
+            all.extend(inner.map(|(inside, bytes)| (format!("{name}/{inside}"), bytes)));
         } else {
-            all.insert(path.clone(), std::fs::read(&path).expect("a file"));
+            all.insert(name, std::fs::read(&path).expect("a file"));
         }
     }
     all
 }
 
 pub fn names(directory: &Path) -> Vec<String> {
-    let name = |path: &PathBuf| {
-        let inside = path.strip_prefix(directory).expect("inside");
-        inside.to_string_lossy().into_owned()
-    };
-    files(directory).keys().map(name).collect()
+    files(directory).into_keys().collect()
 }
 
 pub fn read(path: &Path) -> String {
@@ -72,14 +72,76 @@ pub fn json(text: &str) -> Value {
     serde_json::from_str(text).expect("valid JSON")
 }
 
-/// The optimum in a directory without the work of its simulations, which a resumed run has less of.
 pub fn optimum(directory: &Path) -> Value {
-    let mut record = json(&read(&directory.join("optimum.json")));
-    for work in ["steps", "newton_iterations", "factorisations", "solves"] {
-        let counts = record["counts"].as_object_mut().expect("counts");
-        counts.remove(work);
+    json(&read(&directory.join("optimum.json")))
+}
+
+/// A run of the program that is not waited for.
+pub fn start(directory: &Path, arguments: &[&str]) -> Child {
+    Command::new(env!("CARGO_BIN_EXE_optimize"))
+        .current_dir(directory)
+        .args(arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program runs")
+}
+
+/// Kills runs with these arguments at twenty moments spread over the whole run, early ones among them,
+/// and resumes them: `records`, whole lines of which stand there when a run is killed, are those of a run
+/// that is not killed, with no evaluation twice, and so is every other file, byte for byte.
+pub fn killed_runs_resume(arguments: &[&str], phase: f64, records: &[&str]) {
+    let at = scratch();
+    let with = |how: &[&str]| -> Vec<String> {
+        let all = arguments.iter().chain(how);
+        all.map(|argument| (*argument).to_owned()).collect()
+    };
+    let run = |how: &[&str]| {
+        let all = with(how);
+        start(
+            at.path(),
+            &all.iter().map(String::as_str).collect::<Vec<_>>(),
+        )
+    };
+    let begun = Instant::now();
+    let ended = run(&["--output", "whole"]).wait().expect("ends");
+    let (duration, code) = (begun.elapsed(), ended.code().expect("ended by itself"));
+    let whole = files(&at.path().join("whole"));
+    let mut in_the_midst = 0;
+    for k in 0..20 {
+        let output = format!("killed_{k}");
+        let directory = at.path().join(&output);
+        let mut killed = run(&["--output", &output]);
+        // A fraction of the golden ratio: spread without a pattern.
+        let moment = (phase + f64::from(k) * 0.618_033_988_749_895).fract();
+        std::thread::sleep(duration.mul_f64(moment));
+        killed.kill().expect("is killed or has ended");
+        killed.wait().expect("has ended");
+        let (mut begun, mut complete) = (false, true);
+        for name in records {
+            let left = std::fs::read(directory.join(name)).unwrap_or_default();
+            let end = left.iter().rposition(|byte| *byte == b'\n');
+            let kept = &left[..end.map_or(0, |end| end + 1)];
+            assert!(whole[*name].starts_with(kept), "{name} at moment {k}");
+            begun |= kept.iter().filter(|byte| **byte == b'\n').count() > 1;
+            complete &= kept == whole[*name];
+        }
+        in_the_midst += usize::from(begun && !complete);
+        // Killed before it made its directory, it was not begun.
+        let how = match directory.exists() {
+            true => "--resume",
+            false => "--output",
+        };
+        let again = with(&[how, &output, "--quiet"]);
+        let again: Vec<&str> = again.iter().map(String::as_str).collect();
+        expect(code, at.path(), &again);
+        let found = files(&directory);
+        assert_eq!(names(&directory), whole.keys().cloned().collect::<Vec<_>>());
+        for (name, bytes) in &whole {
+            assert!(found[name] == *bytes, "{name} at moment {k}");
+        }
     }
-    record
+    assert!(in_the_midst >= 5, "{in_the_midst} runs were killed midway");
 }
 
 /// Calls `judge` for every value in a document.

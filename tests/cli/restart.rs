@@ -1,89 +1,69 @@
 //! Runs that are killed, interrupted or resumed lose nothing and repeat nothing.
 
-use crate::program::{HAMMER, TREBUCHET, expect, json, names, optimum, read, scratch};
-use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use crate::program::{
+    HAMMER, TREBUCHET, changed, expect, json, killed_runs_resume, names, optimum, read, scratch,
+};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// A tenth of the steps: the work of the optimiser is the same.
-const STEPS: &str = "/simulation/samples=300";
-
-fn start(directory: &Path, output: &str) -> Child {
-    Command::new(env!("CARGO_BIN_EXE_optimize"))
-        .current_dir(directory)
-        .args([TREBUCHET, "--set", STEPS, "--output", output])
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("the program runs")
-}
-
-/// Twenty moments spread over the whole run, early ones among them.
 #[test]
 fn a_killed_run_resumes_to_the_same_optimum_and_repeats_no_evaluation() {
-    let at = scratch();
-    let begun = Instant::now();
-    assert!(start(at.path(), "whole").wait().expect("ends").success());
-    let duration = begun.elapsed();
-    let whole = at.path().join("whole");
-    let evaluations = read(&whole.join("evaluations.jsonl"));
-    let mut in_the_midst = 0;
-    for k in 0..20 {
-        let output = format!("killed_{k}");
-        let directory = at.path().join(&output);
-        let mut run = start(at.path(), &output);
-        // A fraction of the golden ratio: spread without a pattern.
-        let moment = (0.5 + f64::from(k) * 0.618_033_988_749_895).fract();
-        std::thread::sleep(duration.mul_f64(moment));
-        run.kill().expect("is killed or has ended");
-        run.wait().expect("has ended");
-        let left = std::fs::read_to_string(directory.join("evaluations.jsonl")).unwrap_or_default();
-        let kept = &left[..left.rfind('\n').map_or(0, |end| end + 1)];
-        assert!(evaluations.starts_with(kept), "moment {k}");
-        in_the_midst += usize::from(kept.lines().count() > 1 && kept != evaluations);
-        // Killed before it made its directory, it was not begun.
-        let how = if directory.exists() {
-            "--resume"
-        } else {
-            "--output"
-        };
-        let arguments = [TREBUCHET, "--set", STEPS, how, &output, "--quiet"];
-        expect(0, at.path(), &arguments);
-        // The same evaluations in the same order, none of them twice.
-        let found = read(&directory.join("evaluations.jsonl"));
-        assert_eq!(found, evaluations, "moment {k}");
-        assert_eq!(optimum(&directory), optimum(&whole), "moment {k}");
-        let history = |directory: &Path| read(&directory.join("history.csv"));
-        assert_eq!(history(&directory), history(&whole), "moment {k}");
-        assert_eq!(names(&directory), names(&whole), "moment {k}");
-    }
-    assert!(in_the_midst >= 5, "{in_the_midst} runs were killed midway");
+    // A tenth of the steps: the work of the optimiser is the same.
+    let arguments = [TREBUCHET, "--set", "/simulation/samples=300"];
+    killed_runs_resume(&arguments, 0.5, &["evaluations.jsonl"]);
 }
 
-/// Cut after every line, with the check of the curvature among them.
+/// Cut after every line of the record, where a part of the next line is there too, a run ends with the
+/// same files, byte for byte.
+fn goes_on_after_every_line(problem: &str, code: i32, judge: impl Fn(&str)) {
+    let at = scratch();
+    let directory = at.path().join("out");
+    let path = directory.join("evaluations.jsonl");
+    let run = |how: &[&str]| {
+        let arguments = [&[problem, "--second-order", "--quiet"], how].concat();
+        expect(code, at.path(), &arguments);
+        crate::program::files(&directory)
+    };
+    let whole = run(&["--output", "out"]);
+    let record = read(&path);
+    judge(&record);
+    let lines: Vec<&str> = record.split_inclusive('\n').collect();
+    assert!(lines.len() > 10, "{record}");
+    for k in 0..lines.len() {
+        let cut = lines[..k].concat() + &lines[k][..lines[k].len() / 2];
+        std::fs::write(&path, cut).expect("is cut");
+        let found = run(&["--resume", "out"]);
+        for (name, bytes) in &whole {
+            assert!(found.get(name) == Some(bytes), "{name} after {k} lines");
+        }
+    }
+}
+
+/// With the check of the curvature, and steps that follow a tolerance.
 #[test]
 fn a_record_of_any_length_is_gone_on_with() {
     let at = scratch();
-    let path = at.path().join("out/evaluations.jsonl");
-    let tolerance = [
-        "--set",
-        "/simulation={\"duration\": 0.6, \"tolerance\": 1e-6}",
-    ];
-    let run = |how: &[&str]| {
-        let arguments = [&[HAMMER, "--second-order", "--quiet"], &tolerance[..], how].concat();
-        expect(0, at.path(), &arguments);
-        (read(&path), optimum(&at.path().join("out")))
-    };
-    let (whole, best) = run(&["--output", "out"]);
-    let lines: Vec<&str> = whole.split_inclusive('\n').collect();
-    assert!(whole.contains("\"steps\"") && lines.len() > 10, "{whole}");
-    for k in 0..lines.len() {
-        // A part of the next line is there too.
-        let cut = lines[..k].concat() + &lines[k][..lines[k].len() / 2];
-        std::fs::write(&path, cut).expect("is cut");
-        let (found, again) = run(&["--resume", "out"]);
-        assert_eq!(found, whole, "after {k} lines");
-        assert_eq!(again, best, "after {k} lines");
+    let problem = changed(at.path(), "hammer.json", |document| {
+        document["simulation"] = json(r#"{"duration": 0.6, "tolerance": 1e-6}"#);
+    });
+    goes_on_after_every_line(&problem, 0, |record| {
+        assert!(record.contains("\"ends\""), "{record}");
+    });
+}
+
+/// Where a run begins to look for its event depends on the run before, which a resumed run has not made.
+#[test]
+fn a_run_that_ends_at_an_event_is_gone_on_with() {
+    let at = scratch();
+    for steps in ["\"steps\": 60", "\"tolerance\": 1e-6"] {
+        let problem = changed(at.path(), "hammer.json", |document| {
+            let until = r#"{"measure": {"rotation": {"body": "handle", "axis": [0, 0, 1]}}, "reaches": -1.2}"#;
+            document["simulation"] =
+                json(&format!(r#"{{"duration": 3, {steps}, "until": {until}}}"#));
+        });
+        goes_on_after_every_line(&problem, 0, |record| {
+            assert!(record.contains("\"event\""), "{record}");
+        });
     }
 }
 
@@ -113,7 +93,7 @@ fn a_run_that_has_just_begun_is_resumed() {
     begun(Some(""), anew);
     begun(Some(&head[..20]), anew);
     begun(Some(&format!("{head}\n")), anew);
-    let three: Vec<&str> = whole.split_inclusive('\n').take(4).collect();
+    let three: Vec<&str> = whole.split_inclusive('\n').take(5).collect();
     begun(Some(&three.concat()), "out: 3 evaluations are known");
     let ran = expect(2, at.path(), &[HAMMER, "--resume", "nowhere"]);
     assert!(ran.err.contains("no directory nowhere"), "{}", ran.err);
@@ -247,13 +227,14 @@ fn a_record_of_another_problem_is_not_resumed() {
     assert_eq!(crate::program::files(&at.path().join("out")), before);
 }
 
+/// The work is that of the first run, which is counted once.
 #[test]
 fn a_run_that_has_ended_is_resumed_without_a_simulation() {
     let at = scratch();
     expect(0, at.path(), &[HAMMER, "--output", "out", "--quiet"]);
-    let evaluations = read(&at.path().join("out/evaluations.jsonl"));
+    let before = crate::program::files(&at.path().join("out"));
     expect(0, at.path(), &[HAMMER, "--resume", "out", "--quiet"]);
-    assert_eq!(read(&at.path().join("out/evaluations.jsonl")), evaluations);
-    let record = json(&read(&at.path().join("out/optimum.json")));
-    assert_eq!(record["counts"]["steps"], 0);
+    assert!(crate::program::files(&at.path().join("out")) == before);
+    let record = optimum(&at.path().join("out"));
+    assert!(record["counts"]["steps"].as_u64() > Some(1000), "{record}");
 }

@@ -1,11 +1,11 @@
 //! Optimisations from several starts, killed, interrupted and resumed.
 
-use crate::program::{HAMMER, TREBUCHET, changed, expect, json, names, optimum, read, scratch};
-use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use crate::program::{
+    HAMMER, TREBUCHET, changed, expect, json, killed_runs_resume, optimum, read, scratch,
+};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
-const STARTS: &str = "3";
 /// Few samples, wide steps and few iterations: what is resumed is the same.
 const SHORT: [&str; 4] = [
     "--set",
@@ -14,66 +14,12 @@ const SHORT: [&str; 4] = [
     "/optimiser={\"iterations\": 25}",
 ];
 
-fn arguments<'a>(how: &[&'a str]) -> Vec<&'a str> {
-    [&[TREBUCHET, "--starts", STARTS], &SHORT[..], how].concat()
-}
-
-fn start(directory: &Path, output: &str) -> Child {
-    Command::new(env!("CARGO_BIN_EXE_optimize"))
-        .current_dir(directory)
-        .args(arguments(&["--output", output]))
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("the program runs")
-}
-
-fn records(directory: &Path) -> Vec<String> {
-    let log = |k: usize| directory.join(format!("evaluations.start_{k}.jsonl"));
-    let text = |k| std::fs::read_to_string(log(k)).unwrap_or_default();
-    (1..=3).map(text).collect()
-}
-
 /// Ended starts, starts under way and starts that were not begun among them.
 #[test]
 fn killed_starts_resume_to_the_same_optimum_and_repeat_no_evaluation() {
-    let at = scratch();
-    let begun = Instant::now();
-    start(at.path(), "whole").wait().expect("ends");
-    let duration = begun.elapsed();
-    let whole = at.path().join("whole");
-    let all = records(&whole);
-    let code = match optimum(&whole)["status"] == "converged" {
-        true => 0,
-        false => 1,
-    };
-    let mut in_the_midst = 0;
-    for k in 0..20 {
-        let output = format!("killed_{k}");
-        let directory = at.path().join(&output);
-        let mut run = start(at.path(), &output);
-        let moment = (0.3 + f64::from(k) * 0.618_033_988_749_895).fract();
-        std::thread::sleep(duration.mul_f64(moment));
-        run.kill().expect("is killed or has ended");
-        run.wait().expect("has ended");
-        let left = records(&directory);
-        for (left, all) in left.iter().zip(&all) {
-            let kept = &left[..left.rfind('\n').map_or(0, |end| end + 1)];
-            assert!(all.starts_with(kept), "moment {k}");
-        }
-        in_the_midst +=
-            usize::from(left != all && left.iter().any(|left| left.lines().count() > 1));
-        let how = if directory.exists() {
-            "--resume"
-        } else {
-            "--output"
-        };
-        expect(code, at.path(), &arguments(&[how, &output, "--quiet"]));
-        assert!(records(&directory) == all, "moment {k}");
-        assert_eq!(optimum(&directory), optimum(&whole), "moment {k}");
-        assert_eq!(names(&directory), names(&whole), "moment {k}");
-    }
-    assert!(in_the_midst >= 5, "{in_the_midst} runs were killed midway");
+    let records = [1, 2, 3].map(|k| format!("evaluations.start_{k}.jsonl"));
+    let arguments = [&[TREBUCHET, "--starts", "3"], &SHORT[..]].concat();
+    killed_runs_resume(&arguments, 0.3, &records.each_ref().map(String::as_str));
 }
 
 /// Starts are counted on: more of them find those of the first run done.
@@ -157,7 +103,7 @@ fn every_start_keeps_its_evaluations() {
         let text = read(&log(k));
         let head = json(text.lines().next().expect("a head"));
         beginnings.push(head["start"].clone());
-        let first = json(text.lines().nth(1).expect("an evaluation"));
+        let first = json(text.lines().nth(2).expect("an evaluation"));
         assert!(first["values"].is_array(), "{first}");
         assert!(text.lines().count() > 5);
     }
@@ -182,4 +128,53 @@ fn every_start_keeps_its_evaluations() {
         "{}",
         ran.err
     );
+}
+
+/// A ball without weight, whose energy is least, and zero, at rest: every start ends there, each at another
+/// speed that is round-off.
+const REST: &str = r#"{
+  "version": 1, "name": "rest", "gravity": [0, 0, 0],
+  "bodies": {"ball": {"shape": "point", "mass": 2, "velocity": {"linear": [1, 0, 0]}}},
+  "simulation": {"duration": 1, "steps": 10},
+  "functions": {"energy": {"final": {"energy": "kinetic"}}},
+  "variables": {"along": {"path": "/bodies/ball/velocity/linear/0", "lower": -2, "upper": 3},
+                "aside": {"path": "/bodies/ball/velocity/linear/2", "lower": -4, "upper": 1}},
+  "objective": {"minimise": "energy"}
+}"#;
+
+#[test]
+fn an_optimum_of_zero_is_one_optimum_and_is_written() {
+    let at = scratch();
+    std::fs::write(at.path().join("rest.json"), REST).expect("is written");
+    let arguments = ["rest.json", "--starts", "6", "--output", "out"];
+    let ran = expect(0, at.path(), &arguments);
+    let told = "6 of 6 starts converged, to 1 distinct optima";
+    assert!(ran.out.contains(told), "{}", ran.out);
+    let table = read(&at.path().join("out/optima.csv"));
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines.len(), 2, "{table}");
+    assert_eq!(
+        lines[0],
+        "optimum,first start,starts,objective: energy [J],variable: along [m/s],variable: aside [m/s]"
+    );
+    assert!(lines[1].starts_with("1,1,6,"), "{table}");
+    std::fs::remove_file(at.path().join("out/optima.csv")).expect("is removed");
+    expect(0, at.path(), &[&arguments[..], &["--quiet"]].concat());
+    assert_eq!(read(&at.path().join("out/optima.csv")), table);
+    // A run with a single start has no such table.
+    let single = ["rest.json", "--output", "out", "--quiet"];
+    expect(0, at.path(), &single);
+    assert!(!at.path().join("out/optima.csv").exists());
+}
+
+/// The limit is that of the call.
+#[test]
+fn starts_share_the_time() {
+    let at = scratch();
+    let limit = "/optimiser={\"seconds\": 1e-3}";
+    let arguments = [HAMMER, "--starts", "60", "--set", limit, "--output", "out"];
+    let ran = expect(1, at.path(), &arguments);
+    assert!(ran.out.contains("not begun)"), "{}", ran.out);
+    assert_eq!(optimum(&at.path().join("out"))["status"], "time_limit");
+    assert!(!at.path().join("out/evaluations.start_60.jsonl").exists());
 }

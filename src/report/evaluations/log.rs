@@ -1,11 +1,8 @@
-//! Every evaluation of an optimisation, `evaluations.jsonl`: one JSON document a line, written as
-//! soon as it is known, so that a run that is killed loses the evaluation under way and no other. If
-//! the machine fails, the evaluations of the last second may be lost too.
+//! The file of evaluations: read after a run that ended anyhow, and appended to.
 
-use super::{ReportError, write_all};
-use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
-use std::collections::BTreeMap;
+use super::{EvaluationRecord, Found, Head};
+use crate::report::{ReportError, write_all};
+use serde_json::error::Category;
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -13,122 +10,6 @@ use std::time::{Duration, Instant};
 
 /// Longest time for which evaluations are left to the operating system.
 const SYNCHRONISE: Duration = Duration::from_secs(1);
-
-/// What the evaluations belong to: the first line.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Head {
-    /// SHA-256 of all of the problem's document that the functions may follow from, hexadecimal.
-    pub sha256: String,
-    /// The design that the run started from.
-    pub start: Vec<f64>,
-    /// Names of the variables, in the order of every `design`.
-    pub variables: Vec<String>,
-    /// Names of the functions, objective first, in the order of all `values` and `gradients`.
-    pub functions: Vec<String>,
-    /// The rest of the document, which another run may change and use the evaluations all the same.
-    pub settings: Map<String, Value>,
-}
-
-impl Head {
-    /// Whether evaluations of `other` are evaluations of this.
-    fn fits(&self, other: &Head) -> bool {
-        let functions = |head: &Head| Head {
-            settings: Map::new(),
-            ..head.clone()
-        };
-        functions(self) == functions(other)
-    }
-
-    /// The settings that differ from those of `earlier`, as `POINTER was OLD, is NEW`.
-    pub fn changes(&self, earlier: &Head) -> Vec<String> {
-        let all = |head: &Head| {
-            let mut leaves = BTreeMap::new();
-            flatten(&Value::Object(head.settings.clone()), "", &mut leaves);
-            leaves
-        };
-        let (new, old) = (all(self), all(earlier));
-        let text = |value: Option<&Value>| value.map_or("left out".into(), Value::to_string);
-        let mut names: Vec<&String> = old.keys().chain(new.keys()).collect();
-        names.sort();
-        names.dedup();
-        names
-            .into_iter()
-            .filter(|name| old.get(*name) != new.get(*name))
-            .map(|name| {
-                let (was, is) = (text(old.get(name)), text(new.get(name)));
-                format!("{name} was {was}, is {is}")
-            })
-            .collect()
-    }
-}
-
-/// The values of a document that are no objects, by JSON Pointer.
-fn flatten(value: &Value, pointer: &str, leaves: &mut BTreeMap<String, Value>) {
-    match value {
-        Value::Object(map) => {
-            for (key, inner) in map {
-                let key = key.replace('~', "~0").replace('/', "~1");
-                flatten(inner, &format!("{pointer}/{key}"), leaves);
-            }
-        }
-        leaf => {
-            leaves.insert(pointer.to_owned(), leaf.clone());
-        }
-    }
-}
-
-/// One evaluation.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct EvaluationRecord {
-    /// The design, in the units of the problem file.
-    pub design: Vec<f64>,
-    /// What was found there.
-    #[serde(flatten)]
-    pub found: Found,
-}
-
-/// What an evaluation found.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Found {
-    /// Values of the functions.
-    Values(Vec<f64>),
-    /// Gradients of the functions, function by function.
-    Gradients(Vec<Vec<f64>>),
-    /// Why there are no values.
-    NoValues(String),
-    /// Why there are no gradients.
-    NoGradients(String),
-    /// The steps that are in use from this design on.
-    Steps(StepsInUse),
-}
-
-/// Steps that follow the error at one design and are kept for others.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StepsInUse {
-    /// Name of the method.
-    pub method: String,
-    /// Why they were chosen.
-    pub reason: String,
-    /// Ends of the steps, as fractions of the duration from 0 to 1.
-    pub ends: Vec<f64>,
-}
-
-impl EvaluationRecord {
-    /// Whether all lists have the lengths that the head asks for.
-    fn fits(&self, head: &Head) -> bool {
-        let (n, m) = (head.variables.len(), head.functions.len());
-        let found = match &self.found {
-            Found::Values(values) => values.len() == m,
-            Found::Gradients(rows) => rows.len() == m && rows.iter().all(|row| row.len() == n),
-            Found::NoValues(_) | Found::NoGradients(_) | Found::Steps(_) => true,
-        };
-        found && self.design.len() == n
-    }
-}
 
 /// What an earlier run left: whole evaluations, without what was cut off after them.
 #[derive(Clone, Debug, PartialEq)]
@@ -169,7 +50,7 @@ impl Earlier {
             return Ok(None);
         };
         let written: Head = serde_json::from_slice(first)
-            .map_err(|error| fault(1, error.to_string(), "the head of a record of evaluations"))?;
+            .map_err(|error| fault(1, damage(&error), "the head of a record of evaluations"))?;
         if !head.fits(&written) {
             return Err(fault(
                 1,
@@ -180,11 +61,12 @@ impl Earlier {
         let (mut records, mut complete) = (Vec::new(), 0);
         let (mut end, mut whole) = (first.len(), first.len());
         for (k, line) in lines.filter(|line| line.ends_with(b"\n")).enumerate() {
-            let record: EvaluationRecord = serde_json::from_slice(line)
-                .map_err(|error| fault(k + 2, error.to_string(), "an evaluation"))?;
-            if !record.fits(head) {
-                let expected = "a number for each variable and function";
-                return Err(fault(k + 2, "lists of other lengths".into(), expected));
+            let record: EvaluationRecord = serde_json::from_slice(line).map_err(|error| {
+                let expected = "a whole evaluation, as every line but the last one is";
+                fault(k + 2, damage(&error), expected)
+            })?;
+            if let Some((found, expected)) = record.fault(head) {
+                return Err(fault(k + 2, found, expected));
             }
             end += line.len();
             let chosen = matches!(record.found, Found::Steps(_));
@@ -199,6 +81,17 @@ impl Earlier {
             records,
             lines: String::from_utf8_lossy(&bytes[first.len()..whole]).into_owned(),
         }))
+    }
+}
+
+/// What is wrong with a line, without the number of the line, which is that of the file.
+fn damage(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    let what = text.split(" at line ").next().unwrap_or_default();
+    match error.classify() {
+        Category::Eof => format!("a line that breaks off at column {}", error.column()),
+        Category::Syntax => format!("no JSON at column {} ({what})", error.column()),
+        Category::Data | Category::Io => what.to_owned(),
     }
 }
 
@@ -276,6 +169,7 @@ impl Drop for EvaluationLog {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::evaluations::{StepsInUse, Work};
 
     fn head(sha256: &str, iterations: usize) -> Head {
         let settings =
@@ -293,6 +187,11 @@ mod tests {
         EvaluationRecord {
             design: vec![x],
             found: Found::Values(vec![x * x]),
+            event: Some(0.3 + x.abs()),
+            work: Work {
+                solves: 7,
+                ..Work::default()
+            },
         }
     }
 
@@ -302,8 +201,11 @@ mod tests {
             found: Found::Steps(StepsInUse {
                 method: "dop853".into(),
                 reason: "first design".into(),
+                method_reason: None,
                 ends: vec![0.0, 1.0],
             }),
+            event: None,
+            work: Work::default(),
         }
     }
 
@@ -351,6 +253,69 @@ mod tests {
         }
         std::fs::remove_file(&path).expect("is removed");
         assert_eq!(Earlier::read(&path, &head("a", 5)).expect("is none"), None);
+    }
+
+    /// Damage within a record is told with its line and what should stand there.
+    #[test]
+    fn damaged_lines_are_refused_by_name() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let path = directory.path().join("evaluations.jsonl");
+        let mut log = EvaluationLog::create(&path, &head("a", 5), None).expect("is written");
+        log.append(&steps()).expect("is written");
+        log.append(&record(2.0)).expect("is written");
+        let whole = std::fs::read_to_string(&path).expect("is read");
+        let refused = |from: &str, to: &str, told: &str| {
+            assert!(whole.contains(from), "{from}");
+            std::fs::write(&path, whole.replacen(from, to, 1)).expect("is written");
+            let error = Earlier::read(&path, &head("a", 5)).expect_err("is refused");
+            let (_, text) = error.to_string().split_once("jsonl:").map_or_else(
+                || panic!("{error}"),
+                |(file, text)| (file.to_owned(), text.to_owned()),
+            );
+            assert_eq!(text, told);
+        };
+        let rise = "expected ends of steps that rise from 0 to 1";
+        let ends = "[0.0,1.0]";
+        let cases = [
+            ("[0.0,0.7,0.5,1.0]", "a step from 0.7 to 0.5"),
+            ("[0.0,0.0,1.0]", "a step from 0.0 to 0.0"),
+            ("[0.0,0.9]", "steps from 0.0 to 0.9"),
+            ("[0.0]", "a single end"),
+        ];
+        for (to, found) in cases {
+            refused(ends, to, &format!("2: found {found}, {rise}"));
+        }
+        refused(
+            "dop853",
+            "euler",
+            "2: found the method \"euler\", expected dop853, radau2 or radau3",
+        );
+        let line = "a whole evaluation, as every line but the last one is";
+        refused(
+            "\"reason\":\"first design\",\"ends\":[0.0,1.0]}}\n",
+            "\"rea\n",
+            &format!("2: found a line that breaks off at column 47, expected {line}"),
+        );
+        refused(
+            "{\"design\":[3.0]",
+            "{design:[3.0]",
+            &format!("2: found no JSON at column 2 (key must be a string), expected {line}"),
+        );
+        refused(
+            "\"values\"",
+            "\"worth\"",
+            &format!("3: found no variant of enum Found found in flattened data, expected {line}"),
+        );
+        refused(
+            "\"event\":2.3",
+            "\"event\":-2.3",
+            "3: found an event at -2.3 s, expected a time after the start",
+        );
+        refused(
+            "\"values\":[4.0]",
+            "\"values\":[4.0,1.0]",
+            "3: found lists of other lengths, expected a number for each variable and function",
+        );
     }
 
     #[test]

@@ -1,0 +1,213 @@
+//! Every evaluation of an optimisation, `evaluations.jsonl`: one JSON document a line, written as
+//! soon as it is known, so that a run that is killed loses the evaluation under way and no other. If
+//! the machine fails, the evaluations of the last second may be lost too.
+
+mod log;
+
+pub use log::{Earlier, EvaluationLog};
+
+use crate::integrate::{Grid, Method, WorkCounts};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+
+/// What the evaluations belong to: the first line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Head {
+    /// SHA-256 of all of the problem's document that the functions may follow from, hexadecimal.
+    pub sha256: String,
+    /// The design that the run started from.
+    pub start: Vec<f64>,
+    /// Names of the variables, in the order of every `design`.
+    pub variables: Vec<String>,
+    /// Names of the functions, objective first, in the order of all `values` and `gradients`.
+    pub functions: Vec<String>,
+    /// The rest of the document, which another run may change and use the evaluations all the same.
+    pub settings: Map<String, Value>,
+}
+
+impl Head {
+    /// Whether evaluations of `other` are evaluations of this.
+    fn fits(&self, other: &Head) -> bool {
+        let functions = |head: &Head| Head {
+            settings: Map::new(),
+            ..head.clone()
+        };
+        functions(self) == functions(other)
+    }
+
+    /// The settings that differ from those of `earlier`, as `POINTER was OLD, is NEW`.
+    pub fn changes(&self, earlier: &Head) -> Vec<String> {
+        let all = |head: &Head| {
+            let mut leaves = BTreeMap::new();
+            flatten(&Value::Object(head.settings.clone()), "", &mut leaves);
+            leaves
+        };
+        let (new, old) = (all(self), all(earlier));
+        let text = |value: Option<&Value>| value.map_or("left out".into(), Value::to_string);
+        let mut names: Vec<&String> = old.keys().chain(new.keys()).collect();
+        names.sort();
+        names.dedup();
+        names
+            .into_iter()
+            .filter(|name| old.get(*name) != new.get(*name))
+            .map(|name| {
+                let (was, is) = (text(old.get(name)), text(new.get(name)));
+                format!("{name} was {was}, is {is}")
+            })
+            .collect()
+    }
+}
+
+/// The values of a document that are no objects, by JSON Pointer.
+fn flatten(value: &Value, pointer: &str, leaves: &mut BTreeMap<String, Value>) {
+    match value {
+        Value::Object(map) => {
+            for (key, inner) in map {
+                let key = key.replace('~', "~0").replace('/', "~1");
+                flatten(inner, &format!("{pointer}/{key}"), leaves);
+            }
+        }
+        leaf => {
+            leaves.insert(pointer.to_owned(), leaf.clone());
+        }
+    }
+}
+
+/// One evaluation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EvaluationRecord {
+    /// The design, in the units of the problem file.
+    pub design: Vec<f64>,
+    /// What was found there.
+    #[serde(flatten)]
+    pub found: Found,
+    /// When the event came in the last motion until then, if the scene ends at one (s).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub event: Option<f64>,
+    /// What it took.
+    #[serde(default, skip_serializing_if = "Work::is_none")]
+    pub work: Work,
+}
+
+/// Work of an evaluation: nothing for one that failed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Work {
+    /// Time steps.
+    pub steps: usize,
+    /// Newton iterations of all steps.
+    pub newton_iterations: usize,
+    /// Factorisations of matrices, forward and backward.
+    pub factorisations: usize,
+    /// Solves with a factorised matrix, forward and backward.
+    pub solves: usize,
+}
+
+impl Work {
+    fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl From<WorkCounts> for Work {
+    fn from(counts: WorkCounts) -> Self {
+        Self {
+            steps: counts.steps,
+            newton_iterations: counts.newton_iterations,
+            factorisations: counts.factorisations,
+            solves: counts.solves,
+        }
+    }
+}
+
+impl std::ops::AddAssign for Work {
+    fn add_assign(&mut self, other: Self) {
+        self.steps += other.steps;
+        self.newton_iterations += other.newton_iterations;
+        self.factorisations += other.factorisations;
+        self.solves += other.solves;
+    }
+}
+
+/// What an evaluation found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Found {
+    /// Values of the functions.
+    Values(Vec<f64>),
+    /// Gradients of the functions, function by function.
+    Gradients(Vec<Vec<f64>>),
+    /// Why there are no values.
+    NoValues(String),
+    /// Why there are no gradients.
+    NoGradients(String),
+    /// The steps that are in use from this design on.
+    Steps(StepsInUse),
+}
+
+/// Method and steps that were chosen at one design and are kept for others.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StepsInUse {
+    /// Name of the method.
+    pub method: String,
+    /// Why they were chosen.
+    pub reason: String,
+    /// Why the method is used, where that is not what it is used for in general.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub method_reason: Option<String>,
+    /// Ends of the steps, as fractions of the duration from 0 to 1; none where they are equal, as many
+    /// as the problem asks for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ends: Vec<f64>,
+}
+
+impl StepsInUse {
+    /// What was found and expected, if no motion can have steps like these.
+    fn fault(&self) -> Option<(String, &'static str)> {
+        if Method::adaptive(&self.method).is_none() {
+            let found = format!("the method {:?}", self.method);
+            return Some((found, "dop853, radau2 or radau3"));
+        }
+        if self.ends.is_empty() || Grid::from_ends(self.ends.clone()).is_some() {
+            return None;
+        }
+        let falls = self.ends.windows(2).find(|pair| pair[0] >= pair[1]);
+        let found = match (falls, &self.ends[..]) {
+            (Some(pair), _) => format!("a step from {:?} to {:?}", pair[0], pair[1]),
+            (None, [first, .., last]) => format!("steps from {first:?} to {last:?}"),
+            (None, _) => "a single end".into(),
+        };
+        Some((found, "ends of steps that rise from 0 to 1"))
+    }
+}
+
+impl EvaluationRecord {
+    /// What was found and expected, if it is no evaluation that belongs to the head: lists of other
+    /// lengths, steps that no motion has.
+    fn fault(&self, head: &Head) -> Option<(String, &'static str)> {
+        let (n, m) = (head.variables.len(), head.functions.len());
+        let fits = match &self.found {
+            Found::Values(values) => values.len() == m,
+            Found::Gradients(rows) => rows.len() == m && rows.iter().all(|row| row.len() == n),
+            Found::Steps(steps) => {
+                if let Some(fault) = steps.fault() {
+                    return Some(fault);
+                }
+                true
+            }
+            Found::NoValues(_) | Found::NoGradients(_) => true,
+        };
+        if let Some(event) = self.event.filter(|event| event.is_nan() || *event <= 0.0) {
+            return Some((format!("an event at {event} s"), "a time after the start"));
+        }
+        if fits && self.design.len() == n {
+            return None;
+        }
+        let expected = "a number for each variable and function";
+        Some(("lists of other lengths".into(), expected))
+    }
+}
