@@ -92,7 +92,7 @@ impl<'a> Plan<'a> {
                 .solve_transposed_refined(&self.matrix, &mut psi);
             counts.solves += REFINED_SOLVES;
             let mut slope = 0.0;
-            let mut changes = Vec::with_capacity(stages.len());
+            let mut changes: Vec<Vec<f64>> = Vec::with_capacity(stages.len());
             for (i, stage) in stages.iter().enumerate() {
                 let reduced = &psi[i * n..(i + 1) * n];
                 let at = stage.instant();
@@ -107,7 +107,8 @@ impl<'a> Plan<'a> {
                 equations.expand(&mut part);
                 equations.scale_rows(h, &mut part);
                 let cot = &mut sweep.of.cot.model;
-                let by_time = equations.pull_back(&stage.instant(), &part, cot);
+                let held = &mut changes[i][..nv];
+                let by_time = equations.pull_back_held(&stage.instant(), &part, cot, held);
                 sweep.of.by_duration += (end - width * (1.0 - scheme.nodes[i])) * by_time;
                 let own = rates_of(model, numbering, &stage.q, &part);
                 spread(scheme, i, &own, h, &mut by);

@@ -310,7 +310,22 @@ impl Equations<'_, f64> {
     /// Pulls the adjoint ψ (unscaled, of F1 … F4) back to the parameters of `cot`; returns the
     /// derivative of ψᵀF in time.
     pub fn pull_back(&mut self, at: &Instant<f64>, psi: &[f64], cot: &mut Model<f64>) -> f64 {
+        self.pull_back_held(at, psi, cot, &mut [])
+    }
+
+    /// As [`Equations::pull_back`], and adds the part of F_yᵀψ that the mobilities do not admit, by
+    /// positions that stay as the bodies are placed, to the tangent positions `held`, unless these are
+    /// none.
+    pub fn pull_back_held(
+        &mut self,
+        at: &Instant<f64>,
+        psi: &[f64],
+        cot: &mut Model<f64>,
+        held: &mut [f64],
+    ) -> f64 {
         self.visit(at);
+        let wanted = !held.is_empty() && self.numbering.is_reduced();
+        let mut y = vec![0.0; if wanted { held.len() } else { 0 }];
         let (model, numbering) = (self.model, self.numbering);
         let [_, f2, f3, f4] = self.starts();
         let (psi1, psi2, psi3, psi4) = (&psi[..f2], &psi[f2..f3], &psi[f3..f4], &psi[f4..]);
@@ -331,7 +346,7 @@ impl Equations<'_, f64> {
         let minus: Vec<f64> = psi2.iter().map(|x| -x).collect();
         let mut by_time = 0.0;
         let mut out = LoadCotangent {
-            y: None,
+            y: wanted.then_some(&mut y[..]),
             v: None,
             time: &mut by_time,
             model: cot,
@@ -339,7 +354,7 @@ impl Equations<'_, f64> {
         loads::pull_back(model, numbering, &self.motions, at.time, &minus, &mut out);
         let mut pull = |motions: &[Motion<f64>], cotangents: [Option<&[f64]>; 4]| {
             let mut out = JointCotangent {
-                y: None,
+                y: wanted.then_some(&mut y[..]),
                 v: None,
                 model: cot,
             };
@@ -357,6 +372,10 @@ impl Equations<'_, f64> {
         pull(&virtually(psi2), cotangents);
         if at.mu.iter().any(|&x| x != 0.0) {
             pull(&virtually(psi1), [None, None, None, Some(at.mu)]);
+        }
+        if wanted {
+            reduce::keep_placed(numbering, &mut y);
+            held.iter_mut().zip(&y).for_each(|(held, y)| *held += y);
         }
         by_time
     }
