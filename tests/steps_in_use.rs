@@ -89,7 +89,7 @@ fn an_unstable_formula_is_told() {
 fn steps_are_kept_until_they_do_not_suffice() {
     let problem = load("trebuchet_release_time", &["/simulation/tolerance=1e-6"]);
     let start = problem.start();
-    let mut integration = Integration::new(&problem, &problem.scene(&start), false, false);
+    let mut integration = Integration::new(&problem, &problem.scene(&start), Some(&[0]), false);
     let mut ends = Vec::new();
     for (moved, refreshed) in [(0.0, true), (1e-3, false), (-2e-3, false)] {
         let mut x = start.clone();

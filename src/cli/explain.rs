@@ -11,7 +11,7 @@ pub fn explain(job: &Job, json: bool) -> Result<u8, Failure> {
         return Err(Failure::bad_input(what));
     }
     let problem = load(job)?;
-    let explanation = driver::explain(&problem).map_err(Failure::numerical)?;
+    let explanation = driver::explain(&problem);
     match json {
         true => print(&explanation.json().map_err(Failure::numerical)?)?,
         false => print(&explanation.text())?,

@@ -77,12 +77,13 @@ fn relative(x: f64, exact: f64) -> f64 {
 /// # Errors
 /// If a simulation fails.
 pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, IntegrationFailure> {
-    let mut integration = Integration::new(problem, &problem.scene(x), false, true);
+    let scene = problem.scene(x);
+    let which: Vec<usize> = (0..scene.functions.len()).collect();
+    let mut integration = Integration::new(problem, &scene, Some(&which), true);
     let (in_use, _) = Evaluated::with(&mut integration, problem, x)?;
     let Some((settings, _)) = integration.chosen() else {
         return Ok(Vec::new());
     };
-    let which: Vec<usize> = (0..in_use.scene.functions.len()).collect();
     let duration = in_use.run.duration;
     let rate = match &in_use.scene.until {
         Some(_) => event::rate(&in_use.scene, settings, duration)?,

@@ -214,7 +214,7 @@ pub fn reach(
     let mut attempts = ATTEMPTS;
     let (error, steps) = loop {
         let scene = problem.scene(&x);
-        let mut integration = Integration::new(problem, &scene, false, false);
+        let mut integration = Integration::new(problem, &scene, Some(&[which]), false);
         let (at, _) = Evaluated::with(&mut integration, problem, &x)?;
         let value = estimate(problem, &at, &[which], false)?[0].value;
         let size = value.value.abs().max(f64::MIN_POSITIVE);

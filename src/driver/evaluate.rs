@@ -11,6 +11,7 @@ use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
 use crate::problem::{Problem, Sense};
 use crate::report::evaluations::Work;
 use nalgebra::DMatrix;
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -31,7 +32,7 @@ impl Evaluated {
     /// # Errors
     /// If the simulation fails.
     pub fn new(problem: &Problem, x: &[f64]) -> Result<Self, IntegrationFailure> {
-        let mut integration = Integration::new(problem, &problem.scene(x), true, true);
+        let mut integration = Integration::new(problem, &problem.scene(x), None, true);
         Ok(Self::with(&mut integration, problem, x)?.0)
     }
 
@@ -44,17 +45,26 @@ impl Evaluated {
         problem: &Problem,
         x: &[f64],
     ) -> Result<(Self, Option<Refresh>), IntegrationFailure> {
-        let (mut scene, all) = problem.lowered_scene::<f64>(x);
-        integration.unlowered += usize::from(!all);
+        let mut scene = problem.unlowered_scene::<f64>(x);
         let not_solid = |body: &&RigidBody<f64>| !body.is_solid();
         if let Some(body) = scene.model.bodies.iter().find(not_solid) {
             return Err(IntegrationFailure::Unphysical {
                 body: body.name.clone(),
             });
         }
+        integration.unlowered += usize::from(!problem.lower(&mut scene));
         let (run, refresh) = integration.simulate(&mut scene)?;
         let x = x.to_vec();
         Ok((Self { x, scene, run }, refresh))
+    }
+
+    /// The scene as it is written, and the motion of all its bodies.
+    pub fn written(&self, problem: &Problem) -> (Scene<f64>, Cow<'_, Trajectory<f64>>) {
+        let written = problem.unlowered_scene(&self.x);
+        let lowering = problem.lowering.as_ref();
+        let admitted = lowering.filter(|lowering| lowering.apply(&mut written.clone()));
+        let motion = admitted.and_then(|lowering| lowering.expand(&written.model, &self.run));
+        (written, motion.map_or(Cow::Borrowed(&self.run), Cow::Owned))
     }
 
     /// A function of interest, by index.
@@ -187,6 +197,8 @@ pub struct Evaluator<'a> {
     last: Option<Evaluated>,
     /// The steps in use.
     pub integration: Integration,
+    /// How many designs did not admit what the lowering leaves out at the others.
+    pub unlowered: usize,
     journal: Journal<'a>,
     /// Which choice of steps of the journal `integration` goes by, and the evaluation of the record
     /// whose event it knows.
@@ -205,12 +217,14 @@ impl<'a> Evaluator<'a> {
             Sense::Minimise => 1.0,
             Sense::Maximise => -1.0,
         };
+        let asked = asked(problem, objective.function);
         Some(Self {
             problem,
             objective: objective.function,
             sign,
             last: None,
-            integration: Integration::new(problem, &scene, false, true),
+            integration: Integration::new(problem, &scene, Some(&asked), true),
+            unlowered: 0,
             journal,
             choice: None,
             latest: None,
@@ -225,8 +239,7 @@ impl<'a> Evaluator<'a> {
 
     /// Indices of the objective's function and the constraints' functions.
     fn functions(&self) -> Vec<usize> {
-        let constraints = self.problem.constraints.iter().map(|c| c.function);
-        std::iter::once(self.objective).chain(constraints).collect()
+        asked(self.problem, self.objective)
     }
 
     /// Work of all simulations and gradients so far, those that the journal knew included.
@@ -257,6 +270,11 @@ impl<'a> Evaluator<'a> {
             reason,
         }
     }
+}
+
+fn asked(problem: &Problem, objective: usize) -> Vec<usize> {
+    let constraints = problem.constraints.iter().map(|c| c.function);
+    std::iter::once(objective).chain(constraints).collect()
 }
 
 /// The simulated design `x`: the last one, or a new one.
@@ -330,11 +348,17 @@ impl Nlp for Evaluator<'_> {
         let functions = self.functions();
         let (problem, last) = (self.problem, &mut self.last);
         let integration = &mut self.integration;
+        let (before, mut known) = (integration.unlowered, true);
         let found = self.journal.values(&x, |account| {
-            let steps = (integration, account);
+            known = false;
+            let steps = (&mut *integration, account);
             let at = at(last, steps, problem, &x).map_err(|failure| failure.to_string())?;
             Ok(functions.iter().map(|&f| at.function(f).value).collect())
         });
+        self.unlowered += match known {
+            true => usize::from(!problem.lowered_scene(&x).1),
+            false => integration.unlowered - before,
+        };
         self.follow();
         let judged = JudgedOn {
             steps: self.integration.steps(),

@@ -2,59 +2,77 @@
 
 use super::evaluate::{Derivative, Evaluated};
 use super::integration::{Integration, looks_at_the_whole};
-use crate::integrate::{IntegrationFailure, Trajectory};
+use crate::integrate::Trajectory;
 use crate::model::{Mobility, Model};
 use crate::problem::Problem;
-use crate::report::{Explanation, FunctionUse, SystemSize};
-use crate::system::Numbering;
+use crate::report::{Explanation, FunctionUse, IntegrationUse, SystemSize};
 use crate::system::accelerations::Accelerations;
+use crate::system::{Numbering, initial};
 
-/// Explains the start of `problem`, which is simulated with its gradients.
-///
-/// # Errors
-/// If the simulation or its adjoint fails.
-pub fn explain(problem: &Problem) -> Result<Explanation, IntegrationFailure> {
+/// Explains the start of `problem`, which is simulated with its gradients if that can be done.
+pub fn explain(problem: &Problem) -> Explanation {
     let x = problem.start();
-    let mut integration = Integration::new(problem, &problem.scene(&x), false, true);
-    let (at, _) = Evaluated::with(&mut integration, problem, &x)?;
     let written = problem.unlowered_scene(&x).model;
-    let (left_out, kept) = lowering(problem, &written, &at.scene.model);
-    let which: Vec<usize> = (0..at.scene.functions.len()).collect();
-    let (gradients, _) = at.derivatives(problem, &which)?;
+    let scene = problem.scene(&x);
+    let (left_out, kept) = lowering(problem, &written, &scene.model);
+    let which: Vec<usize> = (0..scene.functions.len()).collect();
+    let mut integration = Integration::new(problem, &scene, Some(&which), true);
+    let at = Evaluated::with(&mut integration, problem, &x).map(|(at, _)| at);
+    let derived = match &at {
+        Ok(at) => at.derivatives(problem, &which).map(|(found, _)| found),
+        Err(failure) => Err(failure.clone()),
+    };
     let functions: Vec<FunctionUse> = which
         .iter()
         .map(|&f| FunctionUse {
             name: problem.function_names[f].clone(),
             used: used(problem, f).join(", "),
-            whole_motion: looks_at_the_whole(&at.scene.functions[f]),
-            variables: names(problem, |i| depends(&gradients[f][i])),
+            whole_motion: looks_at_the_whole(&scene.functions[f]),
+            variables: (derived.as_ref().ok())
+                .map(|gradients| names(problem, |i| depends(&gradients[f][i]))),
         })
         .collect();
     let needed = |f: &usize| !functions[*f].used.is_empty();
     let asked = which.iter().any(&needed);
     let idle = |i: usize| {
+        let Ok(gradients) = &derived else {
+            return false;
+        };
         let mut needed = which.iter().filter(|f| needed(f));
         asked && !needed.any(|&f| depends(&gradients[f][i]))
     };
-    let [samples_bytes, tape_bytes] = at.run.bytes();
+    let idle_variables = names(problem, idle);
+    let start = at.as_ref().ok().map(|at| {
+        let (_, motion) = at.written(problem);
+        let of = |run: &Trajectory<f64>| (run.q(0).to_vec(), run.v(0).to_vec());
+        [of(&motion), of(&at.run)]
+    });
+    let [of_written, of_lowered] =
+        start.unwrap_or_else(|| [initial::guess(&written), initial::guess(&scene.model)]);
     let reason = integration.chosen().map_or("", |(_, reason)| reason);
-    Ok(Explanation {
+    Explanation {
         name: problem.name.clone(),
         bodies: written.bodies.len(),
         joints: written.joints.len(),
         loads: written.loads.len(),
         left_out,
         kept,
-        written: size(&written, &at.run),
-        lowered: size(&at.scene.model, &at.run),
-        method: at.run.method.name(),
-        reason: reason.into(),
-        steps: at.run.grid.steps(),
-        samples_bytes,
-        tape_bytes,
-        idle_variables: names(problem, idle),
+        written: size(&written, of_written),
+        lowered: size(&scene.model, of_lowered),
+        integration: at.ok().map(|at| {
+            let [samples_bytes, tape_bytes] = at.run.bytes();
+            IntegrationUse {
+                method: at.run.method.name(),
+                reason: reason.into(),
+                steps: at.run.grid.steps(),
+                samples_bytes,
+                tape_bytes,
+            }
+        }),
+        failure: derived.err().map(|failure| failure.to_string()),
+        idle_variables,
         functions,
-    })
+    }
 }
 
 /// Whether a derivative is more than the round-off of what it is the sum of.
@@ -83,6 +101,9 @@ fn used(problem: &Problem, f: usize) -> Vec<&'static str> {
     used
 }
 
+/// Reductions that are told one by one where they are not made.
+const TOLD: usize = 8;
+
 /// What is left out, and what is not and why.
 fn lowering(
     problem: &Problem,
@@ -90,26 +111,39 @@ fn lowering(
     lowered: &Model<f64>,
 ) -> (Vec<String>, Vec<String>) {
     let (mut left_out, mut kept) = (Vec::new(), Vec::new());
-    match &problem.lowering {
-        None => kept.push("anything, as --no-lowering asks".into()),
-        Some(lowering) => {
-            for (reduction, found) in lowering.reductions() {
-                match found {
-                    Ok(what) => left_out.push(format!("{reduction}: {what}")),
-                    Err(obstacle) => kept.push(format!("{reduction}: {obstacle}")),
-                }
-            }
+    let Some(lowering) = &problem.lowering else {
+        return (left_out, vec!["anything, as --no-lowering asks".into()]);
+    };
+    if let Ok(plane) = &lowering.plane {
+        let normal = plane.name();
+        left_out.push(format!(
+            "motion out of a plane: the scene moves in the plane across {normal}; three unknowns a body"
+        ));
+    }
+    let name = |body: &usize| format!("\"{}\"", written.bodies[*body].name);
+    for cluster in &lowering.welded.clusters {
+        let carried = cluster.members.iter().filter(|own| **own != cluster.host);
+        let carried: Vec<String> = carried.map(name).collect();
+        let host = name(&cluster.host);
+        let carried = carried.join(", ");
+        left_out.push(format!("bodies {carried}: they are welded to body {host}"));
+    }
+    for (i, body) in lowered.bodies.iter().enumerate() {
+        let name = name(&i);
+        if lowering.unturned.contains(i) {
+            left_out.push(format!("the rotation of body {name}: its joints hold it"));
+        } else if body.mobility == Mobility::Point {
+            left_out.push(format!(
+                "the rotation of body {name}: nothing turns it, and no function looks at it"
+            ));
+        } else if lowering.fixed.contains(i) {
+            left_out.push(format!("body {name}: it is welded to ground"));
         }
     }
-    for body in &lowered.bodies {
-        let name = &body.name;
-        match body.mobility {
-            Mobility::Point => left_out.push(format!(
-                "the rotation of body \"{name}\": nothing turns it, and no function looks at it"
-            )),
-            Mobility::Fixed => left_out.push(format!("body \"{name}\": it is welded to ground")),
-            Mobility::Spatial | Mobility::Planar { .. } => {}
-        }
+    let all = lowering.kept();
+    kept.extend(all.iter().take(TOLD).map(|own| own.to_string()));
+    if all.len() > TOLD {
+        kept.push(format!("{} more", all.len() - TOLD));
     }
     for (before, after) in written.joints.iter().zip(&lowered.joints) {
         let (all, rows) = (before.rows().count(), after.rows().count());
@@ -124,12 +158,11 @@ fn lowering(
     (left_out, kept)
 }
 
-/// Size of the equations of a model at the start of a run.
-fn size(model: &Model<f64>, run: &Trajectory<f64>) -> SystemSize {
+/// Size of the equations of a model in a state.
+fn size(model: &Model<f64>, (q, v): (Vec<f64>, Vec<f64>)) -> SystemSize {
     let numbering = Numbering::new(model);
     let mut field = Accelerations::new(model, &numbering);
-    field.stand(run.q(0), run.v(0), 0.0);
-    // The run has shown that the start is regular.
+    field.stand(&q, &v, 0.0);
     let elimination = field.factorise().ok().map(|()| field.elimination());
     let named = |bodies: Vec<usize>| {
         let name = |body: usize| model.bodies[body].name.clone();

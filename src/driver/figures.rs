@@ -1,6 +1,5 @@
 //! The figures of a simulation and of an optimisation, and the table of a simulation.
 
-use super::evaluate::Evaluated;
 use super::optimise::Optimisation;
 use super::simulate::{Simulation, simulate};
 use crate::functions::evaluate::{sample, turns};
@@ -100,7 +99,7 @@ fn figures(
         .map(|((title, design), drawing)| {
             lapse(
                 title,
-                &design.at,
+                design,
                 drawing,
                 problem.objective.map(|o| o.function),
             )
@@ -152,11 +151,12 @@ fn energies(title: &str, simulation: &Simulation) -> EnergyRun {
 /// The instant at which a projectile is let go, and the projectile: the end of the run, or where
 /// the gated range is largest. An objective that is no range lets nothing go.
 fn release(
-    at: &Evaluated,
+    simulation: &Simulation,
     objective: Option<usize>,
 ) -> Option<(usize, crate::functions::instant::Projectile<f64>)> {
-    let which = objective.map_or(0..at.scene.functions.len(), |f| f..f + 1);
-    at.scene.functions[which].iter().find_map(|function| {
+    let (written, run) = (&simulation.written, simulation.motion());
+    let which = objective.map_or(0..written.functions.len(), |f| f..f + 1);
+    written.functions[which].iter().find_map(|function| {
         let Function::Reduced { instant, reduction } = function else {
             return None;
         };
@@ -164,21 +164,26 @@ fn release(
             return None;
         };
         if *reduction == Reduction::Final {
-            return Some((at.run.last(), *projectile));
+            return Some((run.last(), *projectile));
         }
-        let turns = turns(instant.watched_rotation(), &at.run);
-        let values = sample(instant, &turns, &at.scene.model, &at.run);
+        let turns = turns(instant.watched_rotation(), run);
+        let values = sample(instant, &turns, &written.model, run);
         let best = (0..values.len()).reduce(|b, k| if values[k] > values[b] { k } else { b })?;
         Some((best, *projectile))
     })
 }
 
-fn lapse(title: &str, at: &Evaluated, drawing: &Drawing, objective: Option<usize>) -> Motion {
-    let run = &at.run;
-    let model = &at.scene.model;
+fn lapse(
+    title: &str,
+    simulation: &Simulation,
+    drawing: &Drawing,
+    objective: Option<usize>,
+) -> Motion {
+    let run = simulation.motion();
+    let model = &simulation.written.model;
     // A flight is drawn where gravity points down in the view.
     let falls = drawing.up.dot(&model.gravity) < -0.999 * model.gravity.norm();
-    let release = release(at, objective).filter(|_| falls);
+    let release = release(simulation, objective).filter(|_| falls);
     let end = release.as_ref().map_or(run.last(), |(k, _)| *k);
     let flat = |p: &Vec3<f64>| [drawing.right.dot(p), drawing.up.dot(p)];
     let snapshots = drawing.snapshots.clamp(2, end.max(1) + 1);
@@ -276,7 +281,7 @@ fn table(simulation: &Simulation) -> String {
          momentum y [kg m/s],momentum z [kg m/s],angular momentum x [kg m^2/s],\
          angular momentum y [kg m^2/s],angular momentum z [kg m^2/s],position drift,velocity drift",
     );
-    for joint in &simulation.at.scene.model.joints {
+    for joint in &simulation.written.model.joints {
         for (what, unit) in [("force", "N"), ("torque", "N m")] {
             for axis in 1..=3 {
                 let name = format!("{}: {what} {axis} [{unit}]", joint.name).replace('"', "\"\"");

@@ -68,12 +68,17 @@ pub struct Refresh {
 }
 
 impl Integration {
-    /// What `problem` asks for. `history` is whether the whole motion is wanted whatever the
-    /// functions, `gradients` whether derivatives will be asked for.
-    pub fn new(problem: &Problem, scene: &Scene<f64>, history: bool, gradients: bool) -> Self {
+    /// What `problem` asks for. `asked` are the functions that will be asked for, or `None` if the
+    /// whole motion is wanted whatever they are; `gradients` is whether derivatives will be.
+    pub fn new(
+        problem: &Problem,
+        scene: &Scene<f64>,
+        asked: Option<&[usize]>,
+        gradients: bool,
+    ) -> Self {
         let simulation = &problem.simulation;
-        let whole =
-            history || scene.until.is_some() || scene.functions.iter().any(looks_at_the_whole);
+        let looks = |&f: &usize| looks_at_the_whole(&scene.functions[f]);
+        let whole = scene.until.is_some() || asked.is_none_or(|asked| asked.iter().any(looks));
         let samples = match (simulation.samples, &simulation.spacing) {
             (Some(samples), _) => Samples::Uniform(samples),
             (None, Spacing::Steps(_)) => Samples::StepEnds,

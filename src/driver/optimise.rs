@@ -22,6 +22,7 @@ pub struct Solved {
     pub integration: Integration,
     sign: f64,
     counts: Work,
+    unlowered: usize,
 }
 
 /// An optimisation that has ended.
@@ -95,6 +96,7 @@ pub fn solve<'a>(
         history: recorder.history,
         sign,
         counts: program.counts(),
+        unlowered: program.unlowered,
         integration: program.integration,
     })
 }
@@ -132,7 +134,7 @@ impl Solved {
         whole.see_whole();
         let x = unscaled(problem, &self.outcome.x);
         let end = simulate_with(&mut whole, problem, &x).ok();
-        let optimum = record(
+        let mut optimum = record(
             problem,
             file,
             &self.outcome,
@@ -140,6 +142,12 @@ impl Solved {
             (self.counts, refreshes),
             (&start, end.as_ref()),
         );
+        if self.unlowered > 0 {
+            optimum.warnings.push(format!(
+                "{} of the designs did not admit what is left out at the others, and ran as written",
+                self.unlowered
+            ));
+        }
         Optimisation {
             outcome: self.outcome,
             optimum,

@@ -2,19 +2,22 @@
 
 use super::evaluate::Evaluated;
 use super::integration::Integration;
-use crate::integrate::{IntegrationFailure, Multipliers};
-use crate::model::Model;
+use crate::functions::Scene;
+use crate::integrate::{IntegrationFailure, Multipliers, Trajectory};
 use crate::problem::Problem;
 use crate::system::Numbering;
 use crate::system::observe::{Observation, Reaction, observe, reactions};
+use std::borrow::Cow;
 
 /// A simulated design with its observations at every instant.
 pub struct Simulation {
     /// The design, its scene and motion.
     pub at: Evaluated,
-    /// The model with nothing left out that its motion does not need, which observations and
+    /// The scene with nothing left out that its motion does not need, which observations and
     /// reactions are those of.
-    pub model: Model<f64>,
+    pub written: Scene<f64>,
+    /// The motion of all its bodies, if some were merged.
+    expanded: Option<Trajectory<f64>>,
     /// Energy, momentum and drift at every instant.
     pub observations: Vec<Observation>,
     /// Why the method was chosen.
@@ -30,7 +33,7 @@ pub struct Simulation {
 /// # Errors
 /// If the simulation fails.
 pub fn simulate(problem: &Problem, x: &[f64]) -> Result<Simulation, IntegrationFailure> {
-    let mut integration = Integration::new(problem, &problem.scene(x), true, false);
+    let mut integration = Integration::new(problem, &problem.scene(x), None, false);
     simulate_with(&mut integration, problem, x)
 }
 
@@ -48,22 +51,43 @@ pub fn simulate_with(
     let unlowered = integration.unlowered > before;
     let warning = integration.warning(&at.scene, &at.run);
     let reason = integration.chosen().map_or("", |(_, reason)| reason).into();
-    let (model, run) = (problem.unlowered_scene(x).model, &at.run);
-    let numbering = Numbering::new(&model);
-    let observations = (0..=run.last())
-        .map(|k| observe(&model, &numbering, (run.q(k), run.v(k)), run.time(k)))
-        .collect();
     Ok(Simulation {
-        at,
-        model,
-        observations,
         reason,
         warning,
         unlowered,
+        ..Simulation::of(problem, at)
     })
 }
 
 impl Simulation {
+    /// A motion with its observations.
+    pub(super) fn of(problem: &Problem, at: Evaluated) -> Self {
+        let (written, run) = at.written(problem);
+        let model = &written.model;
+        let numbering = Numbering::new(model);
+        let observations = (0..=run.last())
+            .map(|k| observe(model, &numbering, (run.q(k), run.v(k)), run.time(k)))
+            .collect();
+        let expanded = match run {
+            Cow::Owned(run) => Some(run),
+            Cow::Borrowed(_) => None,
+        };
+        Self {
+            written,
+            expanded,
+            observations,
+            reason: String::new(),
+            warning: None,
+            unlowered: false,
+            at,
+        }
+    }
+
+    /// The motion of all bodies.
+    pub fn motion(&self) -> &Trajectory<f64> {
+        self.expanded.as_ref().unwrap_or(&self.at.run)
+    }
+
     /// Largest |E(t) − E(0)| of the total energy (J).
     pub fn energy_drift(&self) -> f64 {
         let total = |o: &Observation| o.kinetic + o.potential;
@@ -89,7 +113,7 @@ impl Simulation {
 
     /// Joint reactions at the given instants.
     pub fn reactions_at(&self, instants: impl Iterator<Item = usize>) -> Vec<Vec<Reaction>> {
-        let (model, run) = (&self.model, &self.at.run);
+        let (model, run) = (&self.written.model, self.motion());
         let numbering = Numbering::new(model);
         let mut multipliers = Multipliers::new(model, &numbering, run);
         let at = |k| {

@@ -1,7 +1,7 @@
 //! A function of interest: an instant quantity reduced over the run to one number.
 
 use super::instant::{Gate, Instant, Projectile};
-use crate::math::Scalar;
+use crate::math::{Scalar, Vec3};
 
 /// How the values g_k of an instant quantity become one number.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,6 +107,43 @@ impl<S: Scalar> Function<S> {
                 distance: f(*distance),
                 top: f(*top),
             },
+        }
+    }
+
+    /// Calls `visit` with every body that the function looks at and the point of it, or with none
+    /// if it watches how the body is turned.
+    pub fn for_each_place(&mut self, visit: &mut impl FnMut(&mut usize, Option<&mut Vec3<S>>)) {
+        match self {
+            Function::Reduced { instant, .. } => match instant {
+                Instant::Position { body, point, .. }
+                | Instant::Velocity { body, point, .. }
+                | Instant::Acceleration { body, point, .. }
+                | Instant::Speed { body, point } => visit(body, Some(point)),
+                Instant::Energy(_) => {}
+                Instant::Rotation { body, .. } => visit(body, None),
+                Instant::Range { projectile, gate } => {
+                    visit(&mut projectile.body, Some(&mut projectile.point));
+                    if let Some(gate) = gate {
+                        visit(&mut gate.body, None);
+                    }
+                }
+            },
+            Function::Clearance {
+                projectile,
+                release,
+                ..
+            } => {
+                visit(&mut projectile.body, Some(&mut projectile.point));
+                if let Release::Best {
+                    projectile, gate, ..
+                } = release
+                {
+                    visit(&mut projectile.body, Some(&mut projectile.point));
+                    if let Some(gate) = gate {
+                        visit(&mut gate.body, None);
+                    }
+                }
+            }
         }
     }
 }

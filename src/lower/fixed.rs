@@ -1,12 +1,9 @@
 //! Bodies that nothing can move: welded to ground, or to a body that is. They have no unknowns, and
-//! what joins them to ground has no rows.
-//!
-//! No variable may move such a body: its place is then that of the placement at every design.
+//! what joins them to ground has no rows. A variable may place them elsewhere.
 
-use super::examine::{Examiner, Obstacle};
+use super::Kept;
+use super::examine::{Designs, Examiner, Verdict};
 use crate::math::Scalar;
-use crate::math::rotation::Quat;
-use crate::math::{Vec3, scalar::lift3};
 use crate::model::{Joint, JointKind, Mobility, Model};
 use crate::system::assembly::length_scale;
 use crate::system::{Motion, Numbering, constraint, initial, side};
@@ -14,43 +11,75 @@ use crate::system::{Motion, Numbering, constraint, initial, side};
 /// Bodies that nothing can move.
 #[derive(Clone, Debug, Default)]
 pub struct Fixed {
-    /// Index, position and Euler parameters of each.
-    bodies: Vec<(usize, Vec3<f64>, Quat<f64>)>,
+    /// By body, whether it is one; empty if none is.
+    held: Vec<bool>,
+}
+
+/// Which bodies welds hold to ground.
+pub(super) fn welded_to_ground<S>(model: &Model<S>) -> Vec<bool> {
+    let mut held = vec![false; model.bodies.len()];
+    loop {
+        let welded = model.joints.iter().find_map(|joint| {
+            let ends = [Some(joint.body_a), joint.body_b];
+            let mut free = ends.into_iter().flatten().filter(|&body| !held[body]);
+            match (joint.kind, free.next(), free.next()) {
+                (JointKind::Weld, Some(body), None) if !is_void(joint) => Some(body),
+                _ => None,
+            }
+        });
+        match welded {
+            Some(body) => held[body] = true,
+            None => return held,
+        }
+    }
+}
+
+/// Whether nothing of a joint is left.
+pub(super) fn is_void<S>(joint: &Joint<S>) -> bool {
+    joint.identical.len() == joint.all_rows().count()
 }
 
 impl Fixed {
-    /// Bodies that welds hold to ground where `model` is placed; none if these are all it has.
-    pub fn find(model: &Model<f64>) -> Self {
-        let mut fixed = Self::default();
-        loop {
-            let welded = model.joints.iter().find_map(|joint| {
-                let ends = [Some(joint.body_a), joint.body_b];
-                let free = |end: &&Option<usize>| !fixed.holds_end(**end);
-                let mut free = ends.iter().filter(free);
-                match (joint.kind, free.next(), free.next()) {
-                    (JointKind::Weld, Some(&body), None) => body,
-                    _ => None,
-                }
-            });
-            let Some(body) = welded else { break };
-            let own = &model.bodies[body];
-            fixed.bodies.push((body, own.position, own.orientation));
+    /// Bodies that welds hold to ground; none if these are all there is.
+    pub(super) fn find(designs: &Designs) -> (Self, Option<Kept>) {
+        let model = &designs.start.model;
+        let held = welded_to_ground(model);
+        // Bodies that are carried by others are not among what is held.
+        let free = |body: usize| !held[body] && model.bodies[body].mobility != Mobility::Fixed;
+        let some_move = (0..held.len()).any(free);
+        if !held.contains(&true) || !some_move {
+            return Default::default();
         }
-        let some_move = fixed.bodies.len() < model.bodies.len();
-        match some_move && fixed.holds(model, 0.0).is_ok() {
-            true => fixed,
-            false => Self::default(),
+        let fixed = Self { held };
+        let verdict = designs.ask(
+            |scene| fixed.holds(&scene.model, 0.0),
+            |scene, change| fixed.holds(&scene.model, change),
+        );
+        match verdict {
+            Ok(()) => (fixed, None),
+            Err(obstacles) => {
+                let kept = Kept {
+                    reduction: "bodies that are welded to ground".into(),
+                    obstacles,
+                };
+                (Self::default(), Some(kept))
+            }
         }
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.bodies.is_empty()
+        self.held.is_empty()
+    }
+
+    /// Whether body `index` is one.
+    pub fn contains(&self, index: usize) -> bool {
+        self.held.get(index) == Some(&true)
     }
 
     /// Whether an end of a joint cannot move.
-    fn holds_end(&self, body: Option<usize>) -> bool {
-        body.is_none_or(|body| self.bodies.iter().any(|own| own.0 == body))
+    pub(super) fn holds_end(&self, body: Option<usize>) -> bool {
+        body.is_none_or(|body| self.contains(body))
     }
 
     /// Whether neither end of a joint can move.
@@ -59,9 +88,10 @@ impl Fixed {
     }
 
     /// Leaves out of a model what they do not need.
-    pub fn apply<S: Scalar>(&self, model: &mut Model<S>) {
-        for &(body, ..) in &self.bodies {
-            model.bodies[body].mobility = Mobility::Fixed;
+    pub(super) fn apply<S: Scalar>(&self, model: &mut Model<S>) {
+        let bodies = model.bodies.iter_mut().zip(&self.held);
+        for (body, _) in bodies.filter(|(_, held)| **held) {
+            body.mobility = Mobility::Fixed;
         }
         for joint in &mut model.joints {
             if self.holds_joint(joint) {
@@ -71,38 +101,30 @@ impl Fixed {
         }
     }
 
-    /// Examines whether the bodies are where they were found, and what joins them is closed.
-    ///
-    /// # Errors
-    /// What is not.
-    pub fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Result<(), Obstacle> {
+    /// Examines whether what joins the bodies is closed, and stays so.
+    pub(super) fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Verdict {
         let mut examiner = Examiner::new(change);
         if self.is_empty() {
             return Ok(());
         }
         let length = length_scale(model);
-        for (body, position, orientation) in &self.bodies {
-            let own = &model.bodies[*body];
-            let what = || (format!("body \"{}\" is moved", own.name), "");
-            let away = own.position - lift3(position);
-            examiner.vanishes(away.as_slice(), length, what);
-            let turned: [S; 4] = std::array::from_fn(|k| own.orientation[k] - orientation[k]);
-            examiner.vanishes(&turned, 1.0, what);
-        }
         let (q, v) = initial::guess(model);
         let mut motions = Vec::new();
         Motion::all_normalised(&Numbering::new(model), &q, &v, &mut motions);
         let ground = Motion::ground();
         for joint in model.joints.iter().filter(|joint| self.holds_joint(joint)) {
+            if is_void(joint) {
+                continue;
+            }
             let what = || (format!("joint \"{}\" moves its bodies", joint.name), "");
             if !joint.drives.is_empty() {
-                examiner.zero(S::one(), 0.0, what);
+                examiner.tell(what().0);
             }
             let (a, b) = side::sides(joint, &motions, &ground, S::zero());
             for row in joint.all_rows() {
                 examiner.zero(constraint::value(row, &a, &b), length.max(1.0), what);
             }
         }
-        examiner.found
+        examiner.verdict()
     }
 }

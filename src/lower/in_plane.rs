@@ -1,11 +1,12 @@
 //! Whether a model moves in a plane: the conditions of [`super::planar`], one after the other.
 
-use super::examine::{Examiner, Obstacle};
+use super::examine::{Examiner, Verdict};
+use super::fixed::is_void;
 use super::planar::{Plane, Turned, used};
+use super::reach::{Reach, largest};
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, Freedom, LoadKind, Model};
-use crate::system::assembly::length_scale;
 use crate::system::reduce::along;
 
 /// Points of a load on its bodies.
@@ -32,23 +33,23 @@ impl Plane {
     /// `change` of the variable.
     ///
     /// # Errors
-    /// What leaves it first.
-    pub fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Result<(), Obstacle> {
+    /// What leaves it.
+    pub fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Verdict {
         let turned = Turned::new(model, &self.normal);
         let mut examiner = Examiner::new(change);
-        let length = length_scale(model);
-        self.joints(model, &turned, length, &mut examiner);
-        self.bodies(model, &turned, length, &mut examiner);
-        self.loads(model, &turned, length, &mut examiner);
-        self.upright(model, length, &mut examiner);
-        examiner.found
+        let reach = Reach::new(model);
+        self.joints(model, &turned, &reach, &mut examiner);
+        self.bodies(model, &turned, &reach, &mut examiner);
+        self.loads(model, &turned, &reach, &mut examiner);
+        self.upright(model, &reach, &mut examiner);
+        examiner.verdict()
     }
 
     fn bodies<S: Scalar>(
         &self,
         model: &Model<S>,
         turned: &Turned<S>,
-        length: f64,
+        reach: &Reach,
         examiner: &mut Examiner,
     ) {
         let gravity = largest(&model.gravity);
@@ -63,7 +64,7 @@ impl Plane {
             examiner.vanishes((turned.normals[i] - own).as_slice(), 1.0, what);
             let above = along(&body.position, &self.normal) - *height;
             let what = || (format!("body \"{name}\" is moved across the plane"), "m");
-            examiner.zero(above, length, what);
+            examiner.zero(above, reach.of([Some(i), None]), what);
             let scale = body
                 .inertia
                 .iter()
@@ -104,14 +105,18 @@ impl Plane {
         &self,
         model: &Model<S>,
         turned: &Turned<S>,
-        length: f64,
+        reach: &Reach,
         examiner: &mut Examiner,
     ) {
         for (j, joint) in model.joints.iter().enumerate() {
+            if is_void(joint) {
+                continue;
+            }
             let own = &self.joints[j];
             let name = &joint.name;
             let frames = self.frames(joint, j);
             let bodies = [Some(joint.body_a), joint.body_b];
+            let length = reach.of(bodies);
             for (side, used) in used(joint).into_iter().enumerate() {
                 let normal = turned.normal(bodies[side]);
                 for axis in (0..3).filter(|&axis| used[axis]) {
@@ -149,8 +154,7 @@ impl Plane {
                 }
             }
             if self.identical(joint, turned, j) != own.identical {
-                let what = || (format!("joint \"{name}\" is turned"), "");
-                examiner.zero(S::one(), 0.0, what);
+                examiner.tell(format!("joint \"{name}\" is turned"));
             }
             let mut heights = [S::zero(); 2];
             for (side, frame) in frames.iter().enumerate() {
@@ -177,12 +181,12 @@ impl Plane {
         &self,
         model: &Model<S>,
         turned: &Turned<S>,
-        length: f64,
+        reach: &Reach,
         examiner: &mut Examiner,
     ) {
         for (load, heights) in model.loads.iter().zip(&self.loads) {
             let name = &load.name;
-            let mut ends = [None; 2];
+            let (mut ends, mut longest) = ([None; 2], 0.0_f64);
             for (k, at) in points(&load.kind).into_iter().enumerate() {
                 let Some((body, point)) = at else { continue };
                 let above = turned.normal(body).dot(&point);
@@ -192,12 +196,14 @@ impl Plane {
                         "m",
                     )
                 };
+                let length = reach.of([body, None]) + largest(&point);
+                longest = longest.max(length);
                 examiner.zero(above - heights[k], length, what);
                 ends[k] = Some(above + body.map_or(0.0, |body| self.bodies[body].1));
             }
             let what = || (format!("load \"{name}\" leaves the plane"), "");
             if let [Some(a), Some(b)] = ends {
-                examiner.zero(a - b, length, what);
+                examiner.zero(a - b, longest, what);
             }
             let normal = |body: &usize, axes: &Axes| match axes {
                 Axes::Ground => turned.ground,
@@ -258,7 +264,7 @@ impl Plane {
 
     /// Bodies that nothing holds upright have what acts on them from outside their group as high as
     /// their centres of mass.
-    fn upright<S: Scalar>(&self, model: &Model<S>, length: f64, examiner: &mut Examiner) {
+    fn upright<S: Scalar>(&self, model: &Model<S>, reach: &Reach, examiner: &mut Examiner) {
         let group = |body: Option<usize>| body.and_then(|body| self.groups[body]);
         let mut level = vec![None; model.bodies.len()];
         for (i, body) in model.bodies.iter().enumerate() {
@@ -272,13 +278,13 @@ impl Plane {
                     "m",
                 )
             };
-            examiner.zero(height - first, length, what);
+            examiner.zero(height - first, reach.of([Some(i), None]), what);
         }
         let mut acts =
             |body: Option<usize>, height: f64, what: &dyn Fn() -> (String, &'static str)| {
                 if let (Some(own), Some(body)) = (group(body), body) {
                     let off = self.bodies[body].1 + height - level[own].unwrap_or(0.0);
-                    examiner.zero(off, length, what);
+                    examiner.zero(off, reach.of([Some(body), None]), what);
                 }
             };
         for (joint, own) in model.joints.iter().zip(&self.joints) {
@@ -312,8 +318,4 @@ impl Plane {
             }
         }
     }
-}
-
-fn largest<S: Scalar>(v: &Vec3<S>) -> f64 {
-    v.iter().fold(0.0, |m, x| m.max(x.re().abs()))
 }

@@ -8,51 +8,72 @@
 mod examine;
 pub mod fixed;
 mod in_plane;
+mod merge;
 mod normal;
 pub mod planar;
-pub mod point;
+mod point;
+mod reach;
 mod tilt;
+pub mod unturned;
+pub mod welded;
 
-pub use examine::Obstacle;
+pub use examine::{Obstacle, Range, Verdict};
 pub use fixed::Fixed;
+pub use merge::Cluster;
 pub use planar::Plane;
+pub use unturned::Unturned;
+pub use welded::Welded;
 
 use crate::functions::Scene;
+use crate::integrate::Trajectory;
 use crate::math::{Dual, Scalar};
-use crate::model::{ConstraintRow, Mobility};
+use crate::model::{ConstraintRow, Mobility, Model};
 use crate::system::redundancy;
+use examine::Designs;
+use reach::Reach;
 
-/// Whether something may be left out, or what stands against it.
-type Verdict = Result<(), Obstacle>;
+/// A reduction that is not made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kept {
+    /// What could have been left out.
+    pub reduction: String,
+    /// What stands against it.
+    pub obstacles: Vec<Obstacle>,
+}
 
-/// A design variable, as far as it matters here.
-#[derive(Clone, Debug)]
-pub struct Range {
-    /// Name.
-    pub name: String,
-    /// Where the design starts.
-    pub start: f64,
-    /// Bounds, infinite if there are none.
-    pub bounds: [f64; 2],
-    /// A typical change.
-    pub scale: f64,
+/// Obstacles of one reduction that are told.
+const TOLD: usize = 5;
+
+impl std::fmt::Display for Kept {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let told = self.obstacles.iter().take(TOLD);
+        let told: Vec<String> = told.map(Obstacle::to_string).collect();
+        write!(f, "{}: {}", self.reduction, told.join("; "))?;
+        match self.obstacles.len() - told.len() {
+            0 => Ok(()),
+            more => write!(f, "; and {more} more"),
+        }
+    }
 }
 
 /// What is left out of the scenes of a problem.
 #[derive(Clone, Debug)]
 pub struct Lowering {
+    /// Bodies that are welded to each other.
+    pub welded: Welded,
     /// The plane that all motion stays in, or what leaves every plane.
-    pub plane: Result<Plane, Obstacle>,
+    pub plane: Result<Plane, Kept>,
     /// Bodies whose rotation nothing turns or looks at.
     pub points: Vec<usize>,
+    /// Bodies whose rotation ground holds.
+    pub unturned: Unturned,
     /// Bodies that nothing can move.
     pub fixed: Fixed,
-    /// Rows that follow from others once these are ground, by joint.
+    /// Reductions that are not made, but for the plane.
+    kept: Vec<Kept>,
+    /// Rows that follow from others once these are made, by joint.
     left_out: Vec<Vec<ConstraintRow>>,
 }
-
-/// Designs between the bounds at which a reduction is examined.
-const BETWEEN: usize = 4;
 
 impl Lowering {
     /// Finds what can be left out of the scenes that `real` and `dual` make of a design.
@@ -61,73 +82,57 @@ impl Lowering {
         dual: &dyn Fn(&[Dual]) -> Scene<Dual>,
         variables: &[Range],
     ) -> Self {
-        let start: Vec<f64> = variables.iter().map(|variable| variable.start).collect();
-        let first = real(&start);
-        let others: Vec<Scene<f64>> = designs(variables).iter().map(|x| real(x)).collect();
-        let seed = |i: usize| -> Vec<Dual> {
-            let part = |j: usize| if i == j { 1.0 } else { 0.0 };
-            start
-                .iter()
-                .enumerate()
-                .map(|(j, &x)| Dual::new(x, part(j)))
-                .collect()
-        };
-        let derived = variables.iter().enumerate();
-        let derived: Vec<(&Range, Scene<Dual>)> = derived
-            .map(|(i, variable)| (variable, dual(&seed(i))))
-            .collect();
-        // Asks a question of all designs and of all derivatives.
-        let everywhere = |at: &dyn Fn(&Scene<f64>) -> Result<(), Obstacle>,
-                          by: &dyn Fn(&Scene<Dual>, f64) -> Verdict| {
-            for (variable, scene) in &derived {
-                // How finely the optimiser scales it says nothing of what it can break.
-                let change = variable.scale.max(variable.start.abs()).max(1.0);
-                by(scene, change).map_err(|obstacle| Obstacle {
-                    variable: Some(variable.name.clone()),
-                    ..obstacle
-                })?;
+        let mut designs = Designs::new(real, dual, variables);
+        let (welded, mut kept) = Welded::find(&designs);
+        if !welded.is_empty() {
+            designs.change(|scene| welded.apply(scene), |scene| welded.apply(scene));
+        }
+        let (fixed, of_fixed) = Fixed::find(&designs);
+        let plane = Plane::find(&designs);
+        // A body in the plane has three unknowns already.
+        let (mut points, mut unturned) = (Vec::new(), Unturned::default());
+        let mut of_unturned = None;
+        if plane.is_err() {
+            (unturned, of_unturned) = Unturned::find(&designs, &fixed);
+            let model = &designs.start.model;
+            let reach = Reach::new(model);
+            for (index, body) in model.bodies.iter().enumerate() {
+                let held = fixed.holds_end(Some(index)) || unturned.contains(index);
+                if held || body.mobility == Mobility::Fixed {
+                    continue;
+                }
+                // What the start says is enough.
+                let start = point::holds(&designs.start, &reach, index, 0.0);
+                let verdict = start.and_then(|()| {
+                    designs.ask(
+                        |scene| point::holds(scene, &Reach::new(&scene.model), index, 0.0),
+                        |scene, change| {
+                            point::holds(scene, &Reach::new(&scene.model), index, change)
+                        },
+                    )
+                });
+                match verdict {
+                    Ok(()) => points.push(index),
+                    Err(obstacles) => kept.push(Kept {
+                        reduction: format!("the rotation of body \"{}\"", body.name),
+                        obstacles,
+                    }),
+                }
             }
-            others.iter().try_for_each(at).map_err(|obstacle| Obstacle {
-                elsewhere: true,
-                ..obstacle
-            })
-        };
-        let plane = Plane::find(&first.model).and_then(|plane| {
-            everywhere(&|scene| plane.holds(&scene.model, 0.0), &|scene, change| {
-                plane.holds(&scene.model, change)
-            })?;
-            Ok(plane)
-        });
-        let points = match &plane {
-            // A body in the plane has three unknowns already.
-            Ok(_) => Vec::new(),
-            Err(_) => (0..first.model.bodies.len())
-                .filter(|&body| {
-                    let here = point::holds(&first, body, 0.0);
-                    here.is_ok()
-                        && everywhere(&|scene| point::holds(scene, body, 0.0), &|scene, change| {
-                            point::holds(scene, body, change)
-                        })
-                        .is_ok()
-                })
-                .collect(),
-        };
-        let fixed = Fixed::find(&first.model);
-        let stays = everywhere(&|scene| fixed.holds(&scene.model, 0.0), &|scene, change| {
-            fixed.holds(&scene.model, change)
-        });
+        }
+        kept.extend(of_fixed.into_iter().chain(of_unturned));
         let mut found = Self {
+            welded,
             plane,
             points,
-            fixed: match stays {
-                Ok(()) => fixed,
-                Err(_) => Fixed::default(),
-            },
+            unturned,
+            fixed,
+            kept,
             left_out: Vec::new(),
         };
-        if !found.fixed.is_empty() {
-            let mut lowered = first.clone();
-            found.apply(&mut lowered);
+        if !(found.welded.is_empty() && found.unturned.is_empty() && found.fixed.is_empty()) {
+            let mut lowered = designs.start;
+            found.leave_out(&mut lowered);
             redundancy::leave_out(&mut lowered.model);
             let joints = lowered.model.joints.into_iter();
             found.left_out = joints.map(|joint| joint.left_out).collect();
@@ -135,75 +140,69 @@ impl Lowering {
         found
     }
 
-    /// Every reduction, with what it leaves or what stands against it.
-    pub fn reductions(&self) -> Vec<(&'static str, Result<String, Obstacle>)> {
-        let plane = match &self.plane {
-            Ok(plane) => {
-                let [x, y, z] = [plane.normal.x, plane.normal.y, plane.normal.z];
-                Ok(format!(
-                    "the scene moves in the plane across ({x:.6}, {y:.6}, {z:.6}); three unknowns \
-                     a body"
-                ))
-            }
-            Err(obstacle) => Err(obstacle.clone()),
-        };
-        vec![("motion out of a plane", plane)]
+    /// Every reduction that is not made, with what stands against it.
+    pub fn kept(&self) -> Vec<&Kept> {
+        self.plane
+            .as_ref()
+            .err()
+            .into_iter()
+            .chain(&self.kept)
+            .collect()
     }
 
-    /// Leaves out of `scene` what can be; false if its design does not admit some of it, which is
-    /// then left in.
+    /// Leaves out of `scene` what can be; false if its design does not admit all of it, and it stays as
+    /// it is.
     pub fn apply<S: Scalar>(&self, scene: &mut Scene<S>) -> bool {
-        let mut all = true;
-        if let Ok(plane) = &self.plane {
-            match plane.holds(&scene.model, 0.0) {
-                Ok(()) => plane.apply(&mut scene.model),
-                Err(_) => all = false,
+        if self.welded.is_empty() {
+            let admitted = self.admits(scene);
+            if admitted {
+                self.leave_out(scene);
             }
+            return admitted;
         }
-        for &body in &self.points {
-            match point::holds(scene, body, 0.0) {
-                Ok(()) => scene.model.bodies[body].mobility = Mobility::Point,
-                Err(_) => all = false,
-            }
-        }
-        if !all || self.fixed.holds(&scene.model, 0.0).is_err() {
+        if self.welded.holds(&scene.model, 0.0).is_err() {
             return false;
         }
-        self.fixed.apply(&mut scene.model);
-        for (joint, left_out) in scene.model.joints.iter_mut().zip(&self.left_out) {
+        let mut merged = scene.clone();
+        self.welded.apply(&mut merged);
+        let admitted = self.admits(&merged);
+        if admitted {
+            self.leave_out(&mut merged);
+            *scene = merged;
+        }
+        admitted
+    }
+
+    /// Whether all but the merging of welded bodies, which has been done, may be.
+    fn admits<S: Scalar>(&self, scene: &Scene<S>) -> bool {
+        let model = &scene.model;
+        let reach = Reach::new(model);
+        let point = |&body: &usize| point::holds(scene, &reach, body, 0.0).is_ok();
+        let plane = self.plane.as_ref();
+        plane.map_or(true, |plane| plane.holds(model, 0.0).is_ok())
+            && self.points.iter().all(point)
+            && self.unturned.holds(model, 0.0).is_ok()
+            && self.fixed.holds(model, 0.0).is_ok()
+    }
+
+    fn leave_out<S: Scalar>(&self, scene: &mut Scene<S>) {
+        let model = &mut scene.model;
+        if let Ok(plane) = &self.plane {
+            plane.apply(model);
+        }
+        for &body in &self.points {
+            model.bodies[body].mobility = Mobility::Point;
+        }
+        self.unturned.apply(model);
+        self.fixed.apply(model);
+        for (joint, left_out) in model.joints.iter_mut().zip(&self.left_out) {
             joint.left_out.clone_from(left_out);
         }
-        true
     }
-}
 
-/// Both corners of the bounds, and designs spread between them in a fixed way.
-fn designs(variables: &[Range]) -> Vec<Vec<f64>> {
-    if variables.is_empty() {
-        return Vec::new();
+    /// The motion of all bodies of `written`, the model that a lowered scene was made of, from the run
+    /// of that; `None` if that is it.
+    pub fn expand(&self, written: &Model<f64>, run: &Trajectory<f64>) -> Option<Trajectory<f64>> {
+        (!self.welded.is_empty()).then(|| self.welded.expand(written, run))
     }
-    let ends = |variable: &Range| {
-        let [lower, upper] = variable.bounds;
-        let finite = |bound: f64, otherwise: f64| match bound.is_finite() {
-            true => bound,
-            false => otherwise,
-        };
-        let (start, scale) = (variable.start, variable.scale);
-        [finite(lower, start - scale), finite(upper, start + scale)]
-    };
-    let at = |part: &dyn Fn(usize) -> f64| {
-        let value = |(i, variable): (usize, &Range)| {
-            let [lower, upper] = ends(variable);
-            lower + part(i) * (upper - lower)
-        };
-        variables.iter().enumerate().map(value).collect()
-    };
-    let mut all = vec![at(&|_| 0.0), at(&|_| 1.0)];
-    for k in 1..=BETWEEN {
-        // Fractional parts of multiples of an irrational number.
-        all.push(at(&|i| {
-            (0.618_033_988_749_895 * (k + 7 * i + 1) as f64).fract()
-        }));
-    }
-    all
 }

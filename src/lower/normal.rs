@@ -6,6 +6,8 @@ use crate::model::{Joint, JointKind, LoadKind, Model};
 
 /// Vectors whose angle is smaller are taken to be parallel when a normal is made of two.
 const PARALLEL: f64 = 1e-6;
+/// Axes of joints that are tried.
+const MOST: usize = 6;
 
 /// Unit vector with round-off components set to zero.
 pub(super) fn clean(v: Vec3<f64>) -> Vec3<f64> {
@@ -19,9 +21,22 @@ fn axis(model: &Model<f64>, joint: &Joint<f64>) -> Vec3<f64> {
     rotation::matrix(&model.bodies[joint.body_a].orientation) * joint.frame_a.axes[2]
 }
 
-/// The normal that most of the joints' axes agree on; without such axes, that of the vectors that
-/// have to lie in the plane. `None` if these span the space.
-pub(super) fn candidate(model: &Model<f64>) -> Option<Vec3<f64>> {
+/// The same direction whatever its sign.
+fn unsigned(v: Vec3<f64>) -> Vec3<f64> {
+    // The first of the components that are about as large as the largest.
+    let largest = v.amax();
+    let first = v.iter().find(|x| x.abs() > 0.9 * largest);
+    if first.is_some_and(|x| *x < 0.0) {
+        -v
+    } else {
+        v
+    }
+}
+
+/// Normals to try, the likeliest first: the axes that joints turn about, those that most agree on
+/// first, then that of the vectors that have to lie in the plane. None if these span the space. They
+/// do not depend on the order of the joints nor on the signs of their axes.
+pub(super) fn candidates(model: &Model<f64>) -> Vec<Vec3<f64>> {
     let turns = |joint: &&Joint<f64>| match joint.kind {
         JointKind::Revolute | JointKind::Planar | JointKind::Cylindrical => true,
         JointKind::Spherical
@@ -30,21 +45,32 @@ pub(super) fn candidate(model: &Model<f64>) -> Option<Vec3<f64>> {
         | JointKind::Rod
         | JointKind::Weld => false,
     };
-    let axes: Vec<Vec3<f64>> = model
-        .joints
-        .iter()
-        .filter(turns)
-        .map(|joint| axis(model, joint))
-        .collect();
-    let agree = |a: &Vec3<f64>| {
-        let same = |b: &&Vec3<f64>| a.cross(b).norm() <= ROUND_OFF;
-        axes.iter().filter(same).count()
-    };
-    // The first of those that most agree on.
-    let most = axes.iter().map(agree).max();
-    if let Some(first) = axes.iter().find(|axis| Some(agree(axis)) == most) {
-        return Some(clean(*first));
+    let joints = model.joints.iter().filter(turns);
+    let mut axes: Vec<(usize, Vec3<f64>)> = Vec::new();
+    for axis in joints.map(|joint| unsigned(clean(axis(model, joint)))) {
+        let same = |(_, own): &&mut (usize, Vec3<f64>)| own.cross(&axis).norm() <= ROUND_OFF;
+        match axes.iter_mut().find(same) {
+            Some((count, _)) => *count += 1,
+            None => axes.push((1, axis)),
+        }
     }
+    let by_direction = |a: &Vec3<f64>, b: &Vec3<f64>| {
+        let pairs = b.iter().rev().zip(a.iter().rev());
+        pairs.fold(std::cmp::Ordering::Equal, |order, (b, a)| {
+            order.then(b.total_cmp(a))
+        })
+    };
+    axes.sort_by(|(m, a), (n, b)| n.cmp(m).then_with(|| by_direction(a, b)));
+    let mut all: Vec<Vec3<f64>> = axes.into_iter().map(|(_, axis)| axis).take(MOST).collect();
+    if let Some(normal) = spanned(model).map(unsigned) {
+        let known = all.iter().any(|own| own.cross(&normal).norm() <= ROUND_OFF);
+        all.extend((!known).then_some(normal));
+    }
+    all
+}
+
+/// The normal of the vectors that have to lie in the plane; `None` if these span the space.
+fn spanned(model: &Model<f64>) -> Option<Vec3<f64>> {
     let (across, inside) = vectors(model);
     if let Some(first) = across.first() {
         return Some(clean(*first));

@@ -16,14 +16,16 @@
 //! Sliding P            kept
 //! ```
 
-use super::examine::Obstacle;
+use super::Kept;
+use super::examine::{Designs, Obstacle};
+use super::fixed::is_void;
 use super::in_plane::points;
-use super::normal::{candidate, clean};
+use super::normal::{candidates, clean};
 use super::tilt;
 use crate::math::scalar::lift3;
 use crate::math::{Mat3, Scalar, Vec3, rotation};
 use crate::model::{ConstraintRow, Joint, JointFrame, JointKind};
-use crate::model::{Mobility, Model};
+use crate::model::{Mobility, Model, RigidBody};
 use crate::system::redundancy;
 use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
@@ -106,18 +108,58 @@ pub(super) fn used<S>(joint: &Joint<S>) -> [[bool; 3]; 2] {
 }
 
 impl Plane {
-    /// The plane that `model` moves in.
+    /// Its normal for messages.
+    pub fn name(&self) -> String {
+        vector(&self.normal)
+    }
+
+    /// The plane that all `designs` move in.
     ///
     /// # Errors
-    /// What leaves it.
-    pub fn find(model: &Model<f64>) -> Result<Self, Obstacle> {
-        let normal = candidate(model).ok_or_else(|| Obstacle {
-            what: "gravity, lever arms and velocities lie in no common plane".into(),
-            size: 0.0,
-            unit: "",
-            variable: None,
-            elsewhere: false,
-        })?;
+    /// What leaves it: the plane that most joints turn in, if there is none.
+    pub(super) fn find(designs: &Designs) -> Result<Self, Kept> {
+        let mut first = None;
+        for normal in candidates(&designs.start.model) {
+            let plane = Self::across(&designs.start.model, normal);
+            let verdict = designs.ask(
+                |scene| plane.holds(&scene.model, 0.0),
+                |scene, change| plane.holds(&scene.model, change),
+            );
+            match verdict {
+                Ok(()) => return Ok(plane.without_redundancy(&designs.start.model)),
+                Err(obstacles) => first = first.or(Some((normal, obstacles))),
+            }
+        }
+        Err(match first {
+            Some((normal, obstacles)) => Kept {
+                reduction: format!("motion out of the plane across {}", vector(&normal)),
+                obstacles,
+            },
+            None => Kept {
+                reduction: "motion out of a plane".into(),
+                obstacles: vec![Obstacle::plain(
+                    "gravity, lever arms and velocities lie in no common plane",
+                )],
+            },
+        })
+    }
+
+    /// The plane that `model` moves in, whatever the design.
+    ///
+    /// # Errors
+    /// What leaves that which most joints turn in.
+    pub fn of(model: &Model<f64>) -> Result<Self, Kept> {
+        let scene = crate::functions::Scene {
+            model: model.clone(),
+            duration: 1.0,
+            until: None,
+            functions: Vec::new(),
+        };
+        Self::find(&Designs::single(scene))
+    }
+
+    /// The plane with this normal, and where the parts of `model` stand in it.
+    fn across(model: &Model<f64>, normal: Vec3<f64>) -> Self {
         let turned = Turned::new(model, &normal);
         let farthest = normal.iamin();
         let mut first = Vec3::zeros();
@@ -154,14 +196,18 @@ impl Plane {
         }
         let upright = |j: usize| tilt::holds_upright(&plane.joints[j].identical);
         plane.groups = tilt::groups(model.bodies.len(), &model.joints, upright);
-        plane.holds(model, 0.0)?;
+        plane
+    }
+
+    /// The plane with those rows left out that follow from others in it.
+    fn without_redundancy(mut self, model: &Model<f64>) -> Self {
         let mut lowered = model.clone();
-        plane.apply(&mut lowered);
+        self.apply(&mut lowered);
         redundancy::leave_out(&mut lowered);
-        for (own, joint) in plane.joints.iter_mut().zip(lowered.joints) {
+        for (own, joint) in self.joints.iter_mut().zip(lowered.joints) {
             own.left_out = joint.left_out;
         }
-        Ok(plane)
+        self
     }
 
     /// Rows of joint j that hold identically, if the joint fits the plane.
@@ -171,6 +217,9 @@ impl Plane {
         turned: &Turned<S>,
         j: usize,
     ) -> Vec<ConstraintRow> {
+        if is_void(joint) {
+            return joint.identical.clone();
+        }
         let frames = self.frames(joint, j);
         let bodies = [Some(joint.body_a), joint.body_b];
         let across = |side: usize, axis: usize| {
@@ -197,7 +246,9 @@ impl Plane {
 
     /// Leaves out of a model that the plane holds for what is across it.
     pub fn apply<S: Scalar>(&self, model: &mut Model<S>) {
-        for (body, (normal, _)) in model.bodies.iter_mut().zip(&self.bodies) {
+        let moving = |(body, _): &(&mut RigidBody<S>, _)| body.mobility != Mobility::Fixed;
+        let bodies = model.bodies.iter_mut().zip(&self.bodies);
+        for (body, (normal, _)) in bodies.filter(moving) {
             body.mobility = Mobility::Planar {
                 along: self.along,
                 normal: *normal,
@@ -219,7 +270,7 @@ fn turn_to(joint: &Joint<f64>, normal: &Vec3<f64>) -> Option<Mat3<f64>> {
     let [e1, e2, e3] = &joint.frame_a.axes;
     let n = Vec3::new(normal.dot(e1), normal.dot(e2), normal.dot(e3));
     let aligned = n.iter().filter(|x| x.abs() <= ALIGNED).count() == 2;
-    if aligned || used(joint) == [[false; 3]; 2] {
+    if aligned || is_void(joint) || used(joint) == [[false; 3]; 2] {
         return None;
     }
     let third = match joint.kind {
@@ -239,4 +290,11 @@ fn turn_to(joint: &Joint<f64>, normal: &Vec3<f64>) -> Option<Mat3<f64>> {
         second.transpose(),
         third.transpose(),
     ]))
+}
+
+/// A vector for messages.
+fn vector(v: &Vec3<f64>) -> String {
+    // Zero has no sign.
+    let [x, y, z] = [v.x + 0.0, v.y + 0.0, v.z + 0.0];
+    format!("({x:.6}, {y:.6}, {z:.6})")
 }

@@ -5,11 +5,11 @@
 //! reads where a point beside the centre is, or how the body is turned, since a design may still
 //! turn its start.
 
-use super::examine::{Examiner, Obstacle};
+use super::examine::{Examiner, Verdict};
+use super::reach::Reach;
 use crate::functions::{Function, Instant, Release, Scene};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, JointKind, LoadKind};
-use crate::system::assembly::length_scale;
 
 /// Distance from the centre of mass, relative to the length scale and to what is round-off
 /// elsewhere, that still counts as none: a lever arm turns a small body fast.
@@ -20,17 +20,24 @@ const CENTRED: f64 = 1e-2;
 ///
 /// # Errors
 /// What turns it, or looks at its rotation.
-pub fn holds<S: Scalar>(scene: &Scene<S>, index: usize, change: f64) -> Result<(), Obstacle> {
+pub(super) fn holds<S: Scalar>(
+    scene: &Scene<S>,
+    reach: &Reach,
+    index: usize,
+    change: f64,
+) -> Verdict {
     let model = &scene.model;
     let mut examiner = Examiner::new(change);
-    let length = CENTRED * length_scale(model);
-    let mut vanishes = |v: &Vec3<S>, what: &dyn Fn() -> String| {
-        examiner.vanishes(v.as_slice(), length, || (what(), ""));
+    let length = CENTRED * reach.of([Some(index), None]);
+    // A lever arm, or `None` for what turns the body whatever its arm.
+    let mut vanishes = |arm: Option<&Vec3<S>>, what: &dyn Fn() -> String| match arm {
+        Some(arm) => examiner.vanishes(arm.as_slice(), length, || (what(), "m")),
+        None => examiner.tell(what()),
     };
-    // What turns the body whatever its size.
-    let one = Vec3::new(S::from(f64::INFINITY), S::zero(), S::zero());
-    let body = &model.bodies[index];
-    vanishes(&body.angular_velocity, &|| "it starts with a spin".into());
+    let spin = &model.bodies[index].angular_velocity;
+    if spin.iter().any(|x| !x.is_zero()) {
+        vanishes(None, &|| "it starts with a spin".into());
+    }
     let is = |other: usize| other == index;
     for joint in &model.joints {
         let sides = [
@@ -42,7 +49,7 @@ pub fn holds<S: Scalar>(scene: &Scene<S>, index: usize, change: f64) -> Result<(
             match joint.kind {
                 JointKind::Spherical | JointKind::Rod => {
                     let what = || format!("joint \"{name}\" is off its centre of mass");
-                    vanishes(&frame.point, &what);
+                    vanishes(Some(&frame.point), &what);
                 }
                 JointKind::Revolute
                 | JointKind::Prismatic
@@ -50,7 +57,7 @@ pub fn holds<S: Scalar>(scene: &Scene<S>, index: usize, change: f64) -> Result<(
                 | JointKind::Cylindrical
                 | JointKind::Universal
                 | JointKind::Weld => {
-                    vanishes(&one, &|| format!("joint \"{name}\" turns it"));
+                    vanishes(None, &|| format!("joint \"{name}\" turns it"));
                 }
             }
         }
@@ -62,10 +69,10 @@ pub fn holds<S: Scalar>(scene: &Scene<S>, index: usize, change: f64) -> Result<(
             LoadKind::Force {
                 body, point, axes, ..
             } if is(*body) => match axes {
-                Axes::Ground => vanishes(point, &turns),
-                Axes::Body => vanishes(&one, &turns),
+                Axes::Ground => vanishes(Some(point), &turns),
+                Axes::Body => vanishes(None, &turns),
             },
-            LoadKind::Torque { body, .. } if is(*body) => vanishes(&one, &turns),
+            LoadKind::Torque { body, .. } if is(*body) => vanishes(None, &turns),
             LoadKind::Spring {
                 body_a,
                 body_b,
@@ -74,10 +81,10 @@ pub fn holds<S: Scalar>(scene: &Scene<S>, index: usize, change: f64) -> Result<(
                 ..
             } => {
                 if is(*body_a) {
-                    vanishes(point_a, &turns);
+                    vanishes(Some(point_a), &turns);
                 }
                 if body_b.is_some_and(is) {
-                    vanishes(point_b, &turns);
+                    vanishes(Some(point_b), &turns);
                 }
             }
             LoadKind::TorsionSpring { joint, .. }
@@ -86,7 +93,7 @@ pub fn holds<S: Scalar>(scene: &Scene<S>, index: usize, change: f64) -> Result<(
             | LoadKind::Friction { joint, .. } => {
                 let joint = &model.joints[*joint];
                 if is(joint.body_a) || joint.body_b.is_some_and(is) {
-                    vanishes(&one, &turns);
+                    vanishes(None, &turns);
                 }
             }
             LoadKind::Force { .. } | LoadKind::Torque { .. } => {}
@@ -97,11 +104,11 @@ pub fn holds<S: Scalar>(scene: &Scene<S>, index: usize, change: f64) -> Result<(
     for function in scene.functions.iter().chain(event) {
         for (body, point) in looks_at(function) {
             if is(body) {
-                vanishes(&point.unwrap_or(one), &read);
+                vanishes(point.as_ref(), &read);
             }
         }
     }
-    examiner.found
+    examiner.verdict()
 }
 
 /// Bodies that a function looks at, with the point of them, or none if it looks at the rotation.

@@ -208,9 +208,15 @@ impl Problem {
     /// As [`Problem::scene`], and whether the design admits all that the lowering leaves out.
     pub fn lowered_scene<S: Scalar>(&self, x: &[S]) -> (Scene<S>, bool) {
         let mut scene = self.unlowered_scene(x);
-        let lowering = self.lowering.as_ref();
-        let all = lowering.is_none_or(|lowering| lowering.apply(&mut scene));
+        let all = self.lower(&mut scene);
         (scene, all)
+    }
+
+    /// Leaves out of a scene what its lowering does; false if its design does not admit all of that,
+    /// and the scene stays as it is.
+    pub fn lower<S: Scalar>(&self, scene: &mut Scene<S>) -> bool {
+        let lowering = self.lowering.as_ref();
+        lowering.is_none_or(|lowering| lowering.apply(scene))
     }
 
     /// The scene at the design `x` with nothing left out but what follows from other joints.

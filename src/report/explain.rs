@@ -24,6 +24,21 @@ pub struct Explanation {
     pub written: SystemSize,
     /// The system that is integrated.
     pub lowered: SystemSize,
+    /// How the start is integrated, unless that failed.
+    #[serde(flatten)]
+    pub integration: Option<IntegrationUse>,
+    /// Why the start could not be simulated, or its functions not be derived.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
+    /// The functions.
+    pub functions: Vec<FunctionUse>,
+    /// Variables that neither the objective nor a constraint depends on.
+    pub idle_variables: Vec<String>,
+}
+
+/// How a scene is integrated.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct IntegrationUse {
     /// The method, why it was chosen, and how many steps it takes at the start.
     pub method: String,
     /// See above.
@@ -34,10 +49,6 @@ pub struct Explanation {
     pub samples_bytes: usize,
     /// See above.
     pub tape_bytes: usize,
-    /// The functions.
-    pub functions: Vec<FunctionUse>,
-    /// Variables that neither the objective nor a constraint depends on.
-    pub idle_variables: Vec<String>,
 }
 
 /// Size of the equations of a scene, and how they are eliminated.
@@ -68,8 +79,9 @@ pub struct FunctionUse {
     pub used: String,
     /// Whether it looks at the whole motion, or at its end alone.
     pub whole_motion: bool,
-    /// Variables that it depends on at the start.
-    pub variables: Vec<String>,
+    /// Variables that it depends on at the start, if that could be simulated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub variables: Option<Vec<String>>,
 }
 
 impl Explanation {
@@ -120,15 +132,21 @@ impl Explanation {
             let closing = self.lowered.closing.join(", ");
             let _ = writeln!(text, "  last, as they close loops: {closing}");
         }
-        let _ = writeln!(
-            text,
-            "\nintegration\n  {} in {} steps: {}\n  memory: {} for the samples, {} for gradients",
-            self.method,
-            self.steps,
-            self.reason,
-            size(self.samples_bytes),
-            size(self.tape_bytes)
-        );
+        text.push_str("\nintegration\n");
+        if let Some(found) = &self.integration {
+            let _ = writeln!(
+                text,
+                "  {} in {} steps: {}\n  memory: {} for the samples, {} for gradients",
+                found.method,
+                found.steps,
+                found.reason,
+                size(found.samples_bytes),
+                size(found.tape_bytes)
+            );
+        }
+        if let Some(failure) = &self.failure {
+            let _ = writeln!(text, "  fails at the start: {failure}");
+        }
         if !self.functions.is_empty() {
             let row = |function: &FunctionUse| {
                 let looks = match function.whole_motion {
@@ -142,7 +160,8 @@ impl Explanation {
                         false => function.used.clone(),
                     },
                     looks.into(),
-                    function.variables.join(", "),
+                    (function.variables.as_ref())
+                        .map_or("unknown".into(), |names| names.join(", ")),
                 ]
             };
             let rows: Vec<Vec<String>> = self.functions.iter().map(row).collect();

@@ -13,6 +13,7 @@ use super::joints::{self, JointCotangent};
 use super::kkt::{BodyBlocks, SaddlePoint};
 use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
+use super::reduce;
 use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::math::{Mat3, Scalar, rotation};
 use crate::model::Model;
@@ -232,17 +233,20 @@ pub fn pull_back(
         .factorise(model, numbering, (&motions, 0.0), &state.s, metric)
         .map_err(singular)?;
     let (psi, chi) = transposed(saddle, &y_bar);
-    let mut unused = vec![0.0; nv];
-    pull_rate(&psi, &state.s, &mut unused, cot);
-    pull(&motions, [Some(&chi), None, None, None], &mut unused, cot);
+    // By the positions where they are those of the placement.
+    pull_rate(&psi, &state.s, &mut y_bar, cot);
+    pull(&motions, [Some(&chi), None, None, None], &mut y_bar, cot);
+    reduce::keep_placed(numbering, &mut y_bar);
 
     for (i, body) in cot.bodies.iter_mut().enumerate() {
         let o = numbering.velocity(i);
         let (psi_r, psi_theta) = velocities_of(&psi[o..]);
-        body.position -= psi_r;
-        let by_p = rotation::rates(&motions[i].orientation, &psi_theta);
+        let (r, theta) = velocities_of(&y_bar[o..]);
+        body.position += r - psi_r;
+        // T(p)ᵀ T(p) = 1/4.
+        let by_p = rotation::rates(&motions[i].orientation, &(theta * 4.0 - psi_theta));
         for k in 0..4 {
-            body.orientation[k] -= by_p[k];
+            body.orientation[k] += by_p[k];
         }
         let (velocity, omega) = velocities_of(&v_guess_bar[o..]);
         body.velocity += velocity;

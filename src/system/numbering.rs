@@ -66,6 +66,12 @@ impl Numbering {
         self.unknowns() < self.velocities()
     }
 
+    /// Whether some body cannot turn, or not move at all, so that it stays as it is placed.
+    pub fn keeps_placed(&self) -> bool {
+        let placed = |mobility: &Mobility| matches!(mobility, Mobility::Point | Mobility::Fixed);
+        self.mobility.iter().any(placed)
+    }
+
     /// Number of constraint rows.
     pub fn constraints(&self) -> usize {
         self.constraint[self.joints()]

@@ -103,6 +103,20 @@ pub fn project<S: Scalar>(numbering: &Numbering, x: &mut [S]) {
     through(numbering, 1, x, |_| {});
 }
 
+/// Leaves of tangent positions those that stay as the bodies are placed: all of a body that cannot
+/// move, and the rotation of one that cannot turn.
+pub fn keep_placed(numbering: &Numbering, y: &mut [f64]) {
+    for body in 0..numbering.bodies() {
+        let at = numbering.velocity(body);
+        let moves = match numbering.mobility(body) {
+            Mobility::Fixed => 0,
+            Mobility::Point => 3,
+            Mobility::Spatial | Mobility::Planar { .. } => 6,
+        };
+        y[at..at + moves].fill(0.0);
+    }
+}
+
 /// Takes what the mobilities do not admit out of the increments (dq, dv) from a state (q0, v0) to
 /// (q, v). The reduced equations do not see such round-off, so that it would grow from step to step
 /// by extrapolation.

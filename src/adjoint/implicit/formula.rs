@@ -99,7 +99,8 @@ impl<'a> Plan<'a> {
             equations.unscale_columns(h, change);
             equations.scale_rows(h, psi);
             counts.solves += REFINED_SOLVES;
-            let by_time = equations.pull_back(&at, psi, &mut sweep.of.cot.model);
+            let cot = &mut sweep.of.cot.model;
+            let by_time = equations.pull_back_held(&at, psi, cot, &mut change[..nv]);
             sweep.of.by_duration += end * by_time;
 
             let own = &mut self.own;

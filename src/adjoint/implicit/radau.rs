@@ -167,7 +167,8 @@ impl<'a> Plan<'a> {
                 equations.expand(part);
                 equations.scale_rows(h, part);
                 let cot = &mut sweep.of.cot.model;
-                let by_time = equations.pull_back(&stage.instant(), part, cot);
+                let held = &mut change[..nv];
+                let by_time = equations.pull_back_held(&stage.instant(), part, cot, held);
                 sweep.of.by_duration += (end - width * (1.0 - scheme.nodes[i])) * by_time;
                 let own = &mut self.own;
                 rates_of(model, numbering, &stage.q, part, own);

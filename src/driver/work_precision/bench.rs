@@ -11,8 +11,6 @@ use crate::integrate::{
 };
 use crate::problem::Problem;
 use crate::report::PrecisionRow;
-use crate::system::Numbering;
-use crate::system::observe::observe;
 use std::hint::black_box;
 
 /// The scene that is run again and again.
@@ -106,7 +104,7 @@ impl<'a> Bench<'a> {
             let run = match summed {
                 // As an optimisation samples it.
                 true => {
-                    let samples = Integration::new(self.problem, &self.scene, true, true).samples();
+                    let samples = Integration::new(self.problem, &self.scene, None, true).samples();
                     simulate(model, duration, &settings(samples, true))?
                 }
                 false => history,
@@ -125,19 +123,7 @@ impl<'a> Bench<'a> {
 
     /// Largest drift of energy (J), position and velocity constraints over a run.
     fn drift(&self, run: Trajectory<f64>) -> ([f64; 3], Trajectory<f64>) {
-        let model = self.problem.unlowered_scene(self.x).model;
-        let numbering = Numbering::new(&model);
-        let observations = (0..=run.last())
-            .map(|k| observe(&model, &numbering, (run.q(k), run.v(k)), run.time(k)))
-            .collect();
-        let seen = Simulation {
-            at: self.at(run),
-            model,
-            observations,
-            reason: String::new(),
-            warning: None,
-            unlowered: false,
-        };
+        let seen = Simulation::of(self.problem, self.at(run));
         let (position, velocity) = seen.constraint_drift();
         ([seen.energy_drift(), position, velocity], seen.at.run)
     }

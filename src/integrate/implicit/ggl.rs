@@ -55,6 +55,8 @@ pub struct Equations<'a, S> {
     loads: Vec<S>,
     /// Motions with virtual velocities, for pull-backs.
     moving: Vec<Motion<S>>,
+    /// Tangent positions that stay as bodies are placed, for pull-backs.
+    placed: Vec<S>,
     /// Mass that the dynamics are divided by and the multipliers λ counted in (kg).
     mass: f64,
 }
@@ -78,6 +80,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
             gradients: Vec::new(),
             loads: vec![S::zero(); numbering.velocities()],
             moving: Vec::new(),
+            placed: Vec::new(),
             mass: typical_mass(model),
         }
     }
@@ -326,9 +329,26 @@ impl Equations<'_, f64> {
     /// Pulls the adjoint ψ (unscaled, of F1 … F4) back to the parameters of `cot`; returns the
     /// derivative of ψᵀF in time.
     pub fn pull_back(&mut self, at: &Instant<f64>, psi: &[f64], cot: &mut Model<f64>) -> f64 {
+        self.pull_back_held(at, psi, cot, &mut [])
+    }
+
+    /// As [`Equations::pull_back`], and adds the part of F_yᵀψ that the mobilities do not admit, by
+    /// positions that stay as the bodies are placed, to the tangent positions `held`, unless these are
+    /// none.
+    pub fn pull_back_held(
+        &mut self,
+        at: &Instant<f64>,
+        psi: &[f64],
+        cot: &mut Model<f64>,
+        held: &mut [f64],
+    ) -> f64 {
         self.visit(at);
+        let wanted = !held.is_empty() && self.numbering.keeps_placed();
         let (model, numbering) = (self.model, self.numbering);
         let [_, f2, f3, f4] = self.starts();
+        let y = &mut self.placed;
+        y.clear();
+        y.resize(if wanted { held.len() } else { 0 }, 0.0);
         let (psi1, psi2, psi3, psi4) = (&psi[..f2], &psi[f2..f3], &psi[f3..f4], &psi[f4..]);
         for (i, body) in model.bodies.iter().enumerate() {
             let o = numbering.velocity(i);
@@ -349,7 +369,7 @@ impl Equations<'_, f64> {
         }
         let mut by_time = 0.0;
         let mut out = LoadCotangent {
-            y: None,
+            y: wanted.then_some(&mut y[..]),
             v: None,
             time: &mut by_time,
             model: cot,
@@ -364,7 +384,7 @@ impl Equations<'_, f64> {
         );
         let mut pull = |motions: &[Motion<f64>], cotangents: [Option<&[f64]>; 4]| {
             let mut out = JointCotangent {
-                y: None,
+                y: wanted.then_some(&mut y[..]),
                 v: None,
                 model: cot,
             };
@@ -384,6 +404,10 @@ impl Equations<'_, f64> {
         virtually(psi2, [Some(psi3), Some(psi4), None, Some(at.lambda)]);
         if at.mu.iter().any(|&x| x != 0.0) {
             virtually(psi1, [None, None, None, Some(at.mu)]);
+        }
+        if wanted {
+            reduce::keep_placed(numbering, y);
+            held.iter_mut().zip(&*y).for_each(|(held, y)| *held += y);
         }
         by_time
     }

@@ -1,0 +1,48 @@
+//! How far the parts of a scene reach: what their distances are judged against.
+
+use crate::math::{Scalar, Vec3};
+use crate::model::Model;
+use crate::system::assembly::length_scale;
+
+/// Lengths beside which a distance is round-off.
+pub(super) struct Reach {
+    /// By body: its distance from the origin and the lever arms of its joints, and those of the
+    /// bodies at their other ends.
+    bodies: Vec<f64>,
+    whole: f64,
+}
+
+impl Reach {
+    pub fn new<S: Scalar>(model: &Model<S>) -> Self {
+        let bodies = model.bodies.iter();
+        let mut own: Vec<f64> = bodies.map(|body| largest(&body.position)).collect();
+        for joint in &model.joints {
+            let arm = largest(&joint.frame_a.point).max(largest(&joint.frame_b.point));
+            for body in [Some(joint.body_a), joint.body_b].into_iter().flatten() {
+                own[body] = own[body].max(arm);
+            }
+        }
+        let mut bodies = own.clone();
+        for joint in &model.joints {
+            let Some(b) = joint.body_b else { continue };
+            bodies[joint.body_a] = bodies[joint.body_a].max(own[b]);
+            bodies[b] = bodies[b].max(own[joint.body_a]);
+        }
+        Self {
+            bodies,
+            whole: length_scale(model),
+        }
+    }
+
+    /// That of some bodies; of the whole scene where they have none.
+    pub fn of(&self, bodies: [Option<usize>; 2]) -> f64 {
+        let own = bodies.into_iter().flatten().map(|body| self.bodies[body]);
+        let longest = own.fold(0.0, f64::max);
+        if longest > 0.0 { longest } else { self.whole }
+    }
+}
+
+/// Largest component.
+pub(super) fn largest<S: Scalar>(v: &Vec3<S>) -> f64 {
+    v.iter().fold(0.0, |m, x| m.max(x.re().abs()))
+}

@@ -1,0 +1,129 @@
+//! Bodies that cannot turn: what slides along an axis of ground, or of another such body. They have
+//! three unknowns, and the rows that hold their rotation are gone.
+//!
+//! Their rotation is that of the placement, as long as it closes these rows.
+
+use super::Kept;
+use super::examine::{Designs, Examiner, Verdict};
+use super::fixed::{Fixed, is_void};
+use crate::math::Scalar;
+use crate::model::{ConstraintRow, Freedom, Joint, Mobility, Model};
+use crate::system::{Motion, Numbering, constraint, initial, side};
+
+/// Bodies that cannot turn, though they move.
+#[derive(Clone, Debug, Default)]
+pub struct Unturned {
+    /// By body, whether it is one; empty if none is.
+    bodies: Vec<bool>,
+    /// By body, whether it is one or cannot move at all.
+    still: Vec<bool>,
+}
+
+fn holds_rotation(row: &ConstraintRow) -> bool {
+    matches!(row, ConstraintRow::Perpendicular { .. })
+}
+
+/// Whether a joint holds the rotation of its bodies against each other.
+fn holds_both<S>(joint: &Joint<S>) -> bool {
+    let turns = joint.drives.iter().any(|own| own.freedom == Freedom::Turn);
+    !turns && joint.all_rows().filter(holds_rotation).count() == 3
+}
+
+impl Unturned {
+    /// Bodies whose rotation ground holds.
+    pub(super) fn find(designs: &Designs, fixed: &Fixed) -> (Self, Option<Kept>) {
+        let model = &designs.start.model;
+        let count = model.bodies.len();
+        let held: Vec<bool> = (0..count).map(|body| fixed.holds_end(Some(body))).collect();
+        let mut still = held.clone();
+        loop {
+            let next = model.joints.iter().find_map(|joint| {
+                let ends = [Some(joint.body_a), joint.body_b];
+                let mut free = ends.into_iter().flatten().filter(|&body| !still[body]);
+                match (free.next(), free.next()) {
+                    (Some(body), None) if holds_both(joint) && !is_void(joint) => Some(body),
+                    _ => None,
+                }
+            });
+            match next {
+                Some(body) => still[body] = true,
+                None => break,
+            }
+        }
+        let bodies: Vec<bool> = still.iter().zip(&held).map(|(s, h)| *s && !h).collect();
+        if !bodies.contains(&true) {
+            return Default::default();
+        }
+        let found = Self { bodies, still };
+        let verdict = designs.ask(
+            |scene| found.holds(&scene.model, 0.0),
+            |scene, change| found.holds(&scene.model, change),
+        );
+        match verdict {
+            Ok(()) => (found, None),
+            Err(obstacles) => {
+                let kept = Kept {
+                    reduction: "the rotation of bodies that cannot turn".into(),
+                    obstacles,
+                };
+                (Self::default(), Some(kept))
+            }
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
+    /// Whether body `index` is one.
+    pub fn contains(&self, index: usize) -> bool {
+        self.bodies.get(index) == Some(&true)
+    }
+
+    /// Whether ground holds the rotation of both ends of a joint.
+    fn holds_joint<S>(&self, joint: &Joint<S>) -> bool {
+        let still = |body: usize| self.still.get(body) == Some(&true);
+        still(joint.body_a) && joint.body_b.is_none_or(still) && !is_void(joint)
+    }
+
+    /// Leaves out of a model what they do not need.
+    pub(super) fn apply<S: Scalar>(&self, model: &mut Model<S>) {
+        let bodies = model.bodies.iter_mut().zip(&self.bodies);
+        for (body, _) in bodies.filter(|(_, own)| **own) {
+            body.mobility = Mobility::Point;
+        }
+        for joint in &mut model.joints {
+            if self.holds_joint(joint) {
+                joint.identical = joint.all_rows().filter(holds_rotation).collect();
+                let held = |row: &ConstraintRow| !holds_rotation(row);
+                joint.left_out.retain(held);
+            }
+        }
+    }
+
+    /// Examines whether the rows that hold the bodies' rotation are closed where these are placed.
+    pub(super) fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Verdict {
+        let mut examiner = Examiner::new(change);
+        if self.is_empty() {
+            return Ok(());
+        }
+        let (q, v) = initial::guess(model);
+        let mut motions = Vec::new();
+        Motion::all_normalised(&Numbering::new(model), &q, &v, &mut motions);
+        let ground = Motion::ground();
+        for joint in model.joints.iter().filter(|joint| self.holds_joint(joint)) {
+            let name = &joint.name;
+            let turns = |own: &crate::model::Drive<S>| own.freedom == Freedom::Turn;
+            if joint.drives.iter().any(turns) {
+                examiner.tell(format!("joint \"{name}\" is driven to turn"));
+            }
+            let (a, b) = side::sides(joint, &motions, &ground, S::zero());
+            for row in joint.all_rows().filter(holds_rotation) {
+                let what = || (format!("joint \"{name}\" turns its bodies"), "rad");
+                examiner.zero(constraint::value(row, &a, &b), 1.0, what);
+            }
+        }
+        examiner.verdict()
+    }
+}

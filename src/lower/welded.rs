@@ -1,0 +1,297 @@
+//! Bodies that are welded to each other and move: which of them become one.
+//!
+//! The start of a scene is the state nearest to its placement that closes the joints, and nearest is
+//! another matter for one body than for several. So bodies are merged where nothing has to be closed:
+//! where the joints of all that hangs together with them are closed, and move as they allow, as the
+//! bodies are placed, at every design.
+
+use super::examine::{Designs, Examiner, Obstacle, Verdict};
+use super::merge::{self, Cluster};
+use super::{Kept, fixed};
+use crate::functions::Scene;
+use crate::integrate::Trajectory;
+use crate::math::{Scalar, Vec3};
+use crate::model::{Joint, JointKind, LoadKind, Model};
+use crate::system::{Motion, Numbering, constraint, initial, side};
+
+/// Bodies that are merged.
+#[derive(Clone, Debug, Default)]
+pub struct Welded {
+    /// The bodies that move as one.
+    pub clusters: Vec<Cluster>,
+    /// The welds that vanish.
+    pub welds: Vec<usize>,
+    /// Joints of all that hangs together with them.
+    closed: Vec<usize>,
+    /// Bodies of one cluster whose rotation functions watch.
+    alike: Vec<[usize; 2]>,
+}
+
+/// A weld of two bodies that move, and what stands against merging them.
+struct Candidate {
+    joint: usize,
+    bodies: [usize; 2],
+    obstacles: Vec<Obstacle>,
+}
+
+impl Welded {
+    /// Finds the bodies to merge, and the welds that stay with what stands against them.
+    pub(super) fn find(designs: &Designs) -> (Self, Vec<Kept>) {
+        let model = &designs.start.model;
+        let held = fixed::welded_to_ground(model);
+        let between = |joint: &Joint<f64>| match joint.body_b {
+            Some(b) if !held[joint.body_a] && !held[b] => Some([joint.body_a, b]),
+            _ => None,
+        };
+        let welds = model.joints.iter().enumerate();
+        let welds = welds.filter(|(_, joint)| joint.kind == JointKind::Weld);
+        let mut candidates: Vec<Candidate> = welds
+            .filter_map(|(joint, weld)| {
+                Some(Candidate {
+                    joint,
+                    bodies: between(weld)?,
+                    obstacles: loads_on(model, joint),
+                })
+            })
+            .collect();
+        if candidates.is_empty() {
+            return Default::default();
+        }
+        // What hangs together, ground not counted.
+        let mut together = Groups::new(model.bodies.len());
+        for [a, b] in model.joints.iter().filter_map(between) {
+            together.join(a, b);
+        }
+        let joints_of = |group: usize, together: &mut Groups| -> Vec<usize> {
+            let joints = model.joints.iter().enumerate();
+            let own = joints.filter(|(_, joint)| {
+                let ends = [Some(joint.body_a), joint.body_b];
+                let mut free = ends.into_iter().flatten().filter(|&body| !held[body]);
+                free.any(|body| together.of(body) == group)
+            });
+            own.map(|(j, _)| j).collect()
+        };
+        let mut found = Self::default();
+        let mut examined: Vec<(usize, Vec<Obstacle>)> = Vec::new();
+        for candidate in &mut candidates {
+            let group = together.of(candidate.bodies[0]);
+            let known = examined.iter().position(|(own, _)| *own == group);
+            let known = known.unwrap_or_else(|| {
+                let joints = joints_of(group, &mut together);
+                let verdict = designs.ask(
+                    |scene| closed(&scene.model, &joints, 0.0),
+                    |scene, change| closed(&scene.model, &joints, change),
+                );
+                if verdict.is_ok() {
+                    found.closed.extend(joints);
+                }
+                examined.push((group, verdict.err().unwrap_or_default()));
+                examined.len() - 1
+            });
+            candidate.obstacles.extend_from_slice(&examined[known].1);
+        }
+        found.join(designs, &mut candidates);
+        let kept = candidates.into_iter().filter_map(|candidate| {
+            let name = &model.joints[candidate.joint].name;
+            (!candidate.obstacles.is_empty()).then(|| Kept {
+                reduction: format!("weld \"{name}\" between bodies that move"),
+                obstacles: candidate.obstacles,
+            })
+        });
+        (found, kept.collect())
+    }
+
+    /// Joins the bodies of those welds that nothing stands against.
+    fn join(&mut self, designs: &Designs, candidates: &mut [Candidate]) {
+        let model = &designs.start.model;
+        let watched = merge::watched(&designs.start);
+        let mut host: Vec<Option<usize>> = vec![None; model.bodies.len()];
+        for &body in &watched {
+            host[body] = Some(body);
+        }
+        let mut groups = Groups::new(model.bodies.len());
+        let vanishing = |candidates: &[Candidate], j: usize| {
+            let mut all = candidates.iter();
+            all.any(|own| own.joint == j && own.obstacles.is_empty())
+        };
+        for c in 0..candidates.len() {
+            if !candidates[c].obstacles.is_empty() {
+                continue;
+            }
+            let [a, b] = candidates[c].bodies.map(|body| groups.of(body));
+            if a == b {
+                continue;
+            }
+            let mut links = |ends: [Option<usize>; 2]| {
+                let ends = ends.map(|body| body.map(|body| groups.of(body)));
+                ends == [Some(a), Some(b)] || ends == [Some(b), Some(a)]
+            };
+            let mut obstacles = Vec::new();
+            for (j, joint) in model.joints.iter().enumerate() {
+                if links([Some(joint.body_a), joint.body_b]) && !vanishing(candidates, j) {
+                    let name = &joint.name;
+                    obstacles.push(Obstacle::plain(format!("joint \"{name}\" joins them too")));
+                }
+            }
+            for load in &model.loads {
+                if let LoadKind::Spring { body_a, body_b, .. } = load.kind
+                    && links([Some(body_a), body_b])
+                {
+                    let name = &load.name;
+                    obstacles.push(Obstacle::plain(format!("load \"{name}\" joins them too")));
+                }
+            }
+            if let (Some(first), Some(second)) = (host[a], host[b]) {
+                let pair = [first, second];
+                let verdict = designs.ask(
+                    |scene| alike(&scene.model, &[pair], 0.0),
+                    |scene, change| alike(&scene.model, &[pair], change),
+                );
+                match verdict {
+                    Ok(()) => self.alike.push(pair),
+                    Err(found) => obstacles.extend(found),
+                }
+            }
+            if obstacles.is_empty() {
+                let watched = host[a].or(host[b]);
+                groups.join(a, b);
+                host[groups.of(a)] = watched;
+            }
+            candidates[c].obstacles = obstacles;
+        }
+        for first in 0..model.bodies.len() {
+            let group = groups.of(first);
+            let members: Vec<usize> = (first..model.bodies.len())
+                .filter(|&body| groups.of(body) == group)
+                .collect();
+            let known = self.clusters.iter().any(|own| own.members.contains(&first));
+            if members.len() > 1 && !known {
+                self.clusters.push(Cluster {
+                    host: host[group].unwrap_or(first),
+                    members,
+                });
+            }
+        }
+        let vanish = candidates.iter().filter(|own| own.obstacles.is_empty());
+        self.welds = vanish.map(|own| own.joint).collect();
+        if self.welds.is_empty() {
+            self.closed.clear();
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.clusters.is_empty()
+    }
+
+    /// Examines whether the bodies may be merged.
+    pub(super) fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Verdict {
+        closed(model, &self.closed, change)?;
+        alike(model, &self.alike, change)
+    }
+
+    /// Merges the bodies.
+    pub(super) fn apply<S: Scalar>(&self, scene: &mut Scene<S>) {
+        merge::merge(scene, &self.clusters, &self.welds);
+    }
+
+    /// The motion of all bodies of `written`, from that of the merged ones.
+    pub(super) fn expand(&self, written: &Model<f64>, run: &Trajectory<f64>) -> Trajectory<f64> {
+        merge::expand(written, &self.clusters, run)
+    }
+}
+
+/// Loads that act by way of a joint, which would be gone.
+fn loads_on(model: &Model<f64>, joint: usize) -> Vec<Obstacle> {
+    let acts = |kind: &LoadKind<f64>| match kind {
+        LoadKind::TorsionSpring { joint: own, .. }
+        | LoadKind::Damping { joint: own, .. }
+        | LoadKind::BallDamping { joint: own, .. }
+        | LoadKind::Friction { joint: own, .. } => *own == joint,
+        LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Spring { .. } => false,
+    };
+    let loads = model.loads.iter().filter(|load| acts(&load.kind));
+    let told = loads.map(|load| Obstacle::plain(format!("load \"{}\" acts on it", load.name)));
+    told.collect()
+}
+
+/// Examines whether `joints` are closed where the bodies are placed, and the velocities there are
+/// such as they allow.
+fn closed<S: Scalar>(model: &Model<S>, joints: &[usize], change: f64) -> Verdict {
+    let mut examiner = Examiner::new(change);
+    let (q, v) = initial::guess(model);
+    let mut motions = Vec::new();
+    Motion::all_normalised(&Numbering::new(model), &q, &v, &mut motions);
+    let ground = Motion::ground();
+    let size = |x: &Vec3<S>| x.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
+    for &j in joints {
+        let joint = &model.joints[j];
+        let name = &joint.name;
+        let (a, b) = side::sides(joint, &motions, &ground, S::zero());
+        let reach = [&a, &b].map(|side| size(&side.motion.position) + size(&side.frame.point));
+        let reach = reach[0].max(reach[1]).max(joint.frame_a.length.re().abs());
+        let speed = [&a, &b].map(|side| {
+            size(&side.motion.velocity) + size(&side.motion.omega) * size(&side.frame.point)
+        });
+        let spin = [&a, &b].map(|side| size(&side.motion.omega));
+        let (speed, spin) = (speed[0].max(speed[1]), spin[0].max(spin[1]));
+        for row in joint.all_rows() {
+            let what = || {
+                let what = "is open where the bodies are placed";
+                (format!("joint \"{name}\" {what}"), "")
+            };
+            let (length, rate) = match row.has_force() {
+                true => (reach, speed + spin * reach),
+                false => (1.0, spin),
+            };
+            examiner.zero(constraint::value(row, &a, &b), length, what);
+            let what = || {
+                let what = "opens by the velocities that the bodies are placed with";
+                (format!("joint \"{name}\" {what}"), "")
+            };
+            examiner.zero(constraint::rate(row, &a, &b), rate, what);
+        }
+    }
+    examiner.verdict()
+}
+
+/// Examines whether the bodies of each pair are turned alike.
+fn alike<S: Scalar>(model: &Model<S>, pairs: &[[usize; 2]], change: f64) -> Verdict {
+    let mut examiner = Examiner::new(change);
+    for pair in pairs {
+        let [a, b] = pair.map(|body| &model.bodies[body]);
+        let between: [S; 4] = std::array::from_fn(|k| a.orientation[k] - b.orientation[k]);
+        examiner.vanishes(&between, 1.0, || {
+            let (a, b) = (&a.name, &b.name);
+            let what = "are watched, and turned against each other";
+            (
+                format!("the rotations of bodies \"{a}\" and \"{b}\" {what}"),
+                "",
+            )
+        });
+    }
+    examiner.verdict()
+}
+
+/// Disjoint groups of numbers.
+struct Groups(Vec<usize>);
+
+impl Groups {
+    fn new(count: usize) -> Self {
+        Self((0..count).collect())
+    }
+
+    /// The number that stands for the group of i.
+    fn of(&mut self, mut i: usize) -> usize {
+        while self.0[i] != i {
+            self.0[i] = self.0[self.0[i]];
+            i = self.0[i];
+        }
+        i
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.of(a), self.of(b));
+        self.0[a] = b;
+    }
+}
