@@ -197,3 +197,23 @@ fn add_block<S: Scalar, const N: usize>(
     }
     N
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_any_length_are_added() {
+        let width = 31;
+        let rows: Vec<f64> = (0..3 * width).map(|k| (k * k % 17) as f64).collect();
+        let weights = [(0, 0.5), (2, -2.0)];
+        for (at, length) in [(0, width), (3, 15), (5, 8), (7, 1), (9, 0), (17, 14)] {
+            let mut out: Vec<f64> = (0..length).map(|k| k as f64).collect();
+            add_rows(&mut out, 4.0, &weights, &rows, (width, at));
+            for (k, out) in out.into_iter().enumerate() {
+                let sum = 0.5 * rows[at + k] - 2.0 * rows[2 * width + at + k];
+                assert_eq!(out, k as f64 + 4.0 * sum, "{k} of {length} from {at}");
+            }
+        }
+    }
+}
