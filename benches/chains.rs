@@ -1,15 +1,18 @@
 //! Chains of N hinged bars: time a step and body, error of the whole second, peak memory.
 //!
 //! `cargo bench --bench chains` prints a table; `cargo bench --bench chains -- memory 1024 1000`
-//! prints the peak resident set of one run of so many bars and steps with its adjoint.
+//! prints the peak resident set of one run of so many bars and steps with its adjoint. Times are the
+//! processor time of the thread where the system tells it (Linux) and wall time elsewhere.
 //!
 //! Bars of 1 m and 1 kg, 0.1 m square, hinged about z, start at rest along x and fall for 1 s.
+
+mod watch;
 
 use flexbody::driver::Evaluated;
 use flexbody::integrate::{IntegrationFailure, Method, Spacing, Start};
 use flexbody::problem::Problem;
 use serde_json::{Map, Value, json};
-use std::time::Instant;
+use watch::fastest;
 
 /// The chain as a problem file.
 fn chain(bars: usize, duration: f64) -> String {
@@ -48,17 +51,6 @@ fn chain(bars: usize, duration: f64) -> String {
 fn problem(bars: usize, duration: f64) -> Problem {
     Problem::parse(&chain(bars, duration), "chain.json", &[])
         .unwrap_or_else(|faults| panic!("{faults}"))
-}
-
-/// Seconds of the fastest of `repeats` calls, and the last result.
-fn fastest<T>(repeats: usize, mut f: impl FnMut() -> T) -> (f64, T) {
-    let (mut best, mut last) = (f64::INFINITY, None);
-    for _ in 0..repeats {
-        let start = Instant::now();
-        last = Some(f());
-        best = best.min(start.elapsed().as_secs_f64());
-    }
-    (best, last.expect("at least one call"))
 }
 
 /// Place of the last bar at the end.

@@ -6,11 +6,11 @@
 //! gravity and the duration.
 
 mod scenes;
+mod watch;
 
 use flexbody::adjoint;
 use scenes::{Case, NAMES};
-use std::hint::black_box;
-use std::time::{Duration, Instant};
+use watch::fastest;
 
 /// Runs of which the fastest counts.
 const RUNS: usize = 10;
@@ -46,14 +46,10 @@ fn main() {
 
 fn row(case: &Case) {
     let run = case.simulate();
-    let forward = fastest(|| {
-        black_box(case.simulate());
-    });
+    let (forward, _) = fastest(RUNS, || case.simulate());
     let gradient = |which: &[usize]| {
-        fastest(|| {
-            let found = adjoint::gradients(&case.scene, &run, which).expect("regular");
-            black_box(found);
-        })
+        let gradients = || adjoint::gradients(&case.scene, &run, which).expect("regular");
+        fastest(RUNS, gradients).0
     };
     let (one, three) = (gradient(&[0]), gradient(&[0, 1, 2]));
     let per_step = |count: usize| count as f64 / run.grid.steps() as f64;
@@ -72,48 +68,4 @@ fn row(case: &Case) {
         three,
         three / forward
     );
-}
-
-/// Least time of a run [s].
-fn fastest(mut work: impl FnMut()) -> f64 {
-    work();
-    let mut least = Duration::MAX;
-    for _ in 0..RUNS {
-        let start = Watch::start();
-        work();
-        least = least.min(start.elapsed());
-    }
-    least.as_secs_f64()
-}
-
-/// A clock of this thread.
-struct Watch {
-    wall: Instant,
-    used: Option<Duration>,
-}
-
-impl Watch {
-    fn start() -> Self {
-        Self {
-            used: processor_time(),
-            wall: Instant::now(),
-        }
-    }
-
-    fn elapsed(&self) -> Duration {
-        let wall = self.wall.elapsed();
-        match (processor_time(), self.used) {
-            (Some(now), Some(then)) => now.saturating_sub(then),
-            _ => wall,
-        }
-    }
-}
-
-/// Time that this thread has run on a processor, the first number of its `schedstat`.
-fn processor_time() -> Option<Duration> {
-    // The kernel brings the number up to date when it schedules.
-    std::thread::yield_now();
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds = text.split_whitespace().next()?.parse().ok()?;
-    Some(Duration::from_nanos(nanoseconds))
 }

@@ -42,10 +42,15 @@ impl<'a> Sensitivity<'a> {
         }
     }
 
+    /// Whether the function depends on the states of sample k.
+    pub fn depends_on(&self, k: usize) -> bool {
+        self.linearised.depends_on(k)
+    }
+
     /// Puts the partial derivatives of the function at sample k into `sample`; false if there are
     /// none.
     pub fn linearise(&mut self, scene: &Scene<f64>, run: &Trajectory<f64>, k: usize) -> bool {
-        if !self.linearised.depends_on(k) {
+        if !self.depends_on(k) {
             return false;
         }
         for part in &mut self.sample {

@@ -76,7 +76,8 @@ pub fn estimate(
         }
         Ok(all)
     };
-    let (coarse, finer) = (numbers(at, which)?, numbers(&fine, which)?);
+    let (coarse, finer) = rayon::join(|| numbers(at, which), || numbers(&fine, which));
+    let (coarse, finer) = (coarse?, finer?);
     let summed: Vec<usize> = which.iter().copied().filter(sums).collect();
     let doubled = fine.run.last() == 2 * at.run.last();
     if doubled {

@@ -127,13 +127,15 @@ impl Solved {
 
     /// Simulates both ends and makes the record.
     pub fn complete(self, problem: &Problem, file: &str) -> Optimisation {
-        let start = simulate(problem, &problem.start());
         let refreshes = self.integration.refreshes;
         // With the steps that its values were found with.
         let mut whole = self.integration.clone();
         whole.see_whole();
         let x = unscaled(problem, &self.outcome.x);
-        let end = simulate_with(&mut whole, problem, &x).ok();
+        let (start, end) = rayon::join(
+            || simulate(problem, &problem.start()),
+            || simulate_with(&mut whole, problem, &x).ok(),
+        );
         let mut optimum = record(
             problem,
             file,

@@ -182,7 +182,7 @@ fn release_weights<S: Scalar>(
     let values = sample(&range, &turns, model, run);
     let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), *rho);
     ReleaseWeights {
-        weights: soft.weights,
+        weights: without_negligible(soft.weights),
         range,
         turns,
         rho: *rho,
@@ -202,6 +202,9 @@ fn mean_flight<S: Scalar>(
     let best = flight(release.peak);
     let mut away = [S::zero(); 5];
     for (k, &w) in release.weights.iter().enumerate() {
+        if w.re() == 0.0 {
+            continue;
+        }
         let z = flight(k);
         for i in 0..5 {
             away[i] += (z[i] - best[i]) * w;
@@ -215,6 +218,22 @@ struct Weighted {
     instant: Instant<f64>,
     turns: Option<Vec<f64>>,
     weights: Vec<f64>,
+}
+
+/// Weight, relative to the largest, of instants that add nothing: their derivatives would have to be
+/// 1/ε times as large as there to show in the last digit.
+const NEGLIGIBLE: f64 = f64::EPSILON * f64::EPSILON;
+
+/// The weights with zeros for negligible ones. A soft maximum leaves most instants with such, and
+/// the adjoint need not look at them.
+fn without_negligible<S: Scalar>(mut weights: Vec<S>) -> Vec<S> {
+    let largest = weights.iter().fold(0.0_f64, |m, w| m.max(w.re().abs()));
+    for w in &mut weights {
+        if w.re().abs() < NEGLIGIBLE * largest {
+            *w = S::zero();
+        }
+    }
+    weights
 }
 
 /// A function linearised about a run: what it adds to the cotangents of every instant.
@@ -276,7 +295,7 @@ impl<'a> Linearised<'a> {
                 this.quantity = Some(Weighted {
                     instant: instant.clone(),
                     turns,
-                    weights,
+                    weights: without_negligible(weights),
                 });
             }
             Function::Clearance {
@@ -331,7 +350,7 @@ impl<'a> Linearised<'a> {
         self.quantity = Some(Weighted {
             instant: release.range,
             turns: release.turns,
-            weights: by_range,
+            weights: without_negligible(by_range),
         });
         self.flight = Some(WeightedFlight {
             weights: release.weights,

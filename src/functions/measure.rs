@@ -3,10 +3,11 @@
 use super::flight::{self, Flight};
 use super::instant::{EnergyPart, Gate, Instant, Projectile};
 use crate::integrate::Trajectory;
+use crate::math::rotation::Quat;
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3, rotation};
 use crate::model::Model;
-use crate::system::bodies::add6;
+use crate::system::bodies::{add6, positions_of};
 use crate::system::marker::{self, Jet};
 use crate::system::{Motion, Numbering, loads};
 
@@ -46,6 +47,11 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
         Motion::of(self.numbering, body, self.q, self.v).accelerated(a)
     }
 
+    /// Euler parameters of a body.
+    fn orientation(&self, body: usize) -> Quat<S> {
+        positions_of(&self.q[self.numbering.position(body)..]).1
+    }
+
     /// Motions of all bodies.
     fn motions(&self) -> Vec<Motion<S>> {
         let mut motions = Vec::with_capacity(self.numbering.bodies());
@@ -64,7 +70,7 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
 
     /// Rotation of a body about an axis, `turns` (a multiple of 2π) added.
     fn rotation(&self, body: usize, axis: &Vec3<S>, turns: f64) -> S {
-        rotation::twist(&self.motion(body).orientation, axis) + turns
+        rotation::twist(&self.orientation(body), axis) + turns
     }
 
     fn openness(&self, gate: &Option<Gate>, turns: f64) -> S {
@@ -293,7 +299,7 @@ fn pull_rotation(
     weight: f64,
     out: &mut SnapshotCotangent,
 ) -> Vec3<f64> {
-    let p = at.motion(body).orientation;
+    let p = at.orientation(body);
     let (by_p, by_axis) = rotation::twist_derivative(&p, axis);
     let theta = rotation::rate_product(&p, &by_p) * (0.5 * weight);
     add6(&mut out.y[at.numbering.velocity(body)..], &ZERO, &theta);

@@ -21,6 +21,11 @@ impl<S: Copy, const N: usize> Rows<S, N> {
         }
     }
 
+    /// Lengths of the vectors of a record.
+    pub fn lengths(&self) -> [usize; N] {
+        self.lengths
+    }
+
     /// Number of numbers in a record.
     pub fn width(&self) -> usize {
         self.lengths.iter().sum()

@@ -8,7 +8,7 @@
 //! ȳ~   = (projection)ᵀ ȳ*
 //! k̄_i += h b_i ȳ~,     ȳ_n = ȳ~
 //! i = 11 … 1:   ȳ_i = Fᵀ k̄_i,   k̄_j += h a_ij ȳ_i,   ȳ_n += ȳ_i
-//! df/dh = Σ ȳ~ · b_i k_i + Σ ȳ_i · a_ij k_j
+//! df/dh = Σ k̄_j · k_j / h
 //! ```
 //!
 //! (Hager 2000; Sandu 2006.) One symmetric solve a stage and function; the factors of a stage
@@ -58,8 +58,17 @@ pub(super) fn gradients(
         let (from, to) = (tape.node(n - 1), tape.node(n));
         let (begin, end) = (run.grid.ends()[n - 1], run.grid.ends()[n]);
         let first = first_sample(run, n, sample);
+        let samples = first..=sample;
+        sample = first - 1;
+        counts.steps += 1;
+        // The end of the motion may be of no concern to any function.
+        let concerns =
+            |sweep: &Sweep| sweep.begun || samples.clone().any(|k| sweep.of.depends_on(k));
+        if !sweeps.iter().any(concerns) {
+            continue;
+        }
         let inside = |place: &Place| matches!(place, Place::Inside { .. });
-        let dense = run.places[first..=sample].iter().any(inside);
+        let dense = run.places[samples.clone()].iter().any(inside);
         let failed = |failure| failed(failure, (model, numbering), (n, run.duration * end));
         let singular = |singular| failed(StepFailure::Singular(singular));
         let data = match &mut again {
@@ -69,12 +78,11 @@ pub(super) fn gradients(
                 repeat(stepper, (from, to, &mut end_again), times, dense).map_err(failed)?
             }
         };
-        for k in (first..=sample).rev() {
+        for k in samples.rev() {
             for sweep in &mut sweeps {
                 sweep.sample(scene, run, k, Some((data, from)));
             }
         }
-        sample = first - 1;
         let stage = |i: usize, field: &mut Accelerations<f64>, sweeps: &mut [Sweep]| {
             if sweeps.iter().all(|sweep| !sweep.touched[i]) {
                 return Ok(());
@@ -85,9 +93,9 @@ pub(super) fn gradients(
             field.stand(q, v, run.duration * begin + h * C[i]);
             field.factorise()?;
             let found = (row(data.a, nv, i), row(data.lambda, nc, i));
-            for sweep in sweeps {
+            for sweep in sweeps.iter_mut().filter(|sweep| sweep.touched[i]) {
                 let (q, v) = sweep.stage(i, field, (q, v, fraction), found);
-                sweep.spread(A[i], (&q, &v), h, run.grid.width(n), data);
+                sweep.spread(A[i], (&q, &v), h);
                 sweep.room.back([q, v]);
             }
             Ok(())
@@ -99,18 +107,17 @@ pub(super) fn gradients(
         }
         field.stand(to.q, to.v, run.duration * end);
         field.factorise().map_err(singular)?;
-        for sweep in &mut sweeps {
+        for sweep in sweeps.iter_mut().filter(|sweep| sweep.begun) {
             sweep.node(&mut field, to, end);
             projection::pull_back(sweep, &mut field, data, to, (&mut scratch, end));
-            sweep.end(h, run.grid.width(n), data);
+            sweep.end(h);
         }
         for i in (1..STAGES).rev() {
             stage(i, &mut field, &mut sweeps).map_err(singular)?;
         }
         for sweep in &mut sweeps {
-            sweep.leave_step();
+            sweep.leave_step(data, run.duration);
         }
-        counts.steps += 1;
     }
     counts.factorisations += field.factorisations;
     counts.solves += field.solves;

@@ -6,7 +6,7 @@ use crate::adjoint::sensitivity::{Sensitivity, add_scaled, dot};
 use crate::functions::Scene;
 use crate::integrate::Trajectory;
 use crate::integrate::explicit::tableau::{ALL, B, END, dense_weights};
-use crate::integrate::explicit::{NodeView, StepView};
+use crate::integrate::explicit::{NodeView, StepView, add_rows};
 use crate::integrate::grid::Place;
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
@@ -19,6 +19,9 @@ pub(super) struct Sweep<'a> {
     pub of: Sensitivity<'a>,
     /// Cotangents of q̇ and v̇ at the node after the step, as the step after it uses them.
     pub node: (Vec<f64>, Vec<f64>),
+    /// Whether the march has come to an instant that the function depends on: before, every cotangent
+    /// is zero.
+    pub begun: bool,
     /// Which stages have cotangents.
     pub touched: [bool; ALL],
     /// Cotangents of q̇ and v̇ at the stages.
@@ -36,6 +39,7 @@ impl<'a> Sweep<'a> {
         Self {
             of,
             node: (vec![0.0; nq], vec![0.0; nv]),
+            begun: false,
             touched: [false; ALL],
             qdot: vec![0.0; ALL * nq],
             a: vec![0.0; ALL * nv],
@@ -56,6 +60,7 @@ impl<'a> Sweep<'a> {
         if !self.of.linearise(scene, run, k) {
             return;
         }
+        self.begun = true;
         let numbering = &run.numbering;
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         let [y, v, a] = &self.of.sample;
@@ -77,23 +82,25 @@ impl<'a> Sweep<'a> {
                 let (in_q, in_v) = (from_q..to_q, from_v..to_v);
                 let (w, rate) = dense_weights(theta);
                 let mut raw = self.room.zeros(nq);
-                data.positions(from, h, &w, in_q.clone(), &mut raw);
+                raw[in_q.clone()].copy_from_slice(&from.q[in_q.clone()]);
+                let at = (nq, in_q.start);
+                add_rows(&mut raw[in_q.clone()], h, &w, data.qdot, at);
                 bodies::add_unit_cotangent(numbering, &raw, y, &mut q);
                 self.room.back([raw]);
                 let (q, v, a) = (&q[in_q.clone()], &v[in_v.clone()], &a[in_v.clone()]);
-                for i in 0..ALL {
-                    if w[i] == 0.0 && rate[i] == 0.0 {
-                        continue;
-                    }
+                let accelerated = a.iter().any(|&x| x != 0.0);
+                for ((i, w), (_, rate)) in w.into_iter().zip(rate) {
                     self.touched[i] = true;
                     let by_q = &mut row_mut(&mut self.qdot, nq, i)[in_q.clone()];
-                    add_scaled(by_q, h * w[i], q);
+                    add_scaled(by_q, h * w, q);
                     let by_a = &mut row_mut(&mut self.a, nv, i)[in_v.clone()];
-                    add_scaled(by_a, h * w[i], v);
-                    add_scaled(by_a, rate[i], a);
-                    let slope = dot(q, &row(data.qdot, nq, i)[in_q.clone()])
-                        + dot(v, &row(data.a, nv, i)[in_v.clone()]);
-                    self.of.by_duration += width * w[i] * slope;
+                    add_scaled(by_a, h * w, v);
+                    if accelerated {
+                        add_scaled(by_a, rate, a);
+                        // Accelerations do not scale with the step, as `leave_step` takes it.
+                        let slope = dot(a, &row(data.a, nv, i)[in_v.clone()]);
+                        self.of.by_duration -= rate * slope / run.duration;
+                    }
                 }
                 add_scaled(&mut self.before.0[in_q], 1.0, q);
                 add_scaled(&mut self.before.1[in_v], 1.0, v);
@@ -133,36 +140,18 @@ impl<'a> Sweep<'a> {
 
     /// Hands the cotangents of a stage's state on to the stages that it was made of and to the node
     /// before the step.
-    pub fn spread(
-        &mut self,
-        weights: &[(usize, f64)],
-        (q, v): (&[f64], &[f64]),
-        h: f64,
-        width: f64,
-        data: StepView<f64>,
-    ) {
+    pub fn spread(&mut self, weights: &[(usize, f64)], (q, v): (&[f64], &[f64]), h: f64) {
         add_scaled(&mut self.before.0, 1.0, q);
         add_scaled(&mut self.before.1, 1.0, v);
-        self.hand_on(weights, (q, v), h, width, data);
+        self.hand_on(weights, (q, v), h);
     }
 
-    fn hand_on(
-        &mut self,
-        weights: &[(usize, f64)],
-        (q, v): (&[f64], &[f64]),
-        h: f64,
-        width: f64,
-        data: StepView<f64>,
-    ) {
-        let mut slope = 0.0;
+    fn hand_on(&mut self, weights: &[(usize, f64)], (q, v): (&[f64], &[f64]), h: f64) {
         for &(j, weight) in weights {
             self.touched[j] = true;
             add_scaled(row_mut(&mut self.qdot, q.len(), j), h * weight, q);
             add_scaled(row_mut(&mut self.a, v.len(), j), h * weight, v);
-            slope +=
-                weight * (dot(q, row(data.qdot, q.len(), j)) + dot(v, row(data.a, v.len(), j)));
         }
-        self.of.by_duration += width * slope;
     }
 
     /// Pulls the cotangents of the derivatives at the node after the step back to its state, where
@@ -199,20 +188,27 @@ impl<'a> Sweep<'a> {
     }
 
     /// Hands the cotangents of the unprojected end on to the stages and to the node before.
-    pub fn end(&mut self, h: f64, width: f64, data: StepView<f64>) {
+    pub fn end(&mut self, h: f64) {
         let q = self.room.copy(&self.of.q.value);
         let v = self.room.copy(&self.of.v.value);
-        self.hand_on(B, (&q, &v), h, width, data);
+        self.hand_on(B, (&q, &v), h);
         self.room.back([q, v]);
     }
 
-    /// Moves to the node before the step.
-    pub fn leave_step(&mut self) {
+    /// Moves to the node before a step of a run of this duration. Whatever the derivatives k_i of the
+    /// stages were used for, it was with weights that are proportional to the step's size h, and so
+    /// h df/dh = Σ k̄_i · k_i.
+    pub fn leave_step(&mut self, data: StepView<f64>, duration: f64) {
+        let (nq, nv) = (self.before.0.len(), self.before.1.len());
+        for i in (0..ALL).filter(|&i| self.touched[i]) {
+            let slope = dot(row(&self.qdot, nq, i), row(data.qdot, nq, i))
+                + dot(row(&self.a, nv, i), row(data.a, nv, i));
+            self.of.by_duration += slope / duration;
+        }
         self.of.q.add(1.0, &self.before.0);
         self.of.v.add(1.0, &self.before.1);
         self.before.0.fill(0.0);
         self.before.1.fill(0.0);
-        let (nq, nv) = (self.before.0.len(), self.before.1.len());
         self.node.0.copy_from_slice(&self.qdot[..nq]);
         self.node.1.copy_from_slice(&self.a[..nv]);
         self.qdot.fill(0.0);

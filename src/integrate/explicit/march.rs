@@ -43,7 +43,7 @@ pub fn march<S: SolveScalar>(
         a: start.a.clone(),
         lambda: start.lambda.clone(),
     };
-    let mut tape = Tape::new(numbering, settings.keep_stages);
+    let mut tape = Tape::new(numbering, settings.keep_stages, settings.samples);
     tape.push(node.view());
     let tape = trajectory::Tape::Explicit(tape);
     let scale = Scale::of(model, numbering, &start, duration.re());

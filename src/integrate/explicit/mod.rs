@@ -13,12 +13,14 @@ pub mod record;
 pub mod step;
 pub mod tableau;
 
-pub use record::{Node, NodeView, StepData, StepView};
+pub use record::{Node, NodeView, StepData, StepView, add_rows};
 pub use step::Stepper;
 
 use super::rows::Rows;
+use super::settings::Samples;
 use crate::math::Complex64;
 use crate::system::Numbering;
+use tableau::{ALL, STAGES};
 
 /// Numbers of stages that are kept at most (256 MB in `f64`); of longer histories the stages are made
 /// again.
@@ -37,11 +39,16 @@ pub struct Tape<S> {
 }
 
 impl<S: Copy> Tape<S> {
-    /// An empty tape, which keeps stages if `keeping` and as far as memory allows.
-    pub fn new(numbering: &Numbering, keeping: bool) -> Self {
+    /// An empty tape, which keeps stages if `keeping` and as far as memory allows: those of the dense
+    /// output only where samples may stand inside steps.
+    pub fn new(numbering: &Numbering, keeping: bool, samples: Samples) -> Self {
+        let stages = match samples {
+            Samples::StepEnds | Samples::Uniform(..=1) => STAGES,
+            Samples::Uniform(_) => ALL,
+        };
         Self {
             nodes: Rows::new(Node::<&[S]>::lengths(numbering)),
-            steps: Rows::new(StepData::<&[S]>::lengths(numbering)),
+            steps: Rows::new(StepData::<&[S]>::lengths(numbering, stages)),
             dense: Vec::new(),
             keeping,
         }
@@ -70,7 +77,9 @@ impl<S: Copy> Tape<S> {
             self.dense = Vec::new();
         }
         if self.keeping {
-            self.steps.push(step.parts());
+            let (parts, lengths) = (step.parts(), self.steps.lengths());
+            self.steps
+                .push(std::array::from_fn(|i| &parts[i][..lengths[i]]));
             self.dense.push(step.dense);
         }
     }

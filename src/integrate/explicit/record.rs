@@ -2,6 +2,7 @@
 
 use super::tableau::{ALL, dense_weights};
 use crate::linalg::SolveScalar;
+use crate::math::Scalar;
 use crate::system::Numbering;
 
 /// State at the end of a step, with its accelerations; V is a vector or a slice.
@@ -71,11 +72,11 @@ pub struct StepData<V> {
 }
 
 impl<V> StepData<V> {
-    /// Lengths of its vectors.
-    pub fn lengths(numbering: &Numbering) -> [usize; 10] {
+    /// Lengths of its vectors for so many stages.
+    pub fn lengths(numbering: &Numbering, stages: usize) -> [usize; 10] {
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         let nc = numbering.constraints();
-        let rows = [nq, nv, nq, nv, nc].map(|n| ALL * n);
+        let rows = [nq, nv, nq, nv, nc].map(|n| stages * n);
         let [a, b, c, d, e] = rows;
         [a, b, c, d, e, nq, nv, nc, nv, nc]
     }
@@ -118,7 +119,7 @@ impl<V> StepData<V> {
 impl<S: SolveScalar> StepData<Vec<S>> {
     /// A step of zeros.
     pub(super) fn new(numbering: &Numbering) -> Self {
-        let parts = Self::lengths(numbering).map(|n| vec![S::zero(); n]);
+        let parts = Self::lengths(numbering, ALL).map(|n| vec![S::zero(); n]);
         Self::of_parts(parts, false)
     }
 
@@ -148,40 +149,71 @@ impl<S: SolveScalar> StepData<&[S]> {
         q.copy_from_slice(node.q);
         v.copy_from_slice(node.v);
         a.fill(S::zero());
-        for i in 0..ALL {
-            add_row(q, h * w[i], self.qdot, i);
-            add_row(v, h * w[i], self.a, i);
-            add_row(a, S::from(rate[i]), self.a, i);
-        }
+        add_rows(q, h, &w, self.qdot, (node.q.len(), 0));
+        add_rows(v, h, &w, self.a, (node.v.len(), 0));
+        add_rows(a, S::one(), &rate, self.a, (node.v.len(), 0));
     }
 }
 
-impl StepData<&[f64]> {
-    /// The positions in `range` at the fraction of a step of size h with the weights `w`, before the
-    /// Euler parameters are brought to unit length; `out` elsewhere is left as it is.
-    pub fn positions(
-        &self,
-        node: Node<&[f64]>,
-        h: f64,
-        w: &[f64; ALL],
-        range: std::ops::Range<usize>,
-        out: &mut [f64],
-    ) {
-        let nq = node.q.len();
-        out[range.clone()].copy_from_slice(&node.q[range.clone()]);
-        for (i, w) in w.iter().enumerate() {
-            let row = &self.qdot[i * nq..(i + 1) * nq];
-            for (out, x) in out[range.clone()].iter_mut().zip(&row[range.clone()]) {
-                *out += h * w * x;
+/// Adds `scale` · Σ w_i · (row i of `rows`) to `out`, which is the part of every row that starts at
+/// `at`; rows are `width` long.
+pub fn add_rows<S: Scalar>(
+    out: &mut [S],
+    scale: S,
+    weights: &[(usize, f64)],
+    rows: &[S],
+    (width, at): (usize, usize),
+) {
+    // As many sums at a time as stay in registers.
+    let mut done = 0;
+    while let Some(left) = out.len().checked_sub(done).filter(|&left| left > 0) {
+        let (out, from) = (&mut out[done..], (width, at + done));
+        done += match left {
+            8.. => add_block::<S, 8>(out, scale, weights, rows, from),
+            4.. => add_block::<S, 4>(out, scale, weights, rows, from),
+            2.. => add_block::<S, 2>(out, scale, weights, rows, from),
+            _ => add_block::<S, 1>(out, scale, weights, rows, from),
+        };
+    }
+}
+
+/// The first N numbers of [`add_rows`]; returns N.
+fn add_block<S: Scalar, const N: usize>(
+    out: &mut [S],
+    scale: S,
+    weights: &[(usize, f64)],
+    rows: &[S],
+    (width, at): (usize, usize),
+) -> usize {
+    let mut sum = [S::zero(); N];
+    for &(i, weight) in weights {
+        let row = &rows[i * width + at..][..N];
+        for k in 0..N {
+            sum[k] += row[k] * weight;
+        }
+    }
+    for (out, sum) in out.iter_mut().zip(sum) {
+        *out += scale * sum;
+    }
+    N
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_any_length_are_added() {
+        let width = 31;
+        let rows: Vec<f64> = (0..3 * width).map(|k| (k * k % 17) as f64).collect();
+        let weights = [(0, 0.5), (2, -2.0)];
+        for (at, length) in [(0, width), (3, 15), (5, 8), (7, 1), (9, 0), (17, 14)] {
+            let mut out: Vec<f64> = (0..length).map(|k| k as f64).collect();
+            add_rows(&mut out, 4.0, &weights, &rows, (width, at));
+            for (k, out) in out.into_iter().enumerate() {
+                let sum = 0.5 * rows[at + k] - 2.0 * rows[2 * width + at + k];
+                assert_eq!(out, k as f64 + 4.0 * sum, "{k} of {length} from {at}");
             }
         }
-    }
-}
-
-/// Adds `scale` times row i of `rows`, which are as long as `out`.
-pub(super) fn add_row<S: SolveScalar>(out: &mut [S], scale: S, rows: &[S], i: usize) {
-    let row = &rows[i * out.len()..(i + 1) * out.len()];
-    for (out, &x) in out.iter_mut().zip(row) {
-        *out += scale * x;
     }
 }

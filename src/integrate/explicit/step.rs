@@ -1,6 +1,6 @@
 //! One step of DOP853: stages, projection, error.
 
-use super::record::{Node, NodeView, StepData, add_row};
+use super::record::{Node, NodeView, StepData, add_rows};
 use super::tableau::{A, ALL, B, C, E3, E5, END, STAGES};
 use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::math::{Vec3, rotation};
@@ -78,10 +78,9 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         let data = &mut self.data;
         data.q_raw.copy_from_slice(node.q);
         data.v_raw.copy_from_slice(node.v);
-        for &(i, b) in B {
-            add_row(&mut data.q_raw, h * b, &data.qdot, i);
-            add_row(&mut data.v_raw, h * b, &data.a, i);
-        }
+        let (nq, nv) = (node.q.len(), node.v.len());
+        add_rows(&mut data.q_raw, h, B, &data.qdot, (nq, 0));
+        add_rows(&mut data.v_raw, h, B, &data.a, (nv, 0));
         let finite = |x: &[S]| x.iter().all(|x| x.is_finite());
         if finite(&data.q_raw) && finite(&data.v_raw) {
             Ok(())
@@ -129,13 +128,12 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         // The stages before i stand in front of it.
         let (_, at_q) = data.q.split_at_mut(q.start);
         let (_, at_v) = data.v.split_at_mut(v.start);
-        let (at_q, at_v) = (&mut at_q[..node.q.len()], &mut at_v[..node.v.len()]);
+        let (nq, nv) = (node.q.len(), node.v.len());
+        let (at_q, at_v) = (&mut at_q[..nq], &mut at_v[..nv]);
         at_q.copy_from_slice(node.q);
         at_v.copy_from_slice(node.v);
-        for &(j, a) in A[i] {
-            add_row(at_q, h * a, &data.qdot, j);
-            add_row(at_v, h * a, &data.a, j);
-        }
+        add_rows(at_q, h, A[i], &data.qdot, (nq, 0));
+        add_rows(at_v, h, A[i], &data.a, (nv, 0));
         self.field.stand(at_q, at_v, start + h * C[i]);
         self.field.factorise()?;
         bodies::rates(self.field.numbering, at_q, at_v, &mut data.qdot[q]);
@@ -231,10 +229,9 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         [E5, E3].map(|e| {
             q.fill(S::zero());
             v.fill(S::zero());
-            for &(i, e) in e {
-                add_row(q, h * e, &data.qdot, i);
-                add_row(v, h * e, &data.a, i);
-            }
+            let (nq, nv) = (q.len(), v.len());
+            add_rows(q, h, e, &data.qdot, (nq, 0));
+            add_rows(v, h, e, &data.a, (nv, 0));
             measure(q, v)
         })
     }

@@ -235,40 +235,77 @@ pub const D: [&[(usize, f64)]; 4] = [
     ],
 ];
 
+/// Weights of the stages that the dense output is made of: 0 and 5 … 15.
+pub type DenseWeights = [(usize, f64); 12];
+
 /// Weights of the derivatives k_i in the dense output y(θ) = y_0 + h Σ w_i(θ) k_i, and their
 /// derivatives w_i'(θ), for 0 ≤ θ ≤ 1.
 ///
 /// y(θ) = y_0 + θ (F_0 + (1−θ) (F_1 + θ (F_2 + (1−θ) (F_3 + θ (F_4 + …))))), with F_0 the
 /// increment of the step, F_1 and F_2 those of the cubic Hermite polynomial and F_3 … F_6 = h D k.
-pub fn dense_weights(theta: f64) -> ([f64; ALL], [f64; ALL]) {
+pub fn dense_weights(theta: f64) -> (DenseWeights, DenseWeights) {
     let (t, u) = (theta, 1.0 - theta);
     // Basis polynomials θ, θ(1−θ), θ²(1−θ), θ²(1−θ)², … and their derivatives.
-    let powers = [(1, 0), (1, 1), (2, 1), (2, 2), (3, 2), (3, 3), (4, 3)];
-    let (mut w, mut rate) = ([0.0; ALL], [0.0; ALL]);
-    let mut add = |i: usize, row: usize, c: f64| {
-        let (m, n) = powers[row];
-        w[i] += c * t.powi(m) * u.powi(n);
-        let falling = if n > 0 {
-            f64::from(n) * t.powi(m) * u.powi(n - 1)
-        } else {
-            0.0
-        };
-        rate[i] += c * (f64::from(m) * t.powi(m - 1) * u.powi(n) - falling);
-    };
-    for &(i, b) in B {
-        add(i, 0, b);
-        add(i, 1, -b);
-        add(i, 2, 2.0 * b);
+    let tu = t * u;
+    let (square, cube) = (tu * tu, tu * tu * tu);
+    let basis = [t, tu, t * tu, square, t * square, cube, t * cube];
+    let slopes = [
+        1.0,
+        u - t,
+        t * (2.0 * u - t),
+        2.0 * tu * (u - t),
+        t * tu * (3.0 * u - 2.0 * t),
+        3.0 * square * (u - t),
+        t * square * (4.0 * u - 3.0 * t),
+    ];
+    (combined(&basis), combined(&slopes))
+}
+
+/// Stages that the dense output is made of, and their weights in each of its basis polynomials.
+const DENSE_STAGES: [usize; 12] = [0, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+const DENSE: [[f64; 12]; 7] = dense_rows();
+
+const fn dense_rows() -> [[f64; 12]; 7] {
+    let mut rows = [[0.0; 12]; 7];
+    let mut k = 0;
+    while k < B.len() {
+        let (i, b) = B[k];
+        let at = place(i);
+        rows[0][at] += b;
+        rows[1][at] -= b;
+        rows[2][at] += 2.0 * b;
+        k += 1;
     }
-    add(0, 1, 1.0);
-    add(0, 2, -1.0);
-    add(END, 2, -1.0);
-    for (row, d) in D.iter().enumerate() {
-        for &(i, d) in *d {
-            add(i, 3 + row, d);
+    rows[1][place(0)] += 1.0;
+    rows[2][place(0)] -= 1.0;
+    rows[2][place(END)] -= 1.0;
+    let mut row = 0;
+    while row < D.len() {
+        let mut k = 0;
+        while k < D[row].len() {
+            let (i, d) = D[row][k];
+            rows[3 + row][place(i)] += d;
+            k += 1;
+        }
+        row += 1;
+    }
+    rows
+}
+
+/// Where a stage stands among those of the dense output.
+const fn place(stage: usize) -> usize {
+    stage.saturating_sub(4)
+}
+
+/// The weights that the values of the basis polynomials make.
+fn combined(polynomials: &[f64; 7]) -> DenseWeights {
+    let mut sum = [0.0; 12];
+    for (row, p) in DENSE.iter().zip(polynomials) {
+        for (sum, c) in sum.iter_mut().zip(row) {
+            *sum += c * p;
         }
     }
-    (w, rate)
+    std::array::from_fn(|k| (DENSE_STAGES[k], sum[k]))
 }
 
 #[cfg(test)]
@@ -293,8 +330,8 @@ mod tests {
             let (w, rate) = dense_weights(theta);
             for power in 0..7 {
                 let node = |i: usize| C[i].powi(power);
-                let integral: f64 = (0..ALL).map(|i| w[i] * node(i)).sum();
-                let value: f64 = (0..ALL).map(|i| rate[i] * node(i)).sum();
+                let integral: f64 = w.iter().map(|&(i, w)| w * node(i)).sum();
+                let value: f64 = rate.iter().map(|&(i, w)| w * node(i)).sum();
                 let exact = theta.powi(power + 1) / f64::from(power + 1);
                 assert!((integral - exact).abs() < 1e-13, "power {power} at {theta}");
                 assert!(
