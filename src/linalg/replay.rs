@@ -162,11 +162,11 @@ impl<S: Scalar> Replay<S> {
         (entries, (0..n).map(column).sum())
     }
 
-    /// The smallest pivot of the scaled matrix, and its column.
-    pub fn smallest_pivot(&self) -> (f64, usize) {
-        let mut found = (0.0, 0);
+    /// The smallest pivot in the columns from `first` on, of the scaled matrix, and its column.
+    pub fn smallest_pivot(&self, first: usize) -> (f64, usize) {
+        let mut found = (0.0, first);
         for (&inverse, &column) in self.inverse_pivots.iter().zip(&self.columns) {
-            if size(inverse) > found.0 {
+            if column >= first && size(inverse) > found.0 {
                 found = (size(inverse), column);
             }
         }

@@ -3,12 +3,14 @@
 use super::pattern::{Pattern, SparseMatrix};
 use crate::math::Scalar;
 
-/// Largest exponent of a scale.
+/// Largest exponent of a scale, and of what needs none.
 const MOST: f64 = 500.0;
+const MODERATE: f64 = 8.0;
 
-/// Powers of two R and C, which make the largest entries of the rows and columns of R A C lie between
-/// 1/2 and 1: whatever units a row or column is in, elimination then compares it with the others
-/// (Golub & Van Loan 2013, section 3.5.2), and scaling itself makes no round-off.
+/// Powers of two R and C, which make the largest entries of all rows and columns of R A C alike:
+/// whatever units a row or column is in, elimination then compares it with the others (Golub & Van
+/// Loan 2013, section 3.5.2), and scaling itself makes no round-off. Largest entries from 2⁻⁸ to 2⁸
+/// are left as they are, others are brought between 1/2 and 1.
 #[derive(Clone, Debug)]
 pub(super) struct Scaling {
     /// R.
@@ -67,11 +69,15 @@ pub(super) fn size<S: Scalar>(x: S) -> f64 {
     x.re().abs() + x.infinitesimal().abs()
 }
 
-/// The power of two that brings `largest` between 1/2 and 1; 1 where there is nothing to be scaled.
+/// The power of two that brings `largest` between 1/2 and 1; 1 where it need not or cannot be.
 fn scale(largest: f64) -> f64 {
-    if largest > 0.0 && largest.is_finite() {
-        (-(largest.log2().floor() + 1.0)).clamp(-MOST, MOST).exp2()
-    } else {
+    if !(largest > 0.0 && largest.is_finite()) {
+        return 1.0;
+    }
+    let exponent = largest.log2().floor() + 1.0;
+    if exponent.abs() <= MODERATE {
         1.0
+    } else {
+        (-exponent).clamp(-MOST, MOST).exp2()
     }
 }

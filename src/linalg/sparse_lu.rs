@@ -28,7 +28,7 @@ pub struct SingularMatrix {
 
 /// LU factors P R A C Q = L U; Q (COLAMD) depends on the pattern only; P, R and C depend on the values.
 ///
-/// R and C are powers of two that make the largest entries of all rows and columns alike. They and P,
+/// R and C are powers of two that make the largest entries of all rows and columns alike, to 2⁸. They and P,
 /// which is found by partial pivoting, are those of the first matrix and kept while their pivots stay
 /// good; what is found anew is put where the old was, so that factorisations allocate nothing.
 pub struct SparseLu<S> {
@@ -157,12 +157,13 @@ impl<S: SolveScalar> SparseLu<S> {
         self.factors().solve_transposed(b);
     }
 
-    /// Size of the smallest pivot of the scaled matrix, whose entries are at most 1, and its column.
+    /// Size of the smallest pivot in the columns from `first` on, of the scaled matrix, and its
+    /// column; infinite if there is none.
     ///
     /// # Panics
     /// If no matrix was factorised.
-    pub fn smallest_pivot(&mut self) -> (f64, usize) {
-        self.factors().smallest_pivot()
+    pub fn smallest_pivot(&mut self, first: usize) -> (f64, usize) {
+        self.factors().smallest_pivot(first)
     }
 
     /// Solves Aᵀ x = b in place for the matrix A that was factorised last, with two steps of
@@ -256,7 +257,7 @@ mod tests {
         matrix.assemble(assembly);
         let mut lu = SparseLu::new(&matrix.pattern);
         lu.factorise(&matrix).expect("regular");
-        assert!(lu.smallest_pivot().0 > 1e-2);
+        assert!(lu.smallest_pivot(0).0 > 1e-2);
         let exact = [1.0, -2.0, 3.0, -4.0];
         let scaled: Vec<f64> = exact.iter().zip(columns).map(|(x, c)| x / c).collect();
         let mut x = matrix.multiply(&scaled);
