@@ -30,6 +30,10 @@ const STATIONARY: f64 = 1e-4;
 /// The same at a point that is called infeasible although steps are left.
 pub(super) const IRREDUCIBLE: f64 = 1e-8;
 
+/// Steps refused in succession after which gradients are taken at refused feasible points too: a short
+/// matrix refuses many steps before it knows a curved valley.
+const LEARN: usize = 1;
+
 /// What the iteration minimises.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Goal {
@@ -157,7 +161,7 @@ impl TrustRegion {
                 continue;
             }
             program.next_iteration()?;
-            let (ratio, trials) = self.attempt(program, &model)?;
+            let (ratio, trials) = self.attempt(program, &model, rejected >= LEARN)?;
             let boundary = size >= 0.99 * self.radius;
             let radius = self.radius;
             if ratio < 0.25 {
@@ -275,6 +279,7 @@ impl TrustRegion {
         &mut self,
         program: &mut Program<'_>,
         model: &Model,
+        learn: bool,
     ) -> Result<(f64, usize), Trouble> {
         let here = self.merit(program, &self.point);
         let rounding = 10.0 * f64::EPSILON * here.abs();
@@ -291,6 +296,9 @@ impl TrustRegion {
             return Ok((if accepted { first } else { f64::NEG_INFINITY }, 1));
         }
         let worse = program.total_violation(&trial.c) > 0.0;
+        if learn && !worse {
+            self.learn(program, &trial)?;
+        }
         if !worse || self.goal == Goal::Feasibility {
             return Ok((first, 1));
         }
@@ -317,6 +325,20 @@ impl TrustRegion {
         DVector::from_fn(x.len(), |i, _| {
             x[i].clamp(program.lower[i], program.upper[i])
         })
+    }
+
+    /// Takes the curvature on the way to a refused point into the matrix.
+    fn learn(&mut self, program: &mut Program<'_>, trial: &Point) -> Result<(), Trouble> {
+        let slopes = match program.gradients(&trial.x) {
+            Ok(slopes) => slopes,
+            Err(Trouble::Failed(_)) => return Ok(()),
+            Err(halt) => return Err(halt),
+        };
+        let weight = self.weight();
+        let force = |s: &Slopes| &s.g * weight + s.a.tr_mul(&self.y);
+        let change = force(&slopes) - force(&self.slopes);
+        self.b.update(&trial.x - &self.point.x, change);
+        Ok(())
     }
 
     /// Moves to `trial` unless its gradients fail.

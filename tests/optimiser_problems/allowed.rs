@@ -61,7 +61,7 @@ pub const ALLOWED: &[(&str, Allowed, Allowed)] = &[
     ("HS53", Some((11, 11)), Some((8, 8))),
     ("HS55", Some((11, 11)), None),
     ("HS56", Some((25, 21)), Some((24, 16))),
-    ("HS57", Some((44, 21)), None),
+    ("HS57", Some((44, 21)), Some((507, 395))),
     ("HS59", Some((38, 30)), None),
     ("HS60", Some((18, 17)), Some((21, 16))),
     ("HS61", Some((12, 12)), Some((13, 13))),
