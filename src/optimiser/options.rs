@@ -36,7 +36,8 @@ pub struct Options {
     /// the run; and in the units of the user relative to max(1, ‖∇f‖∞) and, for the sum of the
     /// products of multipliers and distances, to max(1, |f|).
     pub tolerance: f64,
-    /// Largest violation of a constraint of a solution, in the units of the user (default 1e-6).
+    /// Largest violation of a constraint of a solution, in the units of the user (default 1e-6); it must
+    /// also be below 1e-4 of the constraint's size, the larger of its bound and of Σ |∂c/∂x_i x_i|.
     pub constraint_tolerance: f64,
     /// Iterations allowed (default 500).
     pub max_iterations: usize,

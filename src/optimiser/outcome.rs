@@ -12,15 +12,16 @@ pub enum Status {
     /// ([`Options::tolerance`](super::Options::tolerance)).
     Converged,
     /// The tolerances are out of reach in the units of the user: the residuals are small against the
-    /// gradients of the run, and what the quasi-Newton model still promises to gain is below the
-    /// rounding of the objective.
+    /// gradients of the run, what the quasi-Newton model still promises to gain is below the
+    /// rounding of the objective, and a run that began anew at the point gained nothing.
     AtPrecision,
     /// The point is a stationary point of the constraint violation and not feasible, or bounds of a
     /// constraint or variable cross.
     Infeasible {
         /// Name of the constraint that is violated most, or of that whose bounds cross.
         constraint: String,
-        /// Its violation at the point, in its own units; half the distance of bounds that cross.
+        /// Its violation, in its own units, where the largest one is least to first order; half the
+        /// distance of bounds that cross.
         violation: f64,
     },
     /// The program or the options make no sense; nothing was evaluated.
