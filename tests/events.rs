@@ -1,6 +1,7 @@
 //! Runs that end at an event: closed forms of time, place and derivatives, and gradients against the
 //! complex step by several methods.
 
+use flexbody::driver::integration::Integration;
 use flexbody::driver::{Evaluated, Journal, Optimisation, check, optimise, simulate};
 use flexbody::integrate::IntegrationFailure;
 use flexbody::problem::Problem;
@@ -234,4 +235,35 @@ fn a_start_that_misses_its_event_has_no_objective() {
     let text = done.optimum.to_json().expect("is written");
     assert_eq!(Optimum::from_json(&text).expect("is read"), done.optimum);
     assert!(summary(&done.optimum).contains("x: not known → "));
+}
+
+/// Steps that do not suffice for another design, but find its event, are chosen anew for as long as is
+/// waited for, not up to the time that they found.
+#[test]
+fn steps_are_chosen_anew_for_the_whole_time() {
+    let file = json!({
+        "version": 1, "name": "elastic pendulum",
+        "bodies": {"bob": {"shape": "point", "mass": 1, "place": {"at": [0, -1, 0]},
+                           "velocity": {"linear": [1.5, 0, 0]}}},
+        "loads": {"spring": {"spring": {"between": ["bob", "ground"],
+            "at": {"a": [0, 0, 0], "b": [0, 0, 0]}, "rest_length": 1, "stiffness": 100}}},
+        "simulation": {
+            "duration": 2, "tolerance": 1e-9,
+            "until": {"measure": {"position": {"body": "bob", "direction": [1, 0, 0]}},
+                      "reaches": 0.4}
+        },
+        "functions": {"y": {"final": {"position": {"body": "bob", "direction": [0, 1, 0]}}}},
+        "variables": {"stiffness": {"path": "/loads/spring/spring/stiffness", "lower": 1}}
+    });
+    let problem = problem(&file);
+    let scene = problem.scene(&problem.start());
+    let mut integration = Integration::new(&problem, &scene, Some(&[0]), true);
+    for stiffness in [100.0, 2000.0, 300.0, 5000.0, 8000.0] {
+        let x = [stiffness];
+        let (kept, _) = Evaluated::with(&mut integration, &problem, &x).expect("runs");
+        let alone = Evaluated::new(&problem, &x).expect("runs");
+        let off = kept.run.duration - alone.run.duration;
+        assert!(off.abs() < 1e-7, "{stiffness}: {off}");
+    }
+    assert!(integration.refreshes > 1, "{}", integration.refreshes);
 }

@@ -171,6 +171,7 @@ impl Integration {
         scene: &mut Scene<f64>,
     ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {
         let settled = self.settled.take();
+        let waited = scene.duration;
         let why = match (&self.chosen, &self.spacing) {
             (None, _) => FIRST_DESIGN.into(),
             (Some((settings, _)), Spacing::Tolerance(tolerance)) => {
@@ -194,7 +195,8 @@ impl Integration {
             },
         };
         let wanted = self.wanted();
-        let waited = scene.duration;
+        // Steps that do not suffice may have found an event all the same.
+        scene.duration = waited;
         if let Some(until) = &scene.until {
             let all = simulate_by(&scene.model, waited, self.method, &wanted)?.run;
             let gaps = until.gaps(&scene.model, &all);

@@ -49,7 +49,7 @@ impl Earlier {
         let Some(first) = lines.next().filter(|line| line.ends_with(b"\n")) else {
             return Ok(None);
         };
-        let written: Head = serde_json::from_slice(first)
+        let written: Head = serde_json::from_slice(first.trim_ascii_end())
             .map_err(|error| fault(1, damage(&error), "the head of a record of evaluations"))?;
         if !head.fits(&written) {
             return Err(fault(
@@ -61,10 +61,11 @@ impl Earlier {
         let (mut records, mut complete) = (Vec::new(), 0);
         let (mut end, mut whole) = (first.len(), first.len());
         for (k, line) in lines.filter(|line| line.ends_with(b"\n")).enumerate() {
-            let record: EvaluationRecord = serde_json::from_slice(line).map_err(|error| {
-                let expected = "a whole evaluation, as every line but the last one is";
-                fault(k + 2, damage(&error), expected)
-            })?;
+            let record: EvaluationRecord =
+                serde_json::from_slice(line.trim_ascii_end()).map_err(|error| {
+                    let expected = "a whole evaluation, as every line but the last one is";
+                    fault(k + 2, damage(&error), expected)
+                })?;
             if let Some((found, expected)) = record.fault(head) {
                 return Err(fault(k + 2, found, expected));
             }
