@@ -125,8 +125,10 @@ fn lowering(
         let carried = cluster.members.iter().filter(|own| **own != cluster.host);
         let carried: Vec<String> = carried.map(name).collect();
         let host = name(&cluster.host);
-        let carried = carried.join(", ");
-        left_out.push(format!("bodies {carried}: they are welded to body {host}"));
+        left_out.push(match &carried[..] {
+            [one] => format!("body {one}: it is welded to body {host}"),
+            all => format!("bodies {}: they are welded to body {host}", all.join(", ")),
+        });
     }
     for (i, body) in lowered.bodies.iter().enumerate() {
         let name = name(&i);
