@@ -44,7 +44,7 @@ pub struct Accelerations<'a, S> {
 
 /// By the tree of joints, or by sparse LU where they close many loops or a body lacks inertia.
 enum Solver<S> {
-    Tree(Tree<S>),
+    Tree(Box<Tree<S>>),
     Sparse(Box<SaddlePoint<S>>, Vec<S>),
 }
 
@@ -52,7 +52,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     /// Plans the solver.
     pub fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
         let solver = match Tree::plan(model, numbering) {
-            Some(tree) => Solver::Tree(tree),
+            Some(tree) => Solver::Tree(Box::new(tree)),
             None => Self::sparse(model, numbering),
         };
         Self {
