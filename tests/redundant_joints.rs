@@ -313,3 +313,18 @@ fn the_program_names_redundant_joints() {
         assert_eq!(told.is_empty(), more.is_some(), "{told}");
     }
 }
+
+/// Radau IIA does not pass the singular positions, in which all rods lie in a line, and says where the
+/// iteration matrix is nearly singular as its Newton iterations stall.
+#[test]
+fn implicit_steps_name_the_singular_position_that_they_stall_at() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/benchmarks/four_bars_2.json");
+    let steps = r#"/simulation={"duration": 1, "steps": 100, "method": {"radau": {"stages": 3}}}"#;
+    let steps = Override::parse(steps).expect("an override");
+    let problem = Problem::load(&path, &[steps]).expect("no faults");
+    let failure = simulate(&problem, &[]).err().expect("it does not pass");
+    let told = failure.to_string();
+    assert!(told.starts_with("Newton's method stalled"), "{told}");
+    assert!(told.contains("nearly singular there"), "{told}");
+    assert!(told.contains("constraint of joint"), "{told}");
+}
