@@ -13,7 +13,10 @@ mod optimiser_problems;
 use std::ops::ControlFlow;
 
 use faulty::{Fault, Faulty};
-use flexbody::optimiser::{Method, Observer, Options, Outcome, Row, Silent, Status, solve};
+use flexbody::optimiser::{
+    Evaluation, EvaluationFailure, Gradients, Method, Nlp, Observer, Options, Outcome, Row, Silent,
+    Status, solve,
+};
 use optimiser_problems::hock_schittkowski;
 use optimiser_problems::problem::Problem;
 
@@ -163,6 +166,63 @@ fn undefined_region_beside_the_optimum_is_avoided() {
         );
     }
     solved_by_all(hard::logarithm, (50, 80));
+}
+
+/// Notes what is announced and what is then asked for.
+struct Announced {
+    inner: Problem,
+    /// Points announced after the last evaluation, if that failed.
+    next: Option<Vec<Vec<f64>>>,
+    failed: bool,
+    /// How often the first of these was asked for next.
+    met: usize,
+}
+
+impl Nlp for Announced {
+    fn variables(&self) -> usize {
+        self.inner.variables()
+    }
+    fn constraints(&self) -> usize {
+        self.inner.constraints()
+    }
+    fn variable_bounds(&self) -> (Vec<f64>, Vec<f64>) {
+        self.inner.variable_bounds()
+    }
+    fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>) {
+        self.inner.constraint_bounds()
+    }
+    fn start(&self) -> Vec<f64> {
+        self.inner.start()
+    }
+    fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
+        if let Some(points) = self.next.take() {
+            assert_eq!(points[0], x, "another point was announced");
+            self.met += 1;
+        }
+        let found = self.inner.evaluate(x);
+        self.failed = !matches!(&found, Ok(e) if e.objective.is_finite());
+        found
+    }
+    fn foresee(&mut self, points: &[Vec<f64>]) {
+        assert!(self.failed, "announced where nothing failed");
+        self.next = Some(points.to_vec());
+    }
+    fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
+        self.inner.gradients(x)
+    }
+}
+
+/// After a step to where the functions are not defined, the line search announces the shorter ones.
+#[test]
+fn steps_after_a_failure_are_announced() {
+    let mut program = Announced {
+        inner: hard::logarithm(),
+        next: None,
+        failed: false,
+        met: 0,
+    };
+    let outcome = solve(&mut program, &Options::default(), &mut Silent);
+    assert!(outcome.converged() && program.met > 0, "{}", program.met);
 }
 
 #[test]

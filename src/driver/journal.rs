@@ -125,6 +125,11 @@ impl<'a> Journal<'a> {
         self.latest
     }
 
+    /// Whether values (or gradients) at a design are known.
+    pub fn knows(&self, of_gradients: bool, design: &[f64]) -> bool {
+        self.known.contains_key(&(of_gradients, bits(design)))
+    }
+
     /// Work of all evaluations that were asked for, those that were known included.
     pub fn work(&self) -> Work {
         self.work

@@ -4,9 +4,11 @@
 pub mod check;
 pub mod error;
 pub mod evaluate;
+pub mod evaluator;
 pub mod event;
 pub mod explain;
 pub mod figures;
+mod foreseen;
 pub mod integration;
 pub mod journal;
 pub mod multi_start;
@@ -19,7 +21,8 @@ pub mod warm_start;
 pub mod work_precision;
 
 pub use check::{CheckedDerivative, check};
-pub use evaluate::{Evaluated, Evaluator};
+pub use evaluate::Evaluated;
+pub use evaluator::Evaluator;
 pub use explain::explain;
 pub use journal::Journal;
 pub use multi_start::multi_start;

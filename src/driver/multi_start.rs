@@ -1,6 +1,6 @@
 //! Several optimisations of one problem from spread starts, and the distinct optima they find.
 
-use super::evaluate::unscaled;
+use super::evaluator::unscaled;
 use super::journal::Journal;
 use super::optimise::{Solved, solve};
 use crate::problem::{Problem, Sense, Variable};

@@ -1,6 +1,6 @@
 //! A problem optimised: the optimiser's outcome, its history, and the simulations at both ends.
 
-use super::evaluate::{Evaluator, Judgements, unscaled};
+use super::evaluator::{Evaluator, Judgements, unscaled};
 use super::integration::Integration;
 use super::journal::{Journal, bits};
 use super::record::record;

@@ -1,7 +1,7 @@
 //! The record of an optimisation: the optimiser's outcome in the user's names, signs and units.
 
 use super::error;
-use super::evaluate::unscaled;
+use super::evaluator::unscaled;
 use super::simulate::Simulation;
 use crate::integrate::IntegrationFailure;
 use crate::optimiser::{self, Outcome, Status};

@@ -7,7 +7,7 @@
 //! optimum is strict if dᵀHd > 0 on the span of the cone, and is none if dᵀHd < 0 for a d of the cone;
 //! what lies between is not decided (Nocedal & Wright 2006, theorems 12.5 and 12.6).
 
-use super::evaluate::Evaluator;
+use super::evaluator::Evaluator;
 use super::integration::Integration;
 use super::journal::Journal;
 use crate::optimiser::{EvaluationFailure, Nlp, Outcome, Side};
@@ -24,6 +24,8 @@ const NEGLIGIBLE: f64 = 1e-10;
 const WEAK: f64 = 1e-3;
 /// Largest part of a unit direction by which it may leave a bound and count as along it.
 const ALONG: f64 = 1e-6;
+/// Directions whose gradients are found side by side.
+const AT_ONCE: usize = 8;
 
 /// A bound or constraint next to without force.
 struct Weak {
@@ -82,14 +84,23 @@ pub fn second_order(
         for &i in &free {
             centre[i] = centre[i].clamp(lower[i] + step, upper[i] - step);
         }
+        let place = |j: usize, length: f64| {
+            let mut at = centre.clone();
+            for (c, &i) in free.iter().enumerate() {
+                at[i] += length * basis[(c, j)];
+            }
+            at.as_slice().to_vec()
+        };
         let mut hessian = DMatrix::zeros(k, k);
         for j in 0..k {
+            // A few directions at once, so that the whole can be stopped.
+            if j % AT_ONCE == 0 && !stopped() {
+                let next = j..k.min(j + AT_ONCE);
+                let both = next.flat_map(|j| [place(j, step), place(j, -step)]);
+                program.foresee_gradients(&both.collect::<Vec<_>>());
+            }
             let mut beside = |length: f64| -> Result<DVector<f64>, EvaluationFailure> {
-                let mut at = centre.clone();
-                for (c, &i) in free.iter().enumerate() {
-                    at[i] += length * basis[(c, j)];
-                }
-                let g = program.gradients(at.as_slice())?;
+                let g = program.gradients(&place(j, length))?;
                 let all = DVector::from_vec(g.objective) + g.jacobian.tr_mul(&multipliers);
                 Ok(all.select_rows(&free))
             };

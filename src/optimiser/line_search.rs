@@ -21,6 +21,11 @@ const SOFT_TRIALS: usize = 5;
 /// Least factor by which a refused step is shortened.
 const SHORTEST: f64 = 0.1;
 
+/// Factor by which a step to where the functions are not defined is shortened, and how many such
+/// steps are announced.
+const UNDEFINED: f64 = 0.5;
+const FORESEEN: i32 = 16;
+
 const ARMIJO: f64 = 1e-4;
 /// Exponents of the switching condition, of the directional derivative and of the infeasibility.
 const SLOPE_POWER: f64 = 2.3;
@@ -155,17 +160,24 @@ impl LineSearch<'_> {
                         return Ok(corrected);
                     }
                 }
-                Trial::Refused { .. } | Trial::Undefined => {}
+                Trial::Refused { .. } => {}
+                Trial::Undefined => self.foresee(program, &direction, alpha),
             }
             alpha *= self.shorten(&here, alpha, &last);
         }
+    }
+
+    /// Announces the steps that follow one of length `alpha` at which the functions are not defined.
+    fn foresee(&self, program: &mut Program<'_>, direction: &Direction, alpha: f64) {
+        let at = |k: i32| &self.at.point.x + &direction.x * (alpha * UNDEFINED.powi(k));
+        program.foresee((1..=FORESEEN).map(at));
     }
 
     /// Factor by which a refused step is shortened: the minimum of the parabola through the values
     /// of the barrier function, within bounds, where that function refused the step.
     fn shorten(&self, here: &Measure, alpha: f64, last: &Option<(f64, f64)>) -> f64 {
         let Some((theta, phi)) = *last else {
-            return 0.5;
+            return UNDEFINED;
         };
         let rise = phi - here.phi - alpha * here.slope;
         if here.slope >= 0.0 || rise <= 0.0 || theta > here.theta.max(SOFT_VIOLATION) {

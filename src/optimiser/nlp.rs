@@ -41,6 +41,11 @@ pub trait Nlp {
     /// optimiser then shortens its step. A value that is not finite is treated likewise.
     fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure>;
 
+    /// Says that values will be asked for at the first of `points` and, if they are not defined
+    /// there, at the next ones: they may be found side by side beforehand. Nothing need be done, and
+    /// nothing may come of it but time.
+    fn foresee(&mut self, _points: &[Vec<f64>]) {}
+
     /// Gradient of the objective and Jacobian of the constraints at `x`.
     ///
     /// # Errors

@@ -235,6 +235,14 @@ impl<'a> Program<'a> {
         })
     }
 
+    /// Announces points at which values may be asked for next.
+    pub fn foresee(&mut self, points: impl Iterator<Item = DVector<f64>>) {
+        let points: Vec<Vec<f64>> = points.map(|x| self.to_user(&x)).collect();
+        let clock = Instant::now();
+        self.nlp.foresee(&points);
+        self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
+    }
+
     /// Derivatives of the scaled functions at `x`.
     pub fn gradients(&mut self, x: &DVector<f64>) -> Result<Slopes, Trouble> {
         let full = self.to_user(x);

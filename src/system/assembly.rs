@@ -26,8 +26,8 @@ const NEARLY_CLOSED: f64 = 0.05;
 pub enum AssemblyFailure {
     /// The joints cannot be closed near the given placement.
     #[error(
-        "joint \"{joint}\" cannot be assembled: its {row} stays open by {gap:.3e} after \
-         {iterations} iterations"
+        "joint \"{joint}\" cannot be assembled: its {row} stays open by {gap:.3e} at iteration \
+         {iterations}"
     )]
     Open {
         /// Joint with the largest gap.

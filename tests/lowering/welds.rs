@@ -36,10 +36,11 @@ fn what_is_welded_to_ground_has_no_unknowns() {
         let bare = load(file, &[]);
         assert_eq!(size(&problem), size(&bare), "{file}");
         assert_eq!(is_planar(&problem), is_planar(&bare));
-        for method in [Method::Dop853, RADAU, BDF] {
+        // Newton's method leaves up to 1e-13 in each implicit step.
+        for (method, limit) in [(Method::Dop853, 1e-11), (RADAU, 3e-11), (BDF, 3e-11)] {
             let found = differences(&problem, &settings(method, Spacing::Steps(300)));
             for x in found {
-                assert!(x <= 1e-11, "{file} by {}: {x:e}", method.name());
+                assert!(x <= limit, "{file} by {}: {x:e}", method.name());
             }
         }
     }

@@ -1,0 +1,285 @@
+//! A problem as the optimiser sees it.
+
+use super::evaluate::Evaluated;
+use super::foreseen::Foreseen;
+use super::integration::Integration;
+use super::journal::{Account, Journal, bits};
+use crate::integrate::IntegrationFailure;
+use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
+use crate::problem::{Problem, Sense};
+use crate::report::evaluations::Work;
+use nalgebra::DMatrix;
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+/// The steps that the functions of a design were found with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JudgedOn {
+    /// Number of steps.
+    pub steps: Option<usize>,
+    /// How often they had been chosen anew.
+    pub refreshes: usize,
+}
+
+/// The steps of every design that was evaluated, by its bits; shared with who observes the run.
+pub type Judgements = Rc<RefCell<HashMap<Vec<u64>, JudgedOn>>>;
+
+/// The problem as a nonlinear program. Keeps the last simulated design, so that a gradient where
+/// the functions were just evaluated costs the backward march only.
+pub struct Evaluator<'a> {
+    problem: &'a Problem,
+    objective: usize,
+    sign: f64,
+    last: Option<Evaluated>,
+    /// The steps in use.
+    pub integration: Integration,
+    /// How many designs did not admit what the lowering leaves out at the others.
+    pub unlowered: usize,
+    journal: Journal<'a>,
+    foreseen: Foreseen,
+    /// Which choice of steps of the journal `integration` goes by, and the evaluation of the record
+    /// whose event it knows.
+    choice: Option<usize>,
+    latest: Option<usize>,
+    /// What the functions of each design were found with.
+    pub judgements: Judgements,
+}
+
+impl<'a> Evaluator<'a> {
+    /// The program that `problem` states, or `None` if it has no objective.
+    pub fn new(problem: &'a Problem, journal: Journal<'a>) -> Option<Self> {
+        let objective = problem.objective?;
+        let scene = problem.scene(&problem.start());
+        let sign = match objective.sense {
+            Sense::Minimise => 1.0,
+            Sense::Maximise => -1.0,
+        };
+        let asked = asked(problem, objective.function);
+        Some(Self {
+            problem,
+            objective: objective.function,
+            sign,
+            last: None,
+            integration: Integration::new(problem, &scene, Some(&asked), true),
+            unlowered: 0,
+            journal,
+            foreseen: Foreseen::default(),
+            choice: None,
+            latest: None,
+            judgements: Judgements::default(),
+        })
+    }
+
+    /// +1 if the objective is minimised, −1 if it is maximised.
+    pub fn sign(&self) -> f64 {
+        self.sign
+    }
+
+    /// Indices of the objective's function and the constraints' functions.
+    fn functions(&self) -> Vec<usize> {
+        asked(self.problem, self.objective)
+    }
+
+    /// Work of all simulations and gradients so far, those that the journal knew included.
+    pub fn counts(&self) -> Work {
+        self.journal.work()
+    }
+
+    /// Takes the steps and the event that the journal has come to.
+    fn follow(&mut self) {
+        let choice = self.journal.choice();
+        if choice != self.choice {
+            self.choice = choice;
+            if let Some(kept) = self.journal.steps() {
+                self.integration.restore(kept);
+            }
+        }
+        if let Some((place, event)) = self.journal.latest()
+            && self.latest != Some(place)
+        {
+            self.latest = Some(place);
+            self.integration.event = event;
+        }
+    }
+
+    /// Finds the gradients at `points` side by side, if they will be asked for; `x` as the optimiser
+    /// scales it.
+    pub fn foresee_gradients(&mut self, points: &[Vec<f64>]) {
+        let functions = self.functions();
+        let designs = self.unknown(points, true);
+        let wanted = (&designs[..], &functions[..]);
+        let (problem, integration) = (self.problem, &self.integration);
+        self.foreseen.differentiate(problem, integration, wanted);
+    }
+
+    /// The designs of `points` that the journal does not know.
+    fn unknown(&self, points: &[Vec<f64>], of_gradients: bool) -> Vec<Vec<f64>> {
+        let designs = points.iter().map(|x| unscaled(self.problem, x));
+        designs
+            .filter(|x| !self.journal.knows(of_gradients, x))
+            .collect()
+    }
+
+    fn failure(&self, reason: String) -> EvaluationFailure {
+        EvaluationFailure {
+            what: format!("the simulation of \"{}\"", self.problem.name),
+            reason,
+        }
+    }
+}
+
+fn asked(problem: &Problem, objective: usize) -> Vec<usize> {
+    let constraints = problem.constraints.iter().map(|c| c.function);
+    std::iter::once(objective).chain(constraints).collect()
+}
+
+/// The simulated design `x`: the last one, or a new one.
+fn at<'e>(
+    (last, foreseen): (&'e mut Option<Evaluated>, &mut Foreseen),
+    (integration, account): (&mut Integration, &mut Account),
+    problem: &Problem,
+    x: &[f64],
+) -> Result<&'e Evaluated, IntegrationFailure> {
+    let found = match last.take().filter(|last| last.x == x) {
+        Some(known) => Ok(known),
+        None => {
+            integration.settled = account.settled;
+            let found = match foreseen.take(integration, x) {
+                Some(found) => found.map(|evaluated| (evaluated, None)),
+                None => Evaluated::with(integration, problem, x),
+            };
+            found.map(|(evaluated, refresh)| {
+                account.refresh = refresh;
+                if !account.repeated {
+                    account.work += evaluated.run.counts;
+                }
+                evaluated
+            })
+        }
+    };
+    integration.settled = None;
+    account.event = integration.event;
+    Ok(last.insert(found?))
+}
+
+impl Nlp for Evaluator<'_> {
+    fn variables(&self) -> usize {
+        self.problem.variables.len()
+    }
+
+    fn constraints(&self) -> usize {
+        self.problem.constraints.len()
+    }
+
+    fn variable_bounds(&self) -> (Vec<f64>, Vec<f64>) {
+        self.problem
+            .variables
+            .iter()
+            .map(|v| (v.lower / v.scale, v.upper / v.scale))
+            .unzip()
+    }
+
+    fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>) {
+        self.problem
+            .constraints
+            .iter()
+            .map(|c| (c.lower, c.upper))
+            .unzip()
+    }
+
+    fn start(&self) -> Vec<f64> {
+        self.problem
+            .variables
+            .iter()
+            .map(|v| v.start / v.scale)
+            .collect()
+    }
+
+    fn variable_name(&self, i: usize) -> String {
+        self.problem.variables[i].name.clone()
+    }
+
+    fn constraint_name(&self, j: usize) -> String {
+        self.problem.constraints[j].name.clone()
+    }
+
+    fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
+        let x = unscaled(self.problem, x);
+        let functions = self.functions();
+        let problem = self.problem;
+        let integration = &mut self.integration;
+        let made = (&mut self.last, &mut self.foreseen);
+        let (before, mut known) = (integration.unlowered, true);
+        let found = self.journal.values(&x, |account| {
+            known = false;
+            let steps = (&mut *integration, account);
+            let at = at(made, steps, problem, &x).map_err(|failure| failure.to_string())?;
+            Ok(functions.iter().map(|&f| at.function(f).value).collect())
+        });
+        self.unlowered += match known {
+            true => usize::from(!problem.lowered_scene(&x).1),
+            false => integration.unlowered - before,
+        };
+        self.follow();
+        let judged = JudgedOn {
+            steps: self.integration.steps(),
+            refreshes: self.integration.refreshes,
+        };
+        let mut judgements = self.judgements.borrow_mut();
+        judgements.entry(bits(&x)).or_insert(judged);
+        drop(judgements);
+        let values = found.map_err(|reason| self.failure(reason))?;
+        Ok(Evaluation {
+            objective: self.sign * values[0],
+            constraints: values[1..].to_vec(),
+        })
+    }
+
+    fn foresee(&mut self, points: &[Vec<f64>]) {
+        let designs = self.unknown(points, false);
+        let (problem, integration) = (self.problem, &self.integration);
+        self.foreseen.simulate(problem, integration, &designs);
+    }
+
+    fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
+        let problem = self.problem;
+        let x = unscaled(problem, x);
+        let functions = self.functions();
+        let (last, foreseen) = (&mut self.last, &mut self.foreseen);
+        let integration = &mut self.integration;
+        let found = self.journal.gradients(&x, |account| {
+            if let Some((gradients, [run, own])) = foreseen.take_gradients(integration, &x) {
+                if !account.repeated {
+                    account.work += run;
+                }
+                account.work += own;
+                return Ok(gradients);
+            }
+            let (made, steps) = ((last, foreseen), (integration, &mut *account));
+            let at = at(made, steps, problem, &x).map_err(|failure| failure.to_string())?;
+            let found = at.gradients(problem, &functions);
+            let (gradients, work) = found.map_err(|failure| failure.to_string())?;
+            account.work += work;
+            Ok(gradients)
+        });
+        self.follow();
+        let gradients = found.map_err(|reason| self.failure(reason))?;
+        let scaled = |f: usize, i: usize| gradients[f][i] * problem.variables[i].scale;
+        let n = x.len();
+        Ok(Gradients {
+            objective: (0..n).map(|i| self.sign * scaled(0, i)).collect(),
+            jacobian: DMatrix::from_fn(functions.len() - 1, n, |j, i| scaled(j + 1, i)),
+        })
+    }
+}
+
+/// A design in the problem's units from the optimiser's, x = scale · x̂.
+pub fn unscaled(problem: &Problem, x: &[f64]) -> Vec<f64> {
+    // A scaled bound comes back as the bound itself, whatever round-off did.
+    let clamp = |x: f64, v: &crate::problem::Variable| (x * v.scale).clamp(v.lower, v.upper);
+    x.iter()
+        .zip(&problem.variables)
+        .map(|(&x, v)| clamp(x, v))
+        .collect()
+}
