@@ -3,6 +3,7 @@
 use super::evaluator::unscaled;
 use super::journal::Journal;
 use super::optimise::{Solved, solve};
+use crate::optimiser::Options;
 use crate::problem::{Problem, Sense, Variable};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
@@ -13,9 +14,6 @@ const SAME_DESIGN: f64 = 1e-3;
 /// As for designs, for the objective, relative to it or to how much the runs improved it, whichever is
 /// larger.
 const SAME_OBJECTIVE: f64 = 1e-6;
-
-/// Largest violation of a design that counts as feasible.
-const FEASIBLE: f64 = 1e-6;
 
 /// One of several optimisations.
 pub struct Run {
@@ -148,7 +146,8 @@ pub fn best(runs: &[Run]) -> Option<usize> {
         let violation = run.solved.outcome.kkt.violation;
         let value = run.solved.outcome.objective;
         let value = if value.is_nan() { f64::INFINITY } else { value };
-        let feasible = violation <= FEASIBLE;
+        let given = run.problem.optimiser.constraint_tolerance;
+        let feasible = violation <= given.unwrap_or(Options::default().constraint_tolerance);
         let open = if feasible { 0.0 } else { violation };
         (!run.solved.outcome.converged(), open, value)
     };
