@@ -200,6 +200,10 @@ impl Nlp for Evaluator<'_> {
         self.problem.variables[i].name.clone()
     }
 
+    fn variable_unit(&self, i: usize) -> f64 {
+        self.problem.variables[i].scale
+    }
+
     fn constraint_name(&self, j: usize) -> String {
         self.problem.constraints[j].name.clone()
     }

@@ -34,7 +34,7 @@ impl Run {
 
 /// An optimum that at least one run found.
 pub struct LocalOptimum {
-    /// The run that found it first.
+    /// The run that found it best.
     pub run: usize,
     /// How many runs ended there.
     pub found_by: usize,
@@ -112,6 +112,13 @@ pub fn multi_start<'j>(
 /// Distinct optima of the converged runs, best first.
 pub fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
     let size = improvement(runs);
+    let worth = |run: usize| {
+        let value = runs[run].solved.objective();
+        match problem.objective.map(|o| o.sense) {
+            Some(Sense::Maximise) => -value,
+            _ => value,
+        }
+    };
     let mut found: Vec<LocalOptimum> = Vec::new();
     for (k, run) in runs.iter().enumerate() {
         if !run.solved.outcome.converged() {
@@ -121,21 +128,19 @@ pub fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
             .iter_mut()
             .find(|other| same(problem, size, run, &runs[other.run]));
         match known {
-            Some(other) => other.found_by += 1,
+            Some(other) => {
+                other.found_by += 1;
+                if worth(k) < worth(other.run) {
+                    other.run = k;
+                }
+            }
             None => found.push(LocalOptimum {
                 run: k,
                 found_by: 1,
             }),
         }
     }
-    let worth = |o: &LocalOptimum| {
-        let value = runs[o.run].solved.objective();
-        match problem.objective.map(|o| o.sense) {
-            Some(Sense::Maximise) => -value,
-            _ => value,
-        }
-    };
-    found.sort_by(|a, b| worth(a).total_cmp(&worth(b)));
+    found.sort_by(|a, b| worth(a.run).total_cmp(&worth(b.run)));
     found
 }
 

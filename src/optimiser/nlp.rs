@@ -34,6 +34,12 @@ pub trait Nlp {
         format!("c[{j}]")
     }
 
+    /// How many units of the user one unit of variable `i` is, if the program scales its variables
+    /// itself: endings are judged in the user's.
+    fn variable_unit(&self, _i: usize) -> f64 {
+        1.0
+    }
+
     /// Objective and constraints at `x`.
     ///
     /// # Errors

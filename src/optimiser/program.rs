@@ -101,6 +101,9 @@ pub(super) struct Program<'a> {
     pub counts: Counts,
     pub failed: Vec<FailedDesign>,
     started: Instant,
+    /// What one unit of each variable of `nlp` is in the unit that forces on it are judged in: that of
+    /// the user, unless the variable is small beside it by its scale and at the start.
+    pub units_judged: Vec<f64>,
     /// Norms ‖∇f‖∞ of all points so far, in the units of the user; a point in succession counts once.
     pub gradient_norms: Vec<f64>,
     /// Sizes of the rows at the newest derivatives, in the units of the user.
@@ -146,6 +149,11 @@ impl<'a> Program<'a> {
                 }
             }
         }
+        let judged = |i: usize| {
+            let unit = nlp.variable_unit(i);
+            unit / unit.max((template[i] * unit).abs()).min(1.0)
+        };
+        let units_judged = (0..n).map(judged).collect();
         let pick = |v: &[f64], index: &[usize]| {
             DVector::from_iterator(index.len(), index.iter().map(|&i| v[i]))
         };
@@ -173,6 +181,7 @@ impl<'a> Program<'a> {
             counts: Counts::default(),
             failed: Vec::new(),
             started: Instant::now(),
+            units_judged,
             gradient_norms: Vec::new(),
             row_sizes: vec![f64::INFINITY; m],
             largest_rows: vec![0.0; m],
@@ -183,6 +192,12 @@ impl<'a> Program<'a> {
             first: None,
             best: None,
         }
+    }
+
+    /// What a force of one on variable `i` of `nlp`, in the units that forces are judged in, is in
+    /// scaled ones.
+    pub fn unit_of_force(&self, i: usize) -> f64 {
+        self.scaling.objective * self.scaling.variables[i] * self.units_judged[i]
     }
 
     /// Scaled start of the user.
@@ -268,7 +283,10 @@ impl<'a> Program<'a> {
             let (j, i) = (rows[r], free[k]);
             jacobian[(j, i)] * scaling.constraints[j] * scaling.variables[i]
         });
-        let norm = free.iter().map(|&i| objective[i].abs()).fold(0.0, f64::max);
+        let norm = free
+            .iter()
+            .map(|&i| (objective[i] / self.units_judged[i]).abs())
+            .fold(0.0, f64::max);
         let reach = DVector::from_fn(free.len(), |k, _| {
             let width = self.upper[k] - self.lower[k];
             width.min(x[k].abs().max(1.0))
@@ -353,6 +371,12 @@ impl<'a> Program<'a> {
     /// The program of the user.
     pub fn nlp(&self) -> &dyn Nlp {
         self.nlp
+    }
+
+    /// The best point reported, if it is feasible.
+    pub fn feasible_best(&self) -> Option<Point> {
+        let best = self.best.clone();
+        best.filter(|best| self.is_feasible(&best.c))
     }
 
     fn keep_best(&mut self, point: &Point) {

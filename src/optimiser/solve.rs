@@ -182,6 +182,21 @@ fn attempt(
         if !matches!(finish.status, Status::Infeasible { .. }) {
             break;
         }
+        // A run that has seen a feasible point has lost its way.
+        if let Some(best) = program.feasible_best() {
+            finish = match program.renew(best) {
+                Ok(first) => run(program, first, None),
+                Err(trouble) => {
+                    finish.restore_units(program);
+                    finish.status = match trouble {
+                        Trouble::Halt(status) => status,
+                        Trouble::Failed(_) => Status::Stalled,
+                    };
+                    finish
+                }
+            };
+            continue;
+        }
         match look_around(program, &finish.point) {
             Ok(Around::Less(first)) => finish = run(program, *first, None),
             Ok(Around::Flat) => {
@@ -202,6 +217,9 @@ fn attempt(
                 break;
             }
         }
+    }
+    if matches!(finish.status, Status::Infeasible { .. }) && program.feasible_best().is_some() {
+        finish.status = Status::Stalled;
     }
     finish
 }

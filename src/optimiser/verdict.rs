@@ -144,7 +144,7 @@ pub(super) fn unit_of_forces(program: &Program<'_>, slopes: &Slopes) -> f64 {
 pub(super) fn gradient_norm(program: &Program<'_>, slopes: &Slopes) -> f64 {
     let gradient = program.free.iter().zip(slopes.g.iter());
     gradient
-        .map(|(&i, g)| (g / (program.scaling.objective * program.scaling.variables[i])).abs())
+        .map(|(&i, g)| (g / program.unit_of_force(i)).abs())
         .fold(0.0, f64::max)
 }
 
@@ -161,7 +161,7 @@ pub(super) fn kkt(
     let mut stationarity = 0.0_f64;
     let mut complementarity = 0.0_f64;
     for (i, &user) in program.free.iter().enumerate() {
-        let unit = unit_f * program.scaling.variables[user];
+        let unit = program.unit_of_force(user);
         let residual = slopes.g[i] + force[i] - z.zl[i] + z.zu[i];
         stationarity = stationarity.max(residual.abs() / unit);
         let mut product = |multiplier: f64, distance: f64| {

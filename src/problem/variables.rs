@@ -128,8 +128,10 @@ impl<'a> Checker<'a> {
         });
         let lower = written.lower.unwrap_or(f64::NEG_INFINITY);
         let upper = written.upper.unwrap_or(f64::INFINITY);
+        // Bounds that are far away say nothing of what changes are typical.
+        let most = WIDE * start.abs().max(1.0);
         let scale = match 0.5 * (upper - lower) {
-            half if half.is_finite() => half,
+            half if half.is_finite() => half.min(most),
             _ if start != 0.0 => start.abs(),
             _ => 1.0,
         };
@@ -255,6 +257,9 @@ impl<'a> Checker<'a> {
         }
     }
 }
+
+/// Largest typical change, in starting values (or units, of a start at zero).
+const WIDE: f64 = 1e3;
 
 /// A unit in brackets after a number.
 fn unit_suffix(unit: &str) -> String {
