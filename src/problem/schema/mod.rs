@@ -190,7 +190,8 @@ pub struct Variable {
     #[schemars(extend("design_variable" = "a bound limits the design, it is no part of it"))]
     pub upper: Option<f64>,
     /// Typical change that the optimiser scales the variable by; default half the distance of the
-    /// bounds, else the size of the start, else 1.
+    /// bounds, but at most 1000 times the size of the start (or 1, if that is more), else the size of
+    /// the start, else 1.
     #[schemars(extend(
         "exclusiveMinimum" = 0,
         "design_variable" = "a scale is the optimiser's, not a physical number"
