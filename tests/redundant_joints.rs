@@ -4,6 +4,7 @@
 use flexbody::driver::{check, simulate};
 use flexbody::integrate::IntegrationFailure;
 use flexbody::problem::{Override, Problem};
+use flexbody::system::observe::Reaction;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::process::Command;
@@ -223,6 +224,62 @@ fn joints_that_contradict_each_other_are_no_redundancy() {
 }
 
 /// A tree of bodies has nothing to leave out, however it stands.
+/// Two bodies that a weld and a rod beside it hold together, swinging: the shares of the two follow from
+/// the forces, however far the joints have drifted and however the scene is lowered.
+#[test]
+fn shares_of_redundant_joints_are_smooth() {
+    let solid = json!({"box": {"size": [1, 0.2, 0.3]}});
+    let body = |at: f64| json!({"shape": solid, "mass": 1, "place": {"put": [-0.5, 0, 0], "at": [at, 0, 0]}});
+    let both = ["a", "b"];
+    let file = json!({
+        "version": 1, "name": "held twice", "gravity": [0, -9.81, 1],
+        "bodies": {"a": body(0.0), "b": body(1.0), "c": body(2.0), "d": body(3.0)},
+        "joints": {
+            "pin": {"spherical": {"between": ["a", "ground"], "at": [0, 0, 0]}},
+            "seam": {"weld": {"between": both, "at": [1, 0, 0]}},
+            "rod": {"rod": {"between": both, "at": [[0.5, 0.1, 0], [1.5, 0.1, 0.1]]}},
+            "holder": {"spherical": {"between": ["c", "b"], "at": [2, 0, 0]}},
+            "clamp": {"weld": {"between": ["c", "d"], "at": [3, 0, 0]}}
+        },
+        "simulation": {"duration": 1, "tolerance": 1e-12, "samples": 200}
+    });
+    let mut written = problem(&file);
+    let lowered = written.clone();
+    assert!(
+        lowered
+            .lowering
+            .as_ref()
+            .is_some_and(|own| !own.welded.is_empty())
+    );
+    written.lowering = None;
+    let [lowered, written] = [&lowered, &written].map(|p| simulate(p, &p.start()).expect("runs"));
+    let last = lowered.motion().last();
+    let [lowered, written] = [&lowered, &written].map(|run| run.reactions_at(0..=last));
+    let apart =
+        |a: &Reaction, b: &Reaction| (a.force - b.force).norm() + (a.torque - b.torque).norm();
+    let mut share = 0.0_f64;
+    for (k, (a, b)) in lowered.iter().zip(&written).enumerate() {
+        let size = b.iter().map(|own| own.force.norm() + own.torque.norm());
+        let size = size.fold(0.0, f64::max);
+        for (j, (a, b)) in a.iter().zip(b).enumerate() {
+            let off = apart(a, b);
+            assert!(
+                off <= 1e-6 * size,
+                "joint {j}, instant {k}: {off:e} of {size}"
+            );
+        }
+        share = share.max(b[2].force.norm() / size);
+        if k >= 2 {
+            for j in 0..a.len() {
+                let (before, now) = (&lowered[k - 1][j], &a[j]);
+                let off = apart(now, before);
+                assert!(off <= 0.2 * size, "joint {j}, instant {k}: {off} of {size}");
+            }
+        }
+    }
+    assert!(share > 1e-3, "{share}");
+}
+
 #[test]
 fn trees_are_not_searched() {
     for name in ["trebuchet", "trebuchet_release_time", "triple_pendulum"] {

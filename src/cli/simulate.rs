@@ -59,6 +59,8 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     }
     if simulation.unlowered {
         text.push_str("  integrated as written: this design does not admit the lowering\n");
+    } else if let Some(merged) = driver::merged_errs(problem, &simulation.at) {
+        let _ = writeln!(text, "  {merged}");
     }
     let width = problem
         .function_names

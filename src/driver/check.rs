@@ -3,11 +3,12 @@
 use super::evaluate::Evaluated;
 use super::event;
 use super::integration::Integration;
-use crate::functions::Function;
+use crate::functions::{Function, Instant, Reduction};
 use crate::integrate::{IntegrationFailure, Settings, Trajectory, simulate};
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
 use crate::problem::Problem;
+use crate::system::assembly::length_scale;
 use rayon::prelude::*;
 
 /// Part of its terms below which a derivative lacks digits that they lost.
@@ -24,8 +25,9 @@ pub struct CheckedDerivative {
     pub adjoint: f64,
     /// By the complex step.
     pub complex_step: f64,
-    /// Sum of the sizes of the terms that the adjoint's derivative is the sum of, or the function's
-    /// largest derivative if that is larger, each variable counted in its scale.
+    /// Sum of the sizes of the terms that the adjoint's derivative is the sum of, or what is larger of
+    /// the function's largest derivative, each variable counted in its scale, and of the function's own
+    /// size for a typical change of the variable.
     pub terms: f64,
     /// By the discrete adjoint of the motion that an optimisation would see. The two motions
     /// differ by round-off, which a sensitive motion magnifies.
@@ -103,12 +105,17 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
     };
     let (adjoint, _) = same.derivatives(problem, &which)?;
     let (in_use, _) = in_use.gradients(problem, &which)?;
-    // Round-off of the motion reaches small derivatives from the large ones.
+    let scale_of = |i: usize| problem.variables[i].scale;
+    let own: Vec<f64> = which.iter().map(|&f| own_size(&same, f)).collect();
+    // Round-off of the motion reaches small derivatives from the large ones, and that of the function
+    // all of them.
     let terms = |function: usize, variable: usize| {
-        let scale = |i: usize| problem.variables[i].scale;
-        let sizes = (adjoint[function].iter().enumerate()).map(|(i, d)| d.value.abs() * scale(i));
-        let largest = sizes.fold(0.0, f64::max) / scale(variable);
-        adjoint[function][variable].terms.max(largest)
+        let change = scale_of(variable).max(x[variable].abs());
+        let sizes =
+            (adjoint[function].iter().enumerate()).map(|(i, d)| d.value.abs() * scale_of(i));
+        let largest = sizes.fold(0.0, f64::max) / scale_of(variable);
+        let terms = adjoint[function][variable].terms.max(largest);
+        terms.max(own[function] / change)
     };
     let pairs = which
         .iter()
@@ -123,6 +130,32 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
             in_use: in_use[function][variable],
         })
         .collect())
+}
+
+/// The size that function f is computed to round-off of: its value, or that of its kind in a scene of
+/// this length L and duration T, as a value may be a difference.
+fn own_size(at: &Evaluated, f: usize) -> f64 {
+    let model = &at.scene.model;
+    let (length, time) = (length_scale(model), at.run.duration);
+    let (instant, reduction) = match &at.scene.functions[f] {
+        Function::Reduced { instant, reduction } => (instant, *reduction),
+        Function::Clearance { .. } => return length.max(at.function(f).value.abs()),
+    };
+    let size = match instant {
+        Instant::Position { .. } | Instant::Range { .. } => length,
+        Instant::Velocity { .. } | Instant::Speed { .. } => length / time,
+        Instant::Acceleration { .. } => length / (time * time),
+        Instant::Rotation { .. } => 1.0,
+        Instant::Energy(_) => {
+            let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
+            mass * length * (model.gravity.norm() + length / (time * time))
+        }
+    };
+    let size = match reduction {
+        Reduction::Integral => size * time,
+        Reduction::Final | Reduction::Ks { .. } | Reduction::InducedExponential { .. } => size,
+    };
+    size.max(at.function(f).value.abs())
 }
 
 /// Derivatives of all functions in one variable, and the real part of the motion.
@@ -176,5 +209,40 @@ mod tests {
         assert!(!pair(f64::NAN, 0.0).differs_by_round_off());
         // One that is not small has all its digits.
         assert!(!pair(0.1 + 5e-15, 0.1).differs_by_round_off());
+    }
+
+    /// A derivative that is nothing is judged by the function's own size, whatever it is the sum of: that
+    /// of the event's own measure, and that by the mass of what falls freely.
+    #[test]
+    fn what_does_not_change_passes() {
+        let arm = r#"{"shape": {"box": {"size": [1, 0.2, 0.3]}}, "mass": 1,
+                       "place": {"put": [-0.5, 0, 0], "at": [0, 0, 0]}}"#;
+        let swing = format!(
+            r#"{{"version": 1, "name": "swing", "gravity": [0.3, -9.81, 0],
+            "bodies": {{"arm": {arm}, "tip": {arm}}},
+            "joints": {{"pin": {{"revolute": {{"between": ["arm", "ground"], "at": [0, 0, 0],
+                "axis": [0, 0, 1]}}}},
+                "knee": {{"revolute": {{"between": ["tip", "arm"], "at": [0, 0.1, 0], "axis": [0, 0, 1]}}}}}},
+            "simulation": {{"duration": 2, "tolerance": 1e-12, "until": {{"reaches": -0.2,
+                "measure": {{"rotation": {{"body": "tip", "axis": [0, 0, 1]}}}}}}}},
+            "functions": {{"turned": {{"final": {{"rotation": {{"body": "tip", "axis": [0, 0, 1]}}}}}}}},
+            "variables": {{"mass": {{"path": "/bodies/tip/mass", "lower": 0.1}},
+                "height": {{"path": "/joints/knee/revolute/at/1"}}}}}}"#
+        );
+        let spin = r#"{"version": 1, "name": "spin", "gravity": [0, -9.81, 1],
+            "bodies": {"a": {"shape": {"box": {"size": [1, 0.2, 0.3]}}, "mass": 1, "place": {"at": [1, 0, 0]},
+                "velocity": {"angular": [1, 2, 3]}}},
+            "joints": {"r": {"rod": {"between": ["a", "ground"], "at": [[1, 0, 0], [0, 0, 0]]}}},
+            "simulation": {"duration": 1, "tolerance": 1e-12},
+            "functions": {"x": {"final": {"position": {"body": "a", "direction": [1, 0, 0]}}}},
+            "variables": {"m": {"path": "/bodies/a/mass", "lower": 0.1}}}"#;
+        for text in [&swing[..], spin] {
+            let problem = Problem::parse(text, "nothing.json", &[]);
+            let problem = problem.unwrap_or_else(|faults| panic!("{faults}"));
+            for d in check(&problem, &problem.start()).expect("a run") {
+                assert!(d.is_round_off(), "{d:?}");
+                assert!(d.terms < 1e3, "{d:?}");
+            }
+        }
     }
 }

@@ -2,11 +2,11 @@
 
 use super::evaluate::{Derivative, Evaluated};
 use super::integration::{Integration, looks_at_the_whole};
-use crate::integrate::Trajectory;
+use crate::integrate::{Method, Trajectory};
 use crate::model::{Mobility, Model};
 use crate::problem::Problem;
 use crate::report::{Explanation, FunctionUse, IntegrationUse, SystemSize};
-use crate::system::accelerations::Accelerations;
+use crate::system::accelerations::{Accelerations, Untreelike};
 use crate::system::{Numbering, initial};
 
 /// Explains the start of `problem`, which is simulated with its gradients if that can be done.
@@ -64,6 +64,7 @@ pub fn explain(problem: &Problem) -> Explanation {
             IntegrationUse {
                 method: at.run.method.name(),
                 reason: reason.into(),
+                merged: merged_errs(problem, &at).map(Into::into),
                 steps: at.run.grid.steps(),
                 samples_bytes,
                 tape_bytes,
@@ -160,12 +161,46 @@ fn lowering(
     (left_out, kept)
 }
 
+/// That steps err otherwise for bodies that were merged than for their parts, if an implicit method
+/// marched some.
+pub fn merged_errs(problem: &Problem, at: &Evaluated) -> Option<&'static str> {
+    let lowering = problem.lowering.as_ref();
+    let merged = lowering.is_some_and(|lowering| !lowering.welded.is_empty());
+    (merged && at.run.method != Method::Dop853).then_some(
+        "welded bodies were merged, for which an implicit method errs otherwise than for their parts: its \
+         results differ from those of --no-lowering by its error, not by round-off",
+    )
+}
+
+/// Why elimination along the tree does not serve.
+fn told(model: &Model<f64>, why: Untreelike) -> String {
+    match why {
+        Untreelike::Loops => "loops of joints reach far and overlap".into(),
+        Untreelike::Body(body) => {
+            let body = &model.bodies[body];
+            let principal = body.inertia.symmetric_eigenvalues();
+            let name = &body.name;
+            match principal.min() <= f64::EPSILON * principal.max() {
+                true => format!("body \"{name}\" has no inertia of its own about some axis"),
+                false => format!(
+                    "the inertia of body \"{name}\" loses five digits beside that of what hangs from it"
+                ),
+            }
+        }
+        Untreelike::Joint(joint) => format!(
+            "the inertias that joint \"{}\" holds differ by five digits",
+            model.joints[joint].name
+        ),
+    }
+}
+
 /// Size of the equations of a model in a state.
 fn size(model: &Model<f64>, (q, v): (Vec<f64>, Vec<f64>)) -> SystemSize {
     let numbering = Numbering::new(model);
     let mut field = Accelerations::new(model, &numbering);
     field.stand(&q, &v, 0.0);
     let elimination = field.factorise().ok().map(|()| field.elimination());
+    let sparse = field.left_to_sparse().map(|why| told(model, why));
     let named = |bodies: Vec<usize>| {
         let name = |body: usize| model.bodies[body].name.clone();
         bodies.into_iter().map(name).collect()
@@ -175,6 +210,7 @@ fn size(model: &Model<f64>, (q, v): (Vec<f64>, Vec<f64>)) -> SystemSize {
         velocities,
         rows,
         stabilised: 2 * (velocities + rows),
+        sparse,
         fill: elimination.as_ref().and_then(|found| found.fill),
         operations: elimination.as_ref().map_or(0, |found| found.operations),
         closing: elimination.as_ref().map_or(Vec::new(), |found| {

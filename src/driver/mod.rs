@@ -23,7 +23,7 @@ pub mod work_precision;
 pub use check::{CheckedDerivative, check};
 pub use evaluate::Evaluated;
 pub use evaluator::Evaluator;
-pub use explain::explain;
+pub use explain::{explain, merged_errs};
 pub use journal::Journal;
 pub use multi_start::multi_start;
 pub use optimise::{Optimisation, Solved, optimise, solve};

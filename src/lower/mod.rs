@@ -160,7 +160,7 @@ impl Lowering {
             }
             return admitted;
         }
-        if self.welded.holds(&scene.model, 0.0).is_err() {
+        if self.welded.holds(scene, 0.0).is_err() {
             return false;
         }
         let mut merged = scene.clone();

@@ -11,7 +11,7 @@ use super::{Kept, fixed};
 use crate::functions::Scene;
 use crate::integrate::Trajectory;
 use crate::math::{Scalar, Vec3};
-use crate::model::{Joint, JointKind, LoadKind, Model};
+use crate::model::{Joint, JointKind, LoadKind, Model, MotionCourse};
 use crate::system::{Motion, Numbering, constraint, initial, side};
 
 /// Bodies that are merged.
@@ -79,8 +79,8 @@ impl Welded {
             let known = known.unwrap_or_else(|| {
                 let joints = joints_of(group, &mut together);
                 let verdict = designs.ask(
-                    |scene| closed(&scene.model, &joints, 0.0),
-                    |scene, change| closed(&scene.model, &joints, change),
+                    |scene| closed(scene, &joints, 0.0),
+                    |scene, change| closed(scene, &joints, change),
                 );
                 if verdict.is_ok() {
                     found.closed.extend(joints);
@@ -185,9 +185,9 @@ impl Welded {
     }
 
     /// Examines whether the bodies may be merged.
-    pub(super) fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Verdict {
-        closed(model, &self.closed, change)?;
-        alike(model, &self.alike, change)
+    pub(super) fn holds<S: Scalar>(&self, scene: &Scene<S>, change: f64) -> Verdict {
+        closed(scene, &self.closed, change)?;
+        alike(&scene.model, &self.alike, change)
     }
 
     /// Merges the bodies.
@@ -217,7 +217,12 @@ fn loads_on(model: &Model<f64>, joint: usize) -> Vec<Obstacle> {
 
 /// Examines whether `joints` are closed where the bodies are placed, and the velocities there are
 /// such as they allow.
-fn closed<S: Scalar>(model: &Model<S>, joints: &[usize], change: f64) -> Verdict {
+///
+/// A velocity is round-off beside those placed, beside what drives reach, or if it moves nothing further
+/// than round-off in the time that is simulated.
+fn closed<S: Scalar>(scene: &Scene<S>, joints: &[usize], change: f64) -> Verdict {
+    let model = &scene.model;
+    let duration = scene.duration.re().abs();
     let mut examiner = Examiner::new(change);
     let (q, v) = initial::guess(model);
     let mut motions = Vec::new();
@@ -244,6 +249,7 @@ fn closed<S: Scalar>(model: &Model<S>, joints: &[usize], change: f64) -> Verdict
                 true => (reach, speed + spin * reach),
                 false => (1.0, spin),
             };
+            let rate = rate.max(drives_reach(joint)).max(length / duration);
             examiner.zero(constraint::value(row, &a, &b), length, what);
             let what = || {
                 let what = "opens by the velocities that the bodies are placed with";
@@ -253,6 +259,20 @@ fn closed<S: Scalar>(model: &Model<S>, joints: &[usize], change: f64) -> Verdict
         }
     }
     examiner.verdict()
+}
+
+/// The largest rate of the harmonic drives of a joint, whose rate at the start has the round-off of that
+/// (m/s or rad/s); other courses say theirs without.
+fn drives_reach<S: Scalar>(joint: &Joint<S>) -> f64 {
+    let rates = joint.drives.iter().map(|drive| match &drive.course {
+        MotionCourse::Harmonic {
+            amplitude,
+            frequency,
+            ..
+        } => std::f64::consts::TAU * (amplitude.re() * frequency.re()).abs(),
+        MotionCourse::Polynomial(_) | MotionCourse::Table { .. } => 0.0,
+    });
+    rates.fold(0.0, f64::max)
 }
 
 /// Examines whether the bodies of each pair are turned alike.

@@ -45,6 +45,9 @@ pub struct IntegrationUse {
     pub reason: String,
     /// See above.
     pub steps: usize,
+    /// Where what is left out changes what the method computes by its error, and not by round-off.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub merged: Option<String>,
     /// Memory of the samples and of what is kept for gradients (bytes).
     pub samples_bytes: usize,
     /// See above.
@@ -62,6 +65,9 @@ pub struct SystemSize {
     pub stabilised: usize,
     /// Bodies in the order of elimination; empty if that is left to sparse LU.
     pub order: Vec<String>,
+    /// Why that is left to sparse LU, if it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sparse: Option<String>,
     /// Joints that close loops, eliminated after the bodies.
     pub closing: Vec<String>,
     /// Entries of the sparse matrix and of its factors, where it is used.
@@ -123,9 +129,9 @@ impl Explanation {
         let rows: Vec<Vec<String>> = rows.into_iter().filter(told).collect();
         text.push_str("\nequations\n");
         text.push_str(&render(&["", ">as written", ">lowered"], &rows));
-        let order = match self.lowered.order.is_empty() {
-            true => "by sparse LU".to_owned(),
-            false => self.lowered.order.join(", "),
+        let order = match &self.lowered.sparse {
+            Some(reason) => format!("by sparse LU: {reason}"),
+            None => self.lowered.order.join(", "),
         };
         let _ = writeln!(text, "  elimination: {order}");
         if !self.lowered.closing.is_empty() {
@@ -143,6 +149,9 @@ impl Explanation {
                 size(found.samples_bytes),
                 size(found.tape_bytes)
             );
+            if let Some(merged) = &found.merged {
+                let _ = writeln!(text, "  {merged}");
+            }
         }
         if let Some(failure) = &self.failure {
             let _ = writeln!(text, "  fails at the start: {failure}");

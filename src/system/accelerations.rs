@@ -35,6 +35,7 @@ pub struct Accelerations<'a, S> {
     /// Time where the solver stands (s).
     time: S,
     solver: Solver<S>,
+    left_to_sparse: Option<Untreelike>,
     rhs: Vec<S>,
     /// Factorisations so far.
     pub factorisations: usize,
@@ -48,12 +49,24 @@ enum Solver<S> {
     Sparse(Box<SaddlePoint<S>>, Vec<S>),
 }
 
+/// Why the tree of joints does not serve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Untreelike {
+    /// Loops of joints reach so far and overlap so much that sparse LU costs less.
+    Loops,
+    /// A body, with what hangs from it, has a motion without inertia, or one whose inertia loses five
+    /// digits beside that of the others.
+    Body(usize),
+    /// Likewise the rows of a joint, for the inertias of what it holds.
+    Joint(usize),
+}
+
 impl<'a, S: SolveScalar> Accelerations<'a, S> {
     /// Plans the solver.
     pub fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
-        let solver = match Tree::plan(model, numbering) {
-            Some(tree) => Solver::Tree(Box::new(tree)),
-            None => Self::sparse(model, numbering),
+        let (solver, left_to_sparse) = match Tree::plan(model, numbering) {
+            Some(tree) => (Solver::Tree(Box::new(tree)), None),
+            None => (Self::sparse(model, numbering), Some(Untreelike::Loops)),
         };
         Self {
             model,
@@ -64,6 +77,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             moving: Vec::new(),
             time: S::zero(),
             solver,
+            left_to_sparse,
             rhs: vec![S::zero(); numbering.velocities() + numbering.constraints()],
             factorisations: 0,
             solves: 0,
@@ -119,12 +133,14 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     pub fn factorise(&mut self) -> Result<(), SingularMatrix> {
         self.factorisations += 1;
         if let Solver::Tree(tree) = &mut self.solver {
-            if tree
-                .factorise(self.model, self.numbering, &self.gradients)
-                .is_ok()
-            {
+            let Err(at) = tree.factorise(self.model, self.numbering, &self.gradients) else {
                 return Ok(());
-            }
+            };
+            let row = at.column.checked_sub(self.numbering.velocities());
+            self.left_to_sparse = Some(match row {
+                Some(row) => Untreelike::Joint(self.numbering.joint_of_row(row)),
+                None => Untreelike::Body(self.numbering.body_of_velocity(at.column)),
+            });
             // A body without inertia of its own may still be held by its joints, and the rows of a loop
             // by a choice of pivots.
             self.solver = Self::sparse(self.model, self.numbering);
@@ -163,6 +179,11 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             Solver::Tree(tree) => tree.elimination(self.numbering),
             Solver::Sparse(saddle, _) => saddle.elimination(),
         }
+    }
+
+    /// Why that is left to sparse LU, if it is.
+    pub fn left_to_sparse(&self) -> Option<Untreelike> {
+        self.left_to_sparse
     }
 
     fn solve_tree(&mut self, rhs: &mut [S]) {

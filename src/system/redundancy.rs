@@ -29,6 +29,8 @@ const CLOSED: f64 = 1e-12;
 const REGULAR: f64 = 1e-10;
 /// Gap relative to the length scale from which a row that is left out counts as open in a run.
 pub const OPENED: f64 = 1e-6;
+/// Size relative to the largest row below which G has no part in a direction of the multipliers.
+const DAMPED: f64 = 1e-6;
 /// Closing steps.
 const ITERATIONS: usize = 50;
 /// Distances of a position beside the placement that are tried, in units of the length scale and in
@@ -347,8 +349,17 @@ pub fn opened<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Wide
 }
 
 /// The multipliers of all rows, those left out included, with the smallest sum of squares that act
-/// as `lambda` does: the part of `lambda` in the range of G, by conjugate gradients on its normal
-/// equations (Björck 1996, *Numerical Methods for Least Squares Problems*, algorithm 7.4.1).
+/// as `lambda` does: the part of `lambda` in the range of G. Rows that follow from others do so up to
+/// the drift of the constraints, so directions in which G is that small are not of its range: they are
+/// damped,
+///
+/// ```text
+/// min |λ − G y|² + δ² |y|²,     δ = 1e-6 of the largest row,
+/// ```
+///
+/// by conjugate gradients on the normal equations (Björck 1996, *Numerical Methods for Least Squares
+/// Problems*, algorithm 7.4.1 and section 7.4.3), and once more for what is left of λ. A direction in
+/// which G has the size σ then lacks (δ/σ)⁴ if it is of the range, and leaks 2 (σ/δ)² if it is not.
 ///
 /// Each joint's rows follow each other in the order of its kind. `model` has all rows imposed,
 /// `numbering` numbers them and `at` is where it is, and when.
@@ -366,27 +377,40 @@ pub fn smallest_multipliers(
         out
     };
     let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+    let squares = gradients.iter().map(|row| {
+        2.0 * row.force.norm_squared() + row.torque_a.norm_squared() + row.torque_b.norm_squared()
+    });
+    let damping = DAMPED.powi(2) * squares.fold(0.0, f64::max);
     let mut rest = lambda.to_vec();
-    let mut slope = transposed(&rest);
-    let mut along = slope.clone();
-    let mut size = square(&slope);
-    let enough = size * 1e-28;
     let mut image = vec![0.0; lambda.len()];
-    for _ in 0..4 * lambda.len() {
-        if size <= enough {
-            break;
+    let enough = square(&transposed(&rest)) * 1e-28;
+    for _ in 0..2 {
+        let mut y = vec![0.0; numbering.velocities()];
+        let mut slope = transposed(&rest);
+        let mut along = slope.clone();
+        let mut size = square(&slope);
+        for _ in 0..4 * lambda.len() {
+            if size <= enough {
+                break;
+            }
+            joints::rates_from_gradients(model, numbering, &gradients, &along, &mut image);
+            let step = size / (square(&image) + damping * square(&along));
+            for (y, along) in y.iter_mut().zip(&along) {
+                *y += step * along;
+            }
+            for (rest, image) in rest.iter_mut().zip(&image) {
+                *rest -= step * image;
+            }
+            slope = transposed(&rest);
+            for (slope, y) in slope.iter_mut().zip(&y) {
+                *slope -= damping * y;
+            }
+            let next = square(&slope);
+            for (along, slope) in along.iter_mut().zip(&slope) {
+                *along = slope + next / size * *along;
+            }
+            size = next;
         }
-        joints::rates_from_gradients(model, numbering, &gradients, &along, &mut image);
-        let step = size / square(&image);
-        for (rest, image) in rest.iter_mut().zip(&image) {
-            *rest -= step * image;
-        }
-        slope = transposed(&rest);
-        let next = square(&slope);
-        for (along, slope) in along.iter_mut().zip(&slope) {
-            *along = slope + next / size * *along;
-        }
-        size = next;
     }
     lambda
         .iter()

@@ -56,6 +56,35 @@ fn an_explanation_tells_all_obstacles() {
     assert!(found.kept.len() > 1, "{:?}", found.kept);
 }
 
+/// Why the tree of joints does not serve, and what merged bodies change, is told.
+#[test]
+fn an_explanation_gives_the_reasons() {
+    for (file, part) in [
+        (
+            "simple_pendulum",
+            "body \"bob\" has no inertia of its own about some axis",
+        ),
+        ("flyball_governor", "digits"),
+    ] {
+        let found = driver::explain(&load(&format!("problems/benchmarks/{file}.json"), &[]));
+        assert!(found.lowered.order.is_empty());
+        let reason = found.lowered.sparse.as_ref().expect("a reason");
+        assert!(reason.contains(part), "{reason}");
+        assert!(found.text().contains(reason));
+    }
+    for (method, errs) in [("dop853", false), ("radau", true)] {
+        let found = driver::explain(&super::welds::carried(|document| {
+            document["simulation"]["method"] = match errs {
+                true => json!({"radau": {"stages": 3}}),
+                false => json!(method),
+            };
+            document["simulation"]["tolerance"] = json!(1e-7);
+        }));
+        assert!(found.lowered.sparse.is_none());
+        assert_eq!(found.text().contains("not by round-off"), errs, "{method}");
+    }
+}
+
 /// What can be told without a simulation is told where that fails.
 #[test]
 fn a_start_that_fails_is_explained() {
