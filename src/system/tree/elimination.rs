@@ -36,11 +36,11 @@ pub struct Elimination<S, const N: usize> {
     pub(super) loops: Option<Loops<S, N>>,
 }
 
-/// Unknowns of a body: known beforehand where all have three.
+/// Order of the block of a body: known beforehand where all have up to three unknowns.
 pub(super) fn size<const N: usize>(numbering: &Numbering, body: usize) -> usize {
     match N {
         SMALL => SMALL,
-        _ => numbering.mobility(body).unknowns(),
+        _ => numbering.unknowns_of(body),
     }
 }
 
@@ -152,7 +152,7 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
                 continue;
             };
             let rows = numbering.rows(joint);
-            let m = size::<N>(numbering, link.body);
+            let m = numbering.unknowns_of(link.body);
             let own: [S; N] = block(&x[numbering.unknown(link.body)..], m);
             let e = &mut multipliers[rows.clone()];
             for (e, lever) in e.iter_mut().zip(&factors.lever) {
@@ -161,7 +161,7 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
             solve(&factors.schur, e, rows.len());
             if let Some(parent) = parent {
                 let at = numbering.unknown(parent);
-                let m = size::<N>(numbering, parent);
+                let m = numbering.unknowns_of(parent);
                 for (&e, above) in e.iter().zip(&factors.above) {
                     axpy(&mut x[at..at + m], -e, above);
                 }
@@ -172,14 +172,14 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
         }
         for (link, factors) in self.links.iter().zip(&self.factors).rev() {
             let at = numbering.unknown(link.body);
-            let m = size::<N>(numbering, link.body);
+            let m = numbering.unknowns_of(link.body);
             let mut own: [S; N] = block(&x[at..], m);
-            solve(&factors.inertia, &mut own, m);
+            solve(&factors.inertia, &mut own, size::<N>(numbering, link.body));
             if let Some((joint, _, parent)) = link.joint {
                 let rows = numbering.rows(joint);
                 let mut more = [S::zero(); N];
                 if let Some(parent) = parent {
-                    let m = size::<N>(numbering, parent);
+                    let m = numbering.unknowns_of(parent);
                     let known: [S; N] = block(&x[numbering.unknown(parent)..], m);
                     for (more, above) in more[..rows.len()].iter_mut().zip(&factors.above) {
                         *more = dot(above, &known);
