@@ -60,11 +60,12 @@ fn of_steps(scene: &Scene<f64>, duration: f64, steps: usize, method: Method) -> 
 /// those of the backward march, and of an LU factorisation that chooses other pivots on the way.
 const GROWTH: u64 = 10;
 
-/// Scenes with a tree, in a plane and in space, and with loops.
-const SCENES: [(&str, f64); 3] = [
+/// Scenes with a tree, in a plane and in space, with loops, and with driven joints.
+const SCENES: [(&str, f64); 4] = [
     ("problems/trebuchet.json", 1.0),
     ("problems/triple_pendulum.json", 0.5),
     ("problems/benchmarks/andrews_squeezer.json", 0.004),
+    ("tests/data/driven_slider_crank.json", 0.5),
 ];
 
 /// Asserts that twice the steps take no more allocations, but for `growth` forwards and backwards.

@@ -89,11 +89,10 @@ impl Lowering {
         }
         let (fixed, of_fixed) = Fixed::find(&designs);
         let plane = Plane::find(&designs);
+        let (unturned, of_unturned) = Unturned::find(&designs, &fixed);
+        let mut points = Vec::new();
         // A body in the plane has three unknowns already.
-        let (mut points, mut unturned) = (Vec::new(), Unturned::default());
-        let mut of_unturned = None;
         if plane.is_err() {
-            (unturned, of_unturned) = Unturned::find(&designs, &fixed);
             let model = &designs.start.model;
             let reach = Reach::new(model);
             for (index, body) in model.bodies.iter().enumerate() {

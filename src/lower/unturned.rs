@@ -1,5 +1,5 @@
 //! Bodies that cannot turn: what slides along an axis of ground, or of another such body. They have
-//! three unknowns, and the rows that hold their rotation are gone.
+//! three unknowns, two in the plane, and the rows that hold their rotation are gone.
 //!
 //! Their rotation is that of the placement, as long as it closes these rows.
 
@@ -7,7 +7,7 @@ use super::Kept;
 use super::examine::{Designs, Examiner, Verdict};
 use super::fixed::{Fixed, is_void};
 use crate::math::Scalar;
-use crate::model::{ConstraintRow, Freedom, Joint, Mobility, Model};
+use crate::model::{ConstraintRow, Freedom, Joint, Model};
 use crate::system::{Motion, Numbering, constraint, initial, side};
 
 /// Bodies that cannot turn, though they move.
@@ -91,11 +91,13 @@ impl Unturned {
     pub(super) fn apply<S: Scalar>(&self, model: &mut Model<S>) {
         let bodies = model.bodies.iter_mut().zip(&self.bodies);
         for (body, _) in bodies.filter(|(_, own)| **own) {
-            body.mobility = Mobility::Point;
+            body.mobility = body.mobility.unturned();
         }
         for joint in &mut model.joints {
             if self.holds_joint(joint) {
-                joint.identical = joint.all_rows().filter(holds_rotation).collect();
+                let rows = joint.all_rows();
+                let gone = rows.filter(|row| holds_rotation(row) || joint.identical.contains(row));
+                joint.identical = gone.collect();
                 let held = |row: &ConstraintRow| !holds_rotation(row);
                 joint.left_out.retain(held);
             }

@@ -15,6 +15,13 @@ pub enum Mobility {
         /// The unit normal in body axes, which a motion in the plane does not change.
         normal: Vec3<f64>,
     },
+    /// Translation in a plane without rotation: two unknowns.
+    PlanarPoint {
+        /// Two orthonormal directions of the plane, ground axes.
+        along: [Vec3<f64>; 2],
+        /// The unit normal in body axes.
+        normal: Vec3<f64>,
+    },
     /// Translation without rotation: three unknowns.
     Point,
     /// None: no unknowns.
@@ -27,7 +34,22 @@ impl Mobility {
         match self {
             Mobility::Spatial => 6,
             Mobility::Planar { .. } | Mobility::Point => 3,
+            Mobility::PlanarPoint { .. } => 2,
             Mobility::Fixed => 0,
         }
+    }
+
+    /// This mobility without rotation.
+    pub fn unturned(self) -> Self {
+        match self {
+            Mobility::Planar { along, normal } => Mobility::PlanarPoint { along, normal },
+            Mobility::Spatial => Mobility::Point,
+            Mobility::PlanarPoint { .. } | Mobility::Point | Mobility::Fixed => self,
+        }
+    }
+
+    /// Whether it has rotation.
+    pub fn turns(&self) -> bool {
+        matches!(self, Mobility::Spatial | Mobility::Planar { .. })
     }
 }

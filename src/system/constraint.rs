@@ -213,7 +213,7 @@ pub struct SideCotangent<S> {
     /// By the frame's point and axes.
     pub frame: JointFrame<S>,
     /// By their motion on the body, if they move.
-    pub moving: Option<Box<FrameMotion<S>>>,
+    pub moving: Option<FrameMotion<S>>,
 }
 
 impl<S: Scalar> SideCotangent<S> {
@@ -243,7 +243,7 @@ impl<S: Scalar> SideCotangent<S> {
     fn of(side: &Side<S>) -> Self {
         let moving = side.moving.as_ref();
         Self {
-            moving: moving.map(|_| Box::new(FrameMotion::zero())),
+            moving: moving.map(|_| FrameMotion::zero()),
             ..Self::fixed()
         }
     }

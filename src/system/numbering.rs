@@ -68,8 +68,7 @@ impl Numbering {
 
     /// Whether some body cannot turn, or not move at all, so that it stays as it is placed.
     pub fn keeps_placed(&self) -> bool {
-        let placed = |mobility: &Mobility| matches!(mobility, Mobility::Point | Mobility::Fixed);
-        self.mobility.iter().any(placed)
+        !self.mobility.iter().all(Mobility::turns)
     }
 
     /// Number of constraint rows.
@@ -90,6 +89,11 @@ impl Numbering {
     /// Start of a body's unknowns in u.
     pub fn unknown(&self, body: usize) -> usize {
         self.unknown[body]
+    }
+
+    /// Number of a body's unknowns.
+    pub fn unknowns_of(&self, body: usize) -> usize {
+        self.unknown[body + 1] - self.unknown[body]
     }
 
     /// Which velocities a body can have.

@@ -191,7 +191,9 @@ impl<S: Scalar> PlanarJoints<S> {
         let mut plane = None;
         let mut planes = Vec::with_capacity(model.bodies.len() + 1);
         for body in &model.bodies {
-            let Mobility::Planar { along, normal } = body.mobility else {
+            let (Mobility::Planar { along, normal } | Mobility::PlanarPoint { along, normal }) =
+                body.mobility
+            else {
                 return None;
             };
             if *plane.get_or_insert(along) != along {

@@ -34,6 +34,13 @@ pub fn compress<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) -> 
                 Mobility::Spatial => x.copy_within(at..at + 6, to),
                 Mobility::Point => x.copy_within(at..at + 3, to),
                 Mobility::Fixed => {}
+                Mobility::PlanarPoint {
+                    along: [t1, t2], ..
+                } => {
+                    let linear = Vec3::new(x[at], x[at + 1], x[at + 2]);
+                    x[to] = along(&linear, t1);
+                    x[to + 1] = along(&linear, t2);
+                }
                 Mobility::Planar {
                     along: [t1, t2],
                     normal,
@@ -71,6 +78,15 @@ pub fn expand<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) {
                     x[at + 3..at + 6].fill(S::zero());
                 }
                 Mobility::Fixed => x[at..at + 6].fill(S::zero()),
+                Mobility::PlanarPoint {
+                    along: [t1, t2], ..
+                } => {
+                    let u = [x[from], x[from + 1]];
+                    for k in 0..3 {
+                        x[at + k] = u[0] * t1[k] + u[1] * t2[k];
+                    }
+                    x[at + 3..at + 6].fill(S::zero());
+                }
                 Mobility::Planar {
                     along: [t1, t2],
                     normal,
@@ -110,7 +126,7 @@ pub fn keep_placed(numbering: &Numbering, y: &mut [f64]) {
         let at = numbering.velocity(body);
         let moves = match numbering.mobility(body) {
             Mobility::Fixed => 0,
-            Mobility::Point => 3,
+            Mobility::Point | Mobility::PlanarPoint { .. } => 3,
             Mobility::Spatial | Mobility::Planar { .. } => 6,
         };
         y[at..at + moves].fill(0.0);
@@ -142,14 +158,13 @@ pub fn hold<S: Scalar>(
             Mobility::Fixed => (Vec3::zeros(), [S::zero(); 4]),
             Mobility::Point => (dr, [S::zero(); 4]),
             Mobility::Planar {
-                along: [t1, t2],
+                along: plane,
                 normal,
             } => {
-                let (u1, u2) = (along(&dr, t1), along(&dr, t2));
                 let (_, p0) = positions_of(&q0[own.clone()]);
-                let dr = Vec3::from_fn(|k, _| u1 * t1[k] + u2 * t2[k]);
-                (dr, turn_about(&p0, &dp, normal))
+                (in_plane(&dr, plane), turn_about(&p0, &dp, normal))
             }
+            Mobility::PlanarPoint { along: plane, .. } => (in_plane(&dr, plane), [S::zero(); 4]),
         };
         dq[own.clone()].fill(S::zero());
         add7(&mut dq[own.clone()], &dr, &dp);
@@ -157,6 +172,12 @@ pub fn hold<S: Scalar>(
             q[k] = q0[k] + dq[k];
         }
     }
+}
+
+/// The part of x along two orthonormal directions.
+fn in_plane<S: Scalar>(x: &Vec3<S>, [t1, t2]: &[Vec3<f64>; 2]) -> Vec3<S> {
+    let (u1, u2) = (along(x, t1), along(x, t2));
+    Vec3::from_fn(|k, _| u1 * t1[k] + u2 * t2[k])
 }
 
 /// The increment of Euler parameters p0, of unit length, that is nearest to dp among the turns about
@@ -189,7 +210,8 @@ pub fn unreduced(numbering: &Numbering, parts: usize, place: usize) -> usize {
     }
 }
 
-/// Bᵀ M B of a body.
+/// Bᵀ M B of a body; where that is of order two, one stands behind it, so that it can be decomposed in
+/// order three.
 pub(super) fn inertia<S: Scalar, const N: usize>(
     body: &RigidBody<S>,
     mobility: &Mobility,
@@ -197,7 +219,7 @@ pub(super) fn inertia<S: Scalar, const N: usize>(
     let mut out = [[S::zero(); N]; N];
     let linear = match mobility {
         Mobility::Fixed => 0,
-        Mobility::Planar { .. } => 2,
+        Mobility::Planar { .. } | Mobility::PlanarPoint { .. } => 2,
         Mobility::Spatial | Mobility::Point => 3,
     };
     for (i, row) in out.iter_mut().enumerate().take(linear) {
@@ -215,6 +237,7 @@ pub(super) fn inertia<S: Scalar, const N: usize>(
             let about = body.inertia * normal.map(S::from);
             out[2][2] = along(&about, normal);
         }
+        Mobility::PlanarPoint { .. } => out[2][2] = S::one(),
         Mobility::Point | Mobility::Fixed => {}
     }
     out
@@ -239,6 +262,12 @@ pub(super) fn reduced<S: Scalar, const N: usize>(
             out[0] = along(&f, t1);
             out[1] = along(&f, t2);
             out[2] = along(t, normal);
+        }
+        Mobility::PlanarPoint {
+            along: [t1, t2], ..
+        } => {
+            out[0] = along(&f, t1);
+            out[1] = along(&f, t2);
         }
         Mobility::Point => out[..3].copy_from_slice(f.as_slice()),
         Mobility::Fixed => {}
@@ -288,11 +317,14 @@ pub fn shares(numbering: &Numbering, parts: usize, place: usize) -> [(usize, f64
     match numbering.mobility(body) {
         Mobility::Spatial => [(at + k, 1.0), (0, 0.0)],
         Mobility::Point if k < 3 => [(at + k, 1.0), (0, 0.0)],
-        Mobility::Point | Mobility::Fixed => [(0, 0.0), (0, 0.0)],
         Mobility::Planar {
+            along: [t1, t2], ..
+        }
+        | Mobility::PlanarPoint {
             along: [t1, t2], ..
         } if k < 3 => [(at, t1[k]), (at + 1, t2[k])],
         Mobility::Planar { normal, .. } => [(at + 2, normal[k - 3]), (0, 0.0)],
+        Mobility::PlanarPoint { .. } | Mobility::Point | Mobility::Fixed => [(0, 0.0), (0, 0.0)],
     }
 }
 

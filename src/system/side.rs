@@ -20,7 +20,7 @@ pub struct Side<'a, S> {
     /// The joint's frame on the body at this time.
     pub frame: JointFrame<S>,
     /// How the frame moves on the body, if it does.
-    pub moving: Option<Box<FrameMotion<S>>>,
+    pub moving: Option<FrameMotion<S>>,
 }
 
 /// First and second derivative in time of a frame, in the axes of its body.
@@ -103,7 +103,7 @@ pub fn sides<'a, S: Scalar>(
     if !joint.drives.is_empty() {
         let (frame, moving) = driven_frame(joint, time);
         b.frame = frame;
-        b.moving = Some(Box::new(moving));
+        b.moving = Some(moving);
     }
     (Side::fixed(&motions[joint.body_a], joint.frame_a), b)
 }

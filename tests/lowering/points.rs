@@ -112,15 +112,39 @@ fn a_cart_on_a_rail_does_not_turn() {
     let problem = carts();
     assert_eq!(size(&unlowered(&problem)), (18, 13));
     assert_eq!(size(&problem), (12, 7));
+    assert_the_same(&problem);
+}
+
+/// In the plane it has two unknowns, whether its slide is driven or not, within a loop and outside.
+#[test]
+fn sliders_in_a_plane_do_not_turn() {
+    for (file, written, lowered) in [
+        ("tests/data/driven_slider_crank.json", (30, 29), (13, 12)),
+        (
+            "problems/benchmarks/balanced_slider_crank.json",
+            (24, 22),
+            (10, 8),
+        ),
+    ] {
+        let problem = load(file, &[]);
+        assert!(is_planar(&problem));
+        assert_eq!(size(&unlowered(&problem)), written, "{file}");
+        assert_eq!(size(&problem), lowered, "{file}");
+        assert_the_same(&problem);
+    }
+}
+
+/// Asserts that motion, gradients and reactions are those of the scene as it is written.
+fn assert_the_same(problem: &Problem) {
     for method in [Method::Dop853, RADAU, BDF] {
-        let found = differences(&problem, &settings(method, Spacing::Steps(200)));
+        let found = differences(problem, &settings(method, Spacing::Steps(200)));
         assert!(
             found.iter().all(|&x| x <= 1e-11),
             "{}: {found:?}",
             method.name()
         );
     }
-    let derivatives = driver::check(&problem, &problem.start()).expect("a run");
+    let derivatives = driver::check(problem, &problem.start()).expect("a run");
     for derivative in derivatives {
         // Some vanish, as sums of terms that do not.
         let off = (derivative.adjoint - derivative.complex_step).abs();
@@ -131,9 +155,9 @@ fn a_cart_on_a_rail_does_not_turn() {
         let seen = driver::simulate(problem, &problem.start()).expect("a run");
         seen.reactions(400)
     };
-    for (a, b) in reactions(&problem)
+    for (a, b) in reactions(problem)
         .iter()
-        .zip(&reactions(&unlowered(&problem)))
+        .zip(&reactions(&unlowered(problem)))
     {
         let size = b.force_ground.norm() + b.torque_ground.norm();
         let off =

@@ -32,15 +32,28 @@ pub struct Elimination<S, const N: usize> {
     factors: Vec<Factors<S, N>>,
     /// Link of each body.
     link_of: Vec<usize>,
+    /// Whether all bodies have N unknowns.
+    full: bool,
     /// The joints that close loops, if any do.
     pub(super) loops: Option<Loops<S, N>>,
 }
 
-/// Unknowns of a body: known beforehand where all have three.
+/// Order of the block of a body: known beforehand where all have up to three unknowns.
 pub(super) fn size<const N: usize>(numbering: &Numbering, body: usize) -> usize {
     match N {
         SMALL => SMALL,
-        _ => numbering.mobility(body).unknowns(),
+        _ => numbering.unknowns_of(body),
+    }
+}
+
+/// Unknowns of a body: known beforehand where all have N.
+pub(super) fn unknowns<const N: usize, const FULL: bool>(
+    numbering: &Numbering,
+    body: usize,
+) -> usize {
+    match FULL {
+        true => N,
+        false => numbering.unknowns_of(body),
     }
 }
 
@@ -66,6 +79,9 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
         };
         Some(Self {
             factors: vec![zero; links.len()],
+            full: links
+                .iter()
+                .all(|link| numbering.unknowns_of(link.body) == N),
             links,
             link_of,
             loops,
@@ -146,13 +162,20 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
     }
 
     pub(super) fn solve(&mut self, numbering: &Numbering, rhs: &mut [S]) {
+        match self.full {
+            true => self.solve_sized::<true>(numbering, rhs),
+            false => self.solve_sized::<false>(numbering, rhs),
+        }
+    }
+
+    fn solve_sized<const FULL: bool>(&mut self, numbering: &Numbering, rhs: &mut [S]) {
         let (x, multipliers) = rhs.split_at_mut(numbering.unknowns());
         for (link, factors) in self.links.iter().zip(&self.factors) {
             let Some((joint, _, parent)) = link.joint else {
                 continue;
             };
             let rows = numbering.rows(joint);
-            let m = size::<N>(numbering, link.body);
+            let m = unknowns::<N, FULL>(numbering, link.body);
             let own: [S; N] = block(&x[numbering.unknown(link.body)..], m);
             let e = &mut multipliers[rows.clone()];
             for (e, lever) in e.iter_mut().zip(&factors.lever) {
@@ -161,25 +184,25 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
             solve(&factors.schur, e, rows.len());
             if let Some(parent) = parent {
                 let at = numbering.unknown(parent);
-                let m = size::<N>(numbering, parent);
+                let m = unknowns::<N, FULL>(numbering, parent);
                 for (&e, above) in e.iter().zip(&factors.above) {
                     axpy(&mut x[at..at + m], -e, above);
                 }
             }
         }
         if let Some(loops) = &mut self.loops {
-            loops.close(numbering, &self.links, x, multipliers);
+            loops.close::<FULL>(numbering, &self.links, x, multipliers);
         }
         for (link, factors) in self.links.iter().zip(&self.factors).rev() {
             let at = numbering.unknown(link.body);
-            let m = size::<N>(numbering, link.body);
+            let m = unknowns::<N, FULL>(numbering, link.body);
             let mut own: [S; N] = block(&x[at..], m);
-            solve(&factors.inertia, &mut own, m);
+            solve(&factors.inertia, &mut own, size::<N>(numbering, link.body));
             if let Some((joint, _, parent)) = link.joint {
                 let rows = numbering.rows(joint);
                 let mut more = [S::zero(); N];
                 if let Some(parent) = parent {
-                    let m = size::<N>(numbering, parent);
+                    let m = unknowns::<N, FULL>(numbering, parent);
                     let known: [S; N] = block(&x[numbering.unknown(parent)..], m);
                     for (more, above) in more[..rows.len()].iter_mut().zip(&factors.above) {
                         *more = dot(above, &known);

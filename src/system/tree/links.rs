@@ -30,7 +30,7 @@ pub(super) fn forest<S>(model: &Model<S>, numbering: &Numbering) -> Forest {
     // Bodies in the order in which they are reached from ground or a free root.
     let mut reached: Vec<usize> = Vec::with_capacity(bodies);
     let mut seen = vec![false; bodies];
-    let moves = |body: usize| numbering.mobility(body).unknowns() > 0;
+    let moves = |body: usize| numbering.unknowns_of(body) > 0;
     let ends = |j: usize| {
         let joint = &model.joints[j];
         let a = Some(joint.body_a).filter(|&a| moves(a));

@@ -17,7 +17,7 @@
 //! stored by envelope, so that a row of loops that only touch their neighbours costs as much as each.
 
 use super::dense::{axpy, block, dot, solve};
-use super::elimination::{Factors, size};
+use super::elimination::{Factors, size, unknowns};
 use super::envelope::{Envelope, product};
 use super::links::Link;
 use crate::linalg::SingularMatrix;
@@ -92,7 +92,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
         for &j in joints {
             let joint = &model.joints[j];
             let sides = [(Some(joint.body_a), true), (joint.body_b, false)];
-            let moves = |body: &usize| numbering.mobility(*body).unknowns() > 0;
+            let moves = |body: &usize| numbering.unknowns_of(*body) > 0;
             let ends = sides.map(|(body, is_a)| Some((body.filter(moves)?, is_a)));
             let mut path = Vec::new();
             for (body, _) in ends.iter().flatten() {
@@ -165,7 +165,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
     pub fn operations(&self, numbering: &Numbering, links: &[Link]) -> usize {
         let sweep = |closing: &Closing| {
             let link = |&l: &usize| {
-                let m = numbering.mobility(links[l].body).unknowns();
+                let m = numbering.unknowns_of(links[l].body);
                 let n = (links[l].joint).map_or(0, |(joint, ..)| numbering.rows(joint).len());
                 2 * (m * m + 2 * m * n + n * n)
             };
@@ -266,7 +266,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
 
     /// Finds μ from `x` and `multipliers` as the forward sweep of the forest leaves them (f̂_b, and
     /// S⁻¹ ê_j; g in the closing rows), and takes Lᵀ μ, swept, off them.
-    pub fn close(
+    pub fn close<const FULL: bool>(
         &mut self,
         numbering: &Numbering,
         links: &[Link],
@@ -280,7 +280,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
                 let waves = &self.waves[closing.waves + i * closing.path.len()..];
                 for (wave, &l) in waves.iter().zip(&closing.path) {
                     let link = &links[l];
-                    let m = size::<N>(numbering, link.body);
+                    let m = unknowns::<N, FULL>(numbering, link.body);
                     sum += dot(
                         &wave.response,
                         &block(&x[numbering.unknown(link.body)..], m),
@@ -301,7 +301,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
                 let waves = &self.waves[closing.waves + i * closing.path.len()..];
                 for (wave, &l) in waves.iter().zip(&closing.path) {
                     let link = &links[l];
-                    let m = size::<N>(numbering, link.body);
+                    let m = unknowns::<N, FULL>(numbering, link.body);
                     let at = numbering.unknown(link.body);
                     axpy(&mut x[at..at + m], -mu, &wave.force);
                     if let Some((joint, ..)) = link.joint {

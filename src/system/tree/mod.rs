@@ -55,7 +55,7 @@ impl<S: Scalar> Tree<S> {
         let small = forest
             .links
             .iter()
-            .all(|link| numbering.mobility(link.body).unknowns() == SMALL)
+            .all(|link| numbering.unknowns_of(link.body) <= SMALL)
             && (0..numbering.joints()).all(|joint| numbering.rows(joint).len() <= SMALL);
         Some(match small {
             true => Tree::Small(Elimination::plan(model, numbering, forest)?),
@@ -80,12 +80,12 @@ impl<S: Scalar> Tree<S> {
             Tree::Large(elimination) => elimination.parts(numbering),
         };
         let operations = |link: &links::Link| {
-            let m = numbering.mobility(link.body).unknowns();
+            let m = numbering.unknowns_of(link.body);
             let Some((joint, _, parent)) = link.joint else {
                 return m.pow(3) / 3;
             };
             let n = numbering.rows(joint).len();
-            let p = parent.map_or(0, |parent| numbering.mobility(parent).unknowns());
+            let p = parent.map_or(0, |parent| numbering.unknowns_of(parent));
             m.pow(3) / 3 + n * 2 * m * m + n * n * m + n.pow(3) / 3 + n * n * p + n * p * p
         };
         kkt::Elimination {
