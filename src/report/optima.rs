@@ -7,7 +7,7 @@ use super::history::{Column, OBJECTIVE, VARIABLE, exact};
 /// An optimum that at least one start led to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundOptimum {
-    /// The number of the first of the starts that led there, from 1.
+    /// The number of the start that led to the best of what counts as it, from 1.
     pub start: usize,
     /// How many starts led there.
     pub starts: usize,
@@ -27,7 +27,7 @@ pub fn optima_csv(
     variables: &[Column],
     optima: &[FoundOptimum],
 ) -> Result<String, ReportError> {
-    let mut header = vec!["optimum".to_owned(), "first start".into(), "starts".into()];
+    let mut header = vec!["optimum".to_owned(), "best start".into(), "starts".into()];
     header.push(objective.heading(OBJECTIVE)?);
     for variable in variables {
         header.push(variable.heading(VARIABLE)?);
@@ -64,7 +64,7 @@ mod tests {
         let text = optima_csv(&Column::new("range", Some("m")), &columns, &[found]);
         assert_eq!(
             text.expect("is written"),
-            "optimum,first start,starts,objective: range [m],\"variable: mass, left [kg]\",variable: x\n\
+            "optimum,best start,starts,objective: range [m],\"variable: mass, left [kg]\",variable: x\n\
              1,3,2,-0.1,2.5,1e-20\n"
         );
     }

@@ -155,7 +155,7 @@ fn an_optimum_of_zero_is_one_optimum_and_is_written() {
     assert_eq!(lines.len(), 2, "{table}");
     assert_eq!(
         lines[0],
-        "optimum,first start,starts,objective: energy [J],variable: along [m/s],variable: aside [m/s]"
+        "optimum,best start,starts,objective: energy [J],variable: along [m/s],variable: aside [m/s]"
     );
     assert!(lines[1].starts_with("1,1,6,"), "{table}");
     std::fs::remove_file(at.path().join("out/optima.csv")).expect("is removed");
