@@ -18,7 +18,7 @@
 //! The cost is linear in the number of bodies (Featherstone 1983, here in absolute coordinates).
 //! x_b are the unknowns that the mobility of b leaves it; where no body and no joint has more than
 //! three, the blocks are of order three. The rows of the joints that are not in the forest are
-//! eliminated after it ([`loops`]).
+//! eliminated after it (`loops`).
 
 mod dense;
 mod elimination;
