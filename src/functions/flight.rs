@@ -47,11 +47,29 @@ impl<S: Scalar> Flight<S> {
     }
 
     /// Range to the ground at height y_g,
-    /// R = x + (v_x/g)(v_y + √s), s = ½ (s0 + √(s0² + 1)), s0 = v_y² + 2 g (y − y_g) (m).
-    /// The smoothing (1 m²/s²) keeps it analytic where the ground is out of reach.
+    /// R = x + (v_x/g)(v_y + √s0), s0 = v_y² + 2 g (y − y_g) (m), where the path comes that high.
+    /// Where it does not, R is the distance x + v_x v_y/g of the path's highest point. In between
+    /// [`smooth_root`] joins the two.
     pub fn range(&self, ground: S) -> S {
-        let s0 = self.vy * self.vy + self.g * (self.y - ground) * 2.0;
-        self.x + self.vx / self.g * (self.vy + smooth_positive(s0).sqrt())
+        let [s0, scale] = self.reach(ground);
+        self.x + self.vx / self.g * (self.vy + smooth_root(s0, scale))
+    }
+
+    /// Square of the speed upwards at the ground, s0 = v_y² + 2 g (y − y_g), and the size of its
+    /// terms, √(v_y⁴ + (2 g (y − y_g))² + δ⁴ v_x⁴) (m²/s²). A ground below is always within reach:
+    /// s0 is at least the first two terms there. The third keeps a slide along the ground regular.
+    fn reach(&self, ground: S) -> [S; 2] {
+        let rise = self.vy * self.vy;
+        let fall = self.g * (self.y - ground) * 2.0;
+        let slide = self.vx * self.vx * (SLIDE * SLIDE);
+        let square = rise * rise + fall * fall + slide * slide;
+        // At rest on the ground nothing depends on the scale to first order.
+        let scale = if square.re() > 0.0 {
+            square.sqrt()
+        } else {
+            S::zero()
+        };
+        [rise + fall, scale]
     }
 
     /// Height of the path above `top` at the distance x_b,
@@ -62,13 +80,40 @@ impl<S: Scalar> Flight<S> {
     }
 }
 
-/// ½ (s0 + √(s0² + 1)), without cancellation where s0 is large and negative.
-fn smooth_positive<S: Scalar>(s0: S) -> S {
-    let root = (s0 * s0 + 1.0).sqrt();
-    if s0.re() >= 0.0 {
-        (s0 + root) * 0.5
+/// Part ε of the scale below which the root of s0 is smoothed, and speed v_y/v_x = δ that counts as
+/// none.
+const GRAZING: f64 = 1e-3;
+const SLIDE: f64 = 1e-6;
+
+/// √s0 for s0 ≥ ε w with w the `scale`, zero for s0 ≤ −ε w, and in between
+/// √(ε w) z³ (11 − 14 z + 5 z²)/2 with z = (1 + s0/(ε w))/2, which joins them with two continuous
+/// derivatives. The root itself has an infinite derivative at zero.
+fn smooth_root<S: Scalar>(s0: S, scale: S) -> S {
+    let band = scale * GRAZING;
+    if band.re() <= 0.0 || s0.re() <= -band.re() {
+        S::zero()
+    } else if s0.re() >= band.re() {
+        s0.sqrt()
     } else {
-        S::from(0.5) / (root - s0)
+        let z = (s0 / band + 1.0) * 0.5;
+        band.sqrt() * (z * z * z * (z * (z * 5.0 - 14.0) + 11.0)) * 0.5
+    }
+}
+
+/// Derivatives of [`smooth_root`] in s0 and in the scale.
+fn smooth_root_derivative(s0: f64, scale: f64) -> [f64; 2] {
+    let band = scale * GRAZING;
+    if band <= 0.0 || s0 <= -band {
+        [0.0, 0.0]
+    } else if s0 >= band {
+        [0.5 / s0.sqrt(), 0.0]
+    } else {
+        let t = s0 / band;
+        let z = 0.5 * (t + 1.0);
+        let value = 0.5 * z * z * z * (z * (z * 5.0 - 14.0) + 11.0);
+        let slope = 0.25 * z * z * (z * (z * 25.0 - 56.0) + 33.0);
+        let root = band.sqrt();
+        [slope / root, (0.5 * value - slope * t) * GRAZING / root]
     }
 }
 
@@ -76,18 +121,28 @@ impl Flight<f64> {
     /// Derivatives of [`Flight::range`] in (x, y, v_x, v_y, g) and in the ground's height.
     pub fn range_derivative(&self, ground: f64) -> ([f64; 5], f64) {
         let Flight { y, vx, vy, g, .. } = *self;
-        let s0 = vy * vy + 2.0 * g * (y - ground);
-        let s = smooth_positive(s0);
-        // ds/ds0 = s / √(s0² + 1), so d√s/ds0 = ½ √s / √(s0² + 1).
-        let by_s0 = 0.5 * s.sqrt() / (s0 * s0 + 1.0).sqrt();
-        let speed = vy + s.sqrt();
-        let by_y = vx / g * by_s0 * 2.0 * g;
+        let [s0, scale] = self.reach(ground);
+        let [by_s0, by_scale] = smooth_root_derivative(s0, scale);
+        let speed = vy + smooth_root(s0, scale);
+        let height = y - ground;
+        // The scale w by v_x, v_y and by the fall 2 g (y − y_g).
+        let by_term = |term: f64| {
+            if by_scale == 0.0 {
+                0.0
+            } else {
+                by_scale * term / scale
+            }
+        };
+        let by_vx = by_term(2.0 * SLIDE.powi(4) * vx.powi(3));
+        let by_vy = by_s0 * 2.0 * vy + by_term(2.0 * vy.powi(3));
+        let by_fall = by_s0 + by_term(2.0 * g * height);
+        let by_y = vx * by_fall * 2.0;
         let by = [
             1.0,
             by_y,
-            speed / g,
-            vx / g * (1.0 + by_s0 * 2.0 * vy),
-            -vx / (g * g) * speed + vx / g * by_s0 * 2.0 * (y - ground),
+            speed / g + vx / g * by_vx,
+            vx / g * (1.0 + by_vy),
+            -vx / (g * g) * speed + vx / g * by_fall * 2.0 * height,
         ];
         (by, -by_y)
     }
@@ -190,43 +245,140 @@ mod tests {
         f(Flight::from_array(z)).im / COMPLEX_STEP
     }
 
+    /// Flights at every scale: the ground far below, level, above within reach, just so, just out
+    /// of reach, far out of reach.
+    fn flights() -> Vec<(Flight<f64>, f64)> {
+        let mut all = Vec::new();
+        for size in [1e-3, 1.0, 1e3] {
+            for speed in [1e-3, 1.1, 30.0, 1e3] {
+                for (vx, vy) in [
+                    (0.6, 0.8),
+                    (1.0, 1e-3),
+                    (1.0, 0.0),
+                    (-0.8, 0.6),
+                    (0.1, -1.0),
+                ] {
+                    for g in [1.62, 9.81] {
+                        let (vx, vy, g) = (vx * speed * size, vy * speed * size, g * size);
+                        let apex = 0.5 * vy * vy / g;
+                        for up in [-3.0, -0.5, 0.5, 0.99, 0.9995, 1.0, 1.0005, 1.5, 30.0] {
+                            let (x, y) = (2.0 * size, 0.7 * size);
+                            all.push((Flight { x, y, vx, vy, g }, y + up * apex));
+                        }
+                        let (x, y) = (-size, 0.1 * size);
+                        all.push((Flight { x, y, vx, vy, g }, 0.0));
+                    }
+                }
+            }
+        }
+        all
+    }
+
     #[test]
     fn derivatives_of_range_and_clearance_are_exact() {
-        for z in [
-            [-3.0, 12.0, 40.0, 55.0, 9.81],
-            [5.0, -300.0, 30.0, -20.0, 9.81],
-        ] {
-            let at = Flight::from_array(z);
-            let (range, _) = at.range_derivative(-10.0);
+        for (at, ground) in flights() {
+            // The complex step has to be small beside what is differentiated.
+            if at.reach(ground)[1] * GRAZING < 1e-18 {
+                continue;
+            }
+            let (range, by_ground) = at.range_derivative(ground);
             let (clearance, _) = at.clearance_derivative(60.0);
+            // A number is exact to its part of the largest term that it is the sum of.
+            let speed = at.vx.hypot(at.vy);
+            let moved = |i: usize| match i {
+                0 | 1 => 1.0,
+                4 => speed * speed / (at.g * at.g),
+                _ => speed / at.g,
+            };
             for i in 0..5 {
-                let exact = derivative(&at, i, |f| f.range(Complex64::from(-10.0)));
+                let exact = derivative(&at, i, |f| f.range(Complex64::from(ground)));
+                let size = exact.abs() + moved(i);
                 assert!(
-                    (range[i] - exact).abs() <= 1e-13 * (1.0 + exact.abs()),
-                    "range {i}"
+                    (range[i] - exact).abs() <= 1e-11 * size,
+                    "{at:?} {ground}: {i}"
                 );
                 let exact = derivative(&at, i, |f| f.clearance(60.0.into(), 70.0.into()));
-                assert!(
-                    (clearance[i] - exact).abs() <= 1e-13 * (1.0 + exact.abs()),
-                    "over {i}"
-                );
+                let size = 1.0 + exact.abs();
+                assert!((clearance[i] - exact).abs() <= 1e-12 * size, "over {i}");
+            }
+            let lifted = Flight::from_array(at.to_array().map(Complex64::from));
+            let exact = lifted.range(Complex64::new(ground, COMPLEX_STEP)).im / COMPLEX_STEP;
+            assert!((by_ground - exact).abs() <= 1e-11 * (1.0 + exact.abs()));
+        }
+    }
+
+    #[test]
+    fn range_is_that_of_a_parabola_wherever_it_comes_down() {
+        let mut found = 0;
+        for (at, ground) in flights() {
+            let s0 = at.vy * at.vy + 2.0 * at.g * (at.y - ground);
+            let terms = at.vy * at.vy + 2.0 * at.g * (at.y - ground).abs();
+            if s0 < 1e-3 * terms || terms == 0.0 {
+                continue;
+            }
+            found += 1;
+            let t = (at.vy + s0.sqrt()) / at.g;
+            // s0 is exact to round-off of its terms.
+            let size = at.x.abs() + (at.vx / at.g).abs() * (at.vy.abs() + terms / s0.sqrt());
+            let away = at.range(ground) - (at.x + at.vx * t);
+            assert!(away.abs() <= 4e-16 * size, "{at:?} {ground}");
+        }
+        assert!(found > 400, "{found}");
+    }
+
+    #[test]
+    fn range_does_not_depend_on_the_unit_of_length() {
+        for (at, ground) in flights() {
+            for unit in [1e-3, 1e3] {
+                let scaled = Flight::from_array(at.to_array().map(|z| z * unit));
+                let (range, same) = (at.range(ground), scaled.range(ground * unit) / unit);
+                // Just at the border of what is in reach heights cancel.
+                let size = range.abs() + at.x.abs() + (at.vx * at.vy / at.g).abs();
+                assert!((range - same).abs() <= 1e-11 * size, "{at:?} {ground}");
             }
         }
     }
 
     #[test]
-    fn range_is_that_of_a_parabola() {
-        let at = Flight {
-            x: 2.0,
-            y: 7.0,
-            vx: 30.0,
-            vy: 40.0,
-            g: 9.81,
+    fn range_is_smooth_where_the_ground_comes_out_of_reach() {
+        let range = |ground: f64| {
+            let (x, y, vx, vy, g) = (0.0, 0.0, 3.0, 4.0, 9.81);
+            let at = Flight { x, y, vx, vy, g };
+            (at.range(ground), at.range_derivative(ground).1)
         };
-        let range = at.range(-10.0);
-        let t = (range - at.x) / at.vx;
-        // The smoothing shortens √s by less than 1/(8 s^{3/2}).
-        assert!((at.y + at.vy * t - 0.5 * at.g * t * t + 10.0).abs() < 1e-3);
+        let apex = 8.0 / 9.81;
+        let steps = 4000;
+        let step = 8e-3 * apex / f64::from(steps);
+        let grounds = (0..=steps).map(|i| apex * (1.0 - 4e-3) + step * f64::from(i));
+        let values: Vec<(f64, f64)> = grounds.map(range).collect();
+        let mut bend = 0.0_f64;
+        for pair in values.windows(2) {
+            assert!(pair[1].0 <= pair[0].0, "falls as the ground rises");
+            bend = bend.max((pair[1].1 - pair[0].1).abs());
+        }
+        let steepest = values.iter().fold(0.0_f64, |m, v| m.max(v.1.abs()));
+        assert!(bend < 2e-2 * steepest, "{bend:e} of {steepest:e}");
+        assert_eq!(
+            values[values.len() - 1],
+            (12.0 / 9.81, 0.0),
+            "the highest point"
+        );
+    }
+
+    #[test]
+    fn a_stone_at_rest_on_the_ground_has_a_range_and_no_infinite_derivative() {
+        for vx in [0.0, 2.0] {
+            let at = Flight {
+                x: 1.0,
+                y: 0.0,
+                vx,
+                vy: 0.0,
+                g: 9.81,
+            };
+            let (by, by_ground) = at.range_derivative(0.0);
+            assert!(by.into_iter().chain([by_ground]).all(f64::is_finite));
+            assert!((at.range(0.0) - 1.0).abs() < 1e-8 * (1.0 + vx * vx));
+        }
     }
 
     #[test]

@@ -100,8 +100,8 @@ pub enum Instant<S> {
         axis: Vec3<S>,
     },
     /// Range of a projectile let go at this instant,
-    /// R = x + (v_x/g)(v_y + √s), s = ½ (s0 + √(s0² + 1)), s0 = v_y² + 2 g (y − y_g),
-    /// times the gate if there is one (m).
+    /// R = x + (v_x/g)(v_y + √s0), s0 = v_y² + 2 g (y − y_g), smoothed where the ground is out of
+    /// reach (see [`Flight::range`](super::flight::Flight::range)), times the gate if there is one (m).
     Range {
         /// The projectile.
         projectile: Projectile<S>,
