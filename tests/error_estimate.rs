@@ -65,6 +65,7 @@ fn exact(problem: &Problem) -> Vec<Vec<Exact>> {
         spacing,
         samples: Samples::Uniform(samples),
         keep_stages: true,
+        limits: Default::default(),
     };
     let chosen = simulate(model, duration, &settings(Spacing::Tolerance(1e-13), 1)).expect("runs");
     let once = chosen.grid.halved();

@@ -232,6 +232,7 @@ fn steps_follow_the_tolerance_at_the_work_that_was_counted() {
             spacing: Spacing::Tolerance(tolerance),
             samples: Samples::Uniform(1),
             keep_stages: false,
+            limits: Default::default(),
         };
         let run = simulate(&model, duration, &settings).expect("runs");
         let found = motion_error(&run, &instants).0;
@@ -262,6 +263,7 @@ fn energy_of_a_chaotic_motion() {
         spacing: Spacing::Tolerance(1e-9),
         samples: Samples::StepEnds,
         keep_stages: false,
+        limits: Default::default(),
     };
     let run = simulate(&model, 10.0, &settings).expect("runs");
     let drift = energy_drift(&model, &run);

@@ -4,7 +4,7 @@
 use flexbody::driver::evaluate::Evaluated;
 use flexbody::driver::integration::Integration;
 use flexbody::driver::{Evaluator, Journal, simulate};
-use flexbody::integrate::{Method, Spacing};
+use flexbody::integrate::{IntegrationFailure, Method, Spacing};
 use flexbody::optimiser::Nlp;
 use flexbody::problem::{Override, Problem};
 use flexbody::report::evaluations::{EvaluationRecord, Found};
@@ -25,6 +25,60 @@ fn a_rigid_scene_is_integrated_explicitly() {
     assert!(motion.reason.contains("not stiff"), "{}", motion.reason);
     assert_eq!(motion.warning, None);
     assert_eq!(motion.at.run.counts.newton_iterations, 0);
+}
+
+/// Bricard's mechanism with one joint off by little is nearly locked: it shakes between two stops, and
+/// 1 s of it needs half a million steps. It is given up after a fixed number of steps, by a message that
+/// says so, unless the file says how long it may take.
+#[test]
+fn a_mechanism_that_is_nearly_locked_is_given_up() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/nearly_locked.json");
+    let load = |changes: &[&str]| {
+        let parse = |text: &&str| Override::parse(text).expect("an override");
+        let changes: Vec<Override> = changes.iter().map(parse).collect();
+        Problem::load(&file, &changes).unwrap_or_else(|faults| panic!("{faults}"))
+    };
+    let off = |by: f64| format!("/joints/R2/revolute/at/0={}", 1.0 - by);
+    for (by, more) in [
+        (1e-6, "/simulation/tolerance=1e-9"),
+        (1e-6, "/simulation/duration=10"),
+        (1e-7, "/simulation/tolerance=1e-7"),
+    ] {
+        let problem = load(&[&off(by), more]);
+        let failure = simulate(&problem, &problem.start()).map(|_| ());
+        let failure = failure.expect_err("is given up");
+        assert!(
+            matches!(failure, IntegrationFailure::NoHeadway { tries: 5000, rejected, .. } if rejected > 500),
+            "{failure}"
+        );
+        let told = failure.to_string();
+        assert!(told.contains("nearly locked"), "{told}");
+    }
+    // The mechanism that is not off moves.
+    let problem = load(&["/simulation/duration=0.2"]);
+    simulate(&problem, &problem.start()).expect("runs");
+    // Time instead of steps.
+    let problem = load(&[&off(1e-6), "/simulation/seconds=1e-9"]);
+    let failure = simulate(&problem, &problem.start()).map(|_| ());
+    let failure = failure.expect_err("takes longer");
+    assert!(
+        matches!(failure, IntegrationFailure::TimeLimit { seconds: 1e-9, .. }),
+        "{failure}"
+    );
+}
+
+/// A design whose simulation exceeds its limit is one that the optimiser backs off from.
+#[test]
+fn a_simulation_over_its_limit_is_a_failed_evaluation() {
+    let problem = load("trebuchet", &["/simulation/seconds=1e-9"]);
+    let journal = Journal::new(Vec::new(), |_| ());
+    let mut program = Evaluator::new(&problem, journal).expect("an objective");
+    let start = program.start();
+    let failure = program.evaluate(&start).expect_err("takes longer");
+    assert!(
+        failure.reason.contains("time limit of 0.000000001 s"),
+        "{failure:?}"
+    );
 }
 
 /// A spring of 1e5 rad/s bounds explicit steps by 6e-5 s, 50 000 for 3 s; Radau IIA needs a

@@ -42,6 +42,7 @@ impl Case {
             spacing: Spacing::Tolerance(tolerance),
             samples: Samples::Uniform(1),
             keep_stages: true,
+            limits: Default::default(),
         };
         let run = simulate(&model, duration, &settings).expect("the scene runs");
         settings.spacing = Spacing::Frozen(run.grid);
@@ -111,6 +112,7 @@ pub fn trebuchet_problem() -> (Problem, f64) {
         spacing: simulation.spacing.clone(),
         samples: Samples::Uniform(200),
         keep_stages: false,
+        limits: Default::default(),
     };
     let run = simulate(&scene.model, scene.duration, &settings).expect("the scene runs");
     let (_, instants) = reference::load("trebuchet");

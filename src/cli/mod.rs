@@ -126,6 +126,9 @@ fn load(job: &Job) -> Result<Problem, Failure> {
         if job.no_lowering {
             problem.lowering = None;
         }
+        if !job.quiet {
+            problem.simulation.limits.progress = Some(progress::watched());
+        }
         Ok(problem)
     };
     let problem = read(&overrides)?;

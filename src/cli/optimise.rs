@@ -37,6 +37,10 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
         .file_name()
         .map_or_else(String::new, |n| n.to_string_lossy().into());
     complete(&problem, job)?;
+    // What neither objective nor constraint sees costs nothing.
+    if let Some(focused) = problem.for_optimisation() {
+        problem = focused;
+    }
     let state = match &course.from {
         Some(from) => start_from(&mut problem, from)?,
         None => None,

@@ -1,7 +1,53 @@
-//! What is seen of an optimisation while it runs.
+//! What is seen of an optimisation or a long simulation while it runs.
 
 use super::tell;
+use crate::integrate::Progress;
+use crate::integrate::limits::View;
 use crate::report::History;
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+/// Wall time after which a simulation is told of, and the longest time between two lines [s].
+const LONG: f64 = 2.0;
+const MOST: f64 = 30.0;
+/// How often the simulations are looked at.
+const LOOK: Duration = Duration::from_millis(500);
+
+/// What the simulations of this process tell how far they are. Those that take long are told of on
+/// standard error: after 2 s, then after twice the time of the line before, at least every 30 s.
+pub fn watched() -> Arc<Progress> {
+    static PROGRESS: OnceLock<Arc<Progress>> = OnceLock::new();
+    let progress = PROGRESS.get_or_init(|| {
+        let progress = Arc::new(Progress::default());
+        let seen = Arc::clone(&progress);
+        // The thread ends with the process.
+        std::thread::spawn(move || {
+            let mut due = LONG;
+            loop {
+                std::thread::sleep(LOOK);
+                match seen.longest() {
+                    Some(view) if view.seconds >= due => {
+                        tell(&line(&view));
+                        due = (2.0 * view.seconds).min(view.seconds + MOST);
+                    }
+                    // Another simulation is the longest now.
+                    Some(view) if view.seconds < LONG => due = LONG,
+                    Some(_) => {}
+                    None => due = LONG,
+                }
+            }
+        });
+        progress
+    });
+    Arc::clone(progress)
+}
+
+fn line(view: &View) -> String {
+    format!(
+        "simulating: t = {:.6e} s of {} s after {:.0} s, {} steps, {} rejected\n",
+        view.time, view.duration, view.seconds, view.steps, view.rejected
+    )
+}
 
 /// One line an iteration, with the column heads every twenty lines.
 pub fn show(history: &History) {

@@ -142,7 +142,11 @@ pub fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
         let what = "found --output, expected none: optimize check writes no files";
         return Err(Failure::bad_input(what));
     }
-    let problem = load(job)?;
+    let mut problem = load(job)?;
+    let all: Vec<usize> = (0..problem.function_names.len()).collect();
+    if let Some(focused) = problem.focused(&all) {
+        problem = focused;
+    }
     if problem.variables.is_empty() {
         return Err(Failure::bad_input(format!(
             "{}: nothing to check: the problem has no variables",

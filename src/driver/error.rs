@@ -15,7 +15,7 @@
 use super::evaluate::Evaluated;
 use super::event::{self, Admit};
 use super::integration::{Integration, looks_at_the_whole};
-use crate::integrate::{IntegrationFailure, Samples, Settings, Spacing, Trajectory};
+use crate::integrate::{IntegrationFailure, Limits, Samples, Settings, Spacing, Trajectory};
 use crate::problem::{Problem, Simulation};
 
 /// Order of the trapezoidal rule, by which functions sum over the motion.
@@ -61,7 +61,8 @@ pub fn estimate(
     gradients: bool,
 ) -> Result<Vec<FunctionError>, IntegrationFailure> {
     let sums = |f: &usize| looks_at_the_whole(&at.scene.functions[*f]);
-    let finer = halved(&at.run, which.iter().any(sums));
+    let limits = problem.simulation.limits.clone();
+    let finer = halved(&at.run, which.iter().any(sums), limits);
     let mut scene = at.scene.clone();
     let run = event::settle(&mut scene, &finer, at.run.duration, Admit::Late)?;
     let x = at.x.clone();
@@ -115,7 +116,7 @@ pub fn estimate(
 }
 
 /// The settings of a run with every step cut in two and twice the samples.
-fn halved(run: &Trajectory<f64>, summed: bool) -> Settings {
+fn halved(run: &Trajectory<f64>, summed: bool, limits: Limits) -> Settings {
     let instants = run.last();
     let samples = if run.instants == run.grid.ends() {
         Samples::StepEnds
@@ -129,6 +130,7 @@ fn halved(run: &Trajectory<f64>, summed: bool) -> Settings {
         spacing: Spacing::Frozen(run.grid.halved()),
         samples,
         keep_stages: false,
+        limits,
     }
 }
 

@@ -3,10 +3,12 @@
 use super::integration::{Integration, Refresh};
 use crate::adjoint;
 use crate::functions::{Scene, evaluate};
-use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
+use crate::integrate::{
+    IntegrationFailure, Samples, Settings, Trajectory, WorkCounts, simulate_by,
+};
 use crate::math::Dual;
 use crate::model::RigidBody;
-use crate::problem::Problem;
+use crate::problem::{Focus, Problem};
 use std::borrow::Cow;
 
 /// A design that was simulated.
@@ -51,8 +53,48 @@ impl Evaluated {
         Ok((Self { x, scene, run }, refresh))
     }
 
-    /// The scene as it is written, and the motion of all its bodies.
+    /// The scene as it is written, and the motion of all its bodies. Bodies that the problem leaves out
+    /// as no function sees them are simulated for it; they rest if that fails.
     pub fn written(&self, problem: &Problem) -> (Scene<f64>, Cow<'_, Trajectory<f64>>) {
+        if let Some(whole) = problem.whole() {
+            let (scene, run) = self.whole(problem, &whole);
+            return (scene, Cow::Owned(run));
+        }
+        self.written_of_seen(problem)
+    }
+
+    /// The whole scene and its motion, with steps of its own.
+    fn whole(&self, problem: &Problem, whole: &Problem) -> (Scene<f64>, Trajectory<f64>) {
+        let written = whole.unlowered_scene::<f64>(&self.x);
+        let mut scene = written.clone();
+        whole.lower(&mut scene);
+        let settings = Settings {
+            spacing: whole.simulation.spacing.clone(),
+            samples: match self.run.instants == self.run.grid.ends() {
+                true => Samples::StepEnds,
+                false => Samples::Uniform(self.run.last()),
+            },
+            limits: whole.simulation.limits.clone(),
+            ..Settings::steps(self.run.method, 1)
+        };
+        let method = whole.simulation.method;
+        let run = match simulate_by(&scene.model, self.run.duration, method, &settings) {
+            Ok(chosen) => {
+                let lowering = whole.lowering.as_ref();
+                let admitted = lowering.filter(|own| own.apply(&mut written.clone()));
+                let all = admitted.and_then(|own| own.expand(&written.model, &chosen.run));
+                all.unwrap_or(chosen.run)
+            }
+            Err(_) => {
+                let (_, seen) = self.written_of_seen(problem);
+                let rest = |focus: &Focus| focus.seen.at_rest(&written.model, &seen);
+                (problem.focus.as_ref()).map_or_else(|| self.run.clone(), rest)
+            }
+        };
+        (written, run)
+    }
+
+    fn written_of_seen(&self, problem: &Problem) -> (Scene<f64>, Cow<'_, Trajectory<f64>>) {
         let written = problem.unlowered_scene(&self.x);
         let lowering = problem.lowering.as_ref();
         let admitted = lowering.filter(|lowering| lowering.apply(&mut written.clone()));

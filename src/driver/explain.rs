@@ -9,8 +9,64 @@ use crate::report::{Explanation, FunctionUse, IntegrationUse, SystemSize};
 use crate::system::accelerations::{Accelerations, Untreelike};
 use crate::system::{Numbering, initial};
 
-/// Explains the start of `problem`, which is simulated with its gradients if that can be done.
+/// Explains the start of `problem`, which is simulated with its gradients if that can be done. What an
+/// optimisation leaves out as neither objective nor constraint sees it (no function, if there is no
+/// objective) is left out here too.
 pub fn explain(problem: &Problem) -> Explanation {
+    let all: Vec<usize> = (0..problem.function_names.len()).collect();
+    let focused = match problem.objective {
+        Some(_) => problem.for_optimisation(),
+        None => problem.focused(&all),
+    };
+    let whole = problem.unlowered_scene::<f64>(&problem.start());
+    let model = &whole.model;
+    let seen = focused.as_ref().and_then(|focused| {
+        let seen = &focused.focus.as_ref()?.seen;
+        (!seen.keeps_all(model)).then_some((focused, seen))
+    });
+    let Some((focused, seen)) = seen else {
+        return explain_seen(problem);
+    };
+    let mut found = explain_seen(focused);
+    let unseen: Vec<String> = (model.bodies.iter().enumerate())
+        .filter(|(body, _)| !seen.keeps(*body))
+        .map(|(_, body)| format!("\"{}\"", body.name))
+        .collect();
+    let (bodies, they) = match unseen.len() {
+        1 => ("body", "it"),
+        _ => ("bodies", "them"),
+    };
+    let told = match unseen.len().saturating_sub(TOLD) {
+        0 => unseen.join(", "),
+        more => format!("{} and {more} more", unseen[..TOLD].join(", ")),
+    };
+    let who = match problem.objective {
+        Some(_) => "neither the objective nor a constraint",
+        None => "no function",
+    };
+    let line = format!("{bodies} {told} and what joins {they}: {who} sees {they}");
+    found.left_out.insert(0, line);
+    (found.bodies, found.joints) = (model.bodies.len(), model.joints.len());
+    found.loads = model.loads.len();
+    found.written = size(model, initial::guess(model));
+    let mut known = found.functions.into_iter();
+    let use_of = |(f, name): (usize, &String)| match seen.functions.binary_search(&f) {
+        Ok(_) => known.next(),
+        Err(_) => Some(FunctionUse {
+            name: name.clone(),
+            used: String::new(),
+            whole_motion: looks_at_the_whole(&whole.functions[f]),
+            variables: None,
+        }),
+    };
+    found.functions = (problem.function_names.iter().enumerate())
+        .filter_map(use_of)
+        .collect();
+    found
+}
+
+/// Explains a problem all of whose bodies are simulated.
+fn explain_seen(problem: &Problem) -> Explanation {
     let x = problem.start();
     let written = problem.unlowered_scene(&x).model;
     let scene = problem.scene(&x);

@@ -5,8 +5,8 @@
 use super::event::{self, Admit};
 use crate::functions::{Function, Reduction, Scene};
 use crate::integrate::{
-    Chosen, Grid, IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, choice,
-    simulate, simulate_by,
+    Chosen, Grid, IntegrationFailure, Limits, Method, Samples, Settings, Spacing, Trajectory,
+    choice, simulate, simulate_by,
 };
 use crate::problem::Problem;
 
@@ -29,6 +29,7 @@ pub struct Integration {
     method: Option<Method>,
     spacing: Spacing,
     samples: Samples,
+    limits: Limits,
     /// Settings in use, once a design was simulated.
     chosen: Option<(Settings, String)>,
     /// How often the steps were chosen anew.
@@ -89,6 +90,7 @@ impl Integration {
             method: simulation.method,
             spacing: simulation.spacing.clone(),
             samples,
+            limits: simulation.limits.clone(),
             chosen: None,
             refreshes: 0,
             unlowered: 0,
@@ -158,6 +160,7 @@ impl Integration {
             spacing: self.spacing.clone(),
             samples: self.samples,
             keep_stages: self.keep_stages,
+            limits: self.limits.clone(),
         }
     }
 

@@ -1,7 +1,8 @@
 //! Step size control: what errors are measured against, and how large the next step is.
 
 use super::grid::Grid;
-use super::settings::Spacing;
+use super::limits::Clock;
+use super::settings::{Settings, Spacing};
 use crate::math::Scalar;
 use crate::model::course::Course;
 use crate::model::{Model, MotionCourse};
@@ -16,10 +17,13 @@ const GROW: f64 = 6.0;
 const LEAPS: [f64; 8] = [0.7, 1.3, 0.5, 1.8, 0.3, 2.5, 0.15, 4.0];
 /// Smallest step, as a part of the duration.
 const SMALLEST: f64 = 1e-12;
-/// Most steps and tries of an adaptive run, and after how many its pace is looked at: a run that
-/// would need more tries than these at its latest pace is given up at once.
+/// Most tries of a run whose steps follow the error, and most of them that are rejected. The pace is
+/// looked at every so many tries: a run that would need more at its latest pace is given up at once.
+/// Smooth motions have few rejected steps however fast they are; a mechanism that is nearly locked
+/// rejects a quarter.
 const MOST: usize = 10_000_000;
-const PACE: usize = 100_000;
+const MOST_REJECTED: usize = 50_000;
+const PACE: usize = 5_000;
 
 /// Lengths and speeds of a scene that errors are relative to.
 #[derive(Clone, Copy, Debug)]
@@ -143,7 +147,7 @@ fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64>, f64) {
 }
 
 /// Gives the width of one step after the other, in fractions of the duration.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Controller {
     plan: Plan,
     /// Exponent 1/m of the controller.
@@ -161,11 +165,34 @@ pub struct Controller {
     leap: Option<(f64, usize)>,
     latest: f64,
     largest: f64,
-    /// Tries so far, and the fraction of the duration that was reached when the pace was looked at.
+    /// Tries and rejected ones so far.
     tries: usize,
-    looked: f64,
-    /// Whether the run would need too many tries.
-    too_slow: bool,
+    refused: usize,
+    /// Fraction of the duration and rejected tries when the pace was looked at.
+    looked: (f64, usize),
+    /// Most rejected tries.
+    most_rejected: usize,
+    clock: Option<Clock>,
+    stopped: Option<Stop>,
+}
+
+/// Why a march ended before the end of its motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stop {
+    /// The steps became too small.
+    TooSmall,
+    /// The latest `tries`, `rejected` of them rejected, advanced the motion by the fraction `advance`
+    /// of its duration; at this pace it would need too many.
+    NoHeadway {
+        /// Tries.
+        tries: usize,
+        /// Rejected ones among them.
+        rejected: usize,
+        /// Fraction of the duration.
+        advance: f64,
+    },
+    /// It took longer than it may [s].
+    TimeLimit(f64),
 }
 
 #[derive(Clone, Debug)]
@@ -179,12 +206,13 @@ enum Plan {
 impl Controller {
     /// A controller for a method whose steps have an error of the given order.
     pub fn new<S: Scalar>(
-        spacing: &Spacing,
+        settings: &Settings,
         order: usize,
         scale: &Scale,
         (model, duration): (&Model<S>, f64),
     ) -> Self {
         let (stops, widest) = load_steps(model, duration);
+        let spacing = &settings.spacing;
         let plan = match spacing {
             Spacing::Steps(steps) => Plan::Given {
                 grid: Grid::uniform(*steps),
@@ -217,8 +245,15 @@ impl Controller {
             latest: 0.0,
             largest: 0.0,
             tries: 0,
-            looked: 0.0,
-            too_slow: false,
+            refused: 0,
+            looked: (0.0, 0),
+            // Who says how long it may take says so instead.
+            most_rejected: match settings.limits.seconds {
+                Some(_) => MOST,
+                None => MOST_REJECTED,
+            },
+            clock: Clock::start(&settings.limits, duration),
+            stopped: None,
         }
     }
 
@@ -227,21 +262,42 @@ impl Controller {
         self.estimates
     }
 
-    /// Width of the step from `reached`, or `None` at the end or if the steps became too small.
+    /// Width of the step from `reached`, or `None` at the end or if the march is [stopped](Self::stopped).
     pub fn next(&mut self, reached: f64) -> Option<f64> {
+        self.tries += 1;
+        let clock = self.clock.as_ref();
+        if let Some(seconds) = clock.and_then(|c| c.look(reached, self.tries, self.refused)) {
+            self.stopped = Some(Stop::TimeLimit(seconds));
+            return None;
+        }
         match &mut self.plan {
             Plan::Given { grid, next } => (*next <= grid.steps()).then(|| grid.width(*next)),
             Plan::Chosen { width, .. } => {
                 let rest = 1.0 - reached;
-                if rest <= 0.0 || *width < SMALLEST || self.too_slow {
+                if rest <= 0.0 {
                     return None;
                 }
-                self.tries += 1;
+                if *width < SMALLEST {
+                    self.stopped = Some(Stop::TooSmall);
+                    return None;
+                }
                 if self.tries.is_multiple_of(PACE) {
-                    let pace = (reached - self.looked) / PACE as f64;
-                    self.looked = reached;
-                    let to_come = (MOST - self.tries.min(MOST)) as f64;
-                    self.too_slow = pace * to_come < rest;
+                    let advance = reached - self.looked.0;
+                    let rejected = self.refused - self.looked.1;
+                    let too_many = |latest: usize, so_far: usize, most: usize| {
+                        latest as f64 * rest > advance * most.saturating_sub(so_far) as f64
+                    };
+                    if too_many(PACE, self.tries, MOST)
+                        || too_many(rejected, self.refused, self.most_rejected)
+                    {
+                        self.stopped = Some(Stop::NoHeadway {
+                            tries: PACE,
+                            rejected,
+                            advance,
+                        });
+                        return None;
+                    }
+                    self.looked = (reached, self.refused);
                 }
                 *width = width.min(self.widest);
                 let next = self.stops.iter().find(|&&at| at > reached + SMALLEST);
@@ -294,6 +350,7 @@ impl Controller {
                         SHRINK
                     };
                     self.rejected = true;
+                    self.refused += 1;
                     false
                 }
             }
@@ -328,17 +385,15 @@ impl Controller {
                 }
                 *tried += 1;
                 self.rejected = true;
+                self.refused += 1;
                 *width < SMALLEST
             }
         }
     }
 
-    /// Whether the march ended because the steps became too small.
-    pub fn too_small(&self) -> bool {
-        match &self.plan {
-            Plan::Given { .. } => false,
-            Plan::Chosen { width, .. } => *width < SMALLEST || self.too_slow,
-        }
+    /// Why the march ended before the end of its motion, if it did.
+    pub fn stopped(&self) -> Option<Stop> {
+        self.stopped
     }
 
     /// Largest error of an accepted step, relative to the scale.

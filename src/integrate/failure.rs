@@ -67,6 +67,43 @@ pub enum IntegrationFailure {
         /// Step number, from 1.
         step: usize,
     },
+    /// The steps are so small that the motion makes no headway.
+    #[error(
+        "the motion makes no headway at t = {time:.6e} s of {duration} s (step {step}): the latest \
+         {tries} steps that were tried, {rejected} of them rejected, advanced it by {advance:.1e} s; \
+         such small steps are needed where a mechanism is nearly locked, a load is very stiff or very \
+         fast, or the tolerance is below what rounding allows; with \"seconds\" in \"simulation\" it \
+         may take that long"
+    )]
+    NoHeadway {
+        /// Time reached [s].
+        time: f64,
+        /// Time to be reached [s].
+        duration: f64,
+        /// Step number, from 1.
+        step: usize,
+        /// Steps that were tried last.
+        tries: usize,
+        /// Rejected ones among them.
+        rejected: usize,
+        /// How far they advanced the motion [s].
+        advance: f64,
+    },
+    /// The simulation took longer than it may.
+    #[error(
+        "the simulation exceeds its time limit of {seconds} s at t = {time:.6e} s of {duration} s \
+         (step {step})"
+    )]
+    TimeLimit {
+        /// The limit [s].
+        seconds: f64,
+        /// Time reached [s].
+        time: f64,
+        /// Time to be reached [s].
+        duration: f64,
+        /// Step number, from 1.
+        step: usize,
+    },
     /// A value overflowed or became NaN.
     #[error("the motion is not finite at t = {time:.6e} s (step {step}), in {worst}")]
     NotFinite {

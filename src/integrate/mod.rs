@@ -6,6 +6,7 @@ pub mod explicit;
 pub mod failure;
 pub mod grid;
 pub mod implicit;
+pub mod limits;
 pub mod multipliers;
 pub mod rows;
 pub mod settings;
@@ -14,6 +15,7 @@ pub mod trajectory;
 pub use choice::{Chosen, simulate_by};
 pub use failure::IntegrationFailure;
 pub use grid::Grid;
+pub use limits::{Limits, Progress};
 pub use multipliers::Multipliers;
 pub use settings::{Method, Samples, Settings, Spacing, Start};
 pub use trajectory::{Tape, Trajectory, WorkCounts};
@@ -22,7 +24,7 @@ use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::kkt::SaddlePoint;
 use crate::system::{Motion, Numbering, assembly, initial, redundancy};
-use control::Controller;
+use control::{Controller, Stop};
 
 /// Integrates `model` over `duration` in real or, for complex-step derivatives, in complex
 /// numbers.
@@ -56,11 +58,32 @@ fn close<S: SolveScalar>(
     run: &mut Trajectory<S>,
     controller: &Controller,
 ) -> Result<(), IntegrationFailure> {
-    if controller.too_small() {
-        return Err(IntegrationFailure::StepTooSmall {
-            time: run.duration.re() * run.grid.reached(),
-            step: run.grid.steps() + 1,
-        });
+    let (time, step) = (run.time_reached(), run.grid.steps() + 1);
+    match controller.stopped() {
+        None => {}
+        Some(Stop::TooSmall) => return Err(IntegrationFailure::StepTooSmall { time, step }),
+        Some(Stop::TimeLimit(seconds)) => {
+            return Err(IntegrationFailure::TimeLimit {
+                seconds,
+                time,
+                duration: run.duration.re(),
+                step,
+            });
+        }
+        Some(Stop::NoHeadway {
+            tries,
+            rejected,
+            advance,
+        }) => {
+            return Err(IntegrationFailure::NoHeadway {
+                time,
+                duration: run.duration.re(),
+                step,
+                tries,
+                rejected,
+                advance: advance * run.duration.re(),
+            });
+        }
     }
     run.step_error = controller.largest_error();
     run.counts.steps = run.grid.steps();

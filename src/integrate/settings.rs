@@ -1,6 +1,7 @@
 //! How a scene is integrated in time.
 
 use super::grid::Grid;
+use super::limits::Limits;
 
 /// The integration method.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,6 +129,8 @@ pub struct Settings {
     pub samples: Samples,
     /// Whether the stages are kept for a gradient, which otherwise computes them again.
     pub keep_stages: bool,
+    /// What the simulation may take, and who is told how far it is.
+    pub limits: Limits,
 }
 
 impl Settings {
@@ -138,6 +141,7 @@ impl Settings {
             spacing: Spacing::Steps(steps),
             samples: Samples::StepEnds,
             keep_stages: false,
+            limits: Limits::default(),
         }
     }
 }

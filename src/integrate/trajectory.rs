@@ -141,6 +141,11 @@ impl<S: Scalar> Trajectory<S> {
         [samples, tape].map(|numbers| numbers * size_of::<S>())
     }
 
+    /// Time that the steps have reached [s].
+    pub fn time_reached(&self) -> f64 {
+        self.duration.re() * self.grid.reached()
+    }
+
     /// Index of the last instant.
     pub fn last(&self) -> usize {
         self.instants.len() - 1

@@ -14,6 +14,7 @@ pub mod planar;
 mod point;
 mod reach;
 mod tilt;
+pub mod unseen;
 pub mod unturned;
 pub mod welded;
 
@@ -21,6 +22,7 @@ pub use examine::{Obstacle, Range, Verdict};
 pub use fixed::Fixed;
 pub use merge::Cluster;
 pub use planar::Plane;
+pub use unseen::Seen;
 pub use unturned::Unturned;
 pub use welded::Welded;
 

@@ -294,15 +294,15 @@ fn alike<S: Scalar>(model: &Model<S>, pairs: &[[usize; 2]], change: f64) -> Verd
 }
 
 /// Disjoint groups of numbers.
-struct Groups(Vec<usize>);
+pub(super) struct Groups(Vec<usize>);
 
 impl Groups {
-    fn new(count: usize) -> Self {
+    pub fn new(count: usize) -> Self {
         Self((0..count).collect())
     }
 
     /// The number that stands for the group of i.
-    fn of(&mut self, mut i: usize) -> usize {
+    pub fn of(&mut self, mut i: usize) -> usize {
         while self.0[i] != i {
             self.0[i] = self.0[self.0[i]];
             i = self.0[i];
@@ -310,7 +310,7 @@ impl Groups {
         i
     }
 
-    fn join(&mut self, a: usize, b: usize) {
+    pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.of(a), self.of(b));
         self.0[a] = b;
     }

@@ -7,6 +7,7 @@
 mod check;
 mod drawing;
 mod fault;
+mod focus;
 mod joints;
 mod loads;
 mod mass;
@@ -28,6 +29,7 @@ mod variables;
 
 pub use drawing::{BarrierLine, Drawing, Outline};
 pub use fault::{Fault, Faults};
+pub use focus::Focus;
 pub use overrides::{Override, OverrideError};
 pub use schema::schema;
 pub use variables::Variable;
@@ -101,6 +103,8 @@ pub struct Simulation {
     pub spacing: Spacing,
     /// Number of equal intervals at whose ends the motion is sampled, if the file says so.
     pub samples: Option<usize>,
+    /// What a simulation may take, and who is told how far it is.
+    pub limits: integrate::Limits,
 }
 
 /// A problem: a scene that depends on a design, what is asked of it, and how it is solved.
@@ -155,6 +159,8 @@ pub struct Problem {
     left_out: Vec<Vec<ConstraintRow>>,
     /// What is left out of its scenes before they are integrated; `None` if nothing shall be.
     pub lowering: Option<Lowering>,
+    /// The functions that are asked for and the bodies that they can see; `None` is all.
+    pub focus: Option<Focus>,
 }
 
 impl Problem {
@@ -219,11 +225,15 @@ impl Problem {
         lowering.is_none_or(|lowering| lowering.apply(scene))
     }
 
-    /// The scene at the design `x` with nothing left out but what follows from other joints.
+    /// The scene at the design `x` with nothing left out but what follows from other joints, and what
+    /// cannot be seen by the functions that a [focused](Problem::focused) problem asks for.
     pub fn unlowered_scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
         let mut scene = scene::scene(&self.written, &self.order, x);
         for (joint, left_out) in scene.model.joints.iter_mut().zip(&self.left_out) {
             joint.left_out.clone_from(left_out);
+        }
+        if let Some(focus) = &self.focus {
+            focus.seen.apply(&mut scene);
         }
         scene
     }

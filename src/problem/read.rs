@@ -128,7 +128,7 @@ pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Pr
 }
 
 /// What can be left out of the scenes of a problem.
-fn lowering(problem: &Problem) -> Lowering {
+pub(super) fn lowering(problem: &Problem) -> Lowering {
     let variables: Vec<lower::Range> = problem
         .variables
         .iter()
@@ -353,6 +353,7 @@ fn problem(
         redundant: Vec::new(),
         left_out: Vec::new(),
         lowering: None,
+        focus: None,
     }
 }
 
@@ -378,5 +379,9 @@ fn simulation(written: &schema::Simulation) -> Simulation {
             (None, tolerance) => Spacing::Tolerance(tolerance.unwrap_or(TOLERANCE)),
         },
         samples: written.samples,
+        limits: integrate::Limits {
+            seconds: written.seconds,
+            progress: None,
+        },
     }
 }

@@ -6,6 +6,7 @@ mod planes;
 mod points;
 #[path = "../reference/mod.rs"]
 mod reference;
+mod unseen;
 mod welds;
 
 use flexbody::driver::Evaluated;
@@ -73,6 +74,7 @@ fn settings(method: Method, spacing: Spacing) -> Settings {
         spacing,
         samples: Samples::Uniform(50),
         keep_stages: true,
+        limits: Default::default(),
     }
 }
 

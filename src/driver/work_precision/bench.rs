@@ -7,7 +7,7 @@ use crate::driver::integration::{Integration, looks_at_the_whole};
 use crate::driver::{Evaluated, Simulation};
 use crate::functions::Scene;
 use crate::integrate::{
-    IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, simulate,
+    IntegrationFailure, Limits, Method, Samples, Settings, Spacing, Trajectory, simulate,
 };
 use crate::problem::Problem;
 use crate::report::PrecisionRow;
@@ -31,6 +31,11 @@ impl<'a> Bench<'a> {
             x,
             function,
         }
+    }
+
+    /// What a simulation may take.
+    pub fn limits(&self) -> Limits {
+        self.problem.simulation.limits.clone()
     }
 
     /// Whether the function sums over the motion, so that its gradient needs samples of it.
@@ -66,6 +71,7 @@ impl<'a> Bench<'a> {
             spacing: spacing.clone(),
             samples,
             keep_stages,
+            limits: self.limits(),
         };
         let (model, duration) = (&self.scene.model, self.scene.duration);
         let with_gradient = reference.gradient.is_some();

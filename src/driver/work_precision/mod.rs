@@ -118,6 +118,7 @@ fn usual(bench: &Bench) -> Result<(bool, usize), IntegrationFailure> {
     let steps = |method| {
         let settings = Settings {
             spacing: Spacing::Tolerance(USUAL),
+            limits: bench.limits(),
             ..Settings::steps(method, 1)
         };
         simulate(model, duration, &settings).map(|run| run.grid.steps())

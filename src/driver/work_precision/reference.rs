@@ -114,6 +114,7 @@ fn candidate(
             false => Samples::Uniform(1),
         },
         keep_stages: false,
+        limits: bench.limits(),
     };
     let (model, duration) = (&bench.scene.model, bench.scene.duration);
     let chosen = simulate(model, duration, &settings)?;

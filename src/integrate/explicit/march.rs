@@ -48,7 +48,7 @@ pub fn march<S: SolveScalar>(
     let tape = trajectory::Tape::Explicit(tape);
     let scale = Scale::of(model, numbering, &start, duration.re());
     let mut run = Trajectory::start(numbering.clone(), Method::Dop853, duration, start, tape);
-    let mut controller = Controller::new(&settings.spacing, ORDER, &scale, (model, duration.re()));
+    let mut controller = Controller::new(settings, ORDER, &scale, (model, duration.re()));
     let mut stiffness = Stiffness::default();
     // Kept steps were found good where they were chosen, and are judged by their error.
     let watched = !matches!(settings.spacing, Spacing::Frozen(_));

@@ -34,7 +34,7 @@ pub fn march<S: SolveScalar>(
     let scheme = Scheme::of(method);
     let scale = Scale::of(model, numbering, &start, duration.re());
     let mut controller = Controller::new(
-        &settings.spacing,
+        settings,
         scheme.stages() + 1,
         &scale,
         (model, duration.re()),

@@ -108,6 +108,12 @@ pub struct Simulation {
         "design_variable" = "a number of samples is a count, not a physical number"
     ))]
     pub samples: Option<usize>,
+    /// Longest wall time of one simulation [s]. Default none. The number of steps is limited besides.
+    #[schemars(extend(
+        "exclusiveMinimum" = 0,
+        "design_variable" = "a limit of the run is the computer's, not a physical number"
+    ))]
+    pub seconds: Option<f64>,
     /// Integration method. Default: chosen by the scene, dop853 unless it is stiff, else radau.
     pub method: Option<Method>,
 }

@@ -1,0 +1,161 @@
+//! What a simulation may take, and how far it is for those who wait.
+
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+
+/// What a simulation may take, and who is told how far it is. The number of steps is limited besides
+/// (see [`Controller`](super::control::Controller)).
+#[derive(Clone, Debug, Default)]
+pub struct Limits {
+    /// Longest wall time of one simulation [s].
+    pub seconds: Option<f64>,
+    /// Who is told.
+    pub progress: Option<Arc<Progress>>,
+}
+
+/// Limits are equal if they allow the same, whoever is told.
+impl PartialEq for Limits {
+    fn eq(&self, other: &Self) -> bool {
+        self.seconds == other.seconds
+    }
+}
+
+/// The simulations under way, on any number of threads.
+#[derive(Debug, Default)]
+pub struct Progress {
+    running: Mutex<Vec<Arc<Run>>>,
+}
+
+/// One simulation under way. Its counters are written by the march and read by who waits.
+#[derive(Debug)]
+struct Run {
+    since: Instant,
+    duration: f64,
+    /// The bits of the fraction of the duration that was reached.
+    reached: AtomicU64,
+    tries: AtomicU64,
+    rejected: AtomicU64,
+}
+
+/// How far a simulation is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Wall time since it began [s].
+    pub seconds: f64,
+    /// Time reached in the motion [s].
+    pub time: f64,
+    /// Time to be reached [s].
+    pub duration: f64,
+    /// Steps that were accepted.
+    pub steps: u64,
+    /// Steps that were rejected.
+    pub rejected: u64,
+}
+
+impl Progress {
+    /// The simulation that has been under way for the longest time, if there is one.
+    pub fn longest(&self) -> Option<View> {
+        let running = self.running.lock().ok()?;
+        let run = running.iter().min_by_key(|run| run.since)?;
+        let (tries, rejected) = (run.tries.load(Relaxed), run.rejected.load(Relaxed));
+        Some(View {
+            seconds: run.since.elapsed().as_secs_f64(),
+            time: f64::from_bits(run.reached.load(Relaxed)) * run.duration,
+            duration: run.duration,
+            steps: tries.saturating_sub(rejected),
+            rejected,
+        })
+    }
+}
+
+/// Tries between two looks at the clock.
+const LOOKS: usize = 16;
+
+/// Watches one march. Its run leaves the list of those under way when it is dropped.
+#[derive(Debug)]
+pub(super) struct Clock {
+    since: Instant,
+    seconds: Option<f64>,
+    told: Option<(Arc<Progress>, Arc<Run>)>,
+}
+
+impl Clock {
+    /// A clock that starts now, for a motion of `duration` [s]; `None` if nobody needs one.
+    pub fn start(limits: &Limits, duration: f64) -> Option<Self> {
+        if limits.seconds.is_none() && limits.progress.is_none() {
+            return None;
+        }
+        let since = Instant::now();
+        let told = limits.progress.as_ref().map(|progress| {
+            let run = Arc::new(Run {
+                since,
+                duration,
+                reached: AtomicU64::new(0),
+                tries: AtomicU64::new(0),
+                rejected: AtomicU64::new(0),
+            });
+            if let Ok(mut running) = progress.running.lock() {
+                running.push(Arc::clone(&run));
+            }
+            (Arc::clone(progress), run)
+        });
+        Some(Self {
+            since,
+            seconds: limits.seconds,
+            told,
+        })
+    }
+
+    /// Tells how far the march is; the limit [s], if it is exceeded.
+    pub fn look(&self, reached: f64, tries: usize, rejected: usize) -> Option<f64> {
+        if !tries.is_multiple_of(LOOKS) {
+            return None;
+        }
+        if let Some((_, run)) = &self.told {
+            run.reached.store(reached.to_bits(), Relaxed);
+            run.tries.store(tries as u64, Relaxed);
+            run.rejected.store(rejected as u64, Relaxed);
+        }
+        let over = |seconds: &f64| self.since.elapsed().as_secs_f64() > *seconds;
+        self.seconds.filter(over)
+    }
+}
+
+impl Drop for Clock {
+    fn drop(&mut self) {
+        if let Some((progress, run)) = &self.told
+            && let Ok(mut running) = progress.running.lock()
+        {
+            running.retain(|other| !Arc::ptr_eq(other, run));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The simulation that began first is told of as long as it is under way.
+    #[test]
+    fn the_longest_simulation_is_told() {
+        let limits = Limits {
+            seconds: None,
+            progress: Some(Arc::default()),
+        };
+        let progress = limits.progress.clone().expect("it was given");
+        assert_eq!(progress.longest(), None);
+        let first = Clock::start(&limits, 4.0).expect("a clock");
+        let second = Clock::start(&limits, 8.0).expect("a clock");
+        assert_eq!(first.look(0.25, 3 * LOOKS, 5), None);
+        assert_eq!(second.look(0.5, 2 * LOOKS, 0), None);
+        let seen = progress.longest().expect("two are under way");
+        assert_eq!((seen.time, seen.duration), (1.0, 4.0));
+        assert_eq!((seen.steps, seen.rejected), (3 * LOOKS as u64 - 5, 5));
+        drop(first);
+        assert_eq!(progress.longest().map(|seen| seen.time), Some(4.0));
+        drop(second);
+        assert_eq!(progress.longest(), None);
+        assert!(Clock::start(&Limits::default(), 1.0).is_none());
+    }
+}

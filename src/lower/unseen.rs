@@ -1,0 +1,207 @@
+//! Parts of a scene that no function asked for can see.
+//!
+//! Bodies hang together by joints and by springs between them; ground joins nothing. The motion of a
+//! part has no effect on the others. So the scene without the parts that neither a function asked for
+//! nor the event looks at has the same functions. Chosen steps follow the error of what is left, so
+//! functions of steps that follow a tolerance change by their discretisation error.
+
+use super::welded::Groups;
+use crate::functions::{Function, Instant, Scene};
+use crate::integrate::explicit;
+use crate::integrate::{Samples, Tape, Trajectory};
+use crate::math::Scalar;
+use crate::model::{Load, LoadKind, Model};
+use crate::system::{Numbering, initial};
+
+/// What is kept of a scene, by index, ascending.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Seen {
+    /// Bodies.
+    pub bodies: Vec<usize>,
+    /// Functions: those asked for.
+    pub functions: Vec<usize>,
+}
+
+impl Seen {
+    /// What the functions `asked` and the event of `scene` can see.
+    pub fn find<S: Scalar>(scene: &Scene<S>, asked: &[usize]) -> Self {
+        let model = &scene.model;
+        let mut parts = Groups::new(model.bodies.len());
+        let loads = model.loads.iter().map(|load| ends(load, model));
+        let joints = model
+            .joints
+            .iter()
+            .map(|own| [Some(own.body_a), own.body_b]);
+        for pair in joints.chain(loads) {
+            if let [Some(a), Some(b)] = pair {
+                parts.join(a, b);
+            }
+        }
+        let mut functions = asked.to_vec();
+        functions.sort_unstable();
+        functions.dedup();
+        let mut seen = vec![false; model.bodies.len()];
+        let event = scene.until.iter().map(|until| &until.measure);
+        for function in functions.iter().map(|&f| &scene.functions[f]).chain(event) {
+            if let Function::Reduced {
+                instant: Instant::Energy(_),
+                ..
+            } = function
+            {
+                seen.fill(true);
+            }
+            (function.clone()).for_each_place(&mut |body, _| seen[*body] = true);
+        }
+        let all = 0..model.bodies.len();
+        let looked_at: Vec<usize> = (all.clone().filter(|&body| seen[body]))
+            .map(|body| parts.of(body))
+            .collect();
+        Self {
+            bodies: all
+                .filter(|&body| looked_at.contains(&parts.of(body)))
+                .collect(),
+            functions,
+        }
+    }
+
+    /// Everything of a scene with so many bodies, but functions that are not asked for.
+    pub fn all_bodies(&self, bodies: usize) -> Self {
+        Self {
+            bodies: (0..bodies).collect(),
+            functions: self.functions.clone(),
+        }
+    }
+
+    /// Whether all bodies of a model are kept.
+    pub fn keeps_all<S>(&self, model: &Model<S>) -> bool {
+        self.bodies.len() == model.bodies.len()
+    }
+
+    /// Whether a body is kept.
+    pub fn keeps(&self, body: usize) -> bool {
+        self.bodies.binary_search(&body).is_ok()
+    }
+
+    /// Leaves the rest out of `scene`. The bodies that are kept are numbered anew.
+    pub fn apply<S: Scalar>(&self, scene: &mut Scene<S>) {
+        let mut functions = std::mem::take(&mut scene.functions).into_iter().map(Some);
+        let mut functions: Vec<Option<Function<S>>> = functions.by_ref().collect();
+        let kept = self.functions.iter().map(|&f| functions[f].take());
+        scene.functions = kept.flatten().collect();
+        if self.keeps_all(&scene.model) {
+            return;
+        }
+        let mut number = vec![None; scene.model.bodies.len()];
+        for (new, &old) in self.bodies.iter().enumerate() {
+            number[old] = Some(new);
+        }
+        let event = scene.until.as_mut().map(|until| &mut until.measure);
+        for function in scene.functions.iter_mut().chain(event) {
+            function.for_each_place(&mut |body, _| {
+                *body = number[*body].expect("a body that a function looks at is kept");
+            });
+        }
+        leave_out(&mut scene.model, &number);
+    }
+
+    /// The motion of all bodies of the model `written` where those that are left out rest.
+    pub fn at_rest(&self, written: &Model<f64>, run: &Trajectory<f64>) -> Trajectory<f64> {
+        let numbering = Numbering::new(written);
+        let (placed, _) = initial::guess(written);
+        let (mut q, mut v, mut a) = (Vec::new(), Vec::new(), Vec::new());
+        for k in 0..=run.last() {
+            let (at_q, at_v) = (q.len(), v.len());
+            q.extend_from_slice(&placed);
+            v.resize(at_v + numbering.velocities(), 0.0);
+            a.resize(at_v + numbering.velocities(), 0.0);
+            for (new, &old) in self.bodies.iter().enumerate() {
+                let from = run.numbering.position(new);
+                let to = at_q + numbering.position(old);
+                q[to..to + 7].copy_from_slice(&run.q(k)[from..from + 7]);
+                let from = run.numbering.velocity(new);
+                let to = at_v + numbering.velocity(old);
+                v[to..to + 6].copy_from_slice(&run.v(k)[from..from + 6]);
+                a[to..to + 6].copy_from_slice(&run.a(k)[from..from + 6]);
+            }
+        }
+        Trajectory {
+            method: run.method,
+            duration: run.duration,
+            grid: run.grid.clone(),
+            instants: run.instants.clone(),
+            places: run.places.clone(),
+            q,
+            v,
+            a,
+            lambda: Vec::new(),
+            initial: run.initial.clone(),
+            step_error: run.step_error,
+            tape: Tape::Explicit(explicit::Tape::new(&numbering, false, Samples::StepEnds)),
+            counts: run.counts,
+            numbering,
+        }
+    }
+}
+
+/// The bodies that a load acts on.
+fn ends<S>(load: &Load<S>, model: &Model<S>) -> [Option<usize>; 2] {
+    match load.kind {
+        LoadKind::Force { body, .. } | LoadKind::Torque { body, .. } => [Some(body), None],
+        LoadKind::Spring { body_a, body_b, .. } => [Some(body_a), body_b],
+        LoadKind::TorsionSpring { joint, .. }
+        | LoadKind::Damping { joint, .. }
+        | LoadKind::BallDamping { joint, .. }
+        | LoadKind::Friction { joint, .. } => {
+            let joint = &model.joints[joint];
+            [Some(joint.body_a), joint.body_b]
+        }
+    }
+}
+
+/// Leaves out bodies without a new number, and the joints and loads on them.
+fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) {
+    let kept = |ends: [Option<usize>; 2]| ends.into_iter().flatten().all(|b| number[b].is_some());
+    let loads: Vec<bool> = (model.loads.iter())
+        .map(|load| kept(ends(load, model)))
+        .collect();
+    let mut joint_number = Vec::with_capacity(model.joints.len());
+    let mut next = 0;
+    for joint in &model.joints {
+        let stays = kept([Some(joint.body_a), joint.body_b]);
+        joint_number.push(stays.then_some(next));
+        next += usize::from(stays);
+    }
+    let new = |body: &mut usize| {
+        *body = number[*body].expect("what is on a body that is left out is left out");
+    };
+    let new_joint = |joint: &mut usize| {
+        *joint = joint_number[*joint].expect("a load on a joint that is left out is left out");
+    };
+    let mut stays = loads.iter();
+    model.loads.retain(|_| stays.next() == Some(&true));
+    for load in &mut model.loads {
+        match &mut load.kind {
+            LoadKind::Force { body, .. } | LoadKind::Torque { body, .. } => new(body),
+            LoadKind::Spring { body_a, body_b, .. } => {
+                new(body_a);
+                body_b.iter_mut().for_each(new);
+            }
+            LoadKind::TorsionSpring { joint, .. }
+            | LoadKind::Damping { joint, .. }
+            | LoadKind::BallDamping { joint, .. }
+            | LoadKind::Friction { joint, .. } => new_joint(joint),
+        }
+    }
+    let mut stays = joint_number.iter();
+    model
+        .joints
+        .retain(|_| stays.next().is_some_and(Option::is_some));
+    for joint in &mut model.joints {
+        new(&mut joint.body_a);
+        joint.body_b.iter_mut().for_each(new);
+    }
+    let mut stays = number.iter();
+    model
+        .bodies
+        .retain(|_| stays.next().is_some_and(Option::is_some));
+}
