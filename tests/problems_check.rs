@@ -7,7 +7,7 @@
 //! themselves, to what is stated, and as well as the others with the gradient. Coarse steps, at which
 //! Newton's method works hardest, are checked as well.
 
-use flexbody::driver::{CheckedDerivative, check};
+use flexbody::driver::{CheckedDerivative, chaos, check};
 use flexbody::problem::Problem;
 use std::path::Path;
 
@@ -82,6 +82,79 @@ fn at_coarse_steps() {
             assert!(
                 gradient <= 1e-12,
                 "{name} in {steps} steps: {gradient:e} of the gradient"
+            );
+        }
+    }
+}
+
+/// A problem of the package with another duration and tolerance, and the total energy beside its
+/// functions.
+fn with_energy(name: &str, duration: Option<f64>, tolerance: f64) -> Problem {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/{name}.json"));
+    let text = std::fs::read_to_string(path).expect("a problem");
+    let mut document: serde_json::Value = serde_json::from_str(&text).expect("valid JSON");
+    document["simulation"]["tolerance"] = tolerance.into();
+    if let Some(duration) = duration {
+        document["simulation"]["duration"] = duration.into();
+    }
+    document["functions"]["energy"] = serde_json::json!({"final": {"energy": "total"}});
+    Problem::parse(&document.to_string(), name, &[]).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// A double pendulum that swings for long is chaotic, even where its functions are exact, such as the
+/// energy. The smaller the errors of the steps, the later its derivatives mean nothing.
+#[test]
+fn chaos_is_named_with_its_time() {
+    let start = [
+        "/bodies/upper/place/turn/angle",
+        "/bodies/lower/place/turn/angle",
+    ];
+    for (angles, duration) in [([2.0, 2.5], 50.0), ([2.5, 1.0], 60.0), ([1.8, -1.0], 80.0)] {
+        let mut before = 0.0;
+        for tolerance in [1e-6, 1e-9, 1e-12] {
+            let problem = with_energy("extreme/double_pendulum", Some(duration), tolerance);
+            let mut document = problem.document.clone();
+            for (path, angle) in start.iter().zip(angles) {
+                *document.pointer_mut(path).expect("an angle") = angle.into();
+            }
+            let text = document.to_string();
+            let problem = Problem::parse(&text, "pendulum.json", &[]).expect("no faults");
+            let found = chaos(&problem, &problem.start());
+            let found = found.unwrap_or_else(|| panic!("{angles:?}, {tolerance:e}: not named"));
+            println!("{angles:?} {duration} s, {tolerance:.0e}: {found}");
+            assert!(found.from > before && found.from < duration, "{found}");
+            assert!(found.to_string().contains("chaotic"), "{found}");
+            before = found.from;
+        }
+        // The same motion as long as it can be told.
+        let short = with_energy("extreme/double_pendulum", Some(2.0), 1e-9);
+        assert_eq!(chaos(&short, &short.start()), None);
+    }
+}
+
+/// The problems of the package are not chaotic over their durations.
+#[test]
+fn the_shipped_problems_are_not_called_chaotic() {
+    for name in [
+        "trebuchet",
+        "trebuchet_release_angle",
+        "trebuchet_release_time",
+        "triple_pendulum",
+        "extreme/damped_oscillator",
+        "extreme/door",
+        "extreme/double_pendulum",
+        "extreme/dumbbell",
+        "extreme/pendulum",
+        "extreme/spring_pendulum",
+        "extreme/tumbling_top",
+        "extreme/wheel",
+    ] {
+        for tolerance in [1e-6, 1e-9, 1e-12] {
+            let problem = with_energy(name, None, tolerance);
+            assert_eq!(
+                chaos(&problem, &problem.start()),
+                None,
+                "{name}, {tolerance:e}"
             );
         }
     }

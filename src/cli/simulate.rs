@@ -133,6 +133,9 @@ pub fn errors(problem: &Problem, at: &Evaluated) -> Result<String, Failure> {
             line(name, &variable.name, derivative);
         }
     }
+    if let Some(chaos) = driver::chaos::of_motion(problem, at, &all) {
+        let _ = writeln!(text, "warning: {chaos}");
+    }
     Ok(text)
 }
 
@@ -153,7 +156,13 @@ pub fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
             job.problem.display()
         )));
     }
-    let derivatives = driver::check(&problem, &problem.start()).map_err(Failure::numerical)?;
+    let chaos = driver::chaos(&problem, &problem.start());
+    let derivatives = match (driver::check(&problem, &problem.start()), &chaos) {
+        (Ok(derivatives), _) => derivatives,
+        // Runs that differ by round-off come apart, and the steps of one do not suit the other.
+        (Err(_), Some(chaos)) => return Err(Failure::numerical(chaos)),
+        (Err(failure), None) => return Err(Failure::numerical(failure)),
+    };
     let names = |all: &mut dyn Iterator<Item = &String>| {
         all.map(|name| name.chars().count())
             .max()
@@ -215,6 +224,9 @@ pub fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
         text,
         "where Newton's method stops moves the derivatives by up to {noise:.1e}"
     );
+    if let Some(chaos) = &chaos {
+        let _ = writeln!(text, "warning: {chaos}");
+    }
     if !job.quiet || failed > 0 {
         print(&text)?;
     }

@@ -134,7 +134,7 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
 
 /// The size that function f is computed to round-off of: its value, or that of its kind in a scene of
 /// this length L and duration T, as a value may be a difference.
-fn own_size(at: &Evaluated, f: usize) -> f64 {
+pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
     let model = &at.scene.model;
     let (length, time) = (length_scale(model), at.run.duration);
     let (instant, reduction) = match &at.scene.functions[f] {

@@ -1,6 +1,7 @@
 //! What the program does with a problem: simulate it, check its gradients, optimise it, measure
 //! the methods on it; and what becomes of extreme ones.
 
+pub mod chaos;
 pub mod check;
 pub mod error;
 pub mod evaluate;
@@ -20,6 +21,7 @@ pub mod stress;
 pub mod warm_start;
 pub mod work_precision;
 
+pub use chaos::{Chaos, chaos};
 pub use check::{CheckedDerivative, check};
 pub use evaluate::Evaluated;
 pub use evaluator::Evaluator;

@@ -1,5 +1,6 @@
 //! A problem optimised: the optimiser's outcome, its history, and the simulations at both ends.
 
+use super::chaos;
 use super::evaluator::{Evaluator, Judgements, unscaled};
 use super::integration::Integration;
 use super::journal::{Journal, bits};
@@ -144,6 +145,13 @@ impl Solved {
             (self.counts, refreshes),
             (&start, end.as_ref()),
         );
+        let chaotic = end.as_ref().and_then(|end| {
+            let all: Vec<usize> = asked(problem).collect();
+            chaos::of_motion(problem, &end.at, &all)
+        });
+        optimum
+            .warnings
+            .extend(chaotic.map(|found| found.to_string()));
         if self.unlowered > 0 {
             optimum.warnings.push(format!(
                 "{} of the designs did not admit what is left out at the others, and ran as written",
@@ -159,6 +167,13 @@ impl Solved {
             end,
         }
     }
+}
+
+/// The functions of the objective and of the constraints.
+fn asked(problem: &Problem) -> impl Iterator<Item = usize> {
+    let objective = problem.objective.map(|own| own.function);
+    let constraints = problem.constraints.iter().map(|own| own.function);
+    objective.into_iter().chain(constraints)
 }
 
 /// The history of a problem before its first iteration.
