@@ -237,3 +237,110 @@ fn a_method_that_took_over_stays_in_a_resumed_run() {
         assert!(run(&records[..known]) == whole, "with {known} records");
     }
 }
+
+/// A spring pendulum with a damper, over decades of stiffness k, damping ratio ζ and tolerance.
+fn damped_spring(stiffness: f64, ratio: f64, tolerance: f64, method: Option<&str>) -> Problem {
+    let damping = 2.0 * ratio * stiffness.sqrt();
+    let mut document = serde_json::json!({
+        "version": 1, "name": "damped spring", "gravity": [0, -9.81, 0],
+        "bodies": {"bob": {"shape": {"sphere": {"radius": 0.05}}, "mass": 1, "place": {"at": [1, 0, 0]}}},
+        "loads": {"spring": {"spring": {"between": ["bob", "ground"], "at": {"a": [0, 0, 0], "b": [0, 0, 0]},
+            "rest_length": 1, "stiffness": stiffness, "damping": damping}}},
+        "simulation": {"duration": 2, "tolerance": tolerance, "samples": 1}
+    });
+    if let Some(method) = method {
+        document["simulation"]["method"] = serde_json::from_str(method).expect("JSON");
+    }
+    Problem::parse(&document.to_string(), "spring.json", &[]).unwrap_or_else(|f| panic!("{f}"))
+}
+
+/// Work of a run in evaluations of the accelerations; infinite if it is refused.
+fn work(problem: &Problem) -> (f64, Option<Method>) {
+    let scene = problem.scene::<f64>(&problem.start());
+    let settings = flexbody::integrate::Settings {
+        spacing: problem.simulation.spacing.clone(),
+        samples: flexbody::integrate::Samples::Uniform(1),
+        ..flexbody::integrate::Settings::steps(Method::Dop853, 1)
+    };
+    let method = problem.simulation.method;
+    let found = flexbody::integrate::simulate_by(&scene.model, scene.duration, method, &settings);
+    let Ok(found) = found else {
+        return (f64::INFINITY, None);
+    };
+    let counts = found.run.counts;
+    let work = match found.run.method {
+        Method::Dop853 => 12.0 * (counts.steps + counts.rejected) as f64,
+        _ => counts.implicit_work(),
+    };
+    (work, Some(found.run.method))
+}
+
+const RADAU: &str = r#"{"radau": {"stages": 3}}"#;
+
+/// The work of the chosen method beside that of both, with the worst share of the better one's.
+fn shares(cases: impl Iterator<Item = [f64; 3]>) -> f64 {
+    println!("stiffness  damping  tolerance  |    dop853      radau3     chosen   share");
+    let mut worst = 0.0_f64;
+    for [stiffness, ratio, tolerance] in cases {
+        let of = |method| work(&damped_spring(stiffness, ratio, tolerance, method)).0;
+        let (chosen, method) = work(&damped_spring(stiffness, ratio, tolerance, None));
+        let both = [of(Some(r#""dop853""#)), of(Some(RADAU))];
+        let share = chosen / both[0].min(both[1]);
+        worst = worst.max(share);
+        println!(
+            "{stiffness:9.0e}  {ratio:7.2}  {tolerance:9.0e}  | {:9.0}   {:9.0}  {chosen:9.0}   {share:5.2}  {}",
+            both[0],
+            both[1],
+            method.map_or("-".into(), Method::name)
+        );
+    }
+    worst
+}
+
+/// The method that is chosen takes at most half as much work again as the better one.
+#[test]
+fn the_method_that_costs_less_is_chosen() {
+    let cases = [
+        [1e2, 0.1, 1e-7],
+        [1e4, 3.0, 1e-9],
+        [1e6, 1.0, 1e-5],
+        [1e6, 3.0, 1e-9],
+        [1e8, 1.0, 1e-7],
+        [1e8, 10.0, 1e-11],
+    ];
+    let worst = shares(cases.into_iter());
+    assert!(worst < 1.5, "{worst}");
+    // Strong dampers, of which h |λ| alone says nothing.
+    let problem = load("benchmarks/flyball_governor", &["/simulation/duration=1"]);
+    let document = problem.document.to_string().replace(RADAU, "null");
+    let mut document: serde_json::Value = serde_json::from_str(&document).expect("JSON");
+    let simulation = document["simulation"].as_object_mut().expect("an object");
+    simulation.shift_remove("method");
+    let problem = Problem::parse(&document.to_string(), "governor.json", &[]).expect("no faults");
+    let motion = simulate(&problem, &problem.start()).expect("runs");
+    assert_eq!(
+        motion.at.run.method,
+        Method::Radau { stages: 3 },
+        "{}",
+        motion.reason
+    );
+    assert!(
+        motion.reason.contains("of the work of dop853"),
+        "{}",
+        motion.reason
+    );
+}
+
+/// The whole family.
+#[test]
+#[ignore = "a table of 480 runs"]
+fn the_method_that_costs_less_is_chosen_over_decades() {
+    let stiffness = [1e0, 1e2, 1e4, 1e6, 1e8].into_iter();
+    let cases = stiffness.flat_map(|k| {
+        [0.0, 0.1, 1.0, 10.0]
+            .into_iter()
+            .flat_map(move |ratio| (4..=11).map(move |digits| [k, ratio, 10_f64.powi(-digits)]))
+    });
+    let worst = shares(cases);
+    println!("worst share {worst:.2}");
+}

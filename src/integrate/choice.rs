@@ -1,8 +1,9 @@
 //! Which method a scene is integrated by, and which it had better not be.
 
+use super::explicit::stiffness::Watch;
 use super::settings::{Method, Settings, Spacing};
 use super::trajectory::Trajectory;
-use super::{IntegrationFailure, simulate};
+use super::{IntegrationFailure, simulate_watching};
 use crate::linalg::SolveScalar;
 use crate::math::Vec3;
 use crate::model::load::LoadKind;
@@ -32,8 +33,8 @@ pub struct Chosen<S> {
     pub reason: String,
 }
 
-/// Simulates by `method`, or, without one, by the explicit method; by Radau IIA if the scene proves
-/// stiff, or if explicit steps of equal size fail.
+/// Simulates by `method`, or, without one, by the explicit method; by Radau IIA if that proves cheaper
+/// (see [`stiffness`](super::explicit::stiffness)), or if explicit steps of equal size fail.
 ///
 /// # Errors
 /// As [`simulate`].
@@ -43,12 +44,16 @@ pub fn simulate_by<S: SolveScalar>(
     method: Option<Method>,
     settings: &Settings,
 ) -> Result<Chosen<S>, IntegrationFailure> {
+    let watch = match method {
+        Some(_) => Watch::Stability,
+        None => Watch::Cost,
+    };
     let with = |method: Method, reason: String| {
         let mut settings = Settings {
             method,
             ..settings.clone()
         };
-        let run = simulate(model, duration, &settings)?;
+        let run = simulate_watching(model, duration, &settings, watch)?;
         if let Spacing::Tolerance(_) = settings.spacing {
             settings.spacing = Spacing::Frozen(run.grid.clone());
         }
@@ -62,7 +67,20 @@ pub fn simulate_by<S: SolveScalar>(
         return with(method, reason(true, method).into());
     }
     match with(NON_STIFF, reason(false, NON_STIFF).into()) {
-        Err(IntegrationFailure::Stiff { .. }) => with(STIFF, reason(false, STIFF).into()),
+        Err(IntegrationFailure::Stiff { share: None, .. }) => {
+            with(STIFF, reason(false, STIFF).into())
+        }
+        Err(IntegrationFailure::Stiff {
+            share: Some(share),
+            time,
+            ..
+        }) => {
+            let (stiff, other) = (STIFF.name(), NON_STIFF.name());
+            let reason = format!(
+                "the scene is stiff: from t = {time:.4} s on, {stiff} takes {share:.2} of the work of {other}"
+            );
+            with(STIFF, reason)
+        }
         Err(
             IntegrationFailure::NotFinite { time, .. }
             | IntegrationFailure::Projection { time, .. }

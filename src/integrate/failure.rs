@@ -56,6 +56,8 @@ pub enum IntegrationFailure {
         time: f64,
         /// Step number, from 1.
         step: usize,
+        /// Work of an implicit method relative to that of the explicit one, if it was measured.
+        share: Option<f64>,
     },
     /// The error estimate asks for steps that are too small to go on.
     #[error(

@@ -23,8 +23,13 @@ impl Grid {
 
     /// A grid that grows step by step from 0.
     pub fn growing() -> Self {
+        Self::growing_from(0.0)
+    }
+
+    /// A grid that grows step by step from the fraction `start`, over a part of a motion.
+    pub fn growing_from(start: f64) -> Self {
         Self {
-            ends: vec![0.0],
+            ends: vec![start],
             equal: None,
         }
     }

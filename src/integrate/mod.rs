@@ -25,6 +25,7 @@ use crate::model::Model;
 use crate::system::kkt::SaddlePoint;
 use crate::system::{Motion, Numbering, assembly, initial, redundancy};
 use control::{Controller, Stop};
+use explicit::stiffness::Watch;
 
 /// Integrates `model` over `duration` in real or, for complex-step derivatives, in complex
 /// numbers.
@@ -36,6 +37,16 @@ pub fn simulate<S: SolveScalar>(
     duration: S,
     settings: &Settings,
 ) -> Result<Trajectory<S>, IntegrationFailure> {
+    simulate_watching(model, duration, settings, Watch::Stability)
+}
+
+/// As [`simulate`]; an explicit march by a tolerance looks out for `watch`.
+fn simulate_watching<S: SolveScalar>(
+    model: &Model<S>,
+    duration: S,
+    settings: &Settings,
+    watch: Watch,
+) -> Result<Trajectory<S>, IntegrationFailure> {
     if !(duration.is_finite() && duration.re() > 0.0) {
         return Err(IntegrationFailure::Duration {
             duration: duration.re(),
@@ -45,7 +56,9 @@ pub fn simulate<S: SolveScalar>(
     let mut saddle = SaddlePoint::new(model, &numbering);
     let start = initial::solve(model, &numbering, &mut saddle)?;
     let mut run = match settings.method {
-        Method::Dop853 => explicit::march::march(model, &numbering, duration, settings, start)?,
+        Method::Dop853 => {
+            explicit::march::march(model, &numbering, duration, settings, start, watch)?
+        }
         _ => implicit::march::march(model, &numbering, duration, settings, start)?,
     };
     run.counts.factorisations += saddle.factorisations;

@@ -24,6 +24,15 @@ pub struct WorkCounts {
     pub solves: usize,
 }
 
+impl WorkCounts {
+    /// Work of a march by Radau IIA with three stages, in evaluations of the accelerations: a
+    /// factorisation costs about four, an iteration of Newton's method two and a half. Measured on
+    /// scenes of one to five bodies; they agree to a quarter.
+    pub fn implicit_work(&self) -> f64 {
+        4.0 * self.factorisations as f64 + 2.5 * self.newton_iterations as f64
+    }
+}
+
 impl std::ops::AddAssign for WorkCounts {
     fn add_assign(&mut self, other: Self) {
         self.steps += other.steps;

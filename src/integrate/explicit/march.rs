@@ -3,6 +3,7 @@
 use super::Tape;
 use super::record::{Node, NodeView};
 use super::step::{StepFailure, Stepper};
+use super::stiffness::{Stiffness, Watch};
 use super::tableau::{ORDER, STAGES};
 use crate::integrate::control::{Controller, Scale};
 use crate::integrate::failure::IntegrationFailure;
@@ -15,15 +16,8 @@ use crate::model::Model;
 use crate::system::Numbering;
 use crate::system::initial::InitialState;
 
-/// h |λ| beyond which an explicit step is at the border of its stability region (Hairer & Wanner
-/// 1996, section IV.2), and how many such steps make a scene stiff.
-const STIFF: (f64, usize) = (6.1, 15);
 /// Correction of the velocities, relative to their scale, that is none of the step's error.
 const LOST: f64 = 0.01;
-/// Difference of states, relative to their scale, that may be round-off.
-const NOISE: f64 = 1e-13;
-/// Steps within the stability region after which a suspicion is dropped.
-const NOT_STIFF: usize = 6;
 
 /// Integrates from a consistent start.
 ///
@@ -35,6 +29,7 @@ pub fn march<S: SolveScalar>(
     duration: S,
     settings: &Settings,
     start: InitialState<S>,
+    watch_for: Watch,
 ) -> Result<Trajectory<S>, IntegrationFailure> {
     let mut stepper = Stepper::new(model, numbering);
     let node = Node {
@@ -49,9 +44,12 @@ pub fn march<S: SolveScalar>(
     let scale = Scale::of(model, numbering, &start, duration.re());
     let mut run = Trajectory::start(numbering.clone(), Method::Dop853, duration, start, tape);
     let mut controller = Controller::new(settings, ORDER, &scale, (model, duration.re()));
-    let mut stiffness = Stiffness::default();
     // Kept steps were found good where they were chosen, and are judged by their error.
-    let watched = !matches!(settings.spacing, Spacing::Frozen(_));
+    let mut stiffness = match settings.spacing {
+        Spacing::Frozen(_) => None,
+        Spacing::Steps(_) => Some(Stiffness::new(Watch::Stability)),
+        Spacing::Tolerance(_) => Some(Stiffness::new(watch_for)),
+    };
     let (mut from, mut to) = (node.clone(), node);
     let mut next = 1;
     // The history of steps that are chosen on the way grows with them.
@@ -92,13 +90,17 @@ pub fn march<S: SolveScalar>(
         controller.accept();
         // The equations were left standing at the end of the step.
         watch(model, (&stepper.field.motions, duration * end), number)?;
-        if stiffness.seen(&mut stepper, &scale, to.view(), h.re()) && watched {
+        run.grid.push(end);
+        if let Some(stiffness) = &mut stiffness
+            && stiffness.seen(&mut stepper, &scale, to.view(), (h.re(), &run))
+            && let Some(share) = stiffness.decides((model, numbering), settings, to.view(), &run)
+        {
             return Err(IntegrationFailure::Stiff {
                 time: duration.re() * end,
                 step: number,
+                share,
             });
         }
-        run.grid.push(end);
         sample(
             &mut run,
             &mut stepper,
@@ -225,39 +227,5 @@ pub fn failed<S: SolveScalar>(
             step,
             worst: "the explicit step".into(),
         },
-    }
-}
-
-/// Watches whether stability rather than accuracy bounds the steps.
-#[derive(Default)]
-struct Stiffness {
-    suspicious: usize,
-    innocent: usize,
-}
-
-impl Stiffness {
-    /// Whether the scene is stiff after the step in `stepper`, which ended in `to`.
-    fn seen<S: SolveScalar>(
-        &mut self,
-        stepper: &mut Stepper<S>,
-        scale: &Scale,
-        to: NodeView<S>,
-        h: f64,
-    ) -> bool {
-        let numbering = stepper.field.numbering;
-        let speeds = scale.speeds(numbering, to.v, &stepper.data.v_raw);
-        let measure = |q: &[S], v: &[S]| scale.square(numbering, q, v, speeds);
-        let [dy, df] = stepper.last_stage(to, measure);
-        // Round-off compared with round-off says nothing.
-        if dy > NOISE * NOISE && h * (df / dy).sqrt() > STIFF.0 {
-            self.innocent = 0;
-            self.suspicious += 1;
-        } else {
-            self.innocent += 1;
-            if self.innocent == NOT_STIFF {
-                self.suspicious = 0;
-            }
-        }
-        self.suspicious >= STIFF.1
     }
 }

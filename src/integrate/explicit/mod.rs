@@ -11,6 +11,7 @@
 pub mod march;
 pub mod record;
 pub mod step;
+pub mod stiffness;
 pub mod tableau;
 
 pub use record::{Node, NodeView, StepData, StepView, add_rows};

@@ -9,7 +9,7 @@ use super::stage_newton::StageNewton;
 use super::{Stage, Tape};
 use crate::integrate::control::{Controller, Scale};
 use crate::integrate::failure::IntegrationFailure;
-use crate::integrate::grid::{Place, place};
+use crate::integrate::grid::{Grid, Place, place};
 use crate::integrate::settings::{Method, Samples, Settings, Spacing};
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::{close, watch};
@@ -28,6 +28,65 @@ pub fn march<S: SolveScalar>(
     duration: S,
     settings: &Settings,
     start: InitialState<S>,
+) -> Result<Trajectory<S>, IntegrationFailure> {
+    march_until((model, numbering), duration, settings, start, None)
+}
+
+/// Part of a motion, on which the pace of a method is measured.
+#[derive(Clone, Debug)]
+pub struct Stretch {
+    /// Fraction of the duration that it begins at.
+    from: f64,
+    /// Work after which it ends [evaluations].
+    most: f64,
+    /// Work by the end of each step, and the fraction that it reached.
+    steps: Vec<(f64, f64)>,
+}
+
+impl Stretch {
+    /// A stretch from the fraction `from` that ends after so much work.
+    pub fn new(from: f64, most: f64) -> Self {
+        Self {
+            from,
+            most,
+            steps: Vec::new(),
+        }
+    }
+
+    /// Fraction of the duration for a unit of work, in its second half where it has several steps: the
+    /// first steps are small and have no past.
+    pub fn pace(&self) -> Option<f64> {
+        let &(work, reached) = self.steps.last()?;
+        let half = self.steps.iter().find(|(before, _)| *before >= 0.5 * work);
+        match half {
+            Some(&(before, at)) if before < work && reached < 1.0 => {
+                Some((reached - at) / (work - before))
+            }
+            _ => Some((reached - self.from) / work),
+        }
+    }
+}
+
+/// Marches over `stretch` only.
+///
+/// # Errors
+/// As [`march`].
+pub fn march_stretch<S: SolveScalar>(
+    (model, numbering): (&Model<S>, &Numbering),
+    duration: S,
+    settings: &Settings,
+    start: InitialState<S>,
+    stretch: &mut Stretch,
+) -> Result<(), IntegrationFailure> {
+    march_until((model, numbering), duration, settings, start, Some(stretch)).map(drop)
+}
+
+fn march_until<S: SolveScalar>(
+    (model, numbering): (&Model<S>, &Numbering),
+    duration: S,
+    settings: &Settings,
+    start: InitialState<S>,
+    mut stretch: Option<&mut Stretch>,
 ) -> Result<Trajectory<S>, IntegrationFailure> {
     let method = settings.method;
     let real: Model<f64> = model.map(&mut |x| x.re());
@@ -61,6 +120,9 @@ pub fn march<S: SolveScalar>(
     let lambda = start.lambda.clone();
     let mut run = Trajectory::start(numbering.clone(), method, duration, start, tape);
     run.lambda = lambda;
+    if let Some(stretch) = &stretch {
+        run.grid = Grid::growing_from(stretch.from);
+    }
     // A formula knows its motion at the ends of its steps only.
     let samples = match method {
         Method::Radau { .. } => settings.samples,
@@ -73,6 +135,11 @@ pub fn march<S: SolveScalar>(
     let watched =
         (model.joints.iter()).any(|joint| !joint.left_out.is_empty() || !joint.drives.is_empty());
     while let Some(width) = controller.next(run.grid.reached()) {
+        if let Some(stretch) = &stretch
+            && run.counts.implicit_work() >= stretch.most
+        {
+            break;
+        }
         let h = duration * width;
         let end = controller.end(run.grid.reached(), width);
         let k = run.grid.steps() + 1;
@@ -107,6 +174,10 @@ pub fn march<S: SolveScalar>(
         tape.push(stages);
         solver.remember(count, k);
         past.advance(h, &mut solver.stages, count);
+        if let Some(stretch) = &mut stretch {
+            let work = run.counts.implicit_work();
+            stretch.steps.push((work, run.grid.reached()));
+        }
     }
     close(&mut run, &controller)?;
     if let Some(estimate) = &solver.estimate {

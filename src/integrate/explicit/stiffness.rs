@@ -1,0 +1,184 @@
+//! When an implicit method takes over from the explicit one.
+//!
+//! h |λ| near the border of the stability region makes a scene suspicious. So do steps over which the
+//! motion is so smooth that |λ| drowns in round-off. Smaller h |λ| is possible too: vibration that is not
+//! seen bounds steps by tight tolerances. Whether an implicit method is cheaper is then measured: Radau
+//! IIA marches on from the state at hand until it has spent a fixed amount of work, and the paces of
+//! both methods are compared. Work is counted in evaluations of the accelerations, so the decision is
+//! the same on every machine.
+
+use super::record::NodeView;
+use super::step::Stepper;
+use super::tableau::STAGES;
+use crate::integrate::control::Scale;
+use crate::integrate::implicit::march::{self as implicit, Stretch};
+use crate::integrate::limits::Limits;
+use crate::integrate::settings::{Method, Samples, Settings};
+use crate::integrate::trajectory::Trajectory;
+use crate::linalg::SolveScalar;
+use crate::model::Model;
+use crate::system::Numbering;
+use crate::system::initial::InitialState;
+
+/// What an explicit march looks out for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Watch {
+    /// Steps that stability bounds, whatever another method would cost.
+    Stability,
+    /// A method that costs less.
+    Cost,
+}
+
+/// h |λ| beyond which an explicit step is at the border of its stability region (Hairer & Wanner
+/// 1996, section IV.2), beyond which it may be near it, and below which nothing is gained.
+const UNSTABLE: f64 = 6.1;
+const SUSPICIOUS: f64 = 2.0;
+const POSSIBLE: f64 = 0.3;
+/// Steps beyond it that make a scene stiff or suspicious.
+const STIFF: usize = 15;
+/// Steps within it after which a suspicion is dropped.
+const NOT_STIFF: usize = 6;
+/// Difference of states, relative to their scale, that may be round-off.
+const NOISE: f64 = 1e-13;
+
+/// Steps before the methods are compared for the first time, where that is suspicious and where it is
+/// possible, and how many times as many come before they are compared again.
+const FIRST: [usize; 2] = [40, 500];
+const AGAIN: usize = 4;
+/// Steps over which the pace is taken, at least.
+const RECENT: usize = 32;
+/// Work of the implicit method that is compared: at least this, and this part of what the explicit one
+/// has spent.
+const LEAST_WORK: f64 = 300.0;
+const PART: f64 = 0.02;
+/// Part of the explicit work that the implicit method may need if it takes over, and if what is spent
+/// already is counted too.
+const CHEAPER: f64 = 0.8;
+const IN_ALL: f64 = 1.5;
+
+/// Steps in a row, but for few, that have a property.
+#[derive(Default)]
+struct Streak {
+    with: usize,
+    without: usize,
+}
+
+impl Streak {
+    /// Counts a step; whether there are enough.
+    fn count(&mut self, has: bool) -> bool {
+        if has {
+            self.without = 0;
+            self.with += 1;
+        } else {
+            self.without += 1;
+            if self.without == NOT_STIFF {
+                self.with = 0;
+            }
+        }
+        self.with >= STIFF
+    }
+}
+
+/// Watches whether stability rather than accuracy bounds the steps.
+pub struct Stiffness {
+    watch: Watch,
+    unstable: Streak,
+    suspicious: Streak,
+    possible: Streak,
+    /// Fraction of the duration and work at two earlier steps, the later one last.
+    earlier: [(f64, f64); 2],
+    /// Steps before the methods are compared, where that is suspicious and where it is possible.
+    next: [usize; 2],
+}
+
+impl Stiffness {
+    /// Watches for `watch`.
+    pub fn new(watch: Watch) -> Self {
+        Self {
+            watch,
+            unstable: Streak::default(),
+            suspicious: Streak::default(),
+            possible: Streak::default(),
+            earlier: [(0.0, 0.0); 2],
+            next: FIRST,
+        }
+    }
+
+    /// Whether it is time to decide on the scene after the step in `stepper`, of size h, which ended in
+    /// `to` and is the last of `run`.
+    pub fn seen<S: SolveScalar>(
+        &mut self,
+        stepper: &mut Stepper<S>,
+        scale: &Scale,
+        to: NodeView<S>,
+        (h, run): (f64, &Trajectory<S>),
+    ) -> bool {
+        let numbering = stepper.field.numbering;
+        let speeds = scale.speeds(numbering, to.v, &stepper.data.v_raw);
+        let measure = |q: &[S], v: &[S]| scale.square(numbering, q, v, speeds);
+        let [dy, df] = stepper.last_stage(to, measure);
+        // Round-off compared with round-off says nothing of λ.
+        let known = dy > NOISE * NOISE;
+        let beyond = |most: f64| known && h * (df / dy).sqrt() > most;
+        if self.watch == Watch::Stability {
+            return self.unstable.count(beyond(UNSTABLE));
+        }
+        let steps = run.grid.steps();
+        if steps.is_multiple_of(RECENT) {
+            self.earlier = [self.earlier[1], (run.grid.reached(), work_so_far(run))];
+        }
+        let suspicious = self.suspicious.count(!known || beyond(SUSPICIOUS));
+        let possible = self.possible.count(!known || beyond(POSSIBLE));
+        (suspicious && steps >= self.next[0]) || (possible && steps >= self.next[1])
+    }
+
+    /// Decides on a suspicious scene at the end of `run`, in the state `at`: the part of the explicit
+    /// method's work that the implicit one needs, where that is known, if it takes over.
+    pub fn decides<S: SolveScalar>(
+        &mut self,
+        (model, numbering): (&Model<S>, &Numbering),
+        settings: &Settings,
+        at: NodeView<S>,
+        run: &Trajectory<S>,
+    ) -> Option<Option<f64>> {
+        if self.watch == Watch::Stability {
+            return Some(None);
+        }
+        let reached = run.grid.reached();
+        if reached >= 1.0 {
+            return None;
+        }
+        let again = AGAIN * run.grid.steps();
+        self.next = self.next.map(|next| next.max(again));
+        let spent = work_so_far(run);
+        let (from, before) = self.earlier[0];
+        let pace = (reached - from) / (spent - before);
+        let start = InitialState {
+            q: at.q.to_vec(),
+            v: at.v.to_vec(),
+            a: at.a.to_vec(),
+            lambda: at.lambda.to_vec(),
+            ..run.initial.clone()
+        };
+        let settings = Settings {
+            method: Method::Radau { stages: 3 },
+            spacing: settings.spacing.clone(),
+            samples: Samples::Uniform(1),
+            keep_stages: false,
+            limits: Limits::default(),
+        };
+        let mut stretch = Stretch::new(reached, LEAST_WORK.max(PART * spent));
+        let all = (model, numbering);
+        implicit::march_stretch(all, run.duration, &settings, start, &mut stretch).ok()?;
+        let other = stretch.pace()?;
+        // The other method begins anew at the start.
+        let own = spent + (1.0 - reached) / pace;
+        let takes_over = 1.0 / other < CHEAPER * own && spent + 1.0 / other < IN_ALL * own;
+        takes_over.then_some(Some(pace / other))
+    }
+}
+
+/// Work of an explicit march, but for what its samples take.
+fn work_so_far<S>(run: &Trajectory<S>) -> f64 {
+    (STAGES * (run.grid.steps() + run.counts.rejected)) as f64
+}
