@@ -4,7 +4,7 @@ mod reference;
 
 use flexbody::adjoint::gradients;
 use flexbody::functions::{
-    EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Scene, Side,
+    EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Rotation, Scene, Side,
 };
 use flexbody::integrate::{Method, Samples, Settings, Spacing, Start, Trajectory, simulate};
 use flexbody::math::{Complex64, Vec3, scalar::COMPLEX_STEP};
@@ -19,12 +19,24 @@ fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
         direction: Vec3::x(),
         ground: -10.0,
     };
+    let turned = |body, relative_to, axis, placed| Rotation {
+        body,
+        relative_to,
+        axis,
+        placed,
+    };
     let gate = Gate {
-        body: gate_body,
-        axis: Vec3::z(),
+        rotation: turned(gate_body, None, Vec3::z(), None),
         limit: 0.4,
         width: 0.3,
         open: Side::Above,
+    };
+    let other = (gate_body != body).then_some(body);
+    let seen_from = Gate {
+        rotation: turned(gate_body, other, Vec3::z(), Some([0.9, 0.1, -0.2, 0.3])),
+        limit: 0.1,
+        width: 0.8,
+        open: Side::Below,
     };
     let reduced = |instant, reduction| Function::Reduced { instant, reduction };
     vec![
@@ -63,11 +75,17 @@ fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
         ),
         reduced(Instant::Energy(EnergyPart::Total), Reduction::Final),
         reduced(
-            Instant::Rotation {
-                body,
-                axis: direction,
-            },
+            Instant::Rotation(turned(body, None, direction, None)),
             Reduction::Integral,
+        ),
+        reduced(
+            Instant::Rotation(turned(
+                body,
+                (gate_body != body).then_some(gate_body),
+                direction,
+                Some([0.8, -0.2, 0.3, 0.5]),
+            )),
+            Reduction::Ks { rho: 0.5 },
         ),
         reduced(
             Instant::Range {
@@ -81,7 +99,7 @@ fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
             release: Release::Best {
                 rho: 0.5,
                 projectile,
-                gate: Some(gate),
+                gate: Some(seen_from),
             },
             distance: 30.0,
             top: 4.0,

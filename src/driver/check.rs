@@ -145,7 +145,7 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
         Instant::Position { .. } | Instant::Range { .. } => length,
         Instant::Velocity { .. } | Instant::Speed { .. } => length / time,
         Instant::Acceleration { .. } => length / (time * time),
-        Instant::Rotation { .. } => 1.0,
+        Instant::Rotation(_) => 1.0,
         Instant::Energy(_) => {
             let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
             mass * length * (model.gravity.norm() + length / (time * time))

@@ -2,8 +2,9 @@
 
 use super::optimise::Optimisation;
 use super::simulate::{Simulation, simulate};
-use crate::functions::evaluate::{sample, turns};
+use crate::functions::evaluate::sample;
 use crate::functions::measure::Snapshot;
+use crate::functions::turning::turns;
 use crate::functions::{Function, Instant, Reduction};
 use crate::math::Vec3;
 use crate::problem::{Drawing, Outline, Problem};

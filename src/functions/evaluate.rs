@@ -4,11 +4,11 @@ use super::flight::Flight;
 use super::function::{Function, Reduction, Release};
 use super::instant::{Instant, Projectile};
 use super::measure::{Snapshot, SnapshotCotangent, pull_flight};
+use super::turning::turns;
 use crate::integrate::Trajectory;
+use crate::math::Scalar;
 use crate::math::soft_max::SoftMax;
-use crate::math::{Scalar, Vec3, rotation};
 use crate::model::Model;
-use std::f64::consts::{PI, TAU};
 
 /// A function's value over a run, and what else is worth reporting.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,45 +110,6 @@ pub fn sample<S: Scalar>(
 
 fn turn(turns: &Option<Vec<f64>>, k: usize) -> f64 {
     turns.as_ref().map_or(0.0, |turns| turns[k])
-}
-
-/// Multiples of 2π that make a rotation continuous over a run.
-///
-/// Where the rates of the rotation at two samples agree within half a turn over the time between
-/// them, the rotation goes on by their mean, however many turns that makes; else, where a rate says
-/// little, to the nearest angle.
-pub fn turns<S: Scalar>(
-    watched: Option<(usize, Vec3<f64>)>,
-    run: &Trajectory<S>,
-) -> Option<Vec<f64>> {
-    let (body, axis) = watched?;
-    let (o, u) = (
-        run.numbering.position(body) + 3,
-        run.numbering.velocity(body) + 3,
-    );
-    let mut before: Option<[f64; 3]> = None;
-    let all = (0..=run.last()).map(|k| {
-        let p = std::array::from_fn(|i| run.q(k)[o + i].re());
-        let omega = Vec3::from_fn(|i, _| run.v(k)[u + i].re());
-        let twist = rotation::twist(&p, &axis);
-        let (slope, rates) = (
-            rotation::twist_derivative(&p, &axis).0,
-            rotation::rates(&p, &omega),
-        );
-        let rate: f64 = slope.iter().zip(&rates).map(|(a, b)| a * b).sum();
-        let time = run.time(k).re();
-        let turns = before.map_or(0.0, |[angle, rate_before, time_before]| {
-            let h = time - time_before;
-            let expected = match (rate - rate_before).abs() * h < PI {
-                true => angle + 0.5 * (rate + rate_before) * h,
-                false => angle,
-            };
-            TAU * ((expected - twist) / TAU).round()
-        });
-        before = Some([twist + turns, rate, time]);
-        turns
-    });
-    Some(all.collect())
 }
 
 /// Softmax weights and sampled gated ranges of a release at the best instant.
@@ -391,12 +352,21 @@ impl<'a> Linearised<'a> {
                 release: by_release,
                 ..
             } => {
-                if let (Some(weighted), Release::Best { projectile: by, .. }) =
-                    (&self.quantity, by_release)
+                if let (
+                    Some(weighted),
+                    Release::Best {
+                        projectile: by,
+                        gate: by_gate,
+                        ..
+                    },
+                ) = (&self.quantity, by_release)
                 {
                     let mut range = weighted.instant.map(&mut |_| 0.0);
                     pull(&mut range);
-                    if let Instant::Range { projectile, .. } = range {
+                    if let Instant::Range { projectile, gate } = range {
+                        if let (Some(by_gate), Some(gate)) = (by_gate, gate) {
+                            by_gate.rotation.add(&gate.rotation);
+                        }
                         by.point += projectile.point;
                         by.direction += projectile.direction;
                         by.ground += projectile.ground;

@@ -199,7 +199,7 @@ pub fn pull_back(
     }
 }
 
-impl Gate {
+impl<P: Scalar> Gate<P> {
     /// Openness σ(±(θ − θ_c)/w) in [0, 1] at the rotation θ.
     pub fn openness<S: Scalar>(&self, rotation: S) -> S {
         let z = (rotation - self.limit) * (self.sign() / self.width);
@@ -235,6 +235,7 @@ impl Gate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::functions::Rotation;
     use crate::math::Complex64;
     use crate::math::scalar::COMPLEX_STEP;
 
@@ -383,11 +384,15 @@ mod tests {
 
     #[test]
     fn a_gate_never_overflows_and_has_its_exact_derivative() {
-        let axis = Vec3::z();
+        let rotation = Rotation {
+            body: 0,
+            relative_to: None,
+            axis: Vec3::z(),
+            placed: None,
+        };
         for open in [Side::Above, Side::Below] {
             let gate = Gate {
-                body: 0,
-                axis,
+                rotation,
                 limit: -3.6,
                 width: 0.15,
                 open,

@@ -37,7 +37,7 @@ pub enum Release<S> {
         /// Ground height and direction that the range is measured with.
         projectile: Projectile<S>,
         /// Gate that keeps later turns of the sling out.
-        gate: Option<Gate>,
+        gate: Option<Gate<S>>,
     },
 }
 
@@ -101,7 +101,7 @@ impl<S: Scalar> Function<S> {
                     } => Release::Best {
                         rho: *rho,
                         projectile: projectile.map(f),
-                        gate: *gate,
+                        gate: gate.as_ref().map(|gate| gate.map(f)),
                     },
                 },
                 distance: f(*distance),
@@ -120,11 +120,13 @@ impl<S: Scalar> Function<S> {
                 | Instant::Acceleration { body, point, .. }
                 | Instant::Speed { body, point } => visit(body, Some(point)),
                 Instant::Energy(_) => {}
-                Instant::Rotation { body, .. } => visit(body, None),
+                Instant::Rotation(rotation) => {
+                    rotation.for_each_body(&mut |body| visit(body, None))
+                }
                 Instant::Range { projectile, gate } => {
                     visit(&mut projectile.body, Some(&mut projectile.point));
                     if let Some(gate) = gate {
-                        visit(&mut gate.body, None);
+                        gate.rotation.for_each_body(&mut |body| visit(body, None));
                     }
                 }
             },
@@ -140,7 +142,7 @@ impl<S: Scalar> Function<S> {
                 {
                     visit(&mut projectile.body, Some(&mut projectile.point));
                     if let Some(gate) = gate {
-                        visit(&mut gate.body, None);
+                        gate.rotation.for_each_body(&mut |body| visit(body, None));
                     }
                 }
             }

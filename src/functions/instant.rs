@@ -1,5 +1,6 @@
 //! What is measured at an instant.
 
+use super::turning::Rotation;
 use crate::math::{Scalar, Vec3};
 
 /// A thrown point and how its range is measured. Up is against gravity.
@@ -24,14 +25,12 @@ pub enum Side {
     Below,
 }
 
-/// A smooth gate σ(±(θ − θ_c) / w) on the unwrapped rotation θ of a body about an axis: it keeps
-/// the later, unphysical maxima of a whirling sling out of a range.
+/// A smooth gate σ(±(θ − θ_c) / w) on a rotation θ, counted over whole turns: it keeps the later,
+/// unphysical maxima of a whirling sling out of a range.
 #[derive(Clone, Copy, Debug)]
-pub struct Gate {
-    /// The body whose rotation is watched.
-    pub body: usize,
-    /// Unit axis of the rotation.
-    pub axis: Vec3<f64>,
+pub struct Gate<S> {
+    /// The rotation that is watched.
+    pub rotation: Rotation<S>,
     /// The rotation θ_c at which the gate is half open (rad).
     pub limit: f64,
     /// Width w of the transition (rad).
@@ -91,14 +90,8 @@ pub enum Instant<S> {
     },
     /// Energy of the whole model (J).
     Energy(EnergyPart),
-    /// Unwrapped rotation of a body about an axis: its twist 2 atan2(eᵀn, p0), continuous in
-    /// time and in (−2π, 2π] at t = 0 (rad).
-    Rotation {
-        /// The body.
-        body: usize,
-        /// Unit axis.
-        axis: Vec3<S>,
-    },
+    /// Rotation of a body about an axis, continuous in time and in (−2π, 2π] at t = 0 (rad).
+    Rotation(Rotation<S>),
     /// Range of a projectile let go at this instant,
     /// R = x + (v_x/g)(v_y + √s0), s0 = v_y² + 2 g (y − y_g), smoothed where the ground is out of
     /// reach (see [`Flight::range`](super::flight::Flight::range)), times the gate if there is one (m).
@@ -106,8 +99,20 @@ pub enum Instant<S> {
         /// The projectile.
         projectile: Projectile<S>,
         /// The gate.
-        gate: Option<Gate>,
+        gate: Option<Gate<S>>,
     },
+}
+
+impl<S: Scalar> Gate<S> {
+    /// The gate with every parameter replaced by `f` of it.
+    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Gate<T> {
+        Gate {
+            rotation: self.rotation.map(f),
+            limit: self.limit,
+            width: self.width,
+            open: self.open,
+        }
+    }
 }
 
 impl<S: Scalar> Projectile<S> {
@@ -130,7 +135,7 @@ impl<S: Scalar> Instant<S> {
             Instant::Velocity { .. } | Instant::Speed { .. } => "m/s",
             Instant::Acceleration { .. } => "m/s²",
             Instant::Energy(_) => "J",
-            Instant::Rotation { .. } => "rad",
+            Instant::Rotation(_) => "rad",
         }
     }
 
@@ -142,7 +147,7 @@ impl<S: Scalar> Instant<S> {
             Instant::Acceleration { .. } => "acceleration",
             Instant::Speed { .. } => "speed",
             Instant::Energy(_) => "energy",
-            Instant::Rotation { .. } => "rotation",
+            Instant::Rotation(_) => "rotation",
             Instant::Range { .. } => "range",
         }
     }
@@ -182,13 +187,10 @@ impl<S: Scalar> Instant<S> {
                 point: point.map(&mut *f),
             },
             Instant::Energy(part) => Instant::Energy(*part),
-            Instant::Rotation { body, axis } => Instant::Rotation {
-                body: *body,
-                axis: axis.map(&mut *f),
-            },
+            Instant::Rotation(rotation) => Instant::Rotation(rotation.map(f)),
             Instant::Range { projectile, gate } => Instant::Range {
                 projectile: projectile.map(f),
-                gate: *gate,
+                gate: gate.as_ref().map(|gate| gate.map(f)),
             },
         }
     }

@@ -2,12 +2,11 @@
 
 use super::flight::{self, Flight};
 use super::instant::{EnergyPart, Gate, Instant, Projectile};
+use super::turning::Rotation;
 use crate::integrate::Trajectory;
-use crate::math::rotation::Quat;
-use crate::math::scalar::lift3;
-use crate::math::{Scalar, Vec3, rotation};
+use crate::math::{Scalar, Vec3};
 use crate::model::Model;
-use crate::system::bodies::{add6, positions_of};
+use crate::system::bodies::add6;
 use crate::system::marker::{self, Jet};
 use crate::system::{Motion, Numbering, loads};
 
@@ -47,11 +46,6 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
         Motion::of(self.numbering, body, self.q, self.v).accelerated(a)
     }
 
-    /// Euler parameters of a body.
-    fn orientation(&self, body: usize) -> Quat<S> {
-        positions_of(&self.q[self.numbering.position(body)..]).1
-    }
-
     /// Motions of all bodies.
     fn motions(&self) -> Vec<Motion<S>> {
         let mut motions = Vec::with_capacity(self.numbering.bodies());
@@ -68,14 +62,14 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
         )
     }
 
-    /// Rotation of a body about an axis, `turns` (a multiple of 2π) added.
-    fn rotation(&self, body: usize, axis: &Vec3<S>, turns: f64) -> S {
-        rotation::twist(&self.orientation(body), axis) + turns
+    /// A rotation, `turns` (a multiple of 2π) added.
+    fn rotation(&self, rotation: &Rotation<S>, turns: f64) -> S {
+        rotation.angle(self.numbering, self.q) + turns
     }
 
-    fn openness(&self, gate: &Option<Gate>, turns: f64) -> S {
-        gate.map_or(S::one(), |gate| {
-            gate.openness(self.rotation(gate.body, &lift3(&gate.axis), turns))
+    fn openness(&self, gate: &Option<Gate<S>>, turns: f64) -> S {
+        gate.as_ref().map_or(S::one(), |gate| {
+            gate.openness(self.rotation(&gate.rotation, turns))
         })
     }
 }
@@ -94,13 +88,13 @@ pub struct SnapshotCotangent<'a> {
 }
 
 impl<S: Scalar> Instant<S> {
-    /// The body and axis whose rotation has to be counted in whole turns, if any.
-    pub fn watched_rotation(&self) -> Option<(usize, Vec3<f64>)> {
+    /// The rotation that has to be counted in whole turns, if any.
+    pub fn watched_rotation(&self) -> Option<&Rotation<S>> {
         match self {
-            Instant::Rotation { body, axis } => Some((*body, axis.map(|x| x.re()))),
+            Instant::Rotation(rotation) => Some(rotation),
             Instant::Range {
                 gate: Some(gate), ..
-            } => Some((gate.body, gate.axis)),
+            } => Some(&gate.rotation),
             _ => None,
         }
     }
@@ -134,7 +128,7 @@ impl<S: Scalar> Instant<S> {
                 }
             }
             Instant::Energy(part) => energy(at, *part),
-            Instant::Rotation { body, axis } => at.rotation(*body, axis, turns),
+            Instant::Rotation(rotation) => at.rotation(rotation, turns),
             Instant::Range { projectile, gate } => {
                 at.flight(projectile).range(projectile.ground) * at.openness(gate, turns)
             }
@@ -236,14 +230,14 @@ impl Instant<f64> {
                 }
             }
             (Instant::Energy(part), _) => pull_energy(at, *part, weight, out),
-            (Instant::Rotation { body, axis }, Instant::Rotation { axis: by_axis, .. }) => {
-                *by_axis += pull_rotation(at, *body, axis, weight, out);
+            (Instant::Rotation(rotation), Instant::Rotation(own)) => {
+                rotation.pull_back((at.numbering, at.q), weight, out.y, own);
             }
             (
                 Instant::Range { projectile, gate },
                 Instant::Range {
                     projectile: by_projectile,
-                    ..
+                    gate: by_gate,
                 },
             ) => {
                 let flight = at.flight(projectile);
@@ -252,10 +246,11 @@ impl Instant<f64> {
                 by_projectile.ground += weight * open * by_ground;
                 let cot = by_flight.map(|by| weight * open * by);
                 pull_flight(at, projectile, cot, out, by_projectile);
-                if let Some(gate) = gate {
-                    let rotation = at.rotation(gate.body, &gate.axis, turns);
+                if let (Some(gate), Some(own)) = (gate, by_gate) {
+                    let rotation = at.rotation(&gate.rotation, turns);
                     let by = gate.openness_derivative(rotation) * flight.range(projectile.ground);
-                    pull_rotation(at, gate.body, &gate.axis, weight * by, out);
+                    let place = (at.numbering, at.q);
+                    (gate.rotation).pull_back(place, weight * by, out.y, &mut own.rotation);
                 }
             }
             _ => unreachable!("a cotangent has the kind of its quantity"),
@@ -290,20 +285,6 @@ fn pull_point(
     add6(&mut out.v[o..], &rate, &by.omega);
     add6(&mut out.a[o..], &acceleration, &by.alpha);
     by.vector
-}
-
-fn pull_rotation(
-    at: &Snapshot<f64>,
-    body: usize,
-    axis: &Vec3<f64>,
-    weight: f64,
-    out: &mut SnapshotCotangent,
-) -> Vec3<f64> {
-    let p = at.orientation(body);
-    let (by_p, by_axis) = rotation::twist_derivative(&p, axis);
-    let theta = rotation::rate_product(&p, &by_p) * (0.5 * weight);
-    add6(&mut out.y[at.numbering.velocity(body)..], &ZERO, &theta);
-    by_axis * weight
 }
 
 /// Pulls the cotangent of a flight back to the snapshot and the projectile's parameters.

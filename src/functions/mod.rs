@@ -6,7 +6,9 @@ pub mod function;
 pub mod instant;
 pub mod measure;
 pub mod scene;
+pub mod turning;
 
 pub use function::{Function, Reduction, Release};
 pub use instant::{EnergyPart, Gate, Instant, Projectile, Side};
 pub use scene::{Scene, Until};
+pub use turning::Rotation;

@@ -1,6 +1,7 @@
 //! A scene: everything that a design determines.
 
-use super::evaluate::{sample, turns};
+use super::evaluate::sample;
+use super::turning::turns;
 use super::{Function, Instant, Reduction};
 use crate::integrate::Trajectory;
 use crate::math::Scalar;

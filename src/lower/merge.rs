@@ -56,7 +56,7 @@ fn poses<S: Scalar>(model: &Model<S>, cluster: &Cluster) -> (Vec3<S>, Vec<(usize
     }
     let centre = moment / mass;
     let host = &model.bodies[cluster.host].orientation;
-    let back = [host[0], -host[1], -host[2], -host[3]];
+    let back = rotation::conjugate(host);
     let to_host = rotation::matrix(host).transpose();
     let pose = |&i: &usize| {
         let body = &model.bodies[i];

@@ -7,7 +7,7 @@
 
 use super::examine::{Examiner, Verdict};
 use super::reach::Reach;
-use crate::functions::{Function, Instant, Release, Scene};
+use crate::functions::{Function, Gate, Instant, Release, Rotation, Scene};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, JointKind, LoadKind};
 
@@ -113,7 +113,15 @@ pub(super) fn holds<S: Scalar>(
 
 /// Bodies that a function looks at, with the point of them, or none if it looks at the rotation.
 fn looks_at<S: Scalar>(function: &Function<S>) -> Vec<(usize, Option<Vec3<S>>)> {
-    let gated = |gate: &Option<crate::functions::Gate>| gate.map(|gate| (gate.body, None));
+    let turned = |rotation: &Rotation<S>| {
+        let bodies = [Some(rotation.body), rotation.relative_to];
+        bodies.into_iter().flatten().map(|body| (body, None))
+    };
+    let gated = |gate: &Option<Gate<S>>| {
+        gate.iter()
+            .flat_map(|gate| turned(&gate.rotation))
+            .collect::<Vec<_>>()
+    };
     match function {
         Function::Reduced { instant, .. } => match instant {
             Instant::Position { body, point, .. }
@@ -122,7 +130,7 @@ fn looks_at<S: Scalar>(function: &Function<S>) -> Vec<(usize, Option<Vec3<S>>)> 
             | Instant::Speed { body, point } => vec![(*body, Some(*point))],
             // The energy reads angular velocities, which are zero, and heights of centres.
             Instant::Energy(_) => Vec::new(),
-            Instant::Rotation { body, .. } => vec![(*body, None)],
+            Instant::Rotation(rotation) => turned(rotation).collect(),
             Instant::Range { projectile, gate } => {
                 let thrown = (projectile.body, Some(projectile.point));
                 [thrown].into_iter().chain(gated(gate)).collect()

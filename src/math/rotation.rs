@@ -102,6 +102,11 @@ pub fn compose<S: Scalar>(second: &Quat<S>, first: &Quat<S>) -> Quat<S> {
     [second[0] * first[0] - a.dot(&b), e.x, e.y, e.z]
 }
 
+/// Euler parameters of the inverse rotation (their quaternion's conjugate).
+pub fn conjugate<S: Scalar>(p: &Quat<S>) -> Quat<S> {
+    [p[0], -p[1], -p[2], -p[3]]
+}
+
 /// Rotation angle about the unit axis n (its twist), 2 atan2(eᵀn, p0), in (−2π, 2π] (rad).
 pub fn twist<S: Scalar>(p: &Quat<S>, n: &Vec3<S>) -> S {
     vector(p).dot(n).atan2(p[0]) * 2.0

@@ -1,14 +1,16 @@
 //! The map from a design to a scene, analytic in the design.
 
 use super::mass::mass_properties;
-use super::placement::Assembly;
+use super::placement::{Assembly, GROUND};
 use super::quantity::{Vector, vector};
 use super::schema::Document;
-use super::schema::functions::{self as written, Function as Written};
+use super::schema::functions::{self as written, CountedFrom, Function as Written};
 use super::schema::mechanics::{Point, Shape};
 use crate::functions::{
-    EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Scene, Side, Until,
+    EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Rotation, Scene, Side,
+    Until,
 };
+use crate::math::rotation::{compose, conjugate};
 use crate::math::scalar::{length, lift3};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Mobility, Model, RigidBody};
@@ -187,10 +189,12 @@ impl<S: Scalar> Builder<'_, S> {
                 Energy::Potential => EnergyPart::Potential,
                 Energy::Total => EnergyPart::Total,
             }),
-            I::Rotation(rotation) => Instant::Rotation {
-                body: self.body(&rotation.body),
-                axis: unit(vector(&rotation.axis, self.x)),
-            },
+            I::Rotation(rotation) => {
+                let axis = vector(&rotation.axis, self.x);
+                let other = rotation.relative_to.as_deref();
+                Instant::Rotation(self.rotation([Some(&rotation.body), other], axis, rotation.from))
+            }
+            I::Angle(angle) => Instant::Rotation(self.joint_angle(&angle.joint)),
             I::Range(range) => Instant::Range {
                 projectile: self.projectile(range),
                 gate: range.gate.as_ref().map(|gate| self.gate(gate)),
@@ -224,7 +228,47 @@ impl<S: Scalar> Builder<'_, S> {
         }
     }
 
-    fn gate(&self, gate: &written::Gate) -> Gate {
+    /// The rotation of the first body, seen from the second or from ground, about an axis in ground
+    /// axes where they are placed.
+    fn rotation(
+        &self,
+        [body, other]: [Option<&str>; 2],
+        axis: Vec3<S>,
+        from: Option<CountedFrom>,
+    ) -> Rotation<S> {
+        let body = body.expect("a rotation is that of a body");
+        let (own, seen_from) = (
+            self.assembly.pose(body),
+            self.assembly.pose(other.unwrap_or(GROUND)),
+        );
+        Rotation {
+            body: self.body(body),
+            relative_to: other.and_then(|other| self.assembly.index(other)),
+            axis: seen_from.rotation.tr_mul(&unit(axis)),
+            placed: match from.unwrap_or_default() {
+                CountedFrom::Axes => None,
+                CountedFrom::Placement => Some(compose(
+                    &conjugate(&own.orientation),
+                    &seen_from.orientation,
+                )),
+            },
+        }
+    }
+
+    /// The angle of a joint, as drives and torsion springs have it.
+    fn joint_angle(&self, name: &str) -> Rotation<S> {
+        let joint = &self.document.joints[name];
+        let [first, second] = joint.between().each_ref().map(|body| Some(body.as_str()));
+        let bodies = match first {
+            Some(GROUND) => [second, first],
+            _ => [first, second],
+        };
+        let axis = joint.axes()[0].expect("a joint with an angle has an axis");
+        let axis = self.assembly.axis(axis);
+        self.rotation(bodies, axis, Some(CountedFrom::Placement))
+    }
+
+    fn gate(&self, gate: &written::Gate) -> Gate<S> {
         let (limit, open) = match (gate.above, gate.below) {
             (Some(limit), _) => (limit, Side::Above),
             (None, limit) => (
@@ -232,9 +276,17 @@ impl<S: Scalar> Builder<'_, S> {
                 Side::Below,
             ),
         };
+        let rotation = match (&gate.joint, gate.axis) {
+            (Some(joint), _) => self.joint_angle(joint),
+            (None, axis) => {
+                let axis =
+                    axis.expect("a gate has an axis, which is checked when a problem is read");
+                let bodies = [gate.body.as_deref(), gate.relative_to.as_deref()];
+                self.rotation(bodies, lift3(&Vec3::from(axis)), gate.from)
+            }
+        };
         Gate {
-            body: self.body(&gate.body),
-            axis: unit(Vec3::from(gate.axis)),
+            rotation,
             limit,
             width: gate.width,
             open,

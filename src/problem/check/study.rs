@@ -2,6 +2,7 @@
 
 use super::Checker;
 use crate::math::Vec3;
+use crate::model::JointKind;
 use crate::problem::fault::Finding;
 use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join};
@@ -155,9 +156,31 @@ impl Checker<'_> {
             Instant::Rotation(rotation) => {
                 let pointer = join(pointer, "rotation");
                 self.moving(&pointer, &rotation.body, &None);
+                self.seen_from(&pointer, &rotation.body, rotation.relative_to.as_deref());
                 self.direction(&join(&pointer, "axis"), &rotation.axis);
             }
+            Instant::Angle(angle) => self.angle(&join(pointer, "angle"), &angle.joint),
             Instant::Range(range) => self.range(&join(pointer, "range"), range),
+        }
+    }
+
+    /// Checks the joint at `pointer` whose angle is measured.
+    fn angle(&mut self, pointer: &str, joint: &str) {
+        use JointKind::{Cylindrical, Planar, Revolute};
+        self.loaded_joint(pointer, joint, &[Revolute, Planar, Cylindrical]);
+    }
+
+    /// Checks the body that the rotation of another is seen from.
+    fn seen_from(&mut self, pointer: &str, body: &str, other: Option<&str>) {
+        let Some(other) = other.filter(|other| *other != GROUND) else {
+            return;
+        };
+        let place = join(pointer, "relative_to");
+        if other == body {
+            let expected = "another body, or \"ground\"";
+            self.fault(Finding::new(place, format!("\"{other}\" itself"), expected));
+        } else {
+            self.body(&place, other);
         }
     }
 
@@ -217,8 +240,35 @@ impl Checker<'_> {
     }
 
     fn gate(&mut self, pointer: &str, gate: &Gate) {
-        self.moving(pointer, &gate.body, &None);
-        self.nonzero(&join(pointer, "axis"), gate.axis);
+        let whole = gate.body.is_some() && gate.axis.is_some();
+        let part = gate.body.is_some()
+            || gate.axis.is_some()
+            || gate.relative_to.is_some()
+            || gate.from.is_some();
+        match &gate.joint {
+            Some(_) if part => {
+                let found = "\"joint\" beside the rotation of a body";
+                let expected = "\"joint\", or \"body\" and \"axis\"";
+                self.fault(Finding::new(join(pointer, "joint"), found, expected).of_key());
+            }
+            Some(joint) => self.angle(pointer, joint),
+            None if !whole => {
+                let found = match (&gate.body, &gate.axis) {
+                    (Some(_), _) => "no \"axis\"",
+                    (None, _) => "no \"body\"",
+                };
+                let expected = "\"body\" and \"axis\", or \"joint\"";
+                self.fault(Finding::new(pointer, found, expected).of_key());
+            }
+            None => {}
+        }
+        if let Some(body) = &gate.body {
+            self.moving(pointer, body, &None);
+            self.seen_from(pointer, body, gate.relative_to.as_deref());
+        }
+        if let Some(axis) = gate.axis {
+            self.nonzero(&join(pointer, "axis"), axis);
+        }
         let found = match (gate.above, gate.below) {
             (Some(_), Some(_)) => "both \"above\" and \"below\"",
             (None, None) => "neither \"above\" nor \"below\"",

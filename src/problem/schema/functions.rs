@@ -52,6 +52,8 @@ pub enum Instant {
     Energy(Energy),
     /// Rotation of a body about an axis, counted on over whole turns (rad).
     Rotation(Rotation),
+    /// Angle of a joint as drives and torsion springs have it, counted on over whole turns (rad).
+    Angle(JointAngle),
     /// Range of a projectile that is let go at this instant (m).
     Range(Range),
 }
@@ -97,9 +99,34 @@ pub enum Energy {
 pub struct Rotation {
     /// The body.
     pub body: String,
-    /// Axis in ground axes, of any length but zero.
+    /// Axis in ground axes where the bodies are placed, of any length but zero; it stays fixed in
+    /// the body that the rotation is relative to.
     #[schemars(extend("unit" = "1"))]
     pub axis: Vector,
+    /// The body that the rotation is seen from, default "ground".
+    pub relative_to: Option<String>,
+    /// Where the rotation is zero, default "axes".
+    pub from: Option<CountedFrom>,
+}
+
+/// Where a rotation is zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CountedFrom {
+    /// Where the axes of the body are parallel to those of the other, or of ground.
+    #[default]
+    Axes,
+    /// Where the bodies are placed.
+    Placement,
+}
+
+/// A joint whose angle is measured.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointAngle {
+    /// Name of a revolute, planar or cylindrical joint. The angle is that of its first body against
+    /// the second (ground counts as the second) about the axis, from where the bodies are placed.
+    pub joint: String,
 }
 
 /// A projectile and how its range is measured. Up is against gravity.
@@ -120,19 +147,26 @@ pub struct Range {
     pub gate: Option<Gate>,
 }
 
-/// A smooth gate on the rotation of a body: the range counts only while the rotation is above (or
-/// below) a limit. Give one of `above` and `below`.
+/// A smooth gate on a rotation: the range counts only while it is above (or below) a limit. Give
+/// `body` and `axis`, or `joint`; and one of `above` and `below`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gate {
     /// The body whose rotation is watched.
-    pub body: String,
-    /// Axis of the rotation in ground axes, of any length but zero.
+    pub body: Option<String>,
+    /// Axis of the rotation in ground axes where the bodies are placed, of any length but zero.
     #[schemars(extend(
         "unit" = "1",
         "design_variable" = "a gate says what is asked, not what is built"
     ))]
-    pub axis: [f64; 3],
+    pub axis: Option<[f64; 3]>,
+    /// The body that the rotation is seen from, default "ground".
+    pub relative_to: Option<String>,
+    /// Where the rotation is zero, default "axes".
+    pub from: Option<CountedFrom>,
+    /// Name of a revolute, planar or cylindrical joint whose angle is watched, instead of a body and
+    /// an axis.
+    pub joint: Option<String>,
     /// Rotation that the gate is open above.
     #[schemars(extend(
         "unit" = "rad",
