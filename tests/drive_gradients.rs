@@ -103,12 +103,15 @@ fn machine(turn: Value, slide: Value, simulation: Value) -> Value {
 
 #[test]
 fn gradients_of_explicit_steps() {
-    let table = json!({"table": {"times": [0, 0.1, 0.25, 0.4, 0.6],
-                                 "values": [0, 0.05, -0.04, 0.1, 0.05]}});
-    let polynomial = json!({"polynomial": [0, 1.5, -2, 1]});
-    let simulation = json!({"duration": 0.5, "tolerance": 1e-8, "samples": 60});
-    let file = machine(polynomial, table, simulation);
-    assert_gradients(file, &["/drives", "/bodies/weight", "/bodies/slide/mass"]);
+    for interpolation in ["linear", "monotone", "spline"] {
+        let table = json!({"table": {"times": [0, 0.1, 0.25, 0.4, 0.6],
+                                     "values": [0, 0.05, -0.04, 0.1, 0.05],
+                                     "interpolation": interpolation}});
+        let polynomial = json!({"polynomial": [0, 1.5, -2, 1]});
+        let simulation = json!({"duration": 0.5, "tolerance": 1e-8, "samples": 60});
+        let file = machine(polynomial, table, simulation);
+        assert_gradients(file, &["/drives", "/bodies/weight", "/bodies/slide/mass"]);
+    }
 }
 
 #[test]

@@ -267,3 +267,89 @@ fn steps_are_chosen_anew_for_the_whole_time() {
     }
     assert!(integration.refreshes > 1, "{}", integration.refreshes);
 }
+
+/// A bob on a rod without mass, let go at an angle; it swings until the hinge is at its lowest point.
+fn clock(angle: f64, constraints: Value) -> Problem {
+    let length = 1.3;
+    problem(&json!({
+        "version": 1, "name": "clock",
+        "bodies": {"bob": {
+            "mass": 1, "inertia": {"xx": 1e-30, "yy": 1e-30, "zz": 1e-30},
+            "points": {"pin": [0, length, 0]},
+            "place": {"put": "pin", "turn": {"axis": [0, 0, 1], "angle": angle}}
+        }},
+        "joints": {"pin": {"revolute": {"between": ["ground", "bob"], "at": "bob.pin",
+                                        "axis": [0, 0, 1]}}},
+        "simulation": {"duration": 4, "tolerance": 1e-12, "until": {
+            "measure": {"angle": {"joint": "pin"}}, "reaches": -angle}},
+        "functions": {
+            "quarter": "duration",
+            "path": {"integral": {"speed": {"body": "bob"}}},
+            "square": {"integral": {"speed_squared": {"body": "bob"}}}
+        },
+        "variables": {"length": {"path": "/bodies/bob/points/pin/1", "lower": 0.2, "upper": 3}},
+        "constraints": constraints
+    }))
+}
+
+/// The quarter of a pendulum's period is (π/2) √(l/g) / agm(1, cos ½θ), its derivative by the length
+/// half of it over the length; the integral of the speed is the length of the arc.
+#[test]
+fn the_time_of_an_event_is_a_function() {
+    for angle in [0.3_f64, 1.0, 2.5] {
+        let (mut a, mut b) = (1.0, (0.5 * angle).cos());
+        for _ in 0..8 {
+            (a, b) = (0.5 * (a + b), f64::sqrt(a * b));
+        }
+        let quarter = 0.5 * std::f64::consts::PI * f64::sqrt(1.3 / 9.81) / a;
+        let problem = clock(angle, json!({}));
+        let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+        let found = at.function(0).value;
+        assert!((found - quarter).abs() <= 1e-10, "{found} and {quarter}");
+        let (gradient, _) = at.gradients(&problem, &[0]).expect("differentiates");
+        let slope = 0.5 * quarter / 1.3;
+        assert!(
+            (gradient[0][0] - slope).abs() <= 1e-9,
+            "{gradient:?} and {slope}"
+        );
+        assert!((at.function(1).value - 1.3 * angle).abs() <= 1e-5);
+        for derivative in check(&problem, &problem.start()).expect("runs") {
+            assert!(derivative.relative_difference() < 1e-10, "{derivative:?}");
+        }
+        let units = [0, 1, 2].map(|f| problem.function_unit(f));
+        assert_eq!(units, ["s", "m", "m²/s"]);
+    }
+}
+
+/// Without objective the feasible design nearest to that of the file is found.
+#[test]
+fn a_problem_of_constraints_alone_is_made_feasible() {
+    let second = json!({"second": {"function": "quarter", "lower": 0.5, "upper": 0.5}});
+    let done = solved(&clock(0.3, second));
+    let length = done.optimum.design["length"].value;
+    let at = |length: f64| {
+        let problem = clock(0.3, json!({}));
+        Evaluated::new(&problem, &[length])
+            .expect("runs")
+            .function(0)
+            .value
+    };
+    assert_eq!(done.optimum.status, "converged", "{}", done.optimum.message);
+    assert!((at(length) - 0.5).abs() < 1e-6, "{length}");
+    // A file that is feasible stays as it is.
+    let loose = json!({"loose": {"function": "quarter", "lower": 0.1, "upper": 2}});
+    let done = solved(&clock(0.3, loose));
+    assert_eq!(done.optimum.status, "converged", "{}", done.optimum.message);
+    assert!((done.optimum.design["length"].value - 1.3).abs() < 1e-6);
+    // And one that can not be is called that.
+    let never = json!({"never": {"function": "quarter", "lower": 3}});
+    let done = solved(&clock(0.3, never));
+    assert_ne!(done.optimum.status, "converged", "{}", done.optimum.message);
+}
+
+fn solved(problem: &Problem) -> Optimisation {
+    optimise(problem, "", None, Journal::default(), &mut |_| {
+        ControlFlow::Continue(())
+    })
+    .expect("constraints and variables")
+}

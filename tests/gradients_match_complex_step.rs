@@ -68,6 +68,11 @@ fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
             Instant::Speed { body, point },
             Reduction::InducedExponential { rho: 0.7 },
         ),
+        reduced(
+            Instant::SpeedSquared { body, point },
+            Reduction::InducedExponential { rho: 0.2 },
+        ),
+        Function::Duration,
         reduced(Instant::Energy(EnergyPart::Kinetic), Reduction::Integral),
         reduced(
             Instant::Energy(EnergyPart::Potential),

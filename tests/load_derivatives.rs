@@ -11,6 +11,7 @@ use flexbody::integrate::implicit::ggl::{Equations, Instant};
 use flexbody::linalg::{Emit, SparseMatrix};
 use flexbody::math::scalar::COMPLEX_STEP;
 use flexbody::math::{Complex64, Scalar};
+use flexbody::model::Interpolation;
 use flexbody::model::{Axes, Course, Freedom, JointKind, Load, LoadKind, Model};
 use flexbody::system::initial;
 use flexbody::system::kkt::SaddlePoint;
@@ -27,6 +28,7 @@ fn table() -> Course<f64> {
     Course::Table {
         times: vec![0.0, 0.2, 0.5, 0.9],
         values: vec![1.0, 2.0, 4.0, 4.5],
+        interpolation: Interpolation::Monotone,
     }
 }
 

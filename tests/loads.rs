@@ -106,6 +106,10 @@ fn gradients_of_forces_and_torques() {
         json!(3.0),
         json!({"harmonic": {"amplitude": 4.0, "frequency": 1.7, "phase": 0.4}}),
         json!({"table": {"times": [0, 0.1, 0.3, 0.6], "values": [1, 2.5, 3, 6]}}),
+        json!({"table": {"times": [0, 0.1, 0.3, 0.6], "values": [1, 2.5, 3, 2],
+                         "interpolation": "linear"}}),
+        json!({"table": {"times": [0, 0.1, 0.3, 0.6], "values": [1, 2.5, 3, 2],
+                         "interpolation": "spline"}}),
     ];
     for magnitude in courses {
         for axes in ["ground", "body"] {

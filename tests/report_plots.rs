@@ -1,7 +1,8 @@
 //! Figures show what they should, inside their canvas, whatever the data.
 
 use flexbody::report::plots::{
-    Barrier, BodyMotion, EnergyRun, Flight, Motion, Scenery, convergence, energy, motion,
+    Barrier, BodyMotion, Connector, ConnectorKind, EnergyRun, Flight, Motion, Scenery, convergence,
+    energy, motion,
 };
 use flexbody::report::{Column, History, HistoryRow};
 
@@ -176,6 +177,11 @@ fn thrower(title: &str, speed: f64) -> Motion {
             .map(|(a, b)| [x + a, y + b])
             .to_vec()
     };
+    let connector = |kind, to_ground, ends: &dyn Fn(&f64) -> [[f64; 2]; 2]| Connector {
+        kind,
+        to_ground,
+        ends: frames.iter().map(ends).collect(),
+    };
     Motion {
         title: title.into(),
         bodies: vec![
@@ -187,6 +193,17 @@ fn thrower(title: &str, speed: f64) -> Motion {
                 name: "stone".into(),
                 outlines: frames.iter().map(tip).map(square).collect(),
             },
+        ],
+        connectors: vec![
+            connector(ConnectorKind::Hinge, true, &|_| [[0.0, 0.0], [0.0, 0.0]]),
+            connector(ConnectorKind::Slider, true, &|a| {
+                [[*a, -3.0], [*a + 1.0, -3.0]]
+            }),
+            connector(ConnectorKind::Rod, false, &|a| [[0.0, 0.0], tip(a)]),
+            connector(ConnectorKind::Spring, true, &|a| [[12.0, 12.0], tip(a)]),
+            connector(ConnectorKind::Arm { body: 1 }, false, &|a| {
+                [[1.0, 1.0], tip(a)]
+            }),
         ],
         traces: vec![(0..=100).map(|i| tip(&(0.02 * f64::from(i)))).collect()],
         flight: Some(Flight {
@@ -307,6 +324,7 @@ fn flat_steep_and_broken_motions_stay_inside() {
             name: "a point".into(),
             outlines: vec![vec![[3.0, 3.0]]],
         }],
+        connectors: Vec::new(),
         traces: Vec::new(),
         flight: None,
         title: "still".into(),

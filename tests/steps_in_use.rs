@@ -192,6 +192,45 @@ fn a_short_load_is_not_stepped_over() {
     assert!((x - 4.9).abs() < 1e-12, "{x}");
 }
 
+/// Steps end at the kinks of a linear table, and at the ends of the rounded parts of a motion.
+#[test]
+fn steps_end_where_a_table_is_not_smooth() {
+    let file = serde_json::json!({
+        "version": 1, "name": "kinks", "gravity": [0, 0, 0],
+        "bodies": {
+            "ball": {"shape": {"sphere": {"radius": 0.1}}, "mass": 1},
+            "slide": {"shape": {"box": {"size": [0.1, 0.1, 0.1]}}, "mass": 1}
+        },
+        "joints": {"guide": {"prismatic": {"between": ["slide", "ground"], "at": [0, 0, 0],
+                                           "axis": [0, 1, 0]}}},
+        "drives": {"cam": {"joint": "guide", "slide": {"table": {
+            "times": [0.25, 0.75, 1.25], "values": [0, 0.2, 0.2], "interpolation": "linear"}}}},
+        "loads": {"pull": {"force": {
+            "body": "ball", "direction": [1, 0, 0],
+            "magnitude": {"table": {"times": [0.3, 0.7, 1.1], "values": [0, 3, 1],
+                                    "interpolation": "linear"}}
+        }}},
+        "simulation": {"duration": 2, "tolerance": 1e-10},
+        "functions": {
+            "v": {"final": {"velocity": {"body": "ball", "direction": [1, 0, 0]}}},
+            "dwell": {"ks": {"rho": 1e6, "of": {"position": {"body": "slide",
+                                                             "direction": [0, 1, 0]}}}}
+        }
+    });
+    let problem = Problem::parse(&file.to_string(), "kinks.json", &[]).expect("no faults");
+    let motion = simulate(&problem, &[]).expect("runs");
+    let ends = motion.at.run.grid.ends();
+    for time in [0.25, 0.3, 0.35, 0.65, 0.7, 0.75, 0.85, 1.1, 1.15, 1.25] {
+        let near = ends.iter().any(|end| (end * 2.0 - time).abs() < 1e-12);
+        assert!(near, "no step ends at {time}");
+    }
+    // Impulse 0.6 + 0.8, then 1 N for 0.9 s.
+    let v = motion.at.function(0).value;
+    assert!((v - 2.3).abs() < 1e-12, "{v}");
+    let (highest, _) = motion.at.function(1).maximum.expect("an aggregate");
+    assert!((highest - 0.2).abs() < 1e-9, "{highest}");
+}
+
 /// A weight on a damped spring.
 const SAG: &str = r#"{
   "version": 1, "name": "sag",

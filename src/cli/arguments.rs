@@ -82,8 +82,21 @@ pub struct Job {
 /// The other jobs.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Simulate the problem's start and report its functions, energy and constraint drift.
-    Simulate(Job),
+    /// Simulate the problem's start and report its functions, energy and constraint drift. With
+    /// --output it draws the motion and writes simulation.csv (energy, momentum, drift, joint
+    /// reactions), motion.csv (all bodies) and functions.csv (all quantities) over time.
+    Simulate {
+        /// The problem.
+        #[command(flatten)]
+        job: Job,
+        /// Prints JSON.
+        #[arg(long)]
+        json: bool,
+        /// Writes joint reactions in the axes e1, e2, e3 of each joint on its first body instead of
+        /// ground axes; e3 is the joint's axis.
+        #[arg(long)]
+        joint_axes: bool,
+    },
     /// Compare every derivative by the adjoint with the complex step.
     Check {
         /// The problem.

@@ -73,7 +73,11 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         }
     };
     let done = match arguments.command {
-        Some(Command::Simulate(job)) => simulate::simulate(&job),
+        Some(Command::Simulate {
+            job,
+            json,
+            joint_axes,
+        }) => simulate::simulate(&job, json, joint_axes),
         Some(Command::Check { job, tolerance }) => simulate::check(&job, tolerance),
         Some(Command::Explain { job, json }) => explain::explain(&job, json),
         Some(Command::WorkPrecision(asked)) => work_precision::measure(&asked),
@@ -140,7 +144,7 @@ fn load(job: &Job) -> Result<Problem, Failure> {
     let Some(accuracy) = job.accuracy else {
         return Ok(problem);
     };
-    let Some(objective) = problem.objective else {
+    let Some(objective) = problem.stated_objective() else {
         return Err(Failure::bad_input(format!(
             "{}: found --accuracy, expected a problem with an objective; set /simulation/tolerance \
              instead",

@@ -240,7 +240,8 @@ fn complete(problem: &Problem, job: &Job) -> Result<(), Failure> {
         )))
     };
     if problem.objective.is_none() {
-        return lacking("\"objective\"", "use optimize simulate or optimize check");
+        let what = "\"objective\" and no \"constraints\"";
+        return lacking(what, "use optimize simulate or optimize check");
     }
     if problem.variables.is_empty() {
         return lacking("\"variables\"", "use optimize simulate");

@@ -2,24 +2,35 @@
 
 use super::arguments::Job;
 use super::{DONE, Failure, NOT_REACHED, load, print, tell};
-use crate::driver::{self, CheckedDerivative, Evaluated, Simulation, error, figures};
+use crate::driver::tables::ReactionAxes;
+use crate::driver::{self, CheckedDerivative, Evaluated, Simulation, error, figures, tables};
 use crate::problem::Problem;
 use crate::report::write_all;
+use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
 /// Simulates the start of a problem.
-pub fn simulate(job: &Job) -> Result<u8, Failure> {
+pub fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Failure> {
     let problem = load(job)?;
     let simulation = driver::simulate(&problem, &problem.start()).map_err(Failure::numerical)?;
-    if !job.quiet {
-        print(&summary(&problem, &simulation))?;
-    }
-    if job.error {
-        print(&errors(&problem, &simulation.at)?)?;
+    if json {
+        print(&as_json(&problem, &simulation, job.error)?)?;
+    } else {
+        if !job.quiet {
+            print(&summary(&problem, &simulation))?;
+        }
+        if job.error {
+            print(&errors(&problem, &simulation.at)?)?;
+        }
     }
     if let Some(directory) = &job.output {
+        let axes = match joint_axes {
+            true => ReactionAxes::Joint,
+            false => ReactionAxes::Ground,
+        };
         let files = figures::of_simulation(&problem, &simulation)
             .into_iter()
+            .chain(tables::of_simulation(&problem, &simulation, axes))
             .map(|(name, bytes)| (directory.join(name), bytes))
             .collect::<Vec<_>>();
         write_all(&files).map_err(Failure::bad_input)?;
@@ -37,6 +48,66 @@ pub fn simulate(job: &Job) -> Result<u8, Failure> {
         return Err(Failure::numerical(what));
     }
     Ok(DONE)
+}
+
+/// What a simulation found, in full precision.
+fn as_json(
+    problem: &Problem,
+    simulation: &Simulation,
+    with_errors: bool,
+) -> Result<String, Failure> {
+    let (run, counts) = (&simulation.at.run, simulation.at.run.counts);
+    let names = &problem.function_names;
+    let mut functions = Map::new();
+    for (f, name) in names.iter().enumerate() {
+        let found = simulation.at.function(f);
+        let mut own =
+            json!({"value": found.value, "unit": simulation.at.scene.functions[f].unit()});
+        if let Some((maximum, time)) = found.maximum {
+            own["true_maximum"] = json!({"value": maximum, "time": time});
+        }
+        functions.insert(name.clone(), own);
+    }
+    if with_errors {
+        let all: Vec<usize> = (0..names.len()).collect();
+        let found = error::estimate(problem, &simulation.at, &all, true);
+        for found in found.map_err(Failure::numerical)? {
+            let own = &mut functions[&names[found.function]];
+            own["error"] = json!(found.value.error);
+            let gradient = problem.variables.iter().zip(&found.gradient);
+            let gradient = gradient.map(|(variable, derivative)| {
+                let both = json!({"value": derivative.value, "error": derivative.error});
+                (variable.name.clone(), both)
+            });
+            own["gradient"] = Value::Object(gradient.collect());
+        }
+    }
+    let mut warnings: Vec<String> = simulation.warning.iter().cloned().collect();
+    warnings.extend(simulation.at.kinks(problem, 0..names.len()));
+    let first = &simulation.observations[0];
+    let (position, velocity) = simulation.constraint_drift();
+    let all = json!({
+        "name": problem.name,
+        "duration": run.duration,
+        "method": run.method.name(),
+        "reason": simulation.reason,
+        "work": {
+            "steps": run.grid.steps(),
+            "evaluations": counts.evaluations,
+            "newton_iterations": counts.newton_iterations,
+            "factorisations": counts.factorisations,
+        },
+        "functions": functions,
+        "energy": {
+            "start": first.kinetic + first.potential,
+            "largest_change": simulation.energy_drift(),
+            "conserved": simulation.at.scene.model.conserves_energy(),
+        },
+        "constraint_drift": {"position": position, "velocity": velocity},
+        "warnings": warnings,
+    });
+    let text = serde_json::to_string_pretty(&all).map_err(Failure::numerical)?;
+    Ok(text + "\n")
 }
 
 fn summary(problem: &Problem, simulation: &Simulation) -> String {
@@ -61,6 +132,12 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
         text.push_str("  integrated as written: this design does not admit the lowering\n");
     } else if let Some(merged) = driver::merged_errs(problem, &simulation.at) {
         let _ = writeln!(text, "  {merged}");
+    }
+    for warning in simulation
+        .at
+        .kinks(problem, 0..problem.function_names.len())
+    {
+        let _ = writeln!(text, "  warning: {warning}");
     }
     let width = problem
         .function_names

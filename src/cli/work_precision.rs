@@ -76,7 +76,7 @@ fn plan(asked: &Measurement, problem: &Problem) -> Result<Plan, Failure> {
             };
             Some(index)
         }
-        None => match problem.objective {
+        None => match problem.stated_objective() {
             Some(objective) => Some(objective.function),
             None => (!problem.function_names.is_empty()).then_some(0),
         },

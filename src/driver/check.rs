@@ -140,11 +140,14 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
     let (instant, reduction) = match &at.scene.functions[f] {
         Function::Reduced { instant, reduction } => (instant, *reduction),
         Function::Clearance { .. } => return length.max(at.function(f).value.abs()),
+        Function::Duration => return time,
+        Function::OfDesign(value) => return value.abs().max(1.0),
     };
     let size = match instant {
         Instant::Position { .. } | Instant::Range { .. } => length,
         Instant::Velocity { .. } | Instant::Speed { .. } => length / time,
         Instant::Acceleration { .. } => length / (time * time),
+        Instant::SpeedSquared { .. } => length * length / (time * time),
         Instant::Rotation(_) => 1.0,
         Instant::Energy(_) => {
             let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();

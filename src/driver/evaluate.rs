@@ -2,6 +2,7 @@
 
 use super::integration::{Integration, Refresh};
 use crate::adjoint;
+use crate::functions::rest::passes_rest;
 use crate::functions::{Scene, evaluate};
 use crate::integrate::{
     IntegrationFailure, Samples, Settings, Trajectory, WorkCounts, simulate_by,
@@ -100,6 +101,19 @@ impl Evaluated {
         let admitted = lowering.filter(|lowering| lowering.apply(&mut written.clone()));
         let motion = admitted.and_then(|lowering| lowering.expand(&written.model, &self.run));
         (written, motion.map_or(Cow::Borrowed(&self.run), Cow::Owned))
+    }
+
+    /// A warning for each of the functions `which` that reduces a speed through its kink at rest.
+    pub fn kinks(&self, problem: &Problem, which: impl Iterator<Item = usize>) -> Vec<String> {
+        let warn = |f: usize| {
+            let time = passes_rest(&self.scene.functions[f], &self.scene.model, &self.run)?;
+            Some(format!(
+                "the speed of \"{}\" passes zero at t = {time:.4} s, where it has a kink: take \
+                 \"speed_squared\"",
+                problem.function_names[f]
+            ))
+        };
+        which.filter_map(warn).collect()
     }
 
     /// A function of interest, by index.

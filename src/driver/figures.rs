@@ -1,5 +1,6 @@
-//! The figures of a simulation and of an optimisation, and the table of a simulation.
+//! The figures of a simulation and of an optimisation.
 
+use super::connectors::connectors;
 use super::optimise::Optimisation;
 use super::simulate::{Simulation, simulate};
 use crate::functions::evaluate::sample;
@@ -12,7 +13,6 @@ use crate::report::plots::{
     Barrier, BodyMotion, EnergyRun, Flight, Motion, Scenery, convergence, energy, motion,
 };
 use crate::report::{History, Optimum, ReportError};
-use std::fmt::Write;
 
 /// A file's name and content.
 pub type NamedFile = (&'static str, Vec<u8>);
@@ -43,11 +43,9 @@ pub fn of_optimisation(problem: &Problem, done: &Optimisation) -> Vec<NamedFile>
     figures(problem, &ends.collect::<Vec<_>>(), Some(&done.history))
 }
 
-/// Figures and table of a simulation.
+/// Figures of a simulation.
 pub fn of_simulation(problem: &Problem, simulation: &Simulation) -> Vec<NamedFile> {
-    let mut files = figures(problem, &[("", simulation)], None);
-    files.push(("simulation.csv", table(simulation).into_bytes()));
-    files
+    figures(problem, &[("", simulation)], None)
 }
 
 /// Figures of a recorded optimisation, from the problem and the designs in its record.
@@ -102,7 +100,7 @@ fn figures(
                 title,
                 design,
                 drawing,
-                problem.objective.map(|o| o.function),
+                problem.stated_objective().map(|o| o.function),
             )
         })
         .collect();
@@ -227,6 +225,7 @@ fn lapse(
     Motion {
         title: title.to_string(),
         bodies,
+        connectors: connectors((model, run), drawing, &instants),
         traces,
         flight,
     }
@@ -273,44 +272,4 @@ fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let mut all = half(&mut points.iter().copied());
     all.extend(half(&mut points.iter().rev().copied()));
     if all.is_empty() { points } else { all }
-}
-
-/// Energy, momentum, drift and joint reactions at every instant, as comma separated values.
-fn table(simulation: &Simulation) -> String {
-    let mut text = String::from(
-        "time [s],kinetic energy [J],potential energy [J],momentum x [kg m/s],\
-         momentum y [kg m/s],momentum z [kg m/s],angular momentum x [kg m^2/s],\
-         angular momentum y [kg m^2/s],angular momentum z [kg m^2/s],position drift,velocity drift",
-    );
-    for joint in &simulation.written.model.joints {
-        for (what, unit) in [("force", "N"), ("torque", "N m")] {
-            for axis in 1..=3 {
-                let name = format!("{}: {what} {axis} [{unit}]", joint.name).replace('"', "\"\"");
-                let _ = write!(text, ",\"{name}\"");
-            }
-        }
-    }
-    text.push('\n');
-    let observations = simulation.observations.iter();
-    let reactions = simulation.reactions_at(0..simulation.observations.len());
-    for (k, (seen, reactions)) in observations.zip(reactions).enumerate() {
-        let _ = write!(
-            text,
-            "{},{},{}",
-            simulation.at.run.time(k),
-            seen.kinetic,
-            seen.potential
-        );
-        for x in seen.momentum.iter().chain(seen.angular_momentum.iter()) {
-            let _ = write!(text, ",{x}");
-        }
-        let _ = write!(text, ",{},{}", seen.position_drift, seen.velocity_drift);
-        for reaction in reactions {
-            for x in reaction.force.iter().chain(reaction.torque.iter()) {
-                let _ = write!(text, ",{x}");
-            }
-        }
-        text.push('\n');
-    }
-    text
 }

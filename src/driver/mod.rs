@@ -3,6 +3,7 @@
 
 pub mod chaos;
 pub mod check;
+mod connectors;
 pub mod error;
 pub mod evaluate;
 pub mod evaluator;
@@ -18,6 +19,7 @@ mod record;
 pub mod second_order;
 pub mod simulate;
 pub mod stress;
+pub mod tables;
 pub mod warm_start;
 pub mod work_precision;
 

@@ -116,6 +116,13 @@ pub(super) fn record(
         ));
     }
     warnings.extend(end.and_then(|end| end.warning.clone()));
+    if let Some(end) = end {
+        let constrained = problem.constraints.iter().map(|c| c.function);
+        let mut used: Vec<usize> = constrained.chain([objective.function]).collect();
+        used.sort_unstable();
+        used.dedup();
+        warnings.extend(end.at.kinks(problem, used.into_iter()));
+    }
     let scaling = &outcome.scaling;
     let zero = |names: &[String], what: &str| {
         (!names.is_empty()).then(|| format!("{what} at the start: {}", names.join(", ")))

@@ -27,6 +27,16 @@ impl<S: Scalar> Function<S> {
     pub fn evaluate(&self, model: &Model<S>, run: &Trajectory<S>) -> Evaluated<S> {
         match self {
             Function::Reduced { instant, reduction } => reduce(instant, *reduction, model, run),
+            Function::OfDesign(value) => Evaluated {
+                value: *value,
+                maximum: None,
+                peak_sharpness: 0.0,
+            },
+            Function::Duration => Evaluated {
+                value: run.time(run.last()),
+                maximum: None,
+                peak_sharpness: 0.0,
+            },
             Function::Clearance {
                 projectile,
                 release,
@@ -274,6 +284,8 @@ impl<'a> Linearised<'a> {
                 }
                 Release::Best { .. } => this.at_best_release(projectile, *distance, model, run),
             },
+            Function::Duration => this.by_duration = 1.0,
+            Function::OfDesign(_) => {}
         }
         this
     }
@@ -346,6 +358,7 @@ impl<'a> Linearised<'a> {
             }
         };
         match own {
+            Function::Duration | Function::OfDesign(_) => {}
             Function::Reduced { instant, .. } => pull(instant),
             Function::Clearance {
                 projectile: by_projectile,
@@ -387,9 +400,13 @@ impl<'a> Linearised<'a> {
 
     /// Adds the derivative in parameters that no instant depends on.
     pub fn pull_back_parameters(&self, own: &mut Function<f64>) {
-        if let Function::Clearance { distance, top, .. } = own {
-            *distance += self.by_barrier[0];
-            *top += self.by_barrier[1];
+        match own {
+            Function::Clearance { distance, top, .. } => {
+                *distance += self.by_barrier[0];
+                *top += self.by_barrier[1];
+            }
+            Function::OfDesign(value) => *value += 1.0,
+            Function::Reduced { .. } | Function::Duration => {}
         }
     }
 }

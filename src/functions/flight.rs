@@ -384,7 +384,7 @@ mod tests {
 
     #[test]
     fn a_gate_never_overflows_and_has_its_exact_derivative() {
-        let rotation = Rotation {
+        let rotation = Rotation::<f64> {
             body: 0,
             relative_to: None,
             axis: Vec3::z(),

@@ -63,6 +63,10 @@ pub enum Function<S> {
         /// Height h_b of the barrier's top above the origin (m).
         top: S,
     },
+    /// Duration T of the run; with an event, the time when it comes (s).
+    Duration,
+    /// A number that the design alone determines, whatever the motion (no unit).
+    OfDesign(S),
 }
 
 impl<S: Scalar> Function<S> {
@@ -72,9 +76,11 @@ impl<S: Scalar> Function<S> {
             Function::Reduced {
                 instant,
                 reduction: Reduction::Integral,
-            } => format!("{} s", instant.unit()),
+            } => instant.integral_unit(),
             Function::Reduced { instant, .. } => instant.unit().to_owned(),
             Function::Clearance { .. } => "m".to_owned(),
+            Function::Duration => "s".to_owned(),
+            Function::OfDesign(_) => "1".to_owned(),
         }
     }
 
@@ -107,6 +113,8 @@ impl<S: Scalar> Function<S> {
                 distance: f(*distance),
                 top: f(*top),
             },
+            Function::Duration => Function::Duration,
+            Function::OfDesign(value) => Function::OfDesign(f(*value)),
         }
     }
 
@@ -118,7 +126,8 @@ impl<S: Scalar> Function<S> {
                 Instant::Position { body, point, .. }
                 | Instant::Velocity { body, point, .. }
                 | Instant::Acceleration { body, point, .. }
-                | Instant::Speed { body, point } => visit(body, Some(point)),
+                | Instant::Speed { body, point }
+                | Instant::SpeedSquared { body, point } => visit(body, Some(point)),
                 Instant::Energy(_) => {}
                 Instant::Rotation(rotation) => {
                     rotation.for_each_body(&mut |body| visit(body, None))
@@ -130,6 +139,7 @@ impl<S: Scalar> Function<S> {
                     }
                 }
             },
+            Function::Duration | Function::OfDesign(_) => {}
             Function::Clearance {
                 projectile,
                 release,

@@ -88,6 +88,13 @@ pub enum Instant<S> {
         /// The point.
         point: Vec3<S>,
     },
+    /// Square of the speed of a point (m²/s²). Differentiable everywhere.
+    SpeedSquared {
+        /// The body.
+        body: usize,
+        /// The point.
+        point: Vec3<S>,
+    },
     /// Energy of the whole model (J).
     Energy(EnergyPart),
     /// Rotation of a body about an axis, continuous in time and in (−2π, 2π] at t = 0 (rad).
@@ -134,8 +141,19 @@ impl<S: Scalar> Instant<S> {
             Instant::Position { .. } | Instant::Range { .. } => "m",
             Instant::Velocity { .. } | Instant::Speed { .. } => "m/s",
             Instant::Acceleration { .. } => "m/s²",
+            Instant::SpeedSquared { .. } => "m²/s²",
             Instant::Energy(_) => "J",
             Instant::Rotation(_) => "rad",
+        }
+    }
+
+    /// SI unit of its integral over time.
+    pub fn integral_unit(&self) -> String {
+        match self.unit() {
+            "m/s" => "m".into(),
+            "m/s²" => "m/s".into(),
+            "m²/s²" => "m²/s".into(),
+            unit => format!("{unit} s"),
         }
     }
 
@@ -146,6 +164,7 @@ impl<S: Scalar> Instant<S> {
             Instant::Velocity { .. } => "velocity",
             Instant::Acceleration { .. } => "acceleration",
             Instant::Speed { .. } => "speed",
+            Instant::SpeedSquared { .. } => "speed squared",
             Instant::Energy(_) => "energy",
             Instant::Rotation(_) => "rotation",
             Instant::Range { .. } => "range",
@@ -183,6 +202,10 @@ impl<S: Scalar> Instant<S> {
                 direction: direction.map(&mut *f),
             },
             Instant::Speed { body, point } => Instant::Speed {
+                body: *body,
+                point: point.map(&mut *f),
+            },
+            Instant::SpeedSquared { body, point } => Instant::SpeedSquared {
                 body: *body,
                 point: point.map(&mut *f),
             },

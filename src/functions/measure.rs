@@ -127,6 +127,10 @@ impl<S: Scalar> Instant<S> {
                     S::zero()
                 }
             }
+            Instant::SpeedSquared { body, point } => {
+                let velocity = at.motion(*body).point_velocity(point);
+                velocity.dot(&velocity)
+            }
             Instant::Energy(part) => energy(at, *part),
             Instant::Rotation(rotation) => at.rotation(rotation, turns),
             Instant::Range { projectile, gate } => {
@@ -228,6 +232,15 @@ impl Instant<f64> {
                     let by = velocity * (weight / speed);
                     *by_point += pull_point(at, *body, point, [ZERO, by, ZERO], out);
                 }
+            }
+            (
+                Instant::SpeedSquared { body, point },
+                Instant::SpeedSquared {
+                    point: by_point, ..
+                },
+            ) => {
+                let by = at.motion(*body).point_velocity(point) * (2.0 * weight);
+                *by_point += pull_point(at, *body, point, [ZERO, by, ZERO], out);
             }
             (Instant::Energy(part), _) => pull_energy(at, *part, weight, out),
             (Instant::Rotation(rotation), Instant::Rotation(own)) => {

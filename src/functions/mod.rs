@@ -5,6 +5,7 @@ pub mod flight;
 pub mod function;
 pub mod instant;
 pub mod measure;
+pub mod rest;
 pub mod scene;
 pub mod turning;
 

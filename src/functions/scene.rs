@@ -59,6 +59,8 @@ impl Until<f64> {
         match &self.measure {
             Function::Reduced { instant, .. } => instant.describe().into(),
             Function::Clearance { .. } => "clearance".into(),
+            Function::Duration => "duration".into(),
+            Function::OfDesign(_) => "design".into(),
         }
     }
 

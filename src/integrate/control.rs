@@ -5,6 +5,7 @@ use super::limits::Clock;
 use super::settings::{Settings, Spacing};
 use crate::math::Scalar;
 use crate::model::course::Course;
+use crate::model::table::breaks;
 use crate::model::{Model, MotionCourse};
 use crate::system::initial::InitialState;
 use crate::system::{Numbering, assembly};
@@ -126,7 +127,11 @@ fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64>, f64) {
                 let period = 1.0 / frequency.re().abs();
                 widest = widest.min(PART_OF_PERIOD * period / duration);
             }
-            Course::Table { times, .. } => stops.extend(times.iter().map(|t| t.re() / duration)),
+            Course::Table {
+                times,
+                interpolation,
+                ..
+            } => stops.extend(breaks(times, *interpolation, false)),
         }
     }
     for drive in model.joints.iter().flat_map(|joint| &joint.drives) {
@@ -136,11 +141,14 @@ fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64>, f64) {
                 let period = 1.0 / frequency.re().abs();
                 widest = widest.min(PART_OF_PERIOD * period / duration);
             }
-            MotionCourse::Table { times, .. } => {
-                stops.extend(times.iter().map(|t| t.re() / duration));
-            }
+            MotionCourse::Table {
+                times,
+                interpolation,
+                ..
+            } => stops.extend(breaks(times, *interpolation, true)),
         }
     }
+    stops.iter_mut().for_each(|at| *at /= duration);
     stops.retain(|&at| at > 0.0 && at < 1.0);
     stops.sort_by(f64::total_cmp);
     (stops, widest.max(SMALLEST * 10.0))

@@ -127,7 +127,8 @@ fn looks_at<S: Scalar>(function: &Function<S>) -> Vec<(usize, Option<Vec3<S>>)> 
             Instant::Position { body, point, .. }
             | Instant::Velocity { body, point, .. }
             | Instant::Acceleration { body, point, .. }
-            | Instant::Speed { body, point } => vec![(*body, Some(*point))],
+            | Instant::Speed { body, point }
+            | Instant::SpeedSquared { body, point } => vec![(*body, Some(*point))],
             // The energy reads angular velocities, which are zero, and heights of centres.
             Instant::Energy(_) => Vec::new(),
             Instant::Rotation(rotation) => turned(rotation).collect(),
@@ -136,6 +137,7 @@ fn looks_at<S: Scalar>(function: &Function<S>) -> Vec<(usize, Option<Vec3<S>>)> 
                 [thrown].into_iter().chain(gated(gate)).collect()
             }
         },
+        Function::Duration | Function::OfDesign(_) => Vec::new(),
         Function::Clearance {
             projectile,
             release,

@@ -14,14 +14,11 @@
 //! ```text
 //! polynomial   c0 + c1 t + c2 t² + …
 //! harmonic     m + A sin(2π f t + φ0)
-//! table        quintic Hermite interpolation between (t_i, m_i)
+//! table        interpolation between (t_i, m_i), see [`super::table`]; held beyond the ends
 //! ```
-//!
-//! Slope and curvature at a point of a table are those of the parabola through it and its
-//! neighbours; both are zero at its ends, beyond which it is held.
 
-use super::course::{Place, by_points, interval, stencil};
 use super::joint::Freedom;
+use super::table::{Interpolation, Place, around, by_points, interval, motion, polynomial};
 use crate::math::Scalar;
 use crate::math::scalar::Dual;
 use std::f64::consts::TAU;
@@ -57,6 +54,8 @@ pub enum MotionCourse<S> {
         times: Vec<S>,
         /// Values m_i, as many.
         values: Vec<S>,
+        /// What stands between them.
+        interpolation: Interpolation,
     },
 }
 
@@ -87,9 +86,14 @@ impl<S: Scalar> MotionCourse<S> {
                 frequency: f(*frequency),
                 phase: f(*phase),
             },
-            Self::Table { times, values } => MotionCourse::Table {
+            Self::Table {
+                times,
+                values,
+                interpolation,
+            } => MotionCourse::Table {
                 times: list(times),
                 values: list(values),
+                interpolation: *interpolation,
             },
         }
     }
@@ -104,13 +108,16 @@ impl<S: Scalar> MotionCourse<S> {
                 frequency,
                 phase,
             } => harmonic([*mean, *amplitude, *frequency, *phase], time),
-            Self::Table { times, values } => match interval(times, time.re()) {
+            Self::Table {
+                times,
+                values,
+                interpolation,
+            } => match interval(times, time.re()) {
                 Place::Before => held(values[0]),
                 Place::After => held(values[values.len() - 1]),
                 Place::Inside(k) => {
-                    let at = stencil(k, times.len());
-                    let pick = |list: &[S]| at.map(|i| i.map(|i| list[i]));
-                    quintic(&pick(times), &pick(values), time)
+                    let (times, values) = (around(times, k), around(values, k));
+                    motion(*interpolation, &times, &values, time)
                 }
             },
         }
@@ -157,10 +164,15 @@ impl MotionCourse<f64> {
                 }
             }
             (
-                Self::Table { times, values },
+                Self::Table {
+                    times,
+                    values,
+                    interpolation,
+                },
                 Self::Table {
                     times: by_times,
                     values: by_values,
+                    ..
                 },
             ) => match interval(times, time) {
                 Place::Before => by_values[0] += w0,
@@ -168,7 +180,7 @@ impl MotionCourse<f64> {
                 Place::Inside(k) => {
                     let lists = (&times[..], &values[..]);
                     by_points(k, lists, (by_times, by_values), |t, m| {
-                        along(quintic(t, m, now))
+                        along(motion(*interpolation, t, m, now))
                     });
                 }
             },
@@ -181,19 +193,6 @@ impl MotionCourse<f64> {
 
 fn held<S: Scalar>(value: S) -> [S; 4] {
     [value, S::zero(), S::zero(), S::zero()]
-}
-
-/// Σ c_j tʲ and its derivatives, by Horner's scheme.
-fn polynomial<S: Scalar>(coefficients: &[S], t: S) -> [S; 4] {
-    let mut out = [S::zero(); 4];
-    for &c in coefficients.iter().rev() {
-        for k in (1..4).rev() {
-            out[k] = out[k] * t + out[k - 1];
-        }
-        out[0] = out[0] * t + c;
-    }
-    // Taylor coefficients so far.
-    [out[0], out[1], out[2] * 2.0, out[3] * 6.0]
 }
 
 fn harmonic<S: Scalar>([mean, amplitude, frequency, phase]: [S; 4], time: S) -> [S; 4] {
@@ -209,49 +208,28 @@ fn harmonic<S: Scalar>([mean, amplitude, frequency, phase]: [S; 4], time: S) -> 
     ]
 }
 
-/// Quintic Hermite interpolation between the two middle points.
-fn quintic<S: Scalar>(times: &[Option<S>; 4], values: &[Option<S>; 4], time: S) -> [S; 4] {
-    let point = |i: usize| times[i].zip(values[i]);
-    let (Some((t0, m0)), Some((t1, m1))) = (point(1), point(2)) else {
-        unreachable!("the two points around a time are in the table");
-    };
-    let h = t1 - t0;
-    let middle = (m1 - m0) / h;
-    let (s0, c0) = point(0).map_or((S::zero(), S::zero()), |(t, m)| {
-        parabola((t0 - t, (m0 - m) / (t0 - t)), (h, middle))
-    });
-    let (s1, c1) = point(3).map_or((S::zero(), S::zero()), |(t, m)| {
-        parabola((h, middle), (t - t1, (m - m1) / (t - t1)))
-    });
-    // m0 + h s0 x + ½ h² c0 x² + (cubic to quintic part) in x = (t − t0)/h.
-    let (slope, curvature) = (h * s0, h * h * c0);
-    let d = m1 - m0 - slope - curvature * 0.5;
-    let e = h * s1 - slope - curvature;
-    let f = h * h * c1 - curvature;
-    let coefficients = [
-        m0,
-        slope,
-        curvature * 0.5,
-        d * 10.0 - e * 4.0 + f * 0.5,
-        d * -15.0 + e * 7.0 - f,
-        d * 6.0 - e * 3.0 + f * 0.5,
-    ];
-    let [value, rate, acceleration, jerk] = polynomial(&coefficients, (time - t0) / h);
-    [value, rate / h, acceleration / (h * h), jerk / (h * h * h)]
-}
-
-/// Slope and curvature at a point between two intervals, each (width, difference quotient).
-fn parabola<S: Scalar>((w0, d0): (S, S), (w1, d1): (S, S)) -> (S, S) {
-    let both = w0 + w1;
-    ((d0 * w1 + d1 * w0) / both, (d1 - d0) * 2.0 / both)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::math::scalar::{COMPLEX_STEP, Complex64};
+    use crate::model::table::breaks;
 
-    fn courses() -> [MotionCourse<f64>; 3] {
+    fn table(interpolation: Interpolation) -> MotionCourse<f64> {
+        MotionCourse::Table {
+            times: vec![0.0, 0.5, 0.8, 1.5, 2.0],
+            values: vec![1.0, 2.0, 5.0, 5.5, 4.0],
+            interpolation,
+        }
+    }
+
+    const ALL: [Interpolation; 3] = [
+        Interpolation::Linear,
+        Interpolation::Monotone,
+        Interpolation::Spline,
+    ];
+
+    fn courses() -> [MotionCourse<f64>; 5] {
+        let [linear, monotone, spline] = ALL.map(table);
         [
             MotionCourse::Polynomial(vec![0.3, -1.2, 0.7, 0.25]),
             MotionCourse::Harmonic {
@@ -260,10 +238,9 @@ mod tests {
                 frequency: 0.8,
                 phase: 0.4,
             },
-            MotionCourse::Table {
-                times: vec![0.0, 0.5, 0.8, 1.5, 2.0],
-                values: vec![1.0, 2.0, 5.0, 5.5, 4.0],
-            },
+            linear,
+            monotone,
+            spline,
         ]
     }
 
@@ -271,7 +248,7 @@ mod tests {
     fn each_derivative_is_the_rate_of_the_one_before() {
         for course in courses() {
             let complex = course.map(&mut Complex64::from);
-            for t in [-0.5, 0.2, 0.6, 1.0, 1.7, 2.5] {
+            for t in [-0.5, 0.02, 0.2, 0.6, 0.79, 1.0, 1.7, 2.5] {
                 let exact = complex.derivatives(Complex64::new(t, COMPLEX_STEP));
                 let given = course.derivatives(t);
                 for k in 0..3 {
@@ -284,16 +261,89 @@ mod tests {
 
     #[test]
     fn a_table_meets_its_points_with_continuous_curvature() {
-        let [.., course] = courses();
-        let MotionCourse::Table { times, values } = &course else {
-            unreachable!("the last course is a table");
-        };
-        for (&t, &m) in times.iter().zip(values) {
-            assert!((course.derivatives(t)[0] - m).abs() < 1e-14);
-            let (before, after) = (course.derivatives(t - 1e-9), course.derivatives(t + 1e-9));
-            for k in 0..3 {
-                assert!((before[k] - after[k]).abs() < 1e-5, "derivative {k} at {t}");
+        for interpolation in ALL {
+            let course = table(interpolation);
+            let MotionCourse::Table { times, values, .. } = &course else {
+                unreachable!("a table")
+            };
+            for (&t, &m) in times.iter().zip(values) {
+                assert!((course.derivatives(t)[0] - m).abs() < 1e-14);
             }
+            for t in breaks(times, interpolation, true) {
+                let (before, after) = (course.derivatives(t - 1e-9), course.derivatives(t + 1e-9));
+                for k in 0..3 {
+                    let near = (before[k] - after[k]).abs() < 2e-5;
+                    assert!(near, "{interpolation:?}: derivative {k} at {t}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn motions_do_not_overshoot_whatever_the_table() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 40) as f64 / (1 << 24) as f64
+        };
+        for _ in 0..200 {
+            // Dwells, reversals, and steps and intervals of very unequal size.
+            let (mut t, mut times, mut values) = (0.0, Vec::new(), Vec::new());
+            for _ in 0..8 {
+                times.push(t);
+                t += 10_f64.powf(-2.0 * random());
+                let step = 10_f64.powf(-3.0 * random());
+                let last = values.last().copied().unwrap_or(0.0);
+                values.push(match (random() * 4.0) as usize {
+                    0 => last,
+                    1 => last - step,
+                    _ => last + step,
+                });
+            }
+            for interpolation in [Interpolation::Linear, Interpolation::Monotone] {
+                let (times, values) = (times.clone(), values.clone());
+                let course = MotionCourse::Table {
+                    times: times.clone(),
+                    values: values.clone(),
+                    interpolation,
+                };
+                for (t, m) in times.windows(2).zip(values.windows(2)) {
+                    let mut before = m[0];
+                    for i in 0..=200 {
+                        let at = t[0] + (t[1] - t[0]) * f64::from(i) / 200.0;
+                        let x = course.derivatives(at.min(t[1]))[0];
+                        // Monotone, so that it stays between the values.
+                        let way = (x - before) * (m[1] - m[0]).signum();
+                        let flat = m[1] == m[0] && (x - before).abs() > 1e-13;
+                        assert!(
+                            way >= -1e-13 && !flat,
+                            "{interpolation:?} at {at}: {times:?} {values:?}"
+                        );
+                        before = x;
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_monotone_table_of_a_smooth_motion_is_near_it() {
+        let times: Vec<f64> = (0..=20).map(|i| 0.05 * f64::from(i)).collect();
+        let values: Vec<f64> = times.iter().map(|t| (1.5 * t).sin()).collect();
+        let interpolation = Interpolation::Monotone;
+        let course = MotionCourse::Table {
+            times,
+            values,
+            interpolation,
+        };
+        // Away from the ends, where it starts from rest.
+        for i in 0..100 {
+            let t = 0.1 + 0.008 * f64::from(i);
+            let [x, rate, ..] = course.derivatives(t);
+            assert!((x - (1.5 * t).sin()).abs() < 1e-5, "{x} at {t}");
+            assert!((rate - 1.5 * (1.5 * t).cos()).abs() < 3e-3, "{rate} at {t}");
         }
     }
 
@@ -301,7 +351,7 @@ mod tests {
     fn derivatives_by_parameters_are_those_of_the_complex_step() {
         let weights = [0.7, -1.1, 0.4];
         for course in courses() {
-            for t in [-0.5, 0.2, 0.6, 1.0, 1.7, 2.5] {
+            for t in [-0.5, 0.02, 0.2, 0.6, 0.79, 1.0, 1.7, 2.5] {
                 let mut own = course.map(&mut |_| 0.0);
                 let by_time = course.pull_back(t, weights, &mut own);
                 let mut given = vec![by_time];

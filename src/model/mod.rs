@@ -11,6 +11,7 @@ pub mod joint;
 pub mod load;
 pub mod mobility;
 pub mod rigid_body;
+pub mod table;
 
 pub use course::Course;
 pub use drive::{Drive, MotionCourse};
@@ -18,6 +19,7 @@ pub use joint::{ConstraintRow, Freedom, Joint, JointFrame, JointKind};
 pub use load::{Axes, Load, LoadKind};
 pub use mobility::Mobility;
 pub use rigid_body::RigidBody;
+pub use table::Interpolation;
 
 use crate::math::{Scalar, Vec3};
 

@@ -6,6 +6,7 @@ use super::scene::unit;
 use super::schema::Document;
 use super::schema::drives::{Course as Written, Drive as WrittenDrive};
 use super::schema::joints::{Joint as WrittenJoint, JointPlace};
+use super::schema::loads::Interpolation;
 use super::schema::mechanics::Shape;
 use crate::math::scalar::length;
 use crate::math::{Scalar, Vec3};
@@ -158,7 +159,8 @@ fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> MotionCourse<S
             frequency: get(frequency),
             phase: get(phase),
         },
-        Written::Table(times, values) => MotionCourse::Table {
+        Written::Table(times, values, interpolation) => MotionCourse::Table {
+            interpolation: Interpolation::of(interpolation),
             times: times.iter().map(|&t| t.into()).collect(),
             values: values.iter().map(get).collect(),
         },

@@ -4,7 +4,9 @@ use super::placement::{Assembly, GROUND};
 use super::scene::unit;
 use super::schema::Document;
 use super::schema::joints::Joint;
-use super::schema::loads::{Axes as WrittenAxes, Course as Written, Load as WrittenLoad, Motion};
+use super::schema::loads::{
+    Axes as WrittenAxes, Course as Written, Interpolation, Load as WrittenLoad, Motion,
+};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, Course, Freedom, Load, LoadKind};
 
@@ -118,7 +120,8 @@ fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> Course<S> {
             frequency: get(frequency),
             phase: get(phase),
         },
-        Written::Table(times, values) => Course::Table {
+        Written::Table(times, values, interpolation) => Course::Table {
+            interpolation: Interpolation::of(interpolation),
             times: times.iter().map(|&t| t.into()).collect(),
             values: values.iter().map(get).collect(),
         },

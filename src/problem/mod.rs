@@ -34,7 +34,7 @@ pub use overrides::{Override, OverrideError};
 pub use schema::schema;
 pub use variables::Variable;
 
-use crate::functions::Scene;
+use crate::functions::{Function, Scene};
 use crate::integrate::{self, Spacing};
 use crate::lower::Lowering;
 use crate::math::Scalar;
@@ -135,8 +135,12 @@ pub struct Problem {
     pub simulation: Simulation,
     /// Design variables in the order of the file.
     pub variables: Vec<Variable>,
-    /// The function that is optimised, if any.
+    /// The function that is optimised, if any. A file with constraints and variables and without
+    /// objective asks for the feasible design nearest to its own: then it is the last function,
+    /// Σ ((x − x0)/scale)².
     pub objective: Option<Objective>,
+    /// x0, where the file has no objective.
+    nearest_to: Option<Vec<f64>>,
     /// Constraints in the order of the file.
     pub constraints: Vec<Constraint>,
     /// Names of the functions in the order of the file, which is that of [`Scene::functions`].
@@ -232,10 +236,23 @@ impl Problem {
         for (joint, left_out) in scene.model.joints.iter_mut().zip(&self.left_out) {
             joint.left_out.clone_from(left_out);
         }
+        if let Some(start) = &self.nearest_to {
+            let terms = x.iter().zip(start).zip(&self.variables);
+            let distance = terms.fold(S::zero(), |sum, ((&x, &x0), variable)| {
+                let change = (x - x0) / variable.scale;
+                sum + change * change
+            });
+            scene.functions.push(Function::OfDesign(distance));
+        }
         if let Some(focus) = &self.focus {
             focus.seen.apply(&mut scene);
         }
         scene
+    }
+
+    /// The objective that the file states.
+    pub fn stated_objective(&self) -> Option<Objective> {
+        self.objective.filter(|_| self.nearest_to.is_none())
     }
 
     /// How the motion of the design `x` is drawn.

@@ -1,7 +1,7 @@
 //! A document without its structural faults, so that the rest of it can be judged as well.
 
 use super::fault::Finding;
-use super::pointer::keys;
+use super::pointer::{keys, nearest};
 use super::schema::VERSION;
 use serde_json::{Map, Value, json};
 use std::collections::HashSet;
@@ -25,6 +25,11 @@ pub(super) struct Damage {
 }
 
 impl Damage {
+    /// True if something of a section was there but is at fault.
+    pub fn touches(&self, section: &str) -> bool {
+        self.sections.contains(section) || self.entries.iter().any(|(own, _)| own == section)
+    }
+
     /// True if an entry of this name was there but is at fault.
     pub fn holds(&self, section: &str, name: &str) -> bool {
         let entry = (section.to_owned(), name.to_owned());
@@ -47,6 +52,8 @@ pub(super) fn prune(document: &mut Map<String, Value>, findings: &[Finding]) -> 
             [section, ..] => {
                 document.shift_remove(section);
                 damage.sections.insert(section.clone());
+                let meant = nearest(section, NAMED);
+                damage.sections.extend(meant.map(str::to_owned));
             }
             [] => {}
         }

@@ -29,6 +29,9 @@ use std::path::Path;
 /// Error allowed in a step where the file gives neither steps nor a tolerance.
 const TOLERANCE: f64 = 1e-9;
 
+/// Name of the objective where a feasible design is sought.
+const NEAREST: &str = "squared distance from the start";
+
 /// Reads a problem file.
 pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Faults> {
     let file = path.display().to_string();
@@ -322,14 +325,29 @@ fn problem(
         })
         .collect();
     let hash = Sha256::digest(document.to_string());
+    let mut function_names: Vec<String> = written.functions.keys().cloned().collect();
+    let feasible = objective.is_none() && !written.constraints.is_empty() && !variables.is_empty();
+    let nearest_to = feasible.then(|| {
+        let mut name = NEAREST.to_owned();
+        while function_names.contains(&name) {
+            name.push('\'');
+        }
+        function_names.push(name);
+        variables.iter().map(|variable| variable.start).collect()
+    });
+    let nearest = nearest_to.as_ref().map(|_| Objective {
+        function: function_names.len() - 1,
+        sense: Sense::Minimise,
+    });
     Problem {
         name: written.name.clone(),
         description: written.description.clone(),
         simulation: simulation(&written.simulation),
         variables,
-        objective,
+        objective: objective.or(nearest),
+        nearest_to,
         constraints,
-        function_names: written.functions.keys().cloned().collect(),
+        function_names,
         optimiser: written.optimiser.as_ref().map_or_else(
             OptimiserSettings::default,
             |optimiser| OptimiserSettings {

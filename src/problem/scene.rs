@@ -123,6 +123,7 @@ impl<S: Scalar> Builder<'_, S> {
             Written::Integral(instant) => reduced(instant, Reduction::Integral),
             Written::Final(instant) => reduced(instant, Reduction::Final),
             Written::Clearance(clearance) => self.clearance(clearance),
+            Written::Duration => Function::Duration,
         }
     }
 
@@ -181,6 +182,10 @@ impl<S: Scalar> Builder<'_, S> {
                 }
             }
             I::Speed(moving) => Instant::Speed {
+                body: self.body(&moving.body),
+                point: self.point(&moving.body, &moving.point),
+            },
+            I::SpeedSquared(moving) => Instant::SpeedSquared {
                 body: self.body(&moving.body),
                 point: self.point(&moving.body, &moving.point),
             },
@@ -305,7 +310,7 @@ pub fn released<'a>(
             (&aggregate.of, Some(aggregate.rho))
         }
         Written::Final(instant) => (instant, None),
-        Written::Integral(_) | Written::Clearance(_) => return None,
+        Written::Integral(_) | Written::Clearance(_) | Written::Duration => return None,
     };
     match instant {
         written::Instant::Range(range) => Some((range, rho)),

@@ -3,7 +3,7 @@
 //! It knows the part of JSON Schema that the schema of problem files uses, and no more.
 
 use super::fault::Finding;
-use super::pointer::{advice, join};
+use super::pointer::{advice, join, nearest};
 use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
@@ -119,6 +119,7 @@ impl<'a> Walker<'a> {
 
     fn object(&mut self, object: &Map<String, Value>, schema: &'a Value, pointer: &str) {
         let properties = schema["properties"].as_object();
+        let mut misspelt = Vec::new();
         for (key, value) in object {
             let inner = join(pointer, key);
             match properties.and_then(|properties| properties.get(key)) {
@@ -128,7 +129,9 @@ impl<'a> Walker<'a> {
                 }
                 None => {
                     let known = properties.into_iter().flat_map(|map| map.keys());
-                    let hint = advice(key, "keys", known.map(String::as_str));
+                    let known = known.map(String::as_str);
+                    misspelt.extend(nearest(key, known.clone()));
+                    let hint = advice(key, "keys", known);
                     let found = format!("the key \"{key}\"");
                     let finding = Finding::new(inner, found, "a key of the format");
                     self.fault(finding.of_key().hint(hint));
@@ -137,7 +140,8 @@ impl<'a> Walker<'a> {
         }
         for key in schema["required"].as_array().into_iter().flatten() {
             let key = key.as_str().unwrap_or_default();
-            if !object.contains_key(key) {
+            // A key that is misspelt is there.
+            if !object.contains_key(key) && !misspelt.contains(&key) {
                 let wanted = self.wanted(&schema["properties"][key]);
                 let finding = Finding::new(
                     pointer,

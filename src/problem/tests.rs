@@ -151,7 +151,12 @@ fn the_trebuchet_has_the_masses_inertias_and_places_of_the_reference() {
         ] => {
             assert_eq!(*reduction, Reduction::Ks { rho: 0.3 });
             assert_eq!(
-                (projectile.body, projectile.ground, gate.body, gate.width),
+                (
+                    projectile.body,
+                    projectile.ground,
+                    gate.rotation.body,
+                    gate.width
+                ),
                 (4, -10.0, 3, 0.15)
             );
             assert!(close(projectile.direction, [1.0, 0.0, 0.0]));

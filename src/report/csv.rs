@@ -1,5 +1,7 @@
 //! Comma separated values (RFC 4180): quoting and its inverse.
 
+use std::fmt::Write;
+
 /// Appends one record, quoted where needed, ended by a line feed.
 pub(super) fn write_record<'a>(out: &mut String, fields: impl Iterator<Item = &'a str>) {
     for (i, field) in fields.enumerate() {
@@ -15,6 +17,25 @@ pub(super) fn write_record<'a>(out: &mut String, fields: impl Iterator<Item = &'
         }
     }
     out.push('\n');
+}
+
+/// A table with a heading a column: numbers so that they read back exactly, and nothing where one is
+/// not finite.
+pub fn csv_table(header: &[String], rows: impl Iterator<Item = Vec<f64>>) -> String {
+    let mut text = String::new();
+    write_record(&mut text, header.iter().map(String::as_str));
+    for row in rows {
+        for (i, x) in row.iter().enumerate() {
+            if i > 0 {
+                text.push(',');
+            }
+            if x.is_finite() {
+                let _ = write!(text, "{x}");
+            }
+        }
+        text.push('\n');
+    }
+    text
 }
 
 /// One record and the line where it starts, counted from one.

@@ -36,6 +36,7 @@ mod table;
 pub mod work_precision;
 
 pub use compare::{Comparison, Tolerances, compare};
+pub use csv::csv_table;
 pub use error::ReportError;
 pub use explain::{Explanation, FunctionUse, IntegrationUse, SystemSize};
 pub use files::{HeldDirectory, atomic_write, prepare_directory, read_text, write_all};

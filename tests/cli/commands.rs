@@ -76,9 +76,59 @@ fn simulate_prints_and_writes_only_where_it_is_told_to() {
     assert!(files(at.path()).is_empty());
     expect(0, at.path(), &["simulate", HAMMER, "--output", "made/here"]);
     let made = at.path().join("made/here");
-    assert_eq!(names(&made), ["energy.svg", "motion.svg", "simulation.csv"]);
-    let table = read(&made.join("simulation.csv"));
-    assert_eq!(table.lines().count(), 102, "a head and 101 instants");
+    let all = [
+        "energy.svg",
+        "functions.csv",
+        "motion.csv",
+        "motion.svg",
+        "simulation.csv",
+    ];
+    assert_eq!(names(&made), all);
+    for file in all.into_iter().filter(|file| file.ends_with(".csv")) {
+        let table = read(&made.join(file));
+        assert_eq!(
+            table.lines().count(),
+            102,
+            "{file}: a head and 101 instants"
+        );
+        let width = table.lines().next().expect("a head").split(',').count();
+        assert!(
+            table.lines().all(|line| line.split(',').count() == width),
+            "{file}"
+        );
+    }
+    let motion = read(&made.join("motion.csv"));
+    assert!(
+        motion.starts_with("time [s],handle: position x [m],"),
+        "{motion}"
+    );
+    let head = read(&made.join("functions.csv"));
+    assert!(
+        head.starts_with("time [s],strike: speed [m/s],effort: energy [J]\n"),
+        "{head}"
+    );
+    let head = read(&made.join("simulation.csv"));
+    assert!(head.contains(",pin: force x [N],"), "{head}");
+    let arguments = [
+        "simulate",
+        HAMMER,
+        "--output",
+        "joint",
+        "--joint-axes",
+        "--json",
+    ];
+    let ran = expect(0, at.path(), &arguments);
+    let table = read(&at.path().join("joint/simulation.csv"));
+    assert!(table.contains(",pin: force e1 [N],"), "{table}");
+    let told: serde_json::Value = serde_json::from_str(&ran.out).expect("JSON");
+    assert!(
+        told["functions"]["strike"]["value"]
+            .as_f64()
+            .expect("a number")
+            > 1.0
+    );
+    assert_eq!(told["functions"]["effort"]["unit"], "J s");
+    assert_eq!(told["work"]["steps"], 100);
     let quiet = expect(0, at.path(), &["simulate", HAMMER, "--quiet"]);
     assert!(quiet.out.is_empty() && quiet.err.is_empty(), "{quiet:?}");
 }

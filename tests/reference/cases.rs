@@ -3,6 +3,7 @@
 use super::models::{KINDS, Numbers, axes_along, joint};
 use flexbody::math::scalar::COMPLEX_STEP;
 use flexbody::math::{Complex64, Scalar};
+use flexbody::model::Interpolation;
 use flexbody::model::{Drive, Freedom, JointKind, Model, MotionCourse};
 use flexbody::system::bodies::{Motion, rates};
 use flexbody::system::{Numbering, initial, joints};
@@ -68,6 +69,7 @@ fn driven(mut case: Case) -> Case {
         (JointKind::Planar, _) => MotionCourse::Table {
             times: vec![0.0, 0.1, 0.25, 0.4, 0.6],
             values: vec![0.1, 0.2, -0.3, 0.4, 0.2],
+            interpolation: Interpolation::Spline,
         },
         (_, Freedom::Slide) => MotionCourse::Harmonic {
             mean: 0.1,

@@ -127,7 +127,7 @@ impl Checker<'_> {
                 );
                 self.fault(finding);
             }
-            Course::Table(times, values) => self.table(pointer, times, values),
+            Course::Table(times, values, _) => self.table(pointer, times, values),
             Course::Rate(_) | Course::Polynomial(_) | Course::Harmonic(_) => {}
         }
     }

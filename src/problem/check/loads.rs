@@ -112,7 +112,7 @@ impl Checker<'_> {
     }
 
     fn course(&mut self, pointer: &str, course: Course) {
-        if let Course::Table(times, values) = course {
+        if let Course::Table(times, values, _) = course {
             self.table(pointer, times, values);
         }
     }

@@ -121,6 +121,7 @@ impl Checker<'_> {
             Function::Clearance(clearance) => {
                 self.clearance(&format!("{pointer}/clearance"), clearance);
             }
+            Function::Duration => {}
         }
     }
 
@@ -151,6 +152,10 @@ impl Checker<'_> {
             }
             Instant::Speed(moving) => {
                 self.moving(&join(pointer, "speed"), &moving.body, &moving.point);
+            }
+            Instant::SpeedSquared(moving) => {
+                let pointer = join(pointer, "speed_squared");
+                self.moving(&pointer, &moving.body, &moving.point);
             }
             Instant::Energy(_) => {}
             Instant::Rotation(rotation) => {

@@ -1,5 +1,6 @@
 //! Drives as they are written in a file.
 
+use super::loads::Interpolation;
 use crate::problem::quantity::Quantity;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -57,6 +58,8 @@ macro_rules! courses {
                 /// Value at each instant.
                 #[schemars(extend("unit" = $unit))]
                 values: Vec<Quantity>,
+                /// What stands between the values, default monotone.
+                interpolation: Option<Interpolation>,
             },
         }
 
@@ -72,7 +75,11 @@ macro_rules! courses {
                         phase,
                         mean,
                     } => Course::Harmonic([mean, amplitude, frequency, phase]),
-                    Self::Table { times, values } => Course::Table(times, values),
+                    Self::Table {
+                        times,
+                        values,
+                        interpolation,
+                    } => Course::Table(times, values, *interpolation),
                 }
             }
         }
@@ -91,7 +98,7 @@ pub enum Course<'a> {
     /// Mean, amplitude, frequency and phase.
     Harmonic([&'a Quantity; 4]),
     /// Instants and values.
-    Table(&'a [f64], &'a [Quantity]),
+    Table(&'a [f64], &'a [Quantity], Option<Interpolation>),
 }
 
 /// The quantity 0.

@@ -19,6 +19,8 @@ pub enum Function {
     Final(Instant),
     /// Height of a flight path above the top of a barrier (m).
     Clearance(Clearance),
+    /// Duration of the run; with `until`, the time when the event comes (s).
+    Duration,
 }
 
 /// What is aggregated, and how sharply.
@@ -48,6 +50,8 @@ pub enum Instant {
     Acceleration(Component),
     /// Speed of a point (m/s).
     Speed(Moving),
+    /// Square of the speed of a point, smooth at rest too (m²/s²).
+    SpeedSquared(Moving),
     /// Energy of the whole scene (J).
     Energy(Energy),
     /// Rotation of a body about an axis, counted on over whole turns (rad).

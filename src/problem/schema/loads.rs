@@ -2,6 +2,7 @@
 
 use super::joints::Ends;
 use super::mechanics::Point;
+use crate::model;
 use crate::problem::quantity::{Quantity, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -73,6 +74,29 @@ pub enum Axes {
     Body,
 }
 
+/// What stands between the values of a table.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Interpolation {
+    /// Straight lines. Those of a motion are rounded at each end, so that accelerations stay finite.
+    Linear,
+    /// Smooth without overshoot.
+    Monotone,
+    /// As smooth as the values; overshoots where these are not.
+    Spline,
+}
+
+impl Interpolation {
+    /// That of the model.
+    pub fn of(written: Option<Self>) -> model::Interpolation {
+        match written {
+            Some(Self::Linear) => model::Interpolation::Linear,
+            Some(Self::Spline) => model::Interpolation::Spline,
+            Some(Self::Monotone) | None => model::Interpolation::Monotone,
+        }
+    }
+}
+
 /// A magnitude in its unit, and how it may vary with time.
 macro_rules! courses {
     ($course:ident, $varying:ident, $what:literal, $unit:literal) => {
@@ -104,8 +128,7 @@ macro_rules! courses {
                 #[schemars(extend("unit" = "rad"))]
                 phase: Quantity,
             },
-            /// Smooth interpolation that does not overshoot, level at both ends and held beyond
-            /// them.
+            /// Interpolation between values, held beyond both ends.
             Table {
                 /// Instants, increasing.
                 #[schemars(extend(
@@ -116,6 +139,8 @@ macro_rules! courses {
                 /// Value at each instant.
                 #[schemars(extend("unit" = $unit))]
                 values: Vec<Quantity>,
+                /// What stands between the values, default monotone.
+                interpolation: Option<Interpolation>,
             },
         }
 
@@ -129,9 +154,11 @@ macro_rules! courses {
                         frequency,
                         phase,
                     }) => Course::Harmonic([amplitude, frequency, phase]),
-                    $course::Varying($varying::Table { times, values }) => {
-                        Course::Table(times, values)
-                    }
+                    $course::Varying($varying::Table {
+                        times,
+                        values,
+                        interpolation,
+                    }) => Course::Table(times, values, *interpolation),
                 }
             }
         }
@@ -148,7 +175,7 @@ pub enum Course<'a> {
     /// Amplitude, frequency and phase.
     Harmonic([&'a Quantity; 3]),
     /// Instants and values.
-    Table(&'a [f64], &'a [Quantity]),
+    Table(&'a [f64], &'a [Quantity], Option<Interpolation>),
 }
 
 /// The quantity 0.

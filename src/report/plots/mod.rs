@@ -5,12 +5,14 @@
 
 mod axis;
 mod canvas;
+mod connectors;
 mod convergence;
 mod energy;
 mod motion;
 mod panel;
 mod work_precision;
 
+pub use connectors::{Connector, ConnectorKind};
 pub use convergence::convergence;
 pub use energy::{EnergyRun, energy};
 pub use motion::{Barrier, BodyMotion, Flight, Motion, Scenery, motion};

@@ -2,6 +2,7 @@
 
 use super::axis::{Axis, range};
 use super::canvas::{Anchor, BLACK, Canvas, GROUND, INK, PALETTE};
+use super::connectors::{self, Connector, ConnectorKind};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
 use crate::report::ReportError;
 use plotters::style::RGBColor;
@@ -36,6 +37,8 @@ pub struct Motion {
     pub title: String,
     /// Bodies in the order of the problem file; the same for all designs.
     pub bodies: Vec<BodyMotion>,
+    /// Joints, rods, springs and arms.
+    pub connectors: Vec<Connector>,
     /// Paths of the points of interest (until the release, if there is one); may be empty.
     pub traces: Vec<Vec<Point>>,
     /// Release of the projectile, if there is one.
@@ -112,6 +115,19 @@ pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportErr
             .iter()
             .flat_map(|design| design.traces.iter().flatten()),
     );
+    let connected = designs.iter().flat_map(|design| &design.connectors);
+    points.extend(connected.flat_map(|connector| {
+        // The second point of a slider is a direction.
+        let count = if connector.kind == ConnectorKind::Slider {
+            1
+        } else {
+            2
+        };
+        connector
+            .ends
+            .iter()
+            .flat_map(move |ends| ends[..count].to_vec())
+    }));
     let flights: Vec<Option<Vec<Point>>> = designs
         .iter()
         .map(|design| design.flight.as_ref()?.path(scenery.ground?))
@@ -240,6 +256,7 @@ fn lapse_legend(designs: &[Motion], width: f64) -> Legend {
     for (i, body) in designs[0].bodies.iter().enumerate() {
         entries.push((Key::Area(body_color(i)), body.name.clone()));
     }
+    entries.extend(connectors::legend(&designs[0].connectors));
     let long = |design: &Motion| design.traces.iter().any(|trace| trace.len() > 1);
     if designs.iter().any(long) {
         entries.push((Key::Line(INK), "path".to_owned()));
@@ -327,6 +344,9 @@ fn draw_lapse(canvas: &mut Canvas, panel: &Panel, design: &Motion) {
                 pixels.extend(pixels.first().copied());
             }
             canvas.path(&pixels, body_color(i), 1.2, 0.25 + 0.75 * late);
+        }
+        for connector in &design.connectors {
+            connectors::draw(canvas, panel, connector, (frame, late), body_color);
         }
     }
     for trace in &design.traces {

@@ -1,0 +1,105 @@
+//! Where joints, rods, springs and arms are in a picture of the motion.
+
+use crate::functions::measure::Snapshot;
+use crate::integrate::Trajectory;
+use crate::math::Vec3;
+use crate::model::{JointKind, LoadKind, Model};
+use crate::problem::{Drawing, Outline};
+use crate::report::plots::{Connector, ConnectorKind};
+
+/// A point of a body from its centre of mass, or of ground.
+type Fixed = (Option<usize>, Vec3<f64>);
+
+/// The connectors of a model at the instants of a time lapse, in the plane of the view.
+pub(super) fn connectors(
+    (model, run): (&Model<f64>, &Trajectory<f64>),
+    drawing: &Drawing,
+    instants: &[usize],
+) -> Vec<Connector> {
+    let flat = |p: &Vec3<f64>| [drawing.right.dot(p), drawing.up.dot(p)];
+    let place = |k: usize, (body, point): &Fixed| match body {
+        Some(body) => Snapshot::of(model, run, k).motion(*body).point(point),
+        None => *point,
+    };
+    let mut all = Vec::new();
+    let mut add = |kind, to_ground, ends: &dyn Fn(usize) -> [Vec3<f64>; 2]| {
+        let ends = instants.iter().map(|&k| ends(k).each_ref().map(flat));
+        all.push(Connector {
+            kind,
+            to_ground,
+            ends: ends.collect(),
+        });
+    };
+    // Points that something holds or follows, by body.
+    let mut held: Vec<(usize, Vec3<f64>)> = drawing.traces.clone();
+    for load in &model.loads {
+        if let LoadKind::Spring {
+            body_a,
+            body_b,
+            point_a,
+            point_b,
+            ..
+        } = &load.kind
+        {
+            let both: [Fixed; 2] = [(Some(*body_a), *point_a), (*body_b, *point_b)];
+            held.extend(
+                both.iter()
+                    .filter_map(|(body, point)| Some(((*body)?, *point))),
+            );
+            let ends = |k| both.each_ref().map(|end| place(k, end));
+            add(ConnectorKind::Spring, body_b.is_none(), &ends);
+        }
+    }
+    for joint in &model.joints {
+        let both: [Fixed; 2] = [
+            (Some(joint.body_a), joint.frame_a.point),
+            (joint.body_b, joint.frame_b.point),
+        ];
+        let kind = match joint.kind {
+            JointKind::Rod => ConnectorKind::Rod,
+            JointKind::Prismatic | JointKind::Cylindrical => ConnectorKind::Slider,
+            JointKind::Spherical | JointKind::Revolute | JointKind::Universal => {
+                ConnectorKind::Hinge
+            }
+            // Bodies that are one, or that slide across all of a plane, meet nowhere.
+            JointKind::Weld | JointKind::Planar => continue,
+        };
+        held.extend(both.iter().filter_map(|(body, point)| {
+            let follows = kind != ConnectorKind::Slider;
+            follows.then_some(((*body)?, *point))
+        }));
+        let ends = |k| match kind {
+            ConnectorKind::Slider => {
+                let at = place(k, &both[0]);
+                let motion = Snapshot::of(model, run, k).motion(joint.body_a);
+                [at, at + motion.rotation * joint.frame_a.axes[2]]
+            }
+            _ => both.each_ref().map(|end| place(k, end)),
+        };
+        add(kind, joint.body_b.is_none(), &ends);
+    }
+    for (body, point) in held {
+        if beside(&drawing.outlines[body], &point) {
+            let ends = |k| [Vec3::zeros(), point].map(|p| place(k, &(Some(body), p)));
+            add(ConnectorKind::Arm { body }, false, &ends);
+        }
+    }
+    all
+}
+
+/// Whether a point of a body lies outside its shape.
+fn beside(outline: &Outline, point: &Vec3<f64>) -> bool {
+    match outline {
+        Outline::Sphere(radius) => point.norm() > radius * (1.0 + 1e-9),
+        // Corners are on the surface, so the box around them holds all of the shape.
+        Outline::Hull(corners) => (0..3).any(|i| {
+            let reach = corners.iter().map(|c| c[i].abs()).fold(0.0, f64::max);
+            let longest = corners.iter().map(Vec3::norm).fold(0.0, f64::max);
+            point[i].abs() > reach + 1e-9 * longest
+        }),
+        Outline::Spokes(ends) => {
+            let near = |end: &Vec3<f64>| (end - point).norm() < 1e-9 * (1.0 + point.norm());
+            point.norm() > 0.0 && !ends.iter().any(near)
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! What a simulation finds at every instant, as comma separated values of full precision.
+
+use super::figures::NamedFile;
+use super::simulate::Simulation;
+use crate::functions::Function;
+use crate::functions::evaluate::sample;
+use crate::functions::measure::Snapshot;
+use crate::functions::turning::turns;
+use crate::math::Vec3;
+use crate::problem::Problem;
+use crate::report::csv_table;
+use crate::system::observe::Reaction;
+
+/// The axes that joint reactions are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReactionAxes {
+    /// Those of ground.
+    Ground,
+    /// Those of the joint on its first body; e3 is the joint's axis.
+    Joint,
+}
+
+/// `simulation.csv`, `motion.csv` and, if there are functions, `functions.csv`.
+pub fn of_simulation(
+    problem: &Problem,
+    simulation: &Simulation,
+    axes: ReactionAxes,
+) -> Vec<NamedFile> {
+    let mut all = vec![
+        ("simulation.csv", observations(simulation, axes)),
+        ("motion.csv", motion(simulation)),
+    ];
+    if !problem.function_names.is_empty() {
+        all.push(("functions.csv", functions(problem, simulation)));
+    }
+    let bytes = |(name, text): (&'static str, String)| (name, text.into_bytes());
+    all.into_iter().map(bytes).collect()
+}
+
+/// Headings of the three components of a vector.
+fn components(what: &str, unit: &str) -> [String; 3] {
+    ["x", "y", "z"].map(|axis| format!("{what} {axis} [{unit}]"))
+}
+
+/// Energy, momentum, drift and the force and torque of every joint on its first body (the one that
+/// is not ground), at the joint's point.
+fn observations(simulation: &Simulation, axes: ReactionAxes) -> String {
+    let mut header = vec![
+        "time [s]".to_owned(),
+        "kinetic energy [J]".to_owned(),
+        "potential energy [J]".to_owned(),
+    ];
+    header.extend(components("momentum", "kg m/s"));
+    header.extend(components("angular momentum", "kg m^2/s"));
+    header.extend(["position drift".to_owned(), "velocity drift".to_owned()]);
+    for joint in &simulation.written.model.joints {
+        for (what, unit) in [("force", "N"), ("torque", "N m")] {
+            let what = format!("{}: {what}", joint.name);
+            header.extend(match axes {
+                ReactionAxes::Ground => components(&what, unit),
+                ReactionAxes::Joint => [1, 2, 3].map(|k| format!("{what} e{k} [{unit}]")),
+            });
+        }
+    }
+    let reactions = simulation.reactions_at(0..simulation.observations.len());
+    let both = |reaction: &Reaction| match axes {
+        ReactionAxes::Ground => [reaction.force_ground, reaction.torque_ground],
+        ReactionAxes::Joint => [reaction.force, reaction.torque],
+    };
+    let observed = simulation.observations.iter().zip(&reactions).enumerate();
+    let rows = observed.map(|(k, (seen, reactions))| {
+        let mut row = vec![simulation.at.run.time(k), seen.kinetic, seen.potential];
+        row.extend(seen.momentum.iter().chain(seen.angular_momentum.iter()));
+        row.extend([seen.position_drift, seen.velocity_drift]);
+        let vectors: Vec<Vec3<f64>> = reactions.iter().flat_map(both).collect();
+        row.extend(vectors.iter().flat_map(|v| v.iter().copied()));
+        row
+    });
+    csv_table(&header, rows)
+}
+
+/// Position of the centre of mass, Euler parameters (body axes to ground, p0 first), velocity and
+/// angular velocity of every body, all in ground axes.
+fn motion(simulation: &Simulation) -> String {
+    let (model, run) = (&simulation.written.model, simulation.motion());
+    let mut header = vec!["time [s]".to_owned()];
+    for body in &model.bodies {
+        let named = |what: &str| format!("{}: {what}", body.name);
+        header.extend(components(&named("position"), "m"));
+        header.extend([0, 1, 2, 3].map(|k| named(&format!("p{k}"))));
+        header.extend(components(&named("velocity"), "m/s"));
+        header.extend(components(&named("angular velocity"), "rad/s"));
+    }
+    let rows = (0..=run.last()).map(|k| {
+        let mut row = vec![run.time(k)];
+        for body in 0..model.bodies.len() {
+            let motion = Snapshot::of(model, run, k).motion(body);
+            row.extend(motion.position.iter());
+            row.extend(motion.orientation);
+            row.extend(motion.velocity.iter());
+            row.extend((motion.rotation * motion.omega).iter());
+        }
+        row
+    });
+    csv_table(&header, rows)
+}
+
+/// The quantity of every function, and of the event, at every instant; of a clearance that of a
+/// release at this instant. A value that is not finite is left empty.
+fn functions(problem: &Problem, simulation: &Simulation) -> String {
+    let (scene, run) = (&simulation.written, simulation.motion());
+    let model = &scene.model;
+    let named = problem.function_names.iter().map(String::as_str);
+    let all = named.zip(&scene.functions);
+    let event = scene.until.iter().map(|until| ("until", &until.measure));
+    let mut header = vec!["time [s]".to_owned()];
+    let mut columns: Vec<Vec<f64>> = vec![(0..=run.last()).map(|k| run.time(k)).collect()];
+    for (name, function) in all.chain(event) {
+        let (what, unit, values) = match function {
+            Function::Reduced { instant, .. } => {
+                let turns = turns(instant.watched_rotation(), run);
+                let values = sample(instant, &turns, model, run);
+                (instant.describe(), instant.unit(), values)
+            }
+            Function::Clearance {
+                projectile,
+                distance,
+                top,
+                ..
+            } => {
+                let at = |k| {
+                    let flight = Snapshot::of(model, run, k).flight(projectile);
+                    flight.clearance(*distance, *top)
+                };
+                ("clearance", "m", (0..=run.last()).map(at).collect())
+            }
+            Function::Duration | Function::OfDesign(_) => continue,
+        };
+        header.push(format!("{name}: {what} [{unit}]"));
+        columns.push(values);
+    }
+    let rows = (0..=run.last()).map(|k| columns.iter().map(|column| column[k]).collect());
+    csv_table(&header, rows)
+}

@@ -1,0 +1,56 @@
+//! Where the speed of a point passes zero: it has a kink there, |v| ~ |t − t0|.
+
+use super::function::{Function, Reduction};
+use super::instant::Instant;
+use super::measure::Snapshot;
+use crate::integrate::Trajectory;
+use crate::math::Vec3;
+use crate::model::Model;
+
+/// Closest approach to rest, relative to the change of velocity between two samples, that these do
+/// not tell from a kink.
+const CLOSE: f64 = 0.05;
+
+/// The time when a speed that `function` reduces over the run first passes zero, where this counts in
+/// its value (s). The start and the end of a run may be at rest: speeds are smooth up to them.
+pub fn passes_rest(
+    function: &Function<f64>,
+    model: &Model<f64>,
+    run: &Trajectory<f64>,
+) -> Option<f64> {
+    let Function::Reduced {
+        instant: Instant::Speed { body, point },
+        reduction,
+    } = function
+    else {
+        return None;
+    };
+    let velocity = |k| {
+        let motion = Snapshot::of(model, run, k).motion(*body);
+        motion.point_velocity(point)
+    };
+    let all: Vec<Vec3<f64>> = (0..=run.last()).map(velocity).collect();
+    let fastest = all.iter().map(Vec3::norm).fold(0.0, f64::max);
+    // The weight of an instant at rest beside that of the fastest one.
+    let counts = match reduction {
+        Reduction::Final => false,
+        Reduction::Integral => true,
+        Reduction::Ks { rho } | Reduction::InducedExponential { rho } => {
+            (-rho * fastest).exp() > f64::EPSILON
+        }
+    };
+    if !counts {
+        return None;
+    }
+    let last = all.len() - 1;
+    (1..=last).find_map(|k| {
+        let (before, change) = (all[k - 1], all[k] - all[k - 1]);
+        let square = change.norm_squared();
+        let part = -before.dot(&change) / square;
+        let inside = (k > 1 || part > CLOSE) && (k < last || part < 1.0 - CLOSE);
+        let nearest = (before + change * part).norm_squared();
+        let close = nearest < CLOSE * CLOSE * square;
+        let (t0, t1) = (run.time(k - 1), run.time(k));
+        ((0.0..=1.0).contains(&part) && inside && close).then_some(t0 + part * (t1 - t0))
+    })
+}
