@@ -69,7 +69,7 @@ fn observations(simulation: &Simulation, axes: ReactionAxes) -> String {
     };
     let observed = simulation.observations.iter().zip(&reactions).enumerate();
     let rows = observed.map(|(k, (seen, reactions))| {
-        let mut row = vec![simulation.at.run.time(k), seen.kinetic, seen.potential];
+        let mut row = vec![simulation.motion().time(k), seen.kinetic, seen.potential];
         row.extend(seen.momentum.iter().chain(seen.angular_momentum.iter()));
         row.extend([seen.position_drift, seen.velocity_drift]);
         let vectors: Vec<Vec3<f64>> = reactions.iter().flat_map(both).collect();

@@ -424,3 +424,28 @@ fn every_beginning_of_a_file_is_one_fault() {
         assert_eq!(faults.list.len(), 1, "{length}: {faults}");
     }
 }
+
+/// A misspelt key is told once: not again as a key that is missing, or as a part that is not there.
+#[test]
+fn a_misspelt_key_is_told_once() {
+    let only = r#"{"version": 1, "name": "only", "simulation": {"duration": 1}, "bodies": {
+        "ball": {"shape": {"sphere": {"radius": 1}}, "masss": 1}}}"#;
+    let mut files = vec![
+        only.to_owned(),
+        only.replace("masss", "mass").replace("radius", "radus"),
+    ];
+    for (sound, wrong) in [
+        (r#""joints": {"#, r#""joint": {"#),
+        (r#""functions": {"#, r#""function": {"#),
+        (r#""simulation": {"#, r#""simulaton": {"#),
+        (r#""duration": 2"#, r#""durtion": 2"#),
+        (r#"{"spherical": {"between""#, r#"{"spherical": {"betwen""#),
+        (r#""top": 1"#, r#""topp": 1"#),
+    ] {
+        files.push(spoilt(&[(sound, wrong)]));
+    }
+    for file in files {
+        let told = faults(&file);
+        assert_eq!(told.matches(" found ").count(), 1, "{told}");
+    }
+}
