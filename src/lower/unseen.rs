@@ -52,6 +52,10 @@ impl Seen {
             }
             (function.clone()).for_each_place(&mut |body, _| seen[*body] = true);
         }
+        // The duration is a function of no body; a scene has one at least.
+        if !seen.contains(&true) {
+            seen.fill(true);
+        }
         let all = 0..model.bodies.len();
         let looked_at: Vec<usize> = (all.clone().filter(|&body| seen[body]))
             .map(|body| parts.of(body))
