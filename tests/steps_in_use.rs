@@ -67,6 +67,16 @@ fn a_mechanism_that_is_nearly_locked_is_given_up() {
     );
 }
 
+/// A stiff spring that vibrates without damping needs hundreds of thousands of steps at a tight tolerance,
+/// a fifth of them rejected. It is one body, and is not given up.
+#[test]
+fn a_fast_vibration_is_not_given_up() {
+    let simulation = r#"/simulation={"duration": 4, "tolerance": 1e-11, "samples": 1}"#;
+    let problem = load("benchmarks/stiff_pendulum", &[simulation]);
+    let motion = simulate(&problem, &problem.start()).expect("runs");
+    assert_eq!(motion.at.run.grid.reached(), 1.0);
+}
+
 /// A design whose simulation exceeds its limit is one that the optimiser backs off from.
 #[test]
 fn a_simulation_over_its_limit_is_a_failed_evaluation() {

@@ -18,12 +18,12 @@ const GROW: f64 = 6.0;
 const LEAPS: [f64; 8] = [0.7, 1.3, 0.5, 1.8, 0.3, 2.5, 0.15, 4.0];
 /// Smallest step, as a part of the duration.
 const SMALLEST: f64 = 1e-12;
-/// Most tries of a run whose steps follow the error, and most of them that are rejected. The pace is
-/// looked at every so many tries: a run that would need more at its latest pace is given up at once.
-/// Smooth motions have few rejected steps however fast they are; a mechanism that is nearly locked
-/// rejects a quarter.
+/// Most tries of a run whose steps follow the error, and most of them that are rejected, times the
+/// unknowns of the accelerations. The pace is looked at every so many tries: a run that would need more
+/// at its latest pace is given up at once. A mechanism that is nearly locked rejects a quarter of its
+/// tries; so may a fast vibration of one body, which costs little.
 const MOST: usize = 10_000_000;
-const MOST_REJECTED: usize = 50_000;
+const MOST_REJECTED: usize = 2_000_000;
 const PACE: usize = 5_000;
 
 /// Lengths and speeds of a scene that errors are relative to.
@@ -110,6 +110,13 @@ fn fastest<S: Scalar>(numbering: &Numbering, v: &[S]) -> [f64; 2] {
 
 fn largest<S: Scalar>(x: &[S]) -> f64 {
     x.iter().fold(0.0, |m, x| m.max(x.re().abs()))
+}
+
+/// Unknowns of the accelerations: velocities and multipliers.
+fn unknowns<S>(model: &Model<S>) -> usize {
+    let velocities = model.bodies.iter().map(|body| body.mobility.unknowns());
+    let rows = model.joints.iter().map(|joint| joint.rows().count());
+    velocities.chain(rows).sum()
 }
 
 /// Part of a period of the fastest harmonic load that a step may take.
@@ -258,7 +265,7 @@ impl Controller {
             // Who says how long it may take says so instead.
             most_rejected: match settings.limits.seconds {
                 Some(_) => MOST,
-                None => MOST_REJECTED,
+                None => MOST_REJECTED / unknowns(model).max(1),
             },
             clock: Clock::start(&settings.limits, duration),
             stopped: None,
