@@ -7,7 +7,7 @@ mod optimiser_problems;
 #[path = "optimiser_problems/scaled.rs"]
 mod scaled;
 
-use flexbody::optimiser::{Method, Options, Outcome, Silent, Status, solve};
+use flexbody::optimiser::{Method, Nlp, Options, Outcome, Silent, Status, solve};
 use least_squares::least_squares;
 use optimiser_problems::dual::Dual;
 use optimiser_problems::hock_schittkowski;
@@ -215,4 +215,121 @@ fn auto_spends_what_is_allowed_before_it_names_a_limit() {
         assert_eq!(outcome.status, Status::IterationLimit);
         assert_eq!(outcome.counts.iterations, most);
     }
+}
+
+/// The residuals of an outcome follow from its point and its multipliers, whose signs are those of
+/// ∇f + Jᵀy − z_L + z_U = 0: all of them are computed here once more, at ends and on the way.
+#[test]
+fn residuals_follow_from_the_point_and_its_multipliers() {
+    let made: [fn() -> Problem; 5] = [
+        // Both variables at their upper bounds, with forces 1 and 2.
+        || {
+            Problem::new("up", &[0.4, 0.2], -7.0, |x| x[0] * (-1.0) - x[1] * 2.0)
+                .bounds(&[0.0, -1.0], &[1.0, 3.0])
+        },
+        // Both at their lower bounds, with forces 1 and 2.
+        || {
+            Problem::new("down", &[0.4, 0.2], 2.0, |x| x[0] + x[1] * 2.0)
+                .bounds(&[0.0, 1.0], &[1.0, 3.0])
+        },
+        // A row at its upper bound, one at its lower bound and one between.
+        || {
+            Problem::new("rows", &[0.5, 0.5], -1.0, |x| x[1] - x[0])
+                .rows(3, 0, |x| vec![x[0] + x[1], x[1] * 1.0, x[0] - x[1] * 3.0])
+                .row_bounds(&[-INF, -0.5, -9.0], &[1.0, 4.0, 9.0])
+                .all_within(-5.0, 5.0)
+        },
+        || {
+            Problem::new("round", &[0.3, 0.1], 0.0, |x| {
+                (x[0] - 2.0).powi(2) + (x[1] - 1.0).powi(2)
+            })
+            .rows(2, 0, |x| vec![x[0] * x[0] - x[1], x[0] + x[1]])
+            .row_bounds(&[-INF, -INF], &[0.0, 2.0])
+            .all_within(-3.0, 0.9)
+        },
+        || {
+            Problem::new("far", &[20.0, -30.0], 0.0, |x| x[0].powi(2) * 1e-3 - x[1])
+                .rows(1, 1, |x| vec![x[0] * 40.0 - x[1], x[0] + x[1] * 2.0])
+                .row_bounds(&[-3.0, 4.0], &[INF, 4.0])
+                .all_within(-60.0, 50.0)
+        },
+    ];
+    for make in made {
+        for method in METHODS {
+            for iterations in [1, 2, 3, 5, 8, 1000] {
+                let options = Options {
+                    max_iterations: iterations,
+                    ..with(method)
+                };
+                let outcome = solve(&mut make(), &options, &mut Silent);
+                recomputed(make(), &outcome, &format!("{method:?} {iterations}"));
+            }
+        }
+    }
+    for (method, (make, signs)) in METHODS
+        .iter()
+        .flat_map(|m| [(m, (made[0], 1.0)), (m, (made[1], -1.0))])
+    {
+        let outcome = run(make(), *method);
+        assert!(outcome.converged());
+        let z = &outcome.multipliers;
+        let (forces, none) = match signs > 0.0 {
+            true => (&z.upper_bounds, &z.lower_bounds),
+            false => (&z.lower_bounds, &z.upper_bounds),
+        };
+        for (k, (force, none)) in forces.iter().zip(none).enumerate() {
+            let expected = 1.0 + k as f64;
+            assert!((force - expected).abs() < 1e-5, "{method:?} {z:?}");
+            assert!((0.0..1e-5).contains(none), "{method:?} {z:?}");
+        }
+    }
+    for method in METHODS {
+        let y = run(made[2](), method).multipliers.constraints;
+        // min y − x: x + y = 1 is held by 1, y = −0.5 by −2.
+        let expected = [1.0, -2.0, 0.0];
+        for (y, expected) in y.iter().zip(expected) {
+            assert!((y - expected).abs() < 1e-5, "{method:?} {y} {expected}");
+        }
+    }
+}
+
+/// Judges the residuals in an outcome by ones that are computed from the problem.
+fn recomputed(mut problem: Problem, outcome: &Outcome, context: &str) {
+    let context = format!("{} {context} {:?}", problem.name, outcome.status);
+    let slopes = problem.gradients(&outcome.x).expect("is defined");
+    let (lower, upper) = problem.variable_bounds();
+    let (row_lower, row_upper) = problem.constraint_bounds();
+    let z = &outcome.multipliers;
+    let part = |force: f64, distance: f64| {
+        assert!(force >= 0.0, "{context}: {z:?}");
+        if force > 0.0 {
+            force * distance.abs()
+        } else {
+            0.0
+        }
+    };
+    let (mut stationarity, mut complementarity) = (0.0_f64, 0.0);
+    for i in 0..outcome.x.len() {
+        let rows = (0..z.constraints.len()).map(|j| slopes.jacobian[(j, i)] * z.constraints[j]);
+        let force = slopes.objective[i] + rows.sum::<f64>();
+        let residual = force - z.lower_bounds[i] + z.upper_bounds[i];
+        stationarity = stationarity.max(residual.abs());
+        complementarity += part(z.lower_bounds[i], outcome.x[i] - lower[i]);
+        complementarity += part(z.upper_bounds[i], upper[i] - outcome.x[i]);
+    }
+    for (j, &y) in z.constraints.iter().enumerate() {
+        let c = outcome.constraints[j];
+        complementarity +=
+            part(y.max(0.0), row_upper[j] - c) + part((-y).max(0.0), c - row_lower[j]);
+    }
+    let kkt = &outcome.kkt;
+    let near = |own: f64, found: f64| (own - found).abs() <= 1e-9 * (own.abs() + 1e-4);
+    assert!(
+        near(stationarity, kkt.stationarity),
+        "{context}: {stationarity:e} {kkt:?}"
+    );
+    assert!(
+        near(complementarity, kkt.complementarity),
+        "{context}: {complementarity:e} {kkt:?}"
+    );
 }

@@ -1,11 +1,14 @@
 //! Records survive the disk exactly, and differences between them are told.
 
+use flexbody::driver::{Journal, optimise};
+use flexbody::problem::Problem;
 use flexbody::report::optimum::*;
 use flexbody::report::{
     Column, Comparison, History, HistoryRow, Optimum, ReportError, Tolerances, atomic_write,
     compare, read_text, summary, write_all,
 };
 use serde_json::json;
+use std::ops::ControlFlow;
 
 fn history() -> History {
     let row = |iteration: usize, objective: f64, barrier: f64| HistoryRow {
@@ -77,6 +80,7 @@ fn optimum() -> Optimum {
             "clear the barrier".to_owned(),
             ConstraintValue {
                 value: 1e-9,
+                start: None,
                 lower: Some(0.0),
                 upper: None,
                 unit: Some("m".into()),
@@ -97,6 +101,7 @@ fn optimum() -> Optimum {
         },
         scaling: Scaling::default(),
         second_order: None,
+        gradient_certificate: None,
         integration: None,
         counts: Counts {
             iterations: 21,
@@ -272,6 +277,145 @@ fn a_number_that_is_not_finite_is_refused_by_name() {
         |o| o.kkt.unscaled.feasibility = f64::INFINITY,
         "/kkt/unscaled/feasibility",
     );
+}
+
+/// A worse objective than at the start is no loss where the start was not feasible: it is told.
+#[test]
+fn a_start_that_is_not_feasible_is_told() {
+    let told = |lower: Option<f64>, upper: Option<f64>, start: Option<f64>| {
+        let mut optimum = optimum();
+        let constraint = &mut optimum.constraints[0];
+        (constraint.lower, constraint.upper, constraint.start) = (lower, upper, start);
+        let text = summary(&optimum);
+        let line = text.lines().find(|line| line.contains("feasible: it"));
+        line.map(|line| line.trim().to_owned())
+    };
+    let by = |by: &str| {
+        let told = "the start was not feasible: it violated \"clear the barrier\" by";
+        Some(format!("{told} {by} m"))
+    };
+    assert_eq!(told(Some(2.0), None, Some(-1.5)), by("3.5"));
+    assert_eq!(told(None, Some(2.0), Some(2.25)), by("0.25"));
+    assert_eq!(told(Some(2.0), Some(2.0), Some(2.25)), by("0.25"));
+    assert_eq!(told(Some(2.0), Some(2.0), Some(1.0)), by("1"));
+    for start in [None, Some(2.0), Some(2.0 * (1.0 - 1e-14)), Some(7.0)] {
+        assert_eq!(told(Some(2.0), None, start), None);
+    }
+}
+
+#[test]
+fn an_error_of_nothing_is_below_rounding() {
+    let told = |error: f64| {
+        let mut optimum = optimum();
+        optimum.objective.estimated_error = Some(error);
+        summary(&optimum)
+    };
+    for error in [0.0, 1e-16 * 849.8985] {
+        let text = told(error);
+        assert!(text.contains("samples is below rounding"), "{text}");
+        assert!(!text.contains("accurate to"), "{text}");
+    }
+    assert!(told(1e-12).contains("accurate to about 1e-12 m"));
+}
+
+/// A ball without weight flies for a second at v: x = v, and the energy E = v² at 2 kg. The multipliers are
+/// the derivatives of the optimum in the bounds: those of a constraint in the user's sense, those of the
+/// bounds of v never negative.
+#[test]
+fn multipliers_are_sensitivities_with_their_signs() {
+    let solved = |objective: &str, constraint: &str, bounds: (f64, f64), start: f64| {
+        let text = format!(
+            r#"{{"version": 1, "name": "ball", "gravity": [0, 0, 0],
+            "bodies": {{"ball": {{"shape": "point", "mass": 2,
+                                  "velocity": {{"linear": [{start}, 0, 0]}}}}}},
+            "simulation": {{"duration": 1, "steps": 4}},
+            "functions": {{"x": {{"final": {{"position": {{"body": "ball", "direction": [1, 0, 0]}}}}}},
+                           "E": {{"final": {{"energy": "kinetic"}}}}}},
+            "variables": {{"v": {{"path": "/bodies/ball/velocity/linear/0",
+                                 "lower": {}, "upper": {}}}}},
+            "constraints": {{{constraint}}},
+            "objective": {{{objective}}}}}"#,
+            bounds.0, bounds.1
+        );
+        let problem = Problem::parse(&text, "ball.json", &[]);
+        let problem = problem.unwrap_or_else(|faults| panic!("{faults}"));
+        let mut progress = |_: &_| ControlFlow::Continue(());
+        let done = optimise(&problem, "", None, Journal::default(), &mut progress);
+        done.expect("has an objective").optimum
+    };
+    let limits = |function: &str, side: &str, bound: f64| {
+        format!(r#""limit": {{"function": "{function}", "{side}": {bound}}}"#)
+    };
+    let (minimise, maximise) = (r#""minimise": "#, r#""maximise": "#);
+    // Objective, constraint, its side and bound, start, d optimum / d bound.
+    let cases = [
+        (minimise, "E", "x", "lower", 3.0, 5.0, 6.0),
+        (minimise, "E", "x", "upper", -3.0, -5.0, -6.0),
+        (maximise, "x", "E", "upper", 9.0, 1.0, 1.0 / 6.0),
+        (minimise, "x", "E", "upper", 9.0, 1.0, -1.0 / 6.0),
+        (maximise, "E", "x", "upper", 3.0, 1.0, 6.0),
+    ];
+    for (sense, objective, function, side, bound, start, expected) in cases {
+        let objective = format!("{sense}\"{objective}\"");
+        let bounds = if sense == maximise && function == "x" {
+            (0.5, 9.0)
+        } else {
+            (-9.0, 9.0)
+        };
+        let optimum = solved(&objective, &limits(function, side, bound), bounds, start);
+        let case = format!("{objective}, {function} {side} {bound}");
+        let limit = &optimum.constraints["limit"];
+        let error = (limit.multiplier - expected).abs();
+        assert!(error < 1e-4 * expected.abs(), "{case}: {limit:?}");
+        // L = ± f + y c: raising the bound by one changes the minimised objective by −y.
+        let sign = if sense == minimise { -1.0 } else { 1.0 };
+        let y = optimum.multipliers.constraints["limit"];
+        assert!(
+            (sign * y - expected).abs() < 1e-4 * expected.abs(),
+            "{case}: {y}"
+        );
+        let text = summary(&optimum);
+        let row = text.lines().find(|line| line.contains(" per "));
+        let told = row
+            .and_then(|row| row.rsplit("  ").next())
+            .unwrap_or_default();
+        let told: f64 = told
+            .split(' ')
+            .next()
+            .and_then(|x| x.parse().ok())
+            .expect("a number");
+        assert!(
+            (told - expected).abs() < 1e-3 * expected.abs(),
+            "{case}: {text}"
+        );
+    }
+    // With a constraint far away: objective, bounds of v, start, side, multiplier, d objective / d bound.
+    let cases = [
+        (maximise, "x", (-4.0, 4.0), Side::Upper, 1.0),
+        (minimise, "x", (-4.0, 4.0), Side::Lower, 1.0),
+        (minimise, "E", (2.0, 4.0), Side::Lower, 4.0),
+        (minimise, "E", (-4.0, -2.0), Side::Upper, 4.0),
+    ];
+    for (sense, objective, bounds, side, expected) in cases {
+        let objective = format!("{sense}\"{objective}\"");
+        let start = 0.5 * (bounds.0 + bounds.1) + 0.1;
+        let optimum = solved(&objective, &limits("x", "upper", 99.0), bounds, start);
+        assert_eq!(optimum.active_bounds["v"], side, "{objective}");
+        let (lower, upper) = (
+            optimum.multipliers.lower_bounds["v"],
+            optimum.multipliers.upper_bounds["v"],
+        );
+        let (force, other) = match side {
+            Side::Lower => (lower, upper),
+            Side::Upper => (upper, lower),
+        };
+        assert!(
+            (force - expected).abs() < 1e-4 * expected,
+            "{objective}: {force}"
+        );
+        assert!((0.0..1e-4).contains(&other), "{objective}: {other}");
+        assert!(optimum.constraints["limit"].multiplier.abs() < 1e-4);
+    }
 }
 
 #[test]

@@ -13,9 +13,10 @@ use std::path::PathBuf;
     version,
     args_conflicts_with_subcommands = true,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done; 1 not converged, or a check (--second-order too) or \
+    after_help = "Exit codes: 0 done; 1 not converged, or a check (gradients, --second-order) or \
                   comparison failed; \
-                  2 bad input; 3 numerical failure; 130 interrupted."
+                  2 bad input; 3 numerical failure; 4 a file cannot be read or written; \
+                  130 interrupted by a signal."
 )]
 pub struct Arguments {
     /// What to do instead of optimising.
@@ -48,6 +49,10 @@ pub struct Course {
     /// it is none.
     #[arg(long)]
     pub second_order: bool,
+    /// Leaves out the certificate of the gradients: at the start and at the optimum, one directional
+    /// derivative of every function by the adjoint and by the complex step; exit code 1 if they differ.
+    #[arg(long)]
+    pub no_certificate: bool,
 }
 
 /// A problem file and what is done with it.

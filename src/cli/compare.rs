@@ -3,7 +3,7 @@
 use super::arguments::Comparison;
 use super::{DONE, Failure, NOT_REACHED, print, record};
 use crate::driver::figures;
-use crate::report::{Tolerances, read_text, write_all};
+use crate::report::{Tolerances, prepare_directory, read_text, write_all};
 use std::path::{Path, PathBuf};
 
 /// Compares two records.
@@ -21,14 +21,15 @@ pub fn compare(files: &Comparison) -> Result<u8, Failure> {
 /// Draws the figures of a result directory again.
 pub fn plot(directory: &Path) -> Result<u8, Failure> {
     let (_, optimum) = record(directory)?;
-    let history = read_text(&directory.join("history.csv")).map_err(Failure::bad_input)?;
-    let history = crate::report::History::from_csv(&history).map_err(Failure::bad_input)?;
+    let history = read_text(&directory.join("history.csv"))?;
+    let history = crate::report::History::from_csv(&history)?;
+    let _held = prepare_directory(directory)?;
     let files = figures::of_record(&optimum, &history).map_err(Failure::bad_input)?;
     let files: Vec<(PathBuf, Vec<u8>)> = files
         .into_iter()
         .map(|(name, bytes)| (directory.join(name), bytes))
         .collect();
-    write_all(&files).map_err(Failure::bad_input)?;
+    write_all(&files)?;
     Ok(DONE)
 }
 

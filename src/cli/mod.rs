@@ -3,6 +3,7 @@
 mod arguments;
 mod compare;
 mod explain;
+mod interrupt;
 mod optimise;
 mod progress;
 mod records;
@@ -11,13 +12,14 @@ mod starts;
 mod stress;
 mod work_precision;
 
-use crate::driver::error;
-use crate::problem::{Override, Problem};
-use crate::report::{Optimum, read_text};
+use crate::driver::{error, figures};
+use crate::problem::{Override, Problem, visible, visible_lines};
+use crate::report::{Optimum, ReportError, atomic_write, read_text};
 use arguments::{Arguments, Command, Job};
 use clap::Parser;
 use clap::error::ErrorKind;
 use std::ffi::OsString;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -29,7 +31,9 @@ const NOT_REACHED: u8 = 1;
 const BAD_INPUT: u8 = 2;
 /// A simulation failed.
 const NUMERICAL_FAILURE: u8 = 3;
-/// Interrupted from the keyboard.
+/// The system refused to read or to write a file.
+const NO_ACCESS: u8 = 4;
+/// Interrupted by a signal, from the keyboard or not.
 const INTERRUPTED: u8 = 130;
 
 /// Why a command did not do what it was asked to.
@@ -55,12 +59,48 @@ impl Failure {
     }
 }
 
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Self {
+        let code = match &error {
+            ReportError::Write { .. } | ReportError::Drawing(_) => NO_ACCESS,
+            ReportError::Read { source, .. } => code_of_reading(source),
+            ReportError::InUse { .. }
+            | ReportError::History { .. }
+            | ReportError::Evaluations { .. }
+            | ReportError::Positions { .. }
+            | ReportError::Optimum(_)
+            | ReportError::NotFinite { .. }
+            | ReportError::NothingToDraw { .. } => BAD_INPUT,
+        };
+        Self::new(code, error)
+    }
+}
+
+/// A path without a text file behind it is bad input; what the system does not let one read is none.
+fn code_of_reading(error: &io::Error) -> u8 {
+    match error.kind() {
+        io::ErrorKind::NotFound
+        | io::ErrorKind::IsADirectory
+        | io::ErrorKind::NotADirectory
+        | io::ErrorKind::InvalidData => BAD_INPUT,
+        _ => NO_ACCESS,
+    }
+}
+
 /// Runs the command with the given arguments (the first is the program's name).
 pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(message) => {
-            let shown = message.print();
+            // What was typed comes back in the message.
+            let rendered = message.render();
+            let shown = match visible_lines(&rendered.to_string()) == rendered.to_string() {
+                true => message.print(),
+                false => {
+                    tell(&rendered.to_string());
+                    Ok(())
+                }
+            };
             let wanted = matches!(
                 message.kind(),
                 ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
@@ -72,6 +112,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
             });
         }
     };
+    interrupt::listen();
     let done = match arguments.command {
         Some(Command::Simulate {
             job,
@@ -99,48 +140,84 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     }
 }
 
+/// A path in a message.
+fn shown(path: &Path) -> String {
+    visible(&path.display().to_string())
+}
+
 /// Tells of progress or a fault; where nobody can be told, the work goes on.
 fn tell(text: &str) {
     use std::io::Write;
-    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+    let _ = io::stderr()
+        .lock()
+        .write_all(visible_lines(text).as_bytes());
 }
 
 /// Prints a result; a reader that closed the pipe is no failure.
 fn print(text: &str) -> Result<(), Failure> {
     use std::io::Write;
     let mut out = std::io::stdout().lock();
+    let text = visible_lines(text);
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::bad_input(
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::new(
+            NO_ACCESS,
             format!("cannot write the result: {error}"),
         )),
         _ => Ok(()),
     }
 }
 
+/// Writes figures. Where one cannot be written, that is a warning, and none of an earlier run stays in
+/// its place.
+fn draw(directory: &Path, figures: Vec<figures::NamedFile>) {
+    for (name, bytes) in figures {
+        let path = directory.join(name);
+        if let Err(error) = atomic_write(&path, &bytes) {
+            let _ = std::fs::remove_file(&path);
+            tell(&format!("warning: a figure is missing: {error}\n"));
+        }
+    }
+}
+
 /// Reads the problem file of a job, with the steps that its accuracy needs.
 fn load(job: &Job) -> Result<Problem, Failure> {
-    let mut overrides = job
-        .set
-        .iter()
-        .map(|text| Override::parse(text))
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(Failure::bad_input)?;
-    let read = |overrides: &[Override]| {
-        let mut problem = Problem::load(&job.problem, overrides).map_err(Failure::bad_input)?;
-        if job.no_lowering {
-            problem.lowering = None;
-        }
-        if !job.quiet {
-            problem.simulation.limits.progress = Some(progress::watched());
-        }
-        Ok(problem)
-    };
-    let problem = read(&overrides)?;
+    refine(job, read(job)?)
+}
+
+/// Reads the problem file of a job.
+fn read(job: &Job) -> Result<Problem, Failure> {
+    let problem = read_with(job, &overrides(job)?)?;
     if !job.quiet {
         for redundancy in &problem.redundant {
             tell(&format!("{redundancy}\n"));
         }
     }
+    Ok(problem)
+}
+
+fn overrides(job: &Job) -> Result<Vec<Override>, Failure> {
+    let given = job.set.iter().map(|text| Override::parse(text));
+    given.collect::<Result<_, _>>().map_err(Failure::bad_input)
+}
+
+fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
+    let mut problem = Problem::load(&job.problem, overrides).map_err(|faults| {
+        // The faults of a file that cannot be read are not those of its text.
+        let unread = std::fs::read(&job.problem).err();
+        let code = unread.map_or(BAD_INPUT, |error| code_of_reading(&error));
+        Failure::new(code, faults)
+    })?;
+    if job.no_lowering {
+        problem.lowering = None;
+    }
+    if !job.quiet {
+        problem.simulation.limits.progress = Some(progress::watched());
+    }
+    Ok(problem)
+}
+
+/// A problem that was read, with the steps that the accuracy of the job needs.
+fn refine(job: &Job, problem: Problem) -> Result<Problem, Failure> {
     let Some(accuracy) = job.accuracy else {
         return Ok(problem);
     };
@@ -148,18 +225,20 @@ fn load(job: &Job) -> Result<Problem, Failure> {
         return Err(Failure::bad_input(format!(
             "{}: found --accuracy, expected a problem with an objective; set /simulation/tolerance \
              instead",
-            job.problem.display()
+            shown(&job.problem)
         )));
     };
-    let reached = error::reach(&mut problem.clone(), objective.function, accuracy)
-        .map_err(Failure::numerical)?;
+    let mut problem = problem;
+    let reached =
+        error::reach(&mut problem, objective.function, accuracy).map_err(Failure::numerical)?;
     if !job.quiet {
         tell(&format!("{}\n", reached.describe(accuracy)));
     }
+    let mut overrides = overrides(job)?;
     for text in reached.overrides() {
         overrides.push(Override::parse(&text).map_err(Failure::bad_input)?);
     }
-    read(&overrides)
+    read_with(job, &overrides)
 }
 
 /// Reads a record from its file or its directory; also says which file that is.
@@ -169,9 +248,9 @@ fn record(path: &Path) -> Result<(PathBuf, Optimum), Failure> {
     } else {
         path.to_path_buf()
     };
-    let text = read_text(&path).map_err(Failure::bad_input)?;
+    let text = read_text(&path)?;
     match Optimum::from_json(&text) {
         Ok(optimum) => Ok((path, optimum)),
-        Err(error) => Err(Failure::bad_input(format!("{}: {error}", path.display()))),
+        Err(error) => Err(Failure::bad_input(format!("{}: {error}", shown(&path)))),
     }
 }

@@ -2,12 +2,13 @@
 
 use super::arguments::{Course, Job};
 use super::progress::show;
-use super::records::{Records, Start, changed};
+use super::records::{Records, Start, changed, refuse_without_run};
 use super::starts::several;
 use super::{
-    DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, load, print, record, tell,
+    DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, draw, interrupt, print, read,
+    record, refine, shown, tell,
 };
-use crate::driver::{self, Optimisation, WarmStart, figures, multi_start};
+use crate::driver::{self, Optimisation, WarmStart, certificate, figures, multi_start};
 use crate::optimiser::{Counts, Status};
 use crate::problem::Problem;
 use crate::report::optimum::Curvature;
@@ -17,8 +18,8 @@ use crate::report::{
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
+use std::time::Instant;
 
 /// The record of the optimum.
 const OPTIMUM: &str = "optimum.json";
@@ -31,57 +32,49 @@ const OPTIMA: &str = "optima.csv";
 
 /// Optimises a problem and writes its results.
 pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
-    let mut problem = load(job)?;
-    let file = job
-        .problem
-        .file_name()
-        .map_or_else(String::new, |n| n.to_string_lossy().into());
+    let problem = read(job)?;
     complete(&problem, job)?;
-    // What neither objective nor constraint sees costs nothing.
-    if let Some(focused) = problem.for_optimisation() {
-        problem = focused;
-    }
-    let state = match &course.from {
-        Some(from) => start_from(&mut problem, from)?,
-        None => None,
+    let begin = |problem: Problem| -> Result<_, Failure> {
+        // What neither objective nor constraint sees costs nothing.
+        let mut problem = problem.for_optimisation().unwrap_or(problem);
+        let state = match &course.from {
+            Some(from) => start_from(&mut problem, from)?,
+            None => None,
+        };
+        let starts = match course.starts {
+            Some(count) => Some(spread(&problem, count)?),
+            None => None,
+        };
+        Ok((problem, state, starts))
     };
-    let starts = match course.starts {
-        Some(count) => Some(spread(&problem, count)?),
-        None => None,
-    };
+    begin(problem.clone())?;
     let directory = match (&job.output, &course.resume) {
         (Some(directory), _) | (None, Some(directory)) => directory.clone(),
         (None, None) => Path::new("results").join(&problem.name),
     };
     let resume = course.resume.as_deref();
-    if let Some(from) = resume.filter(|from| !from.is_dir()) {
-        return Err(Failure::bad_input(format!(
-            "found no directory {}, expected that of the run to resume; to begin one, leave --resume \
-             out",
-            from.display()
-        )));
+    if let Some(from) = resume {
+        refuse_without_run(from, course.starts.is_some())?;
     }
-    let _held = prepare_directory(&directory).map_err(Failure::bad_input)?;
-    let records = Records::new(&directory, resume, starts.is_some())?;
-    let stop = Arc::new(AtomicBool::new(false));
-    let interrupted = Arc::clone(&stop);
-    // A second handler in one process is refused; the first then still ends the run.
-    let _ = ctrlc::set_handler(move || {
-        // Asked a second time, it ends at once.
-        if interrupted.swap(true, Ordering::Relaxed) {
-            std::process::exit(i32::from(INTERRUPTED));
-        }
-    });
-    let stopped = || stop.load(Ordering::Relaxed);
-
-    let (problem, mut done, start, optima) = match starts {
+    let _held = prepare_directory(&directory)?;
+    let (problem, state, starts) = begin(refine(job, problem)?)?;
+    let records = Records::new(&directory, resume)?;
+    interrupt::heed();
+    let stopped = interrupt::asked;
+    let file = job
+        .problem
+        .file_name()
+        .map_or_else(String::new, |n| n.to_string_lossy().into());
+    let (problem, mut done, start, optima, lost) = match starts {
         Some(starts) => {
-            let (run, optima) = several(&problem, &starts, &records, &stopped, job.quiet)?;
+            let found = several(&problem, &starts, &records, &stopped, job.quiet)?;
+            let (run, optima, lost) = found;
             let done = run.solved.complete(&run.problem, &file);
-            (run.problem, done, Start::OneOf(run.start), Some(optima))
+            let start = Start::OneOf(run.start);
+            (run.problem, done, start, Some(optima), lost)
         }
         None => {
-            let done = one(
+            let (done, lost) = one(
                 &problem,
                 (&file, &directory),
                 state.as_ref(),
@@ -89,29 +82,55 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
                 &stopped,
                 job.quiet,
             )?;
-            (problem, done, Start::Only, None)
+            (problem, done, Start::Only, None, lost)
         }
     };
-    match &done.outcome.status {
-        Status::UndefinedStart { what } => return Err(Failure::new(NUMERICAL_FAILURE, what)),
-        Status::IllPosed { what } => return Err(Failure::bad_input(what)),
+    match (&done.outcome.status, &lost) {
+        (Status::UndefinedStart { what }, None) => {
+            return Err(Failure::new(NUMERICAL_FAILURE, what));
+        }
+        (Status::IllPosed { what }, None) => return Err(Failure::bad_input(what)),
         _ if !done.outcome.objective.is_finite() => {
+            if let Some(lost) = lost {
+                return Err(lost.into());
+            }
             let message = &done.optimum.message;
             let what = format!("{}: {message} before the start had values", problem.name);
             return Err(Failure::new(NOT_REACHED, what));
         }
         _ => {}
     }
-    let recorded = write(&problem, &done, optima, &directory)?;
+    let state = WarmStart::of(&problem, &done.outcome);
+    let (recorded, refused) = write(&done, state, optima, &directory);
+    let mut unwritten = lost.or(refused);
     // What goes wrong from here on loses nothing.
-    let checked = match course.second_order {
-        true => second_order(&problem, &mut done, &directory, (&records, start), &stopped),
-        false => Ok(()),
+    let checked = match (course.second_order, &unwritten) {
+        (true, None) => second_order(&problem, &mut done, &directory, (&records, start), &stopped),
+        _ => Ok(()),
     };
-    if !job.quiet {
+    let begun = Instant::now();
+    if !course.no_certificate && !stopped() {
+        let found = driver::certify(&problem, &done, certificate::TOLERANCE);
+        done.optimum.gradient_certificate = Some(found);
+        if recorded && unwritten.is_none() {
+            unwritten = renew(&done, &directory)?;
+        }
+    }
+    let certified = begun.elapsed().as_secs_f64();
+    // What the disk does not take is told, quiet or not.
+    if !job.quiet || unwritten.is_some() {
         print(&summary(&done.optimum))?;
-        tell(&times(&done.outcome.counts));
-        tell(&format!("results in {}\n", directory.display()));
+        tell(&times(&done.outcome.counts, certified));
+    }
+    // Those of an earlier run belong to its record, which stays if there is no new one.
+    if recorded {
+        draw(&directory, figures::of_optimisation(&problem, &done));
+    }
+    if let Some(error) = unwritten {
+        return Err(error.into());
+    }
+    if !job.quiet {
+        tell(&format!("results in {}\n", shown(&directory)));
     }
     checked?;
     if let (true, Some(end)) = (job.error, &done.end) {
@@ -119,6 +138,14 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
     }
     if stopped() {
         return Ok(INTERRUPTED);
+    }
+    if let Some(certificate) = &done.optimum.gradient_certificate
+        && !certificate.passed
+    {
+        for fault in certificate.faults() {
+            tell(&format!("{}: gradients: {fault}\n", problem.name));
+        }
+        return Ok(NOT_REACHED);
     }
     let second = done.optimum.second_order.as_ref();
     match done.outcome.status {
@@ -132,7 +159,7 @@ pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
         Status::Converged => Ok(DONE),
         Status::Interrupted => Ok(INTERRUPTED),
         _ => {
-            recorded.map_err(Failure::numerical)?;
+            done.optimum.to_json().map_err(Failure::numerical)?;
             if job.quiet {
                 tell(&format!("{}: {}\n", problem.name, done.optimum.message));
             }
@@ -151,22 +178,22 @@ fn spread(problem: &Problem, count: u32) -> Result<Vec<Vec<f64>>, Failure> {
     })
 }
 
-/// Writes all results; also says why the record of the optimum could not be made, if so.
+/// Writes all results but the figures: together, or the record of the optimum at least, or nothing. Also
+/// says whether the record is there.
 fn write(
-    problem: &Problem,
     done: &Optimisation,
+    state: Option<WarmStart>,
     optima: Option<String>,
     directory: &Path,
-) -> Result<Result<(), ReportError>, Failure> {
-    let mut files = figures::of_optimisation(problem, done);
-    let record = done.optimum.to_json();
-    if let Ok(text) = &record {
-        files.push((OPTIMUM, text.clone().into_bytes()));
+) -> (bool, Option<ReportError>) {
+    let mut files = Vec::new();
+    // That it cannot be made is told at the end.
+    if let Ok(text) = done.optimum.to_json() {
+        files.push((OPTIMUM, text.into_bytes()));
     }
     if let Ok(text) = done.history.to_csv() {
         files.push(("history.csv", text.into_bytes()));
     }
-    let state = WarmStart::of(problem, &done.outcome);
     if let Some(text) = state.and_then(|state| serde_json::to_vec(&state).ok()) {
         files.push((STATE, text));
     }
@@ -176,14 +203,33 @@ fn write(
         .into_iter()
         .map(|(name, bytes)| (directory.join(name), bytes))
         .collect();
-    write_all(&files).map_err(Failure::bad_input)?;
+    if let Err(error) = write_all(&files) {
+        let record = files.iter().find(|(path, _)| path.ends_with(OPTIMUM));
+        let recorded = record.is_some_and(|(path, bytes)| atomic_write(path, bytes).is_ok());
+        let others = files.iter().filter(|(path, _)| !path.ends_with(OPTIMUM));
+        for (path, _) in others.filter(|_| recorded) {
+            // Beside the new record, those of an earlier run would be wrong.
+            let _ = std::fs::remove_file(path);
+        }
+        return (recorded, Some(error));
+    }
     // The whole history stands beside it now; a file that stays does no harm.
     let _ = std::fs::remove_file(directory.join(PARTIAL));
     if !several {
         // Those of an earlier run.
         let _ = std::fs::remove_file(directory.join(OPTIMA));
     }
-    Ok(record.map(drop))
+    (true, None)
+}
+
+/// Writes the record of an optimum anew, and hands back why it could not be written, if so.
+fn renew(done: &Optimisation, directory: &Path) -> Result<Option<ReportError>, Failure> {
+    match done.optimum.to_json() {
+        Ok(text) => Ok(atomic_write(&directory.join(OPTIMUM), text.as_bytes()).err()),
+        // As before: what it lacks is told by its status.
+        Err(error) if done.outcome.converged() => Err(Failure::numerical(error)),
+        Err(_) => Ok(None),
+    }
 }
 
 /// Checks the curvature of an optimum that is written already, and renews its record.
@@ -198,26 +244,25 @@ fn second_order(
         tell("second order: not checked, as the run did not converge\n");
         return Ok(());
     }
-    let opened = records.reopen(start, problem).map_err(Failure::bad_input)?;
+    let opened = records.reopen(start, problem)?;
     let fault = Mutex::new(None);
     let has_failed = || fault.lock().is_ok_and(|error| error.is_some());
     let ended = || stopped() || has_failed();
     let journal = opened.journal(&fault, true);
     let found = driver::second_order(problem, &done.outcome, &done.integration, journal, &ended);
     if let Ok(Some(error)) = fault.into_inner() {
-        return Err(Failure::bad_input(error));
+        return Err(error.into());
     }
     done.optimum.second_order = found.map_err(|failure| {
         Failure::numerical(format!(
             "second order: not checked: {failure}; the results are without it"
         ))
     })?;
-    let text = done.optimum.to_json().map_err(Failure::numerical)?;
-    atomic_write(&directory.join(OPTIMUM), text.as_bytes()).map_err(Failure::bad_input)
+    renew(done, directory)?.map_or(Ok(()), |error| Err(error.into()))
 }
 
 /// Where the wall time went; not a part of the record, which is the same for the same run.
-fn times(counts: &Counts) -> String {
+fn times(counts: &Counts, certified: f64) -> String {
     let programs = match counts.quadratic_programs {
         0 => String::new(),
         n => format!(
@@ -226,7 +271,8 @@ fn times(counts: &Counts) -> String {
         ),
     };
     format!(
-        "Time: {:.3} s, of it simulations and gradients {:.3} s{programs}\n",
+        "Time: {:.3} s, of it simulations and gradients {:.3} s{programs}; gradient certificate \
+         {certified:.3} s\n",
         counts.seconds, counts.evaluation_seconds
     )
 }
@@ -236,7 +282,7 @@ fn complete(problem: &Problem, job: &Job) -> Result<(), Failure> {
     let lacking = |what: &str, instead: &str| {
         Err(Failure::bad_input(format!(
             "{}: nothing to optimise: the problem has no {what}; {instead}",
-            job.problem.display()
+            shown(&job.problem)
         )))
     };
     if problem.objective.is_none() {
@@ -264,7 +310,7 @@ fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<WarmStart>, F
     if known == 0 {
         return Err(Failure::bad_input(format!(
             "{}: found the variables {}, expected at least one of {}",
-            record.display(),
+            shown(&record),
             optimum
                 .design
                 .keys()
@@ -285,7 +331,8 @@ fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<WarmStart>, F
     Ok(state.filter(|state| state.fits(problem) && state.is_at(&start)))
 }
 
-/// One optimisation, its evaluations and iterations on the disk as they happen.
+/// One optimisation, its evaluations and iterations on the disk as they happen; the first fault in
+/// writing ends it and is handed back beside what was found by then.
 fn one(
     problem: &Problem,
     (file, directory): (&str, &Path),
@@ -293,10 +340,8 @@ fn one(
     records: &Records,
     stopped: &dyn Fn() -> bool,
     quiet: bool,
-) -> Result<Optimisation, Failure> {
-    let opened = records
-        .open(Start::Only, problem)
-        .map_err(Failure::bad_input)?;
+) -> Result<(Optimisation, Option<ReportError>), Failure> {
+    let opened = records.open(Start::Only, problem)?;
     if !quiet {
         tell(&records.resumed(opened.known));
         tell(&changed(&opened.changes));
@@ -321,11 +366,11 @@ fn one(
     let journal = opened.journal(&fault, quiet);
     let state = state.map(|warm| &warm.state);
     let done = driver::optimise(problem, file, state, journal, &mut progress);
-    match unwritable
+    let lost = unwritable
         .into_inner()
-        .or(fault.into_inner().ok().flatten())
-    {
-        Some(error) => Err(Failure::bad_input(error)),
-        None => done.ok_or_else(|| Failure::bad_input("nothing to optimise")),
+        .or(fault.into_inner().ok().flatten());
+    match done {
+        Some(done) => Ok((done, lost)),
+        None => Err(Failure::bad_input("nothing to optimise")),
     }
 }

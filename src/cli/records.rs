@@ -1,6 +1,6 @@
 //! The record of the evaluations of a run: begun, or gone on with.
 
-use super::{Failure, tell};
+use super::{Failure, shown, tell};
 use crate::driver::integration::FIRST_DESIGN;
 use crate::driver::{Journal, journal};
 use crate::problem::Problem;
@@ -47,37 +47,16 @@ pub struct Opened {
 }
 
 impl<'a> Records<'a> {
-    /// The records of a run in `directory`, which is there; `several` is whether it has several starts.
-    /// What another run left there goes, unless it is resumed.
-    pub fn new(
-        directory: &'a Path,
-        resumed: Option<&'a Path>,
-        several: bool,
-    ) -> Result<Self, Failure> {
-        let Some(from) = resumed else {
-            remove(directory)?;
-            return Ok(Self { directory, resumed });
-        };
-        let (single, multiple) = files(from)?.into_iter().partition::<Vec<_>, _>(|file| {
-            let name = file.file_name();
-            name.is_some_and(|name| name == SINGLE)
-        });
-        let wrong = match several {
-            true if multiple.is_empty() => single.first().map(|file| (file, "leave --starts out")),
-            false if single.is_empty() => multiple.first().map(|file| (file, "give --starts N")),
-            _ => None,
-        };
-        if let Some((file, advice)) = wrong {
-            return Err(Failure::bad_input(format!(
-                "found {}, expected the record of {}: {advice} to resume it",
-                file.display(),
-                if several { "several starts" } else { SINGLE },
-            )));
-        }
-        let same = match (from.canonicalize(), directory.canonicalize()) {
-            (Ok(a), Ok(b)) => a == b,
-            _ => from == directory,
-        };
+    /// The records of a run in `directory`, which is there. What another run left there goes, unless it
+    /// is resumed.
+    pub fn new(directory: &'a Path, resumed: Option<&'a Path>) -> Result<Self, Failure> {
+        let same =
+            resumed.is_some_and(
+                |from| match (from.canonicalize(), directory.canonicalize()) {
+                    (Ok(a), Ok(b)) => a == b,
+                    _ => from == directory,
+                },
+            );
         if !same {
             remove(directory)?;
         }
@@ -88,9 +67,9 @@ impl<'a> Records<'a> {
     pub fn resumed(&self, known: usize) -> String {
         match (self.resumed, known) {
             (None, _) => String::new(),
-            (Some(from), 0) => format!("{}: no evaluation yet, starts anew\n", from.display()),
+            (Some(from), 0) => format!("{}: no evaluation yet, starts anew\n", shown(from)),
             (Some(from), n) => {
-                let from = from.display();
+                let from = shown(from);
                 format!("{from}: {n} evaluations are known and are not repeated\n")
             }
         }
@@ -168,13 +147,50 @@ pub fn changed(changes: &[String]) -> String {
         .collect()
 }
 
+/// Refuses a directory that holds no run, or one of the other kind, before anything is changed;
+/// `several` is whether the run that shall go on has several starts.
+pub fn refuse_without_run(from: &Path, several: bool) -> Result<(), Failure> {
+    if !from.is_dir() {
+        return Err(Failure::bad_input(format!(
+            "found no directory {}, expected that of the run to resume; to begin one, leave --resume \
+             out",
+            shown(from)
+        )));
+    }
+    let (single, multiple) = files(from)?.into_iter().partition::<Vec<_>, _>(|file| {
+        let name = file.file_name();
+        name.is_some_and(|name| name == SINGLE)
+    });
+    let (wanted, others, advice) = match several {
+        true => (&multiple, &single, "leave --starts out"),
+        false => (&single, &multiple, "give --starts N"),
+    };
+    if !wanted.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::bad_input(match others.first() {
+        Some(file) => format!(
+            "found {}, expected the record of {}: {advice} to resume it",
+            shown(file),
+            if several { "several starts" } else { SINGLE },
+        ),
+        None => format!(
+            "found no record of a run in {}, expected {}; to begin a run, leave --resume out",
+            shown(from),
+            if several {
+                Start::OneOf(0).file()
+            } else {
+                SINGLE.to_owned()
+            },
+        ),
+    }))
+}
+
 /// All records in a directory.
 fn files(directory: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let entries = std::fs::read_dir(directory).map_err(|error| {
-        Failure::bad_input(format!(
-            "cannot read {}: {error}; without a directory of a run, leave --resume out",
-            directory.display()
-        ))
+    let entries = std::fs::read_dir(directory).map_err(|source| ReportError::Read {
+        path: directory.to_path_buf(),
+        source,
     })?;
     let is_record = |path: &PathBuf| {
         let name = path.file_name().map(|name| name.to_string_lossy());
@@ -193,9 +209,7 @@ fn files(directory: &Path) -> Result<Vec<PathBuf>, Failure> {
 
 fn remove(directory: &Path) -> Result<(), Failure> {
     for path in files(directory)? {
-        std::fs::remove_file(&path).map_err(|error| {
-            Failure::bad_input(format!("cannot remove {}: {error}", path.display()))
-        })?;
+        std::fs::remove_file(&path).map_err(|source| ReportError::Write { path, source })?;
     }
     Ok(())
 }

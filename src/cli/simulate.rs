@@ -1,17 +1,24 @@
 //! `optimize simulate` and `optimize check`.
 
 use super::arguments::Job;
-use super::{DONE, Failure, NOT_REACHED, load, print, tell};
+use super::{DONE, Failure, NOT_REACHED, draw, load, print, read, refine, shown, tell};
 use crate::driver::tables::ReactionAxes;
 use crate::driver::{self, CheckedDerivative, Evaluated, Simulation, error, figures, tables};
 use crate::problem::Problem;
-use crate::report::write_all;
+use crate::report::summary::is_rounding;
+use crate::report::{prepare_directory, write_all};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
 /// Simulates the start of a problem.
 pub fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Failure> {
-    let problem = load(job)?;
+    let problem = read(job)?;
+    // Held, and known to take files, before the work is done.
+    let _held = match &job.output {
+        Some(directory) => Some(prepare_directory(directory)?),
+        None => None,
+    };
+    let problem = refine(job, problem)?;
     let simulation = driver::simulate(&problem, &problem.start()).map_err(Failure::numerical)?;
     if json {
         print(&as_json(&problem, &simulation, job.error)?)?;
@@ -28,14 +35,14 @@ pub fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Failure> 
             true => ReactionAxes::Joint,
             false => ReactionAxes::Ground,
         };
-        let files = figures::of_simulation(&problem, &simulation)
+        let tables: Vec<_> = tables::of_simulation(&problem, &simulation, axes)
             .into_iter()
-            .chain(tables::of_simulation(&problem, &simulation, axes))
             .map(|(name, bytes)| (directory.join(name), bytes))
-            .collect::<Vec<_>>();
-        write_all(&files).map_err(Failure::bad_input)?;
+            .collect();
+        write_all(&tables)?;
+        draw(directory, figures::of_simulation(&problem, &simulation));
         if !job.quiet {
-            tell(&format!("results in {}\n", directory.display()));
+            tell(&format!("results in {}\n", shown(directory)));
         }
     }
     let functions = problem.function_names.iter().enumerate();
@@ -193,14 +200,18 @@ pub fn errors(problem: &Problem, at: &Evaluated) -> Result<String, Failure> {
     );
     let mut line = |function: &str, variable: &str, of: &error::Estimate| {
         let relative = of.error / of.value.abs();
-        let relative = match relative.is_finite() {
+        let relative = match relative.is_finite() && !is_rounding(of.error, of.value) {
             true => format!("{relative:.1e}"),
             false => "-".into(),
         };
+        let error = match is_rounding(of.error, of.value) {
+            true => "rounding".into(),
+            false => format!("{:.1e}", of.error),
+        };
         let _ = writeln!(
             text,
-            "{function:f_width$}  {variable:v_width$}  {:>16.9e}  {:>9.1e}  {relative:>9}",
-            of.value, of.error
+            "{function:f_width$}  {variable:v_width$}  {:>16.9e}  {error:>9}  {relative:>9}",
+            of.value
         );
     };
     for found in &found {
@@ -230,7 +241,7 @@ pub fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
     if problem.variables.is_empty() {
         return Err(Failure::bad_input(format!(
             "{}: nothing to check: the problem has no variables",
-            job.problem.display()
+            shown(&job.problem)
         )));
     }
     let chaos = driver::chaos(&problem, &problem.start());

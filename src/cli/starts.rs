@@ -11,14 +11,14 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Optimisations from several starts: the best one, and the distinct optima as comma separated values,
 /// after a table of them. Every evaluation is on the disk as soon as it is known, in a file for each
-/// start.
+/// start; the first fault in writing ends the run and is handed back beside what was found by then.
 pub fn several(
     problem: &Problem,
     starts: &[Vec<f64>],
     records: &Records,
     stopped: &(dyn Fn() -> bool + Sync),
     quiet: bool,
-) -> Result<(Run, String), Failure> {
+) -> Result<(Run, String, Option<ReportError>), Failure> {
     let fault: Mutex<Option<ReportError>> = Mutex::new(None);
     let told = AtomicBool::new(quiet);
     let known = AtomicUsize::new(0);
@@ -43,11 +43,7 @@ pub fn several(
     let has_failed = || fault.lock().is_ok_and(|error| error.is_some());
     let ended = || stopped() || has_failed();
     let mut runs = driver::multi_start(problem, starts, &ended, &open);
-    if let Ok(mut first) = fault.lock()
-        && let Some(error) = first.take()
-    {
-        return Err(Failure::bad_input(error));
-    }
+    let lost = fault.lock().ok().and_then(|mut first| first.take());
     if !quiet {
         tell(&records.resumed(known.load(Ordering::Relaxed)));
     }
@@ -70,7 +66,10 @@ pub fn several(
             let run = runs.swap_remove(best);
             let history = &run.solved.history;
             let text = optima_csv(&history.objective, &history.variables, &found);
-            Ok((run, text.map_err(Failure::numerical)?))
+            Ok((run, text.map_err(Failure::numerical)?, lost))
+        }
+        None if lost.is_some() => {
+            Err(lost.map_or_else(|| Failure::bad_input("nothing to optimise"), Failure::from))
         }
         None if stopped() => {
             let what = "interrupted before the first evaluation";

@@ -1,7 +1,7 @@
 //! `optimize stress`.
 
 use super::arguments::Suite;
-use super::{DONE, Failure, NOT_REACHED, print, tell};
+use super::{DONE, Failure, NOT_REACHED, print, shown, tell};
 use crate::driver::stress::{is_named, names, stress as run};
 use crate::report::{StressRow, prepare_directory, write_all};
 use std::path::Path;
@@ -29,7 +29,7 @@ pub fn stress(asked: &Suite) -> Result<u8, Failure> {
     };
     // Held, and known to take files, before the work is done.
     let _held = match directory {
-        Some(directory) => Some(prepare_directory(directory).map_err(Failure::bad_input)?),
+        Some(directory) => Some(prepare_directory(directory)?),
         None => None,
     };
     let seen = |row: &StressRow| {
@@ -38,18 +38,19 @@ pub fn stress(asked: &Suite) -> Result<u8, Failure> {
         }
     };
     let table = run(wanted, asked.seconds, &seen);
+    // Told first: a table that cannot be written is not lost.
+    if !asked.quiet {
+        print(&format!("{}\n", table.summary()))?;
+    }
     if let Some(directory) = directory {
         let files = [
             ("stability.md", table.to_markdown()),
             ("stability.csv", table.to_csv()),
         ];
         let files = files.map(|(name, text)| (directory.join(name), text.into_bytes()));
-        write_all(&files).map_err(Failure::bad_input)?;
-    }
-    if !asked.quiet {
-        print(&format!("{}\n", table.summary()))?;
-        if let Some(directory) = directory {
-            tell(&format!("results in {}\n", directory.display()));
+        write_all(&files)?;
+        if !asked.quiet {
+            tell(&format!("results in {}\n", shown(directory)));
         }
     }
     Ok(match table.has_failures() {

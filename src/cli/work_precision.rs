@@ -1,7 +1,7 @@
 //! `optimize work-precision`.
 
 use super::arguments::{Job, Measurement};
-use super::{DONE, Failure, load, print, tell};
+use super::{DONE, Failure, draw, print, read, refine, shown, tell};
 use crate::driver::work_precision::{Plan, work_precision};
 use crate::problem::Problem;
 use crate::report::positions::positions_from_csv;
@@ -15,13 +15,14 @@ pub fn measure(asked: &Measurement) -> Result<u8, Failure> {
         let what = "found --error, expected none: optimize work-precision measures errors itself";
         return Err(Failure::bad_input(what));
     }
-    let problem = load(job)?;
+    let problem = read(job)?;
     let plan = plan(asked, &problem)?;
     let directory = match &job.output {
         Some(directory) => directory.clone(),
         None => Path::new("results/work-precision").join(&problem.name),
     };
-    let _held = prepare_directory(&directory).map_err(Failure::bad_input)?;
+    let _held = prepare_directory(&directory)?;
+    let problem = refine(job, problem)?;
     let without_event = without_event(&problem);
     if let (Some(note), false) = (&without_event, job.quiet) {
         tell(&format!("{note}\n"));
@@ -34,20 +35,25 @@ pub fn measure(asked: &Measurement) -> Result<u8, Failure> {
     let mut measured =
         work_precision(&problem, &problem.start(), &plan, &mut seen).map_err(Failure::numerical)?;
     measured.notes.extend(without_event);
-    let figure = plots::work_precision(&measured).map_err(Failure::numerical)?;
+    if !job.quiet {
+        print(&measured.text())?;
+    }
     let files: Vec<(PathBuf, Vec<u8>)> = [
         ("work_precision.csv", measured.to_csv()),
         ("orders.csv", measured.orders_csv()),
         ("summary.txt", measured.text()),
-        ("work_precision.svg", figure),
     ]
     .into_iter()
     .map(|(name, text)| (directory.join(name), text.into_bytes()))
     .collect();
-    write_all(&files).map_err(Failure::bad_input)?;
+    write_all(&files)?;
+    let figure = plots::work_precision(&measured).map_err(Failure::numerical)?;
+    draw(
+        &directory,
+        vec![("work_precision.svg", figure.into_bytes())],
+    );
     if !job.quiet {
-        print(&measured.text())?;
-        tell(&format!("results in {}\n", directory.display()));
+        tell(&format!("results in {}\n", shown(&directory)));
     }
     Ok(DONE)
 }
@@ -83,12 +89,11 @@ fn plan(asked: &Measurement, problem: &Problem) -> Result<Plan, Failure> {
     };
     let reference = match &asked.reference {
         Some(path) => {
-            let text = read_text(path).map_err(Failure::bad_input)?;
+            let text = read_text(path)?;
             let scene = problem.scene::<f64>(&problem.start());
             let names = scene.model.bodies.iter().map(|body| body.name.clone());
             let names: Vec<String> = names.collect();
-            let positions = positions_from_csv(path, &text, &names, scene.duration)
-                .map_err(Failure::bad_input)?;
+            let positions = positions_from_csv(path, &text, &names, scene.duration)?;
             let file = path.file_name().unwrap_or(path.as_os_str());
             Some((file.to_string_lossy().into_owned(), positions))
         }

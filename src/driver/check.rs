@@ -93,7 +93,11 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
     };
     let steps: Vec<ComplexStep> = (0..x.len())
         .into_par_iter()
-        .map(|i| complex_step(problem, settings, (duration, rate), x, i))
+        .map(|i| {
+            let unit = |j: usize| if i == j { 1.0 } else { 0.0 };
+            let direction: Vec<f64> = (0..x.len()).map(unit).collect();
+            complex_step(problem, settings, (duration, rate), x, &direction)
+        })
         .collect::<Result<_, _>>()?;
     let Some(first) = steps.first() else {
         return Ok(Vec::new());
@@ -161,21 +165,24 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
     size.max(at.function(f).value.abs())
 }
 
-/// Derivatives of all functions in one variable, and the real part of the motion.
-struct ComplexStep {
-    derivatives: Vec<f64>,
-    run: Trajectory<f64>,
+/// Derivatives of all functions along a direction, and the real part of the motion.
+pub(super) struct ComplexStep {
+    pub derivatives: Vec<f64>,
+    pub run: Trajectory<f64>,
 }
 
-fn complex_step(
+/// Im f(x + i h d)/h of every function f; `event` is when the event comes at x, and how fast.
+pub(super) fn complex_step(
     problem: &Problem,
     settings: &Settings,
     event: (f64, f64),
     x: &[f64],
-    i: usize,
+    direction: &[f64],
 ) -> Result<ComplexStep, IntegrationFailure> {
-    let mut x: Vec<Complex64> = x.iter().map(|&x| x.into()).collect();
-    x[i].im = COMPLEX_STEP;
+    let along = x.iter().zip(direction);
+    let x: Vec<Complex64> = along
+        .map(|(&x, d)| Complex64::new(x, COMPLEX_STEP * d))
+        .collect();
     let scene = problem.scene(&x);
     let duration = event::complex_duration(&scene, settings, event)?;
     let run = simulate(&scene.model, duration, settings)?;

@@ -4,6 +4,7 @@ use super::evaluate::Evaluated;
 use super::foreseen::Foreseen;
 use super::integration::Integration;
 use super::journal::{Account, Journal, bits};
+use super::not_finite;
 use crate::integrate::IntegrationFailure;
 use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
 use crate::problem::{Problem, Sense};
@@ -219,7 +220,15 @@ impl Nlp for Evaluator<'_> {
             known = false;
             let steps = (&mut *integration, account);
             let at = at(made, steps, problem, &x).map_err(|failure| failure.to_string())?;
-            Ok(functions.iter().map(|&f| at.function(f).value).collect())
+            let mut values = Vec::with_capacity(functions.len());
+            for &f in &functions {
+                let value = at.function(f).value;
+                if !value.is_finite() {
+                    return Err(not_finite::value(problem, at, f, value));
+                }
+                values.push(value);
+            }
+            Ok(values)
         });
         self.unlowered += match known {
             true => usize::from(!problem.lowered_scene(&x).1),
@@ -265,6 +274,11 @@ impl Nlp for Evaluator<'_> {
             let found = at.gradients(problem, &functions);
             let (gradients, work) = found.map_err(|failure| failure.to_string())?;
             account.work += work;
+            for (&f, gradient) in functions.iter().zip(&gradients) {
+                if let Some(i) = gradient.iter().position(|d| !d.is_finite()) {
+                    return Err(not_finite::derivative(problem, at, (f, i), gradient[i]));
+                }
+            }
             Ok(gradients)
         });
         self.follow();

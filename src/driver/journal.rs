@@ -312,6 +312,7 @@ pub fn head(problem: &Problem) -> Head {
             .map(|f| problem.function_names[f].clone())
             .collect(),
         settings,
+        chained: true,
     }
 }
 

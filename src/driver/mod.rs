@@ -1,6 +1,7 @@
 //! What the program does with a problem: simulate it, check its gradients, optimise it, measure
 //! the methods on it; and what becomes of extreme ones.
 
+pub mod certificate;
 pub mod chaos;
 pub mod check;
 mod connectors;
@@ -14,6 +15,7 @@ mod foreseen;
 pub mod integration;
 pub mod journal;
 pub mod multi_start;
+mod not_finite;
 pub mod optimise;
 mod record;
 pub mod second_order;
@@ -23,6 +25,7 @@ pub mod tables;
 pub mod warm_start;
 pub mod work_precision;
 
+pub use certificate::certify;
 pub use chaos::{Chaos, chaos};
 pub use check::{CheckedDerivative, check};
 pub use evaluate::Evaluated;

@@ -168,7 +168,7 @@ pub(super) fn record(
                 (v.name.clone(), design)
             })
             .collect(),
-        constraints: constraints(problem, outcome, maximise),
+        constraints: constraints(problem, outcome, maximise, start.as_ref().ok()),
         multipliers,
         active_bounds: active_bounds(outcome),
         kkt: Kkt {
@@ -185,6 +185,7 @@ pub(super) fn record(
         },
         scaling: scaling_record(problem, outcome),
         second_order: None,
+        gradient_certificate: None,
         integration: end.map(|end| report::Integration {
             method: end.at.run.method.name(),
             reason: end.reason.clone(),
@@ -217,7 +218,12 @@ fn constraints(
     problem: &Problem,
     outcome: &Outcome,
     maximise: bool,
+    start: Option<&Simulation>,
 ) -> IndexMap<String, ConstraintValue> {
+    let at_start = |function: usize| {
+        let value = start?.at.function(function).value;
+        value.is_finite().then_some(value)
+    };
     let active = |name: &str| {
         let found = outcome.active_constraints.iter().find(|a| a.name == name);
         found.map_or(Activity::Inactive, |a| match a.side {
@@ -239,6 +245,7 @@ fn constraints(
             let multiplier = if maximise { y } else { -y };
             let constraint = ConstraintValue {
                 value,
+                start: at_start(c.function),
                 lower: Some(c.lower).filter(|b| b.is_finite()),
                 upper: Some(c.upper).filter(|b| b.is_finite()),
                 unit: Some(problem.function_unit(c.function)),

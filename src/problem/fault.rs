@@ -2,11 +2,15 @@
 
 use super::overrides::Override;
 use super::source::Source;
+use super::text::{shortened, visible};
 use std::fmt;
 use std::ops::Range;
 
 /// Longest piece of a source line that is shown [characters].
 const EXCERPT: usize = 96;
+/// Longest words of a message, and longest key of a pointer, that are shown whole [characters].
+const LONGEST_WORDS: usize = 800;
+const LONGEST_KEY: usize = 60;
 
 /// Which part of the entry at a pointer is at fault.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,12 +135,23 @@ fn locate(finding: Finding, file: &str, source: &Source, overrides: &[Override])
         path: finding.pointer,
         line,
         column,
-        found: finding.found,
-        expected: finding.expected,
-        hint: finding.hint,
-        origin: overridden.map_or_else(|| file.to_owned(), |o| format!("--set {o}")),
+        found: readable(&finding.found),
+        expected: readable(&finding.expected),
+        hint: finding.hint.as_deref().map(readable),
+        origin: overridden.map_or_else(|| visible(file), |o| readable(&format!("--set {o}"))),
         excerpt: bytes.map(|bytes| excerpt(source, line, column, bytes)),
     }
+}
+
+/// Words of a message, which may hold words of the file.
+fn readable(text: &str) -> String {
+    shortened(&visible(text), LONGEST_WORDS).into_owned()
+}
+
+/// A pointer with long keys shortened.
+fn readable_pointer(pointer: &str) -> String {
+    let keys = pointer.split('/').map(|key| shortened(key, LONGEST_KEY));
+    visible(&keys.collect::<Vec<_>>().join("/"))
 }
 
 /// The piece of a source line around a fault, and where its marks go.
@@ -171,11 +186,12 @@ fn excerpt(
         shown.push('…');
         shift = 1;
     }
-    shown.extend(
-        text[start..end]
-            .iter()
-            .map(|&c| if c == '\t' { ' ' } else { c }),
-    );
+    shown.extend(text[start..end].iter().map(|&c| match c {
+        '\t' => ' ',
+        // One character for one, so that the marks stand where they should.
+        c if visible(c.encode_utf8(&mut [0; 4])).len() > c.len_utf8() => '\u{fffd}',
+        c => c,
+    }));
     if end < text.len() {
         shown.push('…');
     }
@@ -190,7 +206,7 @@ impl fmt::Display for Fault {
             write!(f, ":{}:{}", self.line, self.column)?;
         }
         if !self.path.is_empty() {
-            write!(f, "  {}", self.path)?;
+            write!(f, "  {}", readable_pointer(&self.path))?;
         }
         let number = self.line.to_string();
         match &self.excerpt {

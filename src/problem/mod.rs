@@ -25,6 +25,7 @@ mod structure;
 mod syntax;
 #[cfg(test)]
 mod tests;
+mod text;
 mod variables;
 
 pub use drawing::{BarrierLine, Drawing, Outline};
@@ -32,6 +33,7 @@ pub use fault::{Fault, Faults};
 pub use focus::Focus;
 pub use overrides::{Override, OverrideError};
 pub use schema::schema;
+pub use text::{shortened, visible, visible_lines};
 pub use variables::Variable;
 
 use crate::functions::{Function, Scene};

@@ -11,6 +11,7 @@ use super::schema::{self, Document};
 use super::source::{Duplicate, Source};
 use super::structure::walk;
 use super::syntax;
+use super::text;
 use super::variables::{bind, variables};
 use super::{Constraint, Objective, OptimiserSettings, Problem, Sense, Simulation, Variable};
 use crate::integrate::{self, Spacing, Start};
@@ -56,18 +57,19 @@ pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Fault
 }
 
 /// Reads a problem from its text.
-pub(super) fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Problem, Faults> {
+pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result<Problem, Faults> {
     // A byte order mark is allowed at the head of a text, but not in JSON.
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut document: Value = serde_json::from_str(text).map_err(|error| {
-        let finding = syntax::fault(text, &error);
-        Faults::locate(vec![finding], file, &Source::plain(text), &[])
+    let written = written.strip_prefix('\u{feff}').unwrap_or(written);
+    let mut document: Value = serde_json::from_str(written).map_err(|error| {
+        let finding = syntax::fault(written, &error);
+        Faults::locate(vec![finding], file, &Source::plain(written), &[])
     })?;
-    let source = Source::index(text);
+    let source = Source::index(written);
     let mut findings: Vec<Finding> = source.duplicates.iter().map(twice).collect();
     for change in overrides {
         findings.extend(change.apply(&mut document).err());
     }
+    findings.extend(text::faults(&document));
     let structure = walk(&document, &schema::schema());
     findings.extend(structure.findings.iter().cloned());
     let faults = |findings| Err(Faults::locate(findings, file, &source, overrides));

@@ -1,12 +1,18 @@
 //! What can go wrong while a record is read or written.
 
-use std::path::PathBuf;
+use crate::problem::visible;
+use std::path::{Path, PathBuf};
+
+/// A path in a message.
+fn shown(path: &Path) -> String {
+    visible(&path.display().to_string())
+}
 
 /// A record that could not be read, written or drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// The operating system refused to write.
-    #[error("cannot write {}: {source}", path.display())]
+    #[error("cannot write {}: {source}", shown(path))]
     Write {
         /// The file that was asked for; it is as it was before.
         path: PathBuf,
@@ -17,14 +23,14 @@ pub enum ReportError {
     #[error(
         "{}: found a run that is writing its results there, expected none: wait for its end, or give \
          another --output",
-        path.display()
+        shown(path)
     )]
     InUse {
         /// The directory; nothing in it has changed.
         path: PathBuf,
     },
     /// The operating system refused to read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {source}", shown(path))]
     Read {
         /// The file that was asked for.
         path: PathBuf,
@@ -42,7 +48,7 @@ pub enum ReportError {
         expected: String,
     },
     /// A record of evaluations is damaged or belongs elsewhere.
-    #[error("{}:{line}: found {found}, expected {expected}", path.display())]
+    #[error("{}:{line}: found {found}, expected {expected}", shown(path))]
     Evaluations {
         /// The file.
         path: PathBuf,
@@ -54,7 +60,7 @@ pub enum ReportError {
         expected: String,
     },
     /// A table of reference positions is not what it should be.
-    #[error("{}:{line}: found {found}, expected {expected}", path.display())]
+    #[error("{}:{line}: found {found}, expected {expected}", shown(path))]
     Positions {
         /// The file.
         path: PathBuf,

@@ -16,7 +16,19 @@ const TEMPORARY: (&str, &str) = (".flexbody-", ".tmp");
 /// # Errors
 /// [`ReportError::Write`] with the path; an existing file is then untouched.
 pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
-    finish(prepare(path, bytes)?)
+    finish(prepare(path, bytes)?).map(drop)
+}
+
+/// As [`atomic_write`]; what is written to the file that it returns is appended. Its directory is made if
+/// need be.
+///
+/// # Errors
+/// As [`atomic_write`].
+pub(super) fn atomic_begin(path: &Path, bytes: &[u8]) -> Result<File, ReportError> {
+    make_directory(directory(path))?;
+    let file = finish(prepare(path, bytes)?)?;
+    synchronise_directory(directory(path))?;
+    Ok(file)
 }
 
 /// Writes a group of files: all of them are on the disk under temporary names before the first
@@ -28,19 +40,15 @@ pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
 /// [`ReportError::Write`] with the path of the first file that failed.
 pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), ReportError> {
     for (path, _) in files {
-        let directory = directory(path);
-        std::fs::create_dir_all(directory).map_err(|source| ReportError::Write {
-            path: directory.to_path_buf(),
-            source,
-        })?;
+        make_directory(directory(path))?;
     }
     let prepared: Vec<Prepared> = files
         .iter()
         .map(|(path, bytes)| prepare(path, bytes))
         .collect::<Result<_, _>>()?;
-    prepared.into_iter().try_for_each(finish)?;
-    // The names are on the disk only when the directories are.
-    #[cfg(unix)]
+    for file in prepared {
+        finish(file)?;
+    }
     for (k, (path, _)) in files.iter().enumerate() {
         let directory = directory(path);
         if files[..k]
@@ -49,13 +57,30 @@ pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), ReportError> {
         {
             continue;
         }
-        File::open(directory)
-            .and_then(|opened| opened.sync_all())
-            .map_err(|source| ReportError::Write {
-                path: directory.to_path_buf(),
-                source,
-            })?;
+        synchronise_directory(directory)?;
     }
+    Ok(())
+}
+
+fn make_directory(path: &Path) -> Result<(), ReportError> {
+    std::fs::create_dir_all(path).map_err(|source| ReportError::Write {
+        path: path.to_path_buf(),
+        source,
+    })
+}
+
+/// The names of files are on the disk only when their directory is.
+#[cfg(unix)]
+fn synchronise_directory(path: &Path) -> Result<(), ReportError> {
+    let synchronised = File::open(path).and_then(|opened| opened.sync_all());
+    synchronised.map_err(|source| ReportError::Write {
+        path: path.to_path_buf(),
+        source,
+    })
+}
+
+#[cfg(not(unix))]
+fn synchronise_directory(_: &Path) -> Result<(), ReportError> {
     Ok(())
 }
 
@@ -102,14 +127,12 @@ fn new_file(directory: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     builder.tempfile_in(directory)
 }
 
-fn finish(prepared: Prepared) -> Result<(), ReportError> {
+fn finish(prepared: Prepared) -> Result<File, ReportError> {
     let Prepared { path, file } = prepared;
-    file.persist(&path)
-        .map(drop)
-        .map_err(|error| ReportError::Write {
-            path,
-            source: error.error,
-        })
+    file.persist(&path).map_err(|error| ReportError::Write {
+        path,
+        source: error.error,
+    })
 }
 
 /// A directory that no other run writes its results to until this is dropped or the process has ended,

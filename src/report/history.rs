@@ -3,7 +3,7 @@
 use super::ReportError;
 use super::csv;
 use std::fs::File;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Name and unit of a column.
@@ -16,7 +16,7 @@ pub struct Column {
 }
 
 /// One iteration of an optimisation.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct HistoryRow {
     /// Iteration; the start is 0.
     pub iteration: usize,
@@ -235,12 +235,20 @@ impl HistoryLog {
         let (mut text, file) = match &mut self.file {
             Some(file) => (String::new(), file),
             None => {
-                let file = File::create(&self.path).map_err(fault)?;
+                let file = new_file(&self.path).map_err(fault)?;
                 (history.header()?, self.file.insert(file))
             }
         };
         history.write_row(&mut text, last)?;
         file.write_all(text.as_bytes()).map_err(fault)
+    }
+}
+
+/// A new file in place of one that may be there. What a link there points to is left alone.
+fn new_file(path: &Path) -> std::io::Result<File> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
+        _ => File::create_new(path),
     }
 }
 
@@ -379,6 +387,30 @@ fn fault(line: usize, found: &str, expected: &str) -> ReportError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A link in place of the table is replaced; what it points to stays.
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_not_followed() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let target = directory.path().join("mine");
+        std::fs::write(&target, "precious").expect("is written");
+        let path = directory.path().join("history.partial.csv");
+        for to in [&target, &directory.path().join("nothing")] {
+            let _ = std::fs::remove_file(&path);
+            std::os::unix::fs::symlink(to, &path).expect("is linked");
+            let history = History {
+                objective: Column::new("range", None),
+                variables: Vec::new(),
+                constraints: Vec::new(),
+                rows: vec![HistoryRow::default()],
+            };
+            HistoryLog::new(&path).append(&history).expect("is written");
+            assert!(!path.is_symlink() && path.is_file());
+            assert_eq!(std::fs::read(&target).expect("is read"), b"precious");
+            assert!(!directory.path().join("nothing").exists());
+        }
+    }
 
     /// Every row is appended once: what stands there stays, in the same file, and is the table so far.
     #[test]

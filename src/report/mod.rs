@@ -11,6 +11,7 @@
 //! | [`history`] | the iterations of an optimisation, `history.csv` |
 //! | [`optima`] | the distinct optima of several starts, `optima.csv` |
 //! | [`optimum`] | the end of an optimisation, `optimum.json` |
+//! | [`certificate`] | the check of the gradients that an optimisation went by |
 //! | [`mod@compare`] | an optimum against a committed baseline |
 //! | [`mod@summary`] | the text that a person reads at the end |
 //! | [`positions`] | tables of reference positions |
@@ -18,6 +19,7 @@
 //! | [`stress`] | the stability table, `stability.md` and `stability.csv` |
 //! | [`plots`] | figures as SVG |
 
+pub mod certificate;
 pub mod compare;
 mod csv;
 mod error;

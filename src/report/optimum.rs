@@ -1,6 +1,7 @@
 //! The end of an optimisation as a record, `optimum.json`.
 
 use super::ReportError;
+pub use super::certificate::*;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -35,6 +36,9 @@ pub struct Optimum {
     /// Curvature at the optimum, if it was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub second_order: Option<SecondOrder>,
+    /// Gradients beside the complex step, unless that was left out; older records have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gradient_certificate: Option<GradientCertificate>,
     /// How the motion was integrated at the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integration: Option<Integration>,
@@ -129,6 +133,9 @@ pub struct DesignValue {
 pub struct ConstraintValue {
     /// Value at the optimum.
     pub value: f64,
+    /// Value at the start, where it is known; older records have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<f64>,
     /// Lower bound, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower: Option<f64>,

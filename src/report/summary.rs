@@ -1,8 +1,12 @@
 //! The text that a person reads at the end of an optimisation.
 
+use super::certificate;
 use super::number::{grouped, significant};
 use super::optimum::{Activity, Curvature, KktResiduals, Optimum, SecondOrder, Sense, Side};
 use super::table;
+
+/// How many constraints a sentence names.
+const SHOWN: usize = 3;
 
 /// Status, objective, design, constraints, accuracy and work of an optimisation, as text.
 pub fn summary(optimum: &Optimum) -> String {
@@ -30,6 +34,9 @@ pub fn summary(optimum: &Optimum) -> String {
         text.push_str(&curvature(second, optimum));
     }
     text.push_str(&work(optimum));
+    if let Some(certificate) = &optimum.gradient_certificate {
+        text.push_str(&certificate::lines(certificate));
+    }
     for warning in &optimum.warnings {
         text.push_str(&format!("Warning: {warning}\n"));
     }
@@ -55,6 +62,7 @@ fn objective(optimum: &Optimum) -> String {
         text.push_str(&format!(" ({percent:+.1} %)"));
     }
     text.push('\n');
+    text.push_str(&infeasible_start(optimum));
     if let Some(maximum) = objective.true_maximum {
         text.push_str(&format!(
             "  the true maximum is {}{unit}, the aggregate differs from it by {}{unit}\n",
@@ -62,7 +70,11 @@ fn objective(optimum: &Optimum) -> String {
             significant(objective.value - maximum, 3),
         ));
     }
-    if let Some(error) = objective.estimated_error {
+    if let Some(error) = objective.estimated_error
+        && is_rounding(error, objective.value)
+    {
+        text.push_str("  the estimated error of steps and samples is below rounding\n");
+    } else if let Some(error) = objective.estimated_error {
         text.push_str(&format!(
             "  accurate to about {}{unit} (estimated error of steps and samples)\n",
             significant(error, 2),
@@ -80,6 +92,44 @@ fn objective(optimum: &Optimum) -> String {
         ));
     }
     text
+}
+
+/// Whether an estimated error is no more than the last digit of the value.
+pub fn is_rounding(error: f64, value: f64) -> bool {
+    error <= f64::EPSILON * value.abs()
+}
+
+/// Which constraints the start violated, and by how much: its objective is then none to compare with.
+fn infeasible_start(optimum: &Optimum) -> String {
+    let violated = optimum.constraints.iter().filter_map(|(name, constraint)| {
+        let start = constraint.start?;
+        let below = constraint.lower.map_or(0.0, |lower| lower - start);
+        let above = constraint.upper.map_or(0.0, |upper| start - upper);
+        // To the last digits, a start on its bound is feasible.
+        let bound = constraint
+            .lower
+            .filter(|_| below > above)
+            .or(constraint.upper);
+        let rounding = 1e-12 * bound.unwrap_or(0.0).abs();
+        let by = below.max(above);
+        (by > rounding).then(|| {
+            let unit = with_space(constraint.unit.as_deref());
+            format!("\"{name}\" by {}{unit}", significant(by, 3))
+        })
+    });
+    let violated: Vec<String> = violated.collect();
+    if violated.is_empty() {
+        return String::new();
+    }
+    let shown = violated.iter().take(SHOWN).cloned().collect::<Vec<_>>();
+    let more = match violated.len().saturating_sub(SHOWN) {
+        0 => String::new(),
+        n => format!(" and {n} more"),
+    };
+    format!(
+        "  the start was not feasible: it violated {}{more}\n",
+        shown.join(", ")
+    )
 }
 
 fn design(optimum: &Optimum) -> String {

@@ -1,8 +1,12 @@
 //! Plain text tables.
 
+use crate::problem::visible;
+
 /// Lines of a table with aligned columns, indented by two spaces. A heading that starts with `>`
 /// (not shown) aligns its column to the right; columns without any content are left out.
 pub(super) fn render(headings: &[&str], rows: &[Vec<String>]) -> String {
+    let seen = |row: &Vec<String>| row.iter().map(|cell| visible(cell)).collect();
+    let rows: Vec<Vec<String>> = rows.iter().map(seen).collect();
     let width = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());
         match cells.max() {
@@ -29,7 +33,7 @@ pub(super) fn render(headings: &[&str], rows: &[Vec<String>]) -> String {
         out.push('\n');
     };
     line(&mut headings.iter().map(|h| h.trim_start_matches('>')));
-    for row in rows {
+    for row in &rows {
         line(&mut row.iter().map(String::as_str));
     }
     out

@@ -13,7 +13,7 @@ fn a_suite_whose_table_cannot_be_written_is_not_run() {
         "--output",
         "file/under",
     ];
-    let ran = expect(2, at.path(), &case);
+    let ran = expect(4, at.path(), &case);
     assert!(ran.err.contains("cannot write file/under"), "{}", ran.err);
     assert_eq!(ran.err.lines().count(), 1, "no case was run: {}", ran.err);
     assert_eq!(names(at.path()), ["file"]);

@@ -124,7 +124,13 @@ fn a_check_of_the_curvature_that_fails_loses_nothing() {
     // As if the first of them had failed.
     let design = &json(lines[before])["design"];
     let failed = serde_json::json!({"design": design, "no_gradients": "the bar broke"});
-    let text = lines[..before].join("\n") + "\n" + &failed.to_string() + "\n";
+    // Without hashes, as older versions wrote it.
+    let bare = |line: &&str| match line.find(",\"chain") {
+        Some(hash) => line[..hash].to_owned() + "}\n",
+        None => panic!("{line}"),
+    };
+    let text: String = lines[..before].iter().map(bare).collect();
+    let text = text + &failed.to_string() + "\n";
     std::fs::write(&path, text).expect("is written");
     std::fs::remove_file(at.path().join("out/optimum.json")).expect("is removed");
     let ran = run(3, &["--resume", "out", "--second-order"]);

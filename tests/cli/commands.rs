@@ -382,13 +382,13 @@ fn paths_are_taken_from_the_working_directory() {
 }
 
 #[test]
-fn results_that_cannot_be_written_are_bad_input() {
+fn results_that_cannot_be_written_are_told_before_the_work() {
     let at = scratch();
     std::fs::write(at.path().join("file"), "mine").expect("is written");
     let measured = ["work-precision", HAMMER];
     for job in [&[HAMMER][..], &["simulate", HAMMER], &measured] {
         for output in ["file", "file/below"] {
-            let ran = expect(2, at.path(), &[job, &["--output", output]].concat());
+            let ran = expect(4, at.path(), &[job, &["--output", output]].concat());
             assert!(ran.err.contains("file"), "{}", ran.err);
             // Found before the work, of which there is a line for each run.
             assert_eq!(ran.err.lines().count(), 1, "{}", ran.err);
@@ -473,4 +473,79 @@ fn explain_says_what_is_left_out_and_what_is_not() {
     expect(2, at.path(), &["explain", HAMMER, "--output", "here"]);
     expect(2, at.path(), &["explain", "nothing.json"]);
     assert!(files(at.path()).is_empty());
+}
+
+/// Commands and options that a document names are those of the program, of cargo or of a tool beside them.
+#[test]
+fn the_documents_name_commands_and_options_that_exist() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let at = scratch();
+    let help = |arguments: &[&str]| expect(0, at.path(), arguments).out;
+    let plain = help(&["--help"]);
+    let listed = plain.split("Commands:\n").nth(1).expect("commands");
+    let listed = listed.lines().take_while(|line| line.starts_with("  "));
+    let commands: Vec<&str> = listed
+        .filter_map(|line| line.split_whitespace().next())
+        .filter(|word| word.chars().all(|c| c.is_ascii_lowercase() || c == '-'))
+        .collect();
+    assert!(commands.contains(&"work-precision"), "{commands:?}");
+    let mut known = plain.clone();
+    for command in commands.iter().filter(|command| **command != "help") {
+        known += &help(&[command, "--help"]);
+    }
+    // Those of cargo, git and the linter.
+    known += "--release --all-targets --no-deps --bench --test --lib --check --stat --locked --open \
+              --tool --threshold --auto --call-graph --nocapture --include-ignored";
+    let options: Vec<&str> = known
+        .split(|c: char| !(c.is_ascii_lowercase() || c == '-'))
+        .collect();
+    let mut paths: Vec<_> = ["README.md", "CONTRIBUTING.md"]
+        .map(|name| root.join(name))
+        .into();
+    let docs = std::fs::read_dir(root.join("docs")).expect("a directory");
+    paths.extend(docs.flatten().map(|entry| entry.path()));
+    let (mut wrong, mut count) = (Vec::new(), 0);
+    for path in paths
+        .iter()
+        .filter(|path| path.extension().is_some_and(|end| end == "md"))
+    {
+        let text = read(path);
+        let name = path
+            .file_name()
+            .expect("a name")
+            .to_string_lossy()
+            .into_owned();
+        for (k, line) in text.lines().enumerate() {
+            let mut words = line
+                .split(|c: char| c.is_whitespace() || "`|()[],;".contains(c))
+                .peekable();
+            while let Some(word) = words.next() {
+                let option = word
+                    .split('=')
+                    .next()
+                    .unwrap_or_default()
+                    .trim_end_matches('.');
+                let is_option =
+                    option.starts_with("--") && option[2..].starts_with(char::is_alphabetic);
+                if is_option {
+                    count += 1;
+                    if !options.contains(&option) {
+                        wrong.push(format!("{name}:{}: {option}", k + 1));
+                    }
+                }
+                let called = word == "optimize" && line.contains("`optimize ");
+                let command = words.peek().copied().unwrap_or_default();
+                let is_word = command.chars().all(|c| c.is_ascii_lowercase() || c == '-');
+                if called && is_word && !command.is_empty() && !command.starts_with('-') {
+                    count += 1;
+                    let is_command = commands.contains(&command);
+                    if !is_command && line.contains(&format!("`optimize {command}")) {
+                        wrong.push(format!("{name}:{}: optimize {command}", k + 1));
+                    }
+                }
+            }
+        }
+    }
+    assert!(count > 50, "{count}");
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }

@@ -3,6 +3,8 @@
 mod before_work;
 mod beyond_one_run;
 mod commands;
+mod names;
 mod program;
 mod restart;
+mod results_are_kept;
 mod several_starts;

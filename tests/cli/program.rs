@@ -127,8 +127,8 @@ pub fn killed_runs_resume(arguments: &[&str], phase: f64, records: &[&str]) {
             complete &= kept == whole[*name];
         }
         in_the_midst += usize::from(begun && !complete);
-        // Killed before it made its directory, it was not begun.
-        let how = match directory.exists() {
+        // Killed before it wrote a record, it was not begun.
+        let how = match records.iter().any(|name| directory.join(name).exists()) {
             true => "--resume",
             false => "--output",
         };

@@ -67,7 +67,8 @@ fn a_run_that_ends_at_an_event_is_gone_on_with() {
     }
 }
 
-/// A run that was killed before it had written a line is begun anew, and what it left is removed.
+/// A run that was killed before it had written an evaluation is begun anew, and what it left is removed.
+/// A directory without a run is left alone.
 #[test]
 fn a_run_that_has_just_begun_is_resumed() {
     let at = scratch();
@@ -76,28 +77,37 @@ fn a_run_that_has_just_begun_is_resumed() {
     let head = whole.lines().next().expect("a head");
     let directory = at.path().join("out");
     let path = directory.join("evaluations.jsonl");
-    let begun = |left: Option<&str>, told: &str| {
+    let begun = |left: &str, told: &str| {
         let _ = std::fs::remove_dir_all(&directory);
         std::fs::create_dir(&directory).expect("is made");
         std::fs::write(directory.join(".flexbody-Xy12.tmp"), "half").expect("is written");
-        if let Some(left) = left {
-            std::fs::write(&path, left).expect("is written");
-        }
+        std::fs::write(&path, left).expect("is written");
         let ran = expect(0, at.path(), &[HAMMER, "--resume", "out"]);
         assert!(ran.err.contains(told), "{}", ran.err);
         assert_eq!(read(&path), whole);
         assert_eq!(names(&directory), names(&at.path().join("whole")));
     };
     let anew = "out: no evaluation yet, starts anew\n";
-    begun(None, anew);
-    begun(Some(""), anew);
-    begun(Some(&head[..20]), anew);
-    begun(Some(&format!("{head}\n")), anew);
+    begun("", anew);
+    begun(&head[..20], anew);
+    begun(&format!("{head}\n"), anew);
     let three: Vec<&str> = whole.split_inclusive('\n').take(5).collect();
-    begun(Some(&three.concat()), "out: 3 evaluations are known");
+    begun(&three.concat(), "out: 3 evaluations are known");
     let ran = expect(2, at.path(), &[HAMMER, "--resume", "nowhere"]);
     assert!(ran.err.contains("no directory nowhere"), "{}", ran.err);
     assert!(!at.path().join("nowhere").exists());
+    std::fs::create_dir_all(at.path().join("empty/below")).expect("is made");
+    for starts in [&[][..], &["--starts", "2"]] {
+        for output in [&[][..], &["--output", "other"]] {
+            let arguments = [&[HAMMER, "--resume", "empty"], starts, output].concat();
+            let ran = expect(2, at.path(), &arguments);
+            let told = "found no record of a run in empty, expected evaluations";
+            assert!(ran.err.contains(told), "{}", ran.err);
+            assert!(
+                names(&at.path().join("empty")).is_empty() && !at.path().join("other").exists()
+            );
+        }
+    }
 }
 
 /// Limits, names and figures are no part of the functions; what differs is told.

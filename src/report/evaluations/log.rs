@@ -1,9 +1,11 @@
 //! The file of evaluations: read after a run that ended anyhow, and appended to.
 
+use super::chain::Chain;
 use super::{EvaluationRecord, Found, Head};
-use crate::report::{ReportError, write_all};
+use crate::report::ReportError;
+use crate::report::files::atomic_begin;
 use serde_json::error::Category;
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -18,8 +20,6 @@ pub struct Earlier {
     pub head: Head,
     /// Evaluations and choices of steps, in order.
     pub records: Vec<EvaluationRecord>,
-    /// Their lines.
-    lines: String,
 }
 
 impl Earlier {
@@ -59,28 +59,44 @@ impl Earlier {
             ));
         }
         let (mut records, mut complete) = (Vec::new(), 0);
-        let (mut end, mut whole) = (first.len(), first.len());
+        // The lines of older versions have no hash.
+        let mut chain = match written.chained {
+            true => Some(Chain::of(&written)?),
+            false => None,
+        };
         for (k, line) in lines.filter(|line| line.ends_with(b"\n")).enumerate() {
-            let record: EvaluationRecord =
-                serde_json::from_slice(line.trim_ascii_end()).map_err(|error| {
-                    let expected = "a whole evaluation, as every line but the last one is";
-                    fault(k + 2, damage(&error), expected)
-                })?;
+            let line = line.trim_ascii_end();
+            let (body, hash) = match &chain {
+                Some(_) => Chain::split(line),
+                None => (line.into(), None),
+            };
+            let record: EvaluationRecord = serde_json::from_slice(&body).map_err(|error| {
+                let expected = "a whole evaluation, as every line but the last one is";
+                fault(k + 2, damage(&error), expected)
+            })?;
             if let Some((found, expected)) = record.fault(head) {
                 return Err(fault(k + 2, found, expected));
             }
-            end += line.len();
+            if let Some(chain) = &mut chain
+                && Some(chain.next(&body)) != hash.as_deref()
+            {
+                return Err(fault(
+                    k + 2,
+                    "a line whose \"chain\" does not follow from the lines before it".into(),
+                    "all lines as they were written: one was changed or is missing here or before; \
+                     leave --resume out to begin anew",
+                ));
+            }
             let chosen = matches!(record.found, Found::Steps(_));
             records.push(record);
             if !chosen {
-                (complete, whole) = (records.len(), end);
+                complete = records.len();
             }
         }
         records.truncate(complete);
         Ok(Some(Self {
             head: written,
             records,
-            lines: String::from_utf8_lossy(&bytes[first.len()..whole]).into_owned(),
         }))
     }
 }
@@ -101,6 +117,7 @@ fn damage(error: &serde_json::Error) -> String {
 pub struct EvaluationLog {
     path: PathBuf,
     file: File,
+    chain: Chain,
     synchronised: Instant,
 }
 
@@ -115,17 +132,16 @@ impl EvaluationLog {
         head: &Head,
         earlier: Option<&Earlier>,
     ) -> Result<Self, ReportError> {
-        let lines = earlier.map_or("", |earlier| &earlier.lines);
-        let text = serde_json::to_string(head)? + "\n" + lines;
-        write_all(&[(path.to_path_buf(), text.into_bytes())])?;
-        let file = OpenOptions::new().append(true).open(path);
+        let mut text = serde_json::to_string(head)? + "\n";
+        let mut chain = Chain::of(head)?;
+        for record in earlier.map_or(&[][..], |earlier| &earlier.records) {
+            text.push_str(&chain.line(record)?);
+        }
         Ok(Self {
+            file: atomic_begin(path, text.as_bytes())?,
             path: path.to_path_buf(),
+            chain,
             synchronised: Instant::now(),
-            file: file.map_err(|source| ReportError::Write {
-                path: path.to_path_buf(),
-                source,
-            })?,
         })
     }
 
@@ -135,7 +151,7 @@ impl EvaluationLog {
     /// # Errors
     /// [`ReportError::Write`] with the path.
     pub fn append(&mut self, record: &EvaluationRecord) -> Result<(), ReportError> {
-        let line = serde_json::to_string(record)? + "\n";
+        let line = self.chain.line(record)?;
         self.file
             .write_all(line.as_bytes())
             .map_err(|source| self.unwritable(source))?;
@@ -181,6 +197,7 @@ mod tests {
             variables: vec!["mass".into()],
             functions: vec!["range".into()],
             settings: settings.as_object().expect("an object").clone(),
+            chained: true,
         }
     }
 
@@ -292,9 +309,10 @@ mod tests {
             "2: found the method \"euler\", expected dop853, radau2 or radau3",
         );
         let line = "a whole evaluation, as every line but the last one is";
+        let second = whole.lines().nth(1).expect("a line");
         refused(
-            "\"reason\":\"first design\",\"ends\":[0.0,1.0]}}\n",
-            "\"rea\n",
+            &second[second.find("\"reason\"").expect("a reason")..],
+            "\"rea",
             &format!("2: found a line that breaks off at column 47, expected {line}"),
         );
         refused(
@@ -317,6 +335,58 @@ mod tests {
             "\"values\":[4.0,1.0]",
             "3: found lists of other lengths, expected a number for each variable and function",
         );
+    }
+
+    /// Whatever is done to a line within a record, that or the next line is refused; the lines of older
+    /// versions are read as they are.
+    #[test]
+    fn changed_lines_are_refused_and_lines_without_hashes_read() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let path = directory.path().join("evaluations.jsonl");
+        let mut log = EvaluationLog::create(&path, &head("a", 5), None).expect("is written");
+        let all = [steps(), record(1.0), record(2.0), record(3.0), record(4.0)];
+        for record in &all {
+            log.append(record).expect("is written");
+        }
+        let whole = std::fs::read_to_string(&path).expect("is read");
+        let lines: Vec<&str> = whole.split_inclusive('\n').collect();
+        let read = |lines: &[&str]| {
+            std::fs::write(&path, lines.concat()).expect("is written");
+            Earlier::read(&path, &head("a", 5))
+        };
+        for k in 1..lines.len() - 1 {
+            let mut removed = lines.clone();
+            removed.remove(k);
+            let mut swapped = lines.clone();
+            swapped.swap(k, k + 1);
+            let mut twice = lines.clone();
+            twice.insert(k, lines[k]);
+            let other = lines[k].replacen("[", "[ ", 1);
+            let mut edited = lines.clone();
+            edited[k] = &other;
+            let cases = [(removed, k), (swapped, k), (twice, k + 1), (edited, k)];
+            for (changed, first) in cases {
+                let error = read(&changed).expect_err("is refused").to_string();
+                let told = format!(
+                    ":{}: found a line whose \"chain\" does not follow",
+                    first + 1
+                );
+                assert!(error.contains(&told), "{k} {error}");
+            }
+        }
+        // As older versions wrote them.
+        let plain = |line: &str| {
+            let (body, _) = Chain::split(line.trim_end().as_bytes());
+            String::from_utf8_lossy(&body).into_owned() + "\n"
+        };
+        let mut old: Vec<String> = lines.iter().map(|line| plain(line)).collect();
+        old[0] = old[0].replace(",\"chained\":true", "");
+        assert!(!old.concat().contains("chain"));
+        let old: Vec<&str> = old.iter().map(String::as_str).collect();
+        let found = read(&old).expect("is read").expect("begun");
+        assert_eq!(found.records, all);
+        EvaluationLog::create(&path, &head("a", 5), Some(&found)).expect("is written");
+        assert_eq!(std::fs::read_to_string(&path).expect("is read"), whole);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 //! soon as it is known, so that a run that is killed loses the evaluation under way and no other. If
 //! the machine fails, the evaluations of the last second may be lost too.
 
+mod chain;
 mod log;
 
 pub use log::{Earlier, EvaluationLog};
@@ -25,16 +26,28 @@ pub struct Head {
     pub functions: Vec<String>,
     /// The rest of the document, which another run may change and use the evaluations all the same.
     pub settings: Map<String, Value>,
+    /// Whether every line ends with the hash of itself and all lines before it; older versions wrote none.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub chained: bool,
+}
+
+fn is_false(yes: &bool) -> bool {
+    !yes
 }
 
 impl Head {
     /// Whether evaluations of `other` are evaluations of this.
     fn fits(&self, other: &Head) -> bool {
-        let functions = |head: &Head| Head {
+        self.without_settings() == other.without_settings()
+    }
+
+    /// What the evaluations follow from.
+    fn without_settings(&self) -> Head {
+        Head {
             settings: Map::new(),
-            ..head.clone()
-        };
-        functions(self) == functions(other)
+            chained: true,
+            ..self.clone()
+        }
     }
 
     /// The settings that differ from those of `earlier`, as `POINTER was OLD, is NEW`.

@@ -1,5 +1,6 @@
 //! A drawing surface in pixels that becomes an SVG text, by plotters.
 
+use crate::problem::visible;
 use crate::report::ReportError;
 use plotters::drawing::{DrawingAreaErrorKind, IntoDrawingArea};
 use plotters::element::{Circle, PathElement, Polygon, Text};
@@ -113,13 +114,13 @@ impl Canvas {
 
     /// Text of ordinary size, centred vertically on the point.
     pub fn text(&mut self, at: Pixel, text: &str, anchor: Anchor) {
-        let shape = Shape::Text(at, text.to_owned(), anchor, false);
+        let shape = Shape::Text(at, visible(text), anchor, false);
         self.shapes.push((shape, INK, 1.0));
     }
 
     /// Bold text, centred vertically on the point.
     pub fn title(&mut self, at: Pixel, text: &str, anchor: Anchor) {
-        let shape = Shape::Text(at, text.to_owned(), anchor, true);
+        let shape = Shape::Text(at, visible(text), anchor, true);
         self.shapes.push((shape, BLACK, 1.0));
     }
 

@@ -15,6 +15,16 @@ const MARGIN: f64 = 14.0;
 const TITLE: f64 = 24.0;
 const WHITE: RGBColor = RGBColor(255, 255, 255);
 
+/// Colours of the BDF by order, none of which another method has (Tol 2021, muted, and greys).
+const ORDERS: [RGBColor; 6] = [
+    RGBColor(51, 34, 136),
+    RGBColor(136, 34, 85),
+    RGBColor(153, 153, 51),
+    RGBColor(86, 180, 233),
+    RGBColor(140, 140, 140),
+    RGBColor(0, 0, 0),
+];
+
 /// The runs of one method with equal steps, or with steps that follow a tolerance.
 struct Curve<'a> {
     color: RGBColor,
@@ -122,12 +132,12 @@ fn look(method: &str) -> (RGBColor, &'static str) {
         "dop853" => (PALETTE[0], ""),
         "radau3" => (PALETTE[1], ""),
         "radau2" => (PALETTE[2], ""),
-        "bdf1" => (PALETTE[6], "1"),
-        "bdf2" => (PALETTE[6], "2"),
-        "bdf3" => (PALETTE[6], "3"),
-        "bdf4" => (PALETTE[6], "4"),
-        "bdf5" => (PALETTE[6], "5"),
-        "bdf6" => (PALETTE[6], "6"),
+        "bdf1" => (ORDERS[0], "1"),
+        "bdf2" => (ORDERS[1], "2"),
+        "bdf3" => (ORDERS[2], "3"),
+        "bdf4" => (ORDERS[3], "4"),
+        "bdf5" => (ORDERS[4], "5"),
+        "bdf6" => (ORDERS[5], "6"),
         _ if method.starts_with("bdf") => (PALETTE[5], "r"),
         _ => (PALETTE[3], "α"),
     }
@@ -135,17 +145,11 @@ fn look(method: &str) -> (RGBColor, &'static str) {
 
 fn legend(curves: &[Curve], width: f64) -> Legend {
     let mut entries: Vec<(Key, String)> = Vec::new();
-    let mut bdf = false;
     for curve in curves {
         let method = curve.rows[0].method.as_str();
         let text = match curve.mark {
             "" => method.to_owned(),
-            mark @ ("r" | "α") => format!("{method} ({mark})"),
-            _ if bdf => continue,
-            _ => {
-                bdf = true;
-                "bdf (number: order)".to_owned()
-            }
+            mark => format!("{method} ({mark})"),
         };
         let known = entries.iter().any(|(_, known)| *known == text);
         if !known {

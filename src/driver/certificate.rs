@@ -1,0 +1,333 @@
+//! The certificate of the gradients that an optimisation went by: at its start and at its end, one
+//! directional derivative of every function by the adjoint and by the complex step.
+//!
+//! The direction d is random, so that an error in any derivative shows, and as long in each variable as the
+//! variable's typical change. With the gradient g of a function, the two derivatives differ by
+//! |Σ gᵢdᵢ − Im f(x + ihd)/h|, which is judged beside Σ |gᵢdᵢ|, or beside the round-off of what the gradient
+//! is the sum of.
+
+use super::check::{complex_step, own_size};
+use super::evaluate::{Derivative, Evaluated};
+use super::event;
+use super::integration::{Integration, KeptSteps};
+use super::not_finite::{body, variable};
+use super::optimise::Optimisation;
+use crate::integrate::{IntegrationFailure, Settings, Spacing};
+use crate::problem::Problem;
+use crate::report::optimum::{
+    CertificateCost, CertifiedDerivative, CertifiedDesign, GradientCertificate,
+};
+
+/// Largest difference that passes, relative to Σ |gᵢdᵢ|: that of `optimize check`.
+pub const TOLERANCE: f64 = 1e-10;
+/// What the direction is drawn with.
+pub const SEED: u64 = 20_221_113;
+/// Round-off in parts of the terms that a derivative is the sum of.
+const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+/// Most variables among which one at fault is looked for, by a complex run each.
+const LOOKED_AT: usize = 64;
+
+/// Certifies the gradients at both ends of an optimisation, on the steps of their simulations. Differences
+/// up to `tolerance` pass.
+pub fn certify(problem: &Problem, done: &Optimisation, tolerance: f64) -> GradientCertificate {
+    let direction = direction(problem, SEED);
+    let mut cost = CertificateCost::default();
+    let mut at = |simulation: &Option<super::Simulation>| match simulation {
+        Some(simulation) => {
+            let found = certified(problem, &simulation.at, &direction, tolerance, &mut cost);
+            found.unwrap_or_else(|failure| CertifiedDesign {
+                faults: vec![format!("a run of the check failed: {failure}")],
+                ..CertifiedDesign::default()
+            })
+        }
+        None => CertifiedDesign {
+            faults: vec!["the simulation fails".into()],
+            ..CertifiedDesign::default()
+        },
+    };
+    let (start, optimum) = (at(&done.start), at(&done.end));
+    let names = problem.variables.iter().map(|v| v.name.clone());
+    GradientCertificate {
+        seed: SEED,
+        direction: names.zip(direction).collect(),
+        tolerance,
+        passed: start.faults.is_empty() && optimum.faults.is_empty(),
+        start,
+        optimum,
+        cost,
+    }
+}
+
+/// A direction with a random sign and a random size between half a typical change and a whole one in every
+/// variable, by the generator SplitMix64 (Steele, Lea & Flood 2014).
+fn direction(problem: &Problem, seed: u64) -> Vec<f64> {
+    let mut state = seed;
+    let mut next = || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    };
+    let along = |variable: &crate::problem::Variable| {
+        let bits = next();
+        let size = 0.5 + 0.5 * (bits >> 11) as f64 / (1u64 << 53) as f64;
+        let sign = if bits & 1 == 0 { 1.0 } else { -1.0 };
+        sign * size * variable.scale
+    };
+    problem.variables.iter().map(along).collect()
+}
+
+/// The derivatives of all functions at a simulated design.
+fn certified(
+    problem: &Problem,
+    at: &Evaluated,
+    direction: &[f64],
+    tolerance: f64,
+    cost: &mut CertificateCost,
+) -> Result<CertifiedDesign, IntegrationFailure> {
+    let which: Vec<usize> = (0..at.scene.functions.len()).collect();
+    let Some(settings) = settings(problem, at) else {
+        return Ok(CertifiedDesign::default());
+    };
+    let (gradients, _) = at.derivatives(problem, &which)?;
+    cost.gradients += 1;
+    let rate = match &at.scene.until {
+        Some(_) => {
+            // The event's own rate, and how it moves.
+            cost.complex_runs += 2;
+            event::rate(&at.scene, &settings, at.run.duration)?
+        }
+        None => f64::NAN,
+    };
+    let event = (at.run.duration, rate);
+    let complex = complex_step(problem, &settings, event, &at.x, direction)?;
+    cost.complex_runs += 1;
+    let pair = |f: usize, gradients: &[Vec<Derivative>]| Pair {
+        adjoint: sum(&gradients[f], direction, |d, by| d.value * by),
+        complex_step: complex.derivatives[f],
+        size: sum(&gradients[f], direction, |d, by| (d.value * by).abs()),
+        terms: sum(&gradients[f], direction, |d, by| d.terms * by.abs()).max(own_size(at, f)),
+    };
+    let mut found = CertifiedDesign::default();
+    let mut same = None;
+    for f in which.iter().copied() {
+        let name = &problem.function_names[f];
+        let mut judged = pair(f, &gradients);
+        if !judged.passes(tolerance) && judged.is_finite() {
+            // The motion of the complex run differs by round-off, which a sensitive motion magnifies.
+            if same.is_none() {
+                let of_complex = Evaluated {
+                    x: at.x.clone(),
+                    scene: at.scene.clone(),
+                    run: complex.run.clone(),
+                };
+                same = Some(of_complex.derivatives(problem, &which)?.0);
+                cost.gradients += 1;
+            }
+            let on_same = same.as_ref().map_or(judged, |same| pair(f, same));
+            if on_same.passes(tolerance) {
+                let noise = judged.relative();
+                found.notes.push(format!(
+                    "round-off of the motion moves the derivative of \"{name}\" by {noise:.1e} of its \
+                     gradient"
+                ));
+                judged = on_same;
+            }
+        }
+        if !judged.passes(tolerance) {
+            let gradient = &gradients[f];
+            let which = match judged.is_finite() {
+                true => {
+                    let settings = (&settings, event);
+                    differing(problem, settings, &at.x, (f, gradient, direction), cost)?
+                }
+                false => not_finite(problem, at, gradient),
+            };
+            found.faults.push(format!(
+                "the derivative of \"{name}\" is {:.15e} by the adjoint and {:.15e} by the complex \
+                 step{which}",
+                judged.adjoint, judged.complex_step
+            ));
+        }
+        let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+        let derivative = CertifiedDerivative {
+            adjoint: finite(judged.adjoint),
+            complex_step: finite(judged.complex_step),
+            difference: finite(judged.relative()),
+        };
+        found.functions.insert(name.clone(), derivative);
+    }
+    Ok(found)
+}
+
+fn sum(gradient: &[Derivative], direction: &[f64], of: fn(&Derivative, f64) -> f64) -> f64 {
+    let terms = gradient.iter().zip(direction);
+    terms.map(|(derivative, &by)| of(derivative, by)).sum()
+}
+
+/// The settings that a run was made with, its steps as they are.
+fn settings(problem: &Problem, at: &Evaluated) -> Option<Settings> {
+    let mut integration = Integration::new(problem, &at.scene, None, true);
+    integration.restore(KeptSteps {
+        method: at.run.method,
+        reason: None,
+        grid: match problem.simulation.spacing {
+            Spacing::Steps(_) => None,
+            Spacing::Tolerance(_) | Spacing::Frozen(_) => Some(at.run.grid.clone()),
+        },
+        refreshes: 0,
+    });
+    integration.chosen().map(|(settings, _)| settings.clone())
+}
+
+/// A directional derivative, computed twice.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    adjoint: f64,
+    complex_step: f64,
+    /// Σ |gᵢdᵢ|.
+    size: f64,
+    /// Of what the derivative is the sum of, or of the function itself.
+    terms: f64,
+}
+
+impl Pair {
+    fn difference(&self) -> f64 {
+        (self.adjoint - self.complex_step).abs()
+    }
+
+    /// The difference beside the gradient, where there is one.
+    fn relative(&self) -> f64 {
+        match self.difference() {
+            0.0 => 0.0,
+            difference => difference / self.size,
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        self.adjoint.is_finite() && self.complex_step.is_finite()
+    }
+
+    /// Not if a number is NaN.
+    fn passes(&self, tolerance: f64) -> bool {
+        self.difference() <= ROUND_OFF * self.terms || self.relative() <= tolerance
+    }
+}
+
+/// In which variable the two derivatives of function f differ most: one complex run each.
+fn differing(
+    problem: &Problem,
+    (settings, event): (&Settings, (f64, f64)),
+    x: &[f64],
+    (f, gradient, direction): (usize, &[Derivative], &[f64]),
+    cost: &mut CertificateCost,
+) -> Result<String, IntegrationFailure> {
+    if x.len() > LOOKED_AT {
+        return Ok("; optimize check names the variable".into());
+    }
+    let mut most: Option<(f64, usize)> = None;
+    for (i, derivative) in gradient.iter().enumerate() {
+        let only = |j: usize| if i == j { direction[i] } else { 0.0 };
+        let along: Vec<f64> = (0..x.len()).map(only).collect();
+        let found = complex_step(problem, settings, event, x, &along)?;
+        cost.complex_runs += 1;
+        let by = (found.derivatives[f] - derivative.value * direction[i]).abs();
+        if most.is_none_or(|(largest, _)| by > largest) {
+            most = Some((by, i));
+        }
+    }
+    Ok(most.map_or_else(String::new, |(_, i)| {
+        format!("; they differ most in {}", variable(problem, i))
+    }))
+}
+
+/// Where a derivative is not finite: the first variable whose derivative is not, and from which body and
+/// step on the motion is not.
+fn not_finite(problem: &Problem, at: &Evaluated, gradient: &[Derivative]) -> String {
+    let mut text = String::new();
+    if let Some(i) = gradient.iter().position(|d| !d.value.is_finite()) {
+        text.push_str(&format!("; not finite in {}", variable(problem, i)));
+    }
+    text + &body(at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::driver::{Journal, optimise};
+    use std::ops::ControlFlow;
+
+    #[test]
+    fn a_difference_is_judged_beside_the_gradient_and_its_round_off() {
+        let pair = |adjoint: f64, complex_step: f64| Pair {
+            adjoint,
+            complex_step,
+            size: 1.0,
+            terms: 10.0,
+        };
+        assert!(pair(0.5, 0.5 + 1e-14).passes(0.0), "round-off");
+        assert!(!pair(0.5, 0.5 + 1e-12).passes(1e-13));
+        assert!(pair(0.5, 0.5 + 1e-12).passes(1e-11));
+        // Small beside the gradient, and wrong by all of itself.
+        assert!(!pair(1e-9, -1e-9).passes(1e-10));
+        for wrong in [f64::NAN, f64::INFINITY] {
+            assert!(!pair(wrong, 0.5).passes(1e-3) && !pair(0.5, wrong).passes(1e-3));
+        }
+    }
+
+    /// Two balls, each moved by its own variables: gradients pass, and where nothing passes the variable
+    /// that errs most is named, with its place in the file.
+    #[test]
+    fn every_function_is_certified_and_what_fails_is_named() {
+        let text = r#"{"version": 1, "name": "swing", "gravity": [0, -9.81, 0],
+            "bodies": {"bar": {"shape": {"rod": {"length": 1, "radius": 0.02}}, "mass": 2,
+                               "points": {"pin": [-0.4, 0, 0]}, "place": {"put": "pin", "at": [0, 0, 0]}}},
+            "joints": {"hinge": {"revolute": {"between": ["bar", "ground"], "at": "bar.pin",
+                                              "axis": [0, 0, 1]}}},
+            "simulation": {"duration": 0.4, "tolerance": 1e-9},
+            "functions": {"angle": {"final": {"rotation": {"body": "bar", "axis": [0, 0, 1]}}},
+                          "energy": {"final": {"energy": "kinetic"}}},
+            "variables": {"pin": {"path": "/bodies/bar/points/pin/0", "lower": -0.5, "upper": 0.5},
+                          "pull": {"path": "/gravity/1", "lower": -9.9, "upper": -9.7}},
+            "objective": {"minimise": "angle"}}"#;
+        let problem = Problem::parse(text, "swing.json", &[]);
+        let problem = problem.unwrap_or_else(|faults| panic!("{faults}"));
+        let mut progress = |_: &_| ControlFlow::Continue(());
+        let done = optimise(&problem, "", None, Journal::default(), &mut progress);
+        let done = done.expect("has an objective");
+        let found = certify(&problem, &done, 1e-12);
+        assert!(found.passed && found.faults().is_empty(), "{found:?}");
+        let cost = CertificateCost {
+            gradients: 2,
+            complex_runs: 2,
+        };
+        assert_eq!(found.cost, cost);
+        for design in [&found.start, &found.optimum] {
+            assert_eq!(design.functions.len(), 2);
+            for derivative in design.functions.values() {
+                assert!(derivative.adjoint.is_some_and(|x| x != 0.0), "{found:?}");
+                assert!(
+                    derivative.difference.is_some_and(|x| x < 1e-12),
+                    "{found:?}"
+                );
+            }
+        }
+        assert_eq!(certify(&problem, &done, 1e-12), found, "the same direction");
+        // A gradient that is wrong in the second variable.
+        let at = &done.start.as_ref().expect("ran").at;
+        let (mut gradients, _) = at.derivatives(&problem, &[0]).expect("a gradient");
+        gradients[0][1].value *= 1.0 + 1e-6;
+        let along = direction(&problem, SEED);
+        let settings = settings(&problem, at).expect("known");
+        let event = (at.run.duration, f64::NAN);
+        let mut cost = CertificateCost::default();
+        let wrong = (0, &gradients[0][..], &along[..]);
+        let named = differing(&problem, (&settings, event), &at.x, wrong, &mut cost).expect("runs");
+        assert_eq!(named, "; they differ most in \"pull\" (/gravity/1)");
+        assert_eq!(cost.complex_runs, 2);
+        gradients[0][0].value = f64::NAN;
+        let named = not_finite(&problem, at, &gradients[0]);
+        assert_eq!(named, "; not finite in \"pin\" (/bodies/bar/points/pin/0)");
+    }
+}

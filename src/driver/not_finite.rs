@@ -1,0 +1,65 @@
+//! Where a number that is not finite comes from, as far as it is known.
+
+use super::evaluate::Evaluated;
+use crate::functions::Function;
+use crate::functions::evaluate::sample;
+use crate::functions::turning::turns;
+use crate::problem::Problem;
+
+/// A function whose value is not finite: since when what it is made of is not.
+pub(super) fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> String {
+    let name = &problem.function_names[f];
+    let own = match &at.scene.functions[f] {
+        Function::Reduced { instant, .. } => {
+            let turns = turns(instant.watched_rotation(), &at.run);
+            let all = sample(instant, &turns, &at.scene.model, &at.run);
+            let first = all.iter().position(|x| !x.is_finite());
+            first.map(|k| {
+                let (what, time) = (instant.describe(), at.run.time(k));
+                format!(": its {what} is not finite from t = {time:.6e} s on")
+            })
+        }
+        Function::Clearance { .. } | Function::Duration | Function::OfDesign(_) => None,
+    };
+    format!(
+        "the function \"{name}\" is {value}{}{}",
+        own.unwrap_or_default(),
+        body(at)
+    )
+}
+
+/// A derivative that is not finite.
+pub(super) fn derivative(
+    problem: &Problem,
+    at: &Evaluated,
+    (f, i): (usize, usize),
+    value: f64,
+) -> String {
+    format!(
+        "the derivative of the function \"{}\" in the variable {} is {value}{}",
+        problem.function_names[f],
+        variable(problem, i),
+        body(at)
+    )
+}
+
+/// A variable by name, and what of the scene it moves.
+pub(super) fn variable(problem: &Problem, i: usize) -> String {
+    let variable = &problem.variables[i];
+    format!("\"{}\" ({})", variable.name, variable.paths.join(", "))
+}
+
+/// The first body whose motion is not finite, and since when; nothing if all are.
+pub(super) fn body(at: &Evaluated) -> String {
+    let run = &at.run;
+    let lost = (0..=run.last()).find_map(|k| {
+        let component = run.v(k).iter().position(|v| !v.is_finite())?;
+        Some((k, run.numbering.body_of_velocity(component)))
+    });
+    lost.map_or_else(String::new, |(k, body)| {
+        let (name, time) = (&at.scene.model.bodies[body].name, run.time(k));
+        let step = (1..=run.grid.steps()).find(|&n| run.grid.ends()[n] >= run.instants[k]);
+        let step = step.map_or_else(String::new, |n| format!(" (step {n})"));
+        format!("; body \"{name}\" is not finite from t = {time:.6e} s on{step}")
+    })
+}

@@ -1,0 +1,159 @@
+//! Names and other words of a user in messages: nothing in them moves a terminal's cursor, breaks a line,
+//! turns the direction of reading, or fills the screen.
+
+use super::fault::{Finding, Part};
+use super::pointer::join;
+use serde_json::Value;
+use std::borrow::Cow;
+
+/// Longest name (characters).
+const LONGEST: usize = 200;
+/// Entries of a file that are prose: they have lines, and are as long as need be.
+const PROSE: [&str; 2] = ["/description", "/$schema"];
+
+/// Whether a character is seen by what it does: controls, ends of lines and paragraphs, and those that
+/// turn the direction of reading. What scripts are written and joined with is not among them.
+fn is_unseen(c: char) -> bool {
+    c.is_control()
+        || matches!(
+            c,
+            '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{fffe}' | '\u{ffff}'
+        )
+}
+
+fn escaped(text: &str, kept: &[char]) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match is_unseen(c) && !kept.contains(&c) {
+            true => out.extend(c.escape_unicode()),
+            false => out.push(c),
+        }
+    }
+    out
+}
+
+/// A text of one line with escapes, as in \u{1b}, in place of what is not seen.
+pub fn visible(text: &str) -> String {
+    escaped(text, &[])
+}
+
+/// As [`visible`], of a text that may have lines.
+pub fn visible_lines(text: &str) -> String {
+    escaped(text, &['\n', '\t'])
+}
+
+/// The beginning and the end of a text that is longer than `most` characters.
+pub fn shortened(text: &str, most: usize) -> Cow<'_, str> {
+    let count = text.chars().count();
+    if count <= most {
+        return text.into();
+    }
+    let (head, tail) = (2 * most / 3, most / 4);
+    let start: String = text.chars().take(head).collect();
+    let end: String = text.chars().skip(count - tail).collect();
+    format!("{start}… ({count} characters) …{end}").into()
+}
+
+/// What is wrong with the names and words of a document: characters that are not seen, and names that are
+/// longer than any list of them could show.
+pub(super) fn faults(document: &Value) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    walk(document, "", &mut findings);
+    findings
+}
+
+fn walk(value: &Value, pointer: &str, findings: &mut Vec<Finding>) {
+    match value {
+        Value::Object(object) => {
+            for (key, inner) in object {
+                let below = join(pointer, key);
+                if let Some(finding) = fault(key, &below) {
+                    findings.push(finding.of_key());
+                }
+                walk(inner, &below, findings);
+            }
+        }
+        Value::Array(items) => {
+            for (k, inner) in items.iter().enumerate() {
+                if inner.is_object() || inner.is_array() || inner.is_string() {
+                    walk(inner, &join(pointer, k), findings);
+                }
+            }
+        }
+        Value::String(text) if !PROSE.contains(&pointer) => {
+            findings.extend(fault(text, pointer).map(|finding| Finding {
+                part: Part::Value,
+                ..finding
+            }));
+        }
+        Value::String(_) | Value::Null | Value::Bool(_) | Value::Number(_) => {}
+    }
+}
+
+fn fault(name: &str, pointer: &str) -> Option<Finding> {
+    if let Some(c) = name.chars().find(|&c| is_unseen(c)) {
+        let found = format!(
+            "the character U+{:04X} in \"{}\"",
+            u32::from(c),
+            shortened(&visible(name), 60)
+        );
+        return Some(Finding::new(
+            pointer,
+            found,
+            "a text of visible characters in one line",
+        ));
+    }
+    let count = name.chars().count();
+    (count > LONGEST).then(|| {
+        let found = format!("\"{}\"", shortened(name, 40));
+        Finding::new(
+            pointer,
+            found,
+            format!("a text of at most {LONGEST} characters"),
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_of_all_scripts_stay_and_controls_are_seen() {
+        for name in [
+            "Träger",
+            "рычаг",
+            "曲柄",
+            "بازو",
+            "भुजा",
+            "می‌خواهم",
+            "👩‍🔧",
+            "e\u{301}",
+        ] {
+            assert_eq!(visible(name), name);
+            assert_eq!(fault(name, "").map(|f| f.found), None);
+        }
+        let cases = [
+            ("\u{1b}[2J", "\\u{1b}[2J"),
+            ("a\nb", "a\\u{a}b"),
+            ("a\u{9b}31m", "a\\u{9b}31m"),
+            ("\u{202e}abc", "\\u{202e}abc"),
+            ("a\u{2028}b", "a\\u{2028}b"),
+            ("\u{7f}\r\0", "\\u{7f}\\u{d}\\u{0}"),
+        ];
+        for (text, shown) in cases {
+            assert_eq!(visible(text), shown);
+            assert!(fault(text, "").is_some());
+        }
+        assert_eq!(visible_lines("a\n\tb\r"), "a\n\tb\\u{d}");
+    }
+
+    #[test]
+    fn long_texts_show_both_ends() {
+        assert_eq!(shortened("abc", 3), "abc");
+        let long = "ä".repeat(5000) + &"z".repeat(5000);
+        let short = shortened(&long, 40);
+        assert!(short.starts_with("ää") && short.ends_with("zz"), "{short}");
+        assert!(short.contains("(10000 characters)") && short.chars().count() < 70);
+    }
+}
