@@ -234,8 +234,7 @@ fn estimates_are_right_on_andrews_squeezer() {
     judge(&andrews(), &settings, 1.0);
 }
 
-/// Only what errs too much is refined: the samples of an aggregate of the whole motion, the steps of a
-/// value at its end, and steps that are samples too.
+/// What errs too much is refined: the tolerance, which sums over the motion follow too, or equal steps.
 #[test]
 fn an_accuracy_is_reached_by_what_lacks_it() {
     let by_tolerance = |tolerance: f64| {
@@ -255,10 +254,17 @@ fn an_accuracy_is_reached_by_what_lacks_it() {
         assert!(own.error <= 1.01 * accuracy * own.value.abs(), "{own:?}");
         found
     };
-    let seldom = |problem: &mut Problem| problem.simulation.samples = Some(50);
-    let found = reached("trebuchet.json", 1e-7, &seldom);
-    assert_eq!(found.spacing, None, "{found:?}");
-    assert!(found.samples > Some(50), "{found:?}");
+    // Sums over the motion follow the tolerance, whatever samples are shown.
+    let seldom = |problem: &mut Problem| {
+        problem.simulation.samples = Some(50);
+        problem.simulation.spacing = Spacing::Tolerance(1e-5);
+    };
+    let found = reached("trebuchet.json", 1e-9, &seldom);
+    assert!(
+        matches!(found.spacing, Some(Spacing::Tolerance(finer)) if finer < 1e-5),
+        "{found:?}"
+    );
+    assert_eq!(found.samples, None, "{found:?}");
     assert_eq!(found.overrides().len(), 1);
 
     let found = reached("trebuchet_release_time.json", 1e-9, &by_tolerance(1e-6));
@@ -305,4 +311,159 @@ fn estimates_are_right_over_a_wide_range() {
     judge(&trebuchet(), &wide, 0.95);
     let wide = range([[40, 60, 80], [200, 400, 800], [2000, 4000, 8000]]);
     judge(&andrews(), &wide, 0.95);
+}
+
+/// A point that turns about the origin at radius ½ m: g = ½ cos(ω t − φ).
+fn turning(omega: f64, duration: f64, phase: f64, tolerance: f64, functions: Value) -> Evaluated {
+    let mut functions = functions;
+    let of = json!({"position": {"body": "box", "point": "end",
+        "direction": [phase.cos(), phase.sin(), 0.0]}});
+    for function in functions.as_object_mut().expect("functions").values_mut() {
+        for aggregate in function.as_object_mut().expect("a function").values_mut() {
+            match aggregate.is_null() {
+                true => *aggregate = of.clone(),
+                false => aggregate["of"] = of.clone(),
+            }
+        }
+    }
+    let problem = load("extreme/aggregate.json", |document| {
+        document["bodies"]["box"]["velocity"]["angular"] = json!([0.0, 0.0, omega]);
+        document["simulation"] = json!({"duration": duration, "tolerance": tolerance});
+        document["functions"] = functions;
+    });
+    Evaluated::new(&problem, &problem.start()).expect("runs")
+}
+
+/// Mean of f over [0, 1] by Simpson's rule.
+fn mean(f: impl Fn(f64) -> f64) -> f64 {
+    let n = 40_000;
+    let term = |k: i32| {
+        let weight = [2.0, 4.0][(k % 2) as usize];
+        let weight = if k == 0 || k == n { 1.0 } else { weight };
+        weight * f(f64::from(k) / f64::from(n))
+    };
+    (0..=n).map(term).sum::<f64>() / (3.0 * f64::from(n))
+}
+
+#[test]
+fn sums_over_the_motion_are_as_exact_as_the_motion() {
+    for (omega, duration, phase) in [
+        (6.3, 0.7, 0.4),
+        (1.0, 0.3, 0.0),
+        (-9.0, 3.1, 2.0),
+        (0.3, 40.0, 1.0),
+    ] {
+        for tolerance in [1e-5, 1e-7, 1e-9, 1e-11] {
+            for rho in [0.5, 20.0, 1e3] {
+                let functions = json!({"sum": {"integral": null}, "ks": {"ks": {"rho": rho}},
+                    "above": {"ks": {"rho": rho, "bound": "above"}},
+                    "mean": {"induced_exponential": {"rho": rho}}});
+                let at = turning(omega, duration, phase, tolerance, functions);
+                let g = |s: f64| 0.5 * (omega * s * duration - phase).cos();
+                let soft = |s: f64| (rho * (g(s) - 0.5)).exp();
+                let integral = 0.5 * ((omega * duration - phase).sin() + phase.sin()) / omega;
+                let whole = mean(soft);
+                let exact = [
+                    integral,
+                    0.5 + whole.ln() / rho,
+                    mean(|s| g(s) * soft(s)) / whole,
+                ];
+                // Angles err by the tolerance times the number of turns and steps.
+                let bound = tolerance * 50.0 * (1.0 + (omega * duration).abs()) + 1e-12;
+                for (f, exact) in [0, 1, 3].into_iter().zip(exact) {
+                    let size = if f == 0 { duration } else { 1.0 };
+                    let error = (at.function(f).value - exact).abs() / size;
+                    assert!(error <= bound, "{omega} {tolerance:e} {rho} {f}: {error:e}");
+                }
+                let known = at.function(1).maximum.expect("an aggregate");
+                let ends = g(0.0).max(g(1.0));
+                let inside = (0..100)
+                    .map(|k| (phase + std::f64::consts::TAU * (f64::from(k) - 50.0)) / omega);
+                let top = match inside.into_iter().any(|t| t >= 0.0 && t <= duration) {
+                    true => 0.5,
+                    false => ends,
+                };
+                assert!(
+                    (known.value - top).abs() <= bound,
+                    "{omega} {tolerance:e}: {known:?} {top}"
+                );
+                let [below, above] = [1, 2].map(|f| at.function(f).value);
+                assert!(below <= known.value + 1e-14, "{below} {known:?}");
+                assert!(above >= known.value - 1e-14, "{above} {known:?}");
+                let peaks = 2.0 + (omega * duration).abs() / std::f64::consts::TAU;
+                assert!(
+                    above <= known.value + peaks.ln() / rho + 1e-12,
+                    "{above} {known:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Ranges of balls of any size and speed, from any height, are those of parabolas.
+#[test]
+fn ranges_of_balls_of_any_size_are_exact() {
+    for unit in [1e-3, 1.0, 1e3] {
+        for speed in [1e-3, 1.1, 30.0, 1e3] {
+            for (height, angle) in [
+                (0.1, 0.0_f64),
+                (1e-3, 0.7),
+                (5.0, -0.9),
+                (-1e-9, 1.2),
+                (0.0, 0.5),
+            ] {
+                let [vx, vy] = [angle.cos(), angle.sin()].map(|part| part * speed);
+                let text = json!({"version": 1, "name": "ball",
+                    "bodies": {"ball": {"shape": {"sphere": {"radius": 0.05 * unit}}, "mass": 1,
+                        "place": {"at": [2.0 * unit, height * unit, 0]},
+                        "velocity": {"linear": [vx * unit, vy * unit, 0]}}},
+                    "gravity": [0, -9.81 * unit, 0],
+                    "simulation": {"duration": 1e-4 * speed.min(1.0)},
+                    "functions": {"range": {"final": {"range": {"body": "ball", "ground": 0}}}}});
+                let problem = Problem::parse(&text.to_string(), "ball.json", &[])
+                    .unwrap_or_else(|faults| panic!("{faults}"));
+                let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+                let root = (vy * vy + 2.0 * 9.81 * height).max(0.0).sqrt();
+                let exact = 2.0 + vx / 9.81 * (vy + root);
+                let size = 2.0 + (vx / 9.81 * (vy.abs() + root)).abs();
+                let error = (at.function(0).value / unit - exact).abs();
+                assert!(
+                    error <= 1e-12 * size,
+                    "{unit} {speed} {height} {angle}: {error:e}"
+                );
+            }
+        }
+    }
+}
+
+/// A clearance does not change when throw and barrier are moved together, however far, and however
+/// sharp the aggregate: weights add up to one, and what their derivatives lose to round-off is no
+/// part of them.
+#[test]
+fn far_from_the_origin_the_weights_of_a_release_do_not_drift() {
+    let far = 1e6;
+    let problem = load("trebuchet.json", |document| {
+        let moved = |place: &mut Value| *place = json!(place.as_f64().expect("a number") + far);
+        moved(&mut document["bodies"]["arm"]["place"]["at"][0]);
+        moved(&mut document["functions"]["clearance"]["clearance"]["barrier"]["distance"]);
+        let range = &mut document["functions"]["range"]["ks"];
+        range["rho"] = json!(30);
+        range["of"]["range"]
+            .as_object_mut()
+            .expect("a range")
+            .remove("gate");
+        document["simulation"]["duration"] = json!(1.2);
+        let near = |path: &str| json!({"path": path, "lower": far - 10.0, "upper": far + 100.0});
+        document["variables"] = json!({
+            "place": near("/bodies/arm/place/at/0"),
+            "barrier": near("/functions/clearance/clearance/barrier/distance")
+        });
+    });
+    let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+    let (found, _) = at.gradients(&problem, &[1]).expect("is regular");
+    let [place, barrier] = [found[0][0], found[0][1]];
+    assert!(
+        (place + barrier).abs() <= 1e-12 * barrier.abs(),
+        "{place} {barrier}"
+    );
 }

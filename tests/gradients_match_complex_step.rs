@@ -4,7 +4,8 @@ mod reference;
 
 use flexbody::adjoint::gradients;
 use flexbody::functions::{
-    EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Rotation, Scene, Side,
+    Bound, EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Rotation, Scene,
+    Side,
 };
 use flexbody::integrate::{Method, Samples, Settings, Spacing, Start, Trajectory, simulate};
 use flexbody::math::{Complex64, Vec3, scalar::COMPLEX_STEP};
@@ -54,7 +55,10 @@ fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
                 point,
                 direction,
             },
-            Reduction::Ks { rho: 2.0 },
+            Reduction::Ks {
+                rho: 2.0,
+                bound: Bound::Below,
+            },
         ),
         reduced(
             Instant::Acceleration {
@@ -76,7 +80,10 @@ fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
         reduced(Instant::Energy(EnergyPart::Kinetic), Reduction::Integral),
         reduced(
             Instant::Energy(EnergyPart::Potential),
-            Reduction::Ks { rho: 0.1 },
+            Reduction::Ks {
+                rho: 0.1,
+                bound: Bound::Above,
+            },
         ),
         reduced(Instant::Energy(EnergyPart::Total), Reduction::Final),
         reduced(
@@ -90,14 +97,20 @@ fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
                 direction,
                 Some([0.8, -0.2, 0.3, 0.5]),
             )),
-            Reduction::Ks { rho: 0.5 },
+            Reduction::Ks {
+                rho: 0.5,
+                bound: Bound::Above,
+            },
         ),
         reduced(
             Instant::Range {
                 projectile,
                 gate: Some(gate),
             },
-            Reduction::Ks { rho: 0.5 },
+            Reduction::Ks {
+                rho: 0.5,
+                bound: Bound::Below,
+            },
         ),
         Function::Clearance {
             projectile,
@@ -217,6 +230,12 @@ fn explicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
     chosen.samples = Samples::Uniform(37);
     let mut kept = chosen.clone();
     kept.keep_stages = true;
+    // Nodes of cells, of which some steps have none and others several.
+    if let Spacing::Frozen(grid) = &chosen.spacing {
+        let cells = (0..grid.steps()).map(|k| [1, 0, 3][k % 3]).collect();
+        kept.spacing = Spacing::Frozen(grid.clone().with_cells(cells));
+        kept.samples = Samples::Quadrature(5);
+    }
     // Large corrections by the projections.
     let mut loose = kept.clone();
     loose.spacing = Spacing::Tolerance(1e-2);
@@ -258,7 +277,10 @@ fn implicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
         settings.spacing = Spacing::Tolerance(1e-5);
         let run = simulate(model, duration, &settings).expect("runs");
         settings.spacing = Spacing::Frozen(run.grid);
-        settings.samples = Samples::Uniform(37);
+        settings.samples = match stages {
+            2 => Samples::Uniform(37),
+            _ => Samples::Quadrature(5),
+        };
         all.push(settings);
     }
     all

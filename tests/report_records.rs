@@ -62,6 +62,7 @@ fn optimum() -> Optimum {
             value: 849.8985,
             unit: Some("m".into()),
             true_maximum: Some(867.7),
+            aggregate: None,
             estimated_error: Some(0.003),
         },
         start_objective: Some(546.507),
@@ -86,6 +87,7 @@ fn optimum() -> Optimum {
                 unit: Some("m".into()),
                 multiplier: -3.5014,
                 active: Activity::Lower,
+                aggregate: None,
             },
         )]
         .into(),
@@ -530,6 +532,39 @@ Maximised range: 546.507 → 849.8985 m (+55.5 %)
     assert!(text.contains("-3.5014 m per m"), "{text}");
     assert!(text.contains("25 simulations (1 failed)"), "{text}");
     assert!(text.contains("Warning: the aggregate is coarse"), "{text}");
+}
+
+/// An upper bound that the aggregate keeps and the true maximum does not is told.
+#[test]
+fn summary_tells_the_true_maximum_behind_an_aggregate() {
+    let mut optimum = optimum();
+    let constraint = &mut optimum.constraints[0];
+    (constraint.value, constraint.lower, constraint.upper) = (0.9, None, Some(0.9));
+    let mut aggregate = Aggregate {
+        lies: Lies::Below,
+        true_maximum: 0.90644,
+        time: 0.25,
+        error: 1e-9,
+        ungated: None,
+    };
+    constraint.aggregate = Some(aggregate);
+    let back = Optimum::from_json(&optimum.to_json().expect("finite")).expect("is a record");
+    assert_eq!(back, optimum);
+    let text = summary(&optimum);
+    assert!(
+        text.contains("clear the barrier: the true maximum is 0.90644 m"),
+        "{text}"
+    );
+    assert!(
+        text.contains("above the upper bound by 0.00644 m"),
+        "{text}"
+    );
+    aggregate.true_maximum = 0.89;
+    aggregate.ungated = Some(0.895);
+    optimum.constraints[0].aggregate = Some(aggregate);
+    let text = summary(&optimum);
+    assert!(!text.contains("above the upper bound"), "{text}");
+    assert!(text.contains("without it 0.895 m"), "{text}");
 }
 
 #[test]

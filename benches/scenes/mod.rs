@@ -4,7 +4,7 @@
 #[path = "../../tests/reference/mod.rs"]
 pub mod reference;
 
-use flexbody::functions::{EnergyPart, Function, Instant, Reduction, Scene};
+use flexbody::functions::{Bound, EnergyPart, Function, Instant, Reduction, Scene};
 use flexbody::integrate::{Method, Samples, Settings, Spacing, Trajectory, simulate};
 use flexbody::math::Vec3;
 use flexbody::problem::Problem;
@@ -56,7 +56,13 @@ impl Case {
         let reduced = |instant, reduction| Function::Reduced { instant, reduction };
         let (body, point) = (last, Vec3::zeros());
         let functions = vec![
-            reduced(Instant::Speed { body, point }, Reduction::Ks { rho: 0.1 }),
+            reduced(
+                Instant::Speed { body, point },
+                Reduction::Ks {
+                    rho: 0.1,
+                    bound: Bound::Below,
+                },
+            ),
             reduced(
                 Instant::Position {
                     body,

@@ -4,6 +4,8 @@ use super::arguments::Job;
 use super::{DONE, Failure, NOT_REACHED, draw, load, print, read, refine, shown, tell};
 use crate::driver::tables::ReactionAxes;
 use crate::driver::{self, CheckedDerivative, Evaluated, Simulation, error, figures, tables};
+use crate::functions::evaluate::ungated_maximum;
+use crate::functions::peak::Maximum;
 use crate::problem::Problem;
 use crate::report::summary::is_rounding;
 use crate::report::{prepare_directory, write_all};
@@ -70,8 +72,8 @@ fn as_json(
         let found = simulation.at.function(f);
         let mut own =
             json!({"value": found.value, "unit": simulation.at.scene.functions[f].unit()});
-        if let Some((maximum, time)) = found.maximum {
-            own["true_maximum"] = json!({"value": maximum, "time": time});
+        if let Some(Maximum { value, time, error }) = found.maximum {
+            own["true_maximum"] = json!({"value": value, "time": time, "error": error});
         }
         functions.insert(name.clone(), own);
     }
@@ -155,8 +157,18 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     for (f, name) in problem.function_names.iter().enumerate() {
         let found = simulation.at.function(f);
         let _ = write!(text, "  {name:width$}  {:>16.9e}", found.value);
-        if let Some((maximum, time)) = found.maximum {
-            let _ = write!(text, "  true maximum {maximum:.9e} at t = {time:.4} s");
+        if let Some(Maximum { value, time, error }) = found.maximum {
+            let _ = write!(
+                text,
+                "  true maximum {value:.9e} at t = {time:.6} s (± {error:.0e}"
+            );
+            let at = &simulation.at;
+            match ungated_maximum(&at.scene.functions[f], &at.scene.model, &at.run) {
+                Some(free) => {
+                    let _ = write!(text, "; with the gate's factor, without it {free:.9e})");
+                }
+                None => text.push(')'),
+            }
         }
         text.push('\n');
     }
@@ -190,7 +202,7 @@ pub fn errors(problem: &Problem, at: &Evaluated) -> Result<String, Failure> {
     let found = error::estimate(problem, at, &all, true).map_err(Failure::numerical)?;
     let names = |all: &mut dyn Iterator<Item = &String>| {
         let longest = all.map(|name| name.chars().count()).max();
-        longest.unwrap_or(0).max(8)
+        longest.unwrap_or(0).max(9)
     };
     let f_width = names(&mut problem.function_names.iter());
     let v_width = names(&mut problem.variables.iter().map(|v| &v.name));
@@ -217,6 +229,9 @@ pub fn errors(problem: &Problem, at: &Evaluated) -> Result<String, Failure> {
     for found in &found {
         let name = &problem.function_names[found.function];
         line(name, "", &found.value);
+        if let Some(maximum) = &found.maximum {
+            line(name, "(maximum)", maximum);
+        }
         for (variable, derivative) in problem.variables.iter().zip(&found.gradient) {
             line(name, &variable.name, derivative);
         }

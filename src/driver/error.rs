@@ -1,25 +1,25 @@
 //! The discretisation error of functions and gradients, by cutting every step in two.
 //!
-//! With f_{h,n} the value on the steps in use and n samples, f_{h/2,2n} that on steps of half the size
-//! and twice the samples, and f_{h/2,n} that of the same run at every second sample, of a method of
-//! order m,
+//! With f_{h,c} the value on the steps in use and the cells of the sums in use, f_{h,2c} that with every
+//! cell cut in two, and f_{h/2,2c} that with every step cut in two as well, of a method of order m,
 //!
 //! ```text
-//! f_{h,n} − f ≈ (f_{h,n} − f_{h/2,n}) 2ᵐ / (2ᵐ − 1) + (f_{h/2,n} − f_{h/2,2n}) 2² / (2² − 1)
+//! f_{h,c} − f ≈ (f_{h,2c} − f_{h/2,2c}) 2ᵐ / (2ᵐ − 1) + (f_{h,c} − f_{h,2c})
 //! ```
 //!
-//! (Richardson): the first term is the error of the steps, the second that of sums over the motion,
-//! which are of order 2. Where a function looks at the end alone there is no second term. Told apart,
-//! the two may be of any size and sign.
+//! (Richardson): the first term is the error of the steps, the second that of sums over the motion.
+//! Where a function looks at the end alone there is no second term. Told apart, the two may be of
+//! any size and sign. Motions that are sampled at the ends of equal steps are thinned instead: every
+//! second sample of the finer run.
 
 use super::evaluate::Evaluated;
 use super::event::{self, Admit};
 use super::integration::{Integration, looks_at_the_whole};
-use crate::integrate::{IntegrationFailure, Limits, Samples, Settings, Spacing, Trajectory};
+use crate::integrate::{
+    IntegrationFailure, Limits, Samples, Settings, Spacing, Trajectory, quadrature, simulate,
+};
 use crate::problem::{Problem, Simulation};
 
-/// Order of the trapezoidal rule, by which functions sum over the motion.
-const SUMS: usize = 2;
 /// Most attempts to reach an accuracy.
 const ATTEMPTS: usize = 12;
 /// Smallest tolerance and largest number of steps that are tried.
@@ -45,6 +45,8 @@ pub struct FunctionError {
     pub function: usize,
     /// Its value.
     pub value: Estimate,
+    /// The largest value over the motion, if it is an aggregate.
+    pub maximum: Option<Estimate>,
     /// Its derivatives in the variables; empty if they were not asked for.
     pub gradient: Vec<Estimate>,
 }
@@ -61,10 +63,12 @@ pub fn estimate(
     gradients: bool,
 ) -> Result<Vec<FunctionError>, IntegrationFailure> {
     let sums = |f: &usize| looks_at_the_whole(&at.scene.functions[*f]);
+    let summed: Vec<usize> = which.iter().copied().filter(sums).collect();
+    let cells = at.run.has_cells;
     let limits = problem.simulation.limits.clone();
-    let finer = halved(&at.run, which.iter().any(sums), limits);
+    let settings = halved(&at.run, (cells, !summed.is_empty()), limits);
     let mut scene = at.scene.clone();
-    let run = event::settle(&mut scene, &finer, at.run.duration, Admit::Late)?;
+    let run = event::settle(&mut scene, &settings, at.run.duration, Admit::Late)?;
     let x = at.x.clone();
     let mut fine = Evaluated { x, scene, run };
     let numbers = |of: &Evaluated, which: &[usize]| -> Result<Vec<Vec<f64>>, IntegrationFailure> {
@@ -79,24 +83,55 @@ pub fn estimate(
     };
     let (coarse, finer) = rayon::join(|| numbers(at, which), || numbers(&fine, which));
     let (coarse, finer) = (coarse?, finer?);
-    let summed: Vec<usize> = which.iter().copied().filter(sums).collect();
-    let doubled = fine.run.last() == 2 * at.run.last();
-    if doubled {
-        thin(&mut fine.run);
-    }
-    let mut thinner = numbers(&fine, &summed)?.into_iter();
-    let [steps, samples] = [at.run.method.order(), SUMS].map(|order| {
+    let maxima = which.iter().map(|&f| {
+        let [coarse, fine] = [at, &fine].map(|of| of.function(f).maximum.map(|m| m.value));
+        coarse.zip(fine)
+    });
+    let maxima: Vec<Option<(f64, f64)>> = maxima.collect();
+    // Motions in between: the same steps with twice the cells, or finer ones with half the samples.
+    let between = match (
+        cells && !summed.is_empty(),
+        fine.run.last() == 2 * at.run.last(),
+    ) {
+        (true, _) => {
+            let doubled = Settings {
+                spacing: Spacing::Frozen(at.run.grid.with_double_cells()),
+                samples: Samples::Quadrature(0),
+                ..settings
+            };
+            let (x, scene) = (at.x.clone(), at.scene.clone());
+            let run = simulate(&scene.model, at.run.duration, &doubled)?;
+            Evaluated { x, scene, run }
+        }
+        (false, true) => {
+            thin(&mut fine.run);
+            fine
+        }
+        (false, false) => fine,
+    };
+    let mut thinner = numbers(&between, &summed)?.into_iter();
+    let of_sums = match cells {
+        true => 16,
+        false => quadrature::order(&at.run.instants),
+    };
+    let [steps, samples] = [at.run.method.order(), of_sums].map(|order| {
         let gain = 2.0_f64.powi(order as i32);
         gain / (gain - 1.0)
     });
     let mut all = Vec::new();
-    for ((&function, coarse), finer) in which.iter().zip(coarse).zip(finer) {
+    let rows = which.iter().zip(coarse).zip(finer).zip(maxima);
+    for (((&function, coarse), finer), maximum) in rows {
         let thinner = match summed.contains(&function) {
             true => thinner.next().unwrap_or_else(|| finer.clone()),
+            // All of its error is that of the steps.
+            false if cells => coarse.clone(),
             false => finer.clone(),
         };
         let estimate = |((&h, &thin), &fine): ((&f64, &f64), &f64)| {
-            let (of_steps, of_samples) = ((h - thin) * steps, (thin - fine) * samples);
+            let (of_steps, of_samples) = match cells {
+                true => ((thin - fine) * steps, (h - thin) * samples),
+                false => ((h - thin) * steps, (thin - fine) * samples),
+            };
             Estimate {
                 value: h,
                 error: (of_steps + of_samples).abs(),
@@ -109,6 +144,15 @@ pub fn estimate(
         all.push(FunctionError {
             function,
             value: estimates.remove(0),
+            maximum: maximum.map(|(value, fine)| {
+                let of_steps = (value - fine) * steps;
+                Estimate {
+                    value,
+                    error: of_steps.abs(),
+                    of_steps,
+                    of_samples: 0.0,
+                }
+            }),
             gradient: estimates,
         });
     }
@@ -116,9 +160,11 @@ pub fn estimate(
 }
 
 /// The settings of a run with every step cut in two and twice the samples.
-fn halved(run: &Trajectory<f64>, summed: bool, limits: Limits) -> Settings {
+fn halved(run: &Trajectory<f64>, (cells, summed): (bool, bool), limits: Limits) -> Settings {
     let instants = run.last();
-    let samples = if run.instants == run.grid.ends() {
+    let samples = if cells {
+        Samples::Quadrature(0)
+    } else if run.instants == run.grid.ends() {
         Samples::StepEnds
     } else if instants == 1 && !summed {
         Samples::Uniform(1)
@@ -151,6 +197,8 @@ fn thin(run: &mut Trajectory<f64>) {
     run.lambda = rows(&run.lambda, nc);
     run.instants = run.instants.iter().copied().step_by(2).collect();
     run.places = run.places.iter().copied().step_by(2).collect();
+    run.shown = vec![true; run.instants.len()];
+    run.weights = quadrature::weights(&run.instants);
 }
 
 /// Steps that reach an accuracy, and what they cost.
@@ -252,15 +300,15 @@ fn refine(
 ) -> bool {
     let before = simulation.clone();
     let more_samples = of_samples.sqrt().clamp(2.0_f64.sqrt(), 8.0);
-    // Methods of equal steps are sampled at their ends.
-    let apart = run.method.is_adaptive();
+    // Cells follow the tolerance, and samples at the ends of steps follow these.
+    let apart = simulation.samples.is_some() && !run.has_cells;
     if of_samples > 1.0 && apart {
         let next = (run.last() as f64 * more_samples).ceil() as usize;
         simulation.samples = Some(next.min(FINEST.1));
     }
     match &mut simulation.spacing {
-        Spacing::Tolerance(tolerance) if of_steps > 1.0 => {
-            *tolerance = (*tolerance / of_steps.max(2.0)).max(FINEST.0);
+        Spacing::Tolerance(tolerance) if of_steps.max(of_samples) > 1.0 => {
+            *tolerance = (*tolerance / of_steps.max(of_samples).max(2.0)).max(FINEST.0);
         }
         Spacing::Steps(count) => {
             let mut more = 1.0_f64;

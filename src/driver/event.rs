@@ -126,7 +126,7 @@ pub fn settle(
                 Admit::InTime => duration <= waited,
                 // The samples by which it is first looked for are those of the whole time.
                 Admit::Certain { margin } => {
-                    duration <= waited * (1.0 - margin) && !touches(&gaps, waited / duration)
+                    duration <= waited * (1.0 - margin) && !touches(&gaps, &run, waited)
                 }
             };
             if !admitted {
@@ -146,15 +146,19 @@ pub fn settle(
     Err(lost(best))
 }
 
-/// Whether g − c, which is zero at the end, would turn back within `spacing` samples.
-fn touches(gaps: &[f64], spacing: f64) -> bool {
+/// Whether g − c, which is zero at the end, would turn back within a shown interval of a run for as
+/// long as it is waited for.
+fn touches(gaps: &[f64], run: &Trajectory<f64>, waited: f64) -> bool {
     let [.., a, b, c] = gaps else {
         return false;
     };
-    let (before, last) = (b - a, c - b);
-    // The first differences fall by a constant: the turn is last / (before − last) samples ahead.
-    let bend = before - last;
-    last * bend > 0.0 && last.abs() < spacing * bend.abs()
+    let last = gaps.len() - 1;
+    let [first, second] = [last - 1, last].map(|k| run.time(k) - run.time(k - 1));
+    let (before, now) = ((b - a) / first, (c - b) / second);
+    // The slope falls by a constant rate from the middle of the last interval on.
+    let bend = 2.0 * (before - now) / (first + second);
+    let spacing = waited / (run.shown().len() - 1).max(1) as f64;
+    now * bend > 0.0 && now.abs() < spacing * bend.abs()
 }
 
 /// ∂g/∂T of a scene's event at the duration `duration`, by the complex step.

@@ -184,9 +184,16 @@ fn lapse(
     let falls = drawing.up.dot(&model.gravity) < -0.999 * model.gravity.norm();
     let release = release(simulation, objective).filter(|_| falls);
     let end = release.as_ref().map_or(run.last(), |(k, _)| *k);
+    let shown: Vec<usize> = run.shown().into_iter().filter(|&k| k <= end).collect();
+    let latest = shown.len() - 1;
     let flat = |p: &Vec3<f64>| [drawing.right.dot(p), drawing.up.dot(p)];
-    let snapshots = drawing.snapshots.clamp(2, end.max(1) + 1);
-    let instants: Vec<usize> = (0..snapshots).map(|i| i * end / (snapshots - 1)).collect();
+    let snapshots = drawing.snapshots.clamp(2, latest.max(1) + 1);
+    let instants: Vec<usize> = (0..snapshots)
+        .map(|i| match i + 1 == snapshots {
+            true => end,
+            false => shown[i * latest / (snapshots - 1)],
+        })
+        .collect();
     let bodies = model
         .bodies
         .iter()

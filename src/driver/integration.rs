@@ -3,6 +3,7 @@
 //! design.
 
 use super::event::{self, Admit};
+use crate::functions::resolution::{Resolution, resolution};
 use crate::functions::{Function, Reduction, Scene};
 use crate::integrate::{
     Chosen, Grid, IntegrationFailure, Limits, Method, Samples, Settings, Spacing, Trajectory,
@@ -10,10 +11,14 @@ use crate::integrate::{
 };
 use crate::problem::Problem;
 
-/// Samples of a motion whose steps follow the error.
+/// Samples of a motion whose steps follow the error, for tables, figures and events.
 const SAMPLES: usize = 1000;
 /// Step error of kept steps, relative to the tolerance, at which they are chosen anew.
 const REFRESH: f64 = 10.0;
+/// Error of sums over the motion, relative to the tolerance of the steps, that their cells are chosen for.
+const OF_SUMS: f64 = 0.1;
+/// Most times that cells are chosen for one motion.
+const ROUNDS: usize = 8;
 /// Part of the longest duration, relative to the tolerance and absolute, before the end of which an
 /// event on kept steps counts; steps of the design itself decide on one in between.
 const LATE: f64 = 1e3;
@@ -30,6 +35,10 @@ pub struct Integration {
     spacing: Spacing,
     samples: Samples,
     limits: Limits,
+    /// Samples that tables, figures and events have.
+    shown: usize,
+    /// The functions that look at more than the end.
+    summed: Vec<usize>,
     /// Settings in use, once a design was simulated.
     chosen: Option<(Settings, String)>,
     /// How often the steps were chosen anew.
@@ -78,19 +87,25 @@ impl Integration {
         gradients: bool,
     ) -> Self {
         let simulation = &problem.simulation;
-        let looks = |&f: &usize| looks_at_the_whole(&scene.functions[f]);
-        let whole = scene.until.is_some() || asked.is_none_or(|asked| asked.iter().any(looks));
+        let all: Vec<usize> = (0..scene.functions.len()).collect();
+        let mut summed = asked.map_or(all, <[usize]>::to_vec);
+        summed.retain(|&f| looks_at_the_whole(&scene.functions[f]));
+        let shown = simulation.samples.unwrap_or(SAMPLES);
+        let seen = scene.until.is_some() || asked.is_none();
         let samples = match (simulation.samples, &simulation.spacing) {
-            (Some(samples), _) => Samples::Uniform(samples),
+            (Some(samples), Spacing::Steps(_)) => Samples::Uniform(samples),
             (None, Spacing::Steps(_)) => Samples::StepEnds,
-            (None, _) if whole => Samples::Uniform(SAMPLES),
-            (None, _) => Samples::Uniform(1),
+            _ if !summed.is_empty() => Samples::Quadrature(if seen { shown } else { 0 }),
+            _ if seen => Samples::Uniform(shown),
+            _ => Samples::Uniform(1),
         };
         Self {
             method: simulation.method,
             spacing: simulation.spacing.clone(),
             samples,
             limits: simulation.limits.clone(),
+            shown,
+            summed,
             chosen: None,
             refreshes: 0,
             unlowered: 0,
@@ -124,11 +139,13 @@ impl Integration {
     /// Samples the whole motion from now on, for figures; functions that look at the end only do not
     /// change by it.
     pub fn see_whole(&mut self) {
-        if self.samples == Samples::Uniform(1) {
-            self.samples = Samples::Uniform(SAMPLES);
-            if let Some((settings, _)) = &mut self.chosen {
-                settings.samples = self.samples;
-            }
+        self.samples = match self.samples {
+            Samples::Uniform(1) => Samples::Uniform(self.shown),
+            Samples::Quadrature(0) => Samples::Quadrature(self.shown),
+            seen => seen,
+        };
+        if let Some((settings, _)) = &mut self.chosen {
+            settings.samples = self.samples;
         }
     }
 
@@ -180,7 +197,16 @@ impl Integration {
             (Some((settings, _)), Spacing::Tolerance(tolerance)) => {
                 match self.run(scene, settings, settled) {
                     Ok(run) if run.step_error <= REFRESH * tolerance => {
-                        return Ok((self.keep(scene, run), None));
+                        let Resolution { error, cells } = self.resolution(scene, &run);
+                        // A sum that is not smooth gains nothing by more cells than there can be.
+                        let best = cells == run.grid.all_cells();
+                        if error <= REFRESH * OF_SUMS * tolerance || best {
+                            return Ok((self.keep(scene, run), None));
+                        }
+                        let why = format!(
+                            "a sum over the motion may err by {error:.1e}: its samples were chosen anew"
+                        );
+                        return self.choose_cells(scene, run, why);
                     }
                     Ok(run) => format!(
                         "a step's error of {:.1e} exceeds {REFRESH} times the tolerance",
@@ -215,6 +241,7 @@ impl Integration {
             scene.duration = waited;
             run = event::settle(scene, &settings, guess, Admit::InTime)?;
         }
+        let (run, settings) = self.resolved(scene, run, settings)?;
         let grid = match &settings.spacing {
             Spacing::Frozen(grid) => Some(grid.clone()),
             Spacing::Steps(_) | Spacing::Tolerance(_) => None,
@@ -232,6 +259,75 @@ impl Integration {
         self.refreshes += usize::from(self.chosen.is_some() && anew);
         self.chosen = Some((settings, reason));
         Ok((self.keep(scene, run), changed))
+    }
+
+    /// What the cells of a run are worth for the sums that are asked for.
+    fn resolution(&self, scene: &Scene<f64>, run: &Trajectory<f64>) -> Resolution {
+        match (self.samples, &self.spacing) {
+            (Samples::Quadrature(_), Spacing::Tolerance(tolerance)) => {
+                resolution(scene, &self.summed, run, OF_SUMS * tolerance)
+            }
+            _ => Resolution {
+                error: 0.0,
+                cells: run.grid.all_cells().to_vec(),
+            },
+        }
+    }
+
+    /// The motion of `run` with the cells that its sums need, and the settings that make it: cells are
+    /// chosen, and looked at again where they make the sums more exact.
+    fn resolved(
+        &self,
+        scene: &Scene<f64>,
+        mut run: Trajectory<f64>,
+        mut settings: Settings,
+    ) -> Result<(Trajectory<f64>, Settings), IntegrationFailure> {
+        for _ in 0..ROUNDS {
+            let Resolution { cells, error } = self.resolution(scene, &run);
+            let (Spacing::Frozen(grid), Spacing::Tolerance(tolerance)) =
+                (&settings.spacing, &self.spacing)
+            else {
+                break;
+            };
+            if cells == grid.all_cells() {
+                break;
+            }
+            settings.spacing = Spacing::Frozen(grid.clone().with_cells(cells));
+            // Cells that are only left out change nothing but round-off.
+            if error <= OF_SUMS * tolerance {
+                break;
+            }
+            let counts = run.counts;
+            run = simulate(&scene.model, run.duration, &settings)?;
+            run.counts += counts;
+        }
+        Ok((run, settings))
+    }
+
+    /// Chooses the cells of the steps in use anew.
+    fn choose_cells(
+        &mut self,
+        scene: &Scene<f64>,
+        run: Trajectory<f64>,
+        why: String,
+    ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {
+        let Some((settings, reason)) = self.chosen.clone() else {
+            return Ok((run, None));
+        };
+        let (run, settings) = self.resolved(scene, run, settings)?;
+        let Spacing::Frozen(grid) = &settings.spacing else {
+            return Ok((self.keep(scene, run), None));
+        };
+        let general = choice::reason(self.method.is_some(), settings.method);
+        let refresh = Refresh {
+            method: settings.method.name(),
+            method_reason: Some(reason.clone()).filter(|reason| reason != general),
+            grid: Some(grid.clone()),
+            reason: why,
+        };
+        self.refreshes += 1;
+        self.chosen = Some((settings, reason));
+        Ok((self.keep(scene, run), Some(refresh)))
     }
 
     /// A run on the steps in use, up to the event if there is one: at `settled`, or near where it came

@@ -114,7 +114,8 @@ impl<'a> Journal<'a> {
         Some(KeptSteps {
             method: Method::adaptive(&steps.method)?,
             reason: steps.method_reason.clone(),
-            grid: Grid::from_ends(steps.ends.clone()),
+            grid: Grid::from_ends(steps.ends.clone())
+                .map(|grid| grid.with_cells(steps.cells.clone())),
             refreshes: *refreshes,
         })
     }
@@ -136,7 +137,10 @@ impl<'a> Journal<'a> {
     }
 
     fn choose(&mut self, steps: StepsInUse) {
-        let same = |c: &&Choice| c.steps.method == steps.method && c.steps.ends == steps.ends;
+        let same = |c: &&Choice| {
+            let (a, b) = (&c.steps, &steps);
+            a.method == b.method && a.ends == b.ends && a.cells == b.cells
+        };
         let refreshes = match self.choices.iter().find(same) {
             Some(known) => known.refreshes,
             None => {
@@ -264,6 +268,7 @@ impl<'a> Journal<'a> {
                 method,
                 method_reason,
                 reason,
+                cells: (grid.as_ref()).map_or_else(Vec::new, |grid| grid.all_cells().to_vec()),
                 ends: grid.map_or_else(Vec::new, |grid| grid.ends().to_vec()),
             };
             self.take(design, steps);
@@ -333,6 +338,7 @@ mod tests {
                 reason: "first design".into(),
                 method_reason: None,
                 ends: ends.to_vec(),
+                cells: Vec::new(),
             }),
             event: None,
             work: Work::default(),

@@ -3,14 +3,17 @@
 use super::error;
 use super::evaluator::unscaled;
 use super::simulate::Simulation;
+use crate::functions::evaluate::ungated_maximum;
+use crate::functions::{Bound, Function, Reduction};
 use crate::integrate::IntegrationFailure;
 use crate::optimiser::{self, Outcome, Status};
 use crate::problem::{Problem, Sense};
 use crate::report::evaluations::Work;
 use crate::report::optimum as report;
 use crate::report::optimum::{
-    Activity, ConstraintValue, Counts, DesignValue, Kkt, KktResiduals, Multipliers, Objective,
-    Optimum, ProblemRecord, RowScaling, Scaling, Sense as RecordedSense, Side,
+    Activity, Aggregate, ConstraintValue, Counts, DesignValue, Kkt, KktResiduals, Lies,
+    Multipliers, Objective, Optimum, ProblemRecord, RowScaling, Scaling, Sense as RecordedSense,
+    Side,
 };
 use indexmap::IndexMap;
 
@@ -85,10 +88,15 @@ pub(super) fn record(
         })
         .map_err(|why| warnings.push(format!("the objective is not known at the start: {why}")))
         .ok();
-    let estimate = end.and_then(|end| {
-        let found = error::estimate(problem, &end.at, &[objective.function], false);
-        found.ok()?.into_iter().next().map(|found| found.value)
-    });
+    let aggregates = |f: &usize| end.is_some_and(|end| end.at.function(*f).maximum.is_some());
+    let constrained = problem.constraints.iter().map(|c| c.function);
+    let judged: Vec<usize> = std::iter::once(objective.function)
+        .chain(constrained.filter(aggregates))
+        .collect();
+    let estimates = end.and_then(|end| error::estimate(problem, &end.at, &judged, false).ok());
+    let estimates = estimates.unwrap_or_default();
+    let estimate = estimates.first().map(|found| found.value);
+    let aggregate = |f: usize| end.and_then(|end| aggregate(end, f, &estimates));
     let scales = problem.variables.iter().map(|v| v.scale);
     let bounds = |z: &[f64]| -> IndexMap<String, f64> {
         let names = problem.variables.iter().map(|v| v.name.clone());
@@ -149,7 +157,8 @@ pub(super) fn record(
             unit: Some(problem.function_unit(objective.function)),
             true_maximum: at_end
                 .and_then(|end| end.maximum)
-                .map(|(maximum, _)| maximum),
+                .map(|maximum| maximum.value),
+            aggregate: aggregate(objective.function),
             estimated_error: estimate.map(|e| e.error),
         },
         start_objective,
@@ -168,7 +177,7 @@ pub(super) fn record(
                 (v.name.clone(), design)
             })
             .collect(),
-        constraints: constraints(problem, outcome, maximise, start.as_ref().ok()),
+        constraints: constraints(problem, outcome, maximise, start.as_ref().ok(), aggregate),
         multipliers,
         active_bounds: active_bounds(outcome),
         kkt: Kkt {
@@ -214,11 +223,39 @@ pub(super) fn record(
     }
 }
 
+/// What function f is an aggregate of at the end, if it is one.
+fn aggregate(end: &Simulation, f: usize, estimates: &[error::FunctionError]) -> Option<Aggregate> {
+    let function = &end.at.scene.functions[f];
+    let maximum = end.at.function(f).maximum?;
+    let above = matches!(
+        function,
+        Function::Reduced {
+            reduction: Reduction::Ks {
+                bound: Bound::Above,
+                ..
+            },
+            ..
+        }
+    );
+    let known = estimates.iter().find(|found| found.function == f);
+    let of_steps = known
+        .and_then(|found| found.maximum)
+        .map_or(0.0, |m| m.error);
+    Some(Aggregate {
+        lies: if above { Lies::Above } else { Lies::Below },
+        true_maximum: maximum.value,
+        time: maximum.time,
+        error: maximum.error.max(of_steps),
+        ungated: ungated_maximum(function, &end.at.scene.model, &end.at.run),
+    })
+}
+
 fn constraints(
     problem: &Problem,
     outcome: &Outcome,
     maximise: bool,
     start: Option<&Simulation>,
+    aggregate: impl Fn(usize) -> Option<Aggregate>,
 ) -> IndexMap<String, ConstraintValue> {
     let at_start = |function: usize| {
         let value = start?.at.function(function).value;
@@ -251,6 +288,7 @@ fn constraints(
                 unit: Some(problem.function_unit(c.function)),
                 multiplier,
                 active: active(&c.name),
+                aggregate: aggregate(c.function),
             };
             (c.name.clone(), constraint)
         })

@@ -62,13 +62,14 @@ fn observations(simulation: &Simulation, axes: ReactionAxes) -> String {
             });
         }
     }
-    let reactions = simulation.reactions_at(0..simulation.observations.len());
+    let shown = simulation.motion().shown();
+    let reactions = simulation.reactions_at(shown.iter().copied());
     let both = |reaction: &Reaction| match axes {
         ReactionAxes::Ground => [reaction.force_ground, reaction.torque_ground],
         ReactionAxes::Joint => [reaction.force, reaction.torque],
     };
-    let observed = simulation.observations.iter().zip(&reactions).enumerate();
-    let rows = observed.map(|(k, (seen, reactions))| {
+    let rows = shown.into_iter().zip(&reactions).map(|(k, reactions)| {
+        let seen = &simulation.observations[k];
         let mut row = vec![simulation.motion().time(k), seen.kinetic, seen.potential];
         row.extend(seen.momentum.iter().chain(seen.angular_momentum.iter()));
         row.extend([seen.position_drift, seen.velocity_drift]);
@@ -91,7 +92,7 @@ fn motion(simulation: &Simulation) -> String {
         header.extend(components(&named("velocity"), "m/s"));
         header.extend(components(&named("angular velocity"), "rad/s"));
     }
-    let rows = (0..=run.last()).map(|k| {
+    let rows = run.shown().into_iter().map(|k| {
         let mut row = vec![run.time(k)];
         for body in 0..model.bodies.len() {
             let motion = Snapshot::of(model, run, k).motion(body);
@@ -139,6 +140,7 @@ fn functions(problem: &Problem, simulation: &Simulation) -> String {
         header.push(format!("{name}: {what} [{unit}]"));
         columns.push(values);
     }
-    let rows = (0..=run.last()).map(|k| columns.iter().map(|column| column[k]).collect());
+    let shown = run.shown().into_iter();
+    let rows = shown.map(|k| columns.iter().map(|column| column[k]).collect());
     csv_table(&header, rows)
 }

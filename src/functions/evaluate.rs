@@ -1,11 +1,12 @@
 //! Values of functions over a run, and their linearisation for the adjoint.
 
 use super::flight::Flight;
-use super::function::{Function, Reduction, Release};
+use super::function::{Bound, Function, Reduction, Release};
 use super::instant::{Instant, Projectile};
 use super::measure::{Snapshot, SnapshotCotangent, pull_flight};
+use super::peak::{self, Maximum, Point};
 use super::turning::turns;
-use crate::integrate::Trajectory;
+use crate::integrate::{Trajectory, quadrature};
 use crate::math::Scalar;
 use crate::math::soft_max::SoftMax;
 use crate::model::Model;
@@ -15,10 +16,11 @@ use crate::model::Model;
 pub struct Evaluated<S> {
     /// The value.
     pub value: S,
-    /// For an aggregate: the largest sampled value and its time (s).
-    pub maximum: Option<(f64, f64)>,
-    /// For an aggregate: ρ κ h² with κ the curvature at the peak and h the distance of the samples;
-    /// above about one these are too coarse to resolve the peak that ρ asks for.
+    /// For an aggregate: the largest value over the motion.
+    pub maximum: Option<Maximum>,
+    /// For an aggregate over samples at equal intervals: ρ κ h² with κ the curvature at the peak and h
+    /// the distance of the samples; above about one these are too coarse to resolve the peak that ρ
+    /// asks for.
     pub peak_sharpness: f64,
 }
 
@@ -86,24 +88,77 @@ fn reduce<S: Scalar>(
             });
             plain(mean * run.time(run.last()))
         }
-        Reduction::Ks { rho } | Reduction::InducedExponential { rho } => {
+        Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
             let values = sample(instant, &turns, model, run);
             let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), rho);
             let value = match reduction {
-                Reduction::Ks { .. } => soft.ks,
+                Reduction::Ks { bound, .. } => match bound {
+                    Bound::Below => soft.ks,
+                    Bound::Above => turning(&values, run, rho).0.ks,
+                },
                 _ => soft.induced_exponential(&values),
             };
             let k = soft.peak.clamp(1, run.last().max(2) - 1);
-            let bend = values.get(k + 1).map_or(0.0, |next| {
+            // Between nodes of cells distances differ, and their number follows the peak.
+            let even = quadrature::order(&run.instants) > 2;
+            let bend = values.get(k + 1).filter(|_| even).map_or(0.0, |next| {
                 (next.re() - 2.0 * values[k].re() + values[k - 1].re()).abs()
             });
             Evaluated {
                 value,
-                maximum: Some((soft.maximum, run.time(soft.peak).re())),
+                maximum: Some(peak::maximum(run, &values)),
                 peak_sharpness: rho * bend,
             }
         }
     }
+}
+
+/// The soft maximum over the maxima of a quantity less its minima, which is never below the largest
+/// value: maxima and minima follow each other, and no minimum is above the maxima beside it. With the
+/// samples and turning points that its weights are those of.
+fn turning<S: Scalar>(values: &[S], run: &Trajectory<S>, rho: f64) -> (SoftMax<S>, Vec<Point<S>>) {
+    let points = peak::points(run, values);
+    let heights: Vec<S> = points.iter().map(|point| point.value).collect();
+    let rises = |i: usize| heights[i + 1].re() > heights[i].re();
+    let last = heights.len() - 1;
+    let sign = |rises: bool| if rises { 1.0 } else { -1.0 };
+    // +1 at a maximum, −1 at a minimum, 0 elsewhere; the motion comes from below and goes there.
+    let count = |i: usize| {
+        let before = sign(i == 0 || rises(i - 1));
+        let after = sign(i != last && rises(i));
+        0.5 * (before - after)
+    };
+    (SoftMax::new(&heights, count, rho), points)
+}
+
+/// The largest range at instants at which a gate is more open than closed, as if there were no gate, if
+/// there is one.
+pub fn ungated_maximum<S: Scalar>(
+    function: &Function<S>,
+    model: &Model<S>,
+    run: &Trajectory<S>,
+) -> Option<f64> {
+    let Function::Reduced { instant, .. } = function else {
+        return None;
+    };
+    let Instant::Range {
+        projectile,
+        gate: gate @ Some(_),
+    } = instant
+    else {
+        return None;
+    };
+    let turns = turns(instant.watched_rotation(), run);
+    let free = Instant::Range {
+        projectile: *projectile,
+        gate: None,
+    };
+    let open = |k: usize| {
+        let at = Snapshot::of(model, run, k);
+        at.openness(gate, turn(&turns, k)).re() > 0.5
+    };
+    let values = sample(&free, &turns, model, run);
+    Some(peak::maximum_where(run, &values, open).value).filter(|most| most.is_finite())
 }
 
 /// Values of an instant quantity at all instants of a run.
@@ -251,9 +306,23 @@ impl<'a> Linearised<'a> {
                             .map(|k| duration * run.quadrature_weight(k))
                             .collect()
                     }
-                    Reduction::Ks { rho } => {
+                    Reduction::Ks { rho, bound } => {
                         let values = sample(instant, &turns, model, run);
-                        SoftMax::new(&values, |k| run.quadrature_weight(k), rho).weights
+                        match bound {
+                            Bound::Below => {
+                                SoftMax::new(&values, |k| run.quadrature_weight(k), rho).weights
+                            }
+                            Bound::Above => {
+                                let (soft, points) = turning(&values, run, rho);
+                                let mut weights = vec![0.0; values.len()];
+                                for (weight, point) in soft.weights.iter().zip(&points) {
+                                    for &(k, part) in &point.of {
+                                        weights[k] += weight * part;
+                                    }
+                                }
+                                weights
+                            }
+                        }
                     }
                     Reduction::InducedExponential { rho } => {
                         let values = sample(instant, &turns, model, run);

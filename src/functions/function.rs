@@ -3,19 +3,33 @@
 use super::instant::{Gate, Instant, Projectile};
 use crate::math::{Scalar, Vec3};
 
+/// On which side of the maximum over time an aggregate lies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Bound {
+    /// Never above it.
+    #[default]
+    Below,
+    /// Never below it.
+    Above,
+}
+
 /// How the values g_k of an instant quantity become one number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reduction {
     /// The value at the end of the run.
     Final,
-    /// ∫ g dt by the trapezoidal rule.
+    /// ∫ g dt.
     Integral,
-    /// Integral Kreisselmeier–Steinhauser function
+    /// Kreisselmeier–Steinhauser function. Below the maximum its integral form
     /// g_m + (1/ρ) ln[(1/T) ∫ exp(ρ (g − g_m)) dt], a smooth lower bound of the maximum that
-    /// does not move when the samples are refined (Kennedy & Hicken 2015, eq. 10).
+    /// does not move when the samples are refined (Kennedy & Hicken 2015, eq. 10); above it
+    /// g_m + (1/ρ) ln[Σ exp(ρ (M_i − g_m)) − Σ exp(ρ (m_j − g_m))] with M_i the maxima and m_j the
+    /// minima of g over time.
     Ks {
         /// Aggregation parameter ρ, in 1/unit of g; larger is closer to the maximum.
         rho: f64,
+        /// On which side of the maximum it lies.
+        bound: Bound,
     },
     /// Induced exponential ∫ g e^{ρg} dt / ∫ e^{ρg} dt (Kennedy & Hicken 2015, eq. 16).
     InducedExponential {

@@ -67,7 +67,8 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
         rotation.angle(self.numbering, self.q) + turns
     }
 
-    fn openness(&self, gate: &Option<Gate<S>>, turns: f64) -> S {
+    /// How far a gate is open, 1 without one.
+    pub fn openness(&self, gate: &Option<Gate<S>>, turns: f64) -> S {
         gate.as_ref().map_or(S::one(), |gate| {
             gate.openness(self.rotation(&gate.rotation, turns))
         })

@@ -5,11 +5,13 @@ pub mod flight;
 pub mod function;
 pub mod instant;
 pub mod measure;
+pub mod peak;
+pub mod resolution;
 pub mod rest;
 pub mod scene;
 pub mod turning;
 
-pub use function::{Function, Reduction, Release};
+pub use function::{Bound, Function, Reduction, Release};
 pub use instant::{EnergyPart, Gate, Instant, Projectile, Side};
 pub use scene::{Scene, Until};
 pub use turning::Rotation;

@@ -35,7 +35,7 @@ pub fn passes_rest(
     let counts = match reduction {
         Reduction::Final => false,
         Reduction::Integral => true,
-        Reduction::Ks { rho } | Reduction::InducedExponential { rho } => {
+        Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
             (-rho * fastest).exp() > f64::EPSILON
         }
     };

@@ -1,5 +1,7 @@
 //! Where steps end and where the motion is sampled, in fractions of the duration.
 
+use super::quadrature::Step;
+
 /// Ends of the steps as fractions τ_0 = 0 < τ_1 < … < τ_N = 1 of the duration T, so that t_k = τ_k T
 /// moves with the duration and with nothing else.
 #[derive(Clone, Debug, PartialEq)]
@@ -7,6 +9,9 @@ pub struct Grid {
     ends: Vec<f64>,
     /// Width of every step if all are equal, free of the round-off of their ends.
     equal: Option<f64>,
+    /// Cells of each step for sums over the motion (see [`quadrature`](super::quadrature)); one each if
+    /// none are given.
+    cells: Vec<u32>,
 }
 
 /// Distance of fractions below which they are the same instant.
@@ -18,6 +23,7 @@ impl Grid {
         Self {
             ends: (0..=steps).map(|k| k as f64 / steps as f64).collect(),
             equal: Some(1.0 / steps as f64),
+            cells: Vec::new(),
         }
     }
 
@@ -31,6 +37,7 @@ impl Grid {
         Self {
             ends: vec![start],
             equal: None,
+            cells: Vec::new(),
         }
     }
 
@@ -38,7 +45,11 @@ impl Grid {
     pub fn from_ends(ends: Vec<f64>) -> Option<Self> {
         let rises = ends.windows(2).all(|pair| pair[0] < pair[1]);
         let whole = ends.len() > 1 && ends[0] == 0.0 && ends[ends.len() - 1] == 1.0;
-        (rises && whole).then_some(Self { ends, equal: None })
+        (rises && whole).then_some(Self {
+            ends,
+            equal: None,
+            cells: Vec::new(),
+        })
     }
 
     /// Ends τ_0 … τ_N.
@@ -67,7 +78,38 @@ impl Grid {
             .unwrap_or_else(|| self.ends[k] - self.ends[k - 1])
     }
 
-    /// The grid with every step cut into two halves.
+    /// The grid with these cells of its steps.
+    pub fn with_cells(mut self, cells: Vec<u32>) -> Self {
+        self.cells = cells;
+        self
+    }
+
+    /// Cells of all steps; none where each step has one.
+    pub fn all_cells(&self) -> &[u32] {
+        &self.cells
+    }
+
+    /// Cells of step k = 1 … N.
+    pub fn cells(&self, k: usize) -> usize {
+        self.cells.get(k - 1).map_or(1, |&cells| cells as usize)
+    }
+
+    /// Step k = 1 … N with its cells.
+    pub fn step(&self, k: usize) -> Step {
+        Step {
+            from: self.ends[k - 1],
+            end: self.ends[k],
+            cells: self.cells(k),
+        }
+    }
+
+    /// The same steps with twice as many cells.
+    pub fn with_double_cells(&self) -> Self {
+        let cells = (1..=self.steps()).map(|k| 2 * self.cells(k) as u32);
+        self.clone().with_cells(cells.collect())
+    }
+
+    /// The grid with every step cut into two halves of as many cells.
     pub fn halved(&self) -> Self {
         let mut ends = vec![0.0];
         for pair in self.ends.windows(2) {
@@ -76,6 +118,7 @@ impl Grid {
         Self {
             ends,
             equal: self.equal.map(|width| 0.5 * width),
+            cells: self.cells.iter().flat_map(|&cells| [cells; 2]).collect(),
         }
     }
 
@@ -120,6 +163,11 @@ pub fn place(grid: &Grid, k: usize, at: f64) -> Place {
             theta: (at - start) / (end - start),
         }
     }
+}
+
+/// Whether two fractions are the same instant.
+pub fn is_same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME
 }
 
 /// Whether the fraction `at` belongs to a step that ends at `end`.

@@ -8,6 +8,7 @@ pub mod grid;
 pub mod implicit;
 pub mod limits;
 pub mod multipliers;
+pub mod quadrature;
 pub mod rows;
 pub mod settings;
 pub mod trajectory;
@@ -97,6 +98,10 @@ fn close<S: SolveScalar>(
                 advance: advance * run.duration.re(),
             });
         }
+    }
+    // Nodes of cells brought their weights with them.
+    if !run.has_cells {
+        run.weights = quadrature::weights(&run.instants);
     }
     run.step_error = controller.largest_error();
     run.counts.steps = run.grid.steps();

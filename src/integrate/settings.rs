@@ -2,6 +2,7 @@
 
 use super::grid::Grid;
 use super::limits::Limits;
+use super::quadrature::ADDED;
 
 /// The integration method.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,6 +117,9 @@ pub enum Samples {
     /// polynomial. Formulas of one stage are sampled at the ends of their steps whatever is asked
     /// for.
     Uniform(usize),
+    /// The nodes of sums over the motion in the [`cells`](Grid::cells) of each step and, to be shown,
+    /// the ends of this many intervals of equal size, if any.
+    Quadrature(usize),
 }
 
 /// Method, steps and what is kept.
@@ -131,6 +135,20 @@ pub struct Settings {
     pub keep_stages: bool,
     /// What the simulation may take, and who is told how far it is.
     pub limits: Limits,
+}
+
+impl Samples {
+    /// At most so many samples of so many steps, if their cells are known.
+    pub fn count(self, steps: usize, grid: Option<&Grid>) -> usize {
+        match self {
+            Samples::StepEnds => steps,
+            Samples::Uniform(samples) => samples,
+            Samples::Quadrature(samples) => {
+                let nodes = |grid: &Grid| (1..=steps).map(|k| grid.step(k).nodes()).sum();
+                samples + grid.map_or(steps * ADDED, nodes)
+            }
+        }
+    }
 }
 
 impl Settings {

@@ -1,7 +1,8 @@
 //! What a run leaves behind.
 
 use super::grid::{Grid, Place};
-use super::settings::{Method, Samples};
+use super::quadrature::{Due, Step};
+use super::settings::{Method, Samples, Spacing};
 use super::{explicit, implicit};
 use crate::math::{Complex64, Scalar};
 use crate::system::Numbering;
@@ -59,6 +60,12 @@ pub struct Trajectory<S> {
     pub instants: Vec<f64>,
     /// Where the sampled instants stand among the steps.
     pub places: Vec<Place>,
+    /// Weights of the sampled instants in sums over the motion, which add up to one.
+    pub weights: Vec<f64>,
+    /// Whether the sampled instants with weights are the nodes of the cells of the steps.
+    pub has_cells: bool,
+    /// Whether the sampled instants are those that tables and figures show.
+    pub shown: Vec<bool>,
     /// Positions, one row of `numbering.positions()` an instant.
     pub q: Vec<S>,
     /// Velocities, one row of `numbering.velocities()` an instant.
@@ -103,6 +110,9 @@ impl<S: Scalar> Trajectory<S> {
             grid: Grid::growing(),
             instants: vec![0.0],
             places: vec![Place::Node(0)],
+            weights: vec![0.0],
+            shown: vec![true],
+            has_cells: false,
             q: initial.q.clone(),
             v: initial.v.clone(),
             a: initial.a.clone(),
@@ -121,6 +131,8 @@ impl<S: Scalar> Trajectory<S> {
         self.grid.reserve(steps);
         self.instants.reserve(samples);
         self.places.reserve(samples);
+        self.weights.reserve(samples);
+        self.shown.reserve(samples);
         self.q.reserve(samples * nq);
         self.v.reserve(samples * nv);
         self.a.reserve(samples * nv);
@@ -130,13 +142,35 @@ impl<S: Scalar> Trajectory<S> {
     }
 
     /// Adds an instant.
-    pub fn push(&mut self, at: f64, place: Place, [q, v, a, lambda]: [&[S]; 4]) {
-        self.instants.push(at);
+    pub fn push(&mut self, due: Due, place: Place, [q, v, a, lambda]: [&[S]; 4]) {
+        self.instants.push(due.at);
+        self.weights.push(due.weight);
+        self.shown.push(due.shown);
         self.places.push(place);
         self.q.extend_from_slice(q);
         self.v.extend_from_slice(v);
         self.a.extend_from_slice(a);
         self.lambda.extend_from_slice(lambda);
+    }
+
+    /// Takes the cells of steps that are given, if these are what the motion is sampled in.
+    pub(super) fn take_cells(&mut self, spacing: &Spacing, samples: Samples) {
+        self.has_cells = matches!(samples, Samples::Quadrature(_));
+        if let Spacing::Frozen(grid) = spacing {
+            self.grid = Grid::growing().with_cells(grid.all_cells().to_vec());
+        }
+    }
+
+    /// Adds the weight of the start of a step to the last instant so far.
+    pub(super) fn weigh_start(&mut self, step: &Step) {
+        if let Some(weight) = self.weights.last_mut() {
+            *weight += step.first_weight();
+        }
+    }
+
+    /// The sampled instants that tables and figures show.
+    pub fn shown(&self) -> Vec<usize> {
+        (0..=self.last()).filter(|&k| self.shown[k]).collect()
     }
 
     /// Memory of the samples and of what is kept for the adjoint (bytes).
@@ -180,31 +214,10 @@ impl<S: Scalar> Trajectory<S> {
         row(&self.a, self.numbering.velocities(), k)
     }
 
-    /// Weight of instant k in the trapezoidal rule on [0, 1].
+    /// Weight of instant k in sums over [0, 1].
     pub fn quadrature_weight(&self, k: usize) -> f64 {
-        let before = self.instants[k.saturating_sub(1)];
-        let after = self.instants[(k + 1).min(self.last())];
-        0.5 * (after - before)
+        self.weights[k]
     }
-}
-
-/// The instants that `samples` asks for, in rising order without the first one, as far as `end`
-/// (a fraction); `next` counts those that were taken.
-pub(super) fn due(
-    samples: Samples,
-    next: &mut usize,
-    end: f64,
-) -> impl Iterator<Item = f64> + use<'_> {
-    let mut at_end = true;
-    std::iter::from_fn(move || match samples {
-        Samples::StepEnds => std::mem::take(&mut at_end).then_some(end),
-        Samples::Uniform(count) => {
-            let at = *next as f64 / count as f64;
-            let here = *next <= count && super::grid::within(at, end);
-            *next += usize::from(here);
-            here.then_some(at)
-        }
-    })
 }
 
 impl Trajectory<Complex64> {
@@ -217,6 +230,9 @@ impl Trajectory<Complex64> {
             grid: self.grid.clone(),
             instants: self.instants.clone(),
             places: self.places.clone(),
+            weights: self.weights.clone(),
+            shown: self.shown.clone(),
+            has_cells: self.has_cells,
             q: real(&self.q),
             v: real(&self.v),
             a: real(&self.a),

@@ -18,7 +18,8 @@ pub struct SoftMax<S> {
 }
 
 impl<S: Scalar> SoftMax<S> {
-    /// Aggregates `values` with the parameter `rho` > 0 and quadrature weights `c` (Σ c = 1).
+    /// Aggregates `values` with the parameter `rho` > 0 and quadrature weights `c` (Σ c = 1, or counts of
+    /// maxima less minima).
     ///
     /// # Panics
     /// If `values` is empty.
@@ -71,6 +72,37 @@ mod tests {
             assert!(soft.ks >= soft.maximum + 0.25_f64.ln() / rho);
             assert!((soft.weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
             assert!(soft.induced_exponential(&values) <= 849.0 + 1e-9);
+        }
+    }
+
+    /// Beside the formula itself, where no exponent overflows.
+    #[test]
+    fn value_is_the_logarithm_of_the_mean_exponential() {
+        let values = [0.3, -1.2, 2.0, 1.9, 0.0];
+        let c = [0.1, 0.25, 0.05, 0.35, 0.25];
+        for rho in [1e-3, 0.3, 2.0, 50.0] {
+            let soft = SoftMax::new(&values, |k| c[k], rho);
+            let exponential = |(c, g): (&f64, &f64)| c * (rho * g).exp();
+            let sum: f64 = c.iter().zip(&values).map(exponential).sum();
+            assert!((soft.ks - sum.ln() / rho).abs() < 1e-12, "{rho}");
+            let mean = |(w, g): (&f64, &f64)| w * g;
+            let induced: f64 = soft.weights.iter().zip(&values).map(mean).sum();
+            assert!((soft.induced_exponential(&values) - induced).abs() < 1e-14);
+        }
+        // ∫₀¹ e^{ρ t} dt = (e^ρ − 1)/ρ, by Simpson's rule.
+        let n = 200;
+        let line: Vec<f64> = (0..=n).map(|k| f64::from(k) / f64::from(n)).collect();
+        let simpson = |k: usize| match k {
+            0 | 200 => 1.0 / 600.0,
+            k if k % 2 == 1 => 4.0 / 600.0,
+            _ => 2.0 / 600.0,
+        };
+        for rho in [0.1_f64, 1.0, 5.0] {
+            let exact = (rho.exp_m1() / rho).ln() / rho;
+            assert!(
+                (SoftMax::new(&line, simpson, rho).ks - exact).abs() < 1e-8,
+                "{rho}"
+            );
         }
     }
 

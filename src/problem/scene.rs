@@ -7,8 +7,8 @@ use super::schema::Document;
 use super::schema::functions::{self as written, CountedFrom, Function as Written};
 use super::schema::mechanics::{Point, Shape};
 use crate::functions::{
-    EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Rotation, Scene, Side,
-    Until,
+    Bound, EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Rotation, Scene,
+    Side, Until,
 };
 use crate::math::rotation::{compose, conjugate};
 use crate::math::scalar::{length, lift3};
@@ -116,7 +116,13 @@ impl<S: Scalar> Builder<'_, S> {
             reduction,
         };
         match function {
-            Written::Ks(ks) => reduced(&ks.of, Reduction::Ks { rho: ks.rho }),
+            Written::Ks(ks) => {
+                let bound = match ks.bound {
+                    None | Some(written::Bound::Below) => Bound::Below,
+                    Some(written::Bound::Above) => Bound::Above,
+                };
+                reduced(&ks.of, Reduction::Ks { rho: ks.rho, bound })
+            }
             Written::InducedExponential(ie) => {
                 reduced(&ie.of, Reduction::InducedExponential { rho: ie.rho })
             }
@@ -306,9 +312,8 @@ pub fn released<'a>(
     name: &str,
 ) -> Option<(&'a written::Range, Option<f64>)> {
     let (instant, rho) = match document.functions.get(name)? {
-        Written::Ks(aggregate) | Written::InducedExponential(aggregate) => {
-            (&aggregate.of, Some(aggregate.rho))
-        }
+        Written::Ks(ks) => (&ks.of, Some(ks.rho)),
+        Written::InducedExponential(aggregate) => (&aggregate.of, Some(aggregate.rho)),
         Written::Final(instant) => (instant, None),
         Written::Integral(_) | Written::Clearance(_) | Written::Duration => return None,
     };

@@ -1,7 +1,7 @@
 //! The committed problems and the map from their designs to scenes.
 
 use super::*;
-use crate::functions::{Function, Instant, Reduction, Release};
+use crate::functions::{Bound, Function, Instant, Reduction, Release};
 use crate::math::scalar::COMPLEX_STEP;
 use crate::math::{Complex64, Dual, Vec3, rotation};
 use crate::model::JointKind;
@@ -149,7 +149,13 @@ fn the_trebuchet_has_the_masses_inertias_and_places_of_the_reference() {
                 ..
             },
         ] => {
-            assert_eq!(*reduction, Reduction::Ks { rho: 0.3 });
+            assert_eq!(
+                *reduction,
+                Reduction::Ks {
+                    rho: 0.3,
+                    bound: Bound::Below
+                }
+            );
             assert_eq!(
                 (
                     projectile.body,

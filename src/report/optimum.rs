@@ -103,6 +103,9 @@ pub struct Objective {
     /// The largest value over time, where `value` is a smooth aggregate of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub true_maximum: Option<f64>,
+    /// What it is an aggregate of, where it is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub aggregate: Option<Aggregate>,
     /// Estimated error of `value` by the discretisation in time, absolute.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimated_error: Option<f64>,
@@ -150,6 +153,37 @@ pub struct ConstraintValue {
     pub multiplier: f64,
     /// Which bound is active.
     pub active: Activity,
+    /// What it is an aggregate of, where it is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub aggregate: Option<Aggregate>,
+}
+
+/// How a smooth aggregate stands to the largest value over time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Aggregate {
+    /// The side of the largest value on which the aggregate lies, whatever the motion.
+    pub lies: Lies,
+    /// The largest value over time, gate included.
+    pub true_maximum: f64,
+    /// When it is attained (s).
+    pub time: f64,
+    /// Its estimated error by the discretisation in time, absolute.
+    pub error: f64,
+    /// The largest value while the gate is more open than closed, without the gate's factor, where
+    /// there is a gate.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ungated: Option<f64>,
+}
+
+/// A side of the largest value over time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Lies {
+    /// Never above it.
+    Below,
+    /// Never below it.
+    Above,
 }
 
 /// Lagrange multipliers, unscaled, with the signs of the optimiser's own Lagrangian.

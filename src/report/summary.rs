@@ -2,7 +2,9 @@
 
 use super::certificate;
 use super::number::{grouped, significant};
-use super::optimum::{Activity, Curvature, KktResiduals, Optimum, SecondOrder, Sense, Side};
+use super::optimum::{
+    Activity, Aggregate, Curvature, KktResiduals, Optimum, SecondOrder, Sense, Side,
+};
 use super::table;
 
 /// How many constraints a sentence names.
@@ -17,6 +19,7 @@ pub fn summary(optimum: &Optimum) -> String {
     if !optimum.constraints.is_empty() {
         text.push('\n');
         text.push_str(&constraints(optimum));
+        text.push_str(&maxima(optimum));
     }
     text.push('\n');
     let KktResiduals {
@@ -69,6 +72,9 @@ fn objective(optimum: &Optimum) -> String {
             significant(maximum, 8),
             significant(objective.value - maximum, 3),
         ));
+    }
+    if let Some(aggregate) = &objective.aggregate {
+        text.push_str(&format!("  {}\n", attained(aggregate, &unit)));
     }
     if let Some(error) = objective.estimated_error
         && is_rounding(error, objective.value)
@@ -194,6 +200,49 @@ fn constraints(optimum: &Optimum) -> String {
         ],
         &rows,
     )
+}
+
+/// When and how exactly the largest value is known, and what a gate takes of it.
+fn attained(aggregate: &Aggregate, unit: &str) -> String {
+    let mut text = format!(
+        "(at t = {} s, to about {}{unit}",
+        significant(aggregate.time, 6),
+        significant(aggregate.error, 2),
+    );
+    if let Some(ungated) = aggregate.ungated {
+        text.push_str(&format!(
+            "; with the gate's factor, without it {}{unit}",
+            significant(ungated, 8)
+        ));
+    }
+    text + ")"
+}
+
+/// What constraints on aggregates say of the largest values.
+fn maxima(optimum: &Optimum) -> String {
+    let mut text = String::new();
+    for (name, constraint) in &optimum.constraints {
+        let Some(aggregate) = &constraint.aggregate else {
+            continue;
+        };
+        let unit = with_space(constraint.unit.as_deref());
+        let maximum = aggregate.true_maximum;
+        text.push_str(&format!(
+            "  {name}: the true maximum is {}{unit}, the aggregate differs from it by {}{unit}\n    {}\n",
+            significant(maximum, 8),
+            significant(constraint.value - maximum, 3),
+            attained(aggregate, &unit),
+        ));
+        let above = constraint.upper.map(|upper| maximum - upper);
+        if let Some(above) = above.filter(|above| *above > aggregate.error) {
+            text.push_str(&format!(
+                "    the true maximum is above the upper bound by {}{unit}; an aggregate with \
+                 \"bound\": \"above\" keeps it below\n",
+                significant(above, 3),
+            ));
+        }
+    }
+    text
 }
 
 /// What a unit of the bound is worth.

@@ -110,7 +110,10 @@ impl<'a> Bench<'a> {
             let run = match summed {
                 // As an optimisation samples it.
                 true => {
-                    let samples = Integration::new(self.problem, &self.scene, None, true).samples();
+                    let asked = [function];
+                    let integration =
+                        Integration::new(self.problem, &self.scene, Some(&asked), true);
+                    let samples = integration.samples();
                     simulate(model, duration, &settings(samples, true))?
                 }
                 false => history,

@@ -8,6 +8,7 @@ use super::tableau::{ORDER, STAGES};
 use crate::integrate::control::{Controller, Scale};
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Place, place};
+use crate::integrate::quadrature;
 use crate::integrate::settings::{Method, Samples, Settings, Spacing};
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::{close, watch};
@@ -43,6 +44,7 @@ pub fn march<S: SolveScalar>(
     let tape = trajectory::Tape::Explicit(tape);
     let scale = Scale::of(model, numbering, &start, duration.re());
     let mut run = Trajectory::start(numbering.clone(), Method::Dop853, duration, start, tape);
+    run.take_cells(&settings.spacing, settings.samples);
     let mut controller = Controller::new(settings, ORDER, &scale, (model, duration.re()));
     // Kept steps were found good where they were chosen, and are judged by their error.
     let mut stiffness = match settings.spacing {
@@ -124,15 +126,12 @@ pub fn march<S: SolveScalar>(
 
 /// Makes room for the history of a run whose steps are known.
 fn reserve<S: SolveScalar>(run: &mut Trajectory<S>, settings: &Settings) {
-    let steps = match &settings.spacing {
-        Spacing::Steps(steps) => *steps,
-        Spacing::Frozen(grid) => grid.steps(),
+    let (steps, grid) = match &settings.spacing {
+        Spacing::Steps(steps) => (*steps, None),
+        Spacing::Frozen(grid) => (grid.steps(), Some(grid)),
         Spacing::Tolerance(_) => return,
     };
-    let samples = match settings.samples {
-        Samples::StepEnds => steps,
-        Samples::Uniform(samples) => samples,
-    };
+    let samples = settings.samples.count(steps, grid);
     run.reserve(steps, samples);
     if let trajectory::Tape::Explicit(tape) = &mut run.tape {
         tape.reserve(steps);
@@ -149,10 +148,14 @@ fn sample<S: SolveScalar>(
 ) -> Result<(), StepFailure> {
     let k = run.grid.steps();
     let h = run.duration * run.grid.width(k);
-    for at in trajectory::due(settings.samples, next, run.grid.reached()) {
-        let place = place(&run.grid, k, at);
+    let step = run.grid.step(k);
+    if let Samples::Quadrature(_) = settings.samples {
+        run.weigh_start(&step);
+    }
+    for due in quadrature::due(settings.samples, next, step) {
+        let place = place(&run.grid, k, due.at);
         match place {
-            Place::Node(_) => run.push(at, place, [to.q, to.v, to.a, &[]]),
+            Place::Node(_) => run.push(due, place, [to.q, to.v, to.a, &[]]),
             Place::Inside { theta, .. } => {
                 if !stepper.data.dense {
                     let start = run.duration * run.grid.ends()[k - 1];
@@ -160,7 +163,7 @@ fn sample<S: SolveScalar>(
                     run.counts.evaluations += super::tableau::ALL - super::tableau::END - 1;
                 }
                 let [q, v, a] = stepper.inside(from, h, theta);
-                run.push(at, place, [q, v, a, &[]]);
+                run.push(due, place, [q, v, a, &[]]);
             }
         }
     }

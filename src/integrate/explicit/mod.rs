@@ -45,7 +45,7 @@ impl<S: Copy> Tape<S> {
     pub fn new(numbering: &Numbering, keeping: bool, samples: Samples) -> Self {
         let stages = match samples {
             Samples::StepEnds | Samples::Uniform(..=1) => STAGES,
-            Samples::Uniform(_) => ALL,
+            Samples::Uniform(_) | Samples::Quadrature(_) => ALL,
         };
         Self {
             nodes: Rows::new(Node::<&[S]>::lengths(numbering)),

@@ -10,6 +10,7 @@ use super::{Stage, Tape};
 use crate::integrate::control::{Controller, Scale};
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Grid, Place, place};
+use crate::integrate::quadrature;
 use crate::integrate::settings::{Method, Samples, Settings, Spacing};
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::{close, watch};
@@ -128,6 +129,7 @@ fn march_until<S: SolveScalar>(
         Method::Radau { .. } => settings.samples,
         _ => Samples::StepEnds,
     };
+    run.take_cells(&settings.spacing, samples);
     // The history of steps that are chosen on the way grows with them.
     reserve(&mut run, &settings.spacing, samples, scheme.stages());
     let mut next = 1;
@@ -193,15 +195,12 @@ fn reserve<S: SolveScalar>(
     samples: Samples,
     stages: usize,
 ) {
-    let steps = match spacing {
-        Spacing::Steps(steps) => *steps,
-        Spacing::Frozen(grid) => grid.steps(),
+    let (steps, grid) = match spacing {
+        Spacing::Steps(steps) => (*steps, None),
+        Spacing::Frozen(grid) => (grid.steps(), Some(grid)),
         Spacing::Tolerance(_) => return,
     };
-    let samples = match samples {
-        Samples::StepEnds => steps,
-        Samples::Uniform(samples) => samples,
-    };
+    let samples = samples.count(steps, grid);
     run.reserve(steps, samples);
     // Formulas have one stage a step, but for the first ones.
     let stages = match run.method {
@@ -342,17 +341,21 @@ fn sample<S: SolveScalar>(
     let k = run.grid.steps();
     let h = run.duration * run.grid.width(k);
     let last = &stages[stages.len() - 1];
-    for at in trajectory::due(samples, next, run.grid.reached()) {
-        let place = place(&run.grid, k, at);
+    let step = run.grid.step(k);
+    if let Samples::Quadrature(_) = samples {
+        run.weigh_start(&step);
+    }
+    for due in quadrature::due(samples, next, step) {
+        let place = place(&run.grid, k, due.at);
         match place {
-            Place::Node(_) => run.push(at, place, [&last.q, &last.v, &last.vdot, &last.lambda]),
+            Place::Node(_) => run.push(due, place, [&last.q, &last.v, &last.vdot, &last.lambda]),
             Place::Inside { theta, .. } => {
                 dense(scheme, from, stages, h, theta, inside);
                 bodies::bring_to_unit(&run.numbering, &mut inside.q);
                 let Stage {
                     q, v, vdot, lambda, ..
                 } = &*inside;
-                run.push(at, place, [q, v, vdot, lambda]);
+                run.push(due, place, [q, v, vdot, lambda]);
             }
         }
     }

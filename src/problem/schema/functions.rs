@@ -9,8 +9,8 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Function {
-    /// Kreisselmeier–Steinhauser function, a smooth lower bound of the maximum over the run.
-    Ks(Aggregate),
+    /// Kreisselmeier–Steinhauser function, a smooth bound of the maximum over the run.
+    Ks(Ks),
     /// Induced exponential, a smooth mean that leans to the maximum over the run.
     InducedExponential(Aggregate),
     /// Integral over the run.
@@ -21,6 +21,33 @@ pub enum Function {
     Clearance(Clearance),
     /// Duration of the run; with `until`, the time when the event comes (s).
     Duration,
+}
+
+/// What is aggregated, how sharply, and on which side of the maximum.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ks {
+    /// Aggregation parameter in 1/unit of the quantity; larger is closer to the maximum.
+    #[schemars(extend(
+        "unit" = "1/unit of the quantity",
+        "exclusiveMinimum" = 0,
+        "design_variable" = "an aggregation parameter says what is asked, not what is built"
+    ))]
+    pub rho: f64,
+    /// "below" (default): never above the true maximum. "above": never below it, as an upper limit needs.
+    pub bound: Option<Bound>,
+    /// The quantity.
+    pub of: Instant,
+}
+
+/// A side of the true maximum.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Bound {
+    /// Never above it.
+    Below,
+    /// Never below it.
+    Above,
 }
 
 /// What is aggregated, and how sharply.

@@ -220,6 +220,7 @@ mod tests {
                 method: "dop853".into(),
                 reason: "first design".into(),
                 method_reason: None,
+                cells: Vec::new(),
                 ends: vec![0.0, 1.0],
             }),
             event: None,

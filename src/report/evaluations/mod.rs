@@ -161,6 +161,9 @@ pub enum Found {
     Steps(StepsInUse),
 }
 
+/// Most cells of a step that a record may ask for.
+const MOST_CELLS: u32 = 4096;
+
 /// Method and steps that were chosen at one design and are kept for others.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -176,6 +179,9 @@ pub struct StepsInUse {
     /// as the problem asks for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ends: Vec<f64>,
+    /// Cells of the steps for sums over the motion; none where each step has one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cells: Vec<u32>,
 }
 
 impl StepsInUse {
@@ -184,6 +190,14 @@ impl StepsInUse {
         if Method::adaptive(&self.method).is_none() {
             let found = format!("the method {:?}", self.method);
             return Some((found, "dop853, radau2 or radau3"));
+        }
+        let steps = self.ends.len().saturating_sub(1);
+        if !self.cells.is_empty() && self.cells.len() != steps {
+            let found = format!("cells of {} steps, ends of {steps}", self.cells.len());
+            return Some((found, "a number of cells for each step"));
+        }
+        if let Some(cells) = self.cells.iter().find(|&&cells| cells > MOST_CELLS) {
+            return Some((format!("{cells} cells in a step"), "at most 4096"));
         }
         if self.ends.is_empty() || Grid::from_ends(self.ends.clone()).is_some() {
             return None;

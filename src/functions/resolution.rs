@@ -1,0 +1,159 @@
+//! Which cells the steps of a run need for the sums of functions over the motion.
+
+use super::evaluate::sample;
+use super::turning::turns;
+use super::{Function, Instant, Reduction, Release, Scene};
+use crate::integrate::Trajectory;
+use crate::integrate::quadrature::{ADDED, LOBATTO, WEIGHTS};
+
+/// Exponent below which a soft maximum has no weight that shows: e^-72 is ε².
+const COLD: f64 = -72.0;
+/// Most cells of a step, and by how much their number may grow at once.
+const MOST: f64 = 256.0;
+const GROWTH: f64 = 4.0;
+/// Orders of the two rules of a cell.
+const ORDERS: [f64; 2] = [6.0, 10.0];
+
+/// What the cells in use are worth, and what others should be used.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Resolution {
+    /// Largest estimated error of a sum, relative to the sum of sizes.
+    pub error: f64,
+    /// Cells for the steps that keep each sum below the error that is asked for.
+    pub cells: Vec<u32>,
+}
+
+/// What a function sums over the motion.
+struct Sum {
+    /// Size of what is summed at every sample, relative to the whole.
+    sizes: Vec<f64>,
+    /// What is summed, likewise.
+    terms: Vec<f64>,
+    /// Whether samples without weight need no cells.
+    soft: bool,
+}
+
+/// The cells that the functions `which` need over a run whose samples are nodes of cells, so that each
+/// sum errs by less than `goal` relative to the sum of sizes.
+pub fn resolution(
+    scene: &Scene<f64>,
+    which: &[usize],
+    run: &Trajectory<f64>,
+    goal: f64,
+) -> Resolution {
+    let steps = run.grid.steps();
+    let nodes: Vec<usize> = (0..=run.last()).filter(|&k| run.weights[k] > 0.0).collect();
+    let mut found = Resolution {
+        error: 0.0,
+        cells: vec![0; steps],
+    };
+    for &f in which {
+        let Some(sum) = sum_of(scene, f, run, &nodes) else {
+            // It follows the motion without a sum.
+            found
+                .cells
+                .iter_mut()
+                .for_each(|cells| *cells = (*cells).max(1));
+            continue;
+        };
+        let share = goal / steps as f64;
+        let (mut at, mut total) = (0, 0.0);
+        for k in 1..=steps {
+            let next = at + run.grid.step(k).nodes();
+            let (wanted, error) =
+                sum.step(at..next + 1, run.grid.width(k), run.grid.cells(k), share);
+            total += error;
+            found.cells[k - 1] = found.cells[k - 1].max(wanted);
+            at = next;
+        }
+        found.error = found.error.max(total);
+    }
+    found
+}
+
+impl Sum {
+    /// Cells that a step with these nodes needs, and the error of the sum over it.
+    fn step(
+        &self,
+        nodes: std::ops::Range<usize>,
+        width: f64,
+        cells: usize,
+        share: f64,
+    ) -> (u32, f64) {
+        let (sizes, terms) = (&self.sizes[nodes.clone()], &self.terms[nodes]);
+        let least = match self.soft && sizes.iter().all(|&size| size < COLD.exp()) {
+            true => 0,
+            false => 1,
+        };
+        if cells == 0 {
+            // The whole of what its ends say is uncertain.
+            let error = 0.5 * width * (sizes[0] + sizes[sizes.len() - 1]);
+            return (least, error);
+        }
+        let part = width / cells as f64;
+        let cell = |i: usize| {
+            let at = ADDED * i;
+            let rule = |of: &[f64], weights: &[f64; 7]| -> f64 {
+                weights.iter().zip(&of[at..]).map(|(w, x)| w * x).sum()
+            };
+            let difference = (rule(terms, &WEIGHTS) - rule(terms, &LOBATTO)).abs();
+            let size = rule(sizes, &WEIGHTS);
+            // The difference is the error of the lower rule.
+            let relative = (difference / size).powf(ORDERS[1] / ORDERS[0]).min(1.0);
+            if size > 0.0 {
+                part * size * relative
+            } else {
+                0.0
+            }
+        };
+        let error: f64 = (0..cells).map(cell).sum();
+        if least == 0 {
+            return (0, error);
+        }
+        let more = (error / share).powf(1.0 / ORDERS[1]).clamp(1.0, GROWTH);
+        let wanted = (cells as f64 * more).ceil().min(MOST);
+        // Rounding up must not make cells more each time they are looked at.
+        let wanted = if error <= share { cells as f64 } else { wanted };
+        (wanted as u32, error)
+    }
+}
+
+/// What function f sums over the nodes of a run, or `None` if it follows the motion without a sum.
+fn sum_of(scene: &Scene<f64>, f: usize, run: &Trajectory<f64>, nodes: &[usize]) -> Option<Sum> {
+    let (instant, rho) = match &scene.functions[f] {
+        Function::Reduced { instant, reduction } => match *reduction {
+            Reduction::Final => return None,
+            Reduction::Integral => (instant.clone(), None),
+            Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
+                (instant.clone(), Some(rho))
+            }
+        },
+        Function::Clearance { release, .. } => match release {
+            Release::Final => return None,
+            &Release::Best {
+                rho,
+                projectile,
+                gate,
+            } => (Instant::Range { projectile, gate }, Some(rho)),
+        },
+        Function::Duration | Function::OfDesign(_) => return None,
+    };
+    let turns = turns(instant.watched_rotation(), run);
+    let all = sample(&instant, &turns, &scene.model, run);
+    let values: Vec<f64> = nodes.iter().map(|&k| all[k]).collect();
+    let terms: Vec<f64> = match rho {
+        None => values,
+        Some(rho) => {
+            let top = values.iter().fold(f64::NEG_INFINITY, |m, &g| m.max(g));
+            values.iter().map(|g| (rho * (g - top)).exp()).collect()
+        }
+    };
+    let weighed = terms.iter().zip(nodes);
+    let total: f64 = weighed.map(|(x, &k)| x.abs() * run.weights[k]).sum();
+    let scale = if total > 0.0 { 1.0 / total } else { 0.0 };
+    Some(Sum {
+        sizes: terms.iter().map(|x| x.abs() * scale).collect(),
+        terms: terms.iter().map(|x| x * scale).collect(),
+        soft: rho.is_some(),
+    })
+}
