@@ -32,8 +32,9 @@
 //! | Folder | What lives there |
 //! |---|---|
 //! | [`math`] | scalars (real, complex, dual), rotations, smooth maxima |
-//! | [`linalg`] | static sparsity patterns, sparse LU |
+//! | [`linalg`] | static sparsity patterns, sparse LU and Cholesky |
 //! | [`model`] | bodies, joints, loads, gravity: parameters and nothing that moves |
+//! | [`structures`] | shells as finite elements: statics, stress, exact gradients; nothing moves |
 //! | [`system`] | kinematics, dynamics, constraints, loads with all derivatives; consistent starts |
 //! | [`integrate`] | the methods, explicit and implicit; their equations, steps and trajectories |
 //! | [`functions`] | functions of interest and their derivatives |
@@ -57,4 +58,5 @@ pub mod model;
 pub mod optimiser;
 pub mod problem;
 pub mod report;
+pub mod structures;
 pub mod system;

@@ -1,5 +1,6 @@
-//! Sparse linear algebra: static patterns and the LU factorisation.
+//! Sparse linear algebra: static patterns, the LU and the Cholesky factorisation.
 
+pub mod cholesky;
 pub mod pattern;
 mod replay;
 mod scaling;

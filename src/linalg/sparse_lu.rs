@@ -1,5 +1,5 @@
-//! Sparse LU with partial pivoting, analysed once and factorised often. The only file that names
-//! faer, which orders the columns and chooses the pivots.
+//! Sparse LU with partial pivoting, analysed once and factorised often. faer, which no
+//! other folder names, orders the columns and chooses the pivots.
 
 use super::pattern::{Pattern, SparseMatrix};
 use super::replay::Replay;

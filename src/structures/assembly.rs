@@ -1,0 +1,176 @@
+//! Assembly of the stiffness of a structure, into slots that are recorded once.
+
+use super::mesh::UnknownSet;
+use super::shell::{ElementMatrix, Motion, NODES, ShellCotangent, Terms};
+use super::state::{Configuration, Cotangent, NodalMotion};
+use super::structure::Structure;
+use super::supports::{NodeUnknowns, Support, Unknowns};
+use crate::linalg::cholesky::{SymmetricPattern, fill_reducing_order};
+use crate::math::Scalar;
+
+/// A slot of an unknown that is fixed.
+const FIXED: u32 = u32::MAX;
+
+/// What follows from mesh and supports alone: the unknowns, the pattern of the stiffness, and where
+/// the entries of each element go.
+#[derive(Clone, Debug)]
+pub(crate) struct Assembly {
+    pub unknowns: Unknowns,
+    pub node_unknowns: NodeUnknowns,
+    pub pattern: SymmetricPattern,
+    /// Slots of the lower part of each element's matrix, row by row.
+    slots: Vec<Vec<u32>>,
+}
+
+impl Assembly {
+    pub fn new(
+        structure: &Structure<f64>,
+        supports: &[Support],
+        node_unknowns: NodeUnknowns,
+    ) -> Result<Self, UnknownSet> {
+        let mesh = &structure.topology.mesh;
+        let order = fill_reducing_order(&neighbours(mesh.nodes, &mesh.shells));
+        let unknowns = Unknowns::new(structure, supports, node_unknowns, &order)?;
+        let numbers: Vec<Vec<Option<usize>>> = mesh
+            .shells
+            .iter()
+            .map(|element| element_unknowns(&unknowns, element))
+            .collect();
+        let pattern = pattern(unknowns.count, &numbers);
+        let slots = numbers.iter().map(|list| record(&pattern, list)).collect();
+        Ok(Self {
+            unknowns,
+            node_unknowns,
+            pattern,
+            slots,
+        })
+    }
+
+    pub fn configuration<'a, S: Scalar>(
+        &'a self,
+        structure: &'a Structure<S>,
+    ) -> Configuration<'a, S> {
+        Configuration::new(structure, &self.unknowns, self.node_unknowns)
+    }
+
+    /// Writes the tangent stiffness at a motion into `values`.
+    pub fn tangent(
+        &self,
+        configuration: &Configuration<f64>,
+        motion: &NodalMotion<f64>,
+        terms: Terms,
+        values: &mut [f64],
+    ) {
+        values.fill(0.0);
+        let mut matrix = ElementMatrix::new();
+        let shells = &configuration.structure.topology.mesh.shells;
+        for (index, element) in shells.iter().enumerate() {
+            let axes = configuration.element_axes(index);
+            let motion = motion.of_element(element);
+            configuration
+                .shell(index)
+                .tangent(&axes, &motion, terms, &mut matrix);
+            self.scatter(index, &matrix, values);
+        }
+    }
+
+    fn scatter(&self, index: usize, matrix: &ElementMatrix<f64>, values: &mut [f64]) {
+        let mut slots = self.slots[index].iter();
+        for (i, row) in matrix.rows.iter().enumerate().take(matrix.order) {
+            for (&value, &slot) in row[..=i].iter().zip(&mut slots) {
+                if slot != FIXED {
+                    values[slot as usize] += value;
+                }
+            }
+        }
+    }
+}
+
+/// Adds the derivatives of the strain energy of a motion: by the motion to `force`, by the structure
+/// to `to`.
+pub(crate) fn add_energy_transpose<S: Scalar>(
+    configuration: &Configuration<S>,
+    motion: &NodalMotion<S>,
+    terms: Terms,
+    force: &mut NodalMotion<S>,
+    to: &mut Cotangent<S>,
+) {
+    for (index, element) in configuration
+        .structure
+        .topology
+        .mesh
+        .shells
+        .iter()
+        .enumerate()
+    {
+        let (mut f, mut bar) = (Motion::zeros(), ShellCotangent::zeros());
+        let v = motion.of_element(element);
+        configuration
+            .shell(index)
+            .add_energy_transpose(&v, terms, &mut f, &mut bar);
+        force.add_of_element_transpose(element, &f);
+        configuration.add_shell_transpose(index, &bar, to);
+    }
+}
+
+/// Neighbours i > j of each node j: those that share an element.
+fn neighbours(nodes: usize, shells: &[[usize; NODES]]) -> Vec<Vec<usize>> {
+    let mut all = vec![Vec::new(); nodes];
+    for element in shells {
+        for &j in element {
+            all[j].extend(element.iter().copied().filter(|&i| i > j));
+        }
+    }
+    for list in &mut all {
+        list.sort_unstable();
+        list.dedup();
+    }
+    all
+}
+
+/// The unknowns of an element in the order of its matrix; `None` where fixed.
+fn element_unknowns(unknowns: &Unknowns, element: &[usize; NODES]) -> Vec<Option<usize>> {
+    let mut all = Vec::new();
+    for &node in element {
+        all.extend(unknowns.nodes[node].displacements);
+    }
+    for &node in element {
+        all.extend(unknowns.rotations_of(node).map(Some));
+    }
+    all
+}
+
+fn pattern(count: usize, numbers: &[Vec<Option<usize>>]) -> SymmetricPattern {
+    let mut columns: Vec<Vec<usize>> = (0..count).map(|j| vec![j]).collect();
+    for list in numbers {
+        for &j in list.iter().flatten() {
+            columns[j].extend(list.iter().flatten().copied().filter(|&i| i > j));
+        }
+        // Elements share most entries of a column: do not let it grow.
+        for &j in list.iter().flatten() {
+            if columns[j].len() > 400 {
+                columns[j].sort_unstable();
+                columns[j].dedup();
+            }
+        }
+    }
+    for column in &mut columns {
+        column.sort_unstable();
+        column.dedup();
+    }
+    SymmetricPattern::new(&columns)
+}
+
+fn record(pattern: &SymmetricPattern, list: &[Option<usize>]) -> Vec<u32> {
+    let mut slots = Vec::with_capacity(list.len() * (list.len() + 1) / 2);
+    for (row, i) in list.iter().enumerate() {
+        for j in &list[..=row] {
+            let slot = match (i, j) {
+                (Some(i), Some(j)) => pattern.slot(*i.max(j), *i.min(j)),
+                _ => None,
+            };
+            slots.push(slot.map_or(FIXED, |slot| slot as u32));
+        }
+    }
+    slots
+}

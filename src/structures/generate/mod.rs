@@ -1,0 +1,105 @@
+//! Generators of meshes. Their sizes are scalars of any kind, so that nodes move smoothly with them.
+//!
+//! A panel has two directions, x and y. Its edges are named `x0`, `x1`, `y0` and `y1` for the ends of
+//! each direction, both as sets of edges and as sets of nodes; its corners, sets of one node, are
+//! `x0y0`, `x1y0`, `x0y1` and `x1y1`; `all` is the set of all nodes and of all faces.
+
+use super::mesh::Mesh;
+use crate::math::{Scalar, Vec3};
+
+/// A mesh and the places of its nodes [m].
+#[derive(Clone, Debug)]
+pub struct Generated<S> {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Places of the nodes.
+    pub nodes: Vec<Vec3<S>>,
+}
+
+/// A panel of `elements` = (n_x, n_y) shells; `place` maps (ξ, η) ∈ [0, 1]² to a point. With `closed`
+/// the ends of the first direction are the same line, and its edges have no names.
+pub fn panel<S: Scalar>(
+    elements: [usize; 2],
+    closed: bool,
+    place: impl Fn(f64, f64) -> Vec3<S>,
+) -> Generated<S> {
+    let [nx, ny] = elements;
+    let columns = if closed { 2 * nx } else { 2 * nx + 1 };
+    let rows = 2 * ny + 1;
+    let node = |i: usize, j: usize| j * columns + i % columns;
+    let nodes = (0..columns * rows)
+        .map(|k| {
+            let (i, j) = (k % columns, k / columns);
+            place(i as f64 / (2 * nx) as f64, j as f64 / (2 * ny) as f64)
+        })
+        .collect();
+    let mut mesh = Mesh {
+        nodes: columns * rows,
+        ..Mesh::default()
+    };
+    for j in 0..ny {
+        for i in 0..nx {
+            mesh.shells
+                .push(std::array::from_fn(|k| node(2 * i + k % 3, 2 * j + k / 3)));
+        }
+    }
+    let row = |j: usize| -> Vec<usize> { (0..columns).map(|i| node(i, j)).collect() };
+    let along = |j: usize| (0..nx).map(move |i| [0, 1, 2].map(|k| node(2 * i + k, j)));
+    for (name, j) in [("y0", 0), ("y1", 2 * ny)] {
+        mesh.node_sets.insert(name.into(), row(j));
+        mesh.edge_sets.insert(name.into(), along(j).collect());
+    }
+    if !closed {
+        for (name, i) in [("x0", 0), ("x1", 2 * nx)] {
+            let column = (0..rows).map(|j| node(i, j)).collect();
+            mesh.node_sets.insert(name.into(), column);
+            let edges = (0..ny).map(|j| [0, 1, 2].map(|k| node(i, 2 * j + k)));
+            mesh.edge_sets.insert(name.into(), edges.collect());
+        }
+        for (name, i, j) in [
+            ("x0y0", 0, 0),
+            ("x1y0", 2 * nx, 0),
+            ("x0y1", 0, 2 * ny),
+            ("x1y1", 2 * nx, 2 * ny),
+        ] {
+            mesh.node_sets.insert(name.into(), vec![node(i, j)]);
+        }
+    }
+    mesh.node_sets
+        .insert("all".into(), (0..mesh.nodes).collect());
+    mesh.face_sets
+        .insert("all".into(), (0..mesh.shells.len()).collect());
+    Generated { mesh, nodes }
+}
+
+/// A rectangular plate in the plane z = 0 from the origin to (length, width).
+pub fn plate<S: Scalar>(size: [S; 2], elements: [usize; 2]) -> Generated<S> {
+    panel(elements, false, |x, y| {
+        Vec3::new(size[0] * x, size[1] * y, S::zero())
+    })
+}
+
+/// A piece of a cylinder about the z axis: x runs along the arc from `angles[0]` to `angles[1]` [rad],
+/// measured from the x axis, y along the axis from z = 0 to `length` [m]. The normal points outwards.
+pub fn curved_panel<S: Scalar>(
+    radius: S,
+    length: S,
+    angles: [S; 2],
+    elements: [usize; 2],
+) -> Generated<S> {
+    panel(elements, false, |x, y| {
+        on_cylinder(radius, angles[0] + (angles[1] - angles[0]) * x, length * y)
+    })
+}
+
+/// A whole cylinder about the z axis; its ends are the edges `y0` (z = 0) and `y1` (z = length).
+pub fn cylinder<S: Scalar>(radius: S, length: S, elements: [usize; 2]) -> Generated<S> {
+    panel(elements, true, |x, y| {
+        on_cylinder(radius, S::from(2.0 * std::f64::consts::PI * x), length * y)
+    })
+}
+
+fn on_cylinder<S: Scalar>(radius: S, angle: S, z: S) -> Vec3<S> {
+    let (sin, cos) = angle.sin_cos();
+    Vec3::new(radius * cos, radius * sin, z)
+}

@@ -1,0 +1,152 @@
+//! Exact gradients of functions of static solutions.
+//!
+//! J(x_1 …, p) of the solutions x_c of the load cases and the numbers p of the structure. One adjoint
+//! solve a case, K ψ = ∂J/∂x, gives
+//!
+//! ```text
+//! dJ/dp = ∂J/∂p + ψ·∂f/∂p − ψ·∂F/∂p
+//! ```
+//!
+//! (f the loads, F the internal forces). The products with ψ are the infinitesimal parts of the
+//! derivatives of work and energy at x + ε ψ.
+
+use super::assembly::add_energy_transpose;
+use super::functions::{Function, Partial, Solved, zero_load};
+use super::loads::{Load, add_work_transpose};
+use super::mesh::UnknownSet;
+use super::shell::Terms;
+use super::state::NodalMotion;
+use super::statics::StaticProblem;
+use super::structure::Structure;
+use crate::math::Dual;
+
+/// Derivatives of a function: by the structure, by the loads of each case.
+#[derive(Clone, Debug)]
+pub struct Gradient {
+    /// By the numbers of the structure, each in its own place.
+    pub structure: Structure<f64>,
+    /// By the numbers of the loads, each in its own place.
+    pub cases: Vec<Vec<Load<f64>>>,
+}
+
+/// The gradient of a function of a linear solution by everything, with one adjoint solve for each load
+/// case that the function depends on. `problem` still has the factors of the stiffness.
+///
+/// # Errors
+/// [`UnknownSet`] if function or loads name no set of the mesh.
+pub fn gradient(
+    problem: &mut StaticProblem,
+    structure: &Structure<f64>,
+    cases: &[Vec<Load<f64>>],
+    solutions: &[Vec<f64>],
+    function: &Function,
+) -> Result<Gradient, UnknownSet> {
+    let solved = Solved {
+        problem,
+        structure,
+        cases,
+        solutions,
+        terms: Terms::LINEAR,
+    };
+    let configuration = solved.configuration();
+    let Partial {
+        motions,
+        mut to,
+        cases: case_bars,
+    } = solved.partial(&configuration, function)?;
+    let mut rights = Vec::with_capacity(cases.len());
+    for (motion, x) in motions.iter().zip(solutions) {
+        let mut right = vec![0.0; x.len()];
+        configuration.add_spread_transpose(x, motion, &mut right, &mut to.directors);
+        rights.push(right);
+    }
+    let mut all = Gradient {
+        structure: configuration.finish(to),
+        cases: case_bars,
+    };
+    for (case, right) in rights.iter().enumerate() {
+        if right.iter().any(|&r| r != 0.0) {
+            let adjoint = problem.solve_factorised(right);
+            let (by_structure, by_loads) =
+                adjoint_product(problem, structure, &cases[case], &solutions[case], &adjoint)?;
+            add_structure(&mut all.structure, &by_structure);
+            for (sum, part) in all.cases[case].iter_mut().zip(by_loads) {
+                add_load(sum, &part);
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// ψ·∂(f − F)/∂p by structure and loads.
+fn adjoint_product(
+    problem: &StaticProblem,
+    structure: &Structure<f64>,
+    case: &[Load<f64>],
+    x: &[f64],
+    adjoint: &[f64],
+) -> Result<(Structure<f64>, Vec<Load<f64>>), UnknownSet> {
+    let lifted = structure.map(Dual::from);
+    let configuration = problem.assembly.configuration(&lifted);
+    let state: Vec<Dual> = x
+        .iter()
+        .zip(adjoint)
+        .map(|(&x, &psi)| Dual::new(x, psi))
+        .collect();
+    let motion = configuration.spread(&state);
+    // Derivatives of the energy less the work, with the opposite sign at the end.
+    let mut force = NodalMotion::zeros(structure.nodes.len());
+    let mut to = configuration.cotangent();
+    let mut loads = Vec::with_capacity(case.len());
+    for load in case {
+        let lifted: Load<Dual> = load.map(Dual::from);
+        let mut load_to = zero_load(&lifted);
+        add_work_transpose(
+            &configuration,
+            &lifted,
+            &motion,
+            &mut force,
+            &mut to,
+            &mut load_to,
+        )?;
+        loads.push(load_to.map(|x| x.du));
+    }
+    let mut internal = NodalMotion::zeros(structure.nodes.len());
+    let mut internal_to = configuration.cotangent();
+    add_energy_transpose(
+        &configuration,
+        &motion,
+        Terms::LINEAR,
+        &mut internal,
+        &mut internal_to,
+    );
+    let mut unused = vec![Dual::from(0.0); x.len()];
+    configuration.add_spread_transpose(&state, &force, &mut unused, &mut to.directors);
+    configuration.add_spread_transpose(&state, &internal, &mut unused, &mut internal_to.directors);
+    let mut all = configuration.finish(to).map(|x| x.du);
+    add_structure(&mut all, &configuration.finish(internal_to).map(|x| -x.du));
+    Ok((all, loads))
+}
+
+fn add_structure(sum: &mut Structure<f64>, part: &Structure<f64>) {
+    for (a, b) in sum.nodes.iter_mut().zip(&part.nodes) {
+        *a += b;
+    }
+    for (a, b) in sum.thickness.iter_mut().zip(&part.thickness) {
+        *a += b;
+    }
+    for (a, b) in sum.surface_mass.iter_mut().zip(&part.surface_mass) {
+        *a += b;
+    }
+    for (a, b) in sum.materials.iter_mut().zip(&part.materials) {
+        a.young += b.young;
+        a.poisson += b.poisson;
+        a.density += b.density;
+        a.yield_stress += b.yield_stress;
+    }
+}
+
+fn add_load(sum: &mut Load<f64>, part: &Load<f64>) {
+    let mut next = part.values().into_iter();
+    *sum = sum.map(|x| x + next.next().unwrap_or(0.0));
+}

@@ -1,0 +1,74 @@
+//! Meshes: which nodes make which elements, and the names of sets of nodes, edges and faces.
+
+use std::collections::BTreeMap;
+
+use super::shell::NODES;
+
+/// Local nodes of the four edges of a shell element, along s = −1, r = +1, s = +1, r = −1.
+pub(crate) const SHELL_EDGES: [[usize; 3]; 4] = [[0, 1, 2], [2, 5, 8], [6, 7, 8], [0, 3, 6]];
+
+/// A mesh of nine-node shells. Node k = 3j + i of an element stands at (r, s) = (i − 1, j − 1); the
+/// normal is a_r × a_s.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Nodes of each shell.
+    pub shells: Vec<[usize; NODES]>,
+    /// Nodes by the name of their set.
+    pub node_sets: BTreeMap<String, Vec<usize>>,
+    /// Edges (three nodes in a row) by the name of their set.
+    pub edge_sets: BTreeMap<String, Vec<[usize; 3]>>,
+    /// Shells by the name of their set.
+    pub face_sets: BTreeMap<String, Vec<usize>>,
+}
+
+/// A name that no set of the mesh has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no {kind} of the name \"{name}\"; there are: {known}")]
+pub struct UnknownSet {
+    /// What was looked for.
+    pub kind: &'static str,
+    /// The name.
+    pub name: String,
+    /// The names that exist, with commas between.
+    pub known: String,
+}
+
+fn find<'a, T>(
+    sets: &'a BTreeMap<String, Vec<T>>,
+    kind: &'static str,
+    name: &str,
+) -> Result<&'a [T], UnknownSet> {
+    sets.get(name).map(Vec::as_slice).ok_or_else(|| UnknownSet {
+        kind,
+        name: name.to_owned(),
+        known: sets.keys().cloned().collect::<Vec<_>>().join(", "),
+    })
+}
+
+impl Mesh {
+    /// The nodes of a set.
+    ///
+    /// # Errors
+    /// [`UnknownSet`] if there is none of this name.
+    pub fn node_set(&self, name: &str) -> Result<&[usize], UnknownSet> {
+        find(&self.node_sets, "set of nodes", name)
+    }
+
+    /// The edges of a set.
+    ///
+    /// # Errors
+    /// [`UnknownSet`] if there is none of this name.
+    pub fn edge_set(&self, name: &str) -> Result<&[[usize; 3]], UnknownSet> {
+        find(&self.edge_sets, "set of edges", name)
+    }
+
+    /// The shells of a set.
+    ///
+    /// # Errors
+    /// [`UnknownSet`] if there is none of this name.
+    pub fn face_set(&self, name: &str) -> Result<&[usize], UnknownSet> {
+        find(&self.face_sets, "set of faces", name)
+    }
+}

@@ -1,0 +1,17 @@
+//! Shell structures as finite elements, with exact derivatives; nothing moves here. How the pieces fit:
+//! docs/structures.md.
+
+mod assembly;
+pub mod functions;
+pub mod generate;
+pub mod gradient;
+pub mod loads;
+pub mod material;
+pub mod mesh;
+pub mod quality;
+mod sheets;
+pub mod shell;
+mod state;
+pub mod statics;
+pub mod structure;
+pub mod supports;

@@ -1,0 +1,180 @@
+//! What is wrong with a mesh: loose nodes, inverted or warped elements, mid nodes out of place.
+
+use super::mesh::{Mesh, SHELL_EDGES};
+use super::shell::NODES;
+use super::shell::basis::TABLES;
+use crate::math::Vec3;
+
+/// A fault of a mesh, with the number of the element or node.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshFault {
+    /// An element names a node that does not exist.
+    #[error("shell {shell} names node {node}, and there are {nodes} nodes")]
+    UnknownNode {
+        /// The element.
+        shell: usize,
+        /// The node.
+        node: usize,
+        /// How many there are.
+        nodes: usize,
+    },
+    /// A node occurs twice in an element.
+    #[error("shell {shell} names node {node} twice")]
+    RepeatedNode {
+        /// The element.
+        shell: usize,
+        /// The node.
+        node: usize,
+    },
+    /// A node belongs to no element.
+    #[error("node {node} is loose: no element has it")]
+    LooseNode {
+        /// The node.
+        node: usize,
+    },
+    /// A place that is no number.
+    #[error("node {node} has no finite place")]
+    NoPlace {
+        /// The node.
+        node: usize,
+    },
+    /// The normal of an element turns over within it, or its area vanishes.
+    #[error(
+        "shell {shell} is inverted or folded: its normal at local node {local} turns by more than \
+         80 degrees from that of its centre, or its area vanishes there"
+    )]
+    Inverted {
+        /// The element.
+        shell: usize,
+        /// The local node.
+        local: usize,
+    },
+    /// A middle node is far from the middle.
+    #[error(
+        "shell {shell}: its middle node {local} stands at {fraction:.3} of its edge, not near 0.5 \
+         (allowed are 0.3 to 0.7): is the order of the nodes right?"
+    )]
+    MiddleNode {
+        /// The element.
+        shell: usize,
+        /// The local node.
+        local: usize,
+        /// Where it stands along the edge.
+        fraction: f64,
+    },
+    /// Two elements at an edge have opposite normals.
+    #[error("shells {first} and {second} share an edge and are wound in opposite directions")]
+    OppositeNormals {
+        /// An element.
+        first: usize,
+        /// Its neighbour.
+        second: usize,
+    },
+}
+
+/// All faults of a mesh with nodes at these places [m].
+pub fn faults(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
+    let mut all = connectivity(mesh);
+    if !all.is_empty() {
+        return all;
+    }
+    for (node, place) in nodes.iter().enumerate() {
+        if place.iter().any(|x| !x.is_finite()) {
+            all.push(MeshFault::NoPlace { node });
+        }
+    }
+    if all.is_empty() {
+        for (shell, element) in mesh.shells.iter().enumerate() {
+            all.extend(shape(shell, &element.map(|k| nodes[k])));
+        }
+    }
+    all
+}
+
+fn connectivity(mesh: &Mesh) -> Vec<MeshFault> {
+    let mut used = vec![false; mesh.nodes];
+    let mut all = Vec::new();
+    for (shell, element) in mesh.shells.iter().enumerate() {
+        for (k, &node) in element.iter().enumerate() {
+            if node >= mesh.nodes {
+                let nodes = mesh.nodes;
+                all.push(MeshFault::UnknownNode { shell, node, nodes });
+            } else if element[..k].contains(&node) {
+                all.push(MeshFault::RepeatedNode { shell, node });
+            } else {
+                used[node] = true;
+            }
+        }
+    }
+    let loose = used.iter().enumerate().filter(|(_, used)| !**used);
+    all.extend(loose.map(|(node, _)| MeshFault::LooseNode { node }));
+    all.extend(opposite_normals(mesh));
+    all
+}
+
+/// Edges that two elements run through in the same direction.
+fn opposite_normals(mesh: &Mesh) -> Vec<MeshFault> {
+    // An element's boundary runs 0 → 2 → 8 → 6; its neighbour runs through the same edge backwards.
+    let mut seen: std::collections::HashMap<[usize; 3], Vec<usize>> = Default::default();
+    for (shell, element) in mesh.shells.iter().enumerate() {
+        for (k, edge) in SHELL_EDGES.iter().enumerate() {
+            let mut nodes = edge.map(|local| element[local]);
+            if k >= 2 {
+                nodes.reverse();
+            }
+            seen.entry(nodes).or_default().push(shell);
+        }
+    }
+    let mut all = Vec::new();
+    for (edge, shells) in &seen {
+        let mut backwards = *edge;
+        backwards.reverse();
+        // Where three sheets meet, some pair must agree in direction.
+        let others = seen.get(&backwards).map_or(0, Vec::len);
+        if let (&[first, second], 0) = (shells.as_slice(), others) {
+            all.push(MeshFault::OppositeNormals { first, second });
+        }
+    }
+    all.sort_by_key(|fault| match fault {
+        MeshFault::OppositeNormals { first, second } => (*first, *second),
+        _ => (0, 0),
+    });
+    all
+}
+
+fn shape(shell: usize, x: &[Vec3<f64>; NODES]) -> Option<MeshFault> {
+    let normal = |k: usize| {
+        let [r, s] = [0, 1]
+            .map(|d| -> Vec3<f64> { (0..NODES).map(|a| x[a] * TABLES.nodes[k].by[d][a]).sum() });
+        (r.cross(&s), r.norm() * s.norm())
+    };
+    let (centre, size) = normal(4);
+    let flat = centre.norm() <= 1e-6 * size || size == 0.0;
+    for local in 0..NODES {
+        let (n, size) = normal(local);
+        let turned = n.dot(&centre) <= 80.0_f64.to_radians().cos() * n.norm() * centre.norm();
+        if flat || turned || n.norm() <= 1e-6 * size {
+            return Some(MeshFault::Inverted { shell, local });
+        }
+    }
+    let rows = [
+        [0, 1, 2],
+        [3, 4, 5],
+        [6, 7, 8],
+        [0, 3, 6],
+        [1, 4, 7],
+        [2, 5, 8],
+    ];
+    for [first, local, last] in rows {
+        let chord = x[last] - x[first];
+        let fraction = (x[local] - x[first]).dot(&chord) / chord.norm_squared();
+        if !(0.3..=0.7).contains(&fraction) {
+            return Some(MeshFault::MiddleNode {
+                shell,
+                local,
+                fraction,
+            });
+        }
+    }
+    None
+}

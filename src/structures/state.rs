@@ -1,0 +1,194 @@
+//! From the unknowns to the motion of the nodes and of the elements, and back.
+
+use super::shell::{Field, Motion, NODES, RotationAxes, Shell, ShellCotangent};
+use super::structure::Structure;
+use super::supports::{NodeUnknowns, Unknowns};
+use crate::math::{Scalar, Vec3};
+
+/// Displacements [m] and rotations [rad] of the nodes in global axes; or forces [N] and moments [N m].
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodalMotion<S> {
+    /// u of each node.
+    pub displacement: Vec<Vec3<S>>,
+    /// θ of each node. On a smooth surface without its part about the director.
+    pub rotation: Vec<Vec3<S>>,
+}
+
+impl<S: Scalar> NodalMotion<S> {
+    /// Nothing moves.
+    pub fn zeros(nodes: usize) -> Self {
+        Self {
+            displacement: vec![Vec3::zeros(); nodes],
+            rotation: vec![Vec3::zeros(); nodes],
+        }
+    }
+
+    pub(crate) fn of_element(&self, element: &[usize; NODES]) -> Motion<S> {
+        Motion {
+            displacement: element.map(|node| self.displacement[node]),
+            rotation: element.map(|node| self.rotation[node]),
+        }
+    }
+
+    /// Transpose of [`NodalMotion::of_element`].
+    pub(crate) fn add_of_element_transpose(&mut self, element: &[usize; NODES], bar: &Motion<S>) {
+        for (a, &node) in element.iter().enumerate() {
+            self.displacement[node] += bar.displacement[a];
+            self.rotation[node] += bar.rotation[a];
+        }
+    }
+}
+
+/// A structure with its directors, and the unknowns.
+pub(crate) struct Configuration<'a, S> {
+    pub structure: &'a Structure<S>,
+    pub unknowns: &'a Unknowns,
+    pub node_unknowns: NodeUnknowns,
+    pub directors: Vec<Vec3<S>>,
+}
+
+/// Derivatives by the structure while they are collected: by its numbers and by its directors.
+pub(crate) struct Cotangent<S> {
+    pub structure: Structure<S>,
+    pub directors: Vec<Vec3<S>>,
+}
+
+impl<'a, S: Scalar> Configuration<'a, S> {
+    pub fn new(
+        structure: &'a Structure<S>,
+        unknowns: &'a Unknowns,
+        node_unknowns: NodeUnknowns,
+    ) -> Self {
+        let topology = &structure.topology;
+        Self {
+            structure,
+            unknowns,
+            node_unknowns,
+            directors: topology.sheets.directors(&topology.mesh, &structure.nodes),
+        }
+    }
+
+    pub fn cotangent(&self) -> Cotangent<S> {
+        Cotangent {
+            structure: self.structure.zeros(),
+            directors: vec![Vec3::zeros(); self.directors.len()],
+        }
+    }
+
+    /// Ends a collection: what the directors take from the nodes.
+    pub fn finish(&self, mut cotangent: Cotangent<S>) -> Structure<S> {
+        let topology = &self.structure.topology;
+        topology.sheets.add_directors_transpose(
+            &topology.mesh,
+            &self.structure.nodes,
+            &cotangent.directors,
+            &mut cotangent.structure.nodes,
+        );
+        cotangent.structure
+    }
+
+    pub fn shell(&self, index: usize) -> Shell<S> {
+        let (structure, topology) = (self.structure, &self.structure.topology);
+        let corners = &topology.sheets.corners[index];
+        Shell {
+            geometry: Field {
+                points: topology.mesh.shells[index].map(|node| structure.nodes[node]),
+                directors: corners.map(|corner| self.directors[corner]),
+            },
+            thickness: structure.thickness[index],
+            material: structure.materials[topology.material[index]],
+            surface_mass: structure.surface_mass[index],
+            drilling: self.node_unknowns == NodeUnknowns::Six,
+        }
+    }
+
+    /// Transpose of the derivative of [`Configuration::shell`].
+    pub fn add_shell_transpose(
+        &self,
+        index: usize,
+        bar: &ShellCotangent<S>,
+        to: &mut Cotangent<S>,
+    ) {
+        let topology = &self.structure.topology;
+        for a in 0..NODES {
+            to.structure.nodes[topology.mesh.shells[index][a]] += bar.geometry.points[a];
+            to.directors[topology.sheets.corners[index][a]] += bar.geometry.directors[a];
+        }
+        to.structure.thickness[index] += bar.thickness;
+        to.structure.surface_mass[index] += bar.surface_mass;
+        let material = &mut to.structure.materials[topology.material[index]];
+        material.young += bar.material.young;
+        material.poisson += bar.material.poisson;
+        material.density += bar.material.density;
+        material.yield_stress += bar.material.yield_stress;
+    }
+
+    /// The director of a node that has one.
+    fn director(&self, node: usize) -> Option<&Vec3<S>> {
+        let range = self.structure.topology.sheets.of_node[node].clone();
+        (range.len() == 1).then(|| &self.directors[range.start])
+    }
+
+    /// The axes of the unknown rotations of a node.
+    pub fn axes(&self, node: usize) -> ([Vec3<S>; 3], usize) {
+        self.unknowns.nodes[node]
+            .rotations
+            .axes(self.director(node))
+    }
+
+    pub fn element_axes(&self, index: usize) -> RotationAxes<S> {
+        let mut all = RotationAxes::global();
+        for (a, &node) in self.structure.topology.mesh.shells[index]
+            .iter()
+            .enumerate()
+        {
+            (all.axes[a], all.count[a]) = self.axes(node);
+        }
+        all
+    }
+
+    /// The motion of the nodes that values of the unknowns make.
+    pub fn spread(&self, x: &[S]) -> NodalMotion<S> {
+        let mut motion = NodalMotion::zeros(self.structure.nodes.len());
+        for (node, at) in self.unknowns.nodes.iter().enumerate() {
+            for k in 0..3 {
+                if let Some(unknown) = at.displacements[k] {
+                    motion.displacement[node][k] = x[unknown];
+                }
+            }
+            let (axes, count) = self.axes(node);
+            for k in 0..count {
+                motion.rotation[node] += axes[k] * x[at.first_rotation + k];
+            }
+        }
+        motion
+    }
+
+    /// Transpose of the derivative of [`Configuration::spread`].
+    pub fn add_spread_transpose(
+        &self,
+        x: &[S],
+        bar: &NodalMotion<S>,
+        to: &mut [S],
+        directors: &mut [Vec3<S>],
+    ) {
+        for (node, at) in self.unknowns.nodes.iter().enumerate() {
+            for k in 0..3 {
+                if let Some(unknown) = at.displacements[k] {
+                    to[unknown] += bar.displacement[node][k];
+                }
+            }
+            let moment = &bar.rotation[node];
+            let (axes, count) = self.axes(node);
+            for k in 0..count {
+                to[at.first_rotation + k] += axes[k].dot(moment);
+            }
+            if let (Some(d), true) = (self.director(node), count > 0) {
+                let phi = &x[at.first_rotation..at.first_rotation + count];
+                let at_director =
+                    &mut directors[self.structure.topology.sheets.of_node[node].start];
+                *at_director += at.rotations.director_transpose(d, phi, moment);
+            }
+        }
+    }
+}

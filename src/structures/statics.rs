@@ -1,0 +1,218 @@
+//! Static equilibrium of a structure under its load cases: linear, and with von Karman's strains.
+//!
+//! F(x) = f, F the derivative of the strain energy, f that of the work of the loads. The iteration is
+//! Newton's, x ← x + K⁻¹ (f − F(x)), with K in real numbers and x in any scalar: one step after the
+//! real part has converged the derivative that a complex or dual number carries has too.
+
+use super::assembly::{Assembly, add_energy_transpose};
+use super::loads::{Load, add_work_transpose};
+use super::mesh::UnknownSet;
+use super::shell::Terms;
+use super::state::NodalMotion;
+use super::structure::Structure;
+use super::supports::{NodeUnknowns, Support};
+use crate::linalg::cholesky::{NotPositiveDefinite, SparseCholesky};
+use crate::math::Scalar;
+
+/// Why there is no static solution.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StaticFailure {
+    /// A name that is no set of the mesh.
+    #[error(transparent)]
+    UnknownSet(#[from] UnknownSet),
+    /// Part of the structure can move without strain.
+    #[error(
+        "the structure is a mechanism: {freedom} of node {node} at ({:.4}, {:.4}, {:.4}) m moves \
+         without resistance; support it, or join it to what is supported",
+        place[0], place[1], place[2]
+    )]
+    Mechanism {
+        /// The node that moves most.
+        node: usize,
+        /// Where it stands [m].
+        place: [f64; 3],
+        /// Which of its unknowns moves most.
+        freedom: &'static str,
+    },
+}
+
+/// A structure with supports, ready to be loaded: the analysis of its matrix is done.
+pub struct StaticProblem {
+    pub(crate) assembly: Assembly,
+    solver: SparseCholesky,
+    values: Vec<f64>,
+}
+
+impl StaticProblem {
+    /// Analyses a structure with supports.
+    ///
+    /// # Errors
+    /// [`UnknownSet`] if a support names no set of the mesh.
+    pub fn new(
+        structure: &Structure<f64>,
+        supports: &[Support],
+        node_unknowns: NodeUnknowns,
+    ) -> Result<Self, UnknownSet> {
+        let assembly = Assembly::new(structure, supports, node_unknowns)?;
+        Ok(Self {
+            solver: SparseCholesky::new(&assembly.pattern),
+            values: vec![0.0; assembly.pattern.entries()],
+            assembly,
+        })
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.assembly.unknowns.count
+    }
+
+    /// Entries of the factor of the stiffness.
+    pub fn factor_entries(&self) -> usize {
+        self.solver.entries()
+    }
+
+    /// The motion of the nodes that a solution stands for.
+    pub fn motion<S: Scalar>(&self, structure: &Structure<S>, x: &[S]) -> NodalMotion<S> {
+        self.assembly.configuration(structure).spread(x)
+    }
+
+    /// Assembles and factorises the linear stiffness.
+    ///
+    /// # Errors
+    /// [`StaticFailure::Mechanism`] if it is singular.
+    pub fn factorise(&mut self, structure: &Structure<f64>) -> Result<(), StaticFailure> {
+        let configuration = self.assembly.configuration(structure);
+        let rest = NodalMotion::zeros(structure.nodes.len());
+        self.assembly
+            .tangent(&configuration, &rest, Terms::LINEAR, &mut self.values);
+        self.solver
+            .factorise(&self.assembly.pattern, &self.values)
+            .map_err(|failure| self.mechanism(structure, &failure))
+    }
+
+    /// The part of the structure that moves without resistance.
+    fn mechanism(
+        &self,
+        structure: &Structure<f64>,
+        failure: &NotPositiveDefinite,
+    ) -> StaticFailure {
+        const DISPLACEMENTS: [&str; 3] = ["displacement x", "displacement y", "displacement z"];
+        let x = &failure.direction;
+        let largest = (0..x.len())
+            .max_by(|&a, &b| x[a].abs().total_cmp(&x[b].abs()))
+            .unwrap_or(0);
+        for (node, at) in self.assembly.unknowns.nodes.iter().enumerate() {
+            let displacement = (0..3).find(|&k| at.displacements[k] == Some(largest));
+            let rotates = self.assembly.unknowns.rotations_of(node).contains(&largest);
+            if displacement.is_some() || rotates {
+                return StaticFailure::Mechanism {
+                    node,
+                    place: structure.nodes[node].into(),
+                    freedom: displacement.map_or("rotation", |k| DISPLACEMENTS[k]),
+                };
+            }
+        }
+        unreachable!("every unknown belongs to a node")
+    }
+
+    /// Solves K x = b with the factors, the infinitesimal part too.
+    pub(crate) fn solve_factorised<S: Scalar>(&mut self, b: &[S]) -> Vec<S> {
+        let real: Vec<f64> = b.iter().map(|b| b.re()).collect();
+        let real = self.solve_refined(&real);
+        if !S::INFINITESIMAL {
+            return real.into_iter().map(S::from).collect();
+        }
+        let small: Vec<f64> = b.iter().map(|b| b.infinitesimal()).collect();
+        let small = self.solve_refined(&small);
+        real.into_iter()
+            .zip(small)
+            .map(|(x, dx)| S::from(x) + S::of_infinitesimal(dx))
+            .collect()
+    }
+
+    /// Solves with two steps of iterative refinement: stiffnesses of thin shells are ill-conditioned.
+    fn solve_refined(&mut self, b: &[f64]) -> Vec<f64> {
+        let mut x = b.to_vec();
+        self.solver.solve(&mut x);
+        let mut rest = vec![0.0; b.len()];
+        for _ in 0..2 {
+            self.assembly.pattern.multiply(&self.values, &x, &mut rest);
+            for (r, &b) in rest.iter_mut().zip(b) {
+                *r = b - *r;
+            }
+            self.solver.solve(&mut rest);
+            for (x, d) in x.iter_mut().zip(&rest) {
+                *x += d;
+            }
+        }
+        x
+    }
+
+    /// The load vector of a case.
+    pub(crate) fn load_vector<S: Scalar>(
+        &self,
+        structure: &Structure<S>,
+        case: &[Load<S>],
+    ) -> Result<Vec<S>, UnknownSet> {
+        let configuration = self.assembly.configuration(structure);
+        let mut force = NodalMotion::zeros(structure.nodes.len());
+        let mut to = configuration.cotangent();
+        let rest = force.clone();
+        for load in case {
+            let mut load_to = load.clone();
+            add_work_transpose(
+                &configuration,
+                load,
+                &rest,
+                &mut force,
+                &mut to,
+                &mut load_to,
+            )?;
+        }
+        let mut vector = vec![S::zero(); self.unknowns()];
+        let rest = vec![S::zero(); self.unknowns()];
+        configuration.add_spread_transpose(&rest, &force, &mut vector, &mut to.directors);
+        Ok(vector)
+    }
+
+    /// The internal forces of a state.
+    pub(crate) fn internal_force<S: Scalar>(
+        &self,
+        structure: &Structure<S>,
+        x: &[S],
+        terms: Terms,
+    ) -> Vec<S> {
+        let configuration = self.assembly.configuration(structure);
+        let motion = configuration.spread(x);
+        let mut force = NodalMotion::zeros(structure.nodes.len());
+        let mut to = configuration.cotangent();
+        add_energy_transpose(&configuration, &motion, terms, &mut force, &mut to);
+        let mut vector = vec![S::zero(); x.len()];
+        configuration.add_spread_transpose(x, &force, &mut vector, &mut to.directors);
+        vector
+    }
+
+    /// Solves a load case of the structure that was factorised last, linearly. `structure` has the same
+    /// real parts.
+    ///
+    /// # Errors
+    /// [`UnknownSet`] if a load names no set of the mesh.
+    pub fn solve_linear<S: Scalar>(
+        &mut self,
+        structure: &Structure<S>,
+        case: &[Load<S>],
+    ) -> Result<Vec<S>, UnknownSet> {
+        let load = self.load_vector(structure, case)?;
+        let mut x = self.solve_factorised(&load);
+        // The first step gives the infinitesimal part what it takes from the stiffness, the second
+        // refines that.
+        for _ in 0..2 {
+            let force = self.internal_force(structure, &x, Terms::LINEAR);
+            let rest: Vec<S> = load.iter().zip(&force).map(|(&f, &g)| f - g).collect();
+            for (x, d) in x.iter_mut().zip(self.solve_factorised(&rest)) {
+                *x += d;
+            }
+        }
+        Ok(x)
+    }
+}

@@ -1,0 +1,212 @@
+//! Functions of static solutions: every derivative against the complex step through the whole solution,
+//! on a curved and distorted mesh with a fold, for both kinds of unknowns.
+
+use crate::sample::{ALUMINIUM, Compared, Numbers, complex_step};
+use flexbody::math::{Complex64, Scalar, Vec3};
+use flexbody::structures::functions::{Aggregate, Function, Solved};
+use flexbody::structures::generate::panel;
+use flexbody::structures::gradient::gradient;
+use flexbody::structures::loads::Load;
+use flexbody::structures::shell::Terms;
+use flexbody::structures::statics::StaticProblem;
+use flexbody::structures::structure::Structure;
+use flexbody::structures::supports::{NodeUnknowns, Support};
+
+/// All numbers of a structure, and the stretches of equal units.
+fn numbers<S: Scalar>(structure: &Structure<S>) -> (Vec<S>, Vec<usize>) {
+    let mut all: Vec<S> = structure
+        .nodes
+        .iter()
+        .flat_map(|x| [x.x, x.y, x.z])
+        .collect();
+    all.extend(&structure.thickness);
+    all.extend(&structure.surface_mass);
+    let shells = structure.thickness.len();
+    let mut kinds = vec![3 * structure.nodes.len(), shells, shells];
+    for m in &structure.materials {
+        all.extend([m.young, m.poisson, m.density, m.yield_stress]);
+        kinds.extend([1; 4]);
+    }
+    (all, kinds)
+}
+
+fn with_numbers(structure: &Structure<f64>, values: &[Complex64]) -> Structure<Complex64> {
+    let mut next = values.iter().copied();
+    // The order of `map` is that of `numbers`.
+    structure.map(|_| next.next().expect("as many numbers"))
+}
+
+fn load_numbers<S: Scalar>(cases: &[Vec<Load<S>>]) -> Vec<S> {
+    let mut all = Vec::new();
+    for load in cases.iter().flatten() {
+        all.extend(load.values());
+    }
+    all
+}
+
+/// A curved panel with a fold at x = 1/2 and disturbed nodes.
+fn structure(numbers: &mut Numbers, fold: bool) -> Structure<f64> {
+    let mut generated = panel([3, 2], false, |x, y| {
+        let kink = if fold && x > 0.3 {
+            (x - 1.0 / 3.0) * 1.5
+        } else {
+            0.0
+        };
+        Vec3::new(1.5 * x, 0.8 * y, 0.2 * x * (1.0 - x) + 0.1 * y * y + kink)
+    });
+    for node in &mut generated.nodes {
+        *node += numbers.vector(0.01);
+    }
+    let mut structure =
+        Structure::uniform(generated.mesh, generated.nodes, 0.15, ALUMINIUM).expect("sound");
+    for h in &mut structure.thickness {
+        *h += 0.02 * numbers.next();
+    }
+    for m in &mut structure.surface_mass {
+        *m = 5.0 + numbers.next();
+    }
+    structure
+}
+
+fn cases() -> Vec<Vec<Load<f64>>> {
+    let all = || "all".to_owned();
+    vec![
+        vec![
+            Load::Pressure {
+                faces: all(),
+                pressure: 2e4,
+            },
+            Load::Gravity {
+                acceleration: Vec3::new(1.0, -3.0, -9.81),
+            },
+            Load::Point {
+                nodes: "x1y1".into(),
+                force: Vec3::new(100.0, 50.0, -200.0),
+                moment: Vec3::new(5.0, -3.0, 2.0),
+            },
+        ],
+        vec![
+            Load::Edge {
+                edges: "x1".into(),
+                force: Vec3::new(1e3, -2e3, 500.0),
+            },
+            Load::Area {
+                faces: all(),
+                force: Vec3::new(-3e2, 2e2, 1e3),
+            },
+        ],
+    ]
+}
+
+#[test]
+fn every_function_has_exact_derivatives_by_everything() {
+    let (a, b) = (Vec3::new(0.3, -0.5, 0.8), Vec3::new(1.0, 0.2, -0.4));
+    let stress = |aggregate| Function::Stress {
+        cases: vec![0, 1],
+        faces: "all".into(),
+        rho: 30.0,
+        aggregate,
+    };
+    let functions = [
+        Function::Mass,
+        Function::Centre(a),
+        Function::SecondMoment(a, b),
+        Function::StrainEnergy { case: 0 },
+        Function::Compliance { case: 1 },
+        Function::Displacement {
+            case: 0,
+            nodes: "x1".into(),
+            direction: a,
+        },
+        stress(Aggregate::Ks),
+        stress(Aggregate::InducedExponential),
+    ];
+    let supports = [
+        Support::of("x0", [true; 3], [true, false, false]),
+        Support::of("x1y0", [false, false, true], [false, true, true]),
+    ];
+    for (seed, fold, unknowns) in [
+        (31, false, NodeUnknowns::Natural),
+        (32, true, NodeUnknowns::Natural),
+        (33, true, NodeUnknowns::Six),
+    ] {
+        let structure = structure(&mut Numbers::new(seed), fold);
+        let cases = cases();
+        let mut problem = StaticProblem::new(&structure, &supports, unknowns).expect("sets");
+        problem.factorise(&structure).expect("supported");
+        let solutions: Vec<Vec<f64>> = cases
+            .iter()
+            .map(|case| problem.solve_linear(&structure, case).expect("sets"))
+            .collect();
+        let (at, kinds) = numbers(&structure);
+        // The values of all functions for each disturbed number, in one pass.
+        let found: Vec<_> = functions
+            .iter()
+            .map(|f| gradient(&mut problem, &structure, &cases, &solutions, f).expect("sets"))
+            .collect();
+        let shared = std::cell::RefCell::new(problem);
+        let values =
+            |structure: &Structure<Complex64>, cases: &[Vec<Load<Complex64>>], f: &Function| {
+                let solutions: Vec<Vec<Complex64>> = cases
+                    .iter()
+                    .map(|case| {
+                        shared
+                            .borrow_mut()
+                            .solve_linear(structure, case)
+                            .expect("sets")
+                    })
+                    .collect();
+                let solved = Solved {
+                    problem: &shared.borrow(),
+                    structure,
+                    cases,
+                    solutions: &solutions,
+                    terms: Terms::LINEAR,
+                };
+                solved.value(f).expect("sets")
+            };
+        let lifted_cases: Vec<Vec<Load<Complex64>>> = cases
+            .iter()
+            .map(|case| case.iter().map(|load| load.map(Complex64::from)).collect())
+            .collect();
+        for (function, found) in functions.iter().zip(&found) {
+            let name = format!("{function:?}");
+            let exact = complex_step(&at, |x| {
+                values(&with_numbers(&structure, x), &lifted_cases, function)
+            });
+            let lifted = structure.map(Complex64::from);
+            let value = values(&lifted, &lifted_cases, function).re;
+            Compared {
+                name: &name,
+                value,
+                at: &at,
+                exact: &exact,
+                found: &numbers(&found.structure).0,
+                kinds: &kinds,
+            }
+            .assert(1e-12);
+            let loads = load_numbers(&cases);
+            let exact = complex_step(&loads, |x| {
+                let mut next = x.iter().copied();
+                let moved: Vec<Vec<Load<Complex64>>> = cases
+                    .iter()
+                    .map(|case| {
+                        case.iter()
+                            .map(|load| load.map(|_| next.next().expect("as many")))
+                            .collect()
+                    })
+                    .collect();
+                values(&lifted, &moved, function)
+            });
+            Compared {
+                name: &name,
+                value,
+                at: &loads,
+                exact: &exact,
+                found: &load_numbers(&found.cases),
+                kinds: &[1, 3, 3, 3, 3, 3],
+            }
+            .assert(1e-12);
+        }
+    }
+}

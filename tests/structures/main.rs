@@ -1,0 +1,10 @@
+//! Structures of shells and beams: elements, statics, modes, functions and their derivatives.
+
+mod function_gradients;
+mod mesh_faults;
+mod obstacle_course;
+mod patch_tests;
+mod sample;
+mod shell_derivatives;
+mod shell_element;
+mod shell_plate;
