@@ -36,7 +36,7 @@ impl Halted {
             unreachable!("BDF is an implicit method");
         };
         let mut stage = Stage::zero(&run.numbering);
-        tape.read_end(tape.steps() / 2, &mut stage);
+        tape.block.read_end(run.grid.steps() / 2, &mut stage);
         Self {
             model: case.scene.model,
             run,

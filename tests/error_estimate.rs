@@ -6,7 +6,7 @@
 
 use flexbody::driver::Evaluated;
 use flexbody::driver::error::{estimate, reach};
-use flexbody::integrate::{Method, Samples, Settings, Spacing, Start, simulate};
+use flexbody::integrate::{MEMORY, Method, Samples, Settings, Spacing, Start, simulate};
 use flexbody::problem::Problem;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -64,8 +64,8 @@ fn exact(problem: &Problem) -> Vec<Vec<Exact>> {
         method: Method::Dop853,
         spacing,
         samples: Samples::Uniform(samples),
-        keep_stages: true,
         limits: Default::default(),
+        memory: MEMORY,
     };
     let chosen = simulate(model, duration, &settings(Spacing::Tolerance(1e-13), 1)).expect("runs");
     let once = chosen.grid.halved();

@@ -220,7 +220,7 @@ fn complex_steps(
 }
 
 /// The settings that are tried with each scene: fixed and frozen adaptive grids, samples at the ends
-/// of steps and between them, stages kept and made again.
+/// of steps and between them.
 fn explicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
     let mut chosen = Settings::steps(Method::Dop853, steps);
     let fixed = chosen.clone();
@@ -229,7 +229,7 @@ fn explicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
     chosen.spacing = Spacing::Frozen(run.grid);
     chosen.samples = Samples::Uniform(37);
     let mut kept = chosen.clone();
-    kept.keep_stages = true;
+    kept.memory = 1 << 28;
     // Nodes of cells, of which some steps have none and others several.
     if let Spacing::Frozen(grid) = &chosen.spacing {
         let cells = (0..grid.steps()).map(|k| [1, 0, 3][k % 3]).collect();

@@ -231,8 +231,8 @@ fn steps_follow_the_tolerance_at_the_work_that_was_counted() {
             method,
             spacing: Spacing::Tolerance(tolerance),
             samples: Samples::Uniform(1),
-            keep_stages: false,
             limits: Default::default(),
+            memory: 0,
         };
         let run = simulate(&model, duration, &settings).expect("runs");
         let found = motion_error(&run, &instants).0;
@@ -262,8 +262,8 @@ fn energy_of_a_chaotic_motion() {
         method: Method::Dop853,
         spacing: Spacing::Tolerance(1e-9),
         samples: Samples::StepEnds,
-        keep_stages: false,
         limits: Default::default(),
+        memory: 0,
     };
     let run = simulate(&model, 10.0, &settings).expect("runs");
     let drift = energy_drift(&model, &run);

@@ -111,6 +111,7 @@ fn optimum() -> Optimum {
             gradient_evaluations: 22,
             failed_evaluations: 1,
             steps: 50_000,
+            recomputed_steps: 0,
             newton_iterations: 140_000,
             factorisations: 180_000,
             quadratic_programs: 0,

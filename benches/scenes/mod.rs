@@ -5,7 +5,7 @@
 pub mod reference;
 
 use flexbody::functions::{Bound, EnergyPart, Function, Instant, Reduction, Scene};
-use flexbody::integrate::{Method, Samples, Settings, Spacing, Trajectory, simulate};
+use flexbody::integrate::{MEMORY, Method, Samples, Settings, Spacing, Trajectory, simulate};
 use flexbody::math::Vec3;
 use flexbody::problem::Problem;
 use serde_json::json;
@@ -41,8 +41,8 @@ impl Case {
             method: Method::Dop853,
             spacing: Spacing::Tolerance(tolerance),
             samples: Samples::Uniform(1),
-            keep_stages: true,
             limits: Default::default(),
+            memory: MEMORY,
         };
         let run = simulate(&model, duration, &settings).expect("the scene runs");
         settings.spacing = Spacing::Frozen(run.grid);
@@ -117,8 +117,8 @@ pub fn trebuchet_problem() -> (Problem, f64) {
         method: simulation.method.unwrap_or(Method::Dop853),
         spacing: simulation.spacing.clone(),
         samples: Samples::Uniform(200),
-        keep_stages: false,
         limits: Default::default(),
+        memory: 0,
     };
     let run = simulate(&scene.model, scene.duration, &settings).expect("the scene runs");
     let (_, instants) = reference::load("trebuchet");

@@ -71,6 +71,10 @@ pub struct Job {
     /// /bodies/arm/mass=42. May be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
+    /// Memory that what is kept for gradients may take: 500MB, 2GiB. A gradient makes the steps that are
+    /// not kept again; see `optimize explain` [default: half of what is available].
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    pub memory: Option<usize>,
     /// Integrates the scene as it is written: leaves out nothing that its motion does not need.
     #[arg(long)]
     pub no_lowering: bool,
@@ -185,9 +189,54 @@ pub struct Comparison {
     pub baseline: PathBuf,
 }
 
+/// A size of memory in bytes, with a unit of 1000 or 1024.
+fn bytes(text: &str) -> Result<usize, String> {
+    let expected = || "expected a size such as 500MB or 2GiB".to_owned();
+    let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.');
+    let (number, unit) = text.split_at(digits.unwrap_or(text.len()));
+    let number: f64 = number.parse().map_err(|_| expected())?;
+    let unit = match unit.trim().to_ascii_lowercase().as_str() {
+        "" | "b" => 1.0,
+        "kb" | "k" => 1e3,
+        "mb" | "m" => 1e6,
+        "gb" | "g" => 1e9,
+        "tb" | "t" => 1e12,
+        "kib" => 1024.0,
+        "mib" => 1024.0 * 1024.0,
+        "gib" => 1024.0 * 1024.0 * 1024.0,
+        "tib" => 1024.0 * 1024.0 * 1024.0 * 1024.0,
+        _ => return Err(expected()),
+    };
+    let size = number * unit;
+    match (1.0..1e18).contains(&size) {
+        true => Ok(size as usize),
+        false => Err(expected()),
+    }
+}
+
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
         _ => Err("expected a positive number".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_of_memory_are_read() {
+        for (text, size) in [
+            ("500MB", 500_000_000),
+            ("1.5 kb", 1500),
+            ("2GiB", 2 << 30),
+            ("7", 7),
+        ] {
+            assert_eq!(bytes(text), Ok(size));
+        }
+        for text in ["", "MB", "-1MB", "1XB", "0", "1e9", "nan", "9999999999TB"] {
+            assert!(bytes(text).is_err(), "{text}");
+        }
     }
 }

@@ -19,7 +19,9 @@ use arguments::{Arguments, Command, Job};
 use clap::Parser;
 use clap::error::ErrorKind;
 use std::ffi::OsString;
+use std::fs::File;
 use std::io;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -203,13 +205,16 @@ fn overrides(job: &Job) -> Result<Vec<Override>, Failure> {
 fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
     let mut problem = Problem::load(&job.problem, overrides).map_err(|faults| {
         // The faults of a file that cannot be read are not those of its text.
-        let unread = std::fs::read(&job.problem).err();
+        let mut byte = [0];
+        let unread = File::open(&job.problem).and_then(|mut file| file.read(&mut byte));
+        let unread = unread.err();
         let code = unread.map_or(BAD_INPUT, |error| code_of_reading(&error));
         Failure::new(code, faults)
     })?;
     if job.no_lowering {
         problem.lowering = None;
     }
+    problem.simulation.memory = job.memory;
     if !job.quiet {
         problem.simulation.limits.progress = Some(progress::watched());
     }

@@ -175,8 +175,8 @@ fn halved(run: &Trajectory<f64>, (cells, summed): (bool, bool), limits: Limits) 
         method: run.method,
         spacing: Spacing::Frozen(run.grid.halved()),
         samples,
-        keep_stages: false,
         limits,
+        memory: 0,
     }
 }
 

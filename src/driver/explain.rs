@@ -2,16 +2,91 @@
 
 use super::evaluate::{Derivative, Evaluated};
 use super::integration::{Integration, looks_at_the_whole};
-use crate::integrate::{Method, Trajectory};
+use super::{memory, stretch};
+use crate::integrate::{IntegrationFailure, Method, Trajectory};
 use crate::model::{Mobility, Model};
 use crate::problem::Problem;
 use crate::report::{Explanation, FunctionUse, IntegrationUse, SystemSize};
 use crate::system::accelerations::{Accelerations, Untreelike};
 use crate::system::{Numbering, initial};
 
+/// The motion of a problem's start, or a stretch of it.
+struct Motion {
+    at: Evaluated,
+    reason: String,
+    /// Its part of the whole, if it is a stretch; steps and samples of the whole.
+    part: Option<f64>,
+    steps: usize,
+    samples: usize,
+}
+
+impl Motion {
+    /// Simulates the start as far as that takes no time to speak of.
+    fn of(problem: &Problem, which: &[usize]) -> Result<Self, IntegrationFailure> {
+        let x = problem.start();
+        let mut scene = problem.scene(&x);
+        let mut integration = Integration::new(problem, &scene, Some(which), true);
+        memory::admit(&scene.model, &integration.wanted())?;
+        if let Some(stretch) = stretch::of_long(&scene, &integration)? {
+            scene.duration *= stretch.part;
+            let run = stretch.run;
+            return Ok(Self {
+                at: Evaluated { x, scene, run },
+                reason: stretch.reason,
+                part: Some(stretch.part),
+                steps: stretch.steps,
+                samples: stretch.samples,
+            });
+        }
+        let (at, _) = Evaluated::with(&mut integration, problem, &x)?;
+        let reason = integration.chosen().map_or("", |(_, reason)| reason);
+        Ok(Self {
+            reason: reason.into(),
+            part: None,
+            steps: at.run.grid.steps(),
+            samples: at.run.last(),
+            at,
+        })
+    }
+
+    /// Derivatives of all functions; none of a stretch that ends before the event does.
+    fn derivatives(
+        &self,
+        problem: &Problem,
+        which: &[usize],
+    ) -> Option<Result<Vec<Vec<Derivative>>, IntegrationFailure>> {
+        if self.part.is_some() && self.at.scene.until.is_some() {
+            return None;
+        }
+        let found = self.at.derivatives(problem, which);
+        Some(found.map(|(found, _)| found))
+    }
+
+    fn used(&self, problem: &Problem) -> IntegrationUse {
+        let run = &self.at.run;
+        let [samples_bytes, tape_bytes] = run.bytes();
+        let (schedule, foreseen) = run.foreseen(self.steps);
+        let each = samples_bytes as f64 / (run.last() + 1) as f64;
+        IntegrationUse {
+            method: run.method.name(),
+            reason: self.reason.clone(),
+            merged: merged_errs(problem, &self.at).map(Into::into),
+            steps: self.steps,
+            samples_bytes: (each * (self.samples + 1) as f64) as usize,
+            tape_bytes: match self.part {
+                None => tape_bytes,
+                Some(_) => foreseen,
+            },
+            recomputed: schedule.recomputed(),
+            stretch: self.part,
+        }
+    }
+}
+
 /// Explains the start of `problem`, which is simulated with its gradients if that can be done. What an
 /// optimisation leaves out as neither objective nor constraint sees it (no function, if there is no
-/// objective) is left out here too.
+/// objective) is left out here too. Of a long motion only the first
+/// stretch is simulated.
 pub fn explain(problem: &Problem) -> Explanation {
     let all: Vec<usize> = (0..problem.function_names.len()).collect();
     let focused = match problem.objective {
@@ -72,40 +147,39 @@ fn explain_seen(problem: &Problem) -> Explanation {
     let scene = problem.scene(&x);
     let (left_out, kept) = lowering(problem, &written, &scene.model);
     let which: Vec<usize> = (0..scene.functions.len()).collect();
-    let mut integration = Integration::new(problem, &scene, Some(&which), true);
-    let at = Evaluated::with(&mut integration, problem, &x).map(|(at, _)| at);
-    let derived = match &at {
-        Ok(at) => at.derivatives(problem, &which).map(|(found, _)| found),
-        Err(failure) => Err(failure.clone()),
+    let motion = Motion::of(problem, &which);
+    let found = match &motion {
+        Ok(motion) => motion.derivatives(problem, &which),
+        Err(failure) => Some(Err(failure.clone())),
     };
+    let derived = found.as_ref().and_then(|found| found.as_ref().ok());
+    let failure = found.as_ref().and_then(|found| found.as_ref().err());
     let functions: Vec<FunctionUse> = which
         .iter()
         .map(|&f| FunctionUse {
             name: problem.function_names[f].clone(),
             used: used(problem, f).join(", "),
             whole_motion: looks_at_the_whole(&scene.functions[f]),
-            variables: (derived.as_ref().ok())
-                .map(|gradients| names(problem, |i| depends(&gradients[f][i]))),
+            variables: derived.map(|gradients| names(problem, |i| depends(&gradients[f][i]))),
         })
         .collect();
     let needed = |f: &usize| !functions[*f].used.is_empty();
     let asked = which.iter().any(&needed);
     let idle = |i: usize| {
-        let Ok(gradients) = &derived else {
+        let Some(gradients) = derived else {
             return false;
         };
         let mut needed = which.iter().filter(|f| needed(f));
         asked && !needed.any(|&f| depends(&gradients[f][i]))
     };
     let idle_variables = names(problem, idle);
-    let start = at.as_ref().ok().map(|at| {
-        let (_, motion) = at.written(problem);
+    let start = motion.as_ref().ok().map(|motion| {
+        let (_, whole) = motion.at.written(problem);
         let of = |run: &Trajectory<f64>| (run.q(0).to_vec(), run.v(0).to_vec());
-        [of(&motion), of(&at.run)]
+        [of(&whole), of(&motion.at.run)]
     });
     let [of_written, of_lowered] =
         start.unwrap_or_else(|| [initial::guess(&written), initial::guess(&scene.model)]);
-    let reason = integration.chosen().map_or("", |(_, reason)| reason);
     Explanation {
         name: problem.name.clone(),
         bodies: written.bodies.len(),
@@ -115,18 +189,8 @@ fn explain_seen(problem: &Problem) -> Explanation {
         kept,
         written: size(&written, of_written),
         lowered: size(&scene.model, of_lowered),
-        integration: at.ok().map(|at| {
-            let [samples_bytes, tape_bytes] = at.run.bytes();
-            IntegrationUse {
-                method: at.run.method.name(),
-                reason: reason.into(),
-                merged: merged_errs(problem, &at).map(Into::into),
-                steps: at.run.grid.steps(),
-                samples_bytes,
-                tape_bytes,
-            }
-        }),
-        failure: derived.err().map(|failure| failure.to_string()),
+        failure: failure.map(ToString::to_string),
+        integration: motion.ok().map(|motion| motion.used(problem)),
         idle_variables,
         functions,
     }

@@ -3,6 +3,7 @@
 //! design.
 
 use super::event::{self, Admit};
+use super::memory;
 use crate::functions::resolution::{Resolution, resolution};
 use crate::functions::{Function, Reduction, Scene};
 use crate::integrate::{
@@ -45,7 +46,7 @@ pub struct Integration {
     pub refreshes: usize,
     /// How many designs did not admit what the lowering leaves out at the others.
     pub unlowered: usize,
-    keep_stages: bool,
+    memory: usize,
     /// When the event came in the last run, if the scene has one (s).
     pub event: Option<f64>,
     /// When it comes in the next run, if that is known to the last bit (s).
@@ -94,7 +95,8 @@ impl Integration {
         let seen = scene.until.is_some() || asked.is_none();
         let samples = match (simulation.samples, &simulation.spacing) {
             (Some(samples), Spacing::Steps(_)) => Samples::Uniform(samples),
-            (None, Spacing::Steps(_)) => Samples::StepEnds,
+            (None, Spacing::Steps(_)) if seen || !summed.is_empty() => Samples::StepEnds,
+            (None, Spacing::Steps(_)) => Samples::Uniform(1),
             _ if !summed.is_empty() => Samples::Quadrature(if seen { shown } else { 0 }),
             _ if seen => Samples::Uniform(shown),
             _ => Samples::Uniform(1),
@@ -109,10 +111,18 @@ impl Integration {
             chosen: None,
             refreshes: 0,
             unlowered: 0,
-            keep_stages: gradients,
+            memory: match (gradients, simulation.memory) {
+                (true, given) => memory::for_gradients(given),
+                (false, _) => 0,
+            },
             event: None,
             settled: None,
         }
+    }
+
+    /// The method that the problem asks for, if it does.
+    pub(super) fn method(&self) -> Option<Method> {
+        self.method
     }
 
     /// The settings in use and why the method was chosen, once a design was simulated.
@@ -171,13 +181,14 @@ impl Integration {
         choice::warning(&scene.model, run.method, h)
     }
 
-    fn wanted(&self) -> Settings {
+    /// Settings of a run that is the first, or whose steps are chosen anew.
+    pub(super) fn wanted(&self) -> Settings {
         Settings {
             method: self.method.unwrap_or(Method::Dop853),
             spacing: self.spacing.clone(),
             samples: self.samples,
-            keep_stages: self.keep_stages,
             limits: self.limits.clone(),
+            memory: self.memory,
         }
     }
 
@@ -190,6 +201,7 @@ impl Integration {
         &mut self,
         scene: &mut Scene<f64>,
     ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {
+        memory::admit(&scene.model, &self.wanted())?;
         let settled = self.settled.take();
         let waited = scene.duration;
         let why = match (&self.chosen, &self.spacing) {

@@ -208,6 +208,7 @@ pub(super) fn record(
             failed_evaluations: outcome.counts.failures as u64,
             quadratic_programs: outcome.counts.quadratic_programs as u64,
             steps: work.steps as u64,
+            recomputed_steps: work.recomputed as u64,
             newton_iterations: work.newton_iterations as u64,
             factorisations: work.factorisations as u64,
             solves: work.solves as u64,

@@ -5,7 +5,7 @@ use super::settings::{Method, Settings, Spacing};
 use super::trajectory::Trajectory;
 use super::{IntegrationFailure, simulate_watching};
 use crate::linalg::SolveScalar;
-use crate::math::Vec3;
+use crate::math::{Scalar, Vec3};
 use crate::model::load::LoadKind;
 use crate::model::{Model, RigidBody};
 
@@ -24,7 +24,7 @@ const SLOW: f64 = 0.2;
 
 /// A run by the method that was asked for, or else by the one that suits the scene.
 #[derive(Clone, Debug)]
-pub struct Chosen<S> {
+pub struct Chosen<S: Scalar> {
     /// The motion.
     pub run: Trajectory<S>,
     /// Method and spacing that made it; chosen steps are frozen.

@@ -272,6 +272,22 @@ impl Controller {
         }
     }
 
+    /// The grid of the run, which grows from 0.
+    pub fn growing(&self) -> Grid {
+        match &self.plan {
+            Plan::Given { grid, .. } => grid.to_grow(),
+            Plan::Chosen { .. } => Grid::growing(),
+        }
+    }
+
+    /// Number of steps, where they are given.
+    pub fn steps(&self) -> Option<usize> {
+        match &self.plan {
+            Plan::Given { grid, .. } => Some(grid.steps()),
+            Plan::Chosen { .. } => None,
+        }
+    }
+
     /// Whether the error of steps is of interest: they follow it, or are kept as long as it is small.
     pub fn estimates(&self) -> bool {
         self.estimates

@@ -168,6 +168,26 @@ pub enum IntegrationFailure {
         /// How long it was waited for (s).
         waited: f64,
     },
+    /// The motion takes more memory than there is.
+    #[error(
+        "the motion takes {needed} of memory, and {available} are available: {samples} samples of \
+         {bodies} bodies take {of_samples}; ask for fewer in /simulation/samples, or give \
+         /simulation/tolerance instead of steps{hint}"
+    )]
+    Memory {
+        /// What it takes, as text.
+        needed: String,
+        /// What there is.
+        available: String,
+        /// Number of samples, of bodies, and what the samples take.
+        samples: usize,
+        /// See above.
+        bodies: usize,
+        /// See above.
+        of_samples: String,
+        /// What else helps.
+        hint: &'static str,
+    },
     /// The duration is zero, negative or not finite.
     #[error("the duration {duration} s is not positive")]
     Duration {

@@ -41,6 +41,15 @@ impl Grid {
         }
     }
 
+    /// A grid that grows from 0 to this one.
+    pub fn to_grow(&self) -> Self {
+        Self {
+            ends: vec![0.0],
+            equal: self.equal,
+            cells: self.cells.clone(),
+        }
+    }
+
     /// The grid with these ends, if they rise from 0 to 1.
     pub fn from_ends(ends: Vec<f64>) -> Option<Self> {
         let rises = ends.windows(2).all(|pair| pair[0] < pair[1]);

@@ -9,7 +9,9 @@ pub mod implicit;
 pub mod limits;
 pub mod multipliers;
 pub mod quadrature;
+pub mod replay;
 pub mod rows;
+pub mod schedule;
 pub mod settings;
 pub mod trajectory;
 
@@ -18,7 +20,7 @@ pub use failure::IntegrationFailure;
 pub use grid::Grid;
 pub use limits::{Limits, Progress};
 pub use multipliers::Multipliers;
-pub use settings::{Method, Samples, Settings, Spacing, Start};
+pub use settings::{MEMORY, Method, Samples, Settings, Spacing, Start};
 pub use trajectory::{Tape, Trajectory, WorkCounts};
 
 use crate::linalg::SolveScalar;

@@ -48,9 +48,9 @@ impl<S: Copy, const N: usize> Rows<S, N> {
         self.count += 1;
     }
 
-    /// Gives all records and their memory up.
-    pub fn clear(&mut self) {
-        self.data = Vec::new();
+    /// Gives all records up and keeps their memory for others.
+    pub fn restart(&mut self) {
+        self.data.clear();
         self.count = 0;
     }
 

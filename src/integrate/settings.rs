@@ -122,6 +122,9 @@ pub enum Samples {
     Quadrature(usize),
 }
 
+/// Memory for gradients where nothing else is said (bytes).
+pub const MEMORY: usize = 1 << 28;
+
 /// Method, steps and what is kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -131,10 +134,11 @@ pub struct Settings {
     pub spacing: Spacing,
     /// Where the motion is sampled.
     pub samples: Samples,
-    /// Whether the stages are kept for a gradient, which otherwise computes them again.
-    pub keep_stages: bool,
     /// What the simulation may take, and who is told how far it is.
     pub limits: Limits,
+    /// Memory that what is kept for a gradient may take (bytes); a gradient makes the other steps again.
+    /// Zero where none is asked for.
+    pub memory: usize,
 }
 
 impl Samples {
@@ -158,8 +162,8 @@ impl Settings {
             method,
             spacing: Spacing::Steps(steps),
             samples: Samples::StepEnds,
-            keep_stages: false,
             limits: Limits::default(),
+            memory: MEMORY,
         }
     }
 }

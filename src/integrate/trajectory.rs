@@ -2,6 +2,7 @@
 
 use super::grid::{Grid, Place};
 use super::quadrature::{Due, Step};
+use super::schedule::Schedule;
 use super::settings::{Method, Samples, Spacing};
 use super::{explicit, implicit};
 use crate::math::{Complex64, Scalar};
@@ -13,6 +14,8 @@ use crate::system::initial::InitialState;
 pub struct WorkCounts {
     /// Time steps.
     pub steps: usize,
+    /// Steps of the motion that a gradient made again, because memory did not suffice to keep them.
+    pub recomputed: usize,
     /// Steps that were tried and given up for smaller ones.
     pub rejected: usize,
     /// Evaluations of the accelerations by an explicit method.
@@ -37,6 +40,7 @@ impl WorkCounts {
 impl std::ops::AddAssign for WorkCounts {
     fn add_assign(&mut self, other: Self) {
         self.steps += other.steps;
+        self.recomputed += other.recomputed;
         self.rejected += other.rejected;
         self.evaluations += other.evaluations;
         self.newton_iterations += other.newton_iterations;
@@ -47,7 +51,7 @@ impl std::ops::AddAssign for WorkCounts {
 
 /// The motion at the sampled instants, and what the adjoint needs of the steps.
 #[derive(Clone, Debug)]
-pub struct Trajectory<S> {
+pub struct Trajectory<S: Scalar> {
     /// Numbering of the states.
     pub numbering: Numbering,
     /// The method that made it.
@@ -88,7 +92,7 @@ pub struct Trajectory<S> {
 
 /// What the adjoint of each family of methods needs.
 #[derive(Clone, Debug)]
-pub enum Tape<S> {
+pub enum Tape<S: Scalar> {
     /// Of the explicit method.
     Explicit(explicit::Tape<S>),
     /// Of an implicit method.
@@ -157,7 +161,7 @@ impl<S: Scalar> Trajectory<S> {
     pub(super) fn take_cells(&mut self, spacing: &Spacing, samples: Samples) {
         self.has_cells = matches!(samples, Samples::Quadrature(_));
         if let Spacing::Frozen(grid) = spacing {
-            self.grid = Grid::growing().with_cells(grid.all_cells().to_vec());
+            self.grid = grid.to_grow();
         }
     }
 
@@ -177,11 +181,21 @@ impl<S: Scalar> Trajectory<S> {
     pub fn bytes(&self) -> [usize; 2] {
         let samples = [&self.q, &self.v, &self.a, &self.lambda];
         let samples: usize = samples.iter().map(|all| all.len()).sum();
+        let number = size_of::<S>();
         let tape = match &self.tape {
-            Tape::Explicit(tape) => tape.numbers(),
-            Tape::Implicit(tape) => tape.numbers(),
+            Tape::Explicit(tape) => tape.bytes(number),
+            Tape::Implicit(tape) => tape.bytes(number),
         };
-        [samples, tape].map(|numbers| numbers * size_of::<S>())
+        [samples * number, tape]
+    }
+
+    /// How a run of so many steps would be kept for gradients in the same memory, and what that takes
+    /// (bytes).
+    pub fn foreseen(&self, steps: usize) -> (Schedule, usize) {
+        match &self.tape {
+            Tape::Explicit(tape) => tape.foreseen(steps),
+            Tape::Implicit(tape) => tape.foreseen(steps),
+        }
     }
 
     /// Time that the steps have reached [s].
@@ -248,8 +262,8 @@ impl Trajectory<Complex64> {
             },
             step_error: self.step_error,
             tape: match &self.tape {
-                Tape::Explicit(tape) => Tape::Explicit(tape.real()),
-                Tape::Implicit(tape) => Tape::Implicit(tape.real()),
+                Tape::Explicit(tape) => Tape::Explicit(tape.with(tape.block.real())),
+                Tape::Implicit(tape) => Tape::Implicit(tape.with(tape.block.real())),
             },
             counts: self.counts,
         }

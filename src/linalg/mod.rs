@@ -7,4 +7,4 @@ mod scaling;
 pub mod sparse_lu;
 
 pub use pattern::{Emit, Pattern, SparseMatrix};
-pub use sparse_lu::{REFINED_SOLVES, SingularMatrix, SolveScalar, SparseLu};
+pub use sparse_lu::{Pivots, REFINED_SOLVES, SingularMatrix, SolveScalar, SparseLu};

@@ -148,6 +148,11 @@ impl<S: Scalar> Replay<S> {
         }
     }
 
+    /// The rows of the pivots and the scaling in use.
+    pub fn planned(&self) -> (&[usize], &Scaling) {
+        (&self.pivot_rows, &self.scaling)
+    }
+
     /// Entries of both factors, and floating-point operations of a factorisation.
     pub fn cost(&self) -> (usize, usize) {
         let n = self.columns.len();

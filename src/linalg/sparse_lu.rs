@@ -8,6 +8,7 @@ use crate::math::Scalar;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::lu::{LuSymbolicParams, SymbolicLu, factorize_symbolic_lu, simplicial};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use std::sync::Arc;
 
 /// Steps of iterative refinement of a transposed solution.
 const REFINEMENTS: usize = 2;
@@ -35,8 +36,17 @@ pub struct SparseLu<S> {
     symbolic: SymbolicLu<usize>,
     pivoting: Pivoting<S>,
     replay: Option<Replay<S>>,
+    /// The pivots in use, once they were asked for.
+    pivots: Option<Arc<Pivots>>,
     /// Right-hand side and correction of a refined solution.
     refined: [Vec<S>; 2],
+}
+
+/// Which pivots a factorisation takes, and how it scales: what its factors depend on besides the matrix.
+#[derive(Clone, Debug)]
+pub struct Pivots {
+    rows: Vec<usize>,
+    scaling: Scaling,
 }
 
 /// The search for pivots, with what it needs again each time.
@@ -99,6 +109,7 @@ impl<S: SolveScalar> SparseLu<S> {
             symbolic,
             pivoting: Pivoting::new(pattern),
             replay: None,
+            pivots: None,
             refined: [vec![S::zero(); n], vec![S::zero(); n]],
         }
     }
@@ -116,6 +127,7 @@ impl<S: SolveScalar> SparseLu<S> {
             }
         }
         self.pivoting.search(matrix, &self.symbolic)?;
+        self.pivots = None;
         let columns = self.symbolic.col_perm().arrays().0;
         let replay = self
             .replay
@@ -124,6 +136,35 @@ impl<S: SolveScalar> SparseLu<S> {
         replay
             .factorise(matrix)
             .map_err(|bad| SingularMatrix { column: bad.column })
+    }
+
+    /// The pivots in use; none before the first factorisation.
+    pub fn pivots(&mut self) -> Option<Arc<Pivots>> {
+        let replay = self.replay.as_ref()?;
+        let found = self.pivots.get_or_insert_with(|| {
+            let (rows, scaling) = replay.planned();
+            Arc::new(Pivots {
+                rows: rows.to_vec(),
+                scaling: scaling.clone(),
+            })
+        });
+        Some(Arc::clone(found))
+    }
+
+    /// Goes on with pivots that were in use for matrices of the same pattern.
+    pub fn set_pivots(&mut self, pattern: &Pattern, pivots: Option<&Arc<Pivots>>) {
+        let Some(new) = pivots else {
+            (self.replay, self.pivots) = (None, None);
+            return;
+        };
+        if (self.pivots.as_ref()).is_some_and(|own| Arc::ptr_eq(own, new)) {
+            return;
+        }
+        let columns = self.symbolic.col_perm().arrays().0;
+        self.replay
+            .get_or_insert_with(|| Replay::new(pattern, columns))
+            .plan(pattern, &new.scaling, &new.rows);
+        self.pivots = Some(Arc::clone(new));
     }
 
     /// Entries of both factors, and floating-point operations of a factorisation.

@@ -14,7 +14,7 @@
 
 use crate::functions::Scene;
 use crate::integrate::explicit;
-use crate::integrate::{Samples, Tape, Trajectory};
+use crate::integrate::{Tape, Trajectory};
 use crate::math::rotation::{self, Quat};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::{Axes, Joint, JointFrame, LoadKind, Mobility, Model};
@@ -275,7 +275,7 @@ pub(super) fn expand(
         lambda: Vec::new(),
         initial: run.initial.clone(),
         step_error: run.step_error,
-        tape: Tape::Explicit(explicit::Tape::new(&numbering, false, Samples::StepEnds)),
+        tape: Tape::Explicit(explicit::Tape::none(&numbering)),
         counts: run.counts,
         numbering,
     }

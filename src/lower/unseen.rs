@@ -8,7 +8,7 @@
 use super::welded::Groups;
 use crate::functions::{Function, Instant, Scene};
 use crate::integrate::explicit;
-use crate::integrate::{Samples, Tape, Trajectory};
+use crate::integrate::{Tape, Trajectory};
 use crate::math::Scalar;
 use crate::model::{Load, LoadKind, Model};
 use crate::system::{Numbering, initial};
@@ -143,7 +143,7 @@ impl Seen {
             lambda: Vec::new(),
             initial: run.initial.clone(),
             step_error: run.step_error,
-            tape: Tape::Explicit(explicit::Tape::new(&numbering, false, Samples::StepEnds)),
+            tape: Tape::Explicit(explicit::Tape::none(&numbering)),
             counts: run.counts,
             numbering,
         }

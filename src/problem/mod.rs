@@ -4,6 +4,7 @@
 //! document against its schema; what names, numbers and design variables mean together. Only a
 //! document without a fault becomes a [`Problem`].
 
+mod bounds;
 mod check;
 mod drawing;
 mod fault;
@@ -11,6 +12,7 @@ mod focus;
 mod joints;
 mod loads;
 mod mass;
+mod memory;
 mod overrides;
 mod placement;
 mod pointer;
@@ -31,6 +33,7 @@ mod variables;
 pub use drawing::{BarrierLine, Drawing, Outline};
 pub use fault::{Fault, Faults};
 pub use focus::Focus;
+pub use memory::available as available_memory;
 pub use overrides::{Override, OverrideError};
 pub use schema::schema;
 pub use text::{shortened, visible, visible_lines};
@@ -107,6 +110,8 @@ pub struct Simulation {
     pub samples: Option<usize>,
     /// What a simulation may take, and who is told how far it is.
     pub limits: integrate::Limits,
+    /// Memory that what is kept for gradients may take (bytes); `None` for a part of what there is.
+    pub memory: Option<usize>,
 }
 
 /// A problem: a scene that depends on a design, what is asked of it, and how it is solved.

@@ -1,7 +1,9 @@
 //! From the text of a problem file to a problem, or all of its faults.
 
+use super::bounds;
 use super::check::check;
 use super::fault::{Faults, Finding, Part};
+use super::memory;
 use super::overrides::Override;
 use super::placement::{Assembly, placement_order};
 use super::pointer::join;
@@ -17,7 +19,7 @@ use super::{Constraint, Objective, OptimiserSettings, Problem, Sense, Simulation
 use crate::integrate::{self, Spacing, Start};
 use crate::lower::{self, Lowering};
 use crate::math::Dual;
-use crate::model::{Joint, JointKind};
+use crate::model::{Joint, JointKind, RigidBody};
 use crate::optimiser::Method;
 use crate::system::assembly::{AssemblyFailure, length_scale};
 use crate::system::kkt::SaddlePoint;
@@ -33,10 +35,13 @@ const TOLERANCE: f64 = 1e-9;
 /// Name of the objective where a feasible design is sought.
 const NEAREST: &str = "squared distance from the start";
 
+/// Memory that an optimisation takes for each pair of variables (bytes): some forty matrices.
+const OF_PAIR: usize = 350;
+
 /// Reads a problem file.
 pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Faults> {
     let file = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|error| {
+    let bytes = bounds::read(path).map_err(|error| {
         let found = match error.kind() {
             _ if path.is_dir() => "a directory".to_owned(),
             ErrorKind::NotFound => "no file".to_owned(),
@@ -44,6 +49,10 @@ pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Fault
         };
         Faults::unreadable(&file, &found, "a problem file")
     })?;
+    if bytes.len() > bounds::LARGEST {
+        let found = format!("a file of more than {} MB", bounds::LARGEST >> 20);
+        return Err(Faults::unreadable(&file, &found, "a problem file"));
+    }
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(error.as_bytes());
@@ -60,9 +69,13 @@ pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Fault
 pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result<Problem, Faults> {
     // A byte order mark is allowed at the head of a text, but not in JSON.
     let written = written.strip_prefix('\u{feff}').unwrap_or(written);
+    let plain = || Source::plain(written);
+    if let Some(finding) = bounds::exceeded(written) {
+        return Err(Faults::locate(vec![finding], file, &plain(), &[]));
+    }
     let mut document: Value = serde_json::from_str(written).map_err(|error| {
         let finding = syntax::fault(written, &error);
-        Faults::locate(vec![finding], file, &Source::plain(written), &[])
+        Faults::locate(vec![finding], file, &plain(), &[])
     })?;
     let source = Source::index(written);
     let mut findings: Vec<Finding> = source.duplicates.iter().map(twice).collect();
@@ -115,7 +128,8 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
                 .into_iter()
                 .map(|joint| joint.left_out)
                 .collect();
-            let finding = collapsed(&problem)
+            let finding = too_many(&problem)
+                .or_else(|| collapsed(&problem))
                 .or_else(|| oblique(&problem))
                 .or_else(|| points::beside(&problem))
                 .or_else(|| driven_twice(&problem))
@@ -130,6 +144,25 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
         }
         Err(finding) => faults(vec![finding]),
     }
+}
+
+/// The fault of more variables than memory suffices for: what a scene changes by each is looked at, and an
+/// optimisation takes matrices of their number.
+fn too_many(problem: &Problem) -> Option<Finding> {
+    let count = problem.variables.len();
+    let model = problem.unlowered_scene::<f64>(&problem.start()).model;
+    let scene = (model.bodies.len() * (size_of::<RigidBody<Dual>>() + 64))
+        + model.joints.len() * (size_of::<Joint<Dual>>() + 64);
+    let needed = count * (scene + count * OF_PAIR);
+    let available = memory::available().filter(|available| needed > *available)?;
+    let size = |bytes: usize| format!("{:.1} GB", bytes as f64 / 1e9);
+    let found = format!(
+        "{count} variables of a scene of {} bodies, which take {} of memory",
+        model.bodies.len(),
+        size(needed)
+    );
+    let expected = format!("a problem that fits into the {} available", size(available));
+    Some(Finding::new("/variables", found, expected))
 }
 
 /// What can be left out of the scenes of a problem.
@@ -398,6 +431,7 @@ fn simulation(written: &schema::Simulation) -> Simulation {
             (Some(steps), _) => Spacing::Steps(steps),
             (None, tolerance) => Spacing::Tolerance(tolerance.unwrap_or(TOLERANCE)),
         },
+        memory: None,
         samples: written.samples,
         limits: integrate::Limits {
             seconds: written.seconds,

@@ -52,6 +52,12 @@ pub struct IntegrationUse {
     pub samples_bytes: usize,
     /// See above.
     pub tape_bytes: usize,
+    /// Steps that a gradient makes again, because memory does not suffice to keep them.
+    pub recomputed: usize,
+    /// The part of the motion that was simulated, if the whole takes long: the number of steps, the memory
+    /// and what functions depend on are estimated from it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stretch: Option<f64>,
 }
 
 /// Size of the equations of a scene, and how they are eliminated.
@@ -144,11 +150,29 @@ impl Explanation {
                 text,
                 "  {} in {} steps: {}\n  memory: {} for the samples, {} for gradients",
                 found.method,
-                found.steps,
+                match found.stretch {
+                    None => found.steps.to_string(),
+                    Some(_) => format!("about {}", found.steps),
+                },
                 found.reason,
                 size(found.samples_bytes),
                 size(found.tape_bytes)
             );
+            if found.recomputed > 0 {
+                let part = found.recomputed as f64 / found.steps as f64;
+                let _ = writeln!(
+                    text,
+                    "  a gradient makes {} steps again ({part:.2} of a run); more --memory keeps more",
+                    found.recomputed
+                );
+            }
+            if let Some(stretch) = found.stretch {
+                let _ = writeln!(
+                    text,
+                    "  estimated from the first {:.2e} of the motion, as is what functions depend on",
+                    stretch
+                );
+            }
             if let Some(merged) = &found.merged {
                 let _ = writeln!(text, "  {merged}");
             }
@@ -195,11 +219,12 @@ impl Explanation {
 }
 
 /// Bytes as a person reads them.
-fn size(bytes: usize) -> String {
+pub fn size(bytes: usize) -> String {
     match bytes as f64 {
         bytes if bytes < 1e3 => format!("{bytes} B"),
         bytes if bytes < 1e6 => format!("{:.1} kB", bytes / 1e3),
         bytes if bytes < 1e9 => format!("{:.1} MB", bytes / 1e6),
-        bytes => format!("{:.1} GB", bytes / 1e9),
+        bytes if bytes < 1e12 => format!("{:.1} GB", bytes / 1e9),
+        bytes => format!("{:.1} TB", bytes / 1e12),
     }
 }

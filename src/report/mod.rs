@@ -40,7 +40,7 @@ pub mod work_precision;
 pub use compare::{Comparison, Tolerances, compare};
 pub use csv::csv_table;
 pub use error::ReportError;
-pub use explain::{Explanation, FunctionUse, IntegrationUse, SystemSize};
+pub use explain::{Explanation, FunctionUse, IntegrationUse, SystemSize, size};
 pub use files::{HeldDirectory, atomic_write, prepare_directory, read_text, write_all};
 pub use history::{Column, History, HistoryLog, HistoryRow};
 pub use optima::{FoundOptimum, optima_csv};

@@ -310,6 +310,9 @@ pub struct Counts {
     pub quadratic_programs: u64,
     /// Time steps of all simulations.
     pub steps: u64,
+    /// Steps that gradients made again, because memory did not suffice to keep them.
+    #[serde(default)]
+    pub recomputed_steps: u64,
     /// Newton iterations of all time steps.
     pub newton_iterations: u64,
     /// Factorisations of matrices, forward and backward.
@@ -320,7 +323,7 @@ pub struct Counts {
 
 impl Counts {
     /// All counts with their names, in order.
-    pub fn named(&self) -> [(&'static str, u64); 9] {
+    pub fn named(&self) -> [(&'static str, u64); 10] {
         [
             ("iterations", self.iterations),
             ("function evaluations", self.function_evaluations),
@@ -328,6 +331,7 @@ impl Counts {
             ("failed evaluations", self.failed_evaluations),
             ("quadratic programs", self.quadratic_programs),
             ("time steps", self.steps),
+            ("recomputed steps", self.recomputed_steps),
             ("Newton iterations", self.newton_iterations),
             ("factorisations", self.factorisations),
             ("solves", self.solves),

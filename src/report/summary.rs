@@ -308,8 +308,12 @@ fn work(optimum: &Optimum) -> String {
         0 => String::new(),
         n => format!(" ({} failed)", grouped(n)),
     };
+    let again = match counts.recomputed_steps {
+        0 => String::new(),
+        n => format!(" (and {} made again for gradients)", grouped(n)),
+    };
     format!(
-        "Work: {} iterations, {} simulations{failed}, {} gradients\n      {} time steps, \
+        "Work: {} iterations, {} simulations{failed}, {} gradients\n      {} time steps{again}, \
          {} Newton iterations, {} factorisations, {} solves\n",
         grouped(counts.iterations),
         grouped(counts.function_evaluations),

@@ -16,8 +16,9 @@ use super::numbering::Numbering;
 use super::planar::PlanarJoints;
 use super::reduce;
 use super::tree::Tree;
-use crate::linalg::{SingularMatrix, SolveScalar};
+use crate::linalg::{Pivots, SingularMatrix, SolveScalar};
 use crate::model::Model;
+use std::sync::Arc;
 
 /// Solver of the index-1 equations at one position after the other.
 pub struct Accelerations<'a, S> {
@@ -47,6 +48,14 @@ pub struct Accelerations<'a, S> {
 enum Solver<S> {
     Tree(Box<Tree<S>>),
     Sparse(Box<SaddlePoint<S>>, Vec<S>),
+}
+
+/// What the factors depend on besides the state: a solver with the same memory finds the same numbers, to
+/// the last bit.
+#[derive(Clone, Debug, Default)]
+pub struct Memory {
+    left_to_sparse: Option<Untreelike>,
+    pivots: Option<Arc<Pivots>>,
 }
 
 /// Why the tree of joints does not serve.
@@ -81,6 +90,37 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             rhs: vec![S::zero(); numbering.velocities() + numbering.constraints()],
             factorisations: 0,
             solves: 0,
+        }
+    }
+
+    /// Whether its factors depend on more than the state that it stands at.
+    pub fn remembers(&self) -> bool {
+        matches!(self.solver, Solver::Sparse(..))
+    }
+
+    /// What its factors depend on besides the state.
+    pub fn memory(&mut self) -> Memory {
+        Memory {
+            left_to_sparse: self.left_to_sparse,
+            pivots: match &mut self.solver {
+                Solver::Tree(_) => None,
+                Solver::Sparse(saddle, _) => saddle.pivots(),
+            },
+        }
+    }
+
+    /// Takes the memory of another solver of the same model.
+    pub fn restore(&mut self, memory: &Memory) {
+        if self.left_to_sparse != memory.left_to_sparse {
+            let tree = || Tree::plan(self.model, self.numbering);
+            self.solver = match memory.left_to_sparse.is_none().then(tree).flatten() {
+                Some(tree) => Solver::Tree(Box::new(tree)),
+                None => Self::sparse(self.model, self.numbering),
+            };
+            self.left_to_sparse = memory.left_to_sparse;
+        }
+        if let Solver::Sparse(saddle, _) = &mut self.solver {
+            saddle.set_pivots(memory.pivots.as_ref());
         }
     }
 

@@ -6,9 +6,10 @@ use super::constraint::RowGradient;
 use super::joints;
 use super::numbering::Numbering;
 use super::reduce::{emit_reduced, through, unreduced};
-use crate::linalg::{Emit, Pattern, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
+use crate::linalg::{Emit, Pattern, Pivots, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::{Mat3, Scalar};
 use crate::model::Model;
+use std::sync::Arc;
 
 /// Emits Gᵀ at (`row`, `column`) with the body blocks stacked by `numbering`.
 pub fn emit_transposed_gradients<S: Scalar>(
@@ -200,6 +201,16 @@ impl<S: SolveScalar> SaddlePoint<S> {
         found.map_err(|singular| SingularMatrix {
             column: unreduced(numbering, 1, singular.column),
         })
+    }
+
+    /// The pivots in use.
+    pub fn pivots(&mut self) -> Option<Arc<Pivots>> {
+        self.factors.pivots()
+    }
+
+    /// Goes on with pivots that were in use for the same system.
+    pub fn set_pivots(&mut self, pivots: Option<&Arc<Pivots>>) {
+        self.factors.set_pivots(&self.matrix.pattern, pivots);
     }
 
     /// Order and entries of the matrix, and how it is eliminated.

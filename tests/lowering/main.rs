@@ -10,7 +10,7 @@ mod unseen;
 mod welds;
 
 use flexbody::driver::Evaluated;
-use flexbody::integrate::{Method, Samples, Settings, Spacing, simulate};
+use flexbody::integrate::{MEMORY, Method, Samples, Settings, Spacing, simulate};
 use flexbody::lower::Obstacle;
 use flexbody::problem::{Override, Problem};
 use serde_json::Value;
@@ -73,8 +73,8 @@ fn settings(method: Method, spacing: Spacing) -> Settings {
         method,
         spacing,
         samples: Samples::Uniform(50),
-        keep_stages: true,
         limits: Default::default(),
+        memory: MEMORY,
     }
 }
 

@@ -23,8 +23,8 @@ use crate::functions::Scene;
 use crate::integrate::explicit::march::failed;
 use crate::integrate::explicit::step::StepFailure;
 use crate::integrate::explicit::tableau::{A, ALL, C, END, STAGES};
-use crate::integrate::explicit::{Node, NodeView, StepView, Stepper, Tape};
-use crate::integrate::grid::Place;
+use crate::integrate::explicit::{Again, NodeView, Tape};
+use crate::integrate::replay::Replay;
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
 use crate::system::accelerations::Accelerations;
 use crate::system::kkt::SaddlePoint;
@@ -42,20 +42,11 @@ pub(super) fn gradients(
     let mut sweeps: Vec<Sweep> = which.iter().map(new).collect();
     let mut field = Accelerations::new(model, numbering);
     let mut scratch = scene.zero_cotangent().model;
-    // Stages that were not kept are made again.
-    let mut again = (!tape.keeps_stages()).then(|| Stepper::new(model, numbering));
-    let start = tape.node(0);
-    let mut end_again = Node {
-        q: start.q.to_vec(),
-        v: start.v.to_vec(),
-        a: start.a.to_vec(),
-        lambda: start.lambda.to_vec(),
-    };
+    let mut replay = Replay::new(tape, run.grid.steps(), || Again::new(model, run));
     let mut sample = run.last();
     let mut counts = WorkCounts::default();
     for n in (1..=run.grid.steps()).rev() {
         let h = run.duration * run.grid.width(n);
-        let (from, to) = (tape.node(n - 1), tape.node(n));
         let (begin, end) = (run.grid.ends()[n - 1], run.grid.ends()[n]);
         let first = first_sample(run, n, sample);
         let samples = first..=sample;
@@ -67,17 +58,10 @@ pub(super) fn gradients(
         if !sweeps.iter().any(concerns) {
             continue;
         }
-        let inside = |place: &Place| matches!(place, Place::Inside { .. });
-        let dense = run.places[samples.clone()].iter().any(inside);
         let failed = |failure| failed(failure, (model, numbering), (n, run.duration * end));
         let singular = |singular| failed(StepFailure::Singular(singular));
-        let data = match &mut again {
-            None => tape.step(n),
-            Some(stepper) => {
-                let times = (run.duration, begin, h);
-                repeat(stepper, (from, to, &mut end_again), times, dense).map_err(failed)?
-            }
-        };
+        let block = replay.block(n)?;
+        let (from, to, data) = (block.node(n - 1), block.node(n), block.step(n));
         for k in samples.rev() {
             for sweep in &mut sweeps {
                 sweep.sample(scene, run, k, Some((data, from)));
@@ -100,7 +84,7 @@ pub(super) fn gradients(
             }
             Ok(())
         };
-        if dense {
+        if data.dense {
             for i in (END + 1..ALL).rev() {
                 stage(i, &mut field, &mut sweeps).map_err(singular)?;
             }
@@ -121,10 +105,17 @@ pub(super) fn gradients(
     }
     counts.factorisations += field.factorisations;
     counts.solves += field.solves;
-    if let Some(stepper) = &again {
-        counts.factorisations += stepper.field.factorisations;
-        counts.solves += stepper.field.solves;
+    if let Some(again) = replay.march() {
+        counts.factorisations += again.stepper.field.factorisations;
+        counts.solves += again.stepper.field.solves;
     }
+    counts.recomputed += replay.again;
+    let start = NodeView {
+        q: &run.initial.q,
+        v: &run.initial.v,
+        a: &run.initial.a,
+        lambda: &run.initial.lambda,
+    };
     let mut saddle = SaddlePoint::new(model, numbering);
     for sweep in &mut sweeps {
         sweep.sample(scene, run, 0, None);
@@ -142,22 +133,6 @@ pub(super) fn gradients(
 fn first_sample(run: &Trajectory<f64>, n: usize, last: usize) -> usize {
     let earlier = run.places[..=last].iter().rev();
     last + 1 - earlier.take_while(|place| place.step() == n).count()
-}
-
-/// Makes a step whose stages were not kept once more.
-fn repeat<'s>(
-    stepper: &'s mut Stepper<f64>,
-    (from, to, end): (NodeView<f64>, NodeView<f64>, &mut Node<Vec<f64>>),
-    (duration, begin, h): (f64, f64, f64),
-    dense: bool,
-) -> Result<StepView<'s, f64>, StepFailure> {
-    let start = duration * begin;
-    stepper.stages(from, (start, h))?;
-    stepper.finish(end, start + h)?;
-    if dense {
-        stepper.dense_stages((from, to), (start, h))?;
-    }
-    Ok(stepper.data.view())
 }
 
 fn row(rows: &[f64], width: usize, i: usize) -> &[f64] {

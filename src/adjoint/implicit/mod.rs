@@ -30,7 +30,9 @@ use super::sensitivity::Sensitivity;
 use crate::functions::Scene;
 use crate::integrate::implicit::formula::{Formula, remembers_start};
 use crate::integrate::implicit::radau::Scheme;
-use crate::integrate::implicit::{Stage, Tape};
+use crate::integrate::implicit::solver::starting_stage;
+use crate::integrate::implicit::{Again, Stage, Tape};
+use crate::integrate::replay::Replay;
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
 use crate::system::kkt::SaddlePoint;
 use sweep::Sweep;
@@ -53,14 +55,17 @@ pub(super) fn gradients(
     let mut one = None;
     let mut coupled = None;
     let mut counts = WorkCounts::default();
+    let mut replay = Replay::new(tape, run.grid.steps(), || Again::new(model, run, &scheme));
+    let start = starting_stage(numbering, &run.initial);
     let mut sample = run.last();
     let mut from = Stage::zero(numbering);
     let mut stages = vec![from.clone(); stages];
     for k in (1..=run.grid.steps()).rev() {
         let (width, end) = (run.grid.width(k), run.grid.ends()[k]);
         let h = run.duration * width;
-        tape.read_end(k - 1, &mut from);
-        let count = tape.read(k, &mut stages);
+        let block = replay.block(k)?;
+        block.read_end(k - 1, &mut from);
+        let count = block.read(k, &mut stages);
         let step = &stages[..count];
         while run.places[sample].step() == k {
             for sweep in &mut sweeps {
@@ -89,13 +94,17 @@ pub(super) fn gradients(
         })?;
         if k == 1 && remembers_start(run.method) {
             for sweep in &mut sweeps {
-                sweep.starting_memory(&tape.start, h, width);
+                sweep.starting_memory(&start, h, width);
             }
         }
         counts.steps += 1;
     }
+    if let Some(again) = replay.march() {
+        counts += again.counts;
+    }
+    counts.recomputed += replay.again;
     let mut saddle = SaddlePoint::new(model, numbering);
-    let start = &tape.start;
+    let start = &start;
     for sweep in &mut sweeps {
         sweep.sample(scene, run, 0, (&scheme, start, &[]), 0.0);
         sweep.pull_starting_rates(numbering, start);

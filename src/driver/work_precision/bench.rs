@@ -4,6 +4,7 @@ use super::clock::fastest;
 use super::reference::{Reference, distance, gradient_error, positions};
 use crate::adjoint;
 use crate::driver::integration::{Integration, looks_at_the_whole};
+use crate::driver::memory;
 use crate::driver::{Evaluated, Simulation};
 use crate::functions::Scene;
 use crate::integrate::{
@@ -66,22 +67,27 @@ impl<'a> Bench<'a> {
         reference: &Reference,
         runs: usize,
     ) -> Result<PrecisionRow, IntegrationFailure> {
-        let settings = |samples, keep_stages| Settings {
+        let settings = |samples, memory| Settings {
             method,
             spacing: spacing.clone(),
             samples,
-            keep_stages,
             limits: self.limits(),
+            memory,
         };
         let (model, duration) = (&self.scene.model, self.scene.duration);
         let with_gradient = reference.gradient.is_some();
-        let history = simulate(model, duration, &settings(Samples::StepEnds, with_gradient))?;
+        let memory = memory::for_gradients(self.problem.simulation.memory);
+        let history = simulate(
+            model,
+            duration,
+            &settings(Samples::StepEnds, if with_gradient { memory } else { 0 }),
+        )?;
         let error = distance(&reference.positions, &positions(&history));
         let counts = history.counts;
         let summed = self.sums() && matches!(spacing, Spacing::Tolerance(_));
         let (drift, history) = self.drift(history);
 
-        let bare = settings(Samples::Uniform(1), false);
+        let bare = settings(Samples::Uniform(1), 0);
         let cpu_seconds = fastest(runs, || {
             simulate(model, duration, &bare).map(|run| {
                 black_box(run);
@@ -114,7 +120,7 @@ impl<'a> Bench<'a> {
                     let integration =
                         Integration::new(self.problem, &self.scene, Some(&asked), true);
                     let samples = integration.samples();
-                    simulate(model, duration, &settings(samples, true))?
+                    simulate(model, duration, &settings(samples, memory))?
                 }
                 false => history,
             };

@@ -113,8 +113,8 @@ fn candidate(
             true => Samples::Uniform(SAMPLES),
             false => Samples::Uniform(1),
         },
-        keep_stages: false,
         limits: bench.limits(),
+        memory: 0,
     };
     let (model, duration) = (&bench.scene.model, bench.scene.duration);
     let chosen = simulate(model, duration, &settings)?;

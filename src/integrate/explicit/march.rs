@@ -1,10 +1,10 @@
 //! The march of the explicit method over given or chosen steps.
 
-use super::Tape;
 use super::record::{Node, NodeView};
 use super::step::{StepFailure, Stepper};
 use super::stiffness::{Stiffness, Watch};
 use super::tableau::{ORDER, STAGES};
+use super::tape::{Block, Tape};
 use crate::integrate::control::{Controller, Scale};
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Place, place};
@@ -39,13 +39,14 @@ pub fn march<S: SolveScalar>(
         a: start.a.clone(),
         lambda: start.lambda.clone(),
     };
-    let mut tape = Tape::new(numbering, settings.keep_stages, settings.samples);
-    tape.push(node.view());
-    let tape = trajectory::Tape::Explicit(tape);
     let scale = Scale::of(model, numbering, &start, duration.re());
-    let mut run = Trajectory::start(numbering.clone(), Method::Dop853, duration, start, tape);
-    run.take_cells(&settings.spacing, settings.samples);
     let mut controller = Controller::new(settings, ORDER, &scale, (model, duration.re()));
+    let block = Block::new(numbering, settings.samples);
+    let memory = (settings.memory, block.room());
+    let tape = trajectory::Tape::Explicit(Tape::new(block, memory, controller.steps()));
+    let mut run = Trajectory::start(numbering.clone(), Method::Dop853, duration, start, tape);
+    run.grid = controller.growing();
+    run.take_cells(&settings.spacing, settings.samples);
     // Kept steps were found good where they were chosen, and are judged by their error.
     let mut stiffness = match settings.spacing {
         Spacing::Frozen(_) => None,
@@ -78,6 +79,7 @@ pub fn march<S: SolveScalar>(
             Ok(true) => {}
             Ok(false) => {
                 run.counts.rejected += 1;
+                tape_of(&mut run).retry(number, stepper.field.memory());
                 continue;
             }
             Err(failure) if controller.give_up(failure != StepFailure::NotFinite) => {
@@ -86,6 +88,7 @@ pub fn march<S: SolveScalar>(
             }
             Err(_) => {
                 run.counts.rejected += 1;
+                tape_of(&mut run).retry(number, stepper.field.memory());
                 continue;
             }
         }
@@ -111,11 +114,14 @@ pub fn march<S: SolveScalar>(
             &mut next,
         )
         .map_err(|failure| failed(failure, (model, numbering), (number, duration.re() * end)))?;
-        let trajectory::Tape::Explicit(tape) = &mut run.tape else {
-            unreachable!("the tape is that of the explicit method")
-        };
-        tape.push(to.view());
-        tape.keep(stepper.data.view());
+        let tape = tape_of(&mut run);
+        if tape.keeps(number) {
+            tape.block
+                .push([from.view(), to.view()], stepper.data.view());
+        }
+        if tape.is_due(number) {
+            tape.leave(number, (to.clone(), stepper.field.memory()));
+        }
         std::mem::swap(&mut from, &mut to);
     }
     close(&mut run, &controller)?;
@@ -133,9 +139,13 @@ fn reserve<S: SolveScalar>(run: &mut Trajectory<S>, settings: &Settings) {
     };
     let samples = settings.samples.count(steps, grid);
     run.reserve(steps, samples);
-    if let trajectory::Tape::Explicit(tape) = &mut run.tape {
-        tape.reserve(steps);
-    }
+}
+
+fn tape_of<S: SolveScalar>(run: &mut Trajectory<S>) -> &mut Tape<S> {
+    let trajectory::Tape::Explicit(tape) = &mut run.tape else {
+        unreachable!("the tape is that of the explicit method")
+    };
+    tape
 }
 
 /// Adds the instants of the step that was just accepted.

@@ -164,7 +164,7 @@ impl Stiffness {
             method: Method::Radau { stages: 3 },
             spacing: settings.spacing.clone(),
             samples: Samples::Uniform(1),
-            keep_stages: false,
+            memory: 0,
             limits: Limits::default(),
         };
         let mut stretch = Stretch::new(reached, LEAST_WORK.max(PART * spent));
@@ -179,6 +179,6 @@ impl Stiffness {
 }
 
 /// Work of an explicit march, but for what its samples take.
-fn work_so_far<S>(run: &Trajectory<S>) -> f64 {
+fn work_so_far<S: SolveScalar>(run: &Trajectory<S>) -> f64 {
     (STAGES * (run.grid.steps() + run.counts.rejected)) as f64
 }

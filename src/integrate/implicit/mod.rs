@@ -1,6 +1,7 @@
 //! Implicit methods on the GGL-stabilised equations: Radau IIA, and one-stage formulas with a
 //! memory (BDF, generalised-α).
 
+pub mod again;
 mod estimate;
 pub mod formula;
 pub mod ggl;
@@ -9,11 +10,13 @@ pub mod newton;
 pub mod predict;
 pub mod radau;
 mod scales;
+pub mod solver;
 pub mod split;
 pub mod stage_newton;
 pub mod tape;
 
-pub use tape::Tape;
+pub use again::Again;
+pub use tape::{Block, Tape};
 
 use crate::math::Scalar;
 use crate::system::{Numbering, bodies, reduce};

@@ -6,10 +6,11 @@ use super::ggl::Equations;
 use super::scales::SceneScale;
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::trajectory::WorkCounts;
-use crate::linalg::{SolveScalar, SparseLu, SparseMatrix};
+use crate::linalg::{Pivots, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::Scalar;
 use crate::model::Model;
 use crate::system::Numbering;
+use std::sync::Arc;
 
 /// Error left in a step, relative to the largest increments of position, rotation, velocity and
 /// angular velocity in it, at which Newton's method stops: the relative error of accelerations.
@@ -69,6 +70,16 @@ impl<S: Scalar> History<S> {
     }
 }
 
+/// What it keeps from step to step.
+#[derive(Clone, Debug)]
+pub struct Memory<S> {
+    /// Where the kept factors were made, the step size there, and c.
+    made: Option<(Stage<S>, [S; 2])>,
+    contraction: f64,
+    unseen: usize,
+    pivots: Option<Arc<Pivots>>,
+}
+
 /// Newton's method with everything that it needs again in every step.
 pub struct Newton<'a, S> {
     equations: Equations<'a, S>,
@@ -77,6 +88,8 @@ pub struct Newton<'a, S> {
     factors: SparseLu<S>,
     /// c h of the kept factors, or `None`.
     factored: Option<S>,
+    /// Where they were made, the step size there, and c.
+    made: (Stage<S>, [S; 2]),
     /// Contraction seen with the kept factors.
     contraction: f64,
     /// Steps in a row that took one iteration, which shows no contraction.
@@ -97,10 +110,41 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             factors: SparseLu::new(&pattern),
             matrix: SparseMatrix::new(pattern),
             factored: None,
+            made: (Stage::zero(numbering), [S::zero(); 2]),
             contraction: 1.0,
             unseen: 0,
             scale: SceneScale::of(model),
             residual: vec![S::zero(); length],
+        }
+    }
+
+    /// What it keeps from step to step.
+    pub fn memory(&mut self) -> Memory<S> {
+        Memory {
+            made: self.factored.map(|_| self.made.clone()),
+            contraction: self.contraction,
+            unseen: self.unseen,
+            pivots: self.factors.pivots(),
+        }
+    }
+
+    /// Takes what another one kept, and makes its factors again.
+    pub fn restore(&mut self, kept: &Memory<S>, counts: &mut WorkCounts) {
+        self.contraction = kept.contraction;
+        self.unseen = kept.unseen;
+        self.factors
+            .set_pivots(&self.matrix.pattern, kept.pivots.as_ref());
+        self.factored = None;
+        let Some((stage, [h, c])) = &kept.made else {
+            return;
+        };
+        let (equations, matrix) = (&mut self.equations, &mut self.matrix);
+        matrix.assemble(|emit| equations.jacobian(&stage.instant(), *h, *c, emit));
+        counts.factorisations += 1;
+        if self.factors.factorise(matrix).is_ok() {
+            self.factored = Some(*c * *h);
+            self.made.0.set(stage);
+            self.made.1 = [*h, *c];
         }
     }
 
@@ -151,6 +195,8 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 })?;
                 counts.factorisations += 1;
                 self.factored = Some(history.c * h);
+                self.made.0.set(x);
+                self.made.1 = [h, history.c];
             }
             counts.newton_iterations += 1;
             counts.solves += 1;

@@ -6,12 +6,13 @@ use crate::linalg::SolveScalar;
 use crate::system::{Numbering, bodies};
 
 /// Steps whose ends a formula's start is extrapolated from.
-const RECENT: usize = 3;
+pub(super) const RECENT: usize = 3;
 
 /// What is behind the step to come.
-pub(super) struct Past<S> {
+#[derive(Clone, Debug)]
+pub struct Past<S> {
     /// The end of the last step.
-    pub from: Stage<S>,
+    pub(super) from: Stage<S>,
     /// Size and stages of the last step, if it was one of Radau IIA.
     before: Option<S>,
     stages: Vec<Stage<S>>,

@@ -8,10 +8,11 @@ use super::scales::{Scales, SceneScale};
 use super::split::SplitMatrix;
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::trajectory::WorkCounts;
-use crate::linalg::{SolveScalar, SparseLu, SparseMatrix};
+use crate::linalg::{Pivots, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::{Complex64, Scalar};
 use crate::model::Model;
 use crate::system::{Numbering, bodies};
+use std::sync::Arc;
 
 /// Error left in the stages, relative to the largest increments in the step.
 const TOLERANCE: f64 = 1e-13;
@@ -31,6 +32,15 @@ const ITERATIONS: usize = 20;
 const NEARLY_SINGULAR: f64 = 1e-4;
 /// Iterations that let an infinitesimal part converge after the real one.
 const INFINITESIMAL_ITERATIONS: usize = 12;
+
+/// What it keeps from step to step.
+#[derive(Clone, Debug)]
+pub struct Memory {
+    /// Where the kept factors were made, and the step size there.
+    made: Option<(Stage<f64>, f64)>,
+    /// Pivots of the real and of the complex matrix.
+    pivots: [Option<Arc<Pivots>>; 2],
+}
 
 /// Newton's method with what it needs again in every step.
 pub struct StageNewton<'a, S> {
@@ -97,6 +107,39 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             combined: [vec![0.0; zero.q.len()], vec![0.0; zero.v.len()]],
             middle: zero,
         }
+    }
+
+    /// What it keeps from step to step.
+    pub fn memory(&mut self) -> Memory {
+        let real = self.real_mode.as_mut();
+        Memory {
+            made: self.factored.map(|h| (self.middle.clone(), h)),
+            pivots: [
+                real.and_then(|(_, factors)| factors.pivots()),
+                self.complex_mode.1.pivots(),
+            ],
+        }
+    }
+
+    /// Takes what another one kept, and makes its factors again.
+    pub fn restore(&mut self, kept: &Memory, counts: &mut WorkCounts) {
+        let [real, complex] = &kept.pivots;
+        if let Some((matrix, factors)) = &mut self.real_mode {
+            factors.set_pivots(&matrix.pattern, real.as_ref());
+        }
+        let (matrix, factors) = &mut self.complex_mode;
+        factors.set_pivots(&matrix.pattern, complex.as_ref());
+        self.factored = None;
+        if let Some((middle, h)) = &kept.made {
+            self.middle.set(middle);
+            // They were made before, so they can be.
+            let _ = self.factorise_there(*h, counts);
+        }
+    }
+
+    /// Forgets the kept factors.
+    pub fn forget(&mut self) {
+        self.factored = None;
     }
 
     /// Solves the stage equations of a step of size `h`, starting from and ending in `stages`.
@@ -293,6 +336,16 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     ) -> Result<(), IntegrationFailure> {
         self.set_rates(stages, S::from(h));
         stages[(stages.len() - 1) / 2].real_into(&mut self.middle);
+        self.factorise_there(h, counts)
+            .map_err(|singular| IntegrationFailure::Singular {
+                time,
+                step,
+                place: self.real.describe_reduced(singular.column),
+            })
+    }
+
+    /// Assembles and factorises where the middle stage stands.
+    fn factorise_there(&mut self, h: f64, counts: &mut WorkCounts) -> Result<(), SingularMatrix> {
         let Self {
             split,
             real_mode,
@@ -321,11 +374,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             found = found.and(factors.factorise(matrix));
         }
         self.factored = found.is_ok().then_some(h);
-        found.map_err(|singular| IntegrationFailure::Singular {
-            time,
-            step,
-            place: self.real.describe_reduced(singular.column),
-        })
+        found
     }
 
     /// Estimated error (δy, h δv) of a step of size h: the difference of the embedded formula,

@@ -1,87 +1,146 @@
 //! What the adjoint needs of implicit steps.
 
 use super::Stage;
+use super::formula::memory_size;
+use super::predict::{Past, RECENT};
+use super::solver::Memory;
+use crate::integrate::replay;
 use crate::integrate::rows::Rows;
+use crate::integrate::schedule::Room;
+use crate::integrate::settings::Method;
 use crate::math::{Complex64, Scalar};
 use crate::system::Numbering;
+use std::ops::Range;
 
-/// What the adjoint needs: the state at the start and the stages of every step, one for a formula,
-/// all for Radau IIA; the last stage stands at the step's end.
+/// What is kept of a run.
+pub type Tape<S> = replay::Tape<Block<S>>;
+
+/// The stages of steps in a row, one for a formula, all for Radau IIA, and the state that the first one
+/// starts from. The last stage stands at the step's end.
 #[derive(Clone, Debug)]
-pub struct Tape<S> {
-    /// The start, with the rates there.
-    pub start: Stage<S>,
+pub struct Block<S> {
+    first: usize,
+    start: Stage<S>,
     stages: Rows<S, 9>,
     /// How many stages there are up to the end of each step.
     ends: Vec<usize>,
+    /// Most stages of a step.
+    most: usize,
 }
 
-impl<S: Scalar> Tape<S> {
-    /// No step yet.
-    pub fn new(numbering: &Numbering, start: Stage<S>) -> Self {
+impl<S: Scalar> Block<S> {
+    /// No step yet of a run that starts with `start`; a step has at most `most` stages.
+    pub fn new(numbering: &Numbering, start: Stage<S>, most: usize) -> Self {
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         let nc = numbering.constraints();
         Self {
+            first: 0,
             start,
             stages: Rows::new([nq, nv, nq, nv, nc, nc, nq, nv, 1]),
             ends: Vec::new(),
+            most,
         }
     }
 
-    /// Makes room for so many steps and stages.
-    pub fn reserve(&mut self, steps: usize, stages: usize) {
-        self.stages.reserve(stages);
-        self.ends.reserve(steps);
+    /// Room that a step and a checkpoint of a method take.
+    pub fn room(&self, method: Method) -> Room {
+        let [nq, nv, ..] = self.stages.lengths();
+        let (width, number) = (self.stages.width(), size_of::<S>());
+        let stages = match method {
+            Method::Radau { .. } => self.most,
+            Method::Dop853 | Method::Bdf { .. } | Method::GeneralisedAlpha { .. } => 1,
+        };
+        // A checkpoint holds the state, the stages of the last step, the ends of the latest ones and the
+        // stage that the factors are made at.
+        let states = 2 + self.most + RECENT;
+        Room {
+            step: (stages * width + 1) * number,
+            checkpoint: (states * width + memory_size(method) * (nq + nv) + 32) * number,
+        }
     }
 
-    /// Adds a step.
-    pub fn push(&mut self, stages: &[Stage<S>]) {
+    /// Adds a step that starts from `from`.
+    pub fn push(&mut self, from: &Stage<S>, stages: &[Stage<S>]) {
+        if self.ends.is_empty() {
+            self.start.set(from);
+        }
         for stage in stages {
             self.stages.push(stage.parts());
         }
-        self.ends.push(self.first(self.steps() + 1) + stages.len());
+        let before = self.ends.last().copied().unwrap_or(0);
+        self.ends.push(before + stages.len());
     }
 
-    /// Number of steps.
-    pub fn steps(&self) -> usize {
-        self.ends.len()
+    /// Number of stages before the step that is number `at` here, from 0.
+    fn before(&self, at: usize) -> usize {
+        at.checked_sub(1).map_or(0, |last| self.ends[last])
     }
 
-    /// Number of stages before step k = 1 … N.
-    fn first(&self, k: usize) -> usize {
-        if k == 1 { 0 } else { self.ends[k - 2] }
-    }
-
-    /// Puts the stages of step k = 1 … N in front of `out`, and returns how many there are.
+    /// Puts the stages of step k of the run in front of `out`, and returns how many there are.
     pub fn read(&self, k: usize, out: &mut [Stage<S>]) -> usize {
-        let all = self.first(k)..self.ends[k - 1];
+        let at = k - self.first - 1;
+        let all = self.before(at)..self.ends[at];
         for (stage, i) in out.iter_mut().zip(all.clone()) {
             stage.set_parts(self.stages.get(i));
         }
         all.len()
     }
 
-    /// Puts the end of step k, for k = 0 the start, into `out`.
+    /// Puts the end of step k of the run, which may be the start of the first step here, into `out`.
     pub fn read_end(&self, k: usize, out: &mut Stage<S>) {
-        match k {
+        match self.before(k - self.first) {
             0 => out.set(&self.start),
-            _ => out.set_parts(self.stages.get(self.ends[k - 1] - 1)),
+            end => out.set_parts(self.stages.get(end - 1)),
         }
-    }
-
-    /// How many numbers it holds.
-    pub fn numbers(&self) -> usize {
-        self.stages.width() + self.stages.numbers()
     }
 }
 
-impl Tape<Complex64> {
+/// What is behind a step, and the memory of a formula, of q and of v.
+pub type State<S> = (Past<S>, [Vec<Vec<S>>; 2]);
+
+impl<S: Scalar> replay::Block for Block<S> {
+    type State = State<S>;
+    type Solver = Memory<S>;
+
+    fn restart(&mut self, first: usize) {
+        self.first = first;
+        self.stages.restart();
+        self.ends.clear();
+    }
+
+    fn reserve(&mut self, steps: usize) {
+        self.ends.reserve(steps);
+        self.stages.reserve(steps);
+    }
+
+    fn steps(&self) -> Range<usize> {
+        self.first + 1..self.first + 1 + self.ends.len()
+    }
+
+    fn numbers(&self) -> usize {
+        self.stages.width() + self.stages.numbers()
+    }
+
+    fn empty(&self) -> Self {
+        Self {
+            first: 0,
+            start: self.start.clone(),
+            stages: Rows::new(self.stages.lengths()),
+            ends: Vec::new(),
+            most: self.most,
+        }
+    }
+}
+
+impl Block<Complex64> {
     /// The real part.
-    pub fn real(&self) -> Tape<f64> {
-        Tape {
+    pub fn real(&self) -> Block<f64> {
+        Block {
+            first: self.first,
             start: self.start.real(),
             stages: self.stages.real(),
             ends: self.ends.clone(),
+            most: self.most,
         }
     }
 }

@@ -111,6 +111,9 @@ pub struct EvaluationRecord {
 pub struct Work {
     /// Time steps.
     pub steps: usize,
+    /// Steps of the motion that a gradient made again, because memory did not suffice to keep them.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub recomputed: usize,
     /// Newton iterations of all steps.
     pub newton_iterations: usize,
     /// Factorisations of matrices, forward and backward.
@@ -129,6 +132,7 @@ impl From<WorkCounts> for Work {
     fn from(counts: WorkCounts) -> Self {
         Self {
             steps: counts.steps,
+            recomputed: counts.recomputed,
             newton_iterations: counts.newton_iterations,
             factorisations: counts.factorisations,
             solves: counts.solves,
@@ -139,10 +143,15 @@ impl From<WorkCounts> for Work {
 impl std::ops::AddAssign for Work {
     fn add_assign(&mut self, other: Self) {
         self.steps += other.steps;
+        self.recomputed += other.recomputed;
         self.newton_iterations += other.newton_iterations;
         self.factorisations += other.factorisations;
         self.solves += other.solves;
     }
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// What an evaluation found.

@@ -1,0 +1,70 @@
+//! Implicit steps of a run, made again.
+
+use super::Stage;
+use super::predict::Past;
+use super::radau::Scheme;
+use super::solver::{Memory, Solver, starting_stage};
+use super::tape::{Block, State};
+use crate::integrate::replay::March;
+use crate::integrate::trajectory::WorkCounts;
+use crate::integrate::{IntegrationFailure, Trajectory};
+use crate::model::Model;
+
+/// Makes the steps of a run again.
+pub struct Again<'a> {
+    run: &'a Trajectory<f64>,
+    solver: Solver<'a, f64>,
+    past: Past<f64>,
+    /// Work so far.
+    pub counts: WorkCounts,
+}
+
+impl<'a> Again<'a> {
+    /// At the start of `run`, which is one of `model`.
+    pub fn new(model: &'a Model<f64>, run: &'a Trajectory<f64>, scheme: &'a Scheme) -> Self {
+        let numbering = &run.numbering;
+        let system = (numbering, scheme);
+        let first: Stage<f64> = starting_stage(numbering, &run.initial);
+        Self {
+            run,
+            solver: Solver::new(run.method, (model, model), system, false),
+            past: Past::new(numbering, first, scheme.stages()),
+            counts: WorkCounts::default(),
+        }
+    }
+}
+
+impl March for Again<'_> {
+    type Block = Block<f64>;
+
+    fn state(&self) -> State<f64> {
+        (self.past.clone(), self.solver.memory.clone())
+    }
+
+    fn solver(&mut self) -> Memory<f64> {
+        self.solver.newton()
+    }
+
+    fn restore(&mut self, (past, memory): &State<f64>) {
+        self.past.clone_from(past);
+        self.solver.memory.clone_from(memory);
+    }
+
+    fn restore_solver(&mut self, newton: &Memory<f64>) {
+        self.solver.restore(newton, &mut self.counts);
+    }
+
+    fn step(&mut self, k: usize, block: Option<&mut Block<f64>>) -> Result<(), IntegrationFailure> {
+        let (duration, grid) = (self.run.duration, &self.run.grid);
+        let (start, h) = (duration * grid.ends()[k - 1], duration * grid.width(k));
+        let at = (k, duration * grid.ends()[k]);
+        let (past, solver) = (&mut self.past, &mut self.solver);
+        let count = solver.step(past, (start, h), at, &mut self.counts)?;
+        if let Some(block) = block {
+            block.push(&past.from, &solver.stages[..count]);
+        }
+        solver.remember(count, k);
+        past.advance(h, &mut solver.stages, count);
+        Ok(())
+    }
+}

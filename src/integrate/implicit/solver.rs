@@ -1,0 +1,211 @@
+//! The steps of the implicit methods, one after the other.
+
+use super::Stage;
+use super::estimate::Estimate;
+use super::formula::{Formula, memory_size, remembers_start};
+use super::newton::{self, History, Newton};
+use super::predict::Past;
+use super::radau::Scheme;
+use super::stage_newton::{self, StageNewton};
+use crate::integrate::control::Scale;
+use crate::integrate::failure::IntegrationFailure;
+use crate::integrate::settings::Method;
+use crate::integrate::trajectory::WorkCounts;
+use crate::linalg::SolveScalar;
+use crate::model::Model;
+use crate::system::initial::InitialState;
+use crate::system::{Numbering, bodies};
+
+/// What Newton's methods keep from step to step.
+#[derive(Clone, Debug)]
+pub struct Memory<S> {
+    one: Option<newton::Memory<S>>,
+    coupled: Option<stage_newton::Memory>,
+}
+
+/// The start as a stage, with its rates q̇ = T(q) v and v̇.
+pub fn starting_stage<S: SolveScalar>(numbering: &Numbering, start: &InitialState<S>) -> Stage<S> {
+    let mut first = Stage::zero(numbering);
+    first.q.copy_from_slice(&start.q);
+    first.v.copy_from_slice(&start.v);
+    first.lambda.copy_from_slice(&start.lambda);
+    first.vdot.copy_from_slice(&start.a);
+    bodies::rates(numbering, &start.q, &start.v, &mut first.qdot);
+    first
+}
+
+/// Makes the steps of a method.
+pub(super) struct Solver<'a, S> {
+    method: Method,
+    model: &'a Model<S>,
+    real: &'a Model<f64>,
+    numbering: &'a Numbering,
+    scheme: &'a Scheme,
+    /// Newton's method for formulas, once it is needed.
+    one: Option<Newton<'a, S>>,
+    /// Newton's method for Radau IIA, once it is needed.
+    coupled: Option<StageNewton<'a, S>>,
+    estimate: Option<Estimate<'a>>,
+    /// Memory of a formula, of q and of v.
+    pub memory: [Vec<Vec<S>>; 2],
+    history: History<S>,
+    /// Stages of the latest step, a formula's in front.
+    pub stages: Vec<Stage<S>>,
+}
+
+impl<'a, S: SolveScalar> Solver<'a, S> {
+    /// The steps of `method` for a model, whose real part is `real`; `estimates` is whether errors will
+    /// be asked for.
+    pub fn new(
+        method: Method,
+        (model, real): (&'a Model<S>, &'a Model<f64>),
+        (numbering, scheme): (&'a Numbering, &'a Scheme),
+        estimates: bool,
+    ) -> Self {
+        let lengths = [numbering.positions(), numbering.velocities()];
+        Self {
+            method,
+            model,
+            real,
+            numbering,
+            scheme,
+            one: None,
+            coupled: None,
+            estimate: estimates.then(|| Estimate::new(real, numbering, scheme)),
+            memory: lengths.map(|n| vec![vec![S::zero(); n]; memory_size(method)]),
+            history: History::new(numbering),
+            stages: vec![Stage::zero(numbering); scheme.stages()],
+        }
+    }
+
+    /// What Newton's methods keep from step to step.
+    pub fn newton(&mut self) -> Memory<S> {
+        Memory {
+            one: self.one.as_mut().map(Newton::memory),
+            coupled: self.coupled.as_mut().map(StageNewton::memory),
+        }
+    }
+
+    /// Takes what Newton's methods kept.
+    pub fn restore(&mut self, newton: &Memory<S>, counts: &mut WorkCounts) {
+        match &newton.one {
+            None => self.one = None,
+            Some(kept) => self
+                .one
+                .get_or_insert_with(|| Newton::new(self.model, self.numbering))
+                .restore(kept, counts),
+        }
+        match &newton.coupled {
+            None => self.coupled = None,
+            Some(kept) => {
+                let estimates = self.estimate.is_some();
+                let (model, real) = (self.model, self.real);
+                self.coupled
+                    .get_or_insert_with(|| {
+                        StageNewton::new(model, real, self.numbering, self.scheme, estimates)
+                    })
+                    .restore(kept, counts);
+            }
+        }
+    }
+
+    /// Forgets the factors of steps that were given up.
+    pub fn forget(&mut self) {
+        if let Some(newton) = &mut self.coupled {
+            newton.forget();
+        }
+    }
+
+    /// Makes step `at.0` of size `h`; returns its number of stages.
+    pub fn step(
+        &mut self,
+        past: &mut Past<S>,
+        (start, h): (S, S),
+        at: (usize, f64),
+        counts: &mut WorkCounts,
+    ) -> Result<usize, IntegrationFailure> {
+        let (model, real, numbering) = (self.model, self.real, self.numbering);
+        let stages = &mut self.stages;
+        let Some(formula) = Formula::of_step(self.method, at.0) else {
+            past.predict_stages(numbering, self.scheme, h, stages);
+            for (stage, &c) in stages.iter_mut().zip(&self.scheme.nodes) {
+                stage.hold(numbering, &past.from);
+                stage.time = start + h * c;
+            }
+            let (scheme, estimates) = (self.scheme, self.estimate.is_some());
+            self.coupled
+                .get_or_insert_with(|| StageNewton::new(model, real, numbering, scheme, estimates))
+                .solve(stages, h, at, counts)?;
+            return Ok(stages.len());
+        };
+        if at.0 == 1 && remembers_start(self.method) {
+            for (memory, rates) in self
+                .memory
+                .iter_mut()
+                .zip([&past.from.qdot, &past.from.vdot])
+            {
+                for m in memory {
+                    m.iter_mut().zip(rates).for_each(|(m, &x)| *m = x * h);
+                }
+            }
+        }
+        let stage = &mut stages[0];
+        past.predict(numbering, h, stage);
+        stage.hold(numbering, &past.from);
+        stage.time = start + h;
+        self.history.set(&formula, &self.memory, h);
+        let history = &self.history;
+        let newton = self
+            .one
+            .get_or_insert_with(|| Newton::new(model, numbering));
+        newton.solve(stage, history, h, at, counts).or_else(|_| {
+            // An extrapolation over steps that are large for the motion may lead astray.
+            past.taylor(numbering, h, stage);
+            stage.hold(numbering, &past.from);
+            stage.time = start + h;
+            newton.forget();
+            newton.solve(stage, history, h, at, counts)
+        })?;
+        Ok(1)
+    }
+
+    /// Moves the memory past step k of `count` stages.
+    pub fn remember(&mut self, count: usize, k: usize) {
+        let last = &self.stages[count - 1];
+        let formula = Formula::of_step(self.method, k);
+        for (memory, delta) in self.memory.iter_mut().zip([&last.dq, &last.dv]) {
+            match &formula {
+                Some(formula) => {
+                    for (k, &delta) in delta.iter().enumerate() {
+                        formula.remember(delta, memory, k);
+                    }
+                }
+                // Increments that a formula to come starts from, newest first.
+                None => {
+                    if let Some(oldest) = memory.last_mut() {
+                        oldest.copy_from_slice(delta);
+                        memory.rotate_right(1);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Estimated error of the step that was just made from `from`, relative to the scene's scale;
+    /// zero without an estimate.
+    pub fn error(&mut self, from: &Stage<S>, h: f64, scale: &Scale) -> f64 {
+        match (&mut self.coupled, &mut self.estimate) {
+            (Some(newton), Some(estimate)) => {
+                estimate.error(newton, (from, &self.stages), h, scale)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Adds the work of the estimates.
+    pub fn count(&self, counts: &mut WorkCounts) {
+        if let Some(estimate) = &self.estimate {
+            estimate.count(counts);
+        }
+    }
+}

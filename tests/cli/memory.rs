@@ -1,0 +1,122 @@
+//! Motions and files that are larger than memory, and optimisations in little of it.
+
+use crate::program::{HAMMER, expect, json, optimum, read, scratch};
+use serde_json::{Value, json};
+use std::path::Path;
+
+fn write(directory: &Path, document: &Value) {
+    std::fs::write(directory.join("scene.json"), document.to_string()).expect("written");
+}
+
+fn hammer() -> Value {
+    json(&read(Path::new(HAMMER)))
+}
+
+#[test]
+fn an_optimum_in_little_memory_is_the_same() {
+    let at = scratch();
+    expect(0, at.path(), &[HAMMER, "--quiet", "--output", "much"]);
+    let ran = expect(
+        0,
+        at.path(),
+        &[HAMMER, "--memory", "40kB", "--output", "little"],
+    );
+    assert!(ran.out.contains("made again for gradients"), "{}", ran.out);
+    let [much, little] = ["much", "little"].map(|own| optimum(&at.path().join(own)));
+    for key in ["objective", "constraints", "design", "multipliers", "kkt"] {
+        assert!(much[key].is_object(), "{key}");
+        assert_eq!(much[key], little[key], "{key}");
+    }
+    assert_eq!(much["counts"]["recomputed_steps"], 0);
+    let again = little["counts"]["recomputed_steps"].as_u64();
+    assert!(again.is_some_and(|steps| steps > 0), "{again:?}");
+    let told = expect(
+        0,
+        at.path(),
+        &["explain", HAMMER, "--memory", "40kB", "--json"],
+    );
+    let told = json(&told.out);
+    assert!(told["recomputed"].as_u64() > Some(0), "{told}");
+    assert!(told["stretch"].is_null());
+}
+
+#[test]
+fn sizes_are_understood_or_refused() {
+    let at = scratch();
+    for size in ["much", "0", "1e3", "5 parsecs"] {
+        let ran = expect(2, at.path(), &["simulate", HAMMER, "--memory", size]);
+        assert!(ran.err.contains("500MB or 2GiB"), "{}", ran.err);
+    }
+    expect(0, at.path(), &["simulate", HAMMER, "--memory", "2 GiB"]);
+}
+
+/// A motion of a million steps is explained by its first stretch.
+#[test]
+fn a_long_motion_is_explained_from_its_first_stretch() {
+    let at = scratch();
+    let mut document = hammer();
+    document["simulation"]["steps"] = json!(1_000_000);
+    write(at.path(), &document);
+    let told = expect(
+        0,
+        at.path(),
+        &["explain", "scene.json", "--memory", "100MB", "--json"],
+    );
+    let told = json(&told.out);
+    assert_eq!(told["steps"], 1_000_000);
+    let stretch = told["stretch"].as_f64().expect("a stretch");
+    assert!(stretch > 0.0 && stretch <= 0.02, "{stretch}");
+    assert!(told["tape_bytes"].as_u64() <= Some(100_000_000), "{told}");
+    assert!(told["recomputed"].as_u64() >= Some(800_000), "{told}");
+    let told = expect(
+        0,
+        at.path(),
+        &["explain", "scene.json", "--memory", "100MB"],
+    );
+    assert!(
+        told.out.contains("estimated from the first"),
+        "{}",
+        told.out
+    );
+}
+
+/// What no machine has is refused before it is asked for.
+#[test]
+fn a_motion_larger_than_memory_is_refused() {
+    let at = scratch();
+    let mut document = hammer();
+    let bodies = document["bodies"].as_object_mut().expect("bodies");
+    for i in 0..1000 {
+        let body = json!({"shape": {"sphere": {"radius": 0.1}}, "mass": 1,
+                          "place": {"at": [0, 0, 10 + i]}});
+        bodies.insert(format!("ball {i}"), body);
+    }
+    document["simulation"]["steps"] = json!(10_000_000);
+    document["simulation"]["samples"] = json!(10_000_000);
+    write(at.path(), &document);
+    for command in ["simulate", "check", "scene.json"] {
+        let arguments = [&[command][..], &["scene.json"]].concat();
+        let arguments = &arguments[..if command == "scene.json" { 1 } else { 2 }];
+        let ran = expect(3, at.path(), arguments);
+        for word in ["TB of memory", "10000001 samples", "/simulation/samples"] {
+            assert!(ran.err.contains(word), "{command}: {}", ran.err);
+        }
+    }
+    let told = expect(0, at.path(), &["explain", "scene.json"]);
+    assert!(told.out.contains("TB of memory"), "{}", told.out);
+}
+
+/// A list that no problem has is refused where it becomes too long.
+#[test]
+fn an_endless_list_is_refused() {
+    let at = scratch();
+    let text = format!("{{\n  \"bodies\": [{}1]}}", "1,".repeat(1_500_000));
+    std::fs::write(at.path().join("scene.json"), text).expect("written");
+    for command in ["simulate", "explain", "check"] {
+        let ran = expect(2, at.path(), &[command, "scene.json"]);
+        for word in ["scene.json:2:2000013", "more than 1000000 entries"] {
+            assert!(ran.err.contains(word), "{}", ran.err);
+        }
+        assert!(ran.err.len() < 1000);
+    }
+}
