@@ -385,3 +385,184 @@ fn implicit_steps_name_the_singular_position_that_they_stall_at() {
     assert!(told.contains("nearly singular there"), "{told}");
     assert!(told.contains("constraint of joint"), "{told}");
 }
+
+/// A parallelogram of rods of 1 m that stands upright and turns at this speed (rad/s), without gravity: its
+/// speed stays as it is, and it lies in a line, where its rods could fold, after quarter turns.
+fn turning_parallelogram(speed: f64, simulation: &Value) -> Value {
+    let half = std::f64::consts::FRAC_PI_2;
+    let rod = |place: Value, linear: f64, angular: f64| {
+        json!({"shape": {"rod": {"length": 1, "radius": 0.02}}, "mass": 1,
+               "points": {"a": [-0.5, 0, 0], "b": [0.5, 0, 0]}, "place": place,
+               "velocity": {"linear": [linear, 0, 0], "angular": [0, 0, angular]}})
+    };
+    let upright =
+        |at: f64| json!({"put": "a", "at": [at, 0, 0], "turn": {"axis": [0, 0, 1], "angle": half}});
+    let hinge = |a: &str, b: &str, at: Value| json!({"revolute": {"between": [a, b], "at": at, "axis": [0, 0, 1]}});
+    let rotation = |body: &str| json!({"final": {"rotation": {"body": body, "axis": [0, 0, 1]}}});
+    json!({
+        "version": 1, "name": "turning parallelogram", "gravity": [0, 0, 0],
+        "bodies": {"in": rod(upright(0.0), -0.5 * speed, speed),
+                   "coupler": rod(json!({"put": "a", "at": "in.b"}), -speed, 0.0),
+                   "out": rod(upright(1.0), -0.5 * speed, speed)},
+        "joints": {"A": hinge("in", "ground", json!([0, 0, 0])),
+                   "B": hinge("coupler", "in", json!("in.b")),
+                   "C": hinge("coupler", "out", json!("coupler.b")),
+                   "D": hinge("out", "ground", json!([1, 0, 0]))},
+        "simulation": simulation,
+        "functions": {"in": rotation("in"), "out": rotation("out"),
+                      "energy": {"integral": {"energy": "kinetic"}},
+                      "acceleration": {"final": {"acceleration": {"body": "coupler", "direction": [0, 1, 0]}}}},
+        "variables": {"mass": {"path": "/bodies/out/mass", "lower": 0.1},
+                      "speed": {"path": "/bodies/in/velocity/angular/2", "lower": 0.1}}
+    })
+}
+
+/// Largest error of a run of the turning parallelogram for `duration`, each relative to its scale.
+fn error_of_turning(speed: f64, duration: f64, more: &Value) -> Result<f64, IntegrationFailure> {
+    let mut simulation = json!({"duration": duration});
+    for (key, value) in more.as_object().expect("settings") {
+        simulation[key] = value.clone();
+    }
+    let problem = problem(&turning_parallelogram(speed, &simulation));
+    let run = simulate(&problem, &problem.start())?;
+    let angle = std::f64::consts::FRAC_PI_2 + speed * duration;
+    // Two rods about their ends, with a radius of 0.02 m, and the coupler.
+    let energy = 0.5 * (2.0 * (1.0 / 3.0 + 0.02 * 0.02 / 4.0) + 1.0) * speed * speed;
+    let exact = [
+        (angle, angle),
+        (angle, angle),
+        (energy * duration, energy * duration),
+        (-speed * speed * angle.sin(), speed * speed),
+    ];
+    let errors = exact.iter().enumerate().map(|(f, (exact, scale))| {
+        let error = (run.at.function(f).value - exact) / scale.max(1.0);
+        assert!(error.is_finite());
+        error.abs()
+    });
+    let (open, slips) = run.constraint_drift();
+    let all = errors.chain([open, slips / speed.max(1.0)]);
+    Ok(all.fold(0.0, f64::max))
+}
+
+/// Distances from a singular position, on both sides.
+fn distances(count: i32) -> impl Iterator<Item = f64> {
+    (0..count).flat_map(move |k| {
+        let d = 10.0_f64.powf(-13.0 * f64::from(k) / f64::from(count - 1)) * 0.3;
+        [d, -d]
+    })
+}
+
+/// Runs that end at all distances from a singular position are as accurate as others: the last step leaps
+/// over it.
+#[test]
+fn runs_end_at_singular_positions() {
+    let half = std::f64::consts::FRAC_PI_2;
+    for d in distances(30).chain([0.0]) {
+        let error = error_of_turning(1.0, half + d, &json!({}));
+        assert!(error.as_ref().is_ok_and(|&e| e < 3e-8), "{d:e}: {error:?}");
+    }
+    for d in distances(4).chain([0.0]) {
+        for tolerance in [1e-5, 1e-7, 1e-11, 1e-13] {
+            let more = json!({"tolerance": tolerance, "samples": 100});
+            let error = error_of_turning(1.0, 3.0 * half + d, &more);
+            let most = 300.0 * tolerance + 3e-9;
+            assert!(
+                error.as_ref().is_ok_and(|&e| e < most),
+                "{d:e}, {tolerance:e}: {error:?}"
+            );
+        }
+    }
+}
+
+/// The same for speeds that bring the end of the same duration there, after some passages.
+#[test]
+fn any_speed_passes_singular_positions() {
+    let half = std::f64::consts::FRAC_PI_2;
+    for (k, d) in distances(30).enumerate() {
+        let speed = (half * (1 + 2 * (k % 4)) as f64 + d) / 1.5;
+        let error = error_of_turning(speed, 1.5, &json!({}));
+        assert!(
+            error.as_ref().is_ok_and(|&e| e < 3e-7),
+            "{speed}, {d:e}: {error:?}"
+        );
+    }
+}
+
+/// Equal steps, which cannot keep away from singular positions, are accurate or refused.
+#[test]
+fn given_steps_are_accurate_or_refused_at_singular_positions() {
+    let half = std::f64::consts::FRAC_PI_2;
+    let methods = [
+        (json!("dop853"), 1e-6),
+        (json!({"radau": {"stages": 3}}), 1e-5),
+        (json!({"radau": {"stages": 2}}), 1e-4),
+        (json!({"bdf": {"order": 2}}), 3e-2),
+        (json!({"generalised_alpha": {"radius": 0.8}}), 3e-2),
+    ];
+    let (mut accurate, mut refused) = (0, 0);
+    for (method, most) in &methods {
+        for d in distances(5).chain([0.0]) {
+            for steps in [30, 200] {
+                let more = json!({"method": method, "steps": steps});
+                match error_of_turning(1.0, half + d, &more) {
+                    Ok(error) => {
+                        assert!(error < *most, "{method}, {steps} steps, {d:e}: {error:e}");
+                        accurate += 1;
+                    }
+                    Err(_) => refused += 1,
+                }
+            }
+        }
+    }
+    assert!(accurate >= 30 && refused >= 10, "{accurate}, {refused}");
+}
+
+/// Derivatives of a run that ends in a singular position are those of the numbers that it gives, and those of
+/// the motion.
+#[test]
+fn derivatives_reach_over_singular_positions() {
+    let half = std::f64::consts::FRAC_PI_2;
+    let at_the_end = |d: f64, only_the_end: bool| {
+        let mut file = turning_parallelogram(1.0, &json!({"duration": half + d}));
+        if only_the_end {
+            let functions = file["functions"].as_object_mut().expect("functions");
+            functions.retain(|name, _| name == "acceleration");
+        }
+        problem(&file)
+    };
+    for (d, only_the_end) in [(0.0, false), (1e-6, false), (-1e-3, false), (0.0, true)] {
+        let problem = at_the_end(d, only_the_end);
+        for derivative in check(&problem, &problem.start()).expect("runs") {
+            let apart = (derivative.adjoint - derivative.complex_step).abs();
+            assert!(apart <= 2e-9, "{d:e}: {derivative:?}");
+        }
+    }
+}
+
+/// Whether rows of four-bars pass their singular positions does not depend on the tolerance, and the error
+/// follows it down to round-off.
+#[test]
+fn every_tolerance_passes_singular_positions() {
+    for (n, steps, exact) in [
+        (1, 25, [0.478_385_057_8, 0.878_150_178_8]),
+        (2, 37, [0.328_458_111_5, 0.944_518_538_2]),
+        (10, 7, [0.204_353_561, 0.978_897_145_8]),
+    ] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let path = path.join(format!("problems/benchmarks/four_bars_{n}.json"));
+        for k in 0..steps {
+            let tolerance = 10.0_f64.powf(-4.0 - 9.0 * f64::from(k) / f64::from(steps - 1));
+            let change = format!("/simulation/tolerance={tolerance:e}");
+            let change = Override::parse(&change).expect("an override");
+            let problem = Problem::load(&path, &[change]).expect("no faults");
+            let run = simulate(&problem, &[]).unwrap_or_else(|e| panic!("{n}, {tolerance:e}: {e}"));
+            for (f, exact) in exact.iter().enumerate() {
+                let error = (run.at.function(f).value - exact).abs();
+                assert!(
+                    error <= 500.0 * tolerance + 2e-9,
+                    "{n}, {tolerance:e}: {error:e}"
+                );
+            }
+        }
+    }
+}

@@ -393,3 +393,91 @@ fn the_method_that_costs_less_is_chosen_over_decades() {
     let worst = shares(cases);
     println!("worst share {worst:.2}");
 }
+
+/// A bar on a hinge and a spring: equal explicit steps that are too large for the spring are refused where the
+/// motion is lost, whatever the damping.
+#[test]
+fn explicit_steps_that_are_too_large_are_refused() {
+    let (mut refused, mut kept) = (0, 0);
+    for stiffness in [1e2, 1e4, 1e5, 1e6, 1e8] {
+        for damping in [0.0, 10.0, 1e3] {
+            for steps in [30, 100, 400] {
+                let file = serde_json::json!({
+                    "version": 1, "name": "sprung bar", "gravity": [0, -9.81, 0],
+                    "bodies": {"bar": {"shape": {"box": {"size": [1, 0.1, 0.1]}}, "mass": 1,
+                                       "place": {"at": [0.5, 0, 0]}}},
+                    "joints": {"hinge": {"revolute": {"between": ["bar", "ground"], "at": [0, 0, 0],
+                                                      "axis": [0, 0, 1]}}},
+                    "loads": {"spring": {"spring": {"between": ["bar", "ground"],
+                                                    "at": [[0.5, 0, 0], [1, 1, 0]], "rest_length": 1,
+                                                    "stiffness": stiffness, "damping": damping}}},
+                    "simulation": {"duration": 10, "steps": steps, "method": "dop853"},
+                    "functions": {"speed": {"ks": {"of": {"speed": {"body": "bar"}}, "rho": 1}}}
+                });
+                let problem =
+                    Problem::parse(&file.to_string(), "bar.json", &[]).expect("no faults");
+                match simulate(&problem, &[]) {
+                    Err(failure) => {
+                        let told = failure.to_string();
+                        let named = ["too large", "stiff", "not finite"];
+                        assert!(named.iter().any(|name| told.contains(name)), "{told}");
+                        refused += 1;
+                    }
+                    // No energy comes from anywhere: the bar is no faster than the spring can make it.
+                    Ok(run) => {
+                        let most = (3.0 * (9.81 + stiffness)).sqrt();
+                        let speed = run.at.function(0).value;
+                        assert!(
+                            speed < most,
+                            "{stiffness:e}, {damping}, {steps}: {speed} > {most}"
+                        );
+                        kept += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(refused >= 10 && kept >= 10, "{refused}, {kept}");
+}
+
+/// How small a step may become has to do with the scene, not with how long it is looked at.
+#[test]
+fn long_durations_are_simulated_with_any_tolerance() {
+    for (duration, tolerance) in [
+        (1e3, 1e-9),
+        (1e9, 1e-9),
+        (1e9, 1e-13),
+        (1e-9, 1e-13),
+        (1e15, 1e-6),
+    ] {
+        let spin = 10.0 / duration;
+        let file = serde_json::json!({
+            "version": 1, "name": "bar", "gravity": [0, 0, 0],
+            "bodies": {"bar": {"shape": {"box": {"size": [1, 0.1, 0.1]}}, "mass": 1,
+                               "place": {"at": [0.5, 0, 0]},
+                               "velocity": {"linear": [0, 0.5 * spin, 0], "angular": [0, 0, spin]}}},
+            "joints": {"hinge": {"revolute": {"between": ["bar", "ground"], "at": [0, 0, 0],
+                                              "axis": [0, 0, 1]}}},
+            "simulation": {"duration": duration, "tolerance": tolerance},
+            "functions": {"angle": {"final": {"rotation": {"body": "bar", "axis": [0, 0, 1]}}}}
+        });
+        let mut falling = file.clone();
+        let problem = Problem::parse(&file.to_string(), "bar.json", &[]).expect("no faults");
+        let run = simulate(&problem, &[]).unwrap_or_else(|e| panic!("{duration:e}: {e}"));
+        let error = (run.at.function(0).value - 10.0).abs();
+        assert!(
+            error < 100.0 * tolerance + 1e-11,
+            "{duration:e}, {tolerance:e}: {error:e}"
+        );
+        if duration == 1e9 {
+            // It swings more often than steps can be made, and that is what is said.
+            falling["gravity"] = serde_json::json!([0, -9.81, 0]);
+            let problem = Problem::parse(&falling.to_string(), "bar.json", &[]).expect("no faults");
+            let told = simulate(&problem, &[])
+                .map(|_| ())
+                .expect_err("too long")
+                .to_string();
+            assert!(told.contains("makes no headway"), "{told}");
+        }
+    }
+}

@@ -59,9 +59,10 @@ pub fn resolution(
         let share = goal / steps as f64;
         let (mut at, mut total) = (0, 0.0);
         for k in 1..=steps {
-            let next = at + run.grid.step(k).nodes();
-            let (wanted, error) =
-                sum.step(at..next + 1, run.grid.width(k), run.grid.cells(k), share);
+            let step = run.grid.step(k);
+            let next = at + step.nodes();
+            let width = step.end - step.from;
+            let (wanted, error) = sum.step(at..next + 1, width, step.cells, share);
             total += error;
             found.cells[k - 1] = found.cells[k - 1].max(wanted);
             at = next;

@@ -84,6 +84,9 @@ pub fn simulate_by<S: SolveScalar>(
         Err(
             IntegrationFailure::NotFinite { time, .. }
             | IntegrationFailure::Projection { time, .. }
+            | IntegrationFailure::SingularPosition { time, .. }
+            | IntegrationFailure::Opened { time, .. }
+            | IntegrationFailure::Unstable { time, .. }
             | IntegrationFailure::Singular { time, .. },
         ) if matches!(settings.spacing, Spacing::Steps(_)) => {
             let reason = format!("explicit steps of this size fail at t = {time:.4} s");

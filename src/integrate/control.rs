@@ -16,8 +16,28 @@ const SHRINK: f64 = 0.2;
 const GROW: f64 = 6.0;
 /// Steps that are tried near a singular position, relative to the one that failed.
 const LEAPS: [f64; 8] = [0.7, 1.3, 0.5, 1.8, 0.3, 2.5, 0.15, 4.0];
-/// Smallest step, as a part of the duration.
+/// Smallest step, as a part of the time in which the scene crosses its length, and of the time that
+/// has passed, whose round-off it must exceed.
 const SMALLEST: f64 = 1e-12;
+const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+/// Where in a step that leaps over a singular position this stands: far from the stages, and from those
+/// of the two halves of the step; and where else, if that fails. A leap may exceed the step that the
+/// error allows by a factor; the step before it leaves a part of such a step to the singular
+/// position; and one further away than so many steps is not looked at.
+const LEAP_AT: [f64; 5] = [0.455, 0.4, 0.52, 0.73, 0.36];
+const LEAP_MORE: f64 = 1.2;
+const LEAP_FROM: f64 = 0.42;
+const LOOK_AHEAD: f64 = 1.4;
+/// Part of the way to the singular position that is free to end in.
+const FREE: f64 = 0.6;
+/// Error of a step, relative to the tolerance, that tells of a stage at the singular position.
+const STRUCK: f64 = 30.0;
+/// Round-off in the error of a step from near a singular position, relative to the cube of its
+/// magnification there, and at most.
+const NOISE: f64 = 200.0 * f64::EPSILON;
+const MOST_NOISE: f64 = 1e-10;
+/// Steps that are given up for others that end further away from a singular position.
+const KEPT_AWAY: usize = 3;
 /// Most tries of a run whose steps follow the error, and most of them that are rejected, times the
 /// unknowns of the accelerations. The pace is looked at every so many tries: a run that would need more
 /// at its latest pace is given up at once. A mechanism that is nearly locked rejects a quarter of its
@@ -158,7 +178,23 @@ fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64>, f64) {
     stops.iter_mut().for_each(|at| *at /= duration);
     stops.retain(|&at| at > 0.0 && at < 1.0);
     stops.sort_by(f64::total_cmp);
-    (stops, widest.max(SMALLEST * 10.0))
+    (stops, widest)
+}
+
+/// Width of the next step where a singular position is expected at the distance `d`, the error allows
+/// steps of `width`, and the motion ends after `rest`: a leap over it, at the fraction `at` of the step,
+/// which may exceed `width` by the factor `more` and reach beyond the end; or a step to where the leap
+/// may begin.
+fn approach(d: f64, width: f64, rest: f64, (at, more): (f64, f64)) -> Option<f64> {
+    let leap = d / at;
+    let short = d - LEAP_FROM * width;
+    if d <= 0.0 || d > LOOK_AHEAD * width || rest < FREE * d {
+        None
+    } else if leap <= more * width {
+        Some(leap)
+    } else {
+        (short < rest).then_some(short)
+    }
 }
 
 /// Gives the width of one step after the other, in fractions of the duration.
@@ -176,6 +212,17 @@ pub struct Controller {
     widest: f64,
     /// Width that was wanted where a stop cut the step.
     uncut: Option<f64>,
+    /// Smallest width, and the part of it that does not depend on the time.
+    least: f64,
+    shortest: f64,
+    /// Where a singular position is expected, and the magnification of round-off at the step's start.
+    ahead: Option<f64>,
+    magnified: f64,
+    /// Whether the step reaches beyond the end.
+    beyond: bool,
+    /// Whether the step leaps over a singular position, and how many leaps failed before.
+    leaping: bool,
+    leaps: usize,
     /// Width of the step that could not be made, and how many others were tried since.
     leap: Option<(f64, usize)>,
     latest: f64,
@@ -228,6 +275,10 @@ impl Controller {
     ) -> Self {
         let (stops, widest) = load_steps(model, duration);
         let spacing = &settings.spacing;
+        // The time in which the scene crosses its length.
+        let swing = (scale.length / scale.floor[0]).min(1.0 / scale.floor[1]) / duration;
+        let least = SMALLEST * swing.min(1.0);
+        let widest = widest.max(10.0 * least);
         let plan = match spacing {
             Spacing::Steps(steps) => Plan::Given {
                 grid: Grid::uniform(*steps),
@@ -238,12 +289,10 @@ impl Controller {
                 next: 1,
             },
             Spacing::Tolerance(tolerance) => {
-                // The time in which the scene crosses its length, made small by the tolerance.
-                let swing = (scale.length / scale.floor[0]).min(1.0 / scale.floor[1]);
-                let width = swing / duration * tolerance.powf(1.0 / order as f64);
+                let width = swing * tolerance.powf(1.0 / order as f64);
                 Plan::Chosen {
                     tolerance: *tolerance,
-                    width: width.clamp(SMALLEST, 0.1),
+                    width: width.clamp(least, 0.1),
                 }
             }
         };
@@ -256,6 +305,13 @@ impl Controller {
             stops,
             widest,
             uncut: None,
+            least,
+            shortest: least,
+            ahead: None,
+            magnified: 1.0,
+            beyond: false,
+            leaping: false,
+            leaps: 0,
             leap: None,
             latest: 0.0,
             largest: 0.0,
@@ -308,7 +364,8 @@ impl Controller {
                 if rest <= 0.0 {
                     return None;
                 }
-                if *width < SMALLEST {
+                self.least = self.shortest.max(ROUND_OFF * reached);
+                if *width < self.least.min(rest) {
                     self.stopped = Some(Stop::TooSmall);
                     return None;
                 }
@@ -331,13 +388,29 @@ impl Controller {
                     self.looked = (reached, self.refused);
                 }
                 *width = width.min(self.widest);
-                let next = self.stops.iter().find(|&&at| at > reached + SMALLEST);
+                let ahead = self.ahead.map(|at| at - reached);
+                let more = match self.rejected && self.leaps == 0 {
+                    true => 1.0,
+                    false => LEAP_MORE,
+                };
+                let leap = (LEAP_AT[self.leaps], more);
+                let planned = ahead.and_then(|d| approach(d, *width, rest, leap));
+                self.leaping = planned > ahead;
+                if let Some(planned) = planned {
+                    self.uncut.get_or_insert(*width);
+                    *width = planned;
+                }
+                let least = self.least;
+                let next = self.stops.iter().find(|&&at| at > reached + least);
                 if let Some(at) = next.filter(|&&at| at < reached + *width) {
                     self.uncut.get_or_insert(*width);
                     *width = at - reached;
                 }
-                // Two equal steps rather than a whole one and a remainder.
-                if *width >= rest * (1.0 - 1e-10) {
+                self.beyond = planned.is_some() && *width > rest;
+                if planned.is_some() {
+                    // It was said above how far the step goes.
+                } else if *width >= rest * (1.0 - 1e-10) {
+                    // Two equal steps rather than a whole one and a remainder.
                     *width = rest;
                 } else if *width > 0.5 * rest {
                     *width = 0.5 * rest;
@@ -349,11 +422,12 @@ impl Controller {
         }
     }
 
-    /// The end of a step of `width` from `reached`; the last one ends at 1 exactly.
+    /// The end of a step of `width` from `reached`; the last one ends at 1 exactly, or beyond it if it
+    /// leaps over a singular position.
     pub fn end(&self, reached: f64, width: f64) -> f64 {
         match &self.plan {
             Plan::Given { grid, next } => grid.ends()[*next],
-            Plan::Chosen { .. } if width >= 1.0 - reached => 1.0,
+            Plan::Chosen { .. } if width >= 1.0 - reached && !self.beyond => 1.0,
             Plan::Chosen { .. } => reached + width,
         }
     }
@@ -366,14 +440,22 @@ impl Controller {
                 true
             }
             Plan::Chosen { tolerance, width } => {
-                let relative = error / *tolerance;
+                let noise = (NOISE * self.magnified.powi(3)).min(MOST_NOISE);
+                let relative = error / tolerance.max(noise);
                 self.latest = error;
                 let most = if self.rejected { 1.0 } else { GROW };
                 let factor = (SAFETY * relative.powf(-self.exponent)).clamp(SHRINK, most);
                 if relative <= 1.0 {
                     self.factor = factor;
                     true
+                } else if self.leaping && relative > STRUCK && self.leaps + 1 < LEAP_AT.len() {
+                    self.leaps += 1;
+                    *width = self.uncut.take().unwrap_or(*width);
+                    self.rejected = true;
+                    self.refused += 1;
+                    false
                 } else {
+                    self.leaps = 0;
                     self.uncut = None;
                     *width *= if relative.is_finite() {
                         factor.min(SAFETY)
@@ -391,6 +473,7 @@ impl Controller {
     /// Records that the step was made.
     pub fn accept(&mut self) {
         self.leap = None;
+        self.leaps = 0;
         self.largest = self.largest.max(self.latest);
         self.rejected = false;
         match &mut self.plan {
@@ -417,7 +500,7 @@ impl Controller {
                 *tried += 1;
                 self.rejected = true;
                 self.refused += 1;
-                *width < SMALLEST
+                *width < self.least
             }
         }
     }
@@ -425,6 +508,47 @@ impl Controller {
     /// Why the march ended before the end of its motion, if it did.
     pub fn stopped(&self) -> Option<Stop> {
         self.stopped
+    }
+
+    /// Whether a step may be given up for another that keeps away from a singular position.
+    pub fn may_keep_away(&self) -> bool {
+        let chosen = matches!(self.plan, Plan::Chosen { .. });
+        chosen && self.leap.is_none_or(|(_, tried)| tried < KEPT_AWAY)
+    }
+
+    /// As [`Controller::give_up`] for a step that ended too close to a singular position, expected at the
+    /// fraction `at` of the duration.
+    pub fn give_up_near(&mut self, at: f64) -> bool {
+        match &mut self.plan {
+            Plan::Given { .. } => true,
+            Plan::Chosen { width, .. } => {
+                *width = self.uncut.take().unwrap_or(*width);
+                let (_, tried) = self.leap.get_or_insert((*width, 0));
+                *tried += 1;
+                if *tried > KEPT_AWAY {
+                    *width *= SHRINK;
+                }
+                self.ahead = Some(at);
+                self.rejected = true;
+                self.refused += 1;
+                *width < self.least
+            }
+        }
+    }
+
+    /// Takes notice of how round-off is magnified at the end of the step made last, and of where a
+    /// singular position is expected, if one is.
+    pub fn expect(&mut self, magnified: f64, ahead: Option<f64>) {
+        self.magnified = magnified;
+        self.ahead = ahead.or(self.ahead);
+    }
+
+    /// Error that steps may have: the tolerance, or what those that are given had so far.
+    pub fn allowed(&self) -> f64 {
+        match &self.plan {
+            Plan::Given { .. } => self.largest.max(self.latest),
+            Plan::Chosen { tolerance, .. } => *tolerance,
+        }
     }
 
     /// Largest error of an accepted step, relative to the scale.

@@ -46,6 +46,42 @@ pub enum IntegrationFailure {
         /// Step number, from 1.
         step: usize,
     },
+    /// A step ends too close to a singular position for its motion to be known to the accuracy.
+    #[error(
+        "the mechanism is at a singular position at t = {time:.6e} s (step {step}), where the joints do \
+         not determine its motion: a step that ends there is not accurate"
+    )]
+    SingularPosition {
+        /// Time of the step's end (s).
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+    },
+    /// The motion inside a step leaves the joints.
+    #[error(
+        "the joints open inside the step that ends at t = {time:.6e} s (step {step}), by more than the \
+         accuracy allows: the step is too large for the motion, or passes a singular position"
+    )]
+    Opened {
+        /// Time of the step's end (s).
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+    },
+    /// A given step is far too large.
+    #[error(
+        "the explicit steps are too large at t = {time:.6e} s (step {step}): the estimated error of the \
+         step is {error:.1e} of the scene's lengths and speeds; take more steps, a tolerance, or a radau \
+         method"
+    )]
+    Unstable {
+        /// Time of the step's end (s).
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+        /// Estimated error, relative to the scene's lengths and speeds.
+        error: f64,
+    },
     /// Stability, not accuracy, bounds the steps of an explicit method.
     #[error(
         "the scene is stiff at t = {time:.6e} s (step {step}): an explicit method needs steps far \

@@ -2,8 +2,9 @@
 
 use super::quadrature::Step;
 
-/// Ends of the steps as fractions τ_0 = 0 < τ_1 < … < τ_N = 1 of the duration T, so that t_k = τ_k T
-/// moves with the duration and with nothing else.
+/// Ends of the steps as fractions τ_0 = 0 < τ_1 < … < τ_N of the duration T, so that t_k = τ_k T
+/// moves with the duration and with nothing else. τ_N is 1; it is larger where the motion ends too close
+/// to a singular position for a step to end there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     ends: Vec<f64>,
@@ -14,8 +15,8 @@ pub struct Grid {
     cells: Vec<u32>,
 }
 
-/// Distance of fractions below which they are the same instant.
-const SAME: f64 = 1e-13;
+/// Distance of fractions below which they are the same instant: some round-off of a fraction.
+const SAME: f64 = 1e-15;
 
 impl Grid {
     /// `steps` steps of equal size.
@@ -50,11 +51,16 @@ impl Grid {
         }
     }
 
-    /// The grid with these ends, if they rise from 0 to 1.
+    /// The grid with these ends, if they rise from 0 and the last step alone reaches 1 or beyond.
     pub fn from_ends(ends: Vec<f64>) -> Option<Self> {
         let rises = ends.windows(2).all(|pair| pair[0] < pair[1]);
-        let whole = ends.len() > 1 && ends[0] == 0.0 && ends[ends.len() - 1] == 1.0;
-        (rises && whole).then_some(Self {
+        let whole = match &ends[..] {
+            [first, .., before, last] => *first == 0.0 && *before < 1.0 && *last >= 1.0,
+            [first, last] => *first == 0.0 && *last >= 1.0,
+            _ => false,
+        };
+        let finite = ends.iter().all(|end| end.is_finite());
+        (rises && whole && finite).then_some(Self {
             ends,
             equal: None,
             cells: Vec::new(),
@@ -103,11 +109,11 @@ impl Grid {
         self.cells.get(k - 1).map_or(1, |&cells| cells as usize)
     }
 
-    /// Step k = 1 … N with its cells.
+    /// Step k = 1 … N with its cells, as far as the motion goes.
     pub fn step(&self, k: usize) -> Step {
         Step {
             from: self.ends[k - 1],
-            end: self.ends[k],
+            end: self.ends[k].min(1.0),
             cells: self.cells(k),
         }
     }
@@ -124,10 +130,16 @@ impl Grid {
         for pair in self.ends.windows(2) {
             ends.extend([0.5 * (pair[0] + pair[1]), pair[1]]);
         }
+        let mut cells: Vec<u32> = self.cells.iter().flat_map(|&cells| [cells; 2]).collect();
+        // Half a step that begins after the motion's end is of no use.
+        if ends[ends.len() - 2] >= 1.0 {
+            ends.pop();
+            cells.truncate(ends.len() - 1);
+        }
         Self {
             ends,
             equal: self.equal.map(|width| 0.5 * width),
-            cells: self.cells.iter().flat_map(|&cells| [cells; 2]).collect(),
+            cells,
         }
     }
 

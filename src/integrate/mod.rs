@@ -13,6 +13,7 @@ pub mod replay;
 pub mod rows;
 pub mod schedule;
 pub mod settings;
+mod singular;
 pub mod trajectory;
 
 pub use choice::{Chosen, simulate_by};

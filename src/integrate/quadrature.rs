@@ -129,6 +129,19 @@ pub struct Due {
     pub shown: bool,
 }
 
+/// Whether `samples` asks for an instant inside a step of so many `cells` that ends at `end`, where `next`
+/// counts the equal intervals that were taken.
+pub(super) fn looks_inside(samples: Samples, next: usize, (end, cells): (f64, usize)) -> bool {
+    let before = |count: usize| {
+        count > 0 && next <= count && !super::grid::within(end, next as f64 / count as f64)
+    };
+    match samples {
+        Samples::StepEnds => !super::grid::within(end, 1.0),
+        Samples::Uniform(count) => before(count),
+        Samples::Quadrature(count) => cells > 0 || before(count) || !super::grid::within(end, 1.0),
+    }
+}
+
 /// The instants that `samples` asks for in a step, in rising order without its start; `next` counts the
 /// equal intervals that were taken.
 pub(super) fn due(

@@ -285,20 +285,24 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         let mut rhs = std::mem::take(&mut self.rhs);
         let nv = self.numbering.velocities();
         rhs.fill(S::zero());
-        joints::rates_from_gradients(
-            self.model,
-            self.numbering,
-            &self.gradients,
-            v,
-            &mut rhs[nv..],
-        );
-        let at = (&self.motions[..], self.time);
-        joints::add_driven_rates(self.model, self.numbering, at, &mut rhs[nv..]);
+        self.rates(v, &mut rhs[nv..]);
         rhs[nv..].iter_mut().for_each(|x| *x = -*x);
         self.solve(&mut rhs);
         delta.copy_from_slice(&rhs[..nv]);
         sigma.copy_from_slice(&rhs[nv..]);
         self.rhs = rhs;
+    }
+
+    /// Rates G v + Φ_t of the constraints at the velocities `v`, where the solver stands.
+    pub fn rates(&self, v: &[S], out: &mut [S]) {
+        let (model, numbering) = (self.model, self.numbering);
+        joints::rates_from_gradients(model, numbering, &self.gradients, v, out);
+        joints::add_driven_rates(model, numbering, (&self.motions, self.time), out);
+    }
+
+    /// Whether row i is a length (m), as those of points are, rather than the product of two axes.
+    pub fn is_length(&self, i: usize) -> bool {
+        self.gradients[i].force.iter().any(|x| x.re() != 0.0)
     }
 
     /// Constraints Φ where the solver stands.

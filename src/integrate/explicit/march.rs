@@ -10,6 +10,7 @@ use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Place, place};
 use crate::integrate::quadrature;
 use crate::integrate::settings::{Method, Samples, Settings, Spacing};
+use crate::integrate::singular::{self, Steadiness};
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::{close, watch};
 use crate::linalg::{SingularMatrix, SolveScalar};
@@ -19,6 +20,14 @@ use crate::system::initial::InitialState;
 
 /// Correction of the velocities, relative to their scale, that is none of the step's error.
 const LOST: f64 = 0.01;
+/// Estimated error of a given step, relative to the scale, that is no step's any more.
+const UNSTABLE: f64 = 0.1;
+/// Where in a step it is looked at whether the joints stay closed, and by how much they may open: relative
+/// to the error that steps may have, of which so much is round-off.
+const LOOKED_AT: [f64; 2] = [0.2, 0.75];
+const OPEN: f64 = 100.0;
+const OPEN_GIVEN: f64 = 1e3;
+const LEAST_ERROR: f64 = 1e-10;
 
 /// Integrates from a consistent start.
 ///
@@ -41,12 +50,19 @@ pub fn march<S: SolveScalar>(
     };
     let scale = Scale::of(model, numbering, &start, duration.re());
     let mut controller = Controller::new(settings, ORDER, &scale, (model, duration.re()));
-    let block = Block::new(numbering, settings.samples);
+    let leap = stepper.field.closes_loops() && !matches!(settings.spacing, Spacing::Steps(_));
+    let block = Block::new(numbering, settings.samples, leap);
     let memory = (settings.memory, block.room());
     let tape = trajectory::Tape::Explicit(Tape::new(block, memory, controller.steps()));
     let mut run = Trajectory::start(numbering.clone(), Method::Dop853, duration, start, tape);
     run.grid = controller.growing();
     run.take_cells(&settings.spacing, settings.samples);
+    let mut steadiness = Steadiness::new(numbering);
+    let given = !matches!(settings.spacing, Spacing::Tolerance(_));
+    let most = singular::most(match settings.spacing {
+        Spacing::Tolerance(tolerance) => Some(tolerance),
+        Spacing::Steps(_) | Spacing::Frozen(_) => None,
+    });
     // Kept steps were found good where they were chosen, and are judged by their error.
     let mut stiffness = match settings.spacing {
         Spacing::Frozen(_) => None,
@@ -57,6 +73,16 @@ pub fn march<S: SolveScalar>(
     let mut next = 1;
     // The history of steps that are chosen on the way grows with them.
     reserve(&mut run, settings);
+    if stepper.field.closes_loops() {
+        let before = stepper.field.memory();
+        stepper.field.stand(&from.q, &from.v, duration * 0.0);
+        if stepper.field.factorise().is_ok() {
+            let steady = steadiness.of(&mut stepper.field, &scale);
+            steadiness.see(0.0, steady);
+        }
+        // Steps that are made again begin without it.
+        stepper.field.restore(&before);
+    }
     while let Some(width) = controller.next(run.grid.reached()) {
         let h = duration * width;
         let end = controller.end(run.grid.reached(), width);
@@ -64,25 +90,59 @@ pub fn march<S: SolveScalar>(
             .stages(from.view(), (duration * run.grid.reached(), h))
             .map(|()| error(&mut stepper, &scale, from.view(), h))
             .and_then(|error| {
-                let accepted = controller.judge(error);
-                if accepted {
-                    stepper.finish(&mut to, duration * end)?;
-                    if leaves_branch(&mut stepper, &scale, from.view()) {
-                        return Err(StepFailure::Projection);
-                    }
+                // A step that may be refused for another is judged by the tolerance.
+                if given && (error > UNSTABLE || error.is_nan()) {
+                    return Err(StepFailure::Inaccurate(error));
                 }
-                Ok(accepted)
+                if !controller.judge(error) {
+                    return Ok(None);
+                }
+                stepper.finish(&mut to, duration * end)?;
+                if !stepper.field.closes_loops() {
+                    return Ok(Some(f64::INFINITY));
+                }
+                if leaves_branch(&mut stepper, &scale, from.view()) {
+                    return Err(StepFailure::Projection);
+                }
+                let steady = steadiness.of(&mut stepper.field, &scale);
+                let ahead = steadiness.foresee(end, steady);
+                let close = ahead.filter(|&at| steadiness.too_close(end, at));
+                if let Some(at) = close.filter(|_| controller.may_keep_away()) {
+                    return Err(StepFailure::Close(at));
+                }
+                let errs = given && steadiness.errs(steady, error, controller.largest_error());
+                if steadiness.magnified(steady) > most || errs {
+                    return Err(StepFailure::Close(ahead.unwrap_or(end)));
+                }
+                let begin = run.grid.reached();
+                let cells = run.grid.cells(run.grid.steps() + 1);
+                if quadrature::looks_inside(settings.samples, next, (end, cells)) {
+                    let start = duration * begin;
+                    stepper.dense_stages((from.view(), to.view()), (start, h))?;
+                    let error = controller.allowed().max(LEAST_ERROR);
+                    let open = open(&mut stepper, &scale, from.view(), (start, h));
+                    if open > error * if given { OPEN_GIVEN } else { OPEN } || open.is_nan() {
+                        return Err(StepFailure::Open);
+                    }
+                    stepper.field.stand(&to.q, &to.v, duration * end);
+                }
+                Ok(Some(steady))
             });
         let number = run.grid.steps() + 1;
         run.counts.evaluations += STAGES;
-        match tried {
-            Ok(true) => {}
-            Ok(false) => {
+        let gives_up = match tried {
+            Ok(Some(_)) => false,
+            Ok(None) => {
                 run.counts.rejected += 1;
                 tape_of(&mut run).retry(number, stepper.field.memory());
                 continue;
             }
-            Err(failure) if controller.give_up(failure != StepFailure::NotFinite) => {
+            Err(StepFailure::Close(at)) => controller.give_up_near(at),
+            Err(failure) => controller.give_up(failure != StepFailure::NotFinite),
+        };
+        let steady = match tried {
+            Ok(steady) => steady.unwrap_or(f64::INFINITY),
+            Err(failure) if gives_up => {
                 let time = duration.re() * end;
                 return Err(failed(failure, (model, numbering), (number, time)));
             }
@@ -91,8 +151,16 @@ pub fn march<S: SolveScalar>(
                 tape_of(&mut run).retry(number, stepper.field.memory());
                 continue;
             }
-        }
+        };
         controller.accept();
+        if stepper.data.dense {
+            run.counts.evaluations += super::tableau::ALL - super::tableau::END - 1;
+        }
+        if steady.is_finite() {
+            let ahead = steadiness.foresee(end, steady);
+            steadiness.see(end, steady);
+            controller.expect(steadiness.magnified(steady), ahead);
+        }
         // The equations were left standing at the end of the step.
         watch(model, (&stepper.field.motions, duration * end), number)?;
         run.grid.push(end);
@@ -146,6 +214,18 @@ fn tape_of<S: SolveScalar>(run: &mut Trajectory<S>) -> &mut Tape<S> {
         unreachable!("the tape is that of the explicit method")
     };
     tape
+}
+
+/// How far the motion inside the step leaves the joints, relative to the scene's scale.
+fn open<S: SolveScalar>(
+    stepper: &mut Stepper<S>,
+    scale: &Scale,
+    from: NodeView<S>,
+    (start, h): (S, S),
+) -> f64 {
+    let speeds = scale.speeds(stepper.field.numbering, from.v, &stepper.data.v_raw);
+    let [a, b] = LOOKED_AT.map(|theta| stepper.open(from, (h, theta), start + h * theta, speeds));
+    if a.is_nan() || a > b { a } else { b }
 }
 
 /// Adds the instants of the step that was just accepted.
@@ -235,6 +315,9 @@ pub fn failed<S: SolveScalar>(
             place: describe(model, numbering, singular),
         },
         StepFailure::Projection => IntegrationFailure::Projection { time, step },
+        StepFailure::Close(_) => IntegrationFailure::SingularPosition { time, step },
+        StepFailure::Open => IntegrationFailure::Opened { time, step },
+        StepFailure::Inaccurate(error) => IntegrationFailure::Unstable { time, step, error },
         StepFailure::NotFinite => IntegrationFailure::NotFinite {
             time,
             step,

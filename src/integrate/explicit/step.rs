@@ -24,6 +24,12 @@ pub enum StepFailure {
     Singular(SingularMatrix),
     /// The positions could not be projected onto the constraints.
     Projection,
+    /// The step ends too close to a singular position, expected at this fraction of the duration.
+    Close(f64),
+    /// The motion inside the step leaves the joints.
+    Open,
+    /// The step's estimated error is as large as the motion.
+    Inaccurate(f64),
     /// A value is not finite.
     NotFinite,
 }
@@ -219,6 +225,42 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             return Ok(());
         }
         Err(StepFailure::Projection)
+    }
+
+    /// How far the motion inside the step of size h from `node` leaves the joints at its fraction θ, at
+    /// `time`: the largest |Φ|, relative to the length scale or 1, and |G v + Φ_t|, relative to these
+    /// speeds (m/s, rad/s). The equations are left standing there.
+    pub fn open(
+        &mut self,
+        node: NodeView<S>,
+        (h, theta): (S, f64),
+        time: S,
+        speeds: [f64; 2],
+    ) -> f64 {
+        let (q, v, a) = &mut self.scratch;
+        self.data.view().dense(node, h, theta, [q, v, a]);
+        bodies::bring_to_unit(self.field.numbering, q);
+        self.field.stand(q, v, time);
+        let (_, rows) = self.residual.split_at_mut(v.len());
+        let field = &self.field;
+        let largest = |rows: &[S], [length, angle]: [f64; 2]| {
+            let scaled = rows
+                .iter()
+                .enumerate()
+                .map(|(i, x)| match field.is_length(i) {
+                    true => x.re().abs() / length,
+                    false => x.re().abs() / angle,
+                });
+            // A comparison with NaN keeps the other number.
+            scaled.fold(
+                0.0,
+                |m: f64, x| if x.is_nan() { x } else { m.max(x) + 0.0 * m },
+            )
+        };
+        field.constraints(rows);
+        let positions = largest(rows, [self.length, 1.0]);
+        field.rates(v, rows);
+        positions.max(largest(rows, speeds)) + 0.0 * positions
     }
 
     /// Estimated errors of positions and velocities of the step of size h, Σ h e_i k_i for the

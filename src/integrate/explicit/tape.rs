@@ -27,7 +27,7 @@ pub struct Block<S> {
 impl<S: Scalar> Tape<S> {
     /// The tape of a motion that no gradient is asked for of.
     pub fn none(numbering: &Numbering) -> Self {
-        let block = Block::new(numbering, Samples::StepEnds);
+        let block = Block::new(numbering, Samples::StepEnds, false);
         let room = block.room();
         Self::new(block, (0, room), None)
     }
@@ -35,11 +35,11 @@ impl<S: Scalar> Tape<S> {
 
 impl<S: Scalar> Block<S> {
     /// No step yet. It has room for the stages of the dense output only where samples may stand inside
-    /// steps.
-    pub fn new(numbering: &Numbering, samples: Samples) -> Self {
+    /// steps, as the end of the motion does where steps may `leap` over it.
+    pub fn new(numbering: &Numbering, samples: Samples, leap: bool) -> Self {
         let stages = match samples {
-            Samples::StepEnds | Samples::Uniform(..=1) => STAGES,
-            Samples::Uniform(_) | Samples::Quadrature(_) => ALL,
+            Samples::StepEnds | Samples::Uniform(..=1) if !leap => STAGES,
+            Samples::StepEnds | Samples::Uniform(_) | Samples::Quadrature(_) => ALL,
         };
         Self {
             first: 0,

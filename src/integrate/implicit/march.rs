@@ -10,10 +10,12 @@ use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Grid, Place, place};
 use crate::integrate::quadrature;
 use crate::integrate::settings::{Method, Samples, Settings, Spacing};
+use crate::integrate::singular::{MOST_IMPLICIT, Steadiness};
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::{close, watch};
 use crate::linalg::SolveScalar;
 use crate::model::Model;
+use crate::system::accelerations::Accelerations;
 use crate::system::initial::InitialState;
 use crate::system::{Motion, Numbering, bodies};
 
@@ -128,6 +130,10 @@ fn march_until<S: SolveScalar>(
     let mut motions = Vec::new();
     let watched =
         (model.joints.iter()).any(|joint| !joint.left_out.is_empty() || !joint.drives.is_empty());
+    // Only loops of joints have singular positions.
+    let mut field = Accelerations::new(model, numbering);
+    let loops = field.closes_loops();
+    let mut steadiness = Steadiness::new(numbering);
     while let Some(width) = controller.next(run.grid.reached()) {
         if let Some(stretch) = &stretch
             && run.counts.implicit_work() >= stretch.most
@@ -151,6 +157,23 @@ fn march_until<S: SolveScalar>(
         if !controller.judge(error) {
             retry(&mut run, &mut solver, k);
             continue;
+        }
+        if loops {
+            let last = &solver.stages[count - 1];
+            field.stand(&last.q, &last.v, last.time);
+            let steady = match field.factorise() {
+                Ok(()) => steadiness.of(&mut field, &scale),
+                Err(_) => 0.0,
+            };
+            if steady > 0.0 && steadiness.magnified(steady) <= MOST_IMPLICIT {
+                steadiness.see(end, steady);
+            } else if controller.give_up(true) {
+                let (step, time) = at;
+                return Err(IntegrationFailure::SingularPosition { time, step });
+            } else {
+                retry(&mut run, &mut solver, k);
+                continue;
+            }
         }
         controller.accept();
         let stages = &solver.stages[..count];
@@ -179,6 +202,8 @@ fn march_until<S: SolveScalar>(
     }
     close(&mut run, &controller)?;
     solver.count(&mut run.counts);
+    run.counts.factorisations += field.factorisations;
+    run.counts.solves += field.solves;
     Ok(run)
 }
 

@@ -1,0 +1,160 @@
+//! How close the ends of steps are to singular positions, where constraints that are independent
+//! elsewhere depend on each other.
+//!
+//! At a distance x from such a position, errors of positions, velocities and accelerations are
+//! round-off divided by x, x² and x³: no step may end too close to one, and where the motion passes one
+//! a step leaps over it.
+
+use super::control::Scale;
+use crate::linalg::SolveScalar;
+use crate::system::Numbering;
+use crate::system::accelerations::Accelerations;
+use std::f64::consts::SQRT_2;
+
+/// Number whose multiples have fractions without a pattern.
+const GOLDEN: f64 = 0.618_033_988_749_895;
+/// Steadiness, relative to the largest so far, below which it is looked at where it would vanish.
+const NEAR: f64 = 0.6;
+/// Part of its length that a step keeps away from a singular position.
+const AWAY: f64 = 0.33;
+/// Error of accelerations by round-off at the ends of steps, relative to the tolerance, and the least
+/// tolerance that counts.
+const NOISE: f64 = 10.0;
+const LEAST: f64 = 1e-11;
+/// Largest magnification that any tolerance, and that given steps, may end with.
+const MOST: f64 = 1e3;
+const MOST_GIVEN: f64 = 3e3;
+/// The same for steps of implicit methods, which do not build on accelerations.
+pub const MOST_IMPLICIT: f64 = 1e4;
+/// Magnification from which a given step must not err by more than this, nor by so much more than those
+/// before it.
+const SUSPICIOUS: f64 = 3.0;
+const ERROR: f64 = 1e-6;
+const MORE_ERROR: f64 = 100.0;
+
+/// Steadiness of the ends of steps: the reciprocal of how much the index-1 equations magnify errors of
+/// the constraints' rates. It vanishes where rows depend on each other.
+pub struct Steadiness<S> {
+    largest: f64,
+    /// The last two ends, the latest in front.
+    last: [Option<(f64, f64)>; 2],
+    /// Rates and what answers to them; positions that do not change.
+    rhs: Vec<S>,
+    still: Vec<S>,
+}
+
+impl<S: SolveScalar> Steadiness<S> {
+    /// Before any end.
+    pub fn new(numbering: &Numbering) -> Self {
+        let (nv, nc) = (numbering.velocities(), numbering.constraints());
+        Self {
+            largest: 0.0,
+            last: [None, None],
+            rhs: vec![S::zero(); nv + nc],
+            still: vec![S::zero(); numbering.positions()],
+        }
+    }
+
+    /// The steadiness where the equations stand and were factorised, relative to the scene's scale.
+    pub fn of(&mut self, field: &mut Accelerations<S>, scale: &Scale) -> f64 {
+        let nv = field.numbering.velocities();
+        let (upper, lower) = self.rhs.split_at_mut(nv);
+        upper.fill(S::zero());
+        for (i, rate) in lower.iter_mut().enumerate() {
+            // No combination of rows is to be missed: numbers without a pattern, of both signs.
+            let [size, sign] = [GOLDEN, SQRT_2].map(|x| (x * (i + 1) as f64).fract());
+            let unit = if field.is_length(i) {
+                scale.length
+            } else {
+                1.0
+            };
+            *rate = S::from(unit * (0.5 + size) * if sign < 0.5 { 1.0 } else { -1.0 });
+        }
+        field.solve(&mut self.rhs);
+        let speeds = [scale.length, 1.0];
+        let answer = scale.square(field.numbering, &self.still, &self.rhs[..nv], speeds);
+        1.0 / answer.sqrt()
+    }
+
+    /// How much more than elsewhere errors are magnified where the steadiness is `s`.
+    pub fn magnified(&self, s: f64) -> f64 {
+        (self.largest / s).max(1.0)
+    }
+
+    /// Takes notice of the steadiness `s` at the fraction `at` of the duration.
+    pub fn see(&mut self, at: f64, s: f64) {
+        self.largest = self.largest.max(s);
+        self.last = [Some((at, s)), self.last[0]];
+    }
+
+    /// Where it would vanish, if it is `s` at the fraction `at` and the motion comes close to that: by
+    /// the parabola of the last three ends.
+    pub fn foresee(&self, at: f64, s: f64) -> Option<f64> {
+        let (t1, s1) = self.last[0].filter(|(_, s1)| s < *s1 && s < NEAR * self.largest)?;
+        let slope = (s - s1) / (at - t1);
+        let bent = self.last[1].map_or(0.0, |(t0, s0)| {
+            ((slope - (s1 - s0) / (t1 - t0)) / (at - t0)).min(0.0)
+        });
+        let slope = slope + bent * (at - t1);
+        Some(at + 2.0 * s / (-slope + (slope * slope - 4.0 * bent * s).sqrt()))
+    }
+
+    /// Whether a step from the last end to `at` ends too close to where the steadiness vanishes.
+    pub fn too_close(&self, at: f64, vanishes: f64) -> bool {
+        let from = self.last[0].map_or(0.0, |(t1, _)| t1);
+        vanishes - at < AWAY * (at - from)
+    }
+
+    /// Whether a given step to an end of steadiness `s` errs near a singular position, and more than the
+    /// `largest` of those before it.
+    pub fn errs(&self, s: f64, error: f64, largest: f64) -> bool {
+        let from = self.last[0].map_or(s, |(_, s1)| s1);
+        self.magnified(s.min(from)) > SUSPICIOUS && error > ERROR.max(MORE_ERROR * largest)
+    }
+}
+
+/// Largest magnification that a step may end with, by the tolerance that steps follow if they do.
+pub fn most(tolerance: Option<f64>) -> f64 {
+    match tolerance {
+        Some(tolerance) => {
+            let noise = NOISE * tolerance.max(LEAST);
+            (noise / f64::EPSILON).cbrt().min(MOST)
+        }
+        None => MOST_GIVEN,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_zero_of_the_steadiness_is_foreseen() {
+        let mut seen: Steadiness<f64> = Steadiness {
+            largest: 0.0,
+            last: [None, None],
+            rhs: Vec::new(),
+            still: Vec::new(),
+        };
+        // Its zero is at 1, on a line and on a parabola.
+        for bent in [0.0, 0.3] {
+            seen.last = [None, None];
+            let s = |t: f64| (1.0 - t) * (1.0 + bent * t);
+            seen.see(0.0, s(0.0));
+            assert_eq!(seen.foresee(0.1, s(0.1)), None);
+            seen.see(0.5, s(0.5));
+            let foreseen = seen.foresee(0.75, s(0.75)).expect("close");
+            assert!((foreseen - 1.0).abs() < 1e-14, "{foreseen}");
+            assert!(!seen.too_close(0.75, foreseen) && seen.too_close(0.95, foreseen));
+            seen.see(0.75, s(0.75));
+            assert_eq!(seen.foresee(1.25, 0.3), None);
+        }
+        assert_eq!(seen.magnified(0.1), 10.0);
+    }
+
+    #[test]
+    fn small_tolerances_keep_away_further() {
+        assert!(most(Some(1e-13)) < most(Some(1e-9)));
+        assert_eq!(most(Some(1e-3)), MOST);
+    }
+}
