@@ -228,9 +228,10 @@ impl Integration {
                 }
             }
             (Some((settings, _)), _) => match self.run(scene, settings, settled) {
-                Err(failure @ IntegrationFailure::Stiff { .. }) if self.method.is_none() => {
-                    failure.to_string()
-                }
+                Err(
+                    failure @ (IntegrationFailure::Stiff { .. }
+                    | IntegrationFailure::Unstable { .. }),
+                ) if self.method.is_none() => failure.to_string(),
                 Err(failure @ IntegrationFailure::NotReached { .. }) => failure.to_string(),
                 found => return Ok((self.keep(scene, found?), None)),
             },
