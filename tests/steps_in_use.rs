@@ -276,7 +276,11 @@ fn a_method_that_took_over_stays_in_a_resumed_run() {
     let whole = run(&[]);
     let (_, (method, reason, _), records) = &whole;
     assert_eq!(*method, Method::Radau { stages: 3 });
-    assert!(reason.contains("the scene is stiff"), "{reason}");
+    // The motion is lost after three steps, before it is seen to be stiff.
+    assert!(
+        reason.contains("explicit steps of this size fail"),
+        "{reason}"
+    );
     let steps = |record: &&EvaluationRecord| matches!(record.found, Found::Steps(_));
     assert_eq!(
         (records.len(), records.iter().filter(steps).count()),
@@ -399,9 +403,9 @@ fn the_method_that_costs_less_is_chosen_over_decades() {
 #[test]
 fn explicit_steps_that_are_too_large_are_refused() {
     let (mut refused, mut kept) = (0, 0);
-    for stiffness in [1e2_f64, 1e4, 1e5, 1e6, 1e8] {
+    for stiffness in [1e1_f64, 1e2, 1e4, 1e6, 1e8] {
         for damping in [0.0, 10.0, 1e3] {
-            for steps in [30, 100, 400] {
+            for steps in [30, 100, 1500] {
                 let file = serde_json::json!({
                     "version": 1, "name": "sprung bar", "gravity": [0, -9.81, 0],
                     "bodies": {"bar": {"shape": {"box": {"size": [1, 0.1, 0.1]}}, "mass": 1,
