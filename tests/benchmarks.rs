@@ -3,9 +3,11 @@
 //! simple pendulum from elliptic functions; the governor from an independent integration of its
 //! three coordinates to 1e-11 (Radau).
 
+use flexbody::driver::start::notes;
 use flexbody::driver::{Journal, Simulation, optimise, simulate};
+use flexbody::math::{Mat3, Vec3, rotation};
 use flexbody::problem::{Override, Problem};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -178,4 +180,318 @@ fn balanced_slider_crank() {
         let design = &done.history.rows.last().expect("iterations").design;
         agree("balance", design, &[-0.075, -0.15], 1e-6);
     }
+}
+
+/// Every benchmark with a duration that is cheap, and the tolerance that it is run with.
+const FAMILY: [(&str, f64, f64); 9] = [
+    ("simple_pendulum", 0.5, 1e-10),
+    ("andrews_squeezer", 0.005, 1e-10),
+    ("bricard", 0.5, 1e-9),
+    ("balanced_slider_crank", 0.1, 1e-9),
+    ("four_bars_1", 0.3, 1e-9),
+    ("four_bars_2", 0.3, 1e-9),
+    ("four_bars_10", 0.05, 1e-8),
+    ("flyball_governor", 0.01, 1e-8),
+    ("stiff_pendulum", 0.01, 1e-8),
+];
+
+/// A benchmark without its functions: final positions of all centres of mass take their place. If it is
+/// to start inconsistently, its first body is given a velocity that joints do not admit.
+fn plain(name: &str, (duration, tolerance): (f64, f64), inconsistent: bool) -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let path = path.join(format!("problems/benchmarks/{name}.json"));
+    let text = std::fs::read_to_string(path).expect("a problem file");
+    let mut file: Value = serde_json::from_str(&text).expect("JSON");
+    let names: Vec<String> = file["bodies"]
+        .as_object()
+        .expect("bodies")
+        .keys()
+        .cloned()
+        .collect();
+    let function = |(body, k): (&String, usize)| {
+        let direction: Vec<f64> = (0..3).map(|i| if i == k { 1.0 } else { 0.0 }).collect();
+        let position = json!({"final": {"position": {"body": body, "direction": direction}}});
+        (format!("{body} {k}"), position)
+    };
+    let all = names.iter().flat_map(|body| (0..3).map(move |k| (body, k)));
+    let functions: serde_json::Map<_, _> = all.map(function).collect();
+    let map = file.as_object_mut().expect("an object");
+    let kept = [
+        "version",
+        "name",
+        "gravity",
+        "bodies",
+        "joints",
+        "loads",
+        "initial_velocity",
+    ];
+    map.retain(|key, _| kept.contains(&key.as_str()));
+    let mut simulation = json!({"duration": duration, "tolerance": tolerance});
+    if ["flyball_governor", "stiff_pendulum"].contains(&name) {
+        simulation["method"] = json!({"radau": {"stages": 3}});
+    }
+    map.insert("simulation".into(), simulation);
+    map.insert("functions".into(), functions.into());
+    map.entry("gravity").or_insert(json!([0, -9.81, 0]));
+    if inconsistent {
+        let velocity = json!({"linear": [0.3, 0.2, 0.1], "angular": [0.5, -0.4, 1.0]});
+        file["bodies"][&names[0]]["velocity"] = velocity;
+    }
+    file
+}
+
+fn ends(file: &Value) -> Vec<f64> {
+    let problem = Problem::parse(&file.to_string(), "family.json", &[]);
+    let problem = problem.unwrap_or_else(|faults| panic!("{faults}"));
+    values(&simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}")))
+}
+
+/// Multiplies every number that has a unit as if lengths were counted in 1/`length` m and masses in
+/// 1/`mass` kg; `unit` is what the numbers below a key have.
+fn in_units(value: &mut Value, unit: f64, (length, mass): (f64, f64)) {
+    match value {
+        Value::Object(map) => {
+            for (key, value) in map {
+                let unit = match key.as_str() {
+                    "gravity" | "centre_of_mass" | "points" | "at" | "put" | "size" | "radius"
+                    | "length" | "linear" | "about" | "rest_length" => length,
+                    "mass" | "stiffness" | "damping" => mass,
+                    "inertia" | "magnitude" => mass * length * length,
+                    "density" => mass / length.powi(3),
+                    "axis" | "angle" | "angular" | "direction" | "simulation" | "functions"
+                    | "version" => 1.0,
+                    _ => unit,
+                };
+                in_units(value, unit, (length, mass));
+            }
+        }
+        Value::Array(list) => list
+            .iter_mut()
+            .for_each(|x| in_units(x, unit, (length, mass))),
+        Value::Number(number) if unit != 1.0 => {
+            *value = json!(number.as_f64().expect("a number") * unit);
+        }
+        _ => {}
+    }
+}
+
+/// Lengths in 1000 m and mm, masses in t·1000 and mg: equal motions but for the unit, from consistent
+/// starts and from those that are projected.
+#[test]
+fn units_do_not_matter() {
+    for (name, duration, tolerance) in FAMILY {
+        for inconsistent in [false, true] {
+            let file = plain(name, (duration, tolerance), inconsistent);
+            let base = ends(&file);
+            for (length, mass) in [
+                (1e3, 1.0),
+                (1e-3, 1.0),
+                (1.0, 1e6),
+                (1.0, 1e-6),
+                (1e3, 1e-6),
+            ] {
+                let mut other = file.clone();
+                in_units(&mut other, 1.0, (length, mass));
+                let found: Vec<f64> = ends(&other).iter().map(|x| x / length).collect();
+                agree(
+                    &format!("{name}, {length}, {mass}"),
+                    &found,
+                    &base,
+                    100.0 * tolerance,
+                );
+            }
+        }
+    }
+}
+
+/// Turns the three numbers of a list.
+fn turn(value: &mut Value, by: &Mat3<f64>) {
+    let list = value
+        .as_array()
+        .filter(|list| list.len() == 3 && list[0].is_number());
+    if let Some(list) = list {
+        let x = Vec3::from_fn(|i, _| list[i].as_f64().expect("a number"));
+        *value = json!((by * x).as_slice());
+    }
+}
+
+/// The scene turned as a whole about the origin.
+fn turned(file: &Value, axis: &Vec3<f64>, angle: f64) -> Value {
+    let by = rotation::matrix(&rotation::from_axis_angle(axis, angle));
+    let mut file = file.clone();
+    turn(&mut file["gravity"], &by);
+    let velocity = |value: &mut Value| {
+        for key in ["linear", "angular", "about"] {
+            if let Some(own) = value.get_mut(key) {
+                turn(own, &by);
+            }
+        }
+    };
+    if let Some(all) = file.get_mut("initial_velocity") {
+        velocity(all);
+    }
+    for body in file["bodies"].as_object_mut().expect("bodies").values_mut() {
+        if let Some(own) = body.get_mut("velocity") {
+            velocity(own);
+        }
+        if body.get("place").is_none() {
+            body["place"] = json!({});
+        }
+        let place = &mut body["place"];
+        if let Some(at) = place.get_mut("at") {
+            turn(at, &by);
+        }
+        if place.get("relative_to").is_none() {
+            let mut turns = match place.get("turn") {
+                None => Vec::new(),
+                Some(Value::Array(turns)) => turns.clone(),
+                Some(one) => vec![one.clone()],
+            };
+            turns.push(json!({"axis": axis.as_slice(), "angle": angle}));
+            place["turn"] = turns.into();
+        }
+    }
+    // Points of ground are in ground axes.
+    let ends = |value: &mut Value| {
+        let grounded = [0, 1].map(|k| value["between"][k] == "ground");
+        if value["at"].is_object() {
+            for (key, _) in ["a", "b"]
+                .iter()
+                .zip(grounded)
+                .filter(|(_, grounded)| *grounded)
+            {
+                turn(&mut value["at"][*key], &by);
+            }
+        } else if let Some(at) = value.get_mut("at") {
+            turn(at, &by);
+        }
+    };
+    let joints = file.get_mut("joints").and_then(Value::as_object_mut);
+    for joint in joints.into_iter().flat_map(|joints| joints.values_mut()) {
+        let joint = joint
+            .as_object_mut()
+            .expect("a joint")
+            .values_mut()
+            .next()
+            .expect("a kind");
+        ends(joint);
+        if let Some(axis) = joint.get_mut("axis") {
+            turn(axis, &by);
+        }
+    }
+    let loads = file.get_mut("loads").and_then(Value::as_object_mut);
+    for load in loads.into_iter().flat_map(|loads| loads.values_mut()) {
+        let load = load
+            .as_object_mut()
+            .expect("a load")
+            .values_mut()
+            .next()
+            .expect("a kind");
+        if load["between"].is_array() {
+            ends(load);
+        }
+        if load["axes"] != "body" && load["direction"].is_array() {
+            turn(&mut load["direction"], &by);
+        }
+    }
+    file
+}
+
+/// Five rotations of every scene as a whole: equal motions, turned, from consistent starts and from
+/// those that are projected.
+#[test]
+fn axes_do_not_matter() {
+    for (name, duration, tolerance) in FAMILY {
+        for inconsistent in [false, true] {
+            let file = plain(name, (duration, tolerance), inconsistent);
+            let base = ends(&file);
+            for (axis, angle) in [
+                (Vec3::new(1.0, 2.0, 3.0), 0.7),
+                (Vec3::new(-2.0, 0.3, 1.0), 2.1),
+                (Vec3::new(0.1, -1.0, 0.4), -1.3),
+                (Vec3::new(0.0, 0.0, 1.0), 0.4),
+                (Vec3::new(1.0, 0.0, 0.0), 3.0),
+            ] {
+                let back = rotation::matrix(&rotation::from_axis_angle(&axis, -angle));
+                let found = ends(&turned(&file, &axis, angle));
+                let found: Vec<f64> = found
+                    .chunks(3)
+                    .flat_map(|x| Vec::from((back * Vec3::from_column_slice(x)).as_slice()))
+                    .collect();
+                agree(&format!("{name}, {axis}"), &found, &base, 100.0 * tolerance);
+            }
+        }
+    }
+}
+
+/// A body on one hinge with a velocity that the hinge does not admit: it starts as an impulse of the
+/// hinge leaves it, ω = e · (J_C ω + c × m v) / (e · J_O e), in any unit of length, and says so.
+#[test]
+fn an_inconsistent_start_is_told_and_has_no_unit() {
+    for unit in [1.0, 1e3, 1e-3] {
+        let of = |x: f64| x * unit;
+        let file = json!({
+            "version": 1, "name": "hinged",
+            "bodies": {"body": {"shape": {"box": {"size": [of(1.0), of(0.4), of(0.2)]}}, "mass": 2,
+                                "place": {"at": [of(0.5), 0, 0]},
+                                "velocity": {"linear": [of(3.0), of(5.0), of(7.0)],
+                                             "angular": [1, 2, 4]}}},
+            "joints": {"hinge": {"revolute": {"between": ["body", "ground"], "at": [0, 0, 0],
+                                              "axis": [0, 0, 1]}}},
+            "simulation": {"duration": 0.1, "steps": 10}
+        });
+        let problem = Problem::parse(&file.to_string(), "hinged.json", &[]).expect("no faults");
+        let motion = simulate(&problem, &[]).expect("runs");
+        let moment = 2.0 * (1.0 + 0.16) / 12.0;
+        let exact = (moment * 4.0 + 0.5 * 2.0 * 5.0) / (moment + 0.5);
+        let found = motion.motion().v(0)[5];
+        assert!(
+            (found - exact).abs() <= 1e-13 * exact,
+            "{unit}: {found} for {exact}"
+        );
+        let notes = notes(&problem, &[]);
+        assert_eq!(notes.len(), 1, "{notes:?}");
+        let told = "the joints do not admit the given velocity of body \"body\": it starts with";
+        assert!(notes[0].starts_with(told), "{notes:?}");
+    }
+}
+
+/// A door whose second hinge is tilted by 1e-6 cannot move: that is told, and that it does not start as
+/// it was given. So is a Bricard mechanism with a hinge 1e-6 m off, whose conditions nearly repeat each
+/// other.
+#[test]
+fn joints_that_leave_no_freedom_are_told() {
+    let door = |tilt: f64| {
+        json!({
+            "version": 1, "name": "door",
+            "bodies": {"door": {"shape": {"box": {"size": [1, 2, 0.04]}}, "mass": 30,
+                                "place": {"at": [0.5, 0, 0]},
+                                "velocity": {"linear": [0, 0, -1], "angular": [0, 2, 0]}}},
+            "joints": {
+                "upper": {"revolute": {"between": ["door", "ground"], "at": [0, 0.8, 0],
+                                       "axis": [0, 1, 0]}},
+                "lower": {"revolute": {"between": ["door", "ground"], "at": [0, -0.8, 0],
+                                       "axis": [tilt, 1, 0]}}},
+            "simulation": {"duration": 0.1, "steps": 10}
+        })
+    };
+    let told = |file: &Value| {
+        let problem = Problem::parse(&file.to_string(), "door.json", &[]).expect("no faults");
+        notes(&problem, &[])
+    };
+    assert_eq!(told(&door(0.0)), Vec::<String>::new());
+    let locked = told(&door(1e-6));
+    assert!(
+        locked[0].starts_with("the joints leave no freedom: nothing can move; their"),
+        "{locked:?}"
+    );
+    assert!(
+        locked[1].contains("\"door\": it starts with 0.000"),
+        "{locked:?}"
+    );
+    let mut bricard = plain("bricard", (0.1, 1e-8), false);
+    assert_eq!(told(&bricard), Vec::<String>::new());
+    bricard["joints"]["P2"]["revolute"]["at"] = json!([1, -0.999999, 0]);
+    let nearly = told(&bricard);
+    assert!(nearly[0].contains("nearly repeat each other"), "{nearly:?}");
 }

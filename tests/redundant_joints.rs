@@ -1,10 +1,13 @@
 //! Joints that repeat each other: what follows from the others is left out and named, the motion is
 //! that without it, and a singular position or joints that do not fit are told apart from it.
 
+mod reference;
+
 use flexbody::driver::{check, simulate};
 use flexbody::integrate::IntegrationFailure;
 use flexbody::problem::{Override, Problem};
 use flexbody::system::observe::Reaction;
+use reference::models::Numbers;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::process::Command;
@@ -564,5 +567,182 @@ fn every_tolerance_passes_singular_positions() {
                 );
             }
         }
+    }
+}
+
+/// The problem with its bodies, joints and the two bodies of some joints in another order, which is all
+/// that differs, and the positions of all centres of mass at the end as its functions.
+fn permuted(file: &Value, numbers: &mut Numbers, settings: &Value) -> Value {
+    fn shuffle(object: &mut Value, numbers: &mut Numbers) {
+        let map = object.as_object_mut().expect("an object");
+        let mut entries: Vec<(String, Value)> = std::mem::take(map).into_iter().collect();
+        for last in (1..entries.len()).rev() {
+            let other = ((0.5 * numbers.next() + 0.5) * (last + 1) as f64) as usize;
+            entries.swap(last, other.min(last));
+        }
+        map.extend(entries);
+    }
+    let mut file = file.clone();
+    let names: Vec<String> = file["bodies"]
+        .as_object()
+        .expect("bodies")
+        .keys()
+        .cloned()
+        .collect();
+    let map = file.as_object_mut().expect("an object");
+    map.retain(|key, _| {
+        [
+            "version",
+            "name",
+            "gravity",
+            "bodies",
+            "joints",
+            "loads",
+            "initial_velocity",
+        ]
+        .contains(&key.as_str())
+    });
+    map.insert("simulation".into(), settings.clone());
+    let function = |(body, k): (&String, usize)| {
+        let direction: Vec<f64> = (0..3).map(|i| if i == k { 1.0 } else { 0.0 }).collect();
+        let position = json!({"final": {"position": {"body": body, "direction": direction}}});
+        (format!("{body} {k}"), position)
+    };
+    let all = names.iter().flat_map(|body| (0..3).map(move |k| (body, k)));
+    let functions: serde_json::Map<_, _> = all.map(function).collect();
+    map.insert("functions".into(), functions.into());
+    shuffle(&mut file["bodies"], numbers);
+    shuffle(&mut file["joints"], numbers);
+    for joint in file["joints"].as_object_mut().expect("joints").values_mut() {
+        let kind = joint.as_object_mut().expect("a joint").values_mut().next();
+        let kind = kind.expect("a kind");
+        if numbers.next() > 0.0 {
+            kind["between"]
+                .as_array_mut()
+                .expect("two bodies")
+                .swap(0, 1);
+            if let Some(pair) = kind["at"].as_object_mut() {
+                let (a, b) = (pair["a"].clone(), pair["b"].clone());
+                (pair["a"], pair["b"]) = (b, a);
+            }
+        }
+    }
+    file
+}
+
+fn benchmark(name: &str) -> Value {
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/benchmarks/{name}.json"));
+    let text = std::fs::read_to_string(path).expect("a problem file");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+/// Final positions of the bodies, and the most that their joints are open by.
+fn ends(file: &Value) -> (Vec<(String, f64)>, f64) {
+    let problem = problem(file);
+    let done = simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
+    let names = problem.function_names.iter().cloned().enumerate();
+    let ends = names.map(|(f, name)| (name, done.at.function(f).value));
+    (ends.collect(), done.constraint_drift().0)
+}
+
+/// Forty orders of bodies, joints and their two bodies of each benchmark with loops: equal motions,
+/// within what the tolerance lets pass.
+#[test]
+fn the_order_of_a_file_does_not_matter() {
+    let dop853 = |duration: f64, tolerance: f64| json!({"duration": duration, "tolerance": tolerance, "method": "dop853"});
+    let radau = json!({"duration": 0.05, "tolerance": 1e-8, "method": {"radau": {"stages": 3}}});
+    for (name, settings, bound) in [
+        ("bricard", dop853(2.0, 1e-10), 1e-8),
+        (
+            "bricard",
+            json!({"duration": 1, "tolerance": 1e-7, "method": {"radau": {"stages": 3}}}),
+            1e-5,
+        ),
+        ("andrews_squeezer", dop853(0.01, 1e-10), 1e-9),
+        ("balanced_slider_crank", dop853(0.2, 1e-9), 1e-8),
+        ("four_bars_1", dop853(0.5, 1e-9), 1e-8),
+        ("four_bars_2", dop853(0.5, 1e-9), 1e-8),
+        ("four_bars_10", dop853(0.1, 1e-9), 1e-8),
+        ("flyball_governor", radau, 1e-7),
+    ] {
+        let file = benchmark(name);
+        let mut numbers = Numbers(5);
+        let (first, _) = ends(&permuted(&file, &mut numbers, &settings));
+        let runs = if settings["method"] == "dop853" {
+            40
+        } else {
+            10
+        };
+        for run in 1..runs {
+            let other = permuted(&file, &mut numbers, &settings);
+            let (found, open) = ends(&other);
+            // Samples stand inside the steps.
+            assert!(open <= bound, "{name}, {run}: {open:e}");
+            for ((of, a), (_, b)) in first.iter().zip(&found) {
+                assert!(
+                    (a - b).abs() <= bound,
+                    "{name}, {run}, {of}: {a} and {b}\n{other}"
+                );
+            }
+        }
+    }
+}
+
+/// P3 of Bricard's mechanism after 10 s (independent integration in minimal coordinates), in forty
+/// orders of its file.
+#[test]
+fn bricards_mechanism_in_any_order() {
+    let settings = json!({"duration": 10, "tolerance": 1e-10, "method": "dop853"});
+    let file = benchmark("bricard");
+    let mut numbers = Numbers(17);
+    let exact = [0.9999999638, -1.0002690127, 0.9997309511];
+    for run in 0..40 {
+        let mut other = permuted(&file, &mut numbers, &settings);
+        let function = |direction: [f64; 3]| json!({"final": {"position": {"body": "rod 3", "point": "to", "direction": direction}}});
+        other["functions"] = json!({
+            "x": function([1.0, 0.0, 0.0]), "y": function([0.0, 1.0, 0.0]),
+            "z": function([0.0, 0.0, 1.0]),
+        });
+        for ((name, found), exact) in ends(&other).0.iter().zip(exact) {
+            assert!(
+                (found - exact).abs() <= 1e-8,
+                "{run}, {name}: {found} for {exact}\n{other}"
+            );
+        }
+    }
+}
+
+/// Derivatives over motions in which rows that are left out are exchanged, by explicit and implicit
+/// steps, in three orders of the file.
+#[test]
+fn derivatives_are_exact_where_rows_are_exchanged() {
+    let file = benchmark("bricard");
+    for (method, steps, bound) in [
+        (json!("dop853"), json!({"tolerance": 1e-8}), 1e-12),
+        (json!({"radau": {"stages": 3}}), json!({"steps": 60}), 1e-11),
+        (json!({"bdf": {"order": 2}}), json!({"steps": 100}), 1e-11),
+    ] {
+        let mut numbers = Numbers(23);
+        let mut exchanged = 0;
+        for run in 0..3 {
+            let mut settings = json!({"duration": 1.5, "method": method.clone()});
+            let more = steps.as_object().expect("an object").clone();
+            settings.as_object_mut().expect("an object").extend(more);
+            let mut other = permuted(&file, &mut numbers, &settings);
+            other["variables"] = json!({
+                "mass": {"path": "/bodies/rod 3/mass", "lower": 0.1},
+                "width": {"path": "/bodies/rod 1/shape/box/size/1", "lower": 0.01},
+            });
+            let problem = problem(&other);
+            let done = simulate(&problem, &problem.start()).expect("runs");
+            exchanged += done.at.run.grid.choices().len().saturating_sub(1);
+            for derivative in check(&problem, &problem.start()).expect("runs") {
+                let none = derivative.is_round_off() || derivative.differs_by_round_off();
+                let exact = none || derivative.relative_difference() <= bound;
+                assert!(exact, "{method}, {run}: {derivative:?}");
+            }
+        }
+        assert!(exchanged > 0, "{method}: no row was exchanged");
     }
 }

@@ -137,6 +137,9 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     if let Some(warning) = &simulation.warning {
         let _ = writeln!(text, "  warning: {warning}");
     }
+    for note in driver::start::notes(problem, &simulation.at.x) {
+        let _ = writeln!(text, "  start: {note}");
+    }
     if simulation.unlowered {
         text.push_str("  integrated as written: this design does not admit the lowering\n");
     } else if let Some(merged) = driver::merged_errs(problem, &simulation.at) {

@@ -187,6 +187,7 @@ fn explain_seen(problem: &Problem) -> Explanation {
         loads: written.loads.len(),
         left_out,
         kept,
+        start: super::start::notes(problem, &x),
         written: size(&written, of_written),
         lowered: size(&scene.model, of_lowered),
         failure: failure.map(ToString::to_string),
@@ -269,7 +270,7 @@ fn lowering(
         kept.push(format!("{} more", all.len() - TOLD));
     }
     for (before, after) in written.joints.iter().zip(&lowered.joints) {
-        let (all, rows) = (before.rows().count(), after.rows().count());
+        let (all, rows) = (before.imposed().count(), after.imposed().count());
         if rows < all {
             let name = &before.name;
             left_out.push(format!("{} of {all} rows of joint \"{name}\"", all - rows));

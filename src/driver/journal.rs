@@ -3,7 +3,8 @@
 use super::integration::{KeptSteps, Refresh};
 use crate::integrate::{Grid, Method, WorkCounts};
 use crate::problem::Problem;
-use crate::report::evaluations::{EvaluationRecord, Found, Head, StepsInUse, Work};
+use crate::report::evaluations::{EvaluationRecord, Found, Head, RowsLeftOut, StepsInUse, Work};
+use crate::system::LeftOut;
 use serde_json::{Map, Value};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
@@ -114,8 +115,7 @@ impl<'a> Journal<'a> {
         Some(KeptSteps {
             method: Method::adaptive(&steps.method)?,
             reason: steps.method_reason.clone(),
-            grid: Grid::from_ends(steps.ends.clone())
-                .map(|grid| grid.with_cells(steps.cells.clone())),
+            grid: steps.grid(),
             refreshes: *refreshes,
         })
     }
@@ -139,7 +139,8 @@ impl<'a> Journal<'a> {
     fn choose(&mut self, steps: StepsInUse) {
         let same = |c: &&Choice| {
             let (a, b) = (&c.steps, &steps);
-            a.method == b.method && a.ends == b.ends && a.cells == b.cells
+            let same = a.method == b.method && a.ends == b.ends && a.cells == b.cells;
+            same && a.left_out == b.left_out
         };
         let refreshes = match self.choices.iter().find(same) {
             Some(known) => known.refreshes,
@@ -269,6 +270,7 @@ impl<'a> Journal<'a> {
                 method_reason,
                 reason,
                 cells: (grid.as_ref()).map_or_else(Vec::new, |grid| grid.all_cells().to_vec()),
+                left_out: grid.as_ref().map_or_else(Vec::new, rows_left_out),
                 ends: grid.map_or_else(Vec::new, |grid| grid.ends().to_vec()),
             };
             self.take(design, steps);
@@ -297,6 +299,16 @@ impl<'a> Journal<'a> {
             record(evaluation);
         }
     }
+}
+
+/// The rows that are left out in steps.
+fn rows_left_out(grid: &Grid) -> Vec<RowsLeftOut> {
+    let one = |(from, rows): &(usize, LeftOut)| RowsLeftOut {
+        from: *from,
+        rows: rows.numbers().collect(),
+        of: rows.count(),
+    };
+    grid.choices().iter().map(one).collect()
 }
 
 /// What the evaluations of a problem belong to.
@@ -339,6 +351,7 @@ mod tests {
                 method_reason: None,
                 ends: ends.to_vec(),
                 cells: Vec::new(),
+                left_out: Vec::new(),
             }),
             event: None,
             work: Work::default(),

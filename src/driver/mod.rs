@@ -21,6 +21,7 @@ pub mod optimise;
 mod record;
 pub mod second_order;
 pub mod simulate;
+pub mod start;
 pub mod stress;
 mod stretch;
 pub mod tables;

@@ -123,6 +123,7 @@ pub(super) fn record(
             problem.function_names[objective.function], end.peak_sharpness
         ));
     }
+    warnings.extend(super::start::notes(problem, &problem.start()));
     warnings.extend(end.and_then(|end| end.warning.clone()));
     if let Some(end) = end {
         let constrained = problem.constraints.iter().map(|c| c.function);

@@ -1,6 +1,7 @@
 //! Where steps end and where the motion is sampled, in fractions of the duration.
 
 use super::quadrature::Step;
+use crate::system::LeftOut;
 
 /// Ends of the steps as fractions τ_0 = 0 < τ_1 < … < τ_N of the duration T, so that t_k = τ_k T
 /// moves with the duration and with nothing else. τ_N is 1; it is larger where the motion ends too close
@@ -13,6 +14,8 @@ pub struct Grid {
     /// Cells of each step for sums over the motion (see [`quadrature`](super::quadrature)); one each if
     /// none are given.
     cells: Vec<u32>,
+    /// Constraint rows that are left out from a step on.
+    left_out: Vec<(usize, LeftOut)>,
 }
 
 /// Distance of fractions below which they are the same instant: some round-off of a fraction.
@@ -25,6 +28,7 @@ impl Grid {
             ends: (0..=steps).map(|k| k as f64 / steps as f64).collect(),
             equal: Some(1.0 / steps as f64),
             cells: Vec::new(),
+            left_out: Vec::new(),
         }
     }
 
@@ -39,6 +43,7 @@ impl Grid {
             ends: vec![start],
             equal: None,
             cells: Vec::new(),
+            left_out: Vec::new(),
         }
     }
 
@@ -48,6 +53,7 @@ impl Grid {
             ends: vec![0.0],
             equal: self.equal,
             cells: self.cells.clone(),
+            left_out: Vec::new(),
         }
     }
 
@@ -64,6 +70,7 @@ impl Grid {
             ends,
             equal: None,
             cells: Vec::new(),
+            left_out: Vec::new(),
         })
     }
 
@@ -80,6 +87,31 @@ impl Grid {
     /// Adds a step that ends at `end`.
     pub fn push(&mut self, end: f64) {
         self.ends.push(end);
+    }
+
+    /// Constraint rows that are left out in step k = 1 … N; `None` if that was not recorded, or if no row
+    /// ever is.
+    pub fn left_out(&self, k: usize) -> Option<&LeftOut> {
+        let from = self.left_out.iter().rev().find(|(from, _)| *from <= k);
+        from.map(|(_, rows)| rows)
+    }
+
+    /// All changes of the rows that are left out: the step from which on, and the rows.
+    pub fn choices(&self) -> &[(usize, LeftOut)] {
+        &self.left_out
+    }
+
+    /// Records what is left out from the step after the last one on, if that is a change.
+    pub fn leave_out(&mut self, rows: &LeftOut) {
+        self.leave_out_from(self.steps() + 1, rows);
+    }
+
+    /// Records what is left out from step k on, in rising order, if that is a change.
+    pub fn leave_out_from(&mut self, k: usize, rows: &LeftOut) {
+        let known = self.left_out.last().map(|(_, rows)| rows);
+        if !rows.is_empty() && known != Some(rows) {
+            self.left_out.push((k, rows.clone()));
+        }
     }
 
     /// Number of steps N.
@@ -140,6 +172,9 @@ impl Grid {
             ends,
             equal: self.equal.map(|width| 0.5 * width),
             cells,
+            left_out: (self.left_out.iter())
+                .map(|(step, rows)| (2 * step - 1, rows.clone()))
+                .collect(),
         }
     }
 

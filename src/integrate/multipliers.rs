@@ -4,6 +4,7 @@ use super::trajectory::Trajectory;
 use crate::model::Model;
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
+use crate::system::left_out::WORN;
 
 /// Multipliers λ of a model along a run: as the method marched them or, if it did not or the run left
 /// rows of the model out, from the index-1 equations of the states.
@@ -33,10 +34,19 @@ impl<'a> Multipliers<'a> {
         };
         let (mut a, mut lambda) = (run.a(k).to_vec(), vec![0.0; nc]);
         field.stand(run.q(k), run.v(k), run.time(k));
-        match field.factorise() {
-            Ok(()) => field.accelerations(&mut a, &mut lambda),
-            Err(_) => lambda.fill(f64::NAN),
+        // Rows are chosen by their weights here, each at most once.
+        for _ in 0..=nc {
+            if field.factorise().is_err() {
+                lambda.fill(f64::NAN);
+                return lambda;
+            }
+            let Some(rows) = field.exchanged(WORN) else {
+                break;
+            };
+            field.leave_out(&rows);
+            field.stand(run.q(k), run.v(k), run.time(k));
         }
+        field.accelerations(&mut a, &mut lambda);
         lambda
     }
 }

@@ -3,6 +3,7 @@
 use super::grid::Grid;
 use super::limits::Limits;
 use super::quadrature::ADDED;
+use crate::system::LeftOut;
 
 /// The integration method.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,6 +107,18 @@ pub enum Spacing {
     Tolerance(f64),
     /// Steps that an earlier run chose, stretched to the duration.
     Frozen(Grid),
+}
+
+impl Spacing {
+    /// The constraint rows that an earlier run left out, where it left out as many of as many as now.
+    pub(super) fn left_out(&self, now: &LeftOut) -> &[(usize, LeftOut)] {
+        match self {
+            Spacing::Frozen(grid) if grid.choices().iter().all(|(_, rows)| rows.fits(now)) => {
+                grid.choices()
+            }
+            Spacing::Frozen(_) | Spacing::Steps(_) | Spacing::Tolerance(_) => &[],
+        }
+    }
 }
 
 /// At which instants the motion is known after the run.

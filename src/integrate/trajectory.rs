@@ -258,6 +258,7 @@ impl Trajectory<Complex64> {
                 lambda: real(&self.initial.lambda),
                 s: real(&self.initial.s),
                 sigma: real(&self.initial.sigma),
+                left_out: self.initial.left_out.clone(),
                 iterations: self.initial.iterations,
             },
             step_error: self.step_error,

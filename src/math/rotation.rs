@@ -46,6 +46,22 @@ pub fn rate_transposed<S: Scalar>(p: &Quat<S>, a: &Vec3<S>) -> Quat<S> {
     [-e.dot(a), w.x, w.y, w.z]
 }
 
+/// Pulls a cotangent of the rotation matrix back to the Euler parameters, each of its own: the
+/// derivatives of Σ by_ij R_ij(p).
+pub fn pull_matrix<S: Scalar>(p: &Quat<S>, by: &Mat3<S>) -> Quat<S> {
+    let e = vector(p);
+    // Σ by_ij ẽ_ij = e · w.
+    let w = Vec3::new(
+        by[(2, 1)] - by[(1, 2)],
+        by[(0, 2)] - by[(2, 0)],
+        by[(1, 0)] - by[(0, 1)],
+    );
+    let trace = by.trace();
+    let two = S::from(2.0);
+    let by_e = ((by + by.transpose()) * e - e * trace + w * p[0]) * two;
+    [(p[0] * trace + e.dot(&w)) * two, by_e.x, by_e.y, by_e.z]
+}
+
 /// Rate of the Euler parameters, ṗ = ½ L(p)ᵀ ω, ω in body axes (rad/s).
 pub fn rates<S: Scalar>(p: &Quat<S>, omega: &Vec3<S>) -> Quat<S> {
     rate_transposed(p, omega).map(|x| x * 0.5)

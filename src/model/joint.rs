@@ -264,7 +264,8 @@ pub struct Joint<S> {
     pub frame_b: JointFrame<S>,
     /// Prescribed motions, one a freedom at most.
     pub drives: Vec<Drive<S>>,
-    /// Rows of [`Joint::all_rows`] that are not imposed, as they follow from those of other joints.
+    /// Rows of [`Joint::all_rows`] that are not imposed at the start, as they follow from those of other
+    /// joints; a run may exchange them for others (see `system::left_out`).
     pub left_out: Vec<ConstraintRow>,
     /// Rows that hold identically in all motions that the bodies' mobility admits, and are not
     /// imposed.
@@ -278,11 +279,15 @@ impl<S> Joint<S> {
         self.kind.rows().iter().copied().chain(driven)
     }
 
-    /// The rows that are imposed.
+    /// The rows that do not hold identically.
     pub fn rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
-        let imposed =
-            |row: &ConstraintRow| !self.left_out.contains(row) && !self.identical.contains(row);
-        self.all_rows().filter(imposed)
+        let counts = |row: &ConstraintRow| !self.identical.contains(row);
+        self.all_rows().filter(counts)
+    }
+
+    /// Those of [`Joint::rows`] that are imposed at the start.
+    pub fn imposed(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
+        self.rows().filter(|row| !self.left_out.contains(row))
     }
 
     /// Frame axes that both bodies share once the joint is closed.

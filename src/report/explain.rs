@@ -20,6 +20,9 @@ pub struct Explanation {
     pub left_out: Vec<String>,
     /// What is not left out, and what stands against it.
     pub kept: Vec<String>,
+    /// What becomes of the start that the file gives, where that is not kept.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub start: Vec<String>,
     /// The system as it is written.
     pub written: SystemSize,
     /// The system that is integrated.
@@ -103,7 +106,11 @@ impl Explanation {
             "{}: {} bodies, {} joints, {} loads\n",
             self.name, self.bodies, self.joints, self.loads
         );
-        for (title, lines) in [("left out", &self.left_out), ("not left out", &self.kept)] {
+        for (title, lines) in [
+            ("left out", &self.left_out),
+            ("not left out", &self.kept),
+            ("start", &self.start),
+        ] {
             if !lines.is_empty() {
                 let _ = writeln!(text, "\n{title}");
             }

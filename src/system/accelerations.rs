@@ -11,6 +11,7 @@ use super::constraint::RowGradient;
 use super::initial::mass;
 use super::joints::{self, JointCotangent};
 use super::kkt::{Elimination, SaddlePoint};
+use super::left_out::{LeftOut, Weighing};
 use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
 use super::planar::PlanarJoints;
@@ -29,6 +30,9 @@ pub struct Accelerations<'a, S> {
     /// Motions of the bodies where the solver stands.
     pub motions: Vec<Motion<S>>,
     gradients: Vec<RowGradient<S>>,
+    /// Rows that are not imposed.
+    left_out: LeftOut,
+    weighing: Weighing<S>,
     /// The joints, if the scene is planar.
     planar: Option<PlanarJoints<S>>,
     /// Motions with accelerations and virtual velocities, for the pull-back.
@@ -82,6 +86,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             numbering,
             motions: Vec::new(),
             gradients: Vec::new(),
+            left_out: LeftOut::of(model, numbering),
+            weighing: Weighing::default(),
             planar: PlanarJoints::of(model),
             moving: Vec::new(),
             time: S::zero(),
@@ -137,6 +143,38 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         }
     }
 
+    /// Rows that are not imposed.
+    pub fn left_out(&self) -> &LeftOut {
+        &self.left_out
+    }
+
+    /// Leaves other rows out from where the solver stands next.
+    pub fn leave_out(&mut self, left_out: &LeftOut) {
+        if self.left_out != *left_out {
+            self.left_out.clone_from(left_out);
+            if let Solver::Sparse(saddle, _) = &mut self.solver {
+                saddle.leave_out(left_out);
+            }
+        }
+    }
+
+    /// What should be left out from here on, where that is another choice (see [`LeftOut::exchanged`]),
+    /// with the matrix factorised where the solver stands.
+    pub fn exchanged(&mut self, worn: f64) -> Option<LeftOut> {
+        if self.left_out.is_empty() {
+            return None;
+        }
+        let left_out = std::mem::take(&mut self.left_out);
+        let motions = std::mem::take(&mut self.motions);
+        let mut weighing = std::mem::take(&mut self.weighing);
+        let (system, at) = ((self.model, self.numbering), (&motions[..], self.time));
+        let exchanged = left_out.exchanged(system, at, worn, &mut weighing, |rhs| {
+            self.solve(rhs);
+        });
+        (self.left_out, self.motions, self.weighing) = (left_out, motions, weighing);
+        exchanged
+    }
+
     /// Moves to the state (q, v) at `time` without factorising; the Euler parameters in `q` need not
     /// be of unit length.
     pub fn stand(&mut self, q: &[S], v: &[S], time: S) {
@@ -154,6 +192,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
                 &mut self.gradients,
             ),
         }
+        self.left_out.clear_gradients(&mut self.gradients);
     }
 
     /// Changes the velocities, the position kept.
@@ -173,7 +212,11 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     pub fn factorise(&mut self) -> Result<(), SingularMatrix> {
         self.factorisations += 1;
         if let Solver::Tree(tree) = &mut self.solver {
-            let Err(at) = tree.factorise(self.model, self.numbering, &self.gradients) else {
+            let Err(at) = tree.factorise(
+                self.model,
+                self.numbering,
+                (&self.gradients, &self.left_out),
+            ) else {
                 return Ok(());
             };
             let row = at.column.checked_sub(self.numbering.velocities());
@@ -184,6 +227,9 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             // A body without inertia of its own may still be held by its joints, and the rows of a loop
             // by a choice of pivots.
             self.solver = Self::sparse(self.model, self.numbering);
+            if let Solver::Sparse(saddle, _) = &mut self.solver {
+                saddle.leave_out(&self.left_out);
+            }
         }
         let Solver::Sparse(saddle, zeros) = &mut self.solver else {
             unreachable!("the tree was left above");
@@ -200,6 +246,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     /// Solves [M Gᵀ; G 0] (x, λ) = (f, g) in place, with the matrix factorised last.
     pub fn solve(&mut self, rhs: &mut [S]) {
         self.solves += 1;
+        self.left_out.clear(&mut rhs[self.numbering.velocities()..]);
         if let Solver::Sparse(saddle, _) = &mut self.solver {
             return saddle.solve(rhs);
         }
@@ -293,11 +340,13 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         self.rhs = rhs;
     }
 
-    /// Rates G v + Φ_t of the constraints at the velocities `v`, where the solver stands.
+    /// Rates G v + Φ_t of the constraints at the velocities `v`, where the solver stands, zero those that
+    /// are left out.
     pub fn rates(&self, v: &[S], out: &mut [S]) {
         let (model, numbering) = (self.model, self.numbering);
         joints::rates_from_gradients(model, numbering, &self.gradients, v, out);
         joints::add_driven_rates(model, numbering, (&self.motions, self.time), out);
+        self.left_out.clear(out);
     }
 
     /// Whether row i is a length (m), as those of points are, rather than the product of two axes.
@@ -305,10 +354,11 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         self.gradients[i].force.iter().any(|x| x.re() != 0.0)
     }
 
-    /// Constraints Φ where the solver stands.
+    /// Constraints Φ where the solver stands, zero those that are left out.
     pub fn constraints(&self, out: &mut [S]) {
         let at = (&self.motions[..], self.time);
         joints::values(self.model, self.numbering, at, out);
+        self.left_out.clear(out);
     }
 
     /// Adds Gᵀ λ to `out`.

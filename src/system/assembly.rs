@@ -1,14 +1,22 @@
 //! Assembly: the positions nearest to the placement that close every joint,
-//! T(q)ᵀ (q − q_g) + Gᵀ s = 0, Φ(q, 0) = 0, or the joint that cannot be closed.
+//! E_y + Gᵀ s = 0, Φ(q, 0) = 0, or the joint that cannot be closed. The distance is the mean square
+//! displacement of the mass,
+//!
+//! ```text
+//! E = ½ Σ ∫ |x(q) − x(q_g)|² dm = Σ ½ m |r − r_g|² + tr(S) − tr(R S R_gᵀ),     S = ½ tr(J) 1 − J
+//! ```
+//!
+//! It does not depend on units, and bodies that are welded count as one would.
 
-use super::bodies::{self, Motion, positions_of, tangent_of_cotangent};
+use super::bodies::{self, Motion, positions_of};
 use super::joints;
 use super::kkt::{BodyBlocks, SaddlePoint};
 use super::numbering::Numbering;
 use super::redundancy;
 use super::side::sides;
 use crate::linalg::SolveScalar;
-use crate::math::{Mat3, Scalar, Vec3, rotation};
+use crate::math::rotation::{self, Quat};
+use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::{Joint, Model};
 
 const ITERATIONS: usize = 50;
@@ -118,6 +126,7 @@ pub(super) fn assemble<S: SolveScalar>(
     for iteration in 0..ITERATIONS {
         Motion::all(numbering, &q, v_guess, &mut motions);
         joints::values(model, numbering, (&motions, S::zero()), &mut phi);
+        saddle.left_out().clear(&mut phi);
         let gap = phi.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
         if gap < least {
             least = gap;
@@ -125,14 +134,13 @@ pub(super) fn assemble<S: SolveScalar>(
         }
         joints::gradients(model, numbering, (&motions, S::zero()), &mut gradients);
         let mut rhs = vec![S::zero(); nv];
-        let away: Vec<S> = q.iter().zip(q_guess).map(|(&q, &g)| q - g).collect();
-        tangent_of_cotangent(numbering, &q, &away, &mut rhs);
+        add_displacement(model, numbering, &q, &mut rhs);
         joints::add_reactions(model, numbering, &gradients, &s, &mut rhs);
         rhs.extend(&phi);
         for x in &mut rhs {
             *x = -*x;
         }
-        let metric = position_metric(model, numbering, &q);
+        let metric = displacement_metric(model, numbering, &q);
         saddle
             .factorise(model, numbering, (&motions, S::zero()), &s, metric)
             .map_err(|_| {
@@ -165,25 +173,48 @@ pub(super) fn assemble<S: SolveScalar>(
     Err(open(model, numbering, &best, ITERATIONS))
 }
 
-/// W = ∂[T(q)ᵀ (q − q_g)]/∂y: the identity, and ¼ L(p_g) L(p)ᵀ for the rotation.
-pub(super) fn position_metric<'a, S: Scalar>(
+/// Second moment S = ∫ s sᵀ dm = ½ tr(J) 1 − J of a body with inertia J.
+pub(super) fn second_moment<S: Scalar>(inertia: &Mat3<S>) -> Mat3<S> {
+    Mat3::identity() * (inertia.trace() * S::from(0.5)) - inertia
+}
+
+/// The vector w with tr(ω̃ X) = −ω · w for all ω.
+pub(super) fn axial<S: Scalar>(x: &Mat3<S>) -> Vec3<S> {
+    Vec3::new(
+        x[(2, 1)] - x[(1, 2)],
+        x[(0, 2)] - x[(2, 0)],
+        x[(1, 0)] - x[(0, 1)],
+    )
+}
+
+/// The rotation R_gᵀ R(p) from where a body is placed to where it is.
+pub(super) fn turned_by<S: Scalar>(placed: &Quat<S>, p: &Quat<S>) -> Mat3<S> {
+    rotation::matrix(placed).transpose() * rotation::matrix(p)
+}
+
+/// Adds E_y, the gradient of the displacement E in the tangent positions: m (r − r_g), w(S R_gᵀ R).
+fn add_displacement<S: Scalar>(model: &Model<S>, numbering: &Numbering, q: &[S], out: &mut [S]) {
+    for (i, body) in model.bodies.iter().enumerate() {
+        let (r, p) = positions_of(&q[numbering.position(i)..]);
+        let turned = second_moment(&body.inertia) * turned_by(&body.orientation, &p);
+        let linear = (r - body.position) * body.mass;
+        bodies::add6(&mut out[numbering.velocity(i)..], &linear, &axial(&turned));
+    }
+}
+
+/// E_yy: m, and tr(X) 1 − Xᵀ with X = S R_gᵀ R.
+pub(super) fn displacement_metric<'a, S: Scalar>(
     model: &'a Model<S>,
     numbering: &'a Numbering,
     q: &'a [S],
 ) -> impl Fn(usize) -> BodyBlocks<S> + 'a {
-    |body| {
-        let (_, p) = positions_of(&q[numbering.position(body)..]);
-        let guess = &model.bodies[body].orientation;
-        let mut angular = Mat3::zeros();
-        for j in 0..3 {
-            let mut unit = Vec3::zeros();
-            unit[j] = S::from(0.25);
-            let column = rotation::rate_product(guess, &rotation::rate_transposed(&p, &unit));
-            angular.set_column(j, &column);
-        }
+    |index| {
+        let (_, p) = positions_of(&q[numbering.position(index)..]);
+        let body = &model.bodies[index];
+        let turned = second_moment(&body.inertia) * turned_by(&body.orientation, &p);
         BodyBlocks {
-            linear: S::one(),
-            angular,
+            linear: body.mass,
+            angular: Mat3::identity() * turned.trace() - turned.transpose(),
         }
     }
 }

@@ -2,15 +2,22 @@
 //! accelerations and multipliers that go with them; forwards, and backwards for the adjoint.
 //!
 //! ```text
-//! positions       T(q)ᵀ (q − q_g) + Gᵀ s = 0,      Φ(q, 0) = 0
-//! velocities      v − v_g + Gᵀ σ = 0,              G v + Φ_t = 0
+//! positions       E_y(q, q_g) + Gᵀ s = 0,          Φ(q, 0) = 0
+//! velocities      M (v − v_g) + Gᵀ σ = 0,          G v + Φ_t = 0
 //! accelerations   M a − f(q, v, 0) + Gᵀ λ = 0,     G a + bias(q, v) = 0
 //! ```
+//!
+//! E is the mean square displacement of the mass (see [`super::assembly`]), whose metric is M for small
+//! displacements. So the start does not depend on the units of length, mass and angle. The velocity
+//! projection is what an impulse of the joints does to the given velocities.
 
-use super::assembly::{AssemblyFailure, assemble, finite, position_metric};
-use super::bodies::{self, Motion, all_force_balances, velocities_of};
+use super::assembly::{
+    AssemblyFailure, assemble, displacement_metric, finite, second_moment, turned_by,
+};
+use super::bodies::{self, Motion, all_force_balances, positions_of, velocities_of};
 use super::joints::{self, JointCotangent};
 use super::kkt::{BodyBlocks, SaddlePoint};
+use super::left_out::{LeftOut, WORN, Weighing};
 use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
 use super::reduce;
@@ -33,6 +40,8 @@ pub struct InitialState<S> {
     pub s: Vec<S>,
     /// Multipliers σ of the velocity projection.
     pub sigma: Vec<S>,
+    /// Rows that are not imposed on velocities and accelerations.
+    pub left_out: LeftOut,
     /// Newton iterations of the assembly.
     pub iterations: usize,
 }
@@ -61,25 +70,31 @@ pub fn solve<S: SolveScalar>(
     let (nv, nc) = (numbering.velocities(), numbering.constraints());
     let (q_guess, v_guess) = guess(model);
     let mut motions = Vec::new();
+    saddle.leave_out(&LeftOut::of(model, numbering));
     let (q, s, iterations) = assemble(model, numbering, saddle, &q_guess, &v_guess)?;
+    choose_left_out(model, numbering, saddle, (&q, &v_guess));
 
-    Motion::all(numbering, &q, &v_guess, &mut motions);
+    // The change of the velocities that the bodies' mobilities admit: one that the joints allow is kept
+    // to round-off. What the mobilities do not admit has momentum as well.
+    let mut v = v_guess.clone();
+    reduce::project(numbering, &mut v);
+    let held: Vec<S> = v_guess.iter().zip(&v).map(|(&g, &v)| g - v).collect();
+    Motion::all(numbering, &q, &v, &mut motions);
     let zeros = vec![S::zero(); nc];
-    let identity = |_| BodyBlocks {
-        linear: S::one(),
-        angular: Mat3::identity(),
-    };
     let singular = |_| super::rank::explain(model, &q);
     saddle
-        .factorise(model, numbering, (&motions, S::zero()), &zeros, identity)
+        .factorise(model, numbering, (&motions, S::zero()), &zeros, mass(model))
         .map_err(singular)?;
-    let mut driven = vec![S::zero(); nc];
-    joints::add_driven_rates(model, numbering, (&motions, S::zero()), &mut driven);
-    let mut rhs = v_guess;
-    rhs.extend(driven.into_iter().map(|rate| -rate));
+    let mut rates = vec![S::zero(); nc];
+    joints::rates(model, numbering, (&motions, S::zero()), &mut rates);
+    let mut rhs = vec![S::zero(); nv];
+    bodies::mass_product(model, numbering, &held, &mut rhs);
+    rhs.extend(rates.into_iter().map(|rate| -rate));
     saddle.solve(&mut rhs);
     let sigma = rhs.split_off(nv);
-    let v = rhs;
+    for (v, &change) in v.iter_mut().zip(&rhs) {
+        *v += change;
+    }
 
     Motion::all(numbering, &q, &v, &mut motions);
     let mut balance = vec![S::zero(); nv];
@@ -97,9 +112,6 @@ pub fn solve<S: SolveScalar>(
     }
     let mut bias = vec![S::zero(); nc];
     joints::accelerations(model, numbering, (&motions, S::zero()), &mut bias);
-    saddle
-        .factorise(model, numbering, (&motions, S::zero()), &zeros, mass(model))
-        .map_err(singular)?;
     let mut rhs: Vec<S> = balance.into_iter().chain(bias).map(|x| -x).collect();
     saddle.solve(&mut rhs);
     let lambda = rhs.split_off(nv);
@@ -113,8 +125,39 @@ pub fn solve<S: SolveScalar>(
         lambda,
         s,
         sigma,
+        left_out: saddle.left_out().clone(),
         iterations,
     })
+}
+
+/// Chooses the rows that are left out by the weights that they have where the joints are closed; where
+/// they are open, no row follows from others.
+fn choose_left_out<S: SolveScalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    saddle: &mut SaddlePoint<S>,
+    (q, v): (&[S], &[S]),
+) {
+    if saddle.left_out().is_empty() {
+        return;
+    }
+    let mut left_out = saddle.left_out().clone();
+    let (mut motions, mut weighing) = (Vec::new(), Weighing::default());
+    Motion::all(numbering, q, v, &mut motions);
+    let zeros = vec![S::zero(); numbering.constraints()];
+    let at = (&motions[..], S::zero());
+    for _ in 0..numbering.constraints() {
+        let factorised = saddle.factorise(model, numbering, at, &zeros, mass(model));
+        if factorised.is_err() {
+            return;
+        }
+        let solve = |rhs: &mut [S]| saddle.solve(rhs);
+        match left_out.exchanged((model, numbering), at, WORN, &mut weighing, solve) {
+            Some(other) => left_out = other,
+            None => return,
+        }
+        saddle.leave_out(&left_out);
+    }
 }
 
 /// Mass and inertia of each body.
@@ -142,6 +185,7 @@ pub fn pull_back(
     cot: &mut Model<f64>,
 ) -> Result<(), AssemblyFailure> {
     let (nv, nc) = (numbering.velocities(), numbering.constraints());
+    saddle.leave_out(&state.left_out);
     let singular = |_| super::rank::explain(model, &state.q);
     let mut motions = Vec::new();
     Motion::all(numbering, &state.q, &state.v, &mut motions);
@@ -175,10 +219,10 @@ pub fn pull_back(
         pull(&moving, [None, None, None, Some(lambda)], y, cot);
     };
 
+    saddle
+        .factorise(model, numbering, (&motions, 0.0), &zeros, mass(model))
+        .map_err(singular)?;
     if a_bar.iter().any(|&x| x != 0.0) {
-        saddle
-            .factorise(model, numbering, (&motions, 0.0), &zeros, mass(model))
-            .map_err(singular)?;
         let (psi, chi) = transposed(saddle, a_bar);
         for (i, body) in model.bodies.iter().enumerate() {
             let o = numbering.velocity(i);
@@ -216,19 +260,28 @@ pub fn pull_back(
         joints::pull_back(model, numbering, (&motions, 0.0), cotangents, &mut out);
     }
 
-    let identity = |_| BodyBlocks {
-        linear: 1.0,
-        angular: Mat3::identity(),
-    };
-    saddle
-        .factorise(model, numbering, (&motions, 0.0), &zeros, identity)
-        .map_err(singular)?;
     let (psi, chi) = transposed(saddle, &v_bar);
     pull_rate(&psi, &state.sigma, &mut y_bar, cot);
     pull(&motions, [None, Some(&chi), None, None], &mut y_bar, cot);
-    let v_guess_bar: Vec<f64> = psi.iter().map(|x| -x).collect();
+    // M ψ = −v̄ − Gᵀχ, and the cotangent of v_g is −M ψ.
+    let mut v_guess_bar = vec![0.0; nv];
+    for (i, body) in model.bodies.iter().enumerate() {
+        let o = numbering.velocity(i);
+        let (psi_r, psi_theta) = velocities_of(&psi[o..]);
+        let (v, omega) = velocities_of(&state.v[o..]);
+        let cot = &mut cot.bodies[i];
+        cot.mass += psi_r.dot(&(v - body.velocity));
+        cot.inertia += psi_theta * (omega - body.angular_velocity).transpose();
+        bodies::add6(
+            &mut v_guess_bar[o..],
+            &(psi_r * -body.mass),
+            &-body.inertia.tr_mul(&psi_theta),
+        );
+    }
 
-    let metric = position_metric(model, numbering, &state.q);
+    // The assembly leaves out what the joints name.
+    saddle.leave_out(&LeftOut::of(model, numbering));
+    let metric = displacement_metric(model, numbering, &state.q);
     saddle
         .factorise(model, numbering, (&motions, 0.0), &state.s, metric)
         .map_err(singular)?;
@@ -242,9 +295,20 @@ pub fn pull_back(
         let o = numbering.velocity(i);
         let (psi_r, psi_theta) = velocities_of(&psi[o..]);
         let (r, theta) = velocities_of(&y_bar[o..]);
-        body.position += r - psi_r;
+        let given = &model.bodies[i];
+        let (position, p) = positions_of(&state.q[numbering.position(i)..]);
+        body.mass += psi_r.dot(&(position - given.position));
+        body.position += r - psi_r * given.mass;
+        // ψ · w(S R_gᵀ R) = −tr(ψ̃ S R_gᵀ R).
+        let turned = turned_by(&given.orientation, &p);
+        let (tilde, moment) = (psi_theta.cross_matrix(), second_moment(&given.inertia));
+        let by_moment = -(turned * tilde).transpose();
+        body.inertia += Mat3::identity() * (0.5 * by_moment.trace()) - by_moment;
+        let by_rotation = -(rotation::matrix(&p) * tilde * moment);
+        let by_placed = rotation::pull_matrix(&given.orientation, &by_rotation);
         // T(p)ᵀ T(p) = 1/4.
-        let by_p = rotation::rates(&motions[i].orientation, &(theta * 4.0 - psi_theta));
+        let mut by_p = rotation::rates(&motions[i].orientation, &(theta * 4.0));
+        by_p.iter_mut().zip(by_placed).for_each(|(x, y)| *x += y);
         for k in 0..4 {
             body.orientation[k] += by_p[k];
         }

@@ -26,16 +26,16 @@ fn for_each_joint<S: Scalar>(
     }
 }
 
-/// Calls `visit(joint number, row, side a, side b)` for every row that is left out.
-pub fn for_each_left_out<S: Scalar>(
+/// Calls `visit(joint number, row, side a, side b)` for every row.
+pub fn for_each_row<S: Scalar>(
     model: &Model<S>,
     (motions, time): (&[Motion<S>], S),
     mut visit: impl FnMut(usize, ConstraintRow, &Side<S>, &Side<S>),
 ) {
     let ground = Motion::ground();
     for (j, joint) in model.joints.iter().enumerate() {
-        for &row in &joint.left_out {
-            let (a, b) = sides(joint, motions, &ground, time);
+        let (a, b) = sides(joint, motions, &ground, time);
+        for row in joint.rows() {
             visit(j, row, &a, &b);
         }
     }

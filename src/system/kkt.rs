@@ -4,6 +4,7 @@
 use super::bodies::Motion;
 use super::constraint::RowGradient;
 use super::joints;
+use super::left_out::LeftOut;
 use super::numbering::Numbering;
 use super::reduce::{emit_reduced, through, unreduced};
 use crate::linalg::{Emit, Pattern, Pivots, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
@@ -24,7 +25,7 @@ pub fn emit_transposed_gradients<S: Scalar>(
         for (i, kind) in numbering.rows(j).zip(joint.rows()) {
             let (g, at) = (&gradients[i], row + numbering.velocity(joint.body_a));
             if let Some(k) = kind.ground_component() {
-                emit.add(at + k, column + i, scale);
+                emit.add(at + k, column + i, g.force[k] * scale);
             } else if kind.has_force() {
                 emit.add_column(at, column + i, &(g.force * scale));
             }
@@ -32,7 +33,7 @@ pub fn emit_transposed_gradients<S: Scalar>(
             if let Some(body) = joint.body_b {
                 let at = row + numbering.velocity(body);
                 if let Some(k) = kind.ground_component() {
-                    emit.add(at + k, column + i, -scale);
+                    emit.add(at + k, column + i, g.force[k] * -scale);
                 } else if kind.has_force() {
                     emit.add_column(at, column + i, &(g.force * -scale));
                 }
@@ -145,6 +146,8 @@ pub struct SaddlePoint<S> {
     matrix: SparseMatrix<S>,
     factors: SparseLu<S>,
     gradients: Vec<RowGradient<S>>,
+    /// Rows that are not imposed.
+    left_out: LeftOut,
     /// Number of factorisations so far.
     pub factorisations: usize,
 }
@@ -156,6 +159,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
         let mut gradients = Vec::new();
         joints::gradients(model, numbering, (&motions, S::zero()), &mut gradients);
         let zeros = vec![S::zero(); numbering.constraints()];
+        let left_out = LeftOut::of(model, numbering);
         let order = numbering.unknowns() + numbering.constraints();
         let block = |_| BodyBlocks {
             linear: S::one(),
@@ -164,7 +168,8 @@ impl<S: SolveScalar> SaddlePoint<S> {
         let pattern = Pattern::record(order, |emit: &mut dyn Emit<S>| {
             let at = (&motions[..], S::zero());
             emit_reduced(numbering, 1, emit, |emit| {
-                emit_saddle_point(model, numbering, at, &gradients, &zeros, block, emit);
+                let rows = (&gradients[..], &left_out);
+                emit_saddle_point(model, numbering, at, rows, &zeros, block, emit);
             });
         });
         let factors = SparseLu::new(&pattern);
@@ -173,8 +178,19 @@ impl<S: SolveScalar> SaddlePoint<S> {
             matrix: SparseMatrix::new(pattern),
             factors,
             gradients,
+            left_out,
             factorisations: 0,
         }
+    }
+
+    /// Rows that are not imposed.
+    pub fn left_out(&self) -> &LeftOut {
+        &self.left_out
+    }
+
+    /// Leaves other rows out from the next factorisation on.
+    pub fn leave_out(&mut self, left_out: &LeftOut) {
+        self.left_out.clone_from(left_out);
     }
 
     /// Assembles and factorises at the given positions, multipliers s and body blocks.
@@ -189,11 +205,13 @@ impl<S: SolveScalar> SaddlePoint<S> {
         multipliers: &[S],
         block: impl Fn(usize) -> BodyBlocks<S>,
     ) -> Result<(), SingularMatrix> {
-        let gradients = &mut self.gradients;
+        let (gradients, left_out) = (&mut self.gradients, &self.left_out);
         joints::gradients(model, numbering, at, gradients);
+        left_out.clear_gradients(gradients);
         self.matrix.assemble(|emit| {
             emit_reduced(numbering, 1, emit, |emit| {
-                emit_saddle_point(model, numbering, at, gradients, multipliers, block, emit);
+                let rows = (&gradients[..], left_out);
+                emit_saddle_point(model, numbering, at, rows, multipliers, block, emit);
             });
         });
         self.factorisations += 1;
@@ -231,12 +249,14 @@ impl<S: SolveScalar> SaddlePoint<S> {
 
     /// Solves in place.
     pub fn solve(&mut self, rhs: &mut [S]) {
+        self.left_out.clear(&mut rhs[self.numbering.velocities()..]);
         let factors = &mut self.factors;
         through(&self.numbering, 1, rhs, |rhs| factors.solve(rhs));
     }
 
     /// Solves the transposed system in place, with one step of iterative refinement.
     pub fn solve_transposed(&mut self, rhs: &mut [S]) {
+        self.left_out.clear(&mut rhs[self.numbering.velocities()..]);
         let (factors, matrix) = (&mut self.factors, &self.matrix);
         through(&self.numbering, 1, rhs, |rhs| {
             factors.solve_transposed_refined(matrix, rhs);
@@ -248,7 +268,7 @@ fn emit_saddle_point<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
     at: (&[Motion<S>], S),
-    gradients: &[RowGradient<S>],
+    (gradients, left_out): (&[RowGradient<S>], &LeftOut),
     multipliers: &[S],
     block: impl Fn(usize) -> BodyBlocks<S>,
     emit: &mut dyn Emit<S>,
@@ -264,4 +284,24 @@ fn emit_saddle_point<S: Scalar>(
     emit_reaction_jacobian(model, numbering, here, multipliers, (0, 0), S::one(), emit);
     emit_transposed_gradients(model, numbering, gradients, (0, n), S::one(), emit);
     emit_gradients(model, numbering, gradients, (n, 0), emit);
+    emit_left_out(numbering, left_out, &[(n, n)], emit);
+}
+
+/// Emits λ_i = 0 for the rows that are left out, at each of `places`; entries of zero for the others,
+/// so that the pattern serves every choice, if there is one.
+pub fn emit_left_out<S: Scalar>(
+    numbering: &Numbering,
+    left_out: &LeftOut,
+    places: &[(usize, usize)],
+    emit: &mut dyn Emit<S>,
+) {
+    if left_out.is_empty() {
+        return;
+    }
+    for i in 0..numbering.constraints() {
+        let value = if left_out.contains(i) { 1.0 } else { 0.0 };
+        for (row, column) in places {
+            emit.add(row + i, column + i, S::from(value));
+        }
+    }
 }

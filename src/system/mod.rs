@@ -13,6 +13,7 @@ pub mod constraint;
 pub mod initial;
 pub mod joints;
 pub mod kkt;
+pub mod left_out;
 pub mod loads;
 pub mod marker;
 pub mod numbering;
@@ -27,4 +28,5 @@ pub mod side;
 pub mod tree;
 
 pub use bodies::Motion;
+pub use left_out::LeftOut;
 pub use numbering::Numbering;

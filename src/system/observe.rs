@@ -1,7 +1,7 @@
 //! Conserved quantities, constraint drift and joint reactions of a state.
 
 use super::bodies::{Motion, add6};
-use super::constraint::{self, gradient};
+use super::constraint::gradient;
 use super::joints;
 use super::loads;
 use super::numbering::Numbering;
@@ -71,11 +71,6 @@ pub fn observe(
     seen.position_drift = largest(&rows);
     joints::rates(model, numbering, (&motions, time), &mut rows);
     seen.velocity_drift = largest(&rows);
-    joints::for_each_left_out(model, (&motions, time), |_, row, a, b| {
-        let (value, rate) = (constraint::value(row, a, b), constraint::rate(row, a, b));
-        seen.position_drift = largest(&[seen.position_drift, value]);
-        seen.velocity_drift = largest(&[seen.velocity_drift, rate]);
-    });
     seen
 }
 
@@ -100,30 +95,15 @@ pub fn reactions(
     let at_rest = vec![0.0; numbering.velocities()];
     let mut motions = Vec::new();
     Motion::all(numbering, q, &at_rest, &mut motions);
-    let complete;
-    let (lambda, all_rows) = if model.joints.iter().all(|joint| joint.left_out.is_empty()) {
-        (lambda.to_vec(), numbering)
-    } else {
-        let mut model = model.clone();
-        let mut spread = Vec::new();
-        for (j, joint) in model.joints.iter_mut().enumerate() {
-            let mut imposed = lambda[numbering.rows(j)].iter();
-            let rows = joint.all_rows();
-            spread.extend(rows.map(|row| match joint.left_out.contains(&row) {
-                true => 0.0,
-                false => *imposed.next().expect("an imposed row has a multiplier"),
-            }));
-            joint.left_out.clear();
-        }
-        complete = Numbering::new(&model);
-        let lambda = smallest_multipliers(&model, &complete, (&motions, time), &spread);
-        (lambda, &complete)
+    let lambda = match model.joints.iter().all(|joint| joint.left_out.is_empty()) {
+        true => lambda.to_vec(),
+        false => smallest_multipliers(model, numbering, (&motions, time), lambda),
     };
     let ground = Motion::ground();
     let reaction = |(j, joint): (usize, &crate::model::Joint<f64>)| {
         let (a, b) = sides(joint, &motions, &ground, time);
         let mut total = [0.0; 6];
-        for (row, &l) in joint.all_rows().zip(&lambda[all_rows.rows(j)]) {
+        for (row, &l) in joint.rows().zip(&lambda[numbering.rows(j)]) {
             let g = gradient(row, &a, &b);
             add6(&mut total, &(g.force * -l), &(g.torque_a * -l));
         }

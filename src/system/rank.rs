@@ -18,7 +18,7 @@ pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     let numbering = Numbering::new(model);
     let real = model.map(&mut |x| x.re());
     let q: Vec<f64> = q.iter().map(|x| x.re()).collect();
-    let g = redundancy::unit_rows(&real, &q);
+    let (g, joint_of) = redundancy::unit_rows(&real, &q);
     if g.iter().any(|x| !x.is_finite()) {
         return AssemblyFailure::Singular;
     }
@@ -31,18 +31,17 @@ pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     let redundant: Vec<usize> = (0..svd.singular_values.len())
         .filter(|&k| svd.singular_values[k] <= NEGLIGIBLE * largest)
         .collect();
-    let extra = numbering
-        .constraints()
-        .saturating_sub(numbering.velocities());
+    let extra = joint_of.len().saturating_sub(numbering.velocities());
     if redundant.is_empty() && extra == 0 {
         return without_inertia(&real, &g);
     }
     let mut names: Vec<&str> = Vec::new();
     if let Some(u) = &svd.u {
         for (j, joint) in model.joints.iter().enumerate() {
+            let rows = (0..joint_of.len()).filter(|&i| joint_of[i] == j);
             let share: f64 = redundant
                 .iter()
-                .flat_map(|&k| numbering.rows(j).map(move |i| u[(i, k)].powi(2)))
+                .flat_map(|&k| rows.clone().map(move |i| u[(i, k)].powi(2)))
                 .sum();
             if share > 1e-8 {
                 names.push(&joint.name);
@@ -61,7 +60,7 @@ pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     }
     AssemblyFailure::Redundant {
         redundant: redundant.len() + extra,
-        constraints: numbering.constraints(),
+        constraints: joint_of.len(),
         joints,
     }
 }

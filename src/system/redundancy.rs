@@ -13,6 +13,7 @@ use super::bodies::{self, Motion};
 use super::constraint;
 use super::initial::guess;
 use super::joints;
+use super::left_out::LeftOut;
 use super::numbering::Numbering;
 use super::reduce;
 use crate::math::{Scalar, Vec3};
@@ -102,11 +103,16 @@ pub fn redundant_rows(model: &Model<f64>) -> Option<usize> {
     Some(kept.into_iter().filter(|kept| !kept).count())
 }
 
-/// Unit rows of G at q as columns, in the order of the joints, angles counted as arcs at the length
-/// scale.
-pub fn unit_rows(model: &Model<f64>, q: &[f64]) -> DMatrix<f64> {
+/// Unit rows of G at q as columns, in the order of the joints, without those that are left out, angles
+/// counted as arcs at the length scale; and the joint of each.
+pub fn unit_rows(model: &Model<f64>, q: &[f64]) -> (DMatrix<f64>, Vec<usize>) {
     let joints: Vec<usize> = (0..model.joints.len()).collect();
-    Rows::new(model, &joints).gradients(q).0
+    let rows = Rows::new(model, &joints);
+    let left_out = LeftOut::of(model, &rows.numbering);
+    let imposed: Vec<usize> = rows.numbers().filter(|&i| !left_out.contains(i)).collect();
+    let of = imposed.iter().map(|&i| rows.numbering.joint_of_row(i));
+    let of = of.collect();
+    (rows.gradients(q).0.select_columns(&imposed), of)
 }
 
 /// Joints that lie in loops of bodies and ground; in trees no row follows from others.
@@ -316,7 +322,7 @@ fn normal(g: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
     product.cholesky()
 }
 
-/// A row that is left out, and how far it is open.
+/// A row, and how far it is open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Widest {
     /// Its joint.
@@ -327,10 +333,13 @@ pub struct Widest {
     pub gap: f64,
 }
 
-/// The row that is open most among those that are left out; `None` if none is left out.
+/// The row that is open most; `None` if no row is left out, so that all are imposed.
 pub fn widest<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Widest> {
+    if model.joints.iter().all(|joint| joint.left_out.is_empty()) {
+        return None;
+    }
     let mut widest: Option<Widest> = None;
-    joints::for_each_left_out(model, at, |joint, row, a, b| {
+    joints::for_each_row(model, at, |joint, row, a, b| {
         let gap = constraint::value(row, a, b).re().abs();
         if widest.is_none_or(|most| gap > most.gap || gap.is_nan()) {
             widest = Some(Widest { joint, row, gap });

@@ -90,7 +90,8 @@ fn relative(a: &[f64], b: &[f64]) -> f64 {
 fn differences(problem: &Problem, settings: &Settings) -> [f64; 3] {
     let full = unlowered(problem);
     let (a, b) = (run(problem, settings), run(&full, settings));
-    assert_eq!(a.run.grid, b.run.grid);
+    // What is left out of the joints differs.
+    assert_eq!(a.run.grid.ends(), b.run.grid.ends());
     let which: Vec<usize> = (0..a.scene.functions.len()).collect();
     let (_, motion) = a.written(problem);
     let states = relative(&motion.q, &b.run.q).max(relative(&motion.v, &b.run.v));
@@ -109,11 +110,12 @@ fn differences(problem: &Problem, settings: &Settings) -> [f64; 3] {
     worst
 }
 
-/// Unknowns and rows of the start of a problem, lowered.
+/// Unknowns and imposed rows of the start of a problem, lowered.
 fn size(problem: &Problem) -> (usize, usize) {
     let model = problem.scene::<f64>(&problem.start()).model;
     let numbering = flexbody::system::Numbering::new(&model);
-    (numbering.unknowns(), numbering.constraints())
+    let imposed = model.joints.iter().map(|joint| joint.imposed().count());
+    (numbering.unknowns(), imposed.sum())
 }
 
 const RADAU: Method = Method::Radau { stages: 3 };

@@ -60,6 +60,9 @@ pub(super) fn gradients(
         }
         let failed = |failure| failed(failure, (model, numbering), (n, run.duration * end));
         let singular = |singular| failed(StepFailure::Singular(singular));
+        if let Some(rows) = run.grid.left_out(n) {
+            field.leave_out(rows);
+        }
         let block = replay.block(n)?;
         let (from, to, data) = (block.node(n - 1), block.node(n), block.step(n));
         for k in samples.rev() {

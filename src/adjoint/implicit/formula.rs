@@ -9,6 +9,7 @@ use crate::integrate::implicit::ggl::Equations;
 use crate::integrate::implicit::split::SplitMatrix;
 use crate::linalg::{REFINED_SOLVES, SparseLu, SparseMatrix};
 use crate::model::Model;
+use crate::system::LeftOut;
 use crate::system::{Numbering, bodies};
 
 /// The iteration matrix, which every step fills again, and vectors that every function does.
@@ -46,6 +47,14 @@ impl<'a> Plan<'a> {
             psi: vec![0.0; length],
             change: vec![0.0; length],
         }
+    }
+
+    /// The plan with these rows left out, if any are.
+    pub fn leaving_out(&mut self, rows: Option<&LeftOut>) -> &mut Self {
+        if let Some(rows) = rows {
+            self.equations.leave_out(rows);
+        }
+        self
     }
 
     /// Moves all functions from the end of the step to its start.

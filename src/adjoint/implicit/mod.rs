@@ -76,6 +76,7 @@ pub(super) fn gradients(
         let found = match Formula::of_step(run.method, k) {
             Some(formula) => one
                 .get_or_insert_with(|| formula::Plan::new(model, numbering))
+                .leaving_out(run.grid.left_out(k))
                 .step(
                     &formula,
                     &step[0],
@@ -85,6 +86,7 @@ pub(super) fn gradients(
                 ),
             None => coupled
                 .get_or_insert_with(|| radau::Plan::new(model, numbering, &scheme))
+                .leaving_out(run.grid.left_out(k))
                 .step(step, (h, width, end), &mut sweeps, &mut counts),
         };
         found.map_err(|place| IntegrationFailure::Singular {

@@ -9,6 +9,7 @@ use crate::integrate::implicit::radau::Scheme;
 use crate::integrate::implicit::split::SplitMatrix;
 use crate::linalg::{Emit, Pattern, REFINED_SOLVES, SparseLu, SparseMatrix};
 use crate::model::Model;
+use crate::system::LeftOut;
 use crate::system::{Numbering, bodies};
 
 /// The coupled matrix, which every step fills again, and vectors that every function does.
@@ -98,6 +99,14 @@ impl<'a> Plan<'a> {
             part: vec![0.0; length],
             changes: vec![vec![0.0; length]; count],
         }
+    }
+
+    /// The plan with these rows left out, if any are.
+    pub fn leaving_out(&mut self, rows: Option<&LeftOut>) -> &mut Self {
+        if let Some(rows) = rows {
+            self.equations.leave_out(rows);
+        }
+        self
     }
 
     /// Moves all functions from the end of the step to its start.

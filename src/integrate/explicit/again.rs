@@ -51,6 +51,9 @@ impl<'a> Again<'a> {
         let (duration, grid) = (self.run.duration, &self.run.grid);
         let times = (duration * grid.ends()[k - 1], duration * grid.width(k));
         let stepper = &mut self.stepper;
+        if let Some(rows) = grid.left_out(k) {
+            stepper.field.leave_out(rows);
+        }
         stepper.stages(self.from.view(), times)?;
         stepper.finish(&mut self.to, duration * grid.ends()[k])?;
         if dense {

@@ -17,6 +17,7 @@ use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::model::Model;
 use crate::system::Numbering;
 use crate::system::initial::InitialState;
+use crate::system::left_out::WORN;
 
 /// Correction of the velocities, relative to their scale, that is none of the step's error.
 const LOST: f64 = 0.01;
@@ -71,6 +72,12 @@ pub fn march<S: SolveScalar>(
     };
     let (mut from, mut to) = (node.clone(), node);
     let mut next = 1;
+    let choices = settings.spacing.left_out(&run.initial.left_out);
+    let left_out = choices
+        .first()
+        .map_or(&run.initial.left_out, |(_, rows)| rows);
+    stepper.field.leave_out(left_out);
+    run.grid.leave_out(left_out);
     // The history of steps that are chosen on the way grows with them.
     reserve(&mut run, settings);
     if stepper.field.closes_loops() {
@@ -86,6 +93,7 @@ pub fn march<S: SolveScalar>(
     while let Some(width) = controller.next(run.grid.reached()) {
         let h = duration * width;
         let end = controller.end(run.grid.reached(), width);
+        let mut exchanged = None;
         let tried = stepper
             .stages(from.view(), (duration * run.grid.reached(), h))
             .map(|()| error(&mut stepper, &scale, from.view(), h))
@@ -113,6 +121,10 @@ pub fn march<S: SolveScalar>(
                 let errs = given && steadiness.errs(steady, error, controller.largest_error());
                 if steadiness.magnified(steady) > most || errs {
                     return Err(StepFailure::Close(ahead.unwrap_or(end)));
+                }
+                // By the matrix at the end of the step, before those inside it.
+                if choices.is_empty() {
+                    exchanged = stepper.field.exchanged(WORN);
                 }
                 let begin = run.grid.reached();
                 let cells = run.grid.cells(run.grid.steps() + 1);
@@ -191,6 +203,12 @@ pub fn march<S: SolveScalar>(
             tape.leave(number, (to.clone(), stepper.field.memory()));
         }
         std::mem::swap(&mut from, &mut to);
+        // Rows are exchanged between steps, so that every step has smooth equations.
+        let known = choices.iter().find(|(from, _)| *from == number + 1);
+        if let Some(rows) = known.map(|(_, rows)| rows).or(exchanged.as_ref()) {
+            stepper.field.leave_out(rows);
+        }
+        run.grid.leave_out(stepper.field.left_out());
     }
     close(&mut run, &controller)?;
     run.counts.factorisations += stepper.field.factorisations;

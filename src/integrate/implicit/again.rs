@@ -59,6 +59,9 @@ impl March for Again<'_> {
         let (start, h) = (duration * grid.ends()[k - 1], duration * grid.width(k));
         let at = (k, duration * grid.ends()[k]);
         let (past, solver) = (&mut self.past, &mut self.solver);
+        if let Some(rows) = grid.left_out(k) {
+            solver.leave_out(rows);
+        }
         let count = solver.step(past, (start, h), at, &mut self.counts)?;
         if let Some(block) = block {
             block.push(&past.from, &solver.stages[..count]);

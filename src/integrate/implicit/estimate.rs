@@ -9,7 +9,7 @@ use crate::integrate::trajectory::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
-use crate::system::{Motion, Numbering, bodies, joints};
+use crate::system::{LeftOut, Motion, Numbering, bodies, joints};
 
 /// Estimates errors, with what that needs again in every step.
 pub(super) struct Estimate<'a> {
@@ -40,6 +40,11 @@ impl<'a> Estimate<'a> {
             motions: Vec::new(),
             rows: vec![0.0; numbering.constraints()],
         }
+    }
+
+    /// Leaves other rows out.
+    pub fn leave_out(&mut self, left_out: &LeftOut) {
+        self.field.leave_out(left_out);
     }
 
     /// Adds the work so far.

@@ -18,7 +18,10 @@ use crate::model::Model;
 use crate::system::bodies::{self, Motion, all_force_balances, velocities_of, velocity_of_rates};
 use crate::system::constraint::RowGradient;
 use crate::system::joints::{self, JointCotangent};
-use crate::system::kkt::{emit_gradients, emit_reaction_jacobian, emit_transposed_gradients};
+use crate::system::kkt::{
+    emit_gradients, emit_left_out, emit_reaction_jacobian, emit_transposed_gradients,
+};
+use crate::system::left_out::LeftOut;
 use crate::system::loads::{self, LoadCotangent};
 use crate::system::reduce;
 use crate::system::side::sides;
@@ -52,6 +55,8 @@ pub struct Equations<'a, S> {
     numbering: &'a Numbering,
     motions: Vec<Motion<S>>,
     gradients: Vec<RowGradient<S>>,
+    /// Rows that are not imposed: λ_i = 0 and μ_i = 0 stand in their places.
+    left_out: LeftOut,
     loads: Vec<S>,
     /// Motions with virtual velocities, for pull-backs.
     moving: Vec<Motion<S>>,
@@ -78,11 +83,21 @@ impl<'a, S: Scalar> Equations<'a, S> {
             numbering,
             motions: Vec::new(),
             gradients: Vec::new(),
+            left_out: LeftOut::of(model, numbering),
             loads: vec![S::zero(); numbering.velocities()],
             moving: Vec::new(),
             placed: Vec::new(),
             mass: typical_mass(model),
         }
+    }
+
+    /// Leaves other rows out; whether that is a change.
+    pub fn leave_out(&mut self, left_out: &LeftOut) -> bool {
+        let changes = self.left_out != *left_out;
+        if changes {
+            self.left_out.clone_from(left_out);
+        }
+        changes
     }
 
     /// Mass that the dynamics are divided by (kg).
@@ -134,6 +149,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
             (&self.motions, at.time),
             &mut self.gradients,
         );
+        self.left_out.clear_gradients(&mut self.gradients);
     }
 
     /// Residual in the scaling of step h.
@@ -160,6 +176,10 @@ impl<'a, S: Scalar> Equations<'a, S> {
         joints::values(model, numbering, here, out3);
         joints::rates_from_gradients(model, numbering, &self.gradients, at.v, out4);
         joints::add_driven_rates(model, numbering, here, out4);
+        for i in self.left_out.numbers() {
+            out3[i] = at.lambda[i] * (h * h / self.mass);
+            out4[i] = at.mu[i];
+        }
         let scaled: [(&mut [S], S); 3] = [(out1, h), (out2, h * h / self.mass), (out4, h)];
         for (rows, scale) in scaled {
             for f in rows {
@@ -220,12 +240,20 @@ impl<'a, S: Scalar> Equations<'a, S> {
         emit_transposed_gradients(model, numbering, &self.gradients, (f2, lambda), one, emit);
         emit_gradients(model, numbering, &self.gradients, (f3, y), emit);
         emit_gradients(model, numbering, &self.gradients, (f4, v), emit);
+        let places = [(f3, lambda), (f4, mu)];
+        emit_left_out(numbering, &self.left_out, &places, emit);
         // F4 by y.
         let ground = Motion::ground();
         for (j, joint) in model.joints.iter().enumerate() {
             let (a, b) = sides(joint, motions, &ground, at.time);
             for (i, row) in numbering.rows(j).zip(joint.rows()) {
                 let (by_a, by_b) = rate_by_position(row, &a, &b);
+                // Zeros are emitted, as the pattern serves every choice.
+                let h = if self.left_out.contains(i) {
+                    S::zero()
+                } else {
+                    h
+                };
                 for (body, by) in [(Some(joint.body_a), by_a), (joint.body_b, by_b)] {
                     let Some(body) = body else { continue };
                     let column = y + numbering.velocity(body);

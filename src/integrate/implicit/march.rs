@@ -17,6 +17,7 @@ use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::initial::InitialState;
+use crate::system::left_out::WORN;
 use crate::system::{Motion, Numbering, bodies};
 
 /// Integrates from a consistent start.
@@ -130,8 +131,15 @@ fn march_until<S: SolveScalar>(
     let mut motions = Vec::new();
     let watched =
         (model.joints.iter()).any(|joint| !joint.left_out.is_empty() || !joint.drives.is_empty());
-    // Only loops of joints have singular positions.
+    let choices = settings.spacing.left_out(&run.initial.left_out);
+    let left_out = choices
+        .first()
+        .map_or(&run.initial.left_out, |(_, rows)| rows);
+    solver.leave_out(left_out);
+    run.grid.leave_out(left_out);
+    // Only loops of joints have singular positions, and rows that are left out.
     let mut field = Accelerations::new(model, numbering);
+    field.leave_out(left_out);
     let loops = field.closes_loops();
     let mut steadiness = Steadiness::new(numbering);
     while let Some(width) = controller.next(run.grid.reached()) {
@@ -189,6 +197,17 @@ fn march_until<S: SolveScalar>(
             tape_of(&mut run).block.push(&past.from, stages);
         }
         solver.remember(count, k);
+        // Rows are exchanged between steps, so that every step has smooth equations.
+        let exchanged = match choices.is_empty() && loops {
+            true => field.exchanged(WORN),
+            false => None,
+        };
+        let known = choices.iter().find(|(from, _)| *from == k + 1);
+        if let Some(rows) = known.map(|(_, rows)| rows).or(exchanged.as_ref()) {
+            field.leave_out(rows);
+            solver.leave_out(rows);
+            run.grid.leave_out(rows);
+        }
         past.advance(h, &mut solver.stages, count);
         if tape_of(&mut run).is_due(k) {
             let state = (past.clone(), solver.memory.clone());

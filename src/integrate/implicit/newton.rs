@@ -9,7 +9,7 @@ use crate::integrate::trajectory::WorkCounts;
 use crate::linalg::{Pivots, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::Scalar;
 use crate::model::Model;
-use crate::system::Numbering;
+use crate::system::{LeftOut, Numbering};
 use std::sync::Arc;
 
 /// Error left in a step, relative to the largest increments of position, rotation, velocity and
@@ -145,6 +145,13 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             self.factored = Some(*c * *h);
             self.made.0.set(stage);
             self.made.1 = [*h, *c];
+        }
+    }
+
+    /// Leaves other rows out.
+    pub fn leave_out(&mut self, left_out: &LeftOut) {
+        if self.equations.leave_out(left_out) {
+            self.factored = None;
         }
     }
 

@@ -14,13 +14,14 @@ use crate::integrate::trajectory::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::initial::InitialState;
-use crate::system::{Numbering, bodies};
+use crate::system::{LeftOut, Numbering, bodies};
 
 /// What Newton's methods keep from step to step.
 #[derive(Clone, Debug)]
 pub struct Memory<S> {
     one: Option<newton::Memory<S>>,
     coupled: Option<stage_newton::Memory>,
+    left_out: LeftOut,
 }
 
 /// The start as a stage, with its rates q̇ = T(q) v and v̇.
@@ -46,6 +47,8 @@ pub(super) struct Solver<'a, S> {
     /// Newton's method for Radau IIA, once it is needed.
     coupled: Option<StageNewton<'a, S>>,
     estimate: Option<Estimate<'a>>,
+    /// Rows that are not imposed.
+    left_out: LeftOut,
     /// Memory of a formula, of q and of v.
     pub memory: [Vec<Vec<S>>; 2],
     history: History<S>,
@@ -72,6 +75,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
             one: None,
             coupled: None,
             estimate: estimates.then(|| Estimate::new(real, numbering, scheme)),
+            left_out: LeftOut::default(),
             memory: lengths.map(|n| vec![vec![S::zero(); n]; memory_size(method)]),
             history: History::new(numbering),
             stages: vec![Stage::zero(numbering); scheme.stages()],
@@ -83,29 +87,47 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         Memory {
             one: self.one.as_mut().map(Newton::memory),
             coupled: self.coupled.as_mut().map(StageNewton::memory),
+            left_out: self.left_out.clone(),
         }
     }
 
     /// Takes what Newton's methods kept.
     pub fn restore(&mut self, newton: &Memory<S>, counts: &mut WorkCounts) {
+        self.leave_out(&newton.left_out);
         match &newton.one {
             None => self.one = None,
-            Some(kept) => self
-                .one
-                .get_or_insert_with(|| Newton::new(self.model, self.numbering))
-                .restore(kept, counts),
+            Some(kept) => {
+                let (model, numbering) = (self.model, self.numbering);
+                let newton = (self.one).get_or_insert_with(|| Newton::new(model, numbering));
+                newton.leave_out(&self.left_out);
+                newton.restore(kept, counts);
+            }
         }
         match &newton.coupled {
             None => self.coupled = None,
             Some(kept) => {
                 let estimates = self.estimate.is_some();
                 let (model, real) = (self.model, self.real);
-                self.coupled
-                    .get_or_insert_with(|| {
-                        StageNewton::new(model, real, self.numbering, self.scheme, estimates)
-                    })
-                    .restore(kept, counts);
+                let newton = self.coupled.get_or_insert_with(|| {
+                    StageNewton::new(model, real, self.numbering, self.scheme, estimates)
+                });
+                newton.leave_out(&self.left_out);
+                newton.restore(kept, counts);
             }
+        }
+    }
+
+    /// Leaves other rows out of the steps to come.
+    pub fn leave_out(&mut self, rows: &LeftOut) {
+        self.left_out.clone_from(rows);
+        if let Some(newton) = &mut self.one {
+            newton.leave_out(rows);
+        }
+        if let Some(newton) = &mut self.coupled {
+            newton.leave_out(rows);
+        }
+        if let Some(estimate) = &mut self.estimate {
+            estimate.leave_out(rows);
         }
     }
 
@@ -133,9 +155,10 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
                 stage.time = start + h * c;
             }
             let (scheme, estimates) = (self.scheme, self.estimate.is_some());
-            self.coupled
-                .get_or_insert_with(|| StageNewton::new(model, real, numbering, scheme, estimates))
-                .solve(stages, h, at, counts)?;
+            let newton = (self.coupled)
+                .get_or_insert_with(|| StageNewton::new(model, real, numbering, scheme, estimates));
+            newton.leave_out(&self.left_out);
+            newton.solve(stages, h, at, counts)?;
             return Ok(stages.len());
         };
         if at.0 == 1 && remembers_start(self.method) {
@@ -158,6 +181,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         let newton = self
             .one
             .get_or_insert_with(|| Newton::new(model, numbering));
+        newton.leave_out(&self.left_out);
         newton.solve(stage, history, h, at, counts).or_else(|_| {
             // An extrapolation over steps that are large for the motion may lead astray.
             past.taylor(numbering, h, stage);

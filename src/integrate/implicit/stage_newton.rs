@@ -11,7 +11,7 @@ use crate::integrate::trajectory::WorkCounts;
 use crate::linalg::{Pivots, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::{Complex64, Scalar};
 use crate::model::Model;
-use crate::system::{Numbering, bodies};
+use crate::system::{LeftOut, Numbering, bodies};
 use std::sync::Arc;
 
 /// Error left in the stages, relative to the largest increments in the step.
@@ -140,6 +140,14 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     /// Forgets the kept factors.
     pub fn forget(&mut self) {
         self.factored = None;
+    }
+
+    /// Leaves other rows out.
+    pub fn leave_out(&mut self, left_out: &LeftOut) {
+        if self.equations.leave_out(left_out) {
+            self.real.leave_out(left_out);
+            self.factored = None;
+        }
     }
 
     /// Solves the stage equations of a step of size `h`, starting from and ending in `stages`.

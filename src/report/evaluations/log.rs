@@ -222,6 +222,7 @@ mod tests {
                 method_reason: None,
                 cells: Vec::new(),
                 ends: vec![0.0, 1.0],
+                left_out: Vec::new(),
             }),
             event: None,
             work: Work::default(),

@@ -8,6 +8,7 @@ mod log;
 pub use log::{Earlier, EvaluationLog};
 
 use crate::integrate::{Grid, Method, WorkCounts};
+use crate::system::LeftOut;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -191,9 +192,33 @@ pub struct StepsInUse {
     /// Cells of the steps for sums over the motion; none where each step has one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cells: Vec<u32>,
+    /// Constraint rows that are left out of joints that repeat each other; none where no row is.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<RowsLeftOut>,
+}
+
+/// Constraint rows that are left out from a step on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RowsLeftOut {
+    /// The step, counted from 1.
+    pub from: usize,
+    /// Numbers of the rows, counted from 0.
+    pub rows: Vec<usize>,
+    /// Number of all rows.
+    pub of: usize,
 }
 
 impl StepsInUse {
+    /// The steps with what is left out in them; `None` where they are equal, or no motion can have them.
+    pub fn grid(&self) -> Option<Grid> {
+        let mut grid = Grid::from_ends(self.ends.clone())?.with_cells(self.cells.clone());
+        for RowsLeftOut { from, rows, of } in &self.left_out {
+            grid.leave_out_from(*from, &LeftOut::from_rows(rows, *of)?);
+        }
+        Some(grid)
+    }
+
     /// What was found and expected, if no motion can have steps like these.
     fn fault(&self) -> Option<(String, &'static str)> {
         if Method::adaptive(&self.method).is_none() {
@@ -207,6 +232,13 @@ impl StepsInUse {
         }
         if let Some(cells) = self.cells.iter().find(|&&cells| cells > MOST_CELLS) {
             return Some((format!("{cells} cells in a step"), "at most 4096"));
+        }
+        let row = |left_out: &RowsLeftOut| {
+            let beyond = left_out.rows.iter().find(|row| **row >= left_out.of);
+            beyond.map(|row| format!("row {row} of {}", left_out.of))
+        };
+        if let Some(found) = self.left_out.iter().find_map(row) {
+            return Some((found, "numbers of rows, counted from 0"));
         }
         if self.ends.is_empty() || Grid::from_ends(self.ends.clone()).is_some() {
             return None;

@@ -8,6 +8,7 @@ use crate::linalg::SingularMatrix;
 use crate::math::Scalar;
 use crate::model::Model;
 use crate::system::constraint::RowGradient;
+use crate::system::left_out::LeftOut;
 use crate::system::numbering::Numbering;
 use crate::system::reduce::{inertia, reduced};
 
@@ -99,7 +100,7 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
         &mut self,
         model: &Model<S>,
         numbering: &Numbering,
-        gradients: &[RowGradient<S>],
+        (gradients, left_out): (&[RowGradient<S>], &LeftOut),
     ) -> Result<(), SingularMatrix> {
         for (link, factors) in self.links.iter().zip(&mut self.factors) {
             let mobility = numbering.mobility(link.body);
@@ -126,6 +127,9 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
                 factors.lever[i] = lever;
                 for (k, other) in own[..=i].iter().enumerate() {
                     factors.schur[i][k] = dot(&lever, other);
+                }
+                if left_out.contains(rows.start + i) {
+                    factors.schur[i][i] = S::one();
                 }
             }
             decompose(&mut factors.schur, n).map_err(|i| SingularMatrix {
@@ -156,7 +160,7 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
         }
         if let Some(loops) = &mut self.loops {
             let tree = (&self.links[..], &self.factors[..]);
-            loops.factorise(numbering, gradients, tree)?;
+            loops.factorise(numbering, (gradients, left_out), tree)?;
         }
         Ok(())
     }

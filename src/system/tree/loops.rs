@@ -24,6 +24,7 @@ use crate::linalg::SingularMatrix;
 use crate::math::Scalar;
 use crate::model::Model;
 use crate::system::constraint::RowGradient;
+use crate::system::left_out::LeftOut;
 use crate::system::numbering::Numbering;
 use crate::system::reduce::reduced;
 use std::ops::Range;
@@ -64,6 +65,18 @@ struct Wave<S, const N: usize> {
     gap: [S; N],
     /// S⁻¹ e.
     balance: [S; N],
+}
+
+impl<S: Scalar, const N: usize> Wave<S, N> {
+    fn none() -> Self {
+        let zero = [S::zero(); N];
+        Self {
+            force: zero,
+            response: zero,
+            gap: zero,
+            balance: zero,
+        }
+    }
 }
 
 /// The closing joints with their waves and the factors of L T⁻¹ Lᵀ.
@@ -116,7 +129,9 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
             });
             rows += count;
         }
-        let mut work = waves;
+        // Rows that are left out cost nothing.
+        let imposed = |closing: &Closing| model.joints[closing.joint].imposed().count();
+        let mut work: usize = closing.iter().map(|c| imposed(c) * c.path.len()).sum();
         let mut pairs = Vec::new();
         let mut first = Vec::new();
         for (c, later) in closing.iter().enumerate() {
@@ -125,31 +140,24 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
                 let places = common(&later.path, &other.path);
                 if !places.is_empty() {
                     least = least.min(other.rows.start);
-                    work += places.len() * later.rows.len() * other.rows.len() / N;
+                    work += places.len() * imposed(later) * imposed(other) / N;
                     pairs.push(Pair {
                         joints: [c, d],
                         places,
                     });
                 }
             }
-            work += later.rows.len() * (later.rows.end - least) / N;
+            work += imposed(later) * (later.rows.end - least) / N;
             first.extend(later.rows.clone().map(|_| least));
         }
         if work > MOST_WORK * links.len() {
             return None;
         }
-        let zero = [S::zero(); N];
-        let none = Wave {
-            force: zero,
-            response: zero,
-            gap: zero,
-            balance: zero,
-        };
         Some(Self {
             closing,
             pairs,
-            waves: vec![none; waves],
-            forces: vec![zero; links.len()],
+            waves: vec![Wave::none(); waves],
+            forces: vec![[S::zero(); N]; links.len()],
             link_of: link_of.to_vec(),
             matrix: Envelope::new(first),
             rhs: vec![S::zero(); rows],
@@ -186,7 +194,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
     pub fn factorise(
         &mut self,
         numbering: &Numbering,
-        gradients: &[RowGradient<S>],
+        (gradients, left_out): (&[RowGradient<S>], &LeftOut),
         (links, factors): (&[Link], &[Factors<S, N>]),
     ) -> Result<(), SingularMatrix> {
         for closing in &self.closing {
@@ -200,6 +208,10 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
                     self.forces[self.link_of[body]] = reduced(&gradients[row], is_a, mobility);
                 }
                 let from = closing.waves + i * length;
+                if left_out.contains(row) {
+                    self.waves[from..from + length].fill(Wave::none());
+                    continue;
+                }
                 for (wave, &l) in self.waves[from..from + length]
                     .iter_mut()
                     .zip(&closing.path)
@@ -228,7 +240,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
                 }
             }
         }
-        self.assemble();
+        self.assemble(numbering, left_out);
         let row = self.matrix.decompose();
         row.map_err(|row| SingularMatrix {
             column: numbering.velocities() + self.row(numbering, row),
@@ -241,14 +253,29 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
         closing.map_or(0, |c| numbering.rows(c.joint).start + row - c.rows.start)
     }
 
-    fn assemble(&mut self) {
+    /// L T⁻¹ Lᵀ, with the unit matrix in the rows that are left out.
+    fn assemble(&mut self, numbering: &Numbering, left_out: &LeftOut) {
         self.matrix.clear();
+        let out = |c: &Closing, i: usize| left_out.contains(numbering.rows(c.joint).start + i);
+        for closing in &self.closing {
+            for (i, row) in closing.rows.clone().enumerate() {
+                if out(closing, i) {
+                    self.matrix.set(row, row, S::one(), 1.0);
+                }
+            }
+        }
         for Pair { joints, places } in &self.pairs {
             let [c, d] = joints.map(|c| &self.closing[c]);
             for (i, row) in c.rows.clone().enumerate() {
+                if out(c, i) {
+                    continue;
+                }
                 for (k, column) in d.rows.clone().enumerate() {
                     if column > row {
                         break;
+                    }
+                    if out(d, k) {
+                        continue;
                     }
                     let (mut sum, mut size) = (S::zero(), 0.0);
                     for &[p, q] in places {

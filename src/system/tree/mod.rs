@@ -28,6 +28,7 @@ mod loops;
 
 use super::constraint::RowGradient;
 use super::kkt;
+use super::left_out::LeftOut;
 use super::numbering::Numbering;
 use crate::linalg::SingularMatrix;
 use crate::math::Scalar;
@@ -97,7 +98,8 @@ impl<S: Scalar> Tree<S> {
         }
     }
 
-    /// Eliminates with the given masses and inertias (the model's) and gradients of the rows.
+    /// Eliminates with the given masses and inertias (the model's) and gradients of the rows, zero
+    /// those of rows that are left out.
     ///
     /// # Errors
     /// [`SingularMatrix`] with a velocity coordinate that has no inertia or a constraint
@@ -106,11 +108,11 @@ impl<S: Scalar> Tree<S> {
         &mut self,
         model: &Model<S>,
         numbering: &Numbering,
-        gradients: &[RowGradient<S>],
+        rows: (&[RowGradient<S>], &LeftOut),
     ) -> Result<(), SingularMatrix> {
         match self {
-            Tree::Small(elimination) => elimination.factorise(model, numbering, gradients),
-            Tree::Large(elimination) => elimination.factorise(model, numbering, gradients),
+            Tree::Small(elimination) => elimination.factorise(model, numbering, rows),
+            Tree::Large(elimination) => elimination.factorise(model, numbering, rows),
         }
     }
 

@@ -1,0 +1,157 @@
+//! What becomes of the start that a file gives: bodies that are moved so that the joints close,
+//! velocities that are changed as the joints do not admit them, and joints that leave no freedom.
+
+use crate::math::{Vec3, rotation};
+use crate::model::Model;
+use crate::problem::Problem;
+use crate::system::assembly::length_scale;
+use crate::system::initial::{self, InitialState};
+use crate::system::kkt::SaddlePoint;
+use crate::system::{Motion, Numbering, joints, redundancy};
+
+/// Change of a position or velocity, relative to the largest one, that is told.
+const TOLD: f64 = 1e-6;
+/// Bodies that are told of.
+const MOST: usize = 5;
+/// Dependence of unit rows, from the smallest singular value to the largest, that is told.
+const NEARLY: f64 = 1e-4;
+
+/// What a user should know of the start at the design `x`, a sentence each; none if the start is as it
+/// is given, or if there is none.
+pub fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
+    let model = problem.unlowered_scene(x).model;
+    let numbering = Numbering::new(&model);
+    let mut notes = Vec::new();
+    let locked = freedoms(&problem.scene(x).model) == 0 && !model.bodies.is_empty();
+    let driven = model.joints.iter().any(|joint| !joint.drives.is_empty());
+    if consistent(&model, &numbering) && !(locked && !driven) {
+        return notes;
+    }
+    let mut saddle = SaddlePoint::new(&model, &numbering);
+    let Ok(start) = initial::solve(&model, &numbering, &mut saddle) else {
+        return notes;
+    };
+    if locked && !driven {
+        let (rows, _) = redundancy::unit_rows(&model, &start.q);
+        let values = rows.singular_values();
+        let nearly = values.min() / values.max();
+        let near = match nearly < NEARLY {
+            true => format!(
+                "; their conditions nearly repeat each other (to {nearly:.1e}): with joints that fit \
+                 exactly there would be a freedom more"
+            ),
+            false => String::new(),
+        };
+        notes.push(format!(
+            "the joints leave no freedom: nothing can move{near}"
+        ));
+    }
+    let moved = moved(&model, &numbering, &start);
+    tell(&mut notes, moved);
+    let changed = changed(&model, &numbering, &start);
+    tell(&mut notes, changed);
+    notes
+}
+
+fn tell(notes: &mut Vec<String>, all: Vec<String>) {
+    let more = all.len().saturating_sub(MOST);
+    notes.extend(all.into_iter().take(MOST));
+    if more > 0 {
+        notes.push(format!("and {more} more bodies likewise"));
+    }
+}
+
+/// Unknown velocities less the conditions on them that are independent at most positions.
+fn freedoms(model: &Model<f64>) -> usize {
+    let imposed: usize = model
+        .joints
+        .iter()
+        .map(|joint| joint.imposed().count())
+        .sum();
+    Numbering::new(model).unknowns().saturating_sub(imposed)
+}
+
+/// Whether the joints are closed, and admit the velocities, as the bodies are placed.
+fn consistent(model: &Model<f64>, numbering: &Numbering) -> bool {
+    let (q, v) = initial::guess(model);
+    let mut motions = Vec::new();
+    Motion::all(numbering, &q, &v, &mut motions);
+    let mut rows = vec![0.0; numbering.constraints()];
+    let largest = |rows: &[f64]| rows.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    joints::values(model, numbering, (&motions, 0.0), &mut rows);
+    let length = length_scale(model);
+    if largest(&rows) > 0.1 * TOLD * length.min(1.0) {
+        return false;
+    }
+    joints::rates(model, numbering, (&motions, 0.0), &mut rows);
+    let driven = largest(&rows) > 0.0 && v.iter().all(|x| *x == 0.0);
+    !driven && largest(&rows) <= 0.1 * TOLD * largest(&v) * length.min(1.0)
+}
+
+/// Bodies that were moved.
+fn moved(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>) -> Vec<String> {
+    let length = length_scale(model);
+    let one = |(i, body): (usize, &crate::model::RigidBody<f64>)| {
+        let q = &start.q[numbering.position(i)..];
+        let by = (Vec3::new(q[0], q[1], q[2]) - body.position).norm();
+        let p = [q[3], q[4], q[5], q[6]];
+        let turn = rotation::matrix(&body.orientation).transpose() * rotation::matrix(&p);
+        let angle = turn_angle(&turn);
+        (by > TOLD * length || angle > TOLD).then(|| {
+            format!(
+                "body \"{}\" was moved by {by:.3e} m and turned by {angle:.3e} rad to close the joints",
+                body.name
+            )
+        })
+    };
+    model.bodies.iter().enumerate().filter_map(one).collect()
+}
+
+fn turn_angle(turn: &crate::math::Mat3<f64>) -> f64 {
+    let axis = Vec3::new(
+        turn[(2, 1)] - turn[(1, 2)],
+        turn[(0, 2)] - turn[(2, 0)],
+        turn[(1, 0)] - turn[(0, 1)],
+    );
+    (0.5 * axis.norm()).atan2(0.5 * (turn.trace() - 1.0))
+}
+
+/// Bodies whose given velocities were changed.
+fn changed(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>) -> Vec<String> {
+    let parts = |v: &[f64]| (Vec3::new(v[0], v[1], v[2]), Vec3::new(v[3], v[4], v[5]));
+    let given = |i: usize| (model.bodies[i].velocity, model.bodies[i].angular_velocity);
+    let all = (0..model.bodies.len()).map(|i| (given(i), parts(&start.v[numbering.velocity(i)..])));
+    let (mut speed, mut spin) = (0.0_f64, 0.0_f64);
+    for ((v, omega), (v_start, omega_start)) in all.clone() {
+        speed = speed.max(v.norm()).max(v_start.norm());
+        spin = spin.max(omega.norm()).max(omega_start.norm());
+    }
+    let one = |(i, ((v, omega), (v_start, omega_start))): (usize, (_, (Vec3<f64>, Vec3<f64>)))| {
+        let (v, omega): (Vec3<f64>, Vec3<f64>) = (v, omega);
+        if v.norm() == 0.0 && omega.norm() == 0.0 {
+            return None;
+        }
+        let (by, turning) = ((v_start - v).norm(), (omega_start - omega).norm());
+        (by > TOLD * speed || turning > TOLD * spin).then(|| {
+            format!(
+                "the joints do not admit the given velocity of body \"{}\": it starts with {} of {} m/s \
+                 and {} of {} rad/s (changed by {} m/s and {} rad/s)",
+                model.bodies[i].name,
+                short(v_start.norm()),
+                short(v.norm()),
+                short(omega_start.norm()),
+                short(omega.norm()),
+                short(by),
+                short(turning),
+            )
+        })
+    };
+    all.enumerate().filter_map(one).collect()
+}
+
+fn short(x: f64) -> String {
+    match x < 1e-12 {
+        true => "0".into(),
+        false => format!("{x:.4}"),
+    }
+}
