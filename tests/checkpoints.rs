@@ -123,7 +123,7 @@ fn every_method_in_any_memory_finds_the_same_gradients() {
                 assert_eq!(none, 0);
                 let whole = whole(at, &settings);
                 for &part in parts {
-                    let memory = (part * whole as f64) as usize;
+                    let memory = ((part * whole as f64) as usize).max(1);
                     let (again, recomputed, run) = found(at, &settings, (memory, count));
                     let what = format!("scene {s}, {}, {steps} steps, {part}", method.name());
                     for (kept, again) in kept.iter().zip(&again) {
@@ -160,7 +160,7 @@ fn steps_that_were_chosen_on_the_way_are_made_again_as_they_were() {
             let (kept, _, run) = found(at, &settings, (MEMORY, 3));
             let steps = run.grid.steps();
             for part in [0.0, 0.1, 0.5, 0.9] {
-                let memory = (part * run.bytes()[1] as f64) as usize;
+                let memory = ((part * run.bytes()[1] as f64) as usize).max(1);
                 let (again, recomputed, own) = found(at, &settings, (memory, 3));
                 let what = format!("scene {s}, {}, {steps} steps, {part}", method.name());
                 assert_eq!(own.grid, run.grid, "{what}");
@@ -171,6 +171,21 @@ fn steps_that_were_chosen_on_the_way_are_made_again_as_they_were() {
                 let most = schedule(&own).recomputed() + steps;
                 assert!((steps..=most).contains(&recomputed), "{what}: {recomputed}");
             }
+        }
+    }
+}
+
+/// A gradient of a motion that kept nothing makes it again, once.
+#[test]
+fn a_motion_that_kept_nothing_is_made_again_once() {
+    let scene = scene("problems/triple_pendulum.json");
+    for method in methods() {
+        let settings = Settings::steps(method, 60);
+        let (kept, ..) = found((&scene, 0.5), &settings, (MEMORY, 2));
+        let (again, recomputed, run) = found((&scene, 0.5), &settings, (0, 2));
+        assert_eq!((recomputed, run.bytes()[1] < 2000), (60, true));
+        for (kept, again) in kept.iter().zip(&again) {
+            assert!(difference(kept, again) <= 1e-14, "{method:?}");
         }
     }
 }

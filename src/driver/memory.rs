@@ -14,7 +14,7 @@ const UNKNOWN: usize = 1 << 30;
 /// Memory that the tape of one motion may take (bytes), if `given` is for all motions at a time.
 pub fn for_gradients(given: Option<usize>) -> usize {
     let all = given.unwrap_or_else(|| available_memory().map_or(UNKNOWN, |bytes| bytes / PART));
-    all / rayon::current_num_threads().max(1)
+    (all / rayon::current_num_threads().max(1)).max(1)
 }
 
 /// What a body takes beside its states: inertia, markers, factors (bytes).

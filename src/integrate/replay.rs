@@ -2,6 +2,7 @@
 
 use super::IntegrationFailure;
 use super::schedule::{Room, Schedule};
+use super::settings::MEMORY;
 use std::borrow::Cow;
 use std::fmt::Debug;
 use std::ops::Range;
@@ -77,11 +78,13 @@ pub struct Tape<B: Block> {
 }
 
 impl<B: Block> Tape<B> {
-    /// A tape that takes `memory` bytes; `steps` is how many there will be, if that is known.
+    /// A tape that takes `memory` bytes; `steps` is how many there will be, if that is known. Without any
+    /// memory nothing is kept: a gradient that is asked for all the same makes the motion again.
     pub fn new(mut block: B, (memory, room): (usize, Room), steps: Option<usize>) -> Self {
-        let schedule = steps.map(|steps| Schedule::new(steps, memory, room));
+        let known = steps.filter(|_| memory > 0);
+        let schedule = known.map(|steps| Schedule::new(steps, memory, room));
         let mut due = Vec::new();
-        if let (Some(schedule), Some(steps)) = (&schedule, steps) {
+        if let (Some(schedule), Some(steps)) = (&schedule, known) {
             block.restart(schedule.head());
             block.reserve(steps - schedule.head());
             due = schedule.of_run();
@@ -94,7 +97,7 @@ impl<B: Block> Tape<B> {
             due,
             retried: Vec::new(),
             memory,
-            full: false,
+            full: memory == 0,
             room,
         }
     }
@@ -134,13 +137,16 @@ impl<B: Block> Tape<B> {
 
     /// How a run of so many steps is kept.
     pub fn schedule(&self, steps: usize) -> Schedule {
-        let new = || Schedule::new(steps, self.memory, self.room);
-        self.schedule.unwrap_or_else(new)
+        self.schedule.unwrap_or_else(|| self.foreseen(steps).0)
     }
 
     /// How a run of so many steps would be kept, and what that takes (bytes).
     pub fn foreseen(&self, steps: usize) -> (Schedule, usize) {
-        let schedule = Schedule::new(steps, self.memory, self.room);
+        let memory = match self.memory {
+            0 => MEMORY,
+            memory => memory,
+        };
+        let schedule = Schedule::new(steps, memory, self.room);
         (schedule, schedule.bytes(self.room))
     }
 

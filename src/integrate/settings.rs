@@ -150,7 +150,7 @@ pub struct Settings {
     /// What the simulation may take, and who is told how far it is.
     pub limits: Limits,
     /// Memory that what is kept for a gradient may take (bytes); a gradient makes the other steps again.
-    /// Zero where none is asked for.
+    /// Zero where none is asked for: one that is nevertheless makes the motion again, in [`MEMORY`].
     pub memory: usize,
 }
 
