@@ -374,19 +374,32 @@ fn the_program_names_redundant_joints() {
     }
 }
 
-/// Radau IIA does not pass the singular positions, in which all rods lie in a line, and says where the
-/// iteration matrix is nearly singular as its Newton iterations stall.
+/// Radau IIA with equal steps passes two singular positions, in which all rods lie in a line, with the
+/// accuracy of its order, or says where it cannot.
 #[test]
-fn implicit_steps_name_the_singular_position_that_they_stall_at() {
+fn implicit_steps_pass_singular_positions_rightly_or_name_them() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/benchmarks/four_bars_2.json");
-    let steps = r#"/simulation={"duration": 1, "steps": 100, "method": {"radau": {"stages": 3}}}"#;
-    let steps = Override::parse(steps).expect("an override");
-    let problem = Problem::load(&path, &[steps]).expect("no faults");
-    let failure = simulate(&problem, &[]).err().expect("it does not pass");
-    let told = failure.to_string();
-    assert!(told.starts_with("Newton's method stalled"), "{told}");
-    assert!(told.contains("nearly singular there"), "{told}");
-    assert!(told.contains("constraint of joint"), "{told}");
+    for steps in [80, 100, 160, 300] {
+        let steps = format!(
+            r#"/simulation={{"duration": 1, "steps": {steps}, "method": {{"radau": {{"stages": 3}}}}}}"#
+        );
+        let changed = Override::parse(&steps).expect("an override");
+        let problem = Problem::load(&path, &[changed]).expect("no faults");
+        match simulate(&problem, &[]) {
+            Ok(done) => {
+                let found = [0, 1].map(|f| done.at.function(f).value);
+                // The exact equation of its one freedom, at 1 s.
+                let apart = (found[0] + 0.1950203019).hypot(found[1] + 0.9807992057);
+                assert!(apart < 1e-5, "{steps}: {found:?}");
+            }
+            Err(failure) => {
+                let told = failure.to_string();
+                let named =
+                    told.contains("nearly singular there") || told.contains("singular position");
+                assert!(named, "{steps}: {told}");
+            }
+        }
+    }
 }
 
 /// A parallelogram of rods of 1 m that stands upright and turns at this speed (rad/s), without gravity: its

@@ -296,20 +296,16 @@ impl Integration {
         mut settings: Settings,
     ) -> Result<(Trajectory<f64>, Settings), IntegrationFailure> {
         for _ in 0..ROUNDS {
-            let Resolution { cells, error } = self.resolution(scene, &run);
-            let (Spacing::Frozen(grid), Spacing::Tolerance(tolerance)) =
-                (&settings.spacing, &self.spacing)
+            let Resolution { cells, .. } = self.resolution(scene, &run);
+            let (Spacing::Frozen(grid), Spacing::Tolerance(_)) = (&settings.spacing, &self.spacing)
             else {
                 break;
             };
             if cells == grid.all_cells() {
                 break;
             }
+            // Made again also where cells are only left out: a resumed run knows these cells alone.
             settings.spacing = Spacing::Frozen(grid.clone().with_cells(cells));
-            // Cells that are only left out change nothing but round-off.
-            if error <= OF_SUMS * tolerance {
-                break;
-            }
             let counts = run.counts;
             run = simulate(&scene.model, run.duration, &settings)?;
             run.counts += counts;

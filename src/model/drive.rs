@@ -342,9 +342,14 @@ mod tests {
             interpolation,
         };
         // Slopes by neighbours err by h²/6 of the third derivative, values between by a quarter of h
-        // times that. Away from the ends, where it starts from rest.
+        // times that. Curvatures by neighbours err by h of it at most, values between by 0.035 h² times
+        // that, the largest sum of ½ θ² (1 − θ)³ over both ends. Away from the ends, where it starts
+        // from rest.
         let third = 1.5_f64.powi(3);
-        let bounds = [0.05_f64.powi(3) * third / 24.0, 0.05 * 0.05 * third / 3.0];
+        let bounds = [
+            0.05_f64.powi(3) * third * (1.0 / 24.0 + 0.035),
+            0.05 * 0.05 * third / 3.0,
+        ];
         for i in 0..100 {
             let t = 0.1 + 0.008 * f64::from(i);
             let [x, rate, ..] = course.derivatives(t);
