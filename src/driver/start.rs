@@ -24,14 +24,15 @@ pub fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
     let mut notes = Vec::new();
     let locked = freedoms(&problem.scene(x).model) == 0 && !model.bodies.is_empty();
     let driven = model.joints.iter().any(|joint| !joint.drives.is_empty());
-    if consistent(&model, &numbering) && !(locked && !driven) {
+    let stuck = locked && !driven;
+    if !stuck && consistent(&model, &numbering) {
         return notes;
     }
     let mut saddle = SaddlePoint::new(&model, &numbering);
     let Ok(start) = initial::solve(&model, &numbering, &mut saddle) else {
         return notes;
     };
-    if locked && !driven {
+    if stuck {
         let (rows, _) = redundancy::unit_rows(&model, &start.q);
         let values = rows.singular_values();
         let nearly = values.min() / values.max();
@@ -116,6 +117,9 @@ fn turn_angle(turn: &crate::math::Mat3<f64>) -> f64 {
     (0.5 * axis.norm()).atan2(0.5 * (turn.trace() - 1.0))
 }
 
+/// Velocity [m/s] and angular velocity [rad/s] of a body.
+type Velocities = (Vec3<f64>, Vec3<f64>);
+
 /// Bodies whose given velocities were changed.
 fn changed(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>) -> Vec<String> {
     let parts = |v: &[f64]| (Vec3::new(v[0], v[1], v[2]), Vec3::new(v[3], v[4], v[5]));
@@ -126,8 +130,8 @@ fn changed(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>)
         speed = speed.max(v.norm()).max(v_start.norm());
         spin = spin.max(omega.norm()).max(omega_start.norm());
     }
-    let one = |(i, ((v, omega), (v_start, omega_start))): (usize, (_, (Vec3<f64>, Vec3<f64>)))| {
-        let (v, omega): (Vec3<f64>, Vec3<f64>) = (v, omega);
+    let one = |(i, (given, start)): (usize, (Velocities, Velocities))| {
+        let ((v, omega), (v_start, omega_start)) = (given, start);
         if v.norm() == 0.0 && omega.norm() == 0.0 {
             return None;
         }
