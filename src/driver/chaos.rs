@@ -25,9 +25,9 @@ const PARTS: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
 /// A chaotic motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chaos {
-    /// Time from which on derivatives mean nothing [s].
+    /// Time from which on derivatives mean nothing \[s\].
     pub from: f64,
-    /// Duration of the motion [s].
+    /// Duration of the motion \[s\].
     pub duration: f64,
     /// Relative error of a step.
     pub error: f64,

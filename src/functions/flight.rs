@@ -49,7 +49,7 @@ impl<S: Scalar> Flight<S> {
     /// Range to the ground at height y_g,
     /// R = x + (v_x/g)(v_y + √s0), s0 = v_y² + 2 g (y − y_g) (m), where the path comes that high.
     /// Where it does not, R is the distance x + v_x v_y/g of the path's highest point. In between
-    /// [`smooth_root`] joins the two.
+    /// `smooth_root` joins the two.
     pub fn range(&self, ground: S) -> S {
         let [s0, scale] = self.reach(ground);
         self.x + self.vx / self.g * (self.vy + smooth_root(s0, scale))

@@ -37,7 +37,7 @@ pub struct Chosen<S: Scalar> {
 /// (see [`stiffness`](super::explicit::stiffness)), or if explicit steps of equal size fail.
 ///
 /// # Errors
-/// As [`simulate`].
+/// As `simulate`.
 pub fn simulate_by<S: SolveScalar>(
     model: &Model<S>,
     duration: S,

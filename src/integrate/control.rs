@@ -253,7 +253,7 @@ pub enum Stop {
         /// Fraction of the duration.
         advance: f64,
     },
-    /// It took longer than it may [s].
+    /// It took longer than it may \[s\].
     TimeLimit(f64),
 }
 

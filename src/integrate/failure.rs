@@ -114,9 +114,9 @@ pub enum IntegrationFailure {
          may take that long"
     )]
     NoHeadway {
-        /// Time reached [s].
+        /// Time reached \[s\].
         time: f64,
-        /// Time to be reached [s].
+        /// Time to be reached \[s\].
         duration: f64,
         /// Step number, from 1.
         step: usize,
@@ -124,7 +124,7 @@ pub enum IntegrationFailure {
         tries: usize,
         /// Rejected ones among them.
         rejected: usize,
-        /// How far they advanced the motion [s].
+        /// How far they advanced the motion \[s\].
         advance: f64,
     },
     /// The simulation took longer than it may.
@@ -133,11 +133,11 @@ pub enum IntegrationFailure {
          (step {step})"
     )]
     TimeLimit {
-        /// The limit [s].
+        /// The limit \[s\].
         seconds: f64,
-        /// Time reached [s].
+        /// Time reached \[s\].
         time: f64,
-        /// Time to be reached [s].
+        /// Time to be reached \[s\].
         duration: f64,
         /// Step number, from 1.
         step: usize,

@@ -8,7 +8,7 @@ use std::time::Instant;
 /// (see [`Controller`](super::control::Controller)).
 #[derive(Clone, Debug, Default)]
 pub struct Limits {
-    /// Longest wall time of one simulation [s].
+    /// Longest wall time of one simulation \[s\].
     pub seconds: Option<f64>,
     /// Who is told.
     pub progress: Option<Arc<Progress>>,
@@ -41,11 +41,11 @@ struct Run {
 /// How far a simulation is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Wall time since it began [s].
+    /// Wall time since it began \[s\].
     pub seconds: f64,
-    /// Time reached in the motion [s].
+    /// Time reached in the motion \[s\].
     pub time: f64,
-    /// Time to be reached [s].
+    /// Time to be reached \[s\].
     pub duration: f64,
     /// Steps that were accepted.
     pub steps: u64,

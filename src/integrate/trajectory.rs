@@ -198,7 +198,7 @@ impl<S: Scalar> Trajectory<S> {
         }
     }
 
-    /// Time that the steps have reached [s].
+    /// Time that the steps have reached \[s\].
     pub fn time_reached(&self) -> f64 {
         self.duration.re() * self.grid.reached()
     }

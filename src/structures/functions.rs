@@ -13,23 +13,23 @@ use crate::math::{Scalar, Vec3};
 /// A function of a structure. Load cases are numbered as they were solved.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Function {
-    /// Mass [kg].
+    /// Mass \[kg\].
     Mass,
-    /// Place of the centre of mass along a direction [m].
+    /// Place of the centre of mass along a direction \[m\].
     Centre(Vec3<f64>),
     /// Second moment ∫ (a·x)(b·x) dm of the mass about the origin [kg m²].
     SecondMoment(Vec3<f64>, Vec3<f64>),
-    /// Strain energy of a load case [J].
+    /// Strain energy of a load case \[J\].
     StrainEnergy {
         /// The case.
         case: usize,
     },
-    /// Work of the loads of a case in its displacements, f·x [J].
+    /// Work of the loads of a case in its displacements, f·x \[J\].
     Compliance {
         /// The case.
         case: usize,
     },
-    /// Mean displacement of the nodes of a set along a direction [m].
+    /// Mean displacement of the nodes of a set along a direction \[m\].
     Displacement {
         /// The case.
         case: usize,

@@ -11,7 +11,7 @@ use crate::math::{Scalar, Vec3, scalar::length};
 /// A load. Sets are named.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Load<S> {
-    /// A force [N] and a moment [N m] on every node of a set.
+    /// A force \[N\] and a moment [N m] on every node of a set.
     Point {
         /// Set of nodes.
         nodes: String,
@@ -27,14 +27,14 @@ pub enum Load<S> {
         /// Force per length.
         force: Vec3<S>,
     },
-    /// A pressure along the normals of shells [Pa].
+    /// A pressure along the normals of shells \[Pa\].
     Pressure {
         /// Set of faces.
         faces: String,
         /// Pressure; positive along the normal.
         pressure: S,
     },
-    /// A force per area on shells [Pa], in a fixed direction.
+    /// A force per area on shells \[Pa\], in a fixed direction.
     Area {
         /// Set of faces.
         faces: String,

@@ -5,13 +5,13 @@ use crate::math::Scalar;
 /// An isotropic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material<S> {
-    /// Young's modulus E [Pa].
+    /// Young's modulus E \[Pa\].
     pub young: S,
     /// Poisson's ratio ν [-].
     pub poisson: S,
     /// Density ρ [kg/m³].
     pub density: S,
-    /// Yield stress that stresses are compared with [Pa].
+    /// Yield stress that stresses are compared with \[Pa\].
     pub yield_stress: S,
 }
 
@@ -37,7 +37,7 @@ impl<S: Scalar> Material<S> {
         }
     }
 
-    /// Shear modulus G = E / (2 (1 + ν)) [Pa].
+    /// Shear modulus G = E / (2 (1 + ν)) \[Pa\].
     pub fn shear_modulus(&self) -> S {
         self.young / ((self.poisson + 1.0) * 2.0)
     }
@@ -49,7 +49,7 @@ impl<S: Scalar> Material<S> {
         to.poisson -= bar * shear / (self.poisson + 1.0);
     }
 
-    /// Plane stress C e of the strains (e_11, e_22, 2 e_12) [Pa],
+    /// Plane stress C e of the strains (e_11, e_22, 2 e_12) \[Pa\],
     /// C = E/(1 − ν²) [[1, ν, 0], [ν, 1, 0], [0, 0, (1 − ν)/2]].
     #[inline]
     pub fn plane_stress(&self, strain: &[S; 3]) -> [S; 3] {

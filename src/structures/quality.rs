@@ -72,7 +72,7 @@ pub enum MeshFault {
     },
 }
 
-/// All faults of a mesh with nodes at these places [m].
+/// All faults of a mesh with nodes at these places \[m\].
 pub fn faults(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
     let mut all = connectivity(mesh);
     if !all.is_empty() {

@@ -29,7 +29,7 @@ pub enum StaticFailure {
     Mechanism {
         /// The node that moves most.
         node: usize,
-        /// Where it stands [m].
+        /// Where it stands \[m\].
         place: [f64; 3],
         /// Which of its unknowns moves most.
         freedom: &'static str,

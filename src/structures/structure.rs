@@ -24,9 +24,9 @@ pub struct Topology {
 pub struct Structure<S> {
     /// Mesh and materials of the elements by index.
     pub topology: Arc<Topology>,
-    /// Places of the nodes [m].
+    /// Places of the nodes \[m\].
     pub nodes: Vec<Vec3<S>>,
-    /// Thickness of each shell [m].
+    /// Thickness of each shell \[m\].
     pub thickness: Vec<S>,
     /// Non-structural mass per area of each shell [kg/m²].
     pub surface_mass: Vec<S>,
@@ -53,7 +53,7 @@ impl<S: Scalar> Structure<S> {
 }
 
 impl Structure<f64> {
-    /// A structure of shells of one thickness [m] and one material.
+    /// A structure of shells of one thickness \[m\] and one material.
     ///
     /// # Errors
     /// All [`MeshFault`]s of the mesh.

@@ -7,7 +7,7 @@
 use super::mesh::Mesh;
 use crate::math::{Scalar, Vec3};
 
-/// A mesh and the places of its nodes [m].
+/// A mesh and the places of its nodes \[m\].
 #[derive(Clone, Debug)]
 pub struct Generated<S> {
     /// The mesh.
@@ -79,8 +79,8 @@ pub fn plate<S: Scalar>(size: [S; 2], elements: [usize; 2]) -> Generated<S> {
     })
 }
 
-/// A piece of a cylinder about the z axis: x runs along the arc from `angles[0]` to `angles[1]` [rad],
-/// measured from the x axis, y along the axis from z = 0 to `length` [m]. The normal points outwards.
+/// A piece of a cylinder about the z axis: x runs along the arc from `angles[0]` to `angles[1]` \[rad\],
+/// measured from the x axis, y along the axis from z = 0 to `length` \[m\]. The normal points outwards.
 pub fn curved_panel<S: Scalar>(
     radius: S,
     length: S,

@@ -24,9 +24,9 @@ pub(crate) const DRILLING: f64 = 1e-3;
 /// What an element is made of.
 #[derive(Clone, Copy, Debug)]
 pub struct Shell<S> {
-    /// Nodes X_a [m] and directors D_a [-].
+    /// Nodes X_a \[m\] and directors D_a [-].
     pub geometry: Field<S>,
-    /// Thickness h [m].
+    /// Thickness h \[m\].
     pub thickness: S,
     /// The material.
     pub material: Material<S>,
@@ -61,7 +61,7 @@ impl<S: Scalar> ShellCotangent<S> {
     }
 }
 
-/// Displacements u_a [m] and rotations θ_a [rad] of the nodes, in global axes; or forces [N] and
+/// Displacements u_a \[m\] and rotations θ_a \[rad\] of the nodes, in global axes; or forces \[N\] and
 /// moments [N m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<S> {
@@ -105,7 +105,7 @@ impl<S: Scalar> Motion<S> {
     }
 }
 
-/// Strain energy by its parts [J].
+/// Strain energy by its parts \[J\].
 #[derive(Clone, Copy, Debug)]
 pub struct EnergyParts<S> {
     /// Of the membrane strains.
@@ -119,7 +119,7 @@ pub struct EnergyParts<S> {
 }
 
 impl<S: Scalar> EnergyParts<S> {
-    /// Their sum [J].
+    /// Their sum \[J\].
     pub fn total(&self) -> S {
         self.membrane + self.bending + self.shear + self.drilling
     }
@@ -130,7 +130,7 @@ fn dot<S: Scalar, const N: usize>(a: &[S; N], b: &[S; N]) -> S {
 }
 
 impl<S: Scalar> Shell<S> {
-    /// The strain energy of a motion, by its parts [J].
+    /// The strain energy of a motion, by its parts \[J\].
     pub fn energy(&self, motion: &Motion<S>, terms: Terms) -> EnergyParts<S> {
         let field = motion.field(&self.geometry);
         let strain = ElementStrain::new(&self.geometry, &field, terms);

@@ -6,10 +6,10 @@
 use super::basis::{Basis, NODES};
 use crate::math::{Scalar, Vec3};
 
-/// Nodal values of a field: points (X or u) [m] and directors (D or q) [-].
+/// Nodal values of a field: points (X or u) \[m\] and directors (D or q) [-].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Field<S> {
-    /// X_a or u_a [m].
+    /// X_a or u_a \[m\].
     pub points: [Vec3<S>; NODES],
     /// D_a or q_a [-].
     pub directors: [Vec3<S>; NODES],

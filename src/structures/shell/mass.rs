@@ -16,7 +16,7 @@ use crate::math::{Scalar, Vec3};
 /// Scalar nodal masses of an element.
 #[derive(Clone, Debug)]
 pub struct NodalMasses<S> {
-    /// m_ab [kg].
+    /// m_ab \[kg\].
     pub mass: [[S; NODES]; NODES],
     /// i_ab [kg m²].
     pub rotary: [[S; NODES]; NODES],
@@ -85,7 +85,7 @@ impl<S: Scalar> Shell<S> {
         all
     }
 
-    /// Kinetic energy of nodal velocities [J], in the place of displacements and rotations.
+    /// Kinetic energy of nodal velocities \[J\], in the place of displacements and rotations.
     pub fn kinetic_energy(&self, rates: &Motion<S>) -> S {
         let field = rates.field(&self.geometry);
         let [mass, rotary] = self.per_area();
@@ -156,7 +156,7 @@ impl<S: Scalar> Shell<S> {
     }
 }
 
-/// Moments of a mass: ∫ dm [kg], ∫ x dm [kg m], and ∫ x xᵀ dm [kg m²] as (xx, yy, zz, xy, yz, zx).
+/// Moments of a mass: ∫ dm \[kg\], ∫ x dm [kg m], and ∫ x xᵀ dm [kg m²] as (xx, yy, zz, xy, yz, zx).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassMoments<S> {
     /// ∫ dm.
