@@ -287,8 +287,8 @@ impl Integration {
         }
     }
 
-    /// The motion of `run` with the cells that its sums need, and the settings that make it: cells are
-    /// chosen, and looked at again where they make the sums more exact.
+    /// The motion of `run` with the cells that its sums need, and the settings that make it. Cells are
+    /// chosen, and the motion is made with them, until they stay as they are.
     fn resolved(
         &self,
         scene: &Scene<f64>,
