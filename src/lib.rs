@@ -27,7 +27,7 @@
 //! }
 //! ```
 //!
-//! A folder imports only from folders above its own in this list (`tests/layers.rs` checks it):
+//! A folder imports only from folders above its own in this list (`tests/files/layers.rs` checks it):
 //!
 //! | Folder | What lives there |
 //! |---|---|

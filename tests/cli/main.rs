@@ -9,3 +9,4 @@ mod program;
 mod restart;
 mod results_are_kept;
 mod several_starts;
+mod work_precision;

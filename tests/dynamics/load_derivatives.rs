@@ -1,0 +1,379 @@
+//! Every derivative of every kind of load against the complex step (h = 1e-30): Jacobians in
+//! positions and velocities, pull-backs in state, time and parameters, between two bodies and
+//! between a body and ground, at two random states.
+//!
+//! The joints are open and their frames skew, so that no term is hidden. A list of derivatives
+//! agrees to 1e-12 of its largest entry or of 0.01, as some vanish among forces of order one.
+
+use crate::reference;
+
+use flexbody::integrate::implicit::ggl::{Equations, Instant};
+use flexbody::linalg::{Emit, SparseMatrix};
+use flexbody::math::scalar::COMPLEX_STEP;
+use flexbody::math::{Complex64, Scalar};
+use flexbody::model::Interpolation;
+use flexbody::model::{Axes, Course, Freedom, JointKind, Load, LoadKind, Model};
+use flexbody::system::initial;
+use flexbody::system::kkt::SaddlePoint;
+use flexbody::system::loads::{self, LoadCotangent};
+use flexbody::system::{Numbering, bodies};
+use nalgebra::DMatrix;
+use reference::cases::{Case, case, dot, lift, parameters, slopes, step, unit};
+use reference::models::Numbers;
+
+/// An instant within the second interval of the tables.
+const TIME: f64 = 0.37;
+
+fn table() -> Course<f64> {
+    Course::Table {
+        times: vec![0.0, 0.2, 0.5, 0.9],
+        values: vec![1.0, 2.0, 4.0, 4.5],
+        interpolation: Interpolation::Monotone,
+    }
+}
+
+fn harmonic() -> Course<f64> {
+    Course::Harmonic {
+        amplitude: 3.0,
+        frequency: 0.8,
+        phase: 0.3,
+    }
+}
+
+/// Every kind of load with the joint that it needs, every option of it at least once.
+fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKind<f64>)> {
+    use JointKind::{Prismatic, Revolute, Spherical};
+    let mut all = Vec::new();
+    for axes in [Axes::Ground, Axes::Body] {
+        for magnitude in [Course::Constant(2.0), harmonic(), table()] {
+            let (point, direction) = (numbers.vector(), numbers.vector());
+            let force = LoadKind::Force {
+                body: 1,
+                point,
+                direction,
+                axes,
+                magnitude: magnitude.clone(),
+            };
+            let torque = LoadKind::Torque {
+                body: 1,
+                direction,
+                axes,
+                magnitude,
+            };
+            all.extend([(Spherical, force), (Spherical, torque)]);
+        }
+    }
+    for damping in [0.0, 0.7] {
+        let spring = LoadKind::Spring {
+            body_a: 1,
+            body_b,
+            point_a: numbers.vector(),
+            point_b: numbers.vector(),
+            rest_length: 0.8,
+            stiffness: 3.0,
+            cubic: 1.7,
+            damping,
+        };
+        // An angle at rest on the far side, so that the difference is wrapped.
+        let torsion = LoadKind::TorsionSpring {
+            joint: 0,
+            rest_angle: 2.5,
+            stiffness: 1.3,
+            damping,
+        };
+        all.extend([(Spherical, spring), (Revolute, torsion)]);
+    }
+    for (kind, freedom) in [(Revolute, Freedom::Turn), (Prismatic, Freedom::Slide)] {
+        let damping = LoadKind::Damping {
+            joint: 0,
+            freedom,
+            coefficient: 0.6,
+        };
+        let friction = LoadKind::Friction {
+            joint: 0,
+            freedom,
+            size: 1.4,
+            width: 0.9,
+        };
+        all.extend([(kind, damping), (kind, friction)]);
+    }
+    let coefficient = 0.9;
+    let ball = LoadKind::BallDamping {
+        joint: 0,
+        coefficient,
+    };
+    all.push((Spherical, ball));
+    all
+}
+
+fn cases() -> Vec<Case> {
+    let mut all = Vec::new();
+    for body_b in [Some(0), None] {
+        for seed in [3, 4] {
+            for (joint, kind) in kinds(body_b, &mut Numbers(seed + 10)) {
+                let mut one = case(joint, body_b, seed);
+                one.name = format!("{kind:?} {}", one.name);
+                one.model.loads = vec![Load {
+                    name: "load".into(),
+                    kind,
+                }];
+                all.push(one);
+            }
+        }
+    }
+    all
+}
+
+/// Asserts the tolerance for a list of derivatives.
+fn agree(case: &Case, what: &str, given: &[f64], exact: &[f64]) {
+    assert_eq!(given.len(), exact.len());
+    let largest = exact.iter().fold(0.01_f64, |m, x| m.max(x.abs()));
+    for (i, (given, exact)) in given.iter().zip(exact).enumerate() {
+        assert!(
+            (given - exact).abs() <= 1e-12 * largest,
+            "{}: {what} {i}: {given} against {exact} (largest {largest})",
+            case.name
+        );
+    }
+}
+
+/// f at the state (q, v).
+fn forces<S: Scalar>(case: &Case, model: &Model<S>, q: &[S], v: &[S], time: S) -> Vec<S> {
+    let mut out = vec![S::zero(); v.len()];
+    loads::add_forces(model, &case.numbering, &case.motions(q, v), time, &mut out);
+    out
+}
+
+/// Entries as they are emitted.
+struct Dense(DMatrix<f64>, usize);
+
+impl Emit<f64> for Dense {
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        self.0[(row, column)] += value;
+        self.1 += 1;
+    }
+}
+
+#[test]
+fn jacobians() {
+    for case in cases() {
+        let motions = case.motions(&case.q, &case.v);
+        let mut given = Dense(DMatrix::zeros(13, 26), 0);
+        let scales = (2.0, -0.5);
+        let (model, numbering) = (&case.model, &case.numbering);
+        let at = (1, 2, 14);
+        loads::emit_jacobian(model, numbering, &motions, TIME, at, scales, &mut given);
+        let (model, time) = (case.lifted(), TIME.into());
+        for j in 0..12 {
+            let e = unit(12, j);
+            let by_y = forces(&case, &model, &case.moved(&e), &lift(&case.v), time);
+            let faster: Vec<_> = case.v.iter().zip(&e).map(step).collect();
+            let by_v = forces(&case, &model, &lift(&case.q), &faster, time);
+            for (column, by, scale) in [(2 + j, by_y, -2.0), (14 + j, by_v, 0.5)] {
+                let exact: Vec<f64> = slopes(&by).iter().map(|x| x * scale).collect();
+                let given: Vec<f64> = (1..13).map(|i| given.0[(i, column)]).collect();
+                agree(&case, &format!("−∂f by column {column}"), &given, &exact);
+            }
+        }
+    }
+}
+
+#[test]
+fn pull_backs() {
+    for mut case in cases() {
+        let psi = case.numbers.list(12);
+        let (mut y, mut v, mut by_time) = (vec![0.0; 12], vec![0.0; 12], 0.0);
+        let mut cot = case.model.map(&mut |_| 0.0);
+        let mut out = LoadCotangent {
+            y: Some(&mut y),
+            v: Some(&mut v),
+            time: &mut by_time,
+            model: &mut cot,
+        };
+        let motions = case.motions(&case.q, &case.v);
+        loads::pull_back(&case.model, &case.numbering, &motions, TIME, &psi, &mut out);
+        let (model, q0, v0) = (case.lifted(), lift(&case.q), lift(&case.v));
+        let power = |model: &Model<Complex64>, q: &[Complex64], v: &[Complex64], time| {
+            dot(&slopes(&forces(&case, model, q, v, time)), &psi)
+        };
+        let time = Complex64::from(TIME);
+        let exact: Vec<f64> = (0..12)
+            .map(|j| power(&model, &case.moved(&unit(12, j)), &v0, time))
+            .collect();
+        agree(&case, "ψᵀf by positions", &y, &exact);
+        let exact: Vec<f64> = (0..12)
+            .map(|j| {
+                let v: Vec<_> = case.v.iter().zip(&unit(12, j)).map(step).collect();
+                power(&model, &q0, &v, time)
+            })
+            .collect();
+        agree(&case, "ψᵀf by velocities", &v, &exact);
+        let later = Complex64::new(TIME, COMPLEX_STEP);
+        let exact = power(&model, &q0, &v0, later);
+        agree(&case, "ψᵀf by time", &[by_time], &[exact]);
+        let exact = case.by_parameters(|model| power(model, &q0, &v0, time));
+        agree(&case, "ψᵀf by parameters", &parameters(&cot), &exact);
+    }
+}
+
+#[test]
+fn potentials() {
+    for case in cases() {
+        let mut y = vec![0.0; 12];
+        let mut cot = case.model.map(&mut |_| 0.0);
+        let motions = case.motions(&case.q, &case.v);
+        let (model, numbering) = (&case.model, &case.numbering);
+        loads::pull_potential(model, numbering, &motions, 0.7, &mut y, &mut cot);
+        let v = lift(&case.v);
+        let energy = |model: &Model<Complex64>, q: &[Complex64]| {
+            let energy = loads::potential(model, &case.motions(q, &v));
+            0.7 * energy.im / COMPLEX_STEP
+        };
+        let lifted = case.lifted();
+        let exact: Vec<f64> = (0..12)
+            .map(|j| energy(&lifted, &case.moved(&unit(12, j))))
+            .collect();
+        agree(&case, "energy by positions", &y, &exact);
+        let q = lift(&case.q);
+        let exact = case.by_parameters(|model| energy(model, &q));
+        agree(&case, "energy by parameters", &parameters(&cot), &exact);
+        if matches!(case.model.loads[0].kind, LoadKind::Spring { .. }) {
+            // At rest a spring's force is minus the slope of its energy.
+            let still = forces(&case, &case.model, &case.q, &[0.0; 12], TIME);
+            let down: Vec<f64> = y.iter().map(|y| -y / 0.7).collect();
+            agree(&case, "force from energy", &still, &down);
+        }
+    }
+}
+
+/// The loads within the equations of a step: matrix, parameters and time.
+#[test]
+fn equations_of_a_step() {
+    let (h, c) = (0.03, 40.0);
+    for mut case in cases() {
+        let rows = case.numbering.constraints();
+        let n = 24 + 2 * rows;
+        let zeros = vec![0.0; 24];
+        let at = Instant {
+            q: &case.q,
+            v: &case.v,
+            lambda: &zeros[..rows],
+            mu: &zeros[..rows],
+            qdot: &zeros[..14],
+            vdot: &zeros[..12],
+            time: TIME,
+        };
+        let mut equations = Equations::new(&case.model, &case.numbering);
+        let mut matrix = SparseMatrix::new(equations.pattern(&at));
+        matrix.assemble(|emit| equations.jacobian(&at, h, c, emit));
+        let still: Vec<Complex64> = lift(&zeros);
+        let residual = |model: &Model<Complex64>, q: &[_], v: &[_], vdot: &[_], time, h: f64| {
+            let mut equations = Equations::new(model, &case.numbering);
+            let mut out = lift(&vec![0.0; n]);
+            let at = Instant {
+                q,
+                v,
+                lambda: &still[..rows],
+                mu: &still[..rows],
+                qdot: &still[..14],
+                vdot,
+                time,
+            };
+            equations.residual(&at, h.into(), &mut out);
+            slopes(&out)
+        };
+        let (model, time) = (case.lifted(), Complex64::from(TIME));
+        let (q0, v0) = (lift(&case.q), lift(&case.v));
+        for j in 0..12 {
+            // Columns of positions with q̇ held at zero: the rate part c h is known.
+            let e = unit(n, j);
+            let mut exact = residual(&model, &case.moved(&e[..12]), &v0, &still[..12], time, h);
+            exact[j] += c * h;
+            let given = matrix.multiply(&e);
+            agree(&case, "column of y", &given[12..], &exact[12..]);
+            let scaled = |x: &[f64], s: f64| -> Vec<Complex64> {
+                let e = unit(12, j);
+                x.iter().zip(&e).map(|(x, e)| step((x, &(e * s)))).collect()
+            };
+            let v = scaled(&case.v, 1.0 / h);
+            let vdot = scaled(&[0.0; 12], c / h);
+            let exact = residual(&model, &q0, &v, &vdot, time, h);
+            agree(
+                &case,
+                "column of v",
+                &matrix.multiply(&unit(n, 12 + j)),
+                &exact,
+            );
+        }
+        let psi = case.numbers.list(n);
+        let mut cot = case.model.map(&mut |_| 0.0);
+        let by_time = equations.pull_back(&at, &psi, &mut cot);
+        // The residual has its dynamics divided by a mass.
+        let mut weights = psi.clone();
+        let dynamics = weights[12..24].iter_mut();
+        dynamics.for_each(|x| *x *= equations.mass());
+        let pulled = |model: &Model<Complex64>, time| {
+            let slopes = residual(model, &q0, &v0, &still[..12], time, 1.0);
+            dot(&slopes, &weights)
+        };
+        let exact = case.by_parameters(|model| pulled(model, time));
+        agree(&case, "ψᵀF by parameters", &parameters(&cot), &exact);
+        let exact = pulled(&model, Complex64::new(TIME, COMPLEX_STEP));
+        agree(&case, "ψᵀF by time", &[by_time], &[exact]);
+    }
+}
+
+/// The initial accelerations depend on the loads at t = 0 by state and parameters.
+#[test]
+fn initial_accelerations() {
+    for mut case in cases() {
+        case.close_joint();
+        let numbering = &case.numbering;
+        let mut saddle = SaddlePoint::new(&case.model, numbering);
+        let state = initial::solve(&case.model, numbering, &mut saddle).expect("is consistent");
+        let bar = case.numbers.list(12);
+        let nothing = [0.0; 12];
+        let mut cot = case.model.map(&mut |_| 0.0);
+        let given = (&nothing[..], &nothing[..], &bar[..]);
+        initial::pull_back(&case.model, numbering, &mut saddle, &state, given, &mut cot)
+            .expect("is regular");
+        let exact = case.by_parameters(|model| {
+            let numbering = Numbering::new(model);
+            let mut saddle = SaddlePoint::new(model, &numbering);
+            let state = initial::solve(model, &numbering, &mut saddle).expect("is consistent");
+            dot(&slopes(&state.a), &bar)
+        });
+        agree(
+            &case,
+            "accelerations by parameters",
+            &parameters(&cot),
+            &exact,
+        );
+    }
+}
+
+/// Loads between two bodies exchange momentum and make none.
+#[test]
+fn forces_between_two_bodies_balance() {
+    for case in cases() {
+        if matches!(
+            case.model.loads[0].kind,
+            LoadKind::Force { .. } | LoadKind::Torque { .. }
+        ) || case.model.joints[0].body_b.is_none()
+        {
+            continue;
+        }
+        let f = forces(&case, &case.model, &case.q, &case.v, TIME);
+        let mut total = [0.0; 6];
+        for (six, motion) in f.chunks(6).zip(case.motions(&case.q, &case.v)) {
+            let (force, torque) = bodies::velocities_of(six);
+            let moment = motion.position.cross(&force) + motion.rotation * torque;
+            bodies::add6(&mut total, &force, &moment);
+        }
+        let largest = f.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        assert!(largest > 1e-3, "{}", case.name);
+        for x in total {
+            assert!(x.abs() <= 1e-13 * largest, "{}: {total:?}", case.name);
+        }
+    }
+}

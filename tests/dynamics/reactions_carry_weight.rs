@@ -1,0 +1,169 @@
+//! Joints carry what hangs from them: reactions of bodies at rest against statics, to 5e-11 N or
+//! N m (1e-12 of 50 N).
+
+use crate::reference;
+
+use flexbody::integrate::{Method, Multipliers, Settings, Start, simulate};
+use flexbody::math::Vec3;
+use flexbody::model::{JointKind, Model, RigidBody};
+use flexbody::system::kkt::SaddlePoint;
+use flexbody::system::observe::{Reaction, reactions};
+use flexbody::system::{Numbering, initial};
+use reference::models::{joint, rod};
+
+fn gravity() -> Vec3<f64> {
+    Vec3::new(0.0, -9.81, 0.0)
+}
+
+fn reactions_at_start(model: &Model<f64>) -> Vec<Reaction> {
+    let numbering = Numbering::new(model);
+    let mut saddle = SaddlePoint::new(model, &numbering);
+    let start = initial::solve(model, &numbering, &mut saddle).expect("is consistent");
+    reactions(model, &numbering, (&start.q, &start.lambda), 0.0)
+}
+
+fn assert_near(what: &str, found: &Vec3<f64>, expected: &Vec3<f64>) {
+    let off = (found - expected).norm();
+    assert!(off <= 5e-11, "{what}: {found} against {expected}");
+}
+
+/// A body of 1 m that hangs upright with its centre at the height `y`.
+fn hanging(name: &str, mass: f64, y: f64) -> RigidBody<f64> {
+    RigidBody {
+        position: Vec3::new(0.0, y, 0.0),
+        ..rod(name, mass, 0.0)
+    }
+}
+
+/// Two bodies that hang from each other pull at their joints with what hangs from these.
+#[test]
+fn a_joint_carries_the_weight_that_hangs_from_it() {
+    for kind in [
+        JointKind::Spherical,
+        JointKind::Revolute,
+        JointKind::Prismatic,
+    ] {
+        let bodies = vec![hanging("upper", 2.0, -0.5), hanging("lower", 3.0, -1.5)];
+        let at = |y: f64| Vec3::new(0.0, y, 0.0);
+        let joints = vec![
+            joint(&bodies, ("ceiling", kind), (0, None), &at(0.0), &Vec3::z()),
+            joint(
+                &bodies,
+                ("middle", kind),
+                (0, Some(1)),
+                &at(-1.0),
+                &Vec3::z(),
+            ),
+        ];
+        let model = Model {
+            gravity: gravity(),
+            bodies,
+            joints,
+            loads: Vec::new(),
+        };
+        let found = reactions_at_start(&model);
+        // On body A, the upper body: held by the ceiling, pulled down by the lower body.
+        let up = |force| Vec3::new(0.0, force, 0.0);
+        assert_near("ceiling", &found[0].force_ground, &up(5.0 * 9.81));
+        assert_near("middle", &found[1].force_ground, &up(-3.0 * 9.81));
+        for reaction in &found {
+            assert_near("torque", &reaction.torque_ground, &Vec3::zeros());
+        }
+    }
+}
+
+/// Two bodies that hang from each other stay at rest, to 1e-12 m, and go on pulling with their
+/// weights.
+#[test]
+fn bodies_at_rest_stay_at_rest() {
+    for kind in [
+        JointKind::Spherical,
+        JointKind::Revolute,
+        JointKind::Prismatic,
+    ] {
+        let bodies = vec![hanging("upper", 2.0, -0.5), hanging("lower", 3.0, -1.5)];
+        let at = |y: f64| Vec3::new(0.0, y, 0.0);
+        let pin = |name, between, y| joint(&bodies, (name, kind), between, &at(y), &Vec3::z());
+        let joints = [
+            pin("ceiling", (0, None), 0.0),
+            pin("middle", (0, Some(1)), -1.0),
+        ];
+        // The pair, and the upper body alone.
+        for count in [2, 1] {
+            let model = Model {
+                gravity: gravity(),
+                bodies: bodies[..count].to_vec(),
+                joints: joints[..count].to_vec(),
+                loads: Vec::new(),
+            };
+            for method in [
+                Method::Dop853,
+                Method::Radau { stages: 3 },
+                Method::Bdf {
+                    order: 2,
+                    start: Start::Radau,
+                },
+            ] {
+                let run = simulate(&model, 1.0, &Settings::steps(method, 100)).expect("hangs");
+                let moved = |k: usize| {
+                    let off = run.q(k).iter().zip(run.q(0)).map(|(a, b)| (a - b).abs());
+                    off.fold(0.0, f64::max)
+                };
+                let weight = at(9.81 * if count == 2 { 5.0 } else { 2.0 });
+                let mut multipliers = Multipliers::new(&model, &run.numbering, &run);
+                for k in 0..=run.last() {
+                    let lambda = multipliers.at(k);
+                    let found =
+                        &reactions(&model, &run.numbering, (run.q(k), &lambda), run.time(k))[0];
+                    assert_near("ceiling", &found.force_ground, &weight);
+                    assert!(moved(k) <= 1e-12, "{kind:?}, {method:?}, step {k}");
+                }
+            }
+        }
+    }
+}
+
+/// A drawer that is held 0.5 m from its centre of mass by a slide along x carries force m g and
+/// torque m g · 0.5 m about z on the body; in the joint's own axes they have the same lengths, and
+/// nothing acts along the slide. A puck on a horizontal plane is held up by m g.
+#[test]
+fn a_slide_and_a_plane_carry_weight_and_moment() {
+    let bodies = vec![rod("drawer", 2.0, 0.5)];
+    let slide = joint(
+        &bodies,
+        ("slide", JointKind::Prismatic),
+        (0, None),
+        &Vec3::zeros(),
+        &Vec3::x(),
+    );
+    let model = Model {
+        gravity: gravity(),
+        bodies: bodies.clone(),
+        joints: vec![slide],
+        loads: Vec::new(),
+    };
+    let found = reactions_at_start(&model)[0];
+    let weight = 2.0 * 9.81;
+    assert_near("force", &found.force_ground, &Vec3::new(0.0, weight, 0.0));
+    assert_near(
+        "torque",
+        &found.torque_ground,
+        &Vec3::new(0.0, 0.0, 0.5 * weight),
+    );
+    assert!((found.force.norm() - weight).abs() <= 1e-12 && found.force.z.abs() <= 1e-12);
+    assert!((found.torque.norm() - 0.5 * weight).abs() <= 1e-12);
+    let plane = joint(
+        &bodies,
+        ("table", JointKind::Planar),
+        (0, None),
+        &bodies[0].position,
+        &Vec3::y(),
+    );
+    let model = Model {
+        joints: vec![plane],
+        ..model
+    };
+    let found = reactions_at_start(&model)[0];
+    assert_near("force", &found.force_ground, &Vec3::new(0.0, weight, 0.0));
+    assert_near("torque", &found.torque_ground, &Vec3::zeros());
+}

@@ -1,0 +1,44 @@
+//! A program whose objective is given in another unit.
+
+use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
+
+use crate::problems::problem::Problem;
+
+pub struct Scaled {
+    pub inner: Problem,
+    pub factor: f64,
+}
+
+impl Nlp for Scaled {
+    fn variables(&self) -> usize {
+        self.inner.variables()
+    }
+
+    fn constraints(&self) -> usize {
+        self.inner.constraints()
+    }
+
+    fn variable_bounds(&self) -> (Vec<f64>, Vec<f64>) {
+        self.inner.variable_bounds()
+    }
+
+    fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>) {
+        self.inner.constraint_bounds()
+    }
+
+    fn start(&self) -> Vec<f64> {
+        self.inner.start()
+    }
+
+    fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
+        let mut found = self.inner.evaluate(x)?;
+        found.objective *= self.factor;
+        Ok(found)
+    }
+
+    fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
+        let mut found = self.inner.gradients(x)?;
+        found.objective.iter_mut().for_each(|v| *v *= self.factor);
+        Ok(found)
+    }
+}
