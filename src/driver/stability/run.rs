@@ -6,7 +6,7 @@ use crate::driver::{Journal, Simulation, error, optimise, simulate};
 use crate::integrate::{Method, Spacing};
 use crate::optimiser::Status;
 use crate::problem::{Override, Problem};
-use crate::report::{StressOutcome, StressRow};
+use crate::report::{StabilityOutcome, StabilityRow};
 use std::ops::ControlFlow;
 
 /// Part of an error that a number has to reach to tell of it.
@@ -17,7 +17,7 @@ const MOST_STEPS: usize = 100_000;
 const TIGHT: (f64, f64) = (1e-13, 1e-11);
 
 /// Runs a case and judges it.
-pub(super) fn run(case: &Case) -> StressRow {
+pub(super) fn run(case: &Case) -> StabilityRow {
     let parse = |text: &String| Override::parse(text);
     let overrides: Result<Vec<Override>, _> = case.overrides().iter().map(parse).collect();
     let mut row = blank(case);
@@ -30,7 +30,7 @@ pub(super) fn run(case: &Case) -> StressRow {
     let problem = match problem {
         Ok(problem) => problem,
         Err(message) => {
-            row.outcome = StressOutcome::Refused { message };
+            row.outcome = StabilityOutcome::Refused { message };
             return row;
         }
     };
@@ -42,21 +42,21 @@ pub(super) fn run(case: &Case) -> StressRow {
 }
 
 /// The row of a case of which nothing is known.
-pub(super) fn blank(case: &Case) -> StressRow {
+pub(super) fn blank(case: &Case) -> StabilityRow {
     let judge = match case.judge {
         Judge::Exact(exact) => exact.source().into(),
         Judge::OtherMethod => "explicit against implicit at 1e-13 or 1e-11".into(),
         Judge::Optimum { value, .. } if value.is_nan() => "there is no optimum".into(),
         Judge::Optimum { .. } => "the least that can be in closed form".into(),
     };
-    StressRow {
+    StabilityRow {
         family: case.family.into(),
         extreme: case.extreme.clone(),
         scene: case.scene.name.into(),
         method: case.method(),
         by: None,
         steps: None,
-        outcome: StressOutcome::WrongAndSilent,
+        outcome: StabilityOutcome::WrongAndSilent,
         error: None,
         bound: case.bound,
         judge,
@@ -69,13 +69,13 @@ pub(super) fn blank(case: &Case) -> StressRow {
     }
 }
 
-fn motion(row: &mut StressRow, case: &Case, problem: &Problem) {
+fn motion(row: &mut StabilityRow, case: &Case, problem: &Problem) {
     let start = problem.start();
     let seen = match simulate(problem, &start) {
         Ok(seen) => seen,
         Err(failure) => {
             let message = failure.to_string();
-            row.outcome = StressOutcome::Refused { message };
+            row.outcome = StabilityOutcome::Refused { message };
             return;
         }
     };
@@ -85,7 +85,7 @@ fn motion(row: &mut StressRow, case: &Case, problem: &Problem) {
     row.by = Some(seen.at.run.method.name());
     if values.iter().any(|value| !value.is_finite()) {
         let message = "a function is not finite".into();
-        row.outcome = StressOutcome::Refused { message };
+        row.outcome = StabilityOutcome::Refused { message };
         return;
     }
     let (exact, sizes) = match known(case, problem) {
@@ -110,11 +110,11 @@ fn motion(row: &mut StressRow, case: &Case, problem: &Problem) {
         });
     }
     row.outcome = if error <= case.bound {
-        StressOutcome::Accurate
+        StabilityOutcome::Accurate
     } else {
         match told(row, problem, &seen, error, &sizes) {
-            Some(told) => StressOutcome::Degraded { told },
-            None => StressOutcome::WrongAndSilent,
+            Some(told) => StabilityOutcome::Degraded { told },
+            None => StabilityOutcome::WrongAndSilent,
         }
     };
     let steps = seen.at.run.grid.steps();
@@ -170,7 +170,7 @@ fn known(case: &Case, problem: &Problem) -> Result<(Vec<f64>, Vec<f64>), String>
 /// How the program tells that a motion is off by `error`: a warning, the energy that it prints, a joint
 /// that it leaves out altogether, or the estimate of `--error`.
 fn told(
-    row: &StressRow,
+    row: &StabilityRow,
     problem: &Problem,
     seen: &Simulation,
     error: f64,
@@ -200,16 +200,21 @@ fn told(
     }
 }
 
-fn optimisation(row: &mut StressRow, case: &Case, problem: &Problem, (optimum, size): (f64, f64)) {
+fn optimisation(
+    row: &mut StabilityRow,
+    case: &Case,
+    problem: &Problem,
+    (optimum, size): (f64, f64),
+) {
     let go_on = &mut |_: &_| ControlFlow::Continue(());
     let Some(done) = optimise(problem, case.scene.name, None, Journal::default(), go_on) else {
         let message = "nothing to optimise".into();
-        row.outcome = StressOutcome::Refused { message };
+        row.outcome = StabilityOutcome::Refused { message };
         return;
     };
     if let Status::UndefinedStart { what } | Status::IllPosed { what } = &done.outcome.status {
         let message = what.clone();
-        row.outcome = StressOutcome::Refused { message };
+        row.outcome = StabilityOutcome::Refused { message };
         return;
     }
     row.steps = done.end.as_ref().map(|end| end.at.run.grid.steps());
@@ -217,9 +222,9 @@ fn optimisation(row: &mut StressRow, case: &Case, problem: &Problem, (optimum, s
     let error = (found - optimum).abs() / size;
     row.error = Some(error).filter(|error| error.is_finite());
     row.outcome = match done.outcome.status {
-        Status::Converged if error <= case.bound => StressOutcome::Accurate,
-        Status::Converged => StressOutcome::WrongAndSilent,
-        _ => StressOutcome::Refused {
+        Status::Converged if error <= case.bound => StabilityOutcome::Accurate,
+        Status::Converged => StabilityOutcome::WrongAndSilent,
+        _ => StabilityOutcome::Refused {
             message: done.optimum.message.clone(),
         },
     };

@@ -1,4 +1,4 @@
-//! The problem files of the stress suite, and the families of its cases.
+//! The problem files of the stability suite, and the families of its cases.
 
 use super::case::SceneFile;
 

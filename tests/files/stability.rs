@@ -1,7 +1,7 @@
-//! The stress suite: a fast part of it run and compared with the committed table, which is held to
+//! The stability suite: a fast part of it run and compared with the committed table, which is held to
 //! the claims that `docs/stability.md` makes of it.
 
-use flexbody::driver::stress::{names, stress};
+use flexbody::driver::stability::{names, stability};
 use flexbody::problem::Problem;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -97,7 +97,7 @@ fn no_extreme_scene_is_wrong_without_a_word() {
         .into_iter()
         .map(|row| (row.case, row.outcome))
         .collect();
-    let table = stress(|case| fast.contains(case), 300.0, &|_| {});
+    let table = stability(|case| fast.contains(case), 300.0, &|_| {});
     assert_eq!(table.rows.len(), fast.len());
     let mut wrong = Vec::new();
     for row in &table.rows {
@@ -166,7 +166,7 @@ fn every_scene_is_a_problem_file_that_a_case_uses() {
 
 fn command(directory: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_optimize"))
-        .arg("stress")
+        .arg("stability")
         .args(arguments)
         .current_dir(directory)
         .output()
@@ -223,4 +223,19 @@ fn a_name_of_no_case_is_bad_input() {
         told.contains("found --only \"mass\"") && told.contains("mass-ratio, "),
         "{told}"
     );
+}
+
+/// The suite was called `stress` once.
+#[test]
+fn the_former_name_of_the_command_names_the_new_one() {
+    for more in [&[][..], &["--only", "damping"], &["--help"]] {
+        let done = Command::new(env!("CARGO_BIN_EXE_optimize"))
+            .arg("stress")
+            .args(more)
+            .output()
+            .expect("the program starts");
+        assert_eq!(done.status.code(), Some(2), "{more:?}");
+        let told = String::from_utf8_lossy(&done.stderr);
+        assert!(told.contains("expected `optimize stability`"), "{told}");
+    }
 }

@@ -1,8 +1,8 @@
-//! A case of the stress suite: a scene, how it is changed and integrated, and who judges it.
+//! A case of the stability suite: a scene, how it is changed and integrated, and who judges it.
 
 use super::exact::Exact;
 use crate::integrate::Method;
-use crate::report::stress::case_name;
+use crate::report::stability::case_name;
 
 /// A problem file under `problems/extreme`.
 #[derive(Clone, Copy, Debug)]

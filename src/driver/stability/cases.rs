@@ -1,4 +1,4 @@
-//! The cases of the stress suite.
+//! The cases of the stability suite.
 
 use super::case::{Case, Judge, Steps, Way, equal, usual};
 use super::exact::Exact;
