@@ -12,7 +12,7 @@ use std::process::{Command, Output};
 const GRADIENT: f64 = 1e-10;
 
 /// Cases whose derivatives round-off spoils beyond that, and how far; `docs/stability.md` says why.
-const SPOILT: [(&str, f64); 12] = [
+const SPOILT: [(&str, f64); 15] = [
     // ε k l / (m g): the force of a spring of l = 1 m is known to ε k l.
     ("stiffness/10/", 2.3e-9),
     ("stiffness/100/", 2.3e-7),
@@ -29,6 +29,10 @@ const SPOILT: [(&str, f64); 12] = [
     ("hinge-distance/1e-7/", 1e-7),
     // A singular position, 1e-4 of the length away.
     ("locking/2.0999/", 1e-9),
+    // Steps that end 1e-2 of a turn and less beside a singular position.
+    ("passage/1e-2 before the first/radau2", 1e-9),
+    ("tolerance/2 to 1e-5/", 1e-9),
+    ("tolerance/2 to 1e-6/", 1e-9),
 ];
 
 fn gradient_bound(case: &str) -> f64 {
@@ -151,7 +155,8 @@ fn the_committed_table_is_whole_and_has_no_silent_error() {
 
 #[test]
 fn every_scene_is_a_problem_file_that_a_case_uses() {
-    let used: BTreeSet<String> = committed().into_iter().map(|row| row.scene).collect();
+    let mut used: BTreeSet<String> = committed().into_iter().map(|row| row.scene).collect();
+    used.retain(|name| !root().join("problems/benchmarks").join(name).is_file());
     let folder = root().join("problems/extreme");
     let there: BTreeSet<String> = std::fs::read_dir(&folder)
         .expect("scenes")

@@ -8,6 +8,7 @@
 mod case;
 mod cases;
 mod exact;
+mod loops;
 mod reference;
 mod run;
 mod scenes;

@@ -18,16 +18,8 @@ const TIGHT: (f64, f64) = (1e-13, 1e-11);
 
 /// Runs a case and judges it.
 pub(super) fn run(case: &Case) -> StabilityRow {
-    let parse = |text: &String| Override::parse(text);
-    let overrides: Result<Vec<Override>, _> = case.overrides().iter().map(parse).collect();
     let mut row = blank(case);
-    let problem = overrides
-        .map_err(|fault| fault.to_string())
-        .and_then(|changes| {
-            Problem::parse(case.scene.text, case.scene.name, &changes)
-                .map_err(|faults| one_line(&faults.to_string()))
-        });
-    let problem = match problem {
+    let problem = match read(case, usize::MAX) {
         Ok(problem) => problem,
         Err(message) => {
             row.outcome = StabilityOutcome::Refused { message };
@@ -36,16 +28,28 @@ pub(super) fn run(case: &Case) -> StabilityRow {
     };
     match case.judge {
         Judge::Optimum { value, size } => optimisation(&mut row, case, &problem, (value, size)),
-        Judge::Exact(_) | Judge::OtherMethod => motion(&mut row, case, &problem),
+        Judge::Exact(_) | Judge::OtherMethod { .. } => motion(&mut row, case, &problem),
     }
     row
+}
+
+/// The problem of a case with the first `kept` of its changes.
+fn read(case: &Case, kept: usize) -> Result<Problem, String> {
+    let parse = |text: &String| Override::parse(text);
+    let changes: Result<Vec<Override>, _> = case.overrides(kept).iter().map(parse).collect();
+    let changes = changes.map_err(|fault| fault.to_string())?;
+    Problem::parse(case.scene.text, case.scene.name, &changes)
+        .map_err(|faults| one_line(&faults.to_string()))
 }
 
 /// The row of a case of which nothing is known.
 pub(super) fn blank(case: &Case) -> StabilityRow {
     let judge = match case.judge {
         Judge::Exact(exact) => exact.source().into(),
-        Judge::OtherMethod => "explicit against implicit at 1e-13 or 1e-11".into(),
+        Judge::OtherMethod { kept, .. } if kept < case.changes.len() => {
+            "the file as it is by the other family at 1e-13 or 1e-11".into()
+        }
+        Judge::OtherMethod { .. } => "explicit against implicit at 1e-13 or 1e-11".into(),
         Judge::Optimum { value, .. } if value.is_nan() => "there is no optimum".into(),
         Judge::Optimum { .. } => "the least that can be in closed form".into(),
     };
@@ -88,7 +92,7 @@ fn motion(row: &mut StabilityRow, case: &Case, problem: &Problem) {
         row.outcome = StabilityOutcome::Refused { message };
         return;
     }
-    let (exact, sizes) = match known(case, problem) {
+    let (exact, sizes) = match known(case) {
         Ok(known) => known,
         Err(message) => {
             row.judge = format!("nobody: {message}");
@@ -143,28 +147,33 @@ fn gradient_error(all: &[CheckedDerivative], x: &[f64], sizes: &[f64]) -> f64 {
 }
 
 /// What the functions should be, and the sizes that errors are relative to.
-fn known(case: &Case, problem: &Problem) -> Result<(Vec<f64>, Vec<f64>), String> {
-    match case.judge {
+fn known(case: &Case) -> Result<(Vec<f64>, Vec<f64>), String> {
+    let (values, sizes) = match case.judge {
         Judge::Exact(exact) => {
             let numbers = exact.numbers();
-            Ok((numbers.values, numbers.sizes))
+            (numbers.values, numbers.sizes)
         }
-        Judge::OtherMethod | Judge::Optimum { .. } => {
-            let explicit = matches!(problem.simulation.method, None | Some(Method::Dop853));
+        Judge::OtherMethod { size, .. } | Judge::Optimum { size, .. } => {
+            let kept = match case.judge {
+                Judge::OtherMethod { kept, .. } => kept,
+                _ => usize::MAX,
+            };
+            let mut other = read(case, kept)?;
+            let explicit = matches!(other.simulation.method, None | Some(Method::Dop853));
             let (method, tolerance) = match explicit {
                 true => (Method::Radau { stages: 3 }, TIGHT.1),
                 false => (Method::Dop853, TIGHT.0),
             };
-            let mut other = problem.clone();
             other.simulation.method = Some(method);
             other.simulation.spacing = Spacing::Tolerance(tolerance);
             let seen = simulate(&other, &other.start()).map_err(|failure| failure.to_string())?;
-            let count = problem.function_names.len();
-            let values: Vec<f64> = (0..count).map(|f| seen.at.function(f).value).collect();
-            let sizes = vec![1.0; count];
-            Ok((values, sizes))
+            let count = other.function_names.len();
+            let values = (0..count).map(|f| seen.at.function(f).value).collect();
+            (values, vec![size; count])
         }
-    }
+    };
+    let scaled = |all: Vec<f64>| all.iter().map(|x| x * case.length).collect();
+    Ok((scaled(values), scaled(sizes)))
 }
 
 /// How the program tells that a motion is off by `error`: a warning, the energy that it prints, a joint
