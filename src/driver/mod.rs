@@ -1,5 +1,5 @@
-//! What the program does with a problem: simulate it, check its gradients, optimise it, measure
-//! the methods on it; and what becomes of extreme ones.
+//! What the program does with a problem: simulate it, check its gradients, optimise it, measure the
+//! methods on it, and test extreme scenes.
 
 pub mod certificate;
 pub mod chaos;
