@@ -72,7 +72,8 @@ pub struct Job {
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
     /// Memory that what is kept for gradients may take: 500MB, 2GiB. A gradient makes the steps that are
-    /// not kept again; see `optimize explain` [default: half of what is available].
+    /// not kept again, at most twenty times: what that takes is kept however little is given; see
+    /// `optimize explain` [default: half of what is available].
     #[arg(long, value_name = "SIZE", value_parser = bytes)]
     pub memory: Option<usize>,
     /// Integrates the scene as it is written: leaves out nothing that its motion does not need.
@@ -130,14 +131,7 @@ pub enum Command {
     WorkPrecision(Measurement),
     /// Try the program on extreme scenes and judge what it says of them; writes stability.md and
     /// stability.csv. Exit code 1 if a number is wrong without a word about it.
-    Stability(Suite),
-    /// The former name of `stability`.
-    #[command(hide = true, disable_help_flag = true)]
-    Stress {
-        /// What was asked for.
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        rest: Vec<std::ffi::OsString>,
-    },
+    Stress(Suite),
     /// Compare two records of optimal designs; exit code 1 if they differ beyond tolerance.
     Compare(Comparison),
     /// Draw the figures of a result directory again from its record.
@@ -170,7 +164,7 @@ pub struct Measurement {
     pub function: Option<String>,
 }
 
-/// Which cases `stability` tries.
+/// Which cases `stress` tries.
 #[derive(Args, Debug)]
 pub struct Suite {
     /// Directory for the table [default: results/stability; none if only some cases are run].
@@ -180,7 +174,7 @@ pub struct Suite {
     #[arg(long, value_name = "CASE")]
     pub only: Option<String>,
     /// Time that a case may take (s).
-    #[arg(long, default_value_t = crate::driver::stability::LIMIT, value_parser = positive)]
+    #[arg(long, default_value_t = crate::driver::stress::LIMIT, value_parser = positive)]
     pub seconds: f64,
     /// No progress and no summary.
     #[arg(long, short)]

@@ -1,4 +1,4 @@
-//! A problem as a nonlinear program for the optimiser.
+//! A problem as the optimiser sees it.
 
 use super::evaluate::Evaluated;
 use super::foreseen::Foreseen;
@@ -14,7 +14,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// The steps of an evaluation.
+/// The steps that the functions of a design were found with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JudgedOn {
     /// Number of steps.
@@ -23,12 +23,11 @@ pub struct JudgedOn {
     pub refreshes: usize,
 }
 
-/// The steps of every evaluated design, keyed by its exact bits; shared with the observer of the
-/// run.
+/// The steps of every design that was evaluated, by its bits; shared with who observes the run.
 pub type Judgements = Rc<RefCell<HashMap<Vec<u64>, JudgedOn>>>;
 
-/// The problem as a nonlinear program. It keeps the last simulated design, so a gradient at the
-/// point just evaluated costs the backward march only.
+/// The problem as a nonlinear program. Keeps the last simulated design, so that a gradient where
+/// the functions were just evaluated costs the backward march only.
 pub struct Evaluator<'a> {
     problem: &'a Problem,
     objective: usize,
@@ -36,15 +35,15 @@ pub struct Evaluator<'a> {
     last: Option<Evaluated>,
     /// The steps in use.
     pub integration: Integration,
-    /// Number of designs that did not admit the lowering of the others.
+    /// How many designs did not admit what the lowering leaves out at the others.
     pub unlowered: usize,
     journal: Journal<'a>,
     foreseen: Foreseen,
-    /// The journal's choice of steps that `integration` uses, and the recorded evaluation whose
-    /// event it knows.
+    /// Which choice of steps of the journal `integration` goes by, and the evaluation of the record
+    /// whose event it knows.
     choice: Option<usize>,
     latest: Option<usize>,
-    /// The steps of each evaluated design.
+    /// What the functions of each design were found with.
     pub judgements: Judgements,
 }
 
@@ -83,12 +82,12 @@ impl<'a> Evaluator<'a> {
         asked(self.problem, self.objective)
     }
 
-    /// Work of all simulations and gradients so far, including those that the journal knew.
+    /// Work of all simulations and gradients so far, those that the journal knew included.
     pub fn counts(&self) -> Work {
         self.journal.work()
     }
 
-    /// Adopts the steps and the event of the journal.
+    /// Takes the steps and the event that the journal has come to.
     fn follow(&mut self) {
         let choice = self.journal.choice();
         if choice != self.choice {
@@ -105,8 +104,8 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Computes the gradients at `points` side by side, if they will be requested. `x` is scaled as
-    /// in the optimiser.
+    /// Finds the gradients at `points` side by side, if they will be asked for; `x` as the optimiser
+    /// scales it.
     pub fn foresee_gradients(&mut self, points: &[Vec<f64>]) {
         let functions = self.functions();
         let designs = self.unknown(points, true);
@@ -295,7 +294,7 @@ impl Nlp for Evaluator<'_> {
 
 /// A design in the problem's units from the optimiser's, x = scale · x̂.
 pub fn unscaled(problem: &Problem, x: &[f64]) -> Vec<f64> {
-    // A scaled bound returns as the bound itself, without round-off.
+    // A scaled bound comes back as the bound itself, whatever round-off did.
     let clamp = |x: f64, v: &crate::problem::Variable| (x * v.scale).clamp(v.lower, v.upper);
     x.iter()
         .zip(&problem.variables)

@@ -1,11 +1,11 @@
 //! Whether an optimum is a minimum of second order: the curvature of the Lagrangian along the
 //! directions that the active bounds and constraints leave free.
 //!
-//! A bound or constraint is weakly active if its multiplier is zero or almost zero. Feasible
-//! directions without first-order change then form a cone, {d : a·d = 0 for strictly active a, a·d
-//! ≥ 0 for weakly active a}. With H = ∇²L the optimum is strict if dᵀHd > 0 on the span of the
-//! cone, and is none if dᵀHd < 0 for a d of the cone. Otherwise it is not decided (Nocedal & Wright
-//! 2006, theorems 12.5 and 12.6).
+//! A bound or constraint whose multiplier is zero, or next to it, holds the design by no force: it is
+//! weakly active. Feasible directions of no first-order change then form a cone,
+//! {d : a·d = 0 for what is strictly active, a·d ≥ 0 for what is weakly active}. With H = ∇²L the
+//! optimum is strict if dᵀHd > 0 on the span of the cone, and is none if dᵀHd < 0 for a d of the cone;
+//! what lies between is not decided (Nocedal & Wright 2006, theorems 12.5 and 12.6).
 
 use super::evaluator::Evaluator;
 use super::integration::Integration;
@@ -15,29 +15,28 @@ use crate::problem::Problem;
 use crate::report::optimum::{Curvature, SecondOrder};
 use nalgebra::{DMatrix, DVector};
 
-/// Length of a difference in scaled variables. The error of a central difference of gradients is
-/// proportional to its square.
+/// Length of a difference in scaled variables: the error of a central difference of gradients is
+/// of its square.
 const STEP: f64 = 1e-4;
 /// Eigenvalues of AᵀA for the active rows A, each of unit length, below this count as zero.
 const NEGLIGIBLE: f64 = 1e-10;
-/// Multipliers below this part of the objective's gradient may be weakly active: the curvature
-/// decides.
+/// Multipliers below this part of the objective's gradient may hold nothing: the curvature tells.
 const WEAK: f64 = 1e-3;
-/// A unit direction counts as along a bound if it leaves it by at most this part.
+/// Largest part of a unit direction by which it may leave a bound and count as along it.
 const ALONG: f64 = 1e-6;
-/// Number of directions whose gradients are computed side by side.
+/// Directions whose gradients are found side by side.
 const AT_ONCE: usize = 8;
 
-/// A weakly active bound or constraint.
+/// A bound or constraint next to without force.
 struct Weak {
     name: String,
     /// Its gradient, of unit length, which points inwards.
     inwards: DVector<f64>,
-    /// Rise of the objective for a unit step inwards.
+    /// By how much the objective rises for a unit inwards.
     force: f64,
 }
 
-/// The active bounds and constraints, in the free variables.
+/// What is active, in the free variables.
 struct Active {
     /// Variables that no strictly active bound holds.
     free: Vec<usize>,
@@ -46,20 +45,20 @@ struct Active {
     weak: Vec<Weak>,
 }
 
-/// Eigenvalues of the reduced Hessian Zᵀ ∇²L Z of the minimised Lagrangian, in the optimiser's
-/// scaled variables, by central differences of gradients: four gradients a direction. `None` if
-/// `stopped` returns true before the end.
+/// Eigenvalues of the reduced Hessian Zᵀ ∇²L Z of the minimised Lagrangian, in the variables as
+/// the optimiser scales them, by central differences of gradients: four gradients a direction. `None`
+/// if `stopped` says so before the end.
 ///
-/// Z spans the directions in which the variables without a strictly active bound can move without a
-/// first-order change of strictly active constraints. The error is estimated from a second step of
-/// twice the length and from the asymmetry. Near a bound the differences are centred inside it, by
-/// a distance of their length; the estimate includes this.
+/// Z spans the directions along which variables that no strictly active bound holds move without
+/// changing strictly active constraints to first order. The error is estimated from a second step of
+/// twice the length and from the asymmetry. Near a bound the differences are centred inside it, by a
+/// distance of their length, of which that estimate knows.
 ///
-/// Gradients that `journal` knows are not evaluated again. The others use the steps of
+/// Gradients that `journal` knows are not evaluated again; the others go by the steps of
 /// `integration`.
 ///
 /// # Errors
-/// If a simulation near the optimum fails.
+/// If a simulation fails beside the optimum.
 pub fn second_order(
     problem: &Problem,
     outcome: &Outcome,
@@ -94,7 +93,7 @@ pub fn second_order(
         };
         let mut hessian = DMatrix::zeros(k, k);
         for j in 0..k {
-            // A few directions at a time, so the computation can be stopped.
+            // A few directions at once, so that the whole can be stopped.
             if j % AT_ONCE == 0 && !stopped() {
                 let next = j..k.min(j + AT_ONCE);
                 let both = next.flat_map(|j| [place(j, step), place(j, -step)]);
@@ -154,7 +153,7 @@ pub fn second_order(
     }))
 }
 
-/// The strictly and the weakly active bounds and constraints.
+/// What holds the optimum, and what it merely touches.
 fn active(
     problem: &Problem,
     outcome: &Outcome,
@@ -163,7 +162,7 @@ fn active(
     let n = outcome.x.len();
     let slopes = program.gradients(&outcome.x)?;
     let steepest = DVector::from_column_slice(&slopes.objective).amax();
-    // If the gradient vanishes, a tenth of its typical size replaces it.
+    // Where the gradient vanishes, a tenth of its size elsewhere takes its place.
     let scaling = &outcome.scaling;
     let elsewhere = scaling.typical_gradient.max(scaling.objective_gradient);
     let force = WEAK * steepest.max(0.1 * elsewhere);
@@ -226,7 +225,7 @@ fn active(
     Ok(Active { free, rows, weak })
 }
 
-/// The Hessian along the directions `basis`, which `weak` may restrict.
+/// The Hessian of the directions `basis`, which `weak` may bound.
 struct Reduced {
     hessian: DMatrix<f64>,
     uncertainty: f64,
@@ -235,8 +234,8 @@ struct Reduced {
 }
 
 impl Reduced {
-    /// Removes the directions along which even a small force outweighs the curvature over the
-    /// length of the differences: the optimum is held there.
+    /// Without the directions along which a force, small as it is, outweighs the curvature over the
+    /// length of the differences: there the optimum is held all the same.
     fn held(self) -> Self {
         let k = self.basis.ncols();
         let (mut rows, mut weak) = (Vec::new(), Vec::new());
@@ -265,7 +264,7 @@ impl Reduced {
         }
     }
 
-    /// The verdict, and a feasible direction of negative curvature if there is one.
+    /// What follows, and a feasible direction of negative curvature if there is one.
     fn judge(&self) -> (Curvature, Option<DVector<f64>>) {
         if self.basis.ncols() == 0 {
             return (Curvature::NoFreeDirection, None);
@@ -285,7 +284,7 @@ impl Reduced {
                 descent = descent.or(Some(direction * sign));
             }
         }
-        // The face of the cone on which all weakly active bounds stay active.
+        // The face of the cone along which all that is weakly active stays active.
         let faces = DMatrix::from_fn(self.weak.len(), self.basis.ncols(), |r, c| {
             self.weak[r].inwards.dot(&self.basis.column(c))
         });
@@ -304,8 +303,8 @@ impl Reduced {
         }
     }
 
-    /// The sign with which a direction of negative curvature lies in the cone, if any. Small forces
-    /// along it must be outweighed within the length of the differences.
+    /// Which way a direction of negative curvature, if either, is in the cone, and what little force there
+    /// is gives way within the length of the differences.
     fn admits(&self, direction: &DVector<f64>, curvature: f64) -> Option<f64> {
         let along = |sign: &f64| {
             let part = |w: &Weak| *sign * w.inwards.dot(direction);
@@ -322,7 +321,7 @@ fn null_space(rows: &DMatrix<f64>) -> DMatrix<f64> {
     if rows.nrows() == 0 || n == 0 {
         return DMatrix::identity(n, n);
     }
-    // Rows may have any units: only their directions matter.
+    // Rows may have any units: only their directions count.
     let mut unit = rows.clone();
     for mut row in unit.row_iter_mut() {
         let length = row.norm();
@@ -381,7 +380,7 @@ mod tests {
         assert!((descent.expect("falls") - inwards).amax() < 1e-14);
         assert_eq!(verdict(across, vec![]), Curvature::NoOptimum);
         assert_eq!(verdict(across, half()), Curvature::NoOptimum);
-        // xy over x, y ≥ 0 is a minimum, although an eigenvalue is negative.
+        // xy over x, y ≥ 0 is a minimum, but not by what its eigenvectors say.
         assert_eq!(verdict(across, quarter()), Curvature::NotDecided);
         assert_eq!(verdict([1.0, 0.0, 0.0, 1e-4], half()), Curvature::Flat);
         // Along the face x = 0 it falls both ways.

@@ -34,7 +34,8 @@ pub struct Chosen<S: Scalar> {
 }
 
 /// Simulates by `method`, or, without one, by the explicit method; by Radau IIA if that proves cheaper
-/// (see [`stiffness`](super::explicit::stiffness)), or if explicit steps of equal size fail.
+/// (see [`stiffness`](super::explicit::stiffness)), or if explicit steps of equal size fail or those by a
+/// tolerance make no headway.
 ///
 /// # Errors
 /// As `simulate`.
@@ -91,6 +92,10 @@ pub fn simulate_by<S: SolveScalar>(
         ) if matches!(settings.spacing, Spacing::Steps(_)) => {
             let reason = format!("explicit steps of this size fail at t = {time:.4} s");
             with(STIFF, reason)
+        }
+        Err(failure @ IntegrationFailure::NoHeadway { time, .. }) => {
+            let reason = format!("explicit steps make no headway at t = {time:.4} s");
+            with(STIFF, reason).map_err(|_| failure)
         }
         found => found,
     }

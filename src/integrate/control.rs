@@ -1,14 +1,13 @@
-//! Step size control: what errors are measured against, and how large the next step is.
+//! Step size control: how large the next step is.
 
 use super::grid::Grid;
+use super::headway::{Headway, Stop};
 use super::limits::Clock;
+use super::scale::Scale;
 use super::settings::{Settings, Spacing};
+use super::stops::load_steps;
 use crate::math::Scalar;
-use crate::model::course::Course;
-use crate::model::table::breaks;
-use crate::model::{Model, MotionCourse};
-use crate::system::initial::InitialState;
-use crate::system::{Numbering, assembly};
+use crate::model::Model;
 
 /// Safety factor of the next step, and how much it may shrink or grow.
 const SAFETY: f64 = 0.9;
@@ -38,148 +37,6 @@ const NOISE: f64 = 200.0 * f64::EPSILON;
 const MOST_NOISE: f64 = 1e-10;
 /// Steps that are given up for others that end further away from a singular position.
 const KEPT_AWAY: usize = 3;
-/// Most tries of a run whose steps follow the error, and most of them that are rejected, times the
-/// unknowns of the accelerations. The pace is looked at every so many tries: a run that would need more
-/// at its latest pace is given up at once. A mechanism that is nearly locked rejects a quarter of its
-/// tries; so may a fast vibration of one body, which costs little.
-const MOST: usize = 10_000_000;
-const MOST_REJECTED: usize = 2_000_000;
-const PACE: usize = 5_000;
-
-/// Lengths and speeds of a scene that errors are relative to.
-#[derive(Clone, Copy, Debug)]
-pub struct Scale {
-    /// Length (m).
-    pub length: f64,
-    /// Least speed (m/s) and angular speed (rad/s) to be relative to.
-    pub floor: [f64; 2],
-}
-
-impl Scale {
-    /// The scale of a model that starts in `start` and moves for `duration` (s): its largest lever
-    /// arm; the speed at its start or that of a fall over the length.
-    pub fn of<S: Scalar>(
-        model: &Model<S>,
-        numbering: &Numbering,
-        start: &InitialState<S>,
-        duration: f64,
-    ) -> Self {
-        let length = assembly::length_scale(model);
-        let gravity = largest(model.gravity.as_slice());
-        let fall = (gravity * length).sqrt();
-        let [speed, spin] = fastest(numbering, &start.v);
-        let drift = if fall > 0.0 { fall } else { length / duration };
-        Self {
-            length,
-            floor: [speed.max(drift), spin.max(drift / length)],
-        }
-    }
-
-    /// Speeds that the errors of a step between the velocities `v` and `w` are relative to.
-    pub fn speeds<S: Scalar>(&self, numbering: &Numbering, v: &[S], w: &[S]) -> [f64; 2] {
-        let (v, w) = (fastest(numbering, v), fastest(numbering, w));
-        std::array::from_fn(|i| self.floor[i].max(v[i]).max(w[i]))
-    }
-
-    /// Mean square of a difference of positions and velocities, each relative to its scale.
-    pub fn square<S: Scalar>(
-        &self,
-        numbering: &Numbering,
-        q: &[S],
-        v: &[S],
-        speeds: [f64; 2],
-    ) -> f64 {
-        let part = |x: &[S], scale: f64| -> f64 {
-            x.iter().map(|x| (x.re() / scale) * (x.re() / scale)).sum()
-        };
-        let mut sum = 0.0;
-        for body in 0..numbering.bodies() {
-            let q = &q[numbering.position(body)..][..7];
-            let v = &v[numbering.velocity(body)..][..6];
-            sum += part(&q[..3], self.length) + part(&q[3..], 1.0);
-            sum += part(&v[..3], speeds[0]) + part(&v[3..], speeds[1]);
-        }
-        sum / (q.len() + v.len()).max(1) as f64
-    }
-
-    /// As [`Scale::square`] for a tangent change y of positions and h times one of velocities.
-    pub fn tangent_square(&self, y: &[f64], hv: &[f64], h: f64, speeds: [f64; 2]) -> f64 {
-        let part = |x: &[f64], scale: f64| -> f64 { x.iter().map(|x| (x / scale).powi(2)).sum() };
-        let both = y.chunks_exact(6).zip(hv.chunks_exact(6));
-        let sum: f64 = both
-            .map(|(y, v)| {
-                part(&y[..3], self.length)
-                    + part(&y[3..], 1.0)
-                    + part(&v[..3], h * speeds[0])
-                    + part(&v[3..], h * speeds[1])
-            })
-            .sum();
-        sum / (2 * y.len()).max(1) as f64
-    }
-}
-
-fn fastest<S: Scalar>(numbering: &Numbering, v: &[S]) -> [f64; 2] {
-    let mut most = [0.0_f64; 2];
-    for body in 0..numbering.bodies() {
-        let v = &v[numbering.velocity(body)..][..6];
-        most[0] = most[0].max(largest(&v[..3]));
-        most[1] = most[1].max(largest(&v[3..]));
-    }
-    most
-}
-
-fn largest<S: Scalar>(x: &[S]) -> f64 {
-    x.iter().fold(0.0, |m, x| m.max(x.re().abs()))
-}
-
-/// Unknowns of the accelerations: velocities and multipliers.
-fn unknowns<S>(model: &Model<S>) -> usize {
-    let velocities = model.bodies.iter().map(|body| body.mobility.unknowns());
-    let rows = model.joints.iter().map(|joint| joint.rows().count());
-    velocities.chain(rows).sum()
-}
-
-/// Part of a period of the fastest harmonic load that a step may take.
-const PART_OF_PERIOD: f64 = 0.25;
-
-/// What the loads and drives of a model say of the steps: fractions of the duration at which steps must end,
-/// ascending, and their largest width.
-fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64>, f64) {
-    let mut stops = Vec::new();
-    let mut widest = 1.0_f64;
-    for course in model.loads.iter().filter_map(|load| load.kind.course()) {
-        match course {
-            Course::Constant(_) => {}
-            Course::Harmonic { frequency, .. } => {
-                let period = 1.0 / frequency.re().abs();
-                widest = widest.min(PART_OF_PERIOD * period / duration);
-            }
-            Course::Table {
-                times,
-                interpolation,
-                ..
-            } => stops.extend(breaks(times, *interpolation, false)),
-        }
-    }
-    for drive in model.joints.iter().flat_map(|joint| &joint.drives) {
-        match &drive.course {
-            MotionCourse::Polynomial(_) => {}
-            MotionCourse::Harmonic { frequency, .. } => {
-                let period = 1.0 / frequency.re().abs();
-                widest = widest.min(PART_OF_PERIOD * period / duration);
-            }
-            MotionCourse::Table {
-                times,
-                interpolation,
-                ..
-            } => stops.extend(breaks(times, *interpolation, true)),
-        }
-    }
-    stops.iter_mut().for_each(|at| *at /= duration);
-    stops.retain(|&at| at > 0.0 && at < 1.0);
-    stops.sort_by(f64::total_cmp);
-    (stops, widest)
-}
 
 /// Width of the next step where a singular position is expected at the distance `d`, the error allows
 /// steps of `width`, and the motion ends after `rest`: a leap over it, at the fraction `at` of the step,
@@ -227,34 +84,9 @@ pub struct Controller {
     leap: Option<(f64, usize)>,
     latest: f64,
     largest: f64,
-    /// Tries and rejected ones so far.
-    tries: usize,
-    refused: usize,
-    /// Fraction of the duration and rejected tries when the pace was looked at.
-    looked: (f64, usize),
-    /// Most rejected tries.
-    most_rejected: usize,
+    headway: Headway,
     clock: Option<Clock>,
     stopped: Option<Stop>,
-}
-
-/// Why a march ended before the end of its motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stop {
-    /// The steps became too small.
-    TooSmall,
-    /// The latest `tries`, `rejected` of them rejected, advanced the motion by the fraction `advance`
-    /// of its duration; at this pace it would need too many.
-    NoHeadway {
-        /// Tries.
-        tries: usize,
-        /// Rejected ones among them.
-        rejected: usize,
-        /// Fraction of the duration.
-        advance: f64,
-    },
-    /// It took longer than it may \[s\].
-    TimeLimit(f64),
 }
 
 #[derive(Clone, Debug)]
@@ -315,14 +147,7 @@ impl Controller {
             leap: None,
             latest: 0.0,
             largest: 0.0,
-            tries: 0,
-            refused: 0,
-            looked: (0.0, 0),
-            // Who says how long it may take says so instead.
-            most_rejected: match settings.limits.seconds {
-                Some(_) => MOST,
-                None => MOST_REJECTED / unknowns(model).max(1),
-            },
+            headway: Headway::new(model, &settings.limits),
             clock: Clock::start(&settings.limits, duration),
             stopped: None,
         }
@@ -351,9 +176,10 @@ impl Controller {
 
     /// Width of the step from `reached`, or `None` at the end or if the march is [stopped](Self::stopped).
     pub fn next(&mut self, reached: f64) -> Option<f64> {
-        self.tries += 1;
+        self.headway.try_one();
+        let (tries, rejected) = self.headway.so_far();
         let clock = self.clock.as_ref();
-        if let Some(seconds) = clock.and_then(|c| c.look(reached, self.tries, self.refused)) {
+        if let Some(seconds) = clock.and_then(|c| c.look(reached, tries, rejected)) {
             self.stopped = Some(Stop::TimeLimit(seconds));
             return None;
         }
@@ -369,23 +195,9 @@ impl Controller {
                     self.stopped = Some(Stop::TooSmall);
                     return None;
                 }
-                if self.tries.is_multiple_of(PACE) {
-                    let advance = reached - self.looked.0;
-                    let rejected = self.refused - self.looked.1;
-                    let too_many = |latest: usize, so_far: usize, most: usize| {
-                        latest as f64 * rest > advance * most.saturating_sub(so_far) as f64
-                    };
-                    if too_many(PACE, self.tries, MOST)
-                        || too_many(rejected, self.refused, self.most_rejected)
-                    {
-                        self.stopped = Some(Stop::NoHeadway {
-                            tries: PACE,
-                            rejected,
-                            advance,
-                        });
-                        return None;
-                    }
-                    self.looked = (reached, self.refused);
+                if let Some(stop) = self.headway.look(reached) {
+                    self.stopped = Some(stop);
+                    return None;
                 }
                 *width = width.min(self.widest);
                 let ahead = self.ahead.map(|at| at - reached);
@@ -452,7 +264,7 @@ impl Controller {
                     self.leaps += 1;
                     *width = self.uncut.take().unwrap_or(*width);
                     self.rejected = true;
-                    self.refused += 1;
+                    self.headway.reject();
                     false
                 } else {
                     self.leaps = 0;
@@ -463,7 +275,7 @@ impl Controller {
                         SHRINK
                     };
                     self.rejected = true;
-                    self.refused += 1;
+                    self.headway.reject();
                     false
                 }
             }
@@ -476,6 +288,7 @@ impl Controller {
         self.leaps = 0;
         self.largest = self.largest.max(self.latest);
         self.rejected = false;
+        self.headway.accept();
         match &mut self.plan {
             Plan::Given { next, .. } => *next += 1,
             Plan::Chosen { width, .. } => {
@@ -499,7 +312,7 @@ impl Controller {
                 }
                 *tried += 1;
                 self.rejected = true;
-                self.refused += 1;
+                self.headway.reject();
                 *width < self.least
             }
         }
@@ -530,7 +343,7 @@ impl Controller {
                 }
                 self.ahead = Some(at);
                 self.rejected = true;
-                self.refused += 1;
+                self.headway.reject();
                 *width < self.least
             }
         }

@@ -105,6 +105,20 @@ pub enum IntegrationFailure {
         /// Step number, from 1.
         step: usize,
     },
+    /// Too many steps in a row were rejected.
+    #[error(
+        "the tolerance cannot be kept at t = {time:.6e} s (step {step}): {in_a_row} steps in a row were \
+         rejected, as smaller ones err as much; the tolerance may be below what rounding allows, or \
+         the motion may jump"
+    )]
+    Rejected {
+        /// Time reached \[s\].
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+        /// Steps that were rejected.
+        in_a_row: usize,
+    },
     /// The steps are so small that the motion makes no headway.
     #[error(
         "the motion makes no headway at t = {time:.6e} s of {duration} s (step {step}): the latest \

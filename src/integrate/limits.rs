@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 /// What a simulation may take, and who is told how far it is. The number of steps is limited besides
-/// (see [`Controller`](super::control::Controller)).
+/// (see [`Headway`](super::headway::Headway)).
 #[derive(Clone, Debug, Default)]
 pub struct Limits {
     /// Longest wall time of one simulation \[s\].

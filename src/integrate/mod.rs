@@ -5,15 +5,18 @@ pub mod control;
 pub mod explicit;
 pub mod failure;
 pub mod grid;
+pub mod headway;
 pub mod implicit;
 pub mod limits;
 pub mod multipliers;
 pub mod quadrature;
 pub mod replay;
 pub mod rows;
+pub mod scale;
 pub mod schedule;
 pub mod settings;
 mod singular;
+mod stops;
 pub mod trajectory;
 
 pub use choice::{Chosen, simulate_by};
@@ -28,8 +31,9 @@ use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::kkt::SaddlePoint;
 use crate::system::{Motion, Numbering, assembly, initial, redundancy};
-use control::{Controller, Stop};
+use control::Controller;
 use explicit::stiffness::Watch;
+use headway::Stop;
 
 /// Integrates `model` over `duration` in real or, for complex-step derivatives, in complex
 /// numbers.
@@ -79,6 +83,13 @@ fn close<S: SolveScalar>(
     match controller.stopped() {
         None => {}
         Some(Stop::TooSmall) => return Err(IntegrationFailure::StepTooSmall { time, step }),
+        Some(Stop::Rejected { in_a_row }) => {
+            return Err(IntegrationFailure::Rejected {
+                time,
+                step,
+                in_a_row,
+            });
+        }
         Some(Stop::TimeLimit(seconds)) => {
             return Err(IntegrationFailure::TimeLimit {
                 seconds,

@@ -36,12 +36,32 @@ pub struct Schedule {
 
 /// Growth of the numbers of checkpoints that are tried.
 const FINENESS: f64 = 1.1;
+/// Most times that a step is made again for a gradient: less memory than that takes is not asked for.
+const MOST_TIMES: usize = 20;
+
+/// The least memory that a run of `steps` steps keeps for a gradient (bytes): two steps, and as many
+/// checkpoints as let every step be made again twenty times at most.
+pub fn least(steps: usize, room: Room) -> usize {
+    let mut checkpoints = 1;
+    while repetitions(steps, checkpoints) > MOST_TIMES {
+        checkpoints += 1;
+    }
+    2 * (room.step + checkpoints * room.checkpoint)
+}
 
 impl Schedule {
-    /// The schedule of a run of `steps` steps that makes the fewest steps again in `memory` bytes. A
-    /// run that is too long for them keeps the least that a gradient can do with: the start, and one
-    /// step at a time.
+    /// The schedule of a run of `steps` steps that makes the fewest steps again in `memory` bytes, or in the
+    /// [`least`] if they would be made again too often. Without memory it keeps the start, and one step at
+    /// a time.
     pub fn new(steps: usize, memory: usize, room: Room) -> Self {
+        let own = Self::within(steps, memory, room);
+        match memory > 0 && own.recomputed() > steps.saturating_mul(MOST_TIMES) {
+            true => Self::within(steps, least(steps, room), room),
+            false => own,
+        }
+    }
+
+    fn within(steps: usize, memory: usize, room: Room) -> Self {
         let whole = Self {
             steps,
             head: 0,
@@ -314,8 +334,10 @@ mod tests {
                 assert!(most <= schedule.checkpoints, "{schedule:?}");
                 assert!(again <= before, "more memory, more work: {schedule:?}");
                 before = again;
-                if memory >= 3000 {
-                    assert!(schedule.bytes(room) <= memory, "{schedule:?} in {memory}");
+                if memory > 0 {
+                    let admitted = memory.max(super::least(steps, room));
+                    assert!(schedule.bytes(room) <= admitted, "{schedule:?} in {memory}");
+                    assert!(again <= MOST_TIMES * steps, "{schedule:?}: {again}");
                 }
                 // Steps that were chosen on the way are all made again first.
                 let (unknown, _) = carry_out(&schedule, false);
@@ -339,6 +361,20 @@ mod tests {
             let expected = block * advances(blocks + 1, checkpoints);
             assert_eq!(schedule.recomputed(), expected);
             assert_eq!(carry_out(&schedule, true).0, expected);
+        }
+    }
+
+    /// A byte is as good as the least, and the least is little.
+    #[test]
+    fn the_least_memory_bounds_the_work() {
+        for (step, checkpoint) in [(1000, 70), (8000, 500), (300, 900)] {
+            let room = Room { step, checkpoint };
+            for steps in [2, 30, 1000, 40_000, 3_000_000] {
+                let own = Schedule::new(steps, 1, room);
+                assert!(own.bytes(room) <= super::least(steps, room), "{own:?}");
+                assert!(own.recomputed() <= MOST_TIMES * steps, "{own:?}");
+                assert!(super::least(steps, room) <= 2 * step + 24 * checkpoint);
+            }
         }
     }
 

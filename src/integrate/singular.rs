@@ -5,7 +5,7 @@
 //! round-off divided by x, x² and x³: no step may end too close to one, and where the motion passes one
 //! a step leaps over it.
 
-use super::control::Scale;
+use super::scale::Scale;
 use crate::linalg::SolveScalar;
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;

@@ -55,7 +55,7 @@ pub trait Observer {
     fn iteration(&mut self, row: &Row<'_>) -> ControlFlow<()>;
 }
 
-/// An observer that ignores all rows.
+/// Observer that ignores what it is told.
 ///
 /// ```
 /// use flexbody::optimiser::{Observer, Phase, Row, Silent};

@@ -7,16 +7,15 @@ use super::nlp::EvaluationFailure;
 use super::options::Method;
 use super::program::{Point, Program, Slopes, Trouble};
 
-/// Number of starts tried if the functions are undefined.
+/// Starts tried where the functions are not defined.
 const START_TRIALS: usize = 12;
 
-/// Points tried near one that seems infeasible, and their distances relative to the size of the
-/// point if there are no bounds.
+/// Points tried beside one that seems infeasible, and their distances where no bounds give a measure,
+/// relative to the size of the point.
 const ESCAPE_TRIALS: usize = REACHES.len();
 const REACHES: [f64; 6] = [0.2, 1.0, 5.0, 0.5, 50.0, 500.0];
 
-/// A nearby violation is less if it differs by this part, and unchanged if it differs by less than
-/// the second part.
+/// Part of the violation by which it must be less beside a point, and up to which it is unchanged.
 const LESS: f64 = 1e-6;
 const UNCHANGED: f64 = 1e-12;
 
@@ -47,19 +46,18 @@ pub(super) fn first_point(
     Err(Trouble::Failed(first_failure.unwrap_or(missing)))
 }
 
-/// The violation around a point at which its derivatives show no descent.
+/// How the violation changes around a point at which its derivatives show no way down.
 pub(super) enum Around {
-    /// It is clearly less at this point. The first point was a maximum, a saddle or one of several
-    /// minima.
+    /// It is clearly less at this point: that was a maximum, a saddle or one minimum of several.
     Less(Box<(Point, Slopes)>),
-    /// It is constant. Derivatives give no direction.
+    /// It changes nowhere: derivatives say nothing.
     Flat,
     /// It rises.
     More,
 }
 
-/// Tries points around `at`, near and far. At a maximum, at a saddle and on a plateau of the
-/// violation its derivatives vanish too.
+/// Looks at points around `at`, near and far: at a maximum, a saddle or on a plateau of the violation
+/// its derivatives vanish too.
 pub(super) fn look_around(program: &mut Program<'_>, at: &Point) -> Result<Around, Trouble> {
     let now = program.total_violation(&at.c);
     let mut largest = 0.0_f64;
@@ -90,8 +88,8 @@ pub(super) fn look_around(program: &mut Program<'_>, at: &Point) -> Result<Aroun
     })
 }
 
-/// The start for `trial` 0, then points in changing directions. Their distance is up to the part
-/// `part` of the distance of two bounds or of the size of the start.
+/// The start for `trial` 0, then points in changing directions, up to the part `part` of the distance
+/// of two bounds or of the size of the start away.
 fn perturbed(
     program: &Program<'_>,
     start: &DVector<f64>,

@@ -173,9 +173,18 @@ pub(super) fn assemble<S: SolveScalar>(
     Err(open(model, numbering, &best, ITERATIONS))
 }
 
-/// Second moment S = ∫ s sᵀ dm = ½ tr(J) 1 − J of a body with inertia J.
+/// Second moment S = ∫ s sᵀ dm = ½ tr(J) 1 − J of a body with inertia J. The moments of a thin rod about
+/// two axes are subtracted from each other first, so that what is left of it has all digits.
 pub(super) fn second_moment<S: Scalar>(inertia: &Mat3<S>) -> Mat3<S> {
-    Mat3::identity() * (inertia.trace() * S::from(0.5)) - inertia
+    let moment = |k: usize| inertia[(k, k)];
+    Mat3::from_fn(|k, l| {
+        if k != l {
+            return -inertia[(k, l)];
+        }
+        let (i, j) = (moment((k + 1) % 3), moment((k + 2) % 3));
+        let (less, more) = if i.re() < j.re() { (i, j) } else { (j, i) };
+        ((more - moment(k)) + less) * S::from(0.5)
+    })
 }
 
 /// The vector w with tr(ω̃ X) = −ω · w for all ω.
@@ -202,7 +211,8 @@ fn add_displacement<S: Scalar>(model: &Model<S>, numbering: &Numbering, q: &[S],
     }
 }
 
-/// E_yy: m, and tr(X) 1 − Xᵀ with X = S R_gᵀ R.
+/// E_yy: m, and tr(X) 1 − Xᵀ with X = S R_gᵀ R, which is J + tr(Y) 1 − Yᵀ with Y = S (R_gᵀ R − 1): the
+/// smallest moment of inertia does not drown in the others.
 pub(super) fn displacement_metric<'a, S: Scalar>(
     model: &'a Model<S>,
     numbering: &'a Numbering,
@@ -211,10 +221,11 @@ pub(super) fn displacement_metric<'a, S: Scalar>(
     |index| {
         let (_, p) = positions_of(&q[numbering.position(index)..]);
         let body = &model.bodies[index];
-        let turned = second_moment(&body.inertia) * turned_by(&body.orientation, &p);
+        let turned = turned_by(&body.orientation, &p) - Mat3::identity();
+        let moved = second_moment(&body.inertia) * turned;
         BodyBlocks {
             linear: body.mass,
-            angular: Mat3::identity() * turned.trace() - turned.transpose(),
+            angular: body.inertia + Mat3::identity() * moved.trace() - moved.transpose(),
         }
     }
 }

@@ -40,6 +40,43 @@ fn an_optimum_in_little_memory_is_the_same() {
     assert!(told["stretch"].is_null());
 }
 
+/// However little is given, a gradient of many steps makes each again twenty times at most, and is the same.
+#[test]
+fn any_memory_bounds_the_work() {
+    let at = scratch();
+    for (steps, method) in [
+        (300, json!("dop853")),
+        (3000, json!("dop853")),
+        (700, json!({"radau": {"stages": 3}})),
+        (2000, json!({"bdf": {"order": 2}})),
+    ] {
+        let mut document = hammer();
+        document["simulation"]["steps"] = json!(steps);
+        document["simulation"]["method"] = method;
+        document["optimiser"] = json!({"iterations": 1});
+        write(at.path(), &document);
+        let of = |memory: &[&str], to: &str| {
+            let own = [&["scene.json", "--quiet", "--output", to][..], memory].concat();
+            expect(3, at.path(), &own);
+            optimum(&at.path().join(to))
+        };
+        let much = of(&[], "much");
+        for memory in ["1B", "700B", "9kB"] {
+            let little = of(&["--memory", memory], "little");
+            assert_eq!(little["design"], much["design"], "{memory}");
+            assert_eq!(little["multipliers"], much["multipliers"], "{memory}");
+            let counts = &little["counts"];
+            let again = counts["recomputed_steps"].as_u64().expect("a number");
+            let gradients = counts["gradients"].as_u64().expect("a number");
+            assert!(again > 0, "{memory}");
+            assert!(
+                again <= 20 * steps * gradients,
+                "{memory}: {again} {gradients}"
+            );
+        }
+    }
+}
+
 #[test]
 fn sizes_are_understood_or_refused() {
     let at = scratch();

@@ -339,3 +339,44 @@ fn a_frame_turned_by_half_a_turn_is_refused() {
         }
     }
 }
+
+/// A rod on a ball joint starts as thin as it may be, turned as it may be: at rest it falls with the angular
+/// acceleration r × m g / (m L²/3) across itself, and with none about itself.
+#[test]
+fn thin_rods_start() {
+    for (radius, seed) in [
+        (1e-2, 1),
+        (1e-5, 2),
+        (1e-7, 3),
+        (1e-9, 4),
+        (1e-12, 5),
+        (1e-15, 6),
+    ] {
+        let mut numbers = Numbers(seed);
+        let (length, mass) = (1.0 + 0.5 * numbers.next(), 2.0 + numbers.next());
+        let about = 0.5 * mass * radius * radius;
+        let across = mass * length * length / 12.0 + 0.5 * about;
+        let mut body = numbers.body("rod");
+        body.mass = mass;
+        body.inertia = Mat3::from_diagonal(&Vec3::new(about, across, across));
+        (body.velocity, body.angular_velocity) = (Vec3::zeros(), Vec3::zeros());
+        let turned = rotation::matrix(&body.orientation);
+        let near = Vec3::new(-0.5 * length, 0.0, 0.0);
+        let mut model = free_pair(JointKind::Spherical, seed);
+        let pivot = body.position + turned * near;
+        model.bodies = vec![body];
+        model.loads.clear();
+        model.gravity = numbers.vector() * 10.0;
+        let own = &mut model.joints[0];
+        (own.body_a, own.body_b) = (0, None);
+        own.frame_a.point = near;
+        own.frame_b.point = pivot;
+        let start = solve(&model).unwrap_or_else(|failure| panic!("{radius:e}: {failure}"));
+        let torque = (-near).cross(&(turned.transpose() * model.gravity * mass));
+        let end_to_end = across + mass * near.norm_squared();
+        let exact = torque / end_to_end;
+        let found = Vec3::new(start.a[3], start.a[4], start.a[5]);
+        let off = (found - exact).norm();
+        assert!(off < 1e-12 * exact.norm(), "{radius:e}: {found} {exact}");
+    }
+}

@@ -16,6 +16,7 @@ mod gradients_converge_to_references;
 mod gradients_match_complex_step;
 mod initial_conditions;
 mod joints_and_drives;
+mod limits_of_rounding;
 mod load_derivatives;
 mod loads;
 mod lowering;

@@ -29,7 +29,7 @@ fn a_rigid_scene_is_integrated_explicitly() {
 
 /// Bricard's mechanism with one joint off by little is nearly locked: it shakes between two stops, and
 /// 1 s of it needs half a million steps. It is given up after a fixed number of steps, by a message that
-/// says so, unless the file says how long it may take.
+/// says so, unless the file says how long it may take, or leaves the method open.
 #[test]
 fn a_mechanism_that_is_nearly_locked_is_given_up() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/nearly_locked.json");
@@ -44,7 +44,7 @@ fn a_mechanism_that_is_nearly_locked_is_given_up() {
         (1e-6, "/simulation/duration=10"),
         (1e-7, "/simulation/tolerance=1e-7"),
     ] {
-        let problem = load(&[&off(by), more]);
+        let problem = load(&[&off(by), more, "/simulation/method=dop853"]);
         let failure = simulate(&problem, &problem.start()).map(|_| ());
         let failure = failure.expect_err("is given up");
         assert!(
@@ -53,6 +53,18 @@ fn a_mechanism_that_is_nearly_locked_is_given_up() {
         );
         let told = failure.to_string();
         assert!(told.contains("nearly locked"), "{told}");
+    }
+    // Radau IIA takes over where it may: without a freedom, nothing moves.
+    for more in ["/simulation/tolerance=1e-9", "/simulation/duration=10"] {
+        let problem = load(&[&off(1e-6), more]);
+        let seen = simulate(&problem, &problem.start()).expect("runs");
+        assert_eq!(seen.at.run.method, Method::Radau { stages: 3 });
+        assert!(seen.reason.contains("no headway"), "{}", seen.reason);
+        let motion = seen.motion();
+        let last = motion.q(motion.last());
+        for (from, to) in motion.q(0).iter().zip(last) {
+            assert!((from - to).abs() < 1e-6, "{from} {to}");
+        }
     }
     // The mechanism that is not off moves.
     let problem = load(&["/simulation/duration=0.2"]);

@@ -10,9 +10,9 @@
 use super::record::NodeView;
 use super::step::Stepper;
 use super::tableau::STAGES;
-use crate::integrate::control::Scale;
 use crate::integrate::implicit::march::{self as implicit, Stretch};
 use crate::integrate::limits::Limits;
+use crate::integrate::scale::Scale;
 use crate::integrate::settings::{Method, Samples, Settings};
 use crate::integrate::trajectory::Trajectory;
 use crate::linalg::SolveScalar;

@@ -4,12 +4,16 @@ use super::Stage;
 use super::predict::dense;
 use super::radau::Scheme;
 use super::stage_newton::StageNewton;
-use crate::integrate::control::Scale;
+use crate::integrate::scale::Scale;
 use crate::integrate::trajectory::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::{LeftOut, Motion, Numbering, bodies, joints};
+
+/// Round-off in an estimated error, relative to that in the stages, and the most that is taken for it.
+const MORE_NOISE: f64 = 30.0;
+const MOST_NOISE: f64 = 1e-6;
 
 /// Estimates errors, with what that needs again in every step.
 pub(super) struct Estimate<'a> {
@@ -85,9 +89,12 @@ impl<'a> Estimate<'a> {
         let nv = v.len();
         let end = &self.stages[self.stages.len() - 1].v;
         let speeds = scale.speeds(numbering, &v[..], end);
-        let error = scale
-            .tangent_square(&found[..nv], &found[nv..], h, speeds)
-            .sqrt();
+        let size = |x: &[f64]| scale.tangent_square(&x[..nv], &x[nv..], h, speeds).sqrt();
+        let mut error = size(found);
+        if let Some(noise) = newton.noise().map(size) {
+            // What round-off makes of the stages is none of the step's size.
+            error -= error.min((MORE_NOISE * noise).min(MOST_NOISE));
+        }
         if (self.model.joints.iter()).all(|joint| joint.drives.is_empty()) {
             return error;
         }

@@ -12,6 +12,7 @@ use crate::linalg::{Pivots, SingularMatrix, SolveScalar, SparseLu, SparseMatrix}
 use crate::math::{Complex64, Scalar};
 use crate::model::Model;
 use crate::system::{LeftOut, Numbering, bodies};
+use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
 /// Error left in the stages, relative to the largest increments in the step.
@@ -21,6 +22,10 @@ const TOLERANCE: f64 = 1e-13;
 const STAGNANT: f64 = 1e-7;
 /// Scaled residual, relative to the largest coordinate, that is round-off.
 const ROUND_OFF: f64 = 1e-14;
+/// Round-off of a residual relative to the largest coordinate, and how much more than it changes may be
+/// that still come from it: they meet a matrix that was made elsewhere.
+const UNIT: f64 = f64::EPSILON;
+const FROM_NOISE: f64 = 100.0;
 /// Contraction above which the matrices are renewed for the next step.
 const RENEW: f64 = 0.05;
 /// Contraction that is given up.
@@ -65,6 +70,8 @@ pub struct StageNewton<'a, S> {
     middle: Stage<f64>,
     /// Combinations of increments of q and v, for the error.
     combined: [Vec<f64>; 2],
+    /// Change (δy, h δv) that round-off made in the latest step, if a nearly singular matrix magnified it.
+    noise: Option<Vec<f64>>,
 }
 
 impl<'a, S: SolveScalar> StageNewton<'a, S> {
@@ -106,6 +113,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             predicted: vec![Stage::zero(numbering); scheme.stages()],
             combined: [vec![0.0; zero.q.len()], vec![0.0; zero.v.len()]],
             middle: zero,
+            noise: None,
         }
     }
 
@@ -210,10 +218,20 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             let slow = contraction.min(before) > DIVERGENT || contraction > 10.0;
             before = contraction;
             let remaining = size * (pair / (1.0 - pair.min(0.9))).min(1.0);
-            let stagnant = iteration > 2
-                && contraction > 0.3
-                && (size <= scales.round_off.max(STAGNANT) || self.is_round_off(&scales));
+            let stands = iteration > 2 && contraction > 0.3;
+            let mut stagnant = stands && size <= scales.round_off.max(STAGNANT);
+            let mut noise = None;
+            if stands && !stagnant && remaining > TOLERANCE {
+                let gives_up = iteration == ITERATIONS || slow;
+                let known = self.is_round_off(&scales);
+                if known || gives_up {
+                    let (change, most) = self.magnified(&scales, h);
+                    stagnant = known || size <= FROM_NOISE * most;
+                    noise = Some(change);
+                }
+            }
             if remaining <= TOLERANCE || stagnant {
+                self.noise = noise;
                 if S::INFINITESIMAL {
                     for _ in 0..INFINITESIMAL_ITERATIONS {
                         self.improve(stages, h, &scales, nv, counts);
@@ -243,6 +261,38 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         let limit = ROUND_OFF * scales.place().max(1.0);
         let all = self.residuals.iter().flatten();
         all.fold(0.0, |m: f64, x| m.max(x.re().abs())) <= limit
+    }
+
+    /// What the matrix makes of round-off in the constraints: the largest change (δy, h δv) of a stage, and
+    /// its size relative to the increments. It lies across the motion that the joints allow.
+    fn magnified(&mut self, scales: &Scales, h: S) -> (Vec<f64>, f64) {
+        let n = 2 * self.numbering.velocities();
+        let unit = UNIT * scales.place().max(1.0);
+        for residual in &mut self.residuals {
+            residual.fill(S::zero());
+            for (i, x) in residual[n..].iter_mut().enumerate() {
+                // No combination of rows is to be missed: both signs, without a pattern.
+                let sign = (SQRT_2 * (i + 1) as f64).fract() - 0.5;
+                *x = S::from(unit.copysign(sign));
+            }
+        }
+        for update in &mut self.updates {
+            update.fill(S::zero());
+        }
+        self.update(Scalar::re, S::from);
+        let mut all = vec![0.0_f64; n];
+        let mut size = 0.0_f64;
+        for update in &self.updates {
+            size = size.max(scales.size(&update[..n], h.re()));
+            let both = all.iter_mut().zip(&update[..n]);
+            both.for_each(|(most, x)| *most = most.max(x.re().abs()));
+        }
+        (all, size)
+    }
+
+    /// Change (δy, h δv) that round-off made in the latest step, if a nearly singular matrix magnified it.
+    pub fn noise(&self) -> Option<&[f64]> {
+        self.noise.as_deref()
     }
 
     /// One iteration; the size of the change.

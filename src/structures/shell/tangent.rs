@@ -48,7 +48,7 @@ impl<S: Scalar> RotationAxes<S> {
         }
     }
 
-    pub(super) fn total(&self) -> usize {
+    fn total(&self) -> usize {
         self.count.iter().sum()
     }
 }

@@ -4,7 +4,7 @@ use super::csv;
 
 /// What became of a case.
 #[derive(Clone, Debug, PartialEq)]
-pub enum StabilityOutcome {
+pub enum StressOutcome {
     /// The numbers agree with their judge.
     Accurate,
     /// The numbers are off, and the program says so.
@@ -31,48 +31,46 @@ pub enum StabilityOutcome {
     WrongAndSilent,
 }
 
-impl StabilityOutcome {
+impl StressOutcome {
     /// The class in a few words.
     pub fn class(&self) -> &'static str {
         match self {
-            StabilityOutcome::Accurate => "accurate",
-            StabilityOutcome::Degraded { .. } => "degraded",
-            StabilityOutcome::Refused { .. } => "refused",
-            StabilityOutcome::TimeLimit { .. } => "time limit",
-            StabilityOutcome::Panicked { .. } => "panicked",
-            StabilityOutcome::WrongAndSilent => "wrong and silent",
+            StressOutcome::Accurate => "accurate",
+            StressOutcome::Degraded { .. } => "degraded",
+            StressOutcome::Refused { .. } => "refused",
+            StressOutcome::TimeLimit { .. } => "time limit",
+            StressOutcome::Panicked { .. } => "panicked",
+            StressOutcome::WrongAndSilent => "wrong and silent",
         }
     }
 
     /// Whether no program may behave so.
     pub fn is_failure(&self) -> bool {
         match self {
-            StabilityOutcome::Accurate
-            | StabilityOutcome::Degraded { .. }
-            | StabilityOutcome::Refused { .. } => false,
-            StabilityOutcome::TimeLimit { .. }
-            | StabilityOutcome::Panicked { .. }
-            | StabilityOutcome::WrongAndSilent => true,
+            StressOutcome::Accurate
+            | StressOutcome::Degraded { .. }
+            | StressOutcome::Refused { .. } => false,
+            StressOutcome::TimeLimit { .. }
+            | StressOutcome::Panicked { .. }
+            | StressOutcome::WrongAndSilent => true,
         }
     }
 
     /// What the program said, if it did.
     pub fn words(&self) -> &str {
         match self {
-            StabilityOutcome::Degraded { told } => told,
-            StabilityOutcome::Refused { message } | StabilityOutcome::Panicked { message } => {
-                message
-            }
-            StabilityOutcome::Accurate
-            | StabilityOutcome::TimeLimit { .. }
-            | StabilityOutcome::WrongAndSilent => "",
+            StressOutcome::Degraded { told } => told,
+            StressOutcome::Refused { message } | StressOutcome::Panicked { message } => message,
+            StressOutcome::Accurate
+            | StressOutcome::TimeLimit { .. }
+            | StressOutcome::WrongAndSilent => "",
         }
     }
 }
 
 /// One case.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StabilityRow {
+pub struct StressRow {
     /// What is extreme, in one word.
     pub family: String,
     /// How extreme.
@@ -86,7 +84,7 @@ pub struct StabilityRow {
     /// Steps that were taken.
     pub steps: Option<usize>,
     /// What became of it.
-    pub outcome: StabilityOutcome,
+    pub outcome: StressOutcome,
     /// Largest error of a function relative to the size of the motion.
     pub error: Option<f64>,
     /// Error up to which the numbers count as accurate.
@@ -108,7 +106,7 @@ pub struct StabilityRow {
     pub command: String,
 }
 
-impl StabilityRow {
+impl StressRow {
     /// Name of the case, by which it can be run alone.
     pub fn name(&self) -> String {
         case_name(&self.family, &self.extreme, &self.method)
@@ -122,7 +120,7 @@ pub fn case_name(family: &str, extreme: &str, method: &str) -> String {
 
 /// What the cases of a family have in common.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StabilityFamily {
+pub struct StressFamily {
     /// Its word.
     pub name: String,
     /// What is tried.
@@ -131,11 +129,11 @@ pub struct StabilityFamily {
 
 /// All cases, family by family.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StabilityTable {
+pub struct StressTable {
     /// Families in the order of the table.
-    pub families: Vec<StabilityFamily>,
+    pub families: Vec<StressFamily>,
     /// Cases in the order of the table.
-    pub rows: Vec<StabilityRow>,
+    pub rows: Vec<StressRow>,
 }
 
 /// Classes in the order of the summary.
@@ -169,7 +167,7 @@ const COLUMNS: [&str; 18] = [
     "command",
 ];
 
-impl StabilityTable {
+impl StressTable {
     /// The rows as CSV.
     pub fn to_csv(&self) -> String {
         let mut text = String::new();
@@ -204,7 +202,7 @@ impl StabilityTable {
     /// The rows as Markdown, a table a family.
     pub fn to_markdown(&self) -> String {
         let mut text = String::from(
-            "# Stability\n\nWhat becomes of extreme scenes, as `optimize stability` finds it; how it is \
+            "# Stability\n\nWhat becomes of extreme scenes, as `optimize stress` finds it; how it is \
              judged, and why: [docs/stability.md](../../docs/stability.md).\nThe command of every \
              row stands in [stability.csv](stability.csv).\n\n",
         );
@@ -215,7 +213,7 @@ impl StabilityTable {
         text += "\n|---|---|";
         CLASSES.iter().for_each(|_| text += "---|");
         text.push('\n');
-        let mut line = |name: &str, rows: &[&StabilityRow]| {
+        let mut line = |name: &str, rows: &[&StressRow]| {
             text += &format!("| {name} | {} |", rows.len());
             for class in CLASSES {
                 let own = rows.iter().filter(|row| row.outcome.class() == class);
@@ -245,7 +243,7 @@ impl StabilityTable {
         text
     }
 
-    fn of(&self, family: &StabilityFamily) -> Vec<&StabilityRow> {
+    fn of(&self, family: &StressFamily) -> Vec<&StressRow> {
         let own = self.rows.iter().filter(|row| row.family == family.name);
         own.collect()
     }
@@ -269,7 +267,7 @@ impl StabilityTable {
     }
 }
 
-fn markdown_row(row: &StabilityRow) -> String {
+fn markdown_row(row: &StressRow) -> String {
     let number = |x: Option<f64>| x.map_or_else(|| "–".into(), |x| format!("{x:.1e}"));
     let gradient = match (&row.gradient_error, &row.no_gradient) {
         (None, Some(_)) => "none".into(),
@@ -293,9 +291,9 @@ fn markdown_row(row: &StabilityRow) -> String {
 }
 
 /// What the program said to the rows, the same words once.
-fn notes(rows: &[&StabilityRow]) -> String {
+fn notes(rows: &[&StressRow]) -> String {
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
-    let mut add = |row: &StabilityRow, what: String| {
+    let mut add = |row: &StressRow, what: String| {
         let which = format!("{} by {}", row.extreme, row.method);
         match said.iter_mut().find(|(words, _)| *words == what) {
             Some((_, all)) => all.push(which),
@@ -319,8 +317,8 @@ fn notes(rows: &[&StabilityRow]) -> String {
 mod tests {
     use super::*;
 
-    fn row(outcome: StabilityOutcome) -> StabilityRow {
-        StabilityRow {
+    fn row(outcome: StressOutcome) -> StressRow {
+        StressRow {
             family: "speeds".into(),
             extreme: "1e6".into(),
             scene: "fast.json".into(),
@@ -342,18 +340,18 @@ mod tests {
 
     #[test]
     fn words_of_the_program_stand_below_the_table_once() {
-        let refused = StabilityOutcome::Refused {
+        let refused = StressOutcome::Refused {
             message: "too fast".into(),
         };
-        let table = StabilityTable {
-            families: vec![StabilityFamily {
+        let table = StressTable {
+            families: vec![StressFamily {
                 name: "speeds".into(),
                 about: "Fast.".into(),
             }],
             rows: vec![
                 row(refused.clone()),
                 row(refused),
-                row(StabilityOutcome::Accurate),
+                row(StressOutcome::Accurate),
             ],
         };
         let text = table.to_markdown();

@@ -1,4 +1,4 @@
-//! The stability suite: extreme scenes, each judged by something that shares nothing with the method
+//! The stress suite: extreme scenes, each judged by something that shares nothing with the method
 //! under test, so that no number is wrong without a word about it.
 //!
 //! A case is *accurate* if every function agrees with its judge, *degraded* if it does not and the
@@ -8,12 +8,11 @@
 mod case;
 mod cases;
 mod exact;
-mod loops;
 mod reference;
 mod run;
 mod scenes;
 
-use crate::report::{StabilityFamily, StabilityOutcome, StabilityRow, StabilityTable};
+use crate::report::{StressFamily, StressOutcome, StressRow, StressTable};
 use case::Case;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
@@ -33,15 +32,15 @@ pub fn names(fast: bool) -> Vec<String> {
 
 /// Runs the cases that `wanted` says of by their names, several at once; `seen` is told of every row
 /// as it is known. Rows stand in the order of the table.
-pub fn stability(
+pub fn stress(
     wanted: impl Fn(&str) -> bool,
     seconds: f64,
-    seen: &(dyn Fn(&StabilityRow) + Sync),
-) -> StabilityTable {
+    seen: &(dyn Fn(&StressRow) + Sync),
+) -> StressTable {
     let mut chosen = cases::all();
     chosen.retain(|case| wanted(&case.name()));
     let next = AtomicUsize::new(0);
-    let rows: Mutex<Vec<(usize, StabilityRow)>> = Mutex::new(Vec::new());
+    let rows: Mutex<Vec<(usize, StressRow)>> = Mutex::new(Vec::new());
     let workers = std::thread::available_parallelism().map_or(1, usize::from);
     // Threads of their own: a worker waits for its case, and must not hold up those that compute.
     std::thread::scope(|scope| {
@@ -61,13 +60,13 @@ pub fn stability(
     });
     let mut rows = rows.into_inner().unwrap_or_default();
     rows.sort_by_key(|(k, _)| *k);
-    let families = scenes::FAMILIES.map(|(name, about)| StabilityFamily {
+    let families = scenes::FAMILIES.map(|(name, about)| StressFamily {
         name: name.into(),
         about: about.into(),
     });
-    let rows: Vec<StabilityRow> = rows.into_iter().map(|(_, row)| row).collect();
-    let tried = |family: &StabilityFamily| rows.iter().any(|row| row.family == family.name);
-    StabilityTable {
+    let rows: Vec<StressRow> = rows.into_iter().map(|(_, row)| row).collect();
+    let tried = |family: &StressFamily| rows.iter().any(|row| row.family == family.name);
+    StressTable {
         families: families.into_iter().filter(tried).collect(),
         rows,
     }
@@ -80,7 +79,7 @@ pub fn is_named(case: &str, only: &str) -> bool {
 }
 
 /// The row of a case, which may break down and may take so long.
-fn limited(case: &Case, seconds: f64) -> StabilityRow {
+fn limited(case: &Case, seconds: f64) -> StressRow {
     let (send, receive) = mpsc::channel();
     let own = case.clone();
     // A case that does not end cannot be stopped: it is left behind until the program ends.
@@ -90,15 +89,15 @@ fn limited(case: &Case, seconds: f64) -> StabilityRow {
     });
     let mut row = run::blank(case);
     row.outcome = match started {
-        Err(error) => StabilityOutcome::Panicked {
+        Err(error) => StressOutcome::Panicked {
             message: error.to_string(),
         },
         Ok(_) => match receive.recv_timeout(Duration::from_secs_f64(seconds)) {
             Ok(Ok(row)) => return row,
-            Ok(Err(panic)) => StabilityOutcome::Panicked {
+            Ok(Err(panic)) => StressOutcome::Panicked {
                 message: words(panic.as_ref()),
             },
-            Err(_) => StabilityOutcome::TimeLimit { seconds },
+            Err(_) => StressOutcome::TimeLimit { seconds },
         },
     };
     row

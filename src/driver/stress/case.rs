@@ -1,14 +1,12 @@
-//! A case of the stability suite: a scene, how it is changed and integrated, and who judges it.
+//! A case of the stress suite: a scene, how it is changed and integrated, and who judges it.
 
 use super::exact::Exact;
 use crate::integrate::Method;
-use crate::report::stability::case_name;
+use crate::report::stress::case_name;
 
-/// A problem file.
+/// A problem file under `problems/extreme`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SceneFile {
-    /// Its folder under `problems`.
-    pub folder: &'static str,
     /// Its name.
     pub name: &'static str,
     /// Its text.
@@ -36,18 +34,11 @@ pub(super) struct Way {
 pub(super) enum Judge {
     /// A motion that is known without the program.
     Exact(Exact),
-    /// A run by a method of the other family with a much tighter tolerance, with so many of the changes
-    /// only, and the size (m) that its error is relative to.
-    OtherMethod { kept: usize, size: f64 },
+    /// A run by a method of the other family with a much tighter tolerance.
+    OtherMethod,
     /// The least or largest value of the objective of an optimisation, NaN if there is none, and the
     /// size that its error is relative to.
     Optimum { value: f64, size: f64 },
-}
-
-impl From<Exact> for Judge {
-    fn from(exact: Exact) -> Self {
-        Judge::Exact(exact)
-    }
 }
 
 /// A case.
@@ -67,8 +58,6 @@ pub(super) struct Case {
     pub changes: Vec<String>,
     /// Who judges.
     pub judge: Judge,
-    /// What lengths are multiplied by.
-    pub length: f64,
     /// Error, relative to the size of the motion, up to which it is accurate.
     pub bound: f64,
     /// Whether energy is conserved.
@@ -168,14 +157,13 @@ impl Way {
 }
 
 impl Case {
-    /// A case by usual bounds. It conserves energy if its motion is known.
+    /// A case that conserves energy and whose motion is known.
     pub fn known(
         (family, extreme): (&'static str, String),
         scene: SceneFile,
         (way, duration): (Way, f64),
-        judge: impl Into<Judge>,
+        exact: Exact,
     ) -> Self {
-        let judge = judge.into();
         Self {
             family,
             extreme,
@@ -183,10 +171,9 @@ impl Case {
             way: Some(way),
             duration,
             changes: Vec::new(),
-            judge,
-            length: 1.0,
+            judge: Judge::Exact(exact),
             bound: bound(way),
-            conservative: matches!(judge, Judge::Exact(_)),
+            conservative: true,
             slow: false,
         }
     }
@@ -208,9 +195,9 @@ impl Case {
         case_name(self.family, &self.extreme, &self.method())
     }
 
-    /// The first `kept` changes of the file, and method, steps and duration.
-    pub fn overrides(&self, kept: usize) -> Vec<String> {
-        let mut all: Vec<String> = self.changes.iter().take(kept).cloned().collect();
+    /// All changes of the file.
+    pub fn overrides(&self) -> Vec<String> {
+        let mut all = self.changes.clone();
         if let Some(way) = self.way {
             all.push(format!("/simulation={}", way.json(self.duration)));
         }
@@ -220,12 +207,11 @@ impl Case {
     /// The command that runs the same.
     pub fn command(&self) -> String {
         let verb = match self.judge {
-            Judge::Exact(_) | Judge::OtherMethod { .. } => "simulate ",
+            Judge::Exact(_) | Judge::OtherMethod => "simulate ",
             Judge::Optimum { .. } => "",
         };
-        let SceneFile { folder, name, .. } = self.scene;
-        let mut text = format!("optimize {verb}problems/{folder}/{name}");
-        for change in self.overrides(usize::MAX) {
+        let mut text = format!("optimize {verb}problems/extreme/{}", self.scene.name);
+        for change in self.overrides() {
             text += &format!(" --set '{change}'");
         }
         text

@@ -1,0 +1,48 @@
+//! What loads and drives that depend on time say of the steps.
+
+use crate::math::Scalar;
+use crate::model::course::Course;
+use crate::model::table::breaks;
+use crate::model::{Model, MotionCourse};
+
+/// Part of a period of the fastest harmonic load that a step may take.
+const PART_OF_PERIOD: f64 = 0.25;
+
+/// What the loads and drives of a model say of the steps: fractions of the duration at which steps must end,
+/// ascending, and their largest width.
+pub fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64>, f64) {
+    let mut stops = Vec::new();
+    let mut widest = 1.0_f64;
+    for course in model.loads.iter().filter_map(|load| load.kind.course()) {
+        match course {
+            Course::Constant(_) => {}
+            Course::Harmonic { frequency, .. } => {
+                let period = 1.0 / frequency.re().abs();
+                widest = widest.min(PART_OF_PERIOD * period / duration);
+            }
+            Course::Table {
+                times,
+                interpolation,
+                ..
+            } => stops.extend(breaks(times, *interpolation, false)),
+        }
+    }
+    for drive in model.joints.iter().flat_map(|joint| &joint.drives) {
+        match &drive.course {
+            MotionCourse::Polynomial(_) => {}
+            MotionCourse::Harmonic { frequency, .. } => {
+                let period = 1.0 / frequency.re().abs();
+                widest = widest.min(PART_OF_PERIOD * period / duration);
+            }
+            MotionCourse::Table {
+                times,
+                interpolation,
+                ..
+            } => stops.extend(breaks(times, *interpolation, true)),
+        }
+    }
+    stops.iter_mut().for_each(|at| *at /= duration);
+    stops.retain(|&at| at > 0.0 && at < 1.0);
+    stops.sort_by(f64::total_cmp);
+    (stops, widest)
+}

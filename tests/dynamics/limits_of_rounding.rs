@@ -1,0 +1,144 @@
+//! Scenes at the limits of rounding: they run where their motion is known, and are given up after a
+//! bounded number of tries where it is not.
+
+use crate::reference::models::Numbers;
+use flexbody::driver::simulate;
+use flexbody::integrate::control::Controller;
+use flexbody::integrate::headway::Stop;
+use flexbody::integrate::scale::Scale;
+use flexbody::integrate::{Method, Settings, Spacing};
+use flexbody::problem::{Override, Problem};
+use serde_json::{Value, json};
+use std::path::Path;
+
+fn extreme(name: &str, changes: &[String]) -> Problem {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/extreme/{name}.json"));
+    let parse = |text: &String| Override::parse(text).expect("an override");
+    let changes: Vec<Override> = changes.iter().map(parse).collect();
+    Problem::load(&path, &changes).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+fn values(problem: &Problem) -> Vec<f64> {
+    let seen = simulate(problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
+    let count = problem.function_names.len();
+    (0..count).map(|f| seen.at.function(f).value).collect()
+}
+
+/// Two ball joints close to each other are a hinge, though a matrix that knows the line through them
+/// to 1e-16 m over their distance is nearly singular. Steps stay as many as those of the hinge, to a small
+/// factor.
+#[test]
+fn ball_joints_close_to_each_other_are_a_hinge() {
+    let hinge = r#"/joints={"hinge":{"revolute":{"between":["door","ground"],"at":"door.first","axis":[0,0,1]}}}"#;
+    for (distance, width, tolerance, method) in [
+        (1e-5, 1.0, 1e-9, json!({"radau": {"stages": 3}})),
+        (1e-6, 0.7, 1e-9, json!({"radau": {"stages": 3}})),
+        (3e-6, 1.3, 1e-8, json!({"radau": {"stages": 3}})),
+        (1e-6, 1.6, 1e-7, json!({"radau": {"stages": 2}})),
+        (1e-6, 1.1, 1e-9, Value::Null),
+        (3e-7, 0.9, 1e-8, Value::Null),
+    ] {
+        let mut simulation = json!({"duration": 0.8, "tolerance": tolerance});
+        if !method.is_null() {
+            simulation["method"] = method.clone();
+        }
+        let size = format!("/bodies/door/shape/box/size/0={width}");
+        let exact = [
+            size.clone(),
+            hinge.into(),
+            r#"/simulation={"duration":0.8,"tolerance":1e-12}"#.into(),
+        ];
+        let exact = values(&extreme("door", &exact));
+        let close = [
+            size,
+            format!("/bodies/door/points/second/2={}", 0.9 + distance),
+            format!("/simulation={simulation}"),
+        ];
+        let problem = extreme("door", &close);
+        let seen =
+            simulate(&problem, &problem.start()).unwrap_or_else(|e| panic!("{distance}: {e}"));
+        for (f, exact) in exact.iter().enumerate() {
+            let off = (seen.at.function(f).value - exact).abs();
+            assert!(off < 100.0 * tolerance, "{distance:e}, {method}: {off:e}");
+        }
+        let steps = seen.at.run.grid.steps();
+        assert!(steps < 3000, "{distance:e}, {method}: {steps}");
+    }
+}
+
+/// A spring so stiff that explicit steps make no headway hands over to Radau IIA; the bob moves as on a
+/// rod, to 1/ω².
+#[test]
+fn where_explicit_steps_make_no_headway_radau_takes_over() {
+    for (stiffness, duration) in [(1e14, 1.0), (4e13, 0.6)] {
+        let changes = [
+            format!("/loads/spring/spring/stiffness={stiffness:e}"),
+            format!("/simulation={{\"duration\":{duration},\"tolerance\":1e-9}}"),
+        ];
+        let problem = extreme("spring_pendulum", &changes);
+        let seen = simulate(&problem, &problem.start()).expect("runs");
+        assert_eq!(seen.at.run.method, Method::Radau { stages: 3 });
+        assert!(seen.at.run.grid.steps() < 100_000);
+        let [x, y] = [0, 1].map(|f| seen.at.function(f).value);
+        assert!((x.hypot(y) - 1.0).abs() < 1e-9);
+        let drift = seen.energy_drift();
+        assert!(drift < 1e-6, "{drift:e}");
+    }
+}
+
+/// Errors that do not fall with the step are given up after a hundred tries, whatever they are; errors that
+/// fall with it never are.
+#[test]
+fn rejections_in_a_row_are_bounded() {
+    let problem = extreme("door", &[]);
+    let scene = problem.scene(&problem.start());
+    let scale = Scale {
+        length: 1.0,
+        floor: [1.0, 1.0],
+    };
+    let mut numbers = Numbers(7);
+    for tolerance in [1e-4, 1e-9, 1e-13] {
+        for order in [3, 4, 8] {
+            let mut settings = Settings::steps(Method::Dop853, 1);
+            settings.spacing = Spacing::Tolerance(tolerance);
+            let new = || Controller::new(&settings, order, &scale, (&scene.model, 1.0));
+            // Just too large, jumping about, and growing as steps shrink.
+            for law in 0..3 {
+                let mut controller = new();
+                let (mut tries, mut before) = (0, 0.0);
+                while let Some(width) = controller.next(0.0) {
+                    tries += 1;
+                    before = match law {
+                        0 => 1.0001,
+                        1 => 1.15 + 0.1 * numbers.next(),
+                        _ => (1.0 + 1e-4 / width.sqrt()).min(1.2),
+                    };
+                    assert!(!controller.judge(before * tolerance), "{width:e}");
+                }
+                assert_eq!(tries, 100, "law {law}, {tolerance:e}, order {order}");
+                assert_eq!(
+                    controller.stopped(),
+                    Some(Stop::Rejected { in_a_row: 100 }),
+                    "{before}"
+                );
+            }
+            // Two in three are too large, and then one is not.
+            let mut controller = new();
+            let (mut reached, mut tries) = (0.0, 0);
+            while let Some(width) = controller.next(reached) {
+                tries += 1;
+                let end = controller.end(reached, width);
+                let wanted = if tries % 3 == 0 { 0.5 } else { 1.5 };
+                if controller.judge(wanted * tolerance) {
+                    controller.accept();
+                    reached = end;
+                }
+                if tries == 3000 {
+                    break;
+                }
+            }
+            let stop = controller.stopped();
+            assert!(!matches!(stop, Some(Stop::Rejected { .. })), "{stop:?}");
+        }
+    }
+}
