@@ -5,8 +5,7 @@
 //! motion their gradients, with which an interior-point method finds the best design.
 //!
 //! ```
-//! use flexbody::driver::{check, simulate};
-//! use flexbody::problem::Problem;
+//! use flexbody::{Analysis, Problem, check, simulate};
 //!
 //! let text = r#"{
 //!     "version": 1, "name": "pendulum",
@@ -19,12 +18,15 @@
 //!     "variables": {"gravity": {"path": "/gravity/1", "lower": -20, "upper": -1}},
 //!     "gravity": [0, -9.81, 0]
 //! }"#;
-//! let problem = Problem::parse(text, "pendulum.json", &[]).expect("no faults");
-//! let motion = simulate(&problem, &problem.start()).expect("runs");
+//! let problem = Problem::parse(text, "pendulum.json", &[])?;
+//! let motion = simulate(&problem, &problem.start())?;
 //! assert!(motion.constraint_drift().1 < 1e-12);
-//! for derivative in check(&problem, &problem.start()).expect("runs") {
-//!     assert!(derivative.relative_difference() < 1e-11);
+//! let mut analysis = Analysis::new(&problem);
+//! let gradients = analysis.at(&problem.start())?.gradients(&[0])?;
+//! for derivative in check(&problem, &problem.start())? {
+//!     assert!((derivative.complex_step / gradients[0][0] - 1.0).abs() < 1e-11);
 //! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! A folder imports only from folders above its own in this list (`tests/files/layers.rs` checks it):
@@ -44,6 +46,7 @@
 //! | [`problem`] | the problem file: faults, schema, the map from a design to a scene |
 //! | [`report`] | records, comparison, tables, figures, text |
 //! | [`driver`] | simulate, check, optimise; estimate errors, measure methods |
+//! | [`library`] | what a user of the library needs of problems |
 //! | [`cli`] | the command line |
 
 pub mod adjoint;
@@ -51,6 +54,7 @@ pub mod cli;
 pub mod driver;
 pub mod functions;
 pub mod integrate;
+pub mod library;
 pub mod linalg;
 pub mod lower;
 pub mod math;
@@ -60,3 +64,9 @@ pub mod problem;
 pub mod report;
 pub mod structures;
 pub mod system;
+
+pub use library::{
+    Analysis, BodyState, CheckedDerivative, Design, Iteration, Motion, Optimum, SimulationError,
+    check, optimise, simulate,
+};
+pub use problem::{Fault, Faults, Override, OverrideError, Problem, Variable};

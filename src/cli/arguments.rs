@@ -131,7 +131,14 @@ pub enum Command {
     WorkPrecision(Measurement),
     /// Try the program on extreme scenes and judge what it says of them; writes stability.md and
     /// stability.csv. Exit code 1 if a number is wrong without a word about it.
-    Stress(Suite),
+    Stability(Suite),
+    /// The former name of `stability`.
+    #[command(hide = true, disable_help_flag = true)]
+    Stress {
+        /// What was asked for.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        rest: Vec<std::ffi::OsString>,
+    },
     /// Compare two records of optimal designs; exit code 1 if they differ beyond tolerance.
     Compare(Comparison),
     /// Draw the figures of a result directory again from its record.
@@ -164,7 +171,7 @@ pub struct Measurement {
     pub function: Option<String>,
 }
 
-/// Which cases `stress` tries.
+/// Which cases `stability` tries.
 #[derive(Args, Debug)]
 pub struct Suite {
     /// Directory for the table [default: results/stability; none if only some cases are run].
@@ -174,7 +181,7 @@ pub struct Suite {
     #[arg(long, value_name = "CASE")]
     pub only: Option<String>,
     /// Time that a case may take (s).
-    #[arg(long, default_value_t = crate::driver::stress::LIMIT, value_parser = positive)]
+    #[arg(long, default_value_t = crate::driver::stability::LIMIT, value_parser = positive)]
     pub seconds: f64,
     /// No progress and no summary.
     #[arg(long, short)]

@@ -8,8 +8,8 @@ mod optimise;
 mod progress;
 mod records;
 mod simulate;
+mod stability;
 mod starts;
-mod stress;
 mod work_precision;
 
 use crate::driver::{error, figures};
@@ -124,7 +124,11 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         Some(Command::Check { job, tolerance }) => simulate::check(&job, tolerance),
         Some(Command::Explain { job, json }) => explain::explain(&job, json),
         Some(Command::WorkPrecision(asked)) => work_precision::measure(&asked),
-        Some(Command::Stress(asked)) => stress::stress(&asked),
+        Some(Command::Stability(asked)) => stability::stability(&asked),
+        Some(Command::Stress { .. }) => Err(Failure::bad_input(
+            "found `optimize stress`, expected `optimize stability`: the suite of extreme scenes is \
+             called so now",
+        )),
         Some(Command::Compare(files)) => compare::compare(&files),
         Some(Command::Plot { directory }) => compare::plot(&directory),
         Some(Command::Schema) => compare::schema(),

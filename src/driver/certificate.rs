@@ -1,10 +1,10 @@
-//! The certificate of the gradients that an optimisation went by: at its start and at its end, one
-//! directional derivative of every function by the adjoint and by the complex step.
+//! Certificate of the gradients of an optimisation: at its start and at its end, one directional
+//! derivative of every function by the adjoint and by the complex step.
 //!
-//! The direction d is random, so that an error in any derivative shows, and as long in each variable as the
-//! variable's typical change. With the gradient g of a function, the two derivatives differ by
-//! |Σ gᵢdᵢ − Im f(x + ihd)/h|, which is judged beside Σ |gᵢdᵢ|, or beside the round-off of what the gradient
-//! is the sum of.
+//! The direction d is random, so an error in any derivative shows. Its size in each variable is the
+//! variable's typical change. With the gradient g of a function, the two derivatives differ by |Σ
+//! gᵢdᵢ − Im f(x + ihd)/h|. The difference is compared with Σ |gᵢdᵢ|, or with the round-off of the
+//! terms of the gradient.
 
 use super::check::{complex_step, own_size};
 use super::evaluate::{Derivative, Evaluated};
@@ -18,17 +18,17 @@ use crate::report::optimum::{
     CertificateCost, CertifiedDerivative, CertifiedDesign, GradientCertificate,
 };
 
-/// Largest difference that passes, relative to Σ |gᵢdᵢ|: that of `optimize check`.
+/// Largest accepted difference relative to Σ |gᵢdᵢ|: that of `optimize check`.
 pub const TOLERANCE: f64 = 1e-10;
-/// What the direction is drawn with.
+/// Seed of the direction.
 pub const SEED: u64 = 20_221_113;
-/// Round-off in parts of the terms that a derivative is the sum of.
+/// Round-off of a derivative, relative to the terms that it is the sum of.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
-/// Most variables among which one at fault is looked for, by a complex run each.
+/// Largest number of variables that are tested one by one for the error, by a complex run each.
 const LOOKED_AT: usize = 64;
 
-/// Certifies the gradients at both ends of an optimisation, on the steps of their simulations. Differences
-/// up to `tolerance` pass.
+/// Certifies the gradients at both ends of an optimisation, on the steps of their simulations.
+/// Differences up to `tolerance` pass.
 pub fn certify(problem: &Problem, done: &Optimisation, tolerance: f64) -> GradientCertificate {
     let direction = direction(problem, SEED);
     let mut cost = CertificateCost::default();
@@ -58,8 +58,8 @@ pub fn certify(problem: &Problem, done: &Optimisation, tolerance: f64) -> Gradie
     }
 }
 
-/// A direction with a random sign and a random size between half a typical change and a whole one in every
-/// variable, by the generator SplitMix64 (Steele, Lea & Flood 2014).
+/// A direction with a random sign and a random size, between half a typical change and a whole one,
+/// in every variable. By the generator SplitMix64 (Steele, Lea & Flood 2014).
 fn direction(problem: &Problem, seed: u64) -> Vec<f64> {
     let mut state = seed;
     let mut next = || {
@@ -94,7 +94,7 @@ fn certified(
     cost.gradients += 1;
     let rate = match &at.scene.until {
         Some(_) => {
-            // The event's own rate, and how it moves.
+            // The rate of the event, and its shift.
             cost.complex_runs += 2;
             event::rate(&at.scene, &settings, at.run.duration)?
         }
@@ -166,7 +166,7 @@ fn sum(gradient: &[Derivative], direction: &[f64], of: fn(&Derivative, f64) -> f
     terms.map(|(derivative, &by)| of(derivative, by)).sum()
 }
 
-/// The settings that a run was made with, its steps as they are.
+/// The settings of a run, with its steps frozen.
 fn settings(problem: &Problem, at: &Evaluated) -> Option<Settings> {
     let mut integration = Integration::new(problem, &at.scene, None, true);
     integration.restore(KeptSteps {
@@ -188,7 +188,7 @@ struct Pair {
     complex_step: f64,
     /// Σ |gᵢdᵢ|.
     size: f64,
-    /// Of what the derivative is the sum of, or of the function itself.
+    /// Size of the terms of the derivative, or of the function itself.
     terms: f64,
 }
 
@@ -197,7 +197,7 @@ impl Pair {
         (self.adjoint - self.complex_step).abs()
     }
 
-    /// The difference beside the gradient, where there is one.
+    /// The difference relative to the gradient, if that is not zero.
     fn relative(&self) -> f64 {
         match self.difference() {
             0.0 => 0.0,
@@ -209,13 +209,13 @@ impl Pair {
         self.adjoint.is_finite() && self.complex_step.is_finite()
     }
 
-    /// Not if a number is NaN.
+    /// False if a number is NaN.
     fn passes(&self, tolerance: f64) -> bool {
         self.difference() <= ROUND_OFF * self.terms || self.relative() <= tolerance
     }
 }
 
-/// In which variable the two derivatives of function f differ most: one complex run each.
+/// The variable in which the two derivatives of function f differ most: one complex run each.
 fn differing(
     problem: &Problem,
     (settings, event): (&Settings, (f64, f64)),
@@ -242,8 +242,8 @@ fn differing(
     }))
 }
 
-/// Where a derivative is not finite: the first variable whose derivative is not, and from which body and
-/// step on the motion is not.
+/// Origin of a derivative that is not finite: the first such variable, and the body and step from
+/// which on the motion is not finite.
 fn not_finite(problem: &Problem, at: &Evaluated, gradient: &[Derivative]) -> String {
     let mut text = String::new();
     if let Some(i) = gradient.iter().position(|d| !d.value.is_finite()) {

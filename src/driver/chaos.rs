@@ -1,10 +1,10 @@
-//! Motions that magnify perturbations until derivatives mean nothing.
+//! Chaotic motions: they magnify perturbations until derivatives lose their meaning.
 //!
 //! A change Δx of a variable, of the variable's own size, moves the bodies by T(t) in units of the
-//! scene's length, as far as the motion is linear in it. Errors of relative size ε, which every step
-//! makes, grow alike. Where ε T(t) reaches one, the motion is not the one that was asked for, and its
-//! derivatives say nothing. T is found by one complex step, and only where a derivative is so large that
-//! ε Δx df/dx reaches the size of its function.
+//! scene's length, as far as the motion is linear in it. Errors of relative size ε, made in every
+//! step, grow in the same way. If ε T(t) reaches one, the computed motion differs from the true
+//! one, and its derivatives mean nothing. T is computed by one complex step, and only if a
+//! derivative is so large that ε Δx df/dx reaches the size of its function.
 
 use super::check::own_size;
 use super::evaluate::Evaluated;
@@ -15,11 +15,11 @@ use crate::math::{Complex64, Scalar};
 use crate::problem::Problem;
 use crate::system::assembly::length_scale;
 
-/// Least relative error of a step: what round-off makes of it.
+/// Least relative error of a step, by round-off.
 const ROUND_OFF: f64 = 1e-14;
-/// Instants at which the growth is looked at.
+/// Number of instants at which the growth is evaluated.
 const SAMPLES: usize = 1000;
-/// Parts of the duration that are marched over, one after the other.
+/// The duration is marched in this number of parts, one after the other.
 const PARTS: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
 
 /// A chaotic motion.
@@ -62,7 +62,7 @@ pub fn of_motion(problem: &Problem, at: &Evaluated, which: &[usize]) -> Option<C
     if at.x.is_empty() || which.is_empty() {
         return None;
     }
-    // Gradients that cannot be found are suspicious as well.
+    // Gradients that cannot be computed are suspicious too.
     let gradients = match at.gradients(problem, which) {
         Ok((gradients, _)) => gradients,
         Err(_) => vec![vec![f64::NAN; at.x.len()]; which.len()],
@@ -81,14 +81,14 @@ pub fn of_motion(problem: &Problem, at: &Evaluated, which: &[usize]) -> Option<C
         let ratio = |(i, d): (usize, &f64)| (error * (d * change(i)).abs() / size, i);
         suspicious.extend(gradient.iter().enumerate().map(ratio));
     }
-    // A derivative that is not a number is more than any.
+    // A derivative that is NaN counts as larger than any.
     let worst =
         (suspicious.into_iter()).reduce(|a, b| if b.0 > a.0 || b.0.is_nan() { b } else { a });
     let (_, i) = worst.filter(|(ratio, _)| ratio.is_nan() || *ratio >= 1.0)?;
     confirm(problem, at, (i, change(i)), error)
 }
 
-/// Marches once more with an infinitesimal change of variable i, and looks where it has grown to the
+/// Marches again with an infinitesimal change of variable i, and finds when it has grown to the
 /// size of the scene.
 fn confirm(
     problem: &Problem,
@@ -100,7 +100,7 @@ fn confirm(
     x[i].im = COMPLEX_STEP;
     let scene = problem.scene(&x);
     let settings = Settings {
-        // Steps of its own: those of another run do not suit where this one has come apart from it.
+        // This run chooses its own steps: those of another run do not suit it once the two differ.
         spacing: problem.simulation.spacing.clone(),
         samples: Samples::Uniform(SAMPLES),
         limits: problem.simulation.limits.clone(),
@@ -108,7 +108,7 @@ fn confirm(
     };
     let duration = at.run.duration;
     let length = length_scale(&at.scene.model);
-    // What comes after the growth is of no interest, and may fail.
+    // The motion after the growth does not matter and may fail.
     for part in PARTS {
         let run = simulate(&scene.model, (part * duration).into(), &settings).ok()?;
         let growth = |k: usize| moved(&run, k, length) * change / COMPLEX_STEP;

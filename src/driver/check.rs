@@ -1,4 +1,4 @@
-//! The check of gradients: adjoint beside complex step.
+//! The check of gradients: adjoint against complex step.
 
 use super::evaluate::Evaluated;
 use super::event;
@@ -11,7 +11,7 @@ use crate::problem::Problem;
 use crate::system::assembly::length_scale;
 use rayon::prelude::*;
 
-/// Part of its terms below which a derivative lacks digits that they lost.
+/// A derivative below this part of its terms has lost digits by cancellation.
 const SMALL: f64 = 1e-3;
 
 /// One derivative, computed twice.
@@ -21,34 +21,34 @@ pub struct CheckedDerivative {
     pub function: usize,
     /// Variable, by index.
     pub variable: usize,
-    /// By the discrete adjoint of the motion that the complex step runs through.
+    /// By the discrete adjoint, on the motion of the complex step.
     pub adjoint: f64,
     /// By the complex step.
     pub complex_step: f64,
-    /// Sum of the sizes of the terms that the adjoint's derivative is the sum of, or what is larger of
-    /// the function's largest derivative, each variable counted in its scale, and of the function's own
-    /// size for a typical change of the variable.
+    /// Sum of the sizes of the terms of the adjoint's derivative. Or, if larger, the function's
+    /// largest derivative (each variable in its scale), or the function's own size for a typical
+    /// change of the variable.
     pub terms: f64,
-    /// By the discrete adjoint of the motion that an optimisation would see. The two motions
+    /// By the discrete adjoint, on the motion that an optimisation would see. The two motions
     /// differ by round-off, which a sensitive motion magnifies.
     pub in_use: f64,
 }
 
 impl CheckedDerivative {
-    /// |adjoint − complex step| relative to the complex step; absolute where that is zero.
+    /// |adjoint − complex step| relative to the complex step; absolute if that is zero.
     pub fn relative_difference(&self) -> f64 {
         relative(self.adjoint, self.complex_step)
     }
 
-    /// Whether the derivative is nothing but the round-off of terms that cancel: both values are below
-    /// 64 ε times the terms.
+    /// Whether the derivative is only the round-off of cancelling terms: both values are below 64 ε
+    /// times the terms.
     pub fn is_round_off(&self) -> bool {
         let floor = self.round_off();
         self.adjoint.abs() <= floor && self.complex_step.abs() <= floor
     }
 
-    /// Whether the derivative is small beside its terms, below 1e-3 of them, and its two values differ by
-    /// no more than their round-off, 64 ε times the terms.
+    /// Whether the derivative is below 1e-3 of its terms and its two values differ by at most their
+    /// round-off, 64 ε times the terms.
     pub fn differs_by_round_off(&self) -> bool {
         let small = self.complex_step.abs() <= SMALL * self.terms;
         small && (self.adjoint - self.complex_step).abs() <= self.round_off()
@@ -58,7 +58,7 @@ impl CheckedDerivative {
         64.0 * f64::EPSILON * self.terms
     }
 
-    /// How far round-off in the motion moves the derivative, relative to it.
+    /// Relative change of the derivative by round-off in the motion.
     pub fn noise(&self) -> f64 {
         relative(self.in_use, self.adjoint)
     }
@@ -111,8 +111,8 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
     let (in_use, _) = in_use.gradients(problem, &which)?;
     let scale_of = |i: usize| problem.variables[i].scale;
     let own: Vec<f64> = which.iter().map(|&f| own_size(&same, f)).collect();
-    // Round-off of the motion reaches small derivatives from the large ones, and that of the function
-    // all of them.
+    // Round-off of the motion reaches small derivatives from the large ones. Round-off of the
+    // function reaches all.
     let terms = |function: usize, variable: usize| {
         let change = scale_of(variable).max(x[variable].abs());
         let sizes =
@@ -136,8 +136,8 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
         .collect())
 }
 
-/// The size that function f is computed to round-off of: its value, or that of its kind in a scene of
-/// this length L and duration T, as a value may be a difference.
+/// The size of function f that determines its round-off: its value, or the size of its kind in a
+/// scene of this length L and duration T, as a value may be a difference.
 pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
     let model = &at.scene.model;
     let (length, time) = (length_scale(model), at.run.duration);
@@ -217,12 +217,12 @@ mod tests {
         let nothing = pair(1e-15, -1e-15);
         assert!(nothing.is_round_off() && nothing.differs_by_round_off());
         assert!(!pair(f64::NAN, 0.0).differs_by_round_off());
-        // One that is not small has all its digits.
+        // A derivative that is not small has all its digits.
         assert!(!pair(0.1 + 5e-15, 0.1).differs_by_round_off());
     }
 
-    /// A derivative that is nothing is judged by the function's own size, whatever it is the sum of: that
-    /// of the event's own measure, and that by the mass of what falls freely.
+    /// A zero derivative is compared with the size of the function, whatever its terms. Examples:
+    /// the event's own quantity, and a free fall in its mass.
     #[test]
     fn what_does_not_change_passes() {
         let arm = r#"{"shape": {"box": {"size": [1, 0.2, 0.3]}}, "mass": 1,

@@ -30,7 +30,7 @@ pub(super) fn connectors(
             ends: ends.collect(),
         });
     };
-    // Points that something holds or follows, by body.
+    // Points that a joint, spring or arm uses, by body.
     let mut held: Vec<(usize, Vec3<f64>)> = drawing.traces.clone();
     for load in &model.loads {
         if let LoadKind::Spring {
@@ -61,7 +61,7 @@ pub(super) fn connectors(
             JointKind::Spherical | JointKind::Revolute | JointKind::Universal => {
                 ConnectorKind::Hinge
             }
-            // Bodies that are one, or that slide across all of a plane, meet nowhere.
+            // Welded bodies, and bodies that slide in a plane, have no common point.
             JointKind::Weld | JointKind::Planar => continue,
         };
         held.extend(both.iter().filter_map(|(body, point)| {

@@ -1,4 +1,4 @@
-//! The discretisation error of functions and gradients, by cutting every step in two.
+//! The discretisation error of functions and gradients, by halving every step.
 //!
 //! With f_{h,c} the value on the steps in use and the cells of the sums in use, f_{h,2c} that with every
 //! cell cut in two, and f_{h/2,2c} that with every step cut in two as well, of a method of order m,
@@ -8,9 +8,9 @@
 //! ```
 //!
 //! (Richardson): the first term is the error of the steps, the second that of sums over the motion.
-//! Where a function looks at the end alone there is no second term. Told apart, the two may be of
-//! any size and sign. Motions that are sampled at the ends of equal steps are thinned instead: every
-//! second sample of the finer run.
+//! A function of the end alone has no second term. The terms are separate, so each may have any
+//! size and sign. Motions that are sampled at the ends of equal steps have no cells: every second
+//! sample of the finer run is used instead.
 
 use super::evaluate::Evaluated;
 use super::event::{self, Admit};
@@ -20,9 +20,9 @@ use crate::integrate::{
 };
 use crate::problem::{Problem, Simulation};
 
-/// Most attempts to reach an accuracy.
+/// Largest number of attempts to reach an accuracy.
 const ATTEMPTS: usize = 12;
-/// Smallest tolerance and largest number of steps that are tried.
+/// Smallest tolerance and largest number of steps to try.
 const FINEST: (f64, usize) = (1e-14, 10_000_000);
 
 /// A number with its estimated error.
@@ -32,9 +32,9 @@ pub struct Estimate {
     pub value: f64,
     /// Its estimated error, absolute.
     pub error: f64,
-    /// The part of the steps in it, with its sign.
+    /// The error of the steps, with its sign.
     pub of_steps: f64,
-    /// The part of the samples in it, with its sign.
+    /// The error of the samples, with its sign.
     pub of_samples: f64,
 }
 
@@ -88,7 +88,8 @@ pub fn estimate(
         coarse.zip(fine)
     });
     let maxima: Vec<Option<(f64, f64)>> = maxima.collect();
-    // Motions in between: the same steps with twice the cells, or finer ones with half the samples.
+    // Motions in between: the same steps with twice the cells, or finer steps with half the
+    // samples.
     let between = match (
         cells && !summed.is_empty(),
         fine.run.last() == 2 * at.run.last(),
@@ -123,7 +124,7 @@ pub fn estimate(
     for (((&function, coarse), finer), maximum) in rows {
         let thinner = match summed.contains(&function) {
             true => thinner.next().unwrap_or_else(|| finer.clone()),
-            // All of its error is that of the steps.
+            // Its error is that of the steps alone.
             false if cells => coarse.clone(),
             false => finer.clone(),
         };
@@ -159,7 +160,7 @@ pub fn estimate(
     Ok(all)
 }
 
-/// The settings of a run with every step cut in two and twice the samples.
+/// The settings of a run with every step halved and twice the samples.
 fn halved(run: &Trajectory<f64>, (cells, summed): (bool, bool), limits: Limits) -> Settings {
     let instants = run.last();
     let samples = if cells {
@@ -180,7 +181,7 @@ fn halved(run: &Trajectory<f64>, (cells, summed): (bool, bool), limits: Limits) 
     }
 }
 
-/// Leaves every second sample of a run.
+/// Keeps every second sample of a run.
 fn thin(run: &mut Trajectory<f64>) {
     let nc = match run.lambda.is_empty() {
         true => 0,
@@ -201,7 +202,7 @@ fn thin(run: &mut Trajectory<f64>) {
     run.weights = quadrature::weights(&run.instants);
 }
 
-/// Steps that reach an accuracy, and what they cost.
+/// Steps that reach an accuracy, and their cost.
 #[derive(Clone, Debug)]
 pub struct Accuracy {
     /// Number of steps.
@@ -215,7 +216,7 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// The changes of the problem file that make these steps, as path=value.
+    /// The changes of the problem file that give these steps, as path=value.
     pub fn overrides(&self) -> Vec<String> {
         let mut all = match self.spacing {
             Some(Spacing::Tolerance(tolerance)) => {
@@ -228,7 +229,7 @@ impl Accuracy {
         all
     }
 
-    /// What was reached of the accuracy that was asked for.
+    /// The reached accuracy beside the requested one.
     pub fn describe(&self, asked: f64) -> String {
         let missed = match self.error <= asked {
             true => "",
@@ -249,9 +250,9 @@ impl Accuracy {
     }
 }
 
-/// Refines the steps or the samples of `problem`, whichever err too much, until the estimated error
-/// of the function `which` at its start is below `accuracy`, relative to the function. They get no
-/// coarser than the problem asks for.
+/// Refines the steps or the samples of `problem`, whichever have too large an error, until the
+/// estimated error of the function `which` at the start is below `accuracy`, relative to the
+/// function. They never become coarser than the problem requests.
 ///
 /// # Errors
 /// If a simulation fails.
@@ -274,7 +275,7 @@ pub fn reach(
         if reached <= accuracy || attempts == 0 {
             break (reached, at.run.grid.steps());
         }
-        // Either part may have half of what is allowed.
+        // Each part may have half of the allowed error.
         let excess = |part: f64| 2.0 * part.abs() / (accuracy * size);
         let (of_steps, of_samples) = (excess(value.of_steps), excess(value.of_samples));
         if !refine(&mut problem.simulation, &at.run, of_steps, of_samples) {
@@ -290,8 +291,8 @@ pub fn reach(
     })
 }
 
-/// Refines steps and samples that err by so many times what is allowed, if more than once; `false` if
-/// nothing can be refined.
+/// Refines steps and samples by the factors by which their errors exceed the allowed ones. `false`
+/// if nothing can be refined.
 fn refine(
     simulation: &mut Simulation,
     run: &Trajectory<f64>,
@@ -300,7 +301,7 @@ fn refine(
 ) -> bool {
     let before = simulation.clone();
     let more_samples = of_samples.sqrt().clamp(2.0_f64.sqrt(), 8.0);
-    // Cells follow the tolerance, and samples at the ends of steps follow these.
+    // Cells follow the tolerance; samples at the ends of steps follow the steps.
     let apart = simulation.samples.is_some() && !run.has_cells;
     if of_samples > 1.0 && apart {
         let next = (run.last() as f64 * more_samples).ceil() as usize;

@@ -54,8 +54,8 @@ impl Evaluated {
         Ok((Self { x, scene, run }, refresh))
     }
 
-    /// The scene as it is written, and the motion of all its bodies. Bodies that the problem leaves out
-    /// as no function sees them are simulated for it; they rest if that fails.
+    /// The scene as it is written, and the motion of all its bodies. Bodies that no function
+    /// observes are simulated for it; if that fails, they rest.
     pub fn written(&self, problem: &Problem) -> (Scene<f64>, Cow<'_, Trajectory<f64>>) {
         if let Some(whole) = problem.whole() {
             let (scene, run) = self.whole(problem, &whole);
@@ -135,7 +135,7 @@ impl Evaluated {
         Ok((found.into_iter().map(value).collect(), counts))
     }
 
-    /// As [`Evaluated::gradients`], with the sizes of what was summed.
+    /// As [`Evaluated::gradients`], with the sizes of the terms.
     ///
     /// # Errors
     /// If a step's equations are singular.
@@ -144,7 +144,7 @@ impl Evaluated {
         problem: &Problem,
         which: &[usize],
     ) -> Result<(Vec<Vec<Derivative>>, WorkCounts), IntegrationFailure> {
-        // A function that is asked for twice, as objective and in a constraint, is swept once.
+        // A function that is requested twice, as objective and in a constraint, is swept once.
         let mut once = which.to_vec();
         once.sort_unstable();
         once.dedup();
@@ -196,7 +196,7 @@ fn along_event(function: &Scene<f64>, event: &Scene<f64>) -> Scene<f64> {
     let by_event = event.parameters();
     let mut next = by_event.into_iter();
     let mut out = function.map(&mut |f| f - ratio * next.next().expect("scenes of one shape"));
-    // The duration is none of the design's any more.
+    // The design no longer determines the duration.
     out.duration = 0.0;
     out
 }
@@ -206,7 +206,7 @@ fn along_event(function: &Scene<f64>, event: &Scene<f64>) -> Scene<f64> {
 pub struct Derivative {
     /// The sum.
     pub value: f64,
-    /// The sum of the terms' sizes, of which the last digits are round-off.
+    /// The sum of the sizes of the terms; its last digits are round-off.
     pub terms: f64,
 }
 

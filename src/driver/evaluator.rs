@@ -1,4 +1,4 @@
-//! A problem as the optimiser sees it.
+//! A problem as a nonlinear program for the optimiser.
 
 use super::evaluate::Evaluated;
 use super::foreseen::Foreseen;
@@ -14,7 +14,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// The steps that the functions of a design were found with.
+/// The steps of an evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JudgedOn {
     /// Number of steps.
@@ -23,11 +23,12 @@ pub struct JudgedOn {
     pub refreshes: usize,
 }
 
-/// The steps of every design that was evaluated, by its bits; shared with who observes the run.
+/// The steps of every evaluated design, keyed by its exact bits; shared with the observer of the
+/// run.
 pub type Judgements = Rc<RefCell<HashMap<Vec<u64>, JudgedOn>>>;
 
-/// The problem as a nonlinear program. Keeps the last simulated design, so that a gradient where
-/// the functions were just evaluated costs the backward march only.
+/// The problem as a nonlinear program. It keeps the last simulated design, so a gradient at the
+/// point just evaluated costs the backward march only.
 pub struct Evaluator<'a> {
     problem: &'a Problem,
     objective: usize,
@@ -35,15 +36,15 @@ pub struct Evaluator<'a> {
     last: Option<Evaluated>,
     /// The steps in use.
     pub integration: Integration,
-    /// How many designs did not admit what the lowering leaves out at the others.
+    /// Number of designs that did not admit the lowering of the others.
     pub unlowered: usize,
     journal: Journal<'a>,
     foreseen: Foreseen,
-    /// Which choice of steps of the journal `integration` goes by, and the evaluation of the record
-    /// whose event it knows.
+    /// The journal's choice of steps that `integration` uses, and the recorded evaluation whose
+    /// event it knows.
     choice: Option<usize>,
     latest: Option<usize>,
-    /// What the functions of each design were found with.
+    /// The steps of each evaluated design.
     pub judgements: Judgements,
 }
 
@@ -82,12 +83,12 @@ impl<'a> Evaluator<'a> {
         asked(self.problem, self.objective)
     }
 
-    /// Work of all simulations and gradients so far, those that the journal knew included.
+    /// Work of all simulations and gradients so far, including those that the journal knew.
     pub fn counts(&self) -> Work {
         self.journal.work()
     }
 
-    /// Takes the steps and the event that the journal has come to.
+    /// Adopts the steps and the event of the journal.
     fn follow(&mut self) {
         let choice = self.journal.choice();
         if choice != self.choice {
@@ -104,8 +105,8 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Finds the gradients at `points` side by side, if they will be asked for; `x` as the optimiser
-    /// scales it.
+    /// Computes the gradients at `points` side by side, if they will be requested. `x` is scaled as
+    /// in the optimiser.
     pub fn foresee_gradients(&mut self, points: &[Vec<f64>]) {
         let functions = self.functions();
         let designs = self.unknown(points, true);
@@ -294,7 +295,7 @@ impl Nlp for Evaluator<'_> {
 
 /// A design in the problem's units from the optimiser's, x = scale · x̂.
 pub fn unscaled(problem: &Problem, x: &[f64]) -> Vec<f64> {
-    // A scaled bound comes back as the bound itself, whatever round-off did.
+    // A scaled bound returns as the bound itself, without round-off.
     let clamp = |x: f64, v: &crate::problem::Variable| (x * v.scale).clamp(v.lower, v.upper);
     x.iter()
         .zip(&problem.variables)

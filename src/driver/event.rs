@@ -1,46 +1,46 @@
 //! Runs that end at an event: the duration T at which a quantity reaches its value, g(T) = c.
 //!
-//! The steps keep their fractions of T, so that the whole discrete motion, and with it g at its end,
-//! is a smooth function of T and of the design. The root is found by the secant method to round-off;
-//! the last step then ends exactly there, and
+//! The steps keep their fractions of T, so the whole discrete motion, with g at its end, is a
+//! smooth function of T and of the design. The secant method finds the root to round-off. The last
+//! step then ends exactly there, and
 //!
 //! ```text
 //! dT/dx = −(∂g/∂x − ∂c/∂x) / (∂g/∂T),      df/dx = ∂f/∂x + ∂f/∂T dT/dx
 //! ```
 //!
-//! with all partial derivatives by the adjoint of the one run.
+//! with all partial derivatives by the adjoint of one run.
 
 use crate::functions::{Scene, Until};
 use crate::integrate::{IntegrationFailure, Settings, Trajectory, WorkCounts, simulate};
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
 
-/// Most runs to a root.
+/// Largest number of runs to a root.
 const RUNS: usize = 40;
 /// Change of the duration, relative to it, that is round-off.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
-/// Change below which one that no longer shrinks is round-off as well.
+/// A change below this that no longer shrinks is round-off as well.
 const SETTLED: f64 = 1e-11;
 /// Longest step of the secant method, relative to the duration.
 const LONGEST: f64 = 0.2;
 
-/// Which events end a run.
+/// The events that end a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Admit {
-    /// Those a little after the scene's duration too.
+    /// Also those a little after the scene's duration.
     Late,
     /// Those within it.
     InTime,
-    /// Those that come before its end by this part of it, and are no touch that samples at other
-    /// instants would miss: steps that are chosen for the design alone find them too.
+    /// Those that come before its end by this part of it. A touch that other samples would miss
+    /// does not count: steps chosen for this design alone must find the event too.
     Certain {
         /// The part.
         margin: f64,
     },
 }
 
-/// About when the event comes: the first change of sign of g − c over a run for as long as it is
-/// waited for, interpolated.
+/// Approximate time of the event: the first change of sign of g − c in a run over the longest
+/// duration, interpolated.
 ///
 /// # Errors
 /// [`IntegrationFailure::NotReached`].
@@ -70,8 +70,8 @@ fn side(gaps: &[f64]) -> f64 {
     gaps.iter().find(|g| **g != 0.0).map_or(1.0, |g| g.signum())
 }
 
-/// The run of `scene` that ends at its event, on steps that keep their fractions; near `guess` (s).
-/// Sets the scene's duration.
+/// The run of `scene` that ends at its event, with steps that keep their fractions. Starts near
+/// `guess` (s). Sets the scene's duration.
 ///
 /// # Errors
 /// If a run fails, or the event is not found, or not admitted.
@@ -116,7 +116,7 @@ pub fn settle(
         if done {
             let start = side(&gaps);
             if gaps[..last].iter().any(|g| g * start < 0.0) {
-                // It came before as well, which finer samples show.
+                // It also came earlier, as finer samples show.
                 duration = first(&until, &run, &gaps)?;
                 (known, change) = (None, f64::INFINITY);
                 continue;
@@ -124,7 +124,7 @@ pub fn settle(
             let admitted = match admit {
                 Admit::Late => true,
                 Admit::InTime => duration <= waited,
-                // The samples by which it is first looked for are those of the whole time.
+                // The first search uses the samples of the whole time.
                 Admit::Certain { margin } => {
                     duration <= waited * (1.0 - margin) && !touches(&gaps, &run, waited)
                 }
@@ -146,8 +146,8 @@ pub fn settle(
     Err(lost(best))
 }
 
-/// Whether g − c, which is zero at the end, would turn back within a shown interval of a run for as
-/// long as it is waited for.
+/// Whether g − c, zero at the end, would turn back within one sample of a run over the longest
+/// duration.
 fn touches(gaps: &[f64], run: &Trajectory<f64>, waited: f64) -> bool {
     let [.., a, b, c] = gaps else {
         return false;
@@ -155,7 +155,7 @@ fn touches(gaps: &[f64], run: &Trajectory<f64>, waited: f64) -> bool {
     let last = gaps.len() - 1;
     let [first, second] = [last - 1, last].map(|k| run.time(k) - run.time(k - 1));
     let (before, now) = ((b - a) / first, (c - b) / second);
-    // The slope falls by a constant rate from the middle of the last interval on.
+    // The slope changes at a constant rate from the middle of the last interval on.
     let bend = 2.0 * (before - now) / (first + second);
     let spacing = waited / (run.shown().len() - 1).max(1) as f64;
     now * bend > 0.0 && now.abs() < spacing * bend.abs()

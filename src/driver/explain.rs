@@ -1,4 +1,4 @@
-//! What is left out of a problem's scenes, and what is left.
+//! What lowering removes from a problem's scenes, and what remains.
 
 use super::evaluate::{Derivative, Evaluated};
 use super::integration::{Integration, looks_at_the_whole};
@@ -14,14 +14,14 @@ use crate::system::{Numbering, initial};
 struct Motion {
     at: Evaluated,
     reason: String,
-    /// Its part of the whole, if it is a stretch; steps and samples of the whole.
+    /// Its part of the whole if it is a stretch; steps and samples are those of the whole.
     part: Option<f64>,
     steps: usize,
     samples: usize,
 }
 
 impl Motion {
-    /// Simulates the start as far as that takes no time to speak of.
+    /// Simulates the start, or a first stretch that takes little time.
     fn of(problem: &Problem, which: &[usize]) -> Result<Self, IntegrationFailure> {
         let x = problem.start();
         let mut scene = problem.scene(&x);
@@ -49,7 +49,7 @@ impl Motion {
         })
     }
 
-    /// Derivatives of all functions; none of a stretch that ends before the event does.
+    /// Derivatives of all functions. None for a stretch that ends before the event.
     fn derivatives(
         &self,
         problem: &Problem,
@@ -83,9 +83,9 @@ impl Motion {
     }
 }
 
-/// Explains the start of `problem`, which is simulated with its gradients if that can be done. What an
-/// optimisation leaves out as neither objective nor constraint sees it (no function, if there is no
-/// objective) is left out here too. Of a long motion only the first
+/// Explains the start of `problem`. The start is simulated with its gradients if possible. Parts
+/// that an optimisation leaves out because neither objective nor constraint observes them (no
+/// function, if there is no objective) are left out here too. Of a long motion only the first
 /// stretch is simulated.
 pub fn explain(problem: &Problem) -> Explanation {
     let all: Vec<usize> = (0..problem.function_names.len()).collect();
@@ -140,7 +140,7 @@ pub fn explain(problem: &Problem) -> Explanation {
     found
 }
 
-/// Explains a problem all of whose bodies are simulated.
+/// Explains a problem with all its bodies simulated.
 fn explain_seen(problem: &Problem) -> Explanation {
     let x = problem.start();
     let written = problem.unlowered_scene(&x).model;
@@ -197,7 +197,7 @@ fn explain_seen(problem: &Problem) -> Explanation {
     }
 }
 
-/// Whether a derivative is more than the round-off of what it is the sum of.
+/// Whether a derivative is larger than the round-off of its terms.
 fn depends(derivative: &Derivative) -> bool {
     derivative.value.abs() > 64.0 * f64::EPSILON * derivative.terms
 }
@@ -208,7 +208,7 @@ fn names(problem: &Problem, which: impl Fn(usize) -> bool) -> Vec<String> {
     wanted.map(|(_, variable)| variable.name.clone()).collect()
 }
 
-/// What an optimisation needs function f for.
+/// The use of function f in an optimisation.
 fn used(problem: &Problem, f: usize) -> Vec<&'static str> {
     let mut used = Vec::new();
     if problem
@@ -223,10 +223,10 @@ fn used(problem: &Problem, f: usize) -> Vec<&'static str> {
     used
 }
 
-/// Reductions that are told one by one where they are not made.
+/// Largest number of failed reductions that are listed one by one.
 const TOLD: usize = 8;
 
-/// What is left out, and what is not and why.
+/// The reductions made, and the failed ones with their reasons.
 fn lowering(
     problem: &Problem,
     written: &Model<f64>,
@@ -282,8 +282,8 @@ fn lowering(
     (left_out, kept)
 }
 
-/// That steps err otherwise for bodies that were merged than for their parts, if an implicit method
-/// marched some.
+/// The warning that the discretisation error of merged bodies differs from that of their parts, if
+/// an implicit method marches some.
 pub fn merged_errs(problem: &Problem, at: &Evaluated) -> Option<&'static str> {
     let lowering = problem.lowering.as_ref();
     let merged = lowering.is_some_and(|lowering| !lowering.welded.is_empty());
@@ -293,7 +293,7 @@ pub fn merged_errs(problem: &Problem, at: &Evaluated) -> Option<&'static str> {
     )
 }
 
-/// Why elimination along the tree does not serve.
+/// Why the tree elimination does not apply.
 fn told(model: &Model<f64>, why: Untreelike) -> String {
     match why {
         Untreelike::Loops => "loops of joints reach far and overlap".into(),

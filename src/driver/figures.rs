@@ -31,7 +31,7 @@ pub enum RedrawError {
     Figure(#[from] ReportError),
 }
 
-/// Figures of an optimisation; those that have nothing to show are left out.
+/// Figures of an optimisation. Empty ones are left out.
 pub fn of_optimisation(problem: &Problem, done: &Optimisation) -> Vec<NamedFile> {
     let ends = [
         ("initial design", &done.start),
@@ -147,8 +147,8 @@ fn energies(title: &str, simulation: &Simulation) -> EnergyRun {
     }
 }
 
-/// The instant at which a projectile is let go, and the projectile: the end of the run, or where
-/// the gated range is largest. An objective that is no range lets nothing go.
+/// The instant of release, and the projectile: at the end of the run, or where the gated range is
+/// largest. None if the objective is no range.
 fn release(
     simulation: &Simulation,
     objective: Option<usize>,

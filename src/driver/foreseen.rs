@@ -1,7 +1,7 @@
-//! Simulations and gradients that will be asked for, made side by side beforehand.
+//! Simulations and gradients computed in advance, side by side.
 //!
-//! They are made with the steps in use and are thrown away where these change before they are asked
-//! for, so a run finds the same numbers, in the same order, on any number of processors.
+//! They use the steps in use. If the steps change before a result is requested, it is discarded. So
+//! a run finds the same numbers, in the same order, on any number of processors.
 
 use super::evaluate::Evaluated;
 use super::integration::Integration;
@@ -11,26 +11,26 @@ use crate::problem::Problem;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Gradients of the functions asked for, with the work of the simulation and of the gradients.
+/// Gradients of the requested functions, with the work of the simulation and of the gradients.
 pub(super) type Derived = (Vec<Vec<f64>>, [WorkCounts; 2]);
 
-/// What was made beforehand, by the bits of the design.
+/// Cached evaluations, keyed by the exact bits of the design.
 #[derive(Default)]
 pub(super) struct Foreseen {
-    /// How often the steps had been chosen when it was made.
+    /// How often the steps had been chosen at that time.
     refreshes: usize,
     simulated: HashMap<Vec<u64>, Result<Evaluated, IntegrationFailure>>,
     derived: HashMap<Vec<u64>, Derived>,
 }
 
-/// Whether simulations may be made side by side: there are steps in use, and no event whose search
-/// starts where the last one came.
+/// Whether simulations may run side by side: steps are in use, and there is no event whose search
+/// starts at the last one.
 fn is_possible(problem: &Problem, integration: &Integration) -> bool {
     let event = problem.scene::<f64>(&problem.start()).until.is_some();
     rayon::current_num_threads() > 1 && integration.chosen().is_some() && !event
 }
 
-/// The design `x` by the steps of `integration`, or `None` if it asks for others.
+/// The design `x` simulated with the steps of `integration`, or `None` if it needs others.
 fn simulated(
     problem: &Problem,
     integration: &Integration,
@@ -60,7 +60,7 @@ impl Foreseen {
         self.simulated.extend(found);
     }
 
-    /// Finds the gradients of `functions` at all `designs`.
+    /// Computes the gradients of `functions` at all `designs`.
     pub fn differentiate(
         &mut self,
         problem: &Problem,
@@ -80,7 +80,7 @@ impl Foreseen {
         self.derived.extend(found);
     }
 
-    /// What became of a design that was simulated beforehand with the steps in use.
+    /// The cached simulation of a design with the steps in use.
     pub fn take(
         &mut self,
         integration: &Integration,
@@ -90,13 +90,13 @@ impl Foreseen {
         self.simulated.remove(&bits(x))
     }
 
-    /// Its gradients, likewise.
+    /// The cached gradients of a design.
     pub fn take_gradients(&mut self, integration: &Integration, x: &[f64]) -> Option<Derived> {
         self.keep(integration);
         self.derived.remove(&bits(x))
     }
 
-    /// Forgets what was made with other steps than those in use.
+    /// Discards results that were computed with other steps than those in use.
     fn keep(&mut self, integration: &Integration) {
         if self.refreshes != integration.refreshes {
             self.simulated.clear();

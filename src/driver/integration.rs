@@ -1,6 +1,5 @@
-//! How a problem is integrated from design to design: the method is chosen once, and steps that
-//! follow the error are kept until it no longer suffices, so that functions are smooth in the
-//! design.
+//! Integration of a problem from design to design. The method is chosen once. Steps that follow a
+//! tolerance are kept until their error is too large, so functions are smooth in the design.
 
 use super::event::{self, Admit};
 use super::memory;
@@ -12,21 +11,22 @@ use crate::integrate::{
 };
 use crate::problem::Problem;
 
-/// Samples of a motion whose steps follow the error, for tables, figures and events.
+/// Samples of a motion with steps by tolerance, for tables, figures and events.
 const SAMPLES: usize = 1000;
-/// Step error of kept steps, relative to the tolerance, at which they are chosen anew.
+/// Kept steps are chosen anew above this step error, relative to the tolerance.
 const REFRESH: f64 = 10.0;
-/// Error of sums over the motion, relative to the tolerance of the steps, that their cells are chosen for.
+/// Error of sums over the motion for which cells are chosen, relative to the tolerance of the
+/// steps.
 const OF_SUMS: f64 = 0.1;
-/// Most times that cells are chosen for one motion.
+/// Largest number of choices of cells for one motion.
 const ROUNDS: usize = 8;
-/// Part of the longest duration, relative to the tolerance and absolute, before the end of which an
-/// event on kept steps counts; steps of the design itself decide on one in between.
+/// An event on kept steps counts only if it comes before the longest duration by this part,
+/// relative to the tolerance and absolute. Otherwise steps of the design itself decide.
 const LATE: f64 = 1e3;
 const LEAST_LATE: f64 = 1e-9;
 const MOST_LATE: f64 = 0.05;
 
-/// Why steps are chosen for the first time.
+/// Reason of the first choice of steps.
 pub const FIRST_DESIGN: &str = "first design";
 
 /// The method and the steps that are in use.
@@ -38,13 +38,13 @@ pub struct Integration {
     limits: Limits,
     /// Samples that tables, figures and events have.
     shown: usize,
-    /// The functions that look at more than the end.
+    /// The functions that depend on more than the end.
     summed: Vec<usize>,
-    /// Settings in use, once a design was simulated.
+    /// Settings in use, after the first simulation.
     chosen: Option<(Settings, String)>,
     /// How often the steps were chosen anew.
     pub refreshes: usize,
-    /// How many designs did not admit what the lowering leaves out at the others.
+    /// Number of designs that did not admit the lowering of the others.
     pub unlowered: usize,
     memory: usize,
     /// When the event came in the last run, if the scene has one (s).
@@ -53,15 +53,15 @@ pub struct Integration {
     pub settled: Option<f64>,
 }
 
-/// Method and steps that were chosen before.
+/// Method and steps of an earlier choice.
 pub struct KeptSteps {
     /// The method.
     pub method: Method,
-    /// Why, where that is not what it is used for in general.
+    /// Why, if it is not used for its usual purpose.
     pub reason: Option<String>,
     /// Its steps; `None` for equal ones.
     pub grid: Option<Grid>,
-    /// How often others had been chosen before.
+    /// Number of earlier choices.
     pub refreshes: usize,
 }
 
@@ -70,7 +70,7 @@ pub struct KeptSteps {
 pub struct Refresh {
     /// Name of the method.
     pub method: String,
-    /// Why the method, where that is not what it is used for in general.
+    /// Why this method, if it is not used for its usual purpose.
     pub method_reason: Option<String>,
     /// The new steps; `None` for equal ones.
     pub grid: Option<Grid>,
@@ -79,8 +79,9 @@ pub struct Refresh {
 }
 
 impl Integration {
-    /// What `problem` asks for. `asked` are the functions that will be asked for, or `None` if the
-    /// whole motion is wanted whatever they are; `gradients` is whether derivatives will be.
+    /// The integration that `problem` requests. `asked` are the functions that will be requested,
+    /// or `None` if the whole motion is needed in any case; `gradients` tells whether derivatives
+    /// will be.
     pub fn new(
         problem: &Problem,
         scene: &Scene<f64>,
@@ -120,18 +121,18 @@ impl Integration {
         }
     }
 
-    /// The method that the problem asks for, if it does.
+    /// The method that the problem requests, if any.
     pub(super) fn method(&self) -> Option<Method> {
         self.method
     }
 
-    /// The settings in use and why the method was chosen, once a design was simulated.
+    /// The settings in use and the reason for the method, after the first simulation.
     pub fn chosen(&self) -> Option<(&Settings, &str)> {
         let (settings, reason) = self.chosen.as_ref()?;
         Some((settings, reason))
     }
 
-    /// Number of steps of the motion, once it is known.
+    /// Number of steps of the motion, if known.
     pub fn steps(&self) -> Option<usize> {
         let spacing = self.chosen.as_ref().map(|(settings, _)| &settings.spacing);
         match spacing.unwrap_or(&self.spacing) {
@@ -146,8 +147,7 @@ impl Integration {
         self.samples
     }
 
-    /// Samples the whole motion from now on, for figures; functions that look at the end only do not
-    /// change by it.
+    /// Samples the whole motion from now on, for figures. Functions of the end do not change.
     pub fn see_whole(&mut self) {
         self.samples = match self.samples {
             Samples::Uniform(1) => Samples::Uniform(self.shown),
@@ -159,7 +159,7 @@ impl Integration {
         }
     }
 
-    /// Goes on with steps that were chosen before.
+    /// Continues with an earlier choice of steps.
     pub fn restore(&mut self, kept: KeptSteps) {
         self.refreshes = kept.refreshes;
         let mut settings = Settings {
@@ -174,14 +174,14 @@ impl Integration {
         self.chosen = Some((settings, reason));
     }
 
-    /// What is wrong with the method in use for a scene whose steps it made, if anything.
+    /// A warning about the method in use for a scene whose steps it made.
     pub fn warning(&self, scene: &Scene<f64>, run: &Trajectory<f64>) -> Option<String> {
         let widest = (1..=run.grid.steps()).map(|k| run.grid.width(k));
         let h = run.duration * widest.fold(0.0, f64::max);
         choice::warning(&scene.model, run.method, h)
     }
 
-    /// Settings of a run that is the first, or whose steps are chosen anew.
+    /// Settings of the first run, or of one that chooses its steps anew.
     pub(super) fn wanted(&self) -> Settings {
         Settings {
             method: self.method.unwrap_or(Method::Dop853),
@@ -192,8 +192,8 @@ impl Integration {
         }
     }
 
-    /// Simulates a scene with the steps in use, and chooses them anew where they do not suffice. Sets
-    /// the duration of a scene that ends at an event.
+    /// Simulates a scene with the steps in use, and chooses them anew if their error is too large.
+    /// Sets the duration of a scene that ends at an event.
     ///
     /// # Errors
     /// If the simulation fails.
@@ -210,7 +210,7 @@ impl Integration {
                 match self.run(scene, settings, settled) {
                     Ok(run) if run.step_error <= REFRESH * tolerance => {
                         let Resolution { error, cells } = self.resolution(scene, &run);
-                        // A sum that is not smooth gains nothing by more cells than there can be.
+                        // More cells than allowed do not improve a sum that is not smooth.
                         let best = cells == run.grid.all_cells();
                         if error <= REFRESH * OF_SUMS * tolerance || best {
                             return Ok((self.keep(scene, run), None));
@@ -237,7 +237,7 @@ impl Integration {
             },
         };
         let wanted = self.wanted();
-        // Steps that do not suffice may have found an event all the same.
+        // Steps with too large an error may still have found an event.
         scene.duration = waited;
         if let Some(until) = &scene.until {
             let all = simulate_by(&scene.model, waited, self.method, &wanted)?.run;
@@ -260,7 +260,7 @@ impl Integration {
             Spacing::Steps(_) | Spacing::Tolerance(_) => None,
         };
         let before = self.chosen.as_ref().map(|(before, _)| before.method);
-        // Equal steps are always the same: only their method may change, where none is given.
+        // Equal steps never change. Only their method may change, if none is given.
         let anew = grid.is_some() || before != Some(settings.method);
         let general = choice::reason(self.method.is_some(), settings.method);
         let changed = (grid.is_some() || (anew && self.method.is_none())).then(|| Refresh {
@@ -274,7 +274,7 @@ impl Integration {
         Ok((self.keep(scene, run), changed))
     }
 
-    /// What the cells of a run are worth for the sums that are asked for.
+    /// Accuracy of the cells of a run for the requested sums.
     fn resolution(&self, scene: &Scene<f64>, run: &Trajectory<f64>) -> Resolution {
         match (self.samples, &self.spacing) {
             (Samples::Quadrature(_), Spacing::Tolerance(tolerance)) => {
@@ -287,8 +287,8 @@ impl Integration {
         }
     }
 
-    /// The motion of `run` with the cells that its sums need, and the settings that make it. Cells are
-    /// chosen, and the motion is made with them, until they stay as they are.
+    /// The motion of `run` with the cells that its sums need, and its settings. Cells are chosen
+    /// and the motion is repeated until the cells no longer change.
     fn resolved(
         &self,
         scene: &Scene<f64>,
@@ -304,7 +304,7 @@ impl Integration {
             if cells == grid.all_cells() {
                 break;
             }
-            // Made again also where cells are only left out: a resumed run knows these cells alone.
+            // Repeated also if cells are only removed: a resumed run knows only these cells.
             settings.spacing = Spacing::Frozen(grid.clone().with_cells(cells));
             let counts = run.counts;
             run = simulate(&scene.model, run.duration, &settings)?;
@@ -339,8 +339,8 @@ impl Integration {
         Ok((self.keep(scene, run), Some(refresh)))
     }
 
-    /// A run on the steps in use, up to the event if there is one: at `settled`, or near where it came
-    /// before, if that is known, or else found anew.
+    /// A run on the steps in use, up to the event if there is one. The event is at `settled`, or is
+    /// searched near its last time if known, or from the start.
     fn run(
         &self,
         scene: &mut Scene<f64>,
@@ -361,7 +361,7 @@ impl Integration {
                 event::first(until, &all, &until.gaps(&scene.model, &all))?
             }
         };
-        // Steps that are chosen for this very design may tell otherwise, by their errors.
+        // Steps chosen for this design may give another result, by their errors.
         let margin = match self.spacing {
             Spacing::Tolerance(tolerance) => (LATE * tolerance).clamp(LEAST_LATE, MOST_LATE),
             Spacing::Steps(_) | Spacing::Frozen(_) => LEAST_LATE,
@@ -369,14 +369,14 @@ impl Integration {
         event::settle(scene, settings, guess, Admit::Certain { margin })
     }
 
-    /// Keeps when the event came.
+    /// Stores the time of the event.
     fn keep(&mut self, scene: &Scene<f64>, run: Trajectory<f64>) -> Trajectory<f64> {
         self.event = scene.until.as_ref().map(|_| run.duration);
         run
     }
 }
 
-/// Whether a function looks at more than the state at the end.
+/// Whether a function depends on more than the state at the end.
 pub(super) fn looks_at_the_whole(function: &Function<f64>) -> bool {
     match function {
         Function::Reduced { instant, reduction } => {

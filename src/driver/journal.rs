@@ -1,4 +1,4 @@
-//! What is known of a problem from an earlier run, and where new evaluations are written.
+//! The evaluations of an earlier run, and the receiver of new ones.
 
 use super::integration::{KeptSteps, Refresh};
 use crate::integrate::{Grid, Method, WorkCounts};
@@ -9,29 +9,29 @@ use serde_json::{Map, Value};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 
-/// Keys of a problem file that no function follows from.
+/// Keys of a problem file that do not affect any function.
 const SETTINGS: [&str; 5] = ["$schema", "name", "description", "optimiser", "plot"];
 
-/// Evaluations that are known, and a receiver of new ones.
+/// Known evaluations, and a receiver of new ones.
 ///
-/// The optimiser asks for the same designs in the same order whenever its program returns the same
-/// numbers, so a run that is given the evaluations of an interrupted one goes through the same
-/// iterations, multipliers and quasi-Newton matrices without a simulation, and then goes on. No design
-/// is evaluated twice.
+/// The optimiser requests the same designs in the same order if its program returns the same
+/// numbers. So a run that is given the evaluations of an interrupted one repeats the same
+/// iterations, multipliers and quasi-Newton matrices without a simulation, and then continues. No
+/// design is evaluated twice.
 #[derive(Default)]
 pub struct Journal<'a> {
-    /// By whether they are gradients, and by the bits of the design.
+    /// Keyed by whether they are gradients, and by the exact bits of the design.
     known: HashMap<(bool, Vec<u64>), Known>,
     /// How many evaluations there are.
     count: usize,
-    /// All choices of steps, and the one that the evaluations so far have led to.
+    /// All choices of steps, and the one in use after the evaluations so far.
     choices: Vec<Choice>,
     in_use: Option<usize>,
-    /// The latest evaluation of the record that was asked for, and when the event had come by then.
+    /// The latest requested evaluation of the record, and the time of the event by then.
     latest: Option<(usize, Option<f64>)>,
-    /// The design of that evaluation: the one that was simulated last.
+    /// The design of that evaluation, the last one simulated.
     simulated: Vec<u64>,
-    /// Work of all evaluations that were asked for.
+    /// Work of all requested evaluations.
     work: Work,
     record: Option<Box<dyn FnMut(EvaluationRecord) + 'a>>,
 }
@@ -41,38 +41,38 @@ struct Known {
     found: Found,
     /// Its number in the record.
     place: usize,
-    /// The choice of steps that was in use then.
+    /// The choice of steps in use at that time.
     steps: Option<usize>,
     event: Option<f64>,
-    /// What it took, until that is counted.
+    /// Its work, until it is counted.
     work: Work,
 }
 
-/// What an evaluation tells besides what it finds.
+/// Additional data of an evaluation.
 #[derive(Default)]
 pub struct Account {
-    /// Before: when the event comes at this very design with the steps in use, if that is known (s).
+    /// Before: time of the event at this design with the steps in use, if known (s).
     pub settled: Option<f64>,
-    /// Before: whether another process simulated this very design just before it ended. That it is
-    /// simulated once more is no work of the run, which a run that goes on would not have.
+    /// Before: whether another process simulated this design just before it ended. The extra
+    /// simulation is not counted: a resumed run would not repeat it.
     pub repeated: bool,
-    /// The choice of steps that it led to.
+    /// After: the choice of steps that it caused.
     pub refresh: Option<Refresh>,
-    /// When the event came in the last motion, if the scene ends at one (s).
+    /// After: time of the event in the last motion, if the scene ends at one (s).
     pub event: Option<f64>,
-    /// What it took.
+    /// After: its work.
     pub work: WorkCounts,
 }
 
-/// Steps that were chosen, or taken up again.
+/// Steps that were chosen, or used again.
 struct Choice {
     steps: StepsInUse,
-    /// How many others had been chosen before they were for the first time.
+    /// Number of other choices before their first use.
     refreshes: usize,
 }
 
 impl<'a> Journal<'a> {
-    /// A journal that knows `earlier` and hands new evaluations to `record`.
+    /// A journal that knows `earlier` and passes new evaluations to `record`.
     pub fn new(earlier: Vec<EvaluationRecord>, record: impl FnMut(EvaluationRecord) + 'a) -> Self {
         let mut journal = Self {
             record: Some(Box::new(record)),
@@ -104,7 +104,7 @@ impl<'a> Journal<'a> {
         journal
     }
 
-    /// Which choice of steps is in use, counted from 0, if any was made.
+    /// Index of the choice of steps in use, from 0, if there is one.
     pub fn choice(&self) -> Option<usize> {
         self.in_use
     }
@@ -120,8 +120,8 @@ impl<'a> Journal<'a> {
         })
     }
 
-    /// The number of the latest evaluation of the record that was asked for, and when the event had come
-    /// in the last motion by then (s).
+    /// The number of the latest requested evaluation of the record, and the time of the event in
+    /// the last motion by then (s).
     pub fn latest(&self) -> Option<(usize, Option<f64>)> {
         self.latest
     }
@@ -131,7 +131,7 @@ impl<'a> Journal<'a> {
         self.known.contains_key(&(of_gradients, bits(design)))
     }
 
-    /// Work of all evaluations that were asked for, those that were known included.
+    /// Work of all requested evaluations, including the known ones.
     pub fn work(&self) -> Work {
         self.work
     }
@@ -152,7 +152,7 @@ impl<'a> Journal<'a> {
         self.choices.push(Choice { steps, refreshes });
     }
 
-    /// Values at a design: known, or found by `evaluate` and recorded.
+    /// Values at a design: known, or computed by `evaluate` and recorded.
     pub fn values(
         &mut self,
         design: &[f64],
@@ -180,7 +180,7 @@ impl<'a> Journal<'a> {
         found
     }
 
-    /// Gradients at a design, likewise.
+    /// Gradients at a design, in the same way.
     pub fn gradients(
         &mut self,
         design: &[f64],
@@ -210,14 +210,14 @@ impl<'a> Journal<'a> {
         found
     }
 
-    /// When the event comes at a design whose values are known by the steps in use.
+    /// Time of the event at a design whose values are known with the steps in use.
     fn settled(&self, design: &[f64]) -> Option<f64> {
         let known = self.known.get(&(false, bits(design)))?;
         let judged = matches!(known.found, Found::Values(_)) && known.steps == self.in_use;
         known.event.filter(|_| judged)
     }
 
-    /// What is known of a design; the steps in use are then at least those of that time.
+    /// The known evaluation of a design. The steps in use are then at least those of that time.
     fn recall(&mut self, of_gradients: bool, design: &[f64]) -> Option<Found> {
         let design = bits(design);
         let known = self.known.get_mut(&(of_gradients, design.clone()))?;
@@ -254,8 +254,8 @@ impl<'a> Journal<'a> {
         });
     }
 
-    /// Writes a change of the steps in use, before what was found with them. Where an earlier run went
-    /// on to other steps than these, that they are in use again is a change too.
+    /// Records a change of the steps in use, before the evaluations that use them. A return to
+    /// these steps after an earlier run had changed to others is a change too.
     fn refreshed(&mut self, design: &[f64], refresh: Option<Refresh>) {
         let left = |k: &usize| k + 1 < self.choices.len();
         if let Some(Refresh {
@@ -301,7 +301,7 @@ impl<'a> Journal<'a> {
     }
 }
 
-/// The rows that are left out in steps.
+/// The redundant rows that are left out, by step.
 fn rows_left_out(grid: &Grid) -> Vec<RowsLeftOut> {
     let one = |(from, rows): &(usize, LeftOut)| RowsLeftOut {
         from: *from,
@@ -311,7 +311,7 @@ fn rows_left_out(grid: &Grid) -> Vec<RowsLeftOut> {
     grid.choices().iter().map(one).collect()
 }
 
-/// What the evaluations of a problem belong to.
+/// The head of the record: the problem that the evaluations belong to.
 pub fn head(problem: &Problem) -> Head {
     let objective = problem.objective.map(|o| o.function);
     let constraints = problem.constraints.iter().map(|c| c.function);

@@ -1,4 +1,4 @@
-//! How much memory a motion takes, and how much of it there is.
+//! Memory of a motion, and available memory.
 
 use crate::integrate::{IntegrationFailure, Method, Samples, Settings, Spacing};
 use crate::model::Model;
@@ -6,26 +6,25 @@ use crate::problem::available_memory;
 use crate::report::size;
 use crate::system::Numbering;
 
-/// Part of the memory that there is that gradients may take, and what they may if that is not known
-/// (bytes).
+/// Part of the available memory that gradients may use, and the limit if that is unknown (bytes).
 const PART: usize = 2;
 const UNKNOWN: usize = 1 << 30;
 
-/// Memory that the tape of one motion may take (bytes), if `given` is for all motions at a time.
+/// Memory limit of the tape of one motion (bytes), if `given` is for all concurrent motions.
 pub fn for_gradients(given: Option<usize>) -> usize {
     let all = given.unwrap_or_else(|| available_memory().map_or(UNKNOWN, |bytes| bytes / PART));
     (all / rayon::current_num_threads().max(1)).max(1)
 }
 
-/// What a body takes beside its states: inertia, markers, factors (bytes).
+/// Memory of a body besides its states: inertia, markers, factors (bytes).
 const OF_BODY: usize = 4000;
-/// Stages of a step that are worked on.
+/// Number of stages of a step in memory.
 const STAGES: usize = 16;
-/// Less than this is not asked for (bytes).
+/// Memory below this is not checked (bytes).
 const LITTLE: usize = 1 << 26;
 
-/// Refuses a run that takes more memory than there is. What is kept for gradients counts as far as it
-/// is filled.
+/// Refuses a run that needs more memory than available. Memory for gradients counts as far as it is
+/// filled.
 ///
 /// # Errors
 /// [`IntegrationFailure::Memory`].
@@ -48,11 +47,11 @@ pub(super) fn admit(model: &Model<f64>, settings: &Settings) -> Result<(), Integ
         (Samples::StepEnds | Samples::Uniform(_) | Samples::Quadrature(_), _) => steps,
     } + 1;
     let number = size_of::<f64>();
-    // A sample stands at an instant and at a place among the steps.
+    // A sample has an instant and a position among the steps.
     let of_sample = (nq + 2 * nv + nc + 4) * number;
     let of_step = STAGES * 2 * (nq + nv + nc) * number;
     let of_samples = samples.saturating_mul(of_sample);
-    // Ends of the steps, of the run and of what it follows.
+    // Ends of the steps, of this run and of the one that it follows.
     let needed = of_samples
         .saturating_add(2 * steps * number)
         .saturating_add(of_step + numbering.bodies() * OF_BODY)

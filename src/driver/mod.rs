@@ -1,5 +1,5 @@
-//! What the program does with a problem: simulate it, check its gradients, optimise it, measure
-//! the methods on it; and what becomes of extreme ones.
+//! What the program does with a problem: simulate it, check its gradients, optimise it, measure the
+//! methods on it, and test extreme scenes.
 
 pub mod certificate;
 pub mod chaos;
@@ -21,8 +21,8 @@ pub mod optimise;
 mod record;
 pub mod second_order;
 pub mod simulate;
+pub mod stability;
 pub mod start;
-pub mod stress;
 mod stretch;
 pub mod tables;
 pub mod warm_start;
@@ -39,6 +39,6 @@ pub use multi_start::multi_start;
 pub use optimise::{Optimisation, Solved, optimise, solve};
 pub use second_order::second_order;
 pub use simulate::{Simulation, simulate};
-pub use stress::stress;
+pub use stability::stability;
 pub use warm_start::WarmStart;
 pub use work_precision::work_precision;

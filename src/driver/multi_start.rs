@@ -11,8 +11,8 @@ use std::time::Instant;
 
 /// Designs closer than this part of each variable's bounds are the same optimum.
 const SAME_DESIGN: f64 = 1e-3;
-/// As for designs, for the objective, relative to it or to how much the runs improved it, whichever is
-/// larger.
+/// The same for the objective, relative to the larger of its value and of the improvement by the
+/// runs.
 const SAME_OBJECTIVE: f64 = 1e-6;
 
 /// One of several optimisations.
@@ -21,7 +21,7 @@ pub struct Run {
     pub start: usize,
     /// The problem with its start.
     pub problem: Problem,
-    /// What became of it.
+    /// Its result.
     pub solved: Solved,
 }
 
@@ -34,7 +34,7 @@ impl Run {
 
 /// An optimum that at least one run found.
 pub struct LocalOptimum {
-    /// The run that found it best.
+    /// The run with the best value there.
     pub run: usize,
     /// How many runs ended there.
     pub found_by: usize,
@@ -69,10 +69,11 @@ pub fn started_at(problem: &Problem, start: &[f64]) -> Problem {
     problem
 }
 
-/// Optimises from every start, in parallel; runs are in the order of the starts. `stopped` is asked
-/// before every run and after every iteration; `open` gives the journal of a start, by its number and
-/// problem, or `None` if there can be none, and the start is left out. The time limit of the problem is
-/// that of all runs together: starts that have not begun by then are left out, but for the first.
+/// Optimises from every start, in parallel. Runs are in the order of the starts. `stopped` is
+/// called before every run and after every iteration. `open` gives the journal of a start, by its
+/// number and problem, or `None` if there can be none; the start is then left out. The time limit
+/// of the problem is that of all runs together. Starts that have not begun by then are left out,
+/// except the first.
 pub fn multi_start<'j>(
     problem: &Problem,
     starts: &[Vec<f64>],
@@ -144,8 +145,8 @@ pub fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
     found
 }
 
-/// The run whose design is best: of the converged ones, else of the feasible ones, else the one
-/// that violates its constraints least.
+/// The run with the best design: of the converged ones, else of the feasible ones, else the one
+/// with the least violation.
 pub fn best(runs: &[Run]) -> Option<usize> {
     let rank = |run: &Run| {
         let violation = run.solved.outcome.kkt.violation;
@@ -163,8 +164,8 @@ pub fn best(runs: &[Run]) -> Option<usize> {
     })
 }
 
-/// By how much the converged runs changed the objective: the median, which a start that is far off does
-/// not move.
+/// Improvement of the objective by the converged runs: the median, which one bad start does not
+/// change.
 fn improvement(runs: &[Run]) -> f64 {
     let converged = runs.iter().filter(|run| run.solved.outcome.converged());
     let change = |run: &Run| {
@@ -176,7 +177,7 @@ fn improvement(runs: &[Run]) -> f64 {
     changes.get(changes.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Whether two runs ended at the same optimum; `size` is a change of the objective that matters.
+/// Whether two runs ended at the same optimum. `size` is a significant change of the objective.
 fn same(problem: &Problem, size: f64, a: &Run, b: &Run) -> bool {
     let (f, g) = (a.solved.objective(), b.solved.objective());
     let close = (f - g).abs() <= SAME_OBJECTIVE * f.abs().max(g.abs()).max(size);

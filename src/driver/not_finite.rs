@@ -1,4 +1,4 @@
-//! Where a number that is not finite comes from, as far as it is known.
+//! Origin of a number that is not finite, as far as known.
 
 use super::evaluate::Evaluated;
 use crate::functions::Function;
@@ -6,7 +6,7 @@ use crate::functions::evaluate::sample;
 use crate::functions::turning::turns;
 use crate::problem::Problem;
 
-/// A function whose value is not finite: since when what it is made of is not.
+/// A function whose value is not finite, and the time from which on its data are not.
 pub(super) fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> String {
     let name = &problem.function_names[f];
     let own = match &at.scene.functions[f] {
@@ -43,13 +43,13 @@ pub(super) fn derivative(
     )
 }
 
-/// A variable by name, and what of the scene it moves.
+/// A variable by name, and the numbers of the scene that it changes.
 pub(super) fn variable(problem: &Problem, i: usize) -> String {
     let variable = &problem.variables[i];
     format!("\"{}\" ({})", variable.name, variable.paths.join(", "))
 }
 
-/// The first body whose motion is not finite, and since when; nothing if all are.
+/// The first body whose motion is not finite, and since when. Empty if all motions are finite.
 pub(super) fn body(at: &Evaluated) -> String {
     let run = &at.run;
     let lost = (0..=run.last()).find_map(|k| {

@@ -1,4 +1,5 @@
-//! A problem optimised: the optimiser's outcome, its history, and the simulations at both ends.
+//! Optimisation of a problem: the optimiser's outcome, its history, and the simulations at both
+//! ends.
 
 use super::chaos;
 use super::evaluator::{Evaluator, Judgements, unscaled};
@@ -13,7 +14,7 @@ use crate::report::history::{Column, History, HistoryRow};
 use crate::report::optimum::Optimum;
 use std::ops::ControlFlow;
 
-/// An optimisation that has ended, with its figures still to be simulated.
+/// A finished optimisation before the simulations of its figures.
 pub struct Solved {
     /// The optimiser's outcome, in its scaled variables.
     pub outcome: Outcome,
@@ -26,7 +27,7 @@ pub struct Solved {
     unlowered: usize,
 }
 
-/// An optimisation that has ended.
+/// A finished optimisation.
 pub struct Optimisation {
     /// The optimiser's outcome, in its scaled variables.
     pub outcome: Outcome,
@@ -42,8 +43,8 @@ pub struct Optimisation {
     pub end: Option<Simulation>,
 }
 
-/// Optimises `problem`, from its start or from the state of another run. `journal` holds what is
-/// known already; `progress` sees the history after every iteration and may stop the run.
+/// Optimises `problem`, from its start or from the state of another run. `journal` has the known
+/// evaluations. `progress` gets the history after every iteration and may stop the run.
 ///
 /// Returns `None` if the problem has no objective or no variables.
 pub fn optimise<'a>(
@@ -82,7 +83,7 @@ pub fn solve<'a>(
     };
     let mut outcome = run(&options, &mut recorder);
     if outcome.status == Status::TimeLimit && !outcome.objective.is_finite() {
-        // However short the time, the start is evaluated, so that there are values to record.
+        // The start is always evaluated, so there are values to record.
         let untimed = Options {
             max_seconds: None,
             ..options
@@ -102,7 +103,7 @@ pub fn solve<'a>(
     })
 }
 
-/// The optimiser's settings, as far as the file gives them.
+/// The optimiser's settings that the file gives.
 fn options(problem: &Problem) -> Options {
     let given = &problem.optimiser;
     let default = Options::default();
@@ -129,7 +130,7 @@ impl Solved {
     /// Simulates both ends and makes the record.
     pub fn complete(self, problem: &Problem, file: &str) -> Optimisation {
         let refreshes = self.integration.refreshes;
-        // With the steps that its values were found with.
+        // With the steps of its values.
         let mut whole = self.integration.clone();
         whole.see_whole();
         let x = unscaled(problem, &self.outcome.x);
@@ -215,7 +216,7 @@ struct StartOnly<'a, 'b>(&'a mut Recorder<'b>);
 
 impl Observer for StartOnly<'_, '_> {
     fn iteration(&mut self, row: &Row<'_>) -> ControlFlow<()> {
-        // The run is over, whatever is said of this row.
+        // The run is over, whatever the observer returns.
         let _ = self.0.iteration(row);
         ControlFlow::Break(())
     }

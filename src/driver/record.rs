@@ -225,7 +225,7 @@ pub(super) fn record(
     }
 }
 
-/// What function f is an aggregate of at the end, if it is one.
+/// The aggregated quantity of function f at the end, if it is an aggregate.
 fn aggregate(end: &Simulation, f: usize, estimates: &[error::FunctionError]) -> Option<Aggregate> {
     let function = &end.at.scene.functions[f];
     let maximum = end.at.function(f).maximum?;

@@ -1,11 +1,11 @@
 //! Whether an optimum is a minimum of second order: the curvature of the Lagrangian along the
 //! directions that the active bounds and constraints leave free.
 //!
-//! A bound or constraint whose multiplier is zero, or next to it, holds the design by no force: it is
-//! weakly active. Feasible directions of no first-order change then form a cone,
-//! {d : a·d = 0 for what is strictly active, a·d ≥ 0 for what is weakly active}. With H = ∇²L the
-//! optimum is strict if dᵀHd > 0 on the span of the cone, and is none if dᵀHd < 0 for a d of the cone;
-//! what lies between is not decided (Nocedal & Wright 2006, theorems 12.5 and 12.6).
+//! A bound or constraint is weakly active if its multiplier is zero or almost zero. Feasible
+//! directions without first-order change then form a cone, {d : a·d = 0 for strictly active a, a·d
+//! ≥ 0 for weakly active a}. With H = ∇²L the optimum is strict if dᵀHd > 0 on the span of the
+//! cone, and is none if dᵀHd < 0 for a d of the cone. Otherwise it is not decided (Nocedal & Wright
+//! 2006, theorems 12.5 and 12.6).
 
 use super::evaluator::Evaluator;
 use super::integration::Integration;
@@ -15,28 +15,29 @@ use crate::problem::Problem;
 use crate::report::optimum::{Curvature, SecondOrder};
 use nalgebra::{DMatrix, DVector};
 
-/// Length of a difference in scaled variables: the error of a central difference of gradients is
-/// of its square.
+/// Length of a difference in scaled variables. The error of a central difference of gradients is
+/// proportional to its square.
 const STEP: f64 = 1e-4;
 /// Eigenvalues of AᵀA for the active rows A, each of unit length, below this count as zero.
 const NEGLIGIBLE: f64 = 1e-10;
-/// Multipliers below this part of the objective's gradient may hold nothing: the curvature tells.
+/// Multipliers below this part of the objective's gradient may be weakly active: the curvature
+/// decides.
 const WEAK: f64 = 1e-3;
-/// Largest part of a unit direction by which it may leave a bound and count as along it.
+/// A unit direction counts as along a bound if it leaves it by at most this part.
 const ALONG: f64 = 1e-6;
-/// Directions whose gradients are found side by side.
+/// Number of directions whose gradients are computed side by side.
 const AT_ONCE: usize = 8;
 
-/// A bound or constraint next to without force.
+/// A weakly active bound or constraint.
 struct Weak {
     name: String,
     /// Its gradient, of unit length, which points inwards.
     inwards: DVector<f64>,
-    /// By how much the objective rises for a unit inwards.
+    /// Rise of the objective for a unit step inwards.
     force: f64,
 }
 
-/// What is active, in the free variables.
+/// The active bounds and constraints, in the free variables.
 struct Active {
     /// Variables that no strictly active bound holds.
     free: Vec<usize>,
@@ -45,20 +46,20 @@ struct Active {
     weak: Vec<Weak>,
 }
 
-/// Eigenvalues of the reduced Hessian Zᵀ ∇²L Z of the minimised Lagrangian, in the variables as
-/// the optimiser scales them, by central differences of gradients: four gradients a direction. `None`
-/// if `stopped` says so before the end.
+/// Eigenvalues of the reduced Hessian Zᵀ ∇²L Z of the minimised Lagrangian, in the optimiser's
+/// scaled variables, by central differences of gradients: four gradients a direction. `None` if
+/// `stopped` returns true before the end.
 ///
-/// Z spans the directions along which variables that no strictly active bound holds move without
-/// changing strictly active constraints to first order. The error is estimated from a second step of
-/// twice the length and from the asymmetry. Near a bound the differences are centred inside it, by a
-/// distance of their length, of which that estimate knows.
+/// Z spans the directions in which the variables without a strictly active bound can move without a
+/// first-order change of strictly active constraints. The error is estimated from a second step of
+/// twice the length and from the asymmetry. Near a bound the differences are centred inside it, by
+/// a distance of their length; the estimate includes this.
 ///
-/// Gradients that `journal` knows are not evaluated again; the others go by the steps of
+/// Gradients that `journal` knows are not evaluated again. The others use the steps of
 /// `integration`.
 ///
 /// # Errors
-/// If a simulation fails beside the optimum.
+/// If a simulation near the optimum fails.
 pub fn second_order(
     problem: &Problem,
     outcome: &Outcome,
@@ -93,7 +94,7 @@ pub fn second_order(
         };
         let mut hessian = DMatrix::zeros(k, k);
         for j in 0..k {
-            // A few directions at once, so that the whole can be stopped.
+            // A few directions at a time, so the computation can be stopped.
             if j % AT_ONCE == 0 && !stopped() {
                 let next = j..k.min(j + AT_ONCE);
                 let both = next.flat_map(|j| [place(j, step), place(j, -step)]);
@@ -153,7 +154,7 @@ pub fn second_order(
     }))
 }
 
-/// What holds the optimum, and what it merely touches.
+/// The strictly and the weakly active bounds and constraints.
 fn active(
     problem: &Problem,
     outcome: &Outcome,
@@ -162,7 +163,7 @@ fn active(
     let n = outcome.x.len();
     let slopes = program.gradients(&outcome.x)?;
     let steepest = DVector::from_column_slice(&slopes.objective).amax();
-    // Where the gradient vanishes, a tenth of its size elsewhere takes its place.
+    // If the gradient vanishes, a tenth of its typical size replaces it.
     let scaling = &outcome.scaling;
     let elsewhere = scaling.typical_gradient.max(scaling.objective_gradient);
     let force = WEAK * steepest.max(0.1 * elsewhere);
@@ -225,7 +226,7 @@ fn active(
     Ok(Active { free, rows, weak })
 }
 
-/// The Hessian of the directions `basis`, which `weak` may bound.
+/// The Hessian along the directions `basis`, which `weak` may restrict.
 struct Reduced {
     hessian: DMatrix<f64>,
     uncertainty: f64,
@@ -234,8 +235,8 @@ struct Reduced {
 }
 
 impl Reduced {
-    /// Without the directions along which a force, small as it is, outweighs the curvature over the
-    /// length of the differences: there the optimum is held all the same.
+    /// Removes the directions along which even a small force outweighs the curvature over the
+    /// length of the differences: the optimum is held there.
     fn held(self) -> Self {
         let k = self.basis.ncols();
         let (mut rows, mut weak) = (Vec::new(), Vec::new());
@@ -264,7 +265,7 @@ impl Reduced {
         }
     }
 
-    /// What follows, and a feasible direction of negative curvature if there is one.
+    /// The verdict, and a feasible direction of negative curvature if there is one.
     fn judge(&self) -> (Curvature, Option<DVector<f64>>) {
         if self.basis.ncols() == 0 {
             return (Curvature::NoFreeDirection, None);
@@ -284,7 +285,7 @@ impl Reduced {
                 descent = descent.or(Some(direction * sign));
             }
         }
-        // The face of the cone along which all that is weakly active stays active.
+        // The face of the cone on which all weakly active bounds stay active.
         let faces = DMatrix::from_fn(self.weak.len(), self.basis.ncols(), |r, c| {
             self.weak[r].inwards.dot(&self.basis.column(c))
         });
@@ -303,8 +304,8 @@ impl Reduced {
         }
     }
 
-    /// Which way a direction of negative curvature, if either, is in the cone, and what little force there
-    /// is gives way within the length of the differences.
+    /// The sign with which a direction of negative curvature lies in the cone, if any. Small forces
+    /// along it must be outweighed within the length of the differences.
     fn admits(&self, direction: &DVector<f64>, curvature: f64) -> Option<f64> {
         let along = |sign: &f64| {
             let part = |w: &Weak| *sign * w.inwards.dot(direction);
@@ -321,7 +322,7 @@ fn null_space(rows: &DMatrix<f64>) -> DMatrix<f64> {
     if rows.nrows() == 0 || n == 0 {
         return DMatrix::identity(n, n);
     }
-    // Rows may have any units: only their directions count.
+    // Rows may have any units: only their directions matter.
     let mut unit = rows.clone();
     for mut row in unit.row_iter_mut() {
         let length = row.norm();
@@ -380,7 +381,7 @@ mod tests {
         assert!((descent.expect("falls") - inwards).amax() < 1e-14);
         assert_eq!(verdict(across, vec![]), Curvature::NoOptimum);
         assert_eq!(verdict(across, half()), Curvature::NoOptimum);
-        // xy over x, y ≥ 0 is a minimum, but not by what its eigenvectors say.
+        // xy over x, y ≥ 0 is a minimum, although an eigenvalue is negative.
         assert_eq!(verdict(across, quarter()), Curvature::NotDecided);
         assert_eq!(verdict([1.0, 0.0, 0.0, 1e-4], half()), Curvature::Flat);
         // Along the face x = 0 it falls both ways.

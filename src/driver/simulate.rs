@@ -1,4 +1,4 @@
-//! A simulation and what it is judged by.
+//! A simulation and its observations.
 
 use super::evaluate::Evaluated;
 use super::integration::Integration;
@@ -13,8 +13,7 @@ use std::borrow::Cow;
 pub struct Simulation {
     /// The design, its scene and motion.
     pub at: Evaluated,
-    /// The scene with nothing left out that its motion does not need, which observations and
-    /// reactions are those of.
+    /// The scene without lowering. Observations and reactions are those of this scene.
     pub written: Scene<f64>,
     /// The motion of all its bodies, if some were merged.
     expanded: Option<Trajectory<f64>>,
@@ -22,9 +21,9 @@ pub struct Simulation {
     pub observations: Vec<Observation>,
     /// Why the method was chosen.
     pub reason: String,
-    /// What is wrong with the method for this scene, if anything.
+    /// A warning about the method for this scene, if any.
     pub warning: Option<String>,
-    /// Whether this design does not admit what the lowering leaves out at the others.
+    /// Whether this design does not admit the lowering of the others.
     pub unlowered: bool,
 }
 

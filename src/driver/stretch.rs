@@ -1,4 +1,4 @@
-//! The first stretch of a motion that takes long, from which the whole is estimated.
+//! The first stretch of a long motion, from which the whole is estimated.
 
 use super::integration::Integration;
 use crate::functions::Scene;
@@ -6,10 +6,10 @@ use crate::integrate::{
     Chosen, IntegrationFailure, Samples, Settings, Spacing, Trajectory, simulate_by,
 };
 
-/// Steps times bodies that are made to explain a motion, and least steps.
+/// Limit of steps times bodies to explain a motion, and least number of steps.
 const WORK: usize = 20_000;
 const LEAST: usize = 4;
-/// The first part of a motion that is tried, and how much longer the next one is at most.
+/// The first part of a motion to try, and the largest growth of the next one.
 const FIRST: f64 = 1e-3;
 const LONGER: f64 = 10.0;
 
@@ -27,8 +27,7 @@ pub(super) struct Stretch {
     pub samples: usize,
 }
 
-/// The first stretch of the motion of `scene`, if the whole takes too many steps to be made just to be
-/// explained.
+/// The first stretch of the motion of `scene`, if the whole takes too many steps to be explained.
 ///
 /// # Errors
 /// If its simulation fails.

@@ -1,4 +1,4 @@
-//! What a simulation finds at every instant, as comma separated values of full precision.
+//! Results of a simulation at every instant, as comma separated values of full precision.
 
 use super::figures::NamedFile;
 use super::simulate::Simulation;
@@ -11,7 +11,7 @@ use crate::problem::Problem;
 use crate::report::csv_table;
 use crate::system::observe::Reaction;
 
-/// The axes that joint reactions are written in.
+/// The axes of joint reactions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReactionAxes {
     /// Those of ground.
@@ -106,7 +106,7 @@ fn motion(simulation: &Simulation) -> String {
     csv_table(&header, rows)
 }
 
-/// The quantity of every function, and of the event, at every instant; of a clearance that of a
+/// The quantity of every function, and of the event, at every instant. For a clearance: that of a
 /// release at this instant. A value that is not finite is left empty.
 fn functions(problem: &Problem, simulation: &Simulation) -> String {
     let (scene, run) = (&simulation.written, simulation.motion());

@@ -1,13 +1,13 @@
-//! A start from where another optimisation ended.
+//! A start from the end of another optimisation.
 
 use crate::optimiser::{Outcome, SavedState};
 use crate::problem::{Problem, Sense};
 use serde::{Deserialize, Serialize};
 
-/// Difference of a design from itself, scaled and scaled back, relative to it.
+/// Relative difference of a design after scaling and unscaling.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
-/// The optimiser's state at the end of a run, and what it belongs to: `state.json`.
+/// The optimiser's state at the end of a run, and the problem that it belongs to: `state.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WarmStart {
@@ -23,7 +23,7 @@ pub struct WarmStart {
 }
 
 impl WarmStart {
-    /// What the end of a run leaves to another one.
+    /// The state at the end of a run.
     pub fn of(problem: &Problem, outcome: &Outcome) -> Option<Self> {
         Some(Self {
             variables: variables(problem),
@@ -33,7 +33,7 @@ impl WarmStart {
         })
     }
 
-    /// Whether the state is that of `design`, in the units of the problem file: equal but for the
+    /// Whether the state belongs to `design`, in the units of the problem file: equal up to the
     /// round-off of the scales.
     pub fn is_at(&self, design: &[f64]) -> bool {
         let point = self.variables.iter().zip(&self.state.x);
@@ -43,8 +43,8 @@ impl WarmStart {
         design.len() == self.state.x.len() && point.zip(design).all(|(p, d)| same(p, d))
     }
 
-    /// Whether the state can be used for `problem`: same variables, scales, constraints and objective,
-    /// and undamaged.
+    /// Whether the state fits `problem`: same variables, scales, constraints and objective, and no
+    /// damage.
     pub fn fits(&self, problem: &Problem) -> bool {
         let (n, m) = (self.variables.len(), self.constraints.len());
         self.variables == variables(problem)

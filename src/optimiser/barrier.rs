@@ -10,12 +10,12 @@ const SUBPROBLEM: f64 = 10.0;
 /// Superlinear decrease μ ← min(0.2 μ, μ^1.5) of the monotone rule.
 const LINEAR: f64 = 0.2;
 const POWER: f64 = 1.5;
-/// Residuals kept for the test of progress of the adaptive rule, and the factor by which their
-/// largest must fall.
+/// Residuals kept for the progress test of the adaptive rule. Their largest must fall by this
+/// factor.
 const HISTORY: usize = 6;
 const PROGRESS: f64 = 0.9999;
 
-/// How often the adaptive rule comes back after the monotone one took over.
+/// How often the adaptive rule may return after the monotone rule took over.
 const RETURNS: usize = 1;
 
 /// State of the rule.
@@ -72,8 +72,8 @@ impl BarrierRule {
         }
     }
 
-    /// Adaptive rule: μ from how far a step towards μ = 0 can go (Mehrotra's probe), unless the
-    /// residual has not fallen, when the monotone rule takes over (Nocedal, Wächter & Waltz 2009).
+    /// Adaptive rule: chooses μ from the longest step towards μ = 0 (Mehrotra's probe). If the
+    /// residual has not fallen, the monotone rule takes over (Nocedal, Wächter & Waltz 2009).
     fn choose(&mut self, at: &Iterate, layout: &Layout, b: &mut QuasiNewton) {
         let error = at.residuals(layout, 0.0).largest();
         let worst = self.history.iter().copied().fold(0.0, f64::max);

@@ -9,8 +9,8 @@ use super::quasi_newton::QuasiNewton;
 /// Largest Σ of a slack that counts as far from its bounds.
 const FAR: f64 = 1e-8;
 
-/// An entry overshoots its bound if this share of its step reaches it, and is then made so stiff
-/// that its step ends at the share `REACH` of its distance.
+/// An entry overshoots its bound if this share of its step reaches the bound. It then gets a
+/// stiffness with which its step ends at the share `REACH` of its distance.
 const OVERSHOOT: f64 = 0.8;
 const REACH: f64 = 0.9;
 
@@ -152,8 +152,8 @@ impl Direction {
         self.x.amax().max(self.s.amax())
     }
 
-    /// Stiffness, to be added to Σ, with which every entry that overshoots its bound would stop
-    /// before it, were it alone; `None` if no entry overshoots.
+    /// Stiffness, to be added to Σ. With it every overshooting entry, taken alone, would stop
+    /// before its bound. `None` if no entry overshoots.
     pub fn stiffened(
         &self,
         at: &Iterate,

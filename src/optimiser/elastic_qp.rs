@@ -96,8 +96,9 @@ impl ElasticQp {
         }
     }
 
-    /// Solves the subproblem, once more in a smaller box if its step is short, and the equations of
-    /// what is active; `None` if Clarabel fails or its answer does not satisfy the optimality conditions.
+    /// Solves the subproblem. A short step is solved again in a smaller box. Then the equations of
+    /// the active set are solved. `None` if Clarabel fails or its answer violates the optimality
+    /// conditions.
     pub fn solve(&mut self, data: &QpData<'_>, counts: &mut Counts) -> Option<QpStep> {
         let found = self.solve_in_boxes(data, counts)?;
         Some(refine(data, &found).unwrap_or(found))
@@ -198,8 +199,8 @@ impl ElasticQp {
 
     /// Right-hand sides in the order of the rows: bounds of each row, e ≥ 0, box.
     ///
-    /// |A t| cannot exceed the sum of |A|, so more room than that is cut off, and a violation
-    /// beyond it is taken out of the elastic variable.
+    /// |A t| is at most the sum of |A|. A larger bound is cut to that, and a larger violation is
+    /// subtracted from the elastic variable.
     fn right_hand_side(&self, data: &QpData<'_>, norms: &DVector<f64>, radius: f64) -> Vec<f64> {
         let m = self.has_lower.len();
         let mut rhs = Vec::new();
@@ -268,7 +269,7 @@ impl ElasticQp {
         DefaultSolver::new(&p, q, &a, rhs, &cones, settings()?).ok()
     }
 
-    /// The constraint matrix with the given values, of which zeros are kept.
+    /// The constraint matrix with the given values; zeros stay in the pattern.
     fn pattern(&self, values: Vec<f64>) -> CscMatrix<f64> {
         let (n, m) = (self.n, self.has_lower.len());
         let sides = |j: usize| usize::from(self.has_upper[j]) + usize::from(self.has_lower[j]);

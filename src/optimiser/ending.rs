@@ -1,4 +1,4 @@
-//! Where a method ended, and the outcome made of it.
+//! The final iterate of a method, and the outcome made of it.
 
 use nalgebra::DVector;
 
@@ -14,19 +14,20 @@ use super::verdict::{
     scaled_residual, steepness, unit_of_forces, user_multipliers,
 };
 
-/// Step, relative to max(1, ‖x‖∞), after which an objective that can fall further must have fallen.
+/// Step, relative to max(1, ‖x‖∞), of the test for descent. An objective that can fall must fall
+/// within it.
 const NEARBY: f64 = 1e-6;
 
-/// Where a method ended.
+/// The final iterate of a method.
 pub(super) struct Finish {
     pub status: Status,
     pub point: Point,
     pub slopes: Slopes,
     pub multipliers: ScaledMultipliers,
     pub scaled: f64,
-    /// Whether the conditions hold in the units of the user and no fall was found nearby.
+    /// Whether the conditions hold in the units of the user and no descent was found nearby.
     pub confirmed: bool,
-    /// Units to which all this belongs.
+    /// The units of these numbers.
     pub units: Units,
     pub b: QuasiNewton,
     pub barrier: f64,
@@ -34,12 +35,12 @@ pub(super) struct Finish {
 }
 
 impl Finish {
-    /// Brings the program back to the units in which this was found.
+    /// Sets the program to the units of this iterate.
     pub fn restore_units(&self, program: &mut Program<'_>) {
         program.set_units(&self.units);
     }
 
-    /// Whether `other`, feasible, has an objective that is less by more than the tolerance.
+    /// Whether `other` is feasible and its objective is lower by more than the tolerance.
     pub fn is_worse_than(&self, other: &Finish, program: &Program<'_>) -> bool {
         let (mine, theirs) = (self.objective(), other.objective());
         mine - theirs > program.options.tolerance * theirs.abs().max(program.unit_of_objective())
@@ -50,7 +51,7 @@ impl Finish {
         self.point.f / self.units.objective
     }
 
-    /// An infeasible end, at a point where the largest violation is least.
+    /// An infeasible final iterate: the largest violation is least here.
     pub fn infeasible_at(self, program: &Program<'_>, point: Point, slopes: Slopes) -> Finish {
         let (violation, j) = program.worst_violation(&point.c);
         let y = DVector::zeros(point.c.len());
@@ -78,16 +79,16 @@ impl Finish {
         )
     }
 
-    /// The same, called [`Status::Converged`] where a stall is at a point that satisfies the conditions
-    /// in the units of the user, and [`Status::AtPrecision`] where it is due to rounding; at neither
-    /// may the Lagrangian fall nearby.
+    /// The same, with a new status if a method stalled: [`Status::Converged`] if the conditions
+    /// hold in the units of the user, [`Status::AtPrecision`] if rounding caused the stall. In
+    /// neither case may the Lagrangian fall nearby.
     pub fn with_stall_named(mut self, program: &mut Program<'_>) -> Finish {
         if self.status != Status::Stalled || self.is_solved(program) {
             return self;
         }
         let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
         let kkt = self.kkt(program);
-        // Multipliers that grow without limit show in their products even where forces vanish.
+        // Unbounded multipliers show in the complementarity products even if forces vanish.
         let holds = kkt.relative_complementarity <= program.options.tolerance
             && is_solved_in_user_units(program, point, slopes, &kkt);
         if (holds || is_at_precision(program, point, slopes, z, &mut self.b))
@@ -101,8 +102,8 @@ impl Finish {
         self
     }
 
-    /// Whether the Lagrangian falls along its steepest descent, a small step away from the point or,
-    /// where this cannot be evaluated, perhaps.
+    /// Whether the Lagrangian falls along its steepest descent after a small step. True also if it
+    /// cannot be evaluated there.
     fn falls_nearby(&self, program: &mut Program<'_>) -> bool {
         let (z, x) = (&self.multipliers, &self.point.x);
         let bounds = &z.zu - &z.zl;
@@ -122,7 +123,7 @@ impl Finish {
         terms.iter().sum::<f64>() < -10.0 * f64::EPSILON * self.point.f.abs()
     }
 
-    /// Whether the conditions hold, whatever the method thought of its end.
+    /// Whether the conditions hold, whatever the status of the method.
     pub fn is_solved(&self, program: &Program<'_>) -> bool {
         self.confirmed
             || is_solved_at_end(
@@ -135,8 +136,8 @@ impl Finish {
     }
 }
 
-/// Replaces the point of a run that did not converge by a better one it passed through; better by more
-/// than the tolerance, it shows that there was something to gain.
+/// Replaces the final iterate of a run that did not converge by a better point of the run. If that
+/// is better by more than the tolerance, the run had not reached the precision of the objective.
 pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
     let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. })
         || finish.status == Status::Stalled && finish.is_solved(program);
@@ -148,7 +149,7 @@ pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
     } else {
         0.0
     };
-    // What a violation within the tolerance gains is not counted.
+    // A gain that comes from a violation within the tolerance does not count.
     let y = &finish.multipliers.y;
     let value = |p: &Point| {
         p.f + (0..p.c.len())
@@ -184,7 +185,7 @@ pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
     }
 }
 
-/// The only point there is, where all variables are fixed.
+/// The outcome if all variables are fixed.
 pub(super) fn without_freedom(program: &Program<'_>, point: Point, slopes: Slopes) -> Finish {
     let (violation, j) = program.worst_violation(&point.c);
     let feasible = program.is_feasible(&point.c);
@@ -202,7 +203,7 @@ pub(super) fn without_freedom(program: &Program<'_>, point: Point, slopes: Slope
     }
 }
 
-/// The start, where the observer asked to stop at once.
+/// The outcome if the observer stops the run at the start.
 pub(super) fn unfinished(program: &Program<'_>, point: Point, slopes: Slopes) -> Finish {
     let y = DVector::zeros(point.c.len());
     let multipliers = ScaledMultipliers::from_rows(program, &point, &slopes, y);
@@ -241,7 +242,7 @@ pub(super) fn status_of(
     }
 }
 
-/// State at the last point, which need not be the best.
+/// State at the last point, which may differ from the best.
 pub(super) fn state_of(program: &Program<'_>, finish: &Finish) -> SavedState {
     SavedState {
         x: program.to_user(&finish.point.x),
@@ -267,7 +268,7 @@ pub(super) fn outcome(program: &Program<'_>, finish: Finish, state: SavedState) 
         multipliers,
         ..
     } = finish;
-    // A method that can go no further has converged if the conditions hold all the same.
+    // A method that can make no progress has converged if the conditions hold.
     match status {
         Status::Stalled | Status::IterationLimit | Status::EvaluationLimit if solved => {
             status = Status::Converged;
@@ -331,7 +332,7 @@ pub(super) fn without_values(program: &Program<'_>, status: Status) -> Outcome {
     }
 }
 
-/// The end of a run in which nothing was evaluated.
+/// The outcome of a run without any evaluation.
 pub(super) fn untried(nlp: &dyn Nlp, status: Status) -> Outcome {
     Outcome {
         status,

@@ -1,13 +1,13 @@
-//! Violations of the rows, and which of them a solution may have.
+//! Violations of the rows, and their tolerances.
 
 use nalgebra::DVector;
 
 use super::program::{Program, Slopes};
 
-/// Part of the size of a row that its violation may have, whatever the tolerance is.
+/// Largest violation of a row relative to its size, whatever the tolerance.
 const PART_OF_ROW: f64 = 1e-4;
 
-/// Part of the largest size a row had that its size never falls below.
+/// Least size of a row relative to the largest size that it had.
 const LEAST_SIZE: f64 = 1e-8;
 
 impl Program<'_> {
@@ -26,21 +26,21 @@ impl Program<'_> {
         worst
     }
 
-    /// Violation of a row of the user that a solution may have: no more than the tolerance, nor than a
-    /// small part of the size of the row.
+    /// Violation that a solution may have in a row of the user: the tolerance, or a small part of
+    /// the size of the row if that is less.
     fn allowed_violation(&self, j: usize) -> f64 {
         let tolerance = self.options.constraint_tolerance;
         tolerance.min(PART_OF_ROW * self.row_sizes[j])
     }
 
-    /// The least violation allowed to any row, in the units of the user.
+    /// The smallest allowed violation of all rows, in the units of the user.
     pub fn least_allowed(&self) -> f64 {
         let rows = self.rows.iter();
         rows.map(|&j| self.allowed_violation(j))
             .fold(self.options.constraint_tolerance, f64::min)
     }
 
-    /// The least violation allowed to any of the rows that exceed theirs at `c`, or the tolerance.
+    /// The smallest allowed violation among the rows that exceed theirs at `c`, or the tolerance.
     pub fn least_exceeded(&self, c: &DVector<f64>) -> f64 {
         let exceeded = |k: usize| {
             let j = self.rows[k];
@@ -52,7 +52,7 @@ impl Program<'_> {
         all.fold(self.options.constraint_tolerance, f64::min)
     }
 
-    /// Largest ratio of the violation of a row and what is allowed.
+    /// Largest ratio of a row's violation to its allowed violation.
     pub fn relative_violation(&self, c: &DVector<f64>) -> f64 {
         let ratio = |k: usize| {
             let j = self.rows[k];
@@ -61,15 +61,15 @@ impl Program<'_> {
         (0..c.len()).map(ratio).fold(0.0, f64::max)
     }
 
-    /// Whether the rows are satisfied as well as those of a solution must be.
+    /// Whether no row exceeds its allowed violation.
     pub fn is_feasible(&self, c: &DVector<f64>) -> bool {
         self.relative_violation(c) <= 1.0
     }
 
-    /// Takes the sizes of the rows from their derivatives at the scaled point `x`: the larger of their
-    /// bounds and of Σ |∂c/∂x_i x_i|, their change over a change of every variable by its size. A row
-    /// whose bounds are zero may be a product that vanishes with one variable: there every variable
-    /// changes by the size of the largest.
+    /// Takes the sizes of the rows from their derivatives at the scaled point `x`. The size is the
+    /// larger of the row's bounds and of Σ |∂c/∂x_i x_i|, the change of the row if every variable
+    /// changes by its size. A row with zero bounds may be a product that vanishes with one
+    /// variable. For such a row every variable changes by the size of the largest.
     pub(super) fn measure_rows(&mut self, x: &DVector<f64>, slopes: &Slopes) {
         let largest_x = x.amax();
         for (k, &j) in self.rows.iter().enumerate() {

@@ -23,7 +23,7 @@ impl Filter {
         }
     }
 
-    /// Forgets all entries at a point of infeasibility `theta`, which may grow a hundredfold.
+    /// Clears the filter at a point of infeasibility `theta`. It may then grow a hundredfold.
     pub fn clear(&mut self, theta: f64) {
         self.entries.clear();
         self.largest = self.largest.min(GROWTH * theta.max(10.0));
@@ -34,7 +34,7 @@ impl Filter {
         theta <= self.largest && self.entries.iter().all(|&(t, p)| theta < t || phi < p)
     }
 
-    /// Adds the entry of a point left behind, with its margin, and drops those it dominates.
+    /// Adds the entry of the point just left, with its margin, and drops the entries it dominates.
     pub fn add(&mut self, theta: f64, phi: f64) {
         let (t, p) = ((1.0 - MARGIN) * theta, phi - MARGIN * theta);
         self.entries.retain(|&(a, b)| a < t || b < p);

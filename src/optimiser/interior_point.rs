@@ -20,18 +20,18 @@ const LARGEST_ESTIMATE: f64 = 1e3;
 /// Infeasibility below which multipliers of rows are recomputed by least squares.
 const NEARLY_FEASIBLE: f64 = 1e-6;
 
-/// Trials of a line search after which its step counts as short; two short steps in succession
-/// show that the quasi-Newton matrix misleads, and `LONGEST_CRAWL` of them at an infeasibility above
-/// `CRAWLING` that this must be reduced by the factor `LEAVE_CRAWL` on its own.
+/// A step that took more trials than this counts as short. Two short steps in succession show that
+/// the quasi-Newton matrix misleads. `LONGEST_CRAWL` short steps at an infeasibility above `CRAWLING`
+/// start a restoration, which must reduce it by the factor `LEAVE_CRAWL`.
 const SHORT_TRIALS: usize = 7;
 const LONGEST_CRAWL: usize = 4;
 const CRAWLING: f64 = 1e-4;
 const LEAVE_CRAWL: f64 = 0.1;
 
-/// Steps in succession whose gain is lost in rounding that are still tried.
+/// Number of successive steps that may gain less than rounding.
 const LOST_STEPS: usize = 4;
 
-/// Times that entries are made stiffer in one iteration.
+/// How often entries may be stiffened in one iteration.
 const STIFFENINGS: usize = 8;
 
 /// State of the iteration.
@@ -43,7 +43,7 @@ pub(super) struct InteriorPoint {
     filter: Filter,
     theta_small: f64,
     short_steps: usize,
-    /// Variables on which nothing has depended so far: without barriers, so that they stay.
+    /// Variables on which nothing has depended so far. They have no barrier, so they stay.
     idle: Vec<usize>,
 }
 
@@ -193,7 +193,7 @@ impl InteriorPoint {
         }
     }
 
-    /// Gives barriers to the idle variables on which something depends at this point.
+    /// Adds barriers for the idle variables on which something depends at this point.
     fn wake(&mut self, program: &Program<'_>) {
         let slopes = &self.at.slopes;
         let (idle, woken): (Vec<usize>, Vec<usize>) =
@@ -235,8 +235,8 @@ impl InteriorPoint {
         step.is_finite().then_some((system, step))
     }
 
-    /// Stiffens the entries of w that overshoot their bounds, so that they do not shorten the step
-    /// of all others; their force goes to the multipliers of the bounds.
+    /// Stiffens the entries of w that overshoot their bounds, so they do not shorten the step of
+    /// the others. Their force is added to the multipliers of the bounds.
     fn stiffen(&mut self, found: (NewtonSystem, Direction), tau: f64) -> (NewtonSystem, Direction) {
         let plain = found.1.primal_limit(&self.at, &self.layout, tau);
         let mut last: Option<(NewtonSystem, Direction)> = None;
@@ -336,8 +336,8 @@ impl InteriorPoint {
         judge(program, point, slopes, &z, scaled)
     }
 
-    /// What to do when the line search found no step: forget the quasi-Newton matrix if the point
-    /// is feasible, else restore feasibility.
+    /// Handles a line search without a step: forgets the quasi-Newton matrix at a feasible point,
+    /// restores feasibility at another.
     fn recover(
         &mut self,
         program: &mut Program<'_>,
@@ -358,7 +358,7 @@ impl InteriorPoint {
         self.restore(program, theta, 0.9)
     }
 
-    /// Reduces the violation by the factor `gain` and until the filter accepts the point.
+    /// Reduces the violation by the factor `gain`, until the filter accepts the point.
     fn restore(
         &mut self,
         program: &mut Program<'_>,

@@ -105,8 +105,8 @@ impl Layout {
     pub fn push_inside(&self, i: usize, value: f64, push: f64) -> f64 {
         let (l, u) = (self.lower[i], self.upper[i]);
         let width = u - l;
-        // A variable that is inside stays where it is: its scale, which may be that of bounds far
-        // apart, does not make it any nearer to them.
+        // A variable inside its bounds stays where it is. Its scale may come from distant bounds
+        // and says nothing about its distance to them.
         let margin = |bound: f64| {
             let margin = margin(bound, width, push);
             let away = (value - bound).abs();
@@ -202,7 +202,8 @@ impl Iterate {
             normal[(j, j)] += 1e-12 * (1.0 + normal[(j, j)]);
         }
         let factor = Cholesky::new(normal)?;
-        // Refinement removes what the squared condition number and the small shift spoil.
+        // Iterative refinement removes the errors of the squared condition number and of the small
+        // shift.
         let mut y = DVector::zeros(m);
         for _ in 0..3 {
             let rest = &x + a.tr_mul(&y);
@@ -216,11 +217,11 @@ impl Iterate {
     }
 }
 
-/// Part of the distance at which a start is put from a bound that counts as inside.
+/// A variable counts as inside if its distance to a bound exceeds this share of [`margin`].
 const INSIDE: f64 = 1e-3;
 
-/// Distance from `bound` at which a start is put: `push` relative to max(1, |bound|), and no more
-/// than that part of the distance of two bounds.
+/// Distance between `bound` and the start: `push` relative to max(1, |bound|), at most that part of
+/// the distance of two bounds.
 pub(super) fn margin(bound: f64, width: f64, push: f64) -> f64 {
     let absolute = push * bound.abs().max(1.0);
     if width.is_finite() {

@@ -1,4 +1,4 @@
-//! The least violation of the worst row, where no point satisfies all of them.
+//! The least violation of the worst row, if no point satisfies all rows.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,13 +7,13 @@ use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::Spectrum;
 
-/// Steps that are tried.
+/// Largest number of steps.
 const STEPS: usize = 30;
-/// Part of the violation that a step must promise to be tried.
+/// A step is tried only if it promises this part of the violation.
 const WORTHWHILE: f64 = 1e-6;
 /// Share of the promised reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-2;
-/// Curvature of the subproblem, relative to violation and radius, that makes its step unique.
+/// Curvature of the subproblem, relative to violation and radius. It makes the step unique.
 const CURVATURE: f64 = 1e-6;
 /// Penalty of a row that a subproblem violates, relative to the largest multiplier it can have.
 const PENALTY: f64 = 10.0;
@@ -48,9 +48,9 @@ impl Sides {
     }
 }
 
-/// Goes down from `point` to where the largest violation of a row, in the units of the user, cannot be
-/// made less to first order: trust-region steps of minimise t subject to excess + ∇excess·d ≤ t
-/// (Madsen & Schjær-Jacobsen 1978). Returns the last point, also where a limit ends the search.
+/// Descends from `point` until the largest violation of a row, in the units of the user, is least
+/// to first order. Each trust-region step minimises t subject to excess + ∇excess·d ≤ t (Madsen &
+/// Schjær-Jacobsen 1978). Returns the last point, also if a limit ends the search.
 pub(super) fn least_violation(
     program: &mut Program<'_>,
     mut point: Point,
@@ -113,7 +113,7 @@ pub(super) fn least_violation(
     (point, slopes)
 }
 
-/// Step in x and the largest violation it promises.
+/// Step in x and its predicted largest violation.
 fn step(
     program: &mut Program<'_>,
     sides: &Sides,

@@ -10,9 +10,9 @@ use super::quasi_newton::QuasiNewton;
 
 /// Part of the longest step below which the search ends.
 const VANISHED: f64 = 1e-16;
-/// A step is accepted for the residual of the conditions alone if that falls by this factor, at a
-/// violation and a relative rise of the barrier function that are at most these, after so many
-/// refused trials.
+/// A step is accepted for the residual of the conditions alone if the residual falls by this
+/// factor, the violation and the relative rise of the barrier function are at most these, and so
+/// many trials were refused.
 const SOFT_GAIN: f64 = 0.9;
 const SOFT_VIOLATION: f64 = 1e-4;
 const SOFT_RISE: f64 = 1e-6;
@@ -21,8 +21,8 @@ const SOFT_TRIALS: usize = 5;
 /// Least factor by which a refused step is shortened.
 const SHORTEST: f64 = 0.1;
 
-/// Factor by which a step to where the functions are not defined is shortened, and how many such
-/// steps are announced.
+/// Factor by which a step to undefined functions is shortened, and how many such steps are
+/// announced.
 const UNDEFINED: f64 = 0.5;
 const FORESEEN: i32 = 16;
 
@@ -30,14 +30,14 @@ const ARMIJO: f64 = 1e-4;
 /// Exponents of the switching condition, of the directional derivative and of the infeasibility.
 const SLOPE_POWER: f64 = 2.3;
 const THETA_POWER: f64 = 1.1;
-/// Share of the least sensible step at which the search gives up.
+/// The search ends below this share of the least sensible step.
 const LEAST_STEP: f64 = 0.05;
 /// Second-order corrections tried, and the factor by which each must reduce the infeasibility.
 const CORRECTIONS: usize = 2;
 const CORRECTION_GAIN: f64 = 0.99;
 
-/// Sum of the scaled residuals that counts as none: below it they are mostly rounding, and the
-/// barrier function alone decides.
+/// Below this sum of scaled residuals a point counts as feasible. The residuals are then mostly
+/// rounding, and the barrier function alone decides.
 const FEASIBLE: f64 = 1e-9;
 
 /// Infeasibility θ of the residuals `r` of rows whose values are `c`.
@@ -51,12 +51,12 @@ pub(super) struct Accepted {
     pub slopes: Slopes,
     pub s: DVector<f64>,
     pub alpha: f64,
-    /// The direction along which the point lies.
+    /// The direction of the accepted step.
     pub direction: Direction,
     pub trials: usize,
 }
 
-/// Relative change of a variable that is not lost in rounding.
+/// Smallest relative change of a variable that exceeds rounding.
 const RESOLUTION: f64 = 1e-16;
 
 /// Data of one search.
@@ -167,14 +167,15 @@ impl LineSearch<'_> {
         }
     }
 
-    /// Announces the steps that follow one of length `alpha` at which the functions are not defined.
+    /// Announces the shorter steps that follow if the functions are undefined at step length
+    /// `alpha`.
     fn foresee(&self, program: &mut Program<'_>, direction: &Direction, alpha: f64) {
         let at = |k: i32| &self.at.point.x + &direction.x * (alpha * UNDEFINED.powi(k));
         program.foresee((1..=FORESEEN).map(at));
     }
 
-    /// Factor by which a refused step is shortened: the minimum of the parabola through the values
-    /// of the barrier function, within bounds, where that function refused the step.
+    /// Factor by which a refused step is shortened. If the barrier function refused the step, it is
+    /// the minimum of the parabola through its values, within bounds.
     fn shorten(&self, here: &Measure, alpha: f64, last: &Option<(f64, f64)>) -> f64 {
         let Some((theta, phi)) = *last else {
             return UNDEFINED;
@@ -186,8 +187,8 @@ impl LineSearch<'_> {
         (-0.5 * alpha * here.slope / rise).clamp(SHORTEST, 0.5)
     }
 
-    /// Gradients at the first point of the search if it reduces the residual of the optimality
-    /// conditions, where the change of the barrier function is lost in rounding or curvature
+    /// Gradients at the first trial point if this point reduces the residual of the optimality
+    /// conditions. Used if the change of the barrier function is lost in rounding, or if curvature
     /// misleads the filter.
     fn soft(
         &self,

@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 
 /// A smooth nonlinear program, minimise f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///
-/// A row with c_L = c_U is an equality; an infinite bound is absent, and a row without bounds is not
-/// looked at, whatever its values are. Only first derivatives are
-/// asked for, and always at a point that was evaluated last or shortly before.
+/// A row with c_L = c_U is an equality. An infinite bound is absent; a row without bounds is
+/// ignored, whatever its values. The optimiser uses first derivatives only. It requests them at a
+/// point whose values it requested last or shortly before.
 pub trait Nlp {
     /// Number of variables n.
     fn variables(&self) -> usize;
@@ -34,8 +34,8 @@ pub trait Nlp {
         format!("c[{j}]")
     }
 
-    /// How many units of the user one unit of variable `i` is, if the program scales its variables
-    /// itself: endings are judged in the user's.
+    /// Units of the user in one unit of variable `i`, if the program scales its variables itself.
+    /// Endings are judged in the units of the user.
     fn variable_unit(&self, _i: usize) -> f64 {
         1.0
     }
@@ -43,13 +43,13 @@ pub trait Nlp {
     /// Objective and constraints at `x`.
     ///
     /// # Errors
-    /// [`EvaluationFailure`] where the functions are not defined or their simulation fails; the
-    /// optimiser then shortens its step. A value that is not finite is treated likewise.
+    /// [`EvaluationFailure`] if the functions are undefined or their simulation fails. The
+    /// optimiser then shortens its step. It treats a value that is not finite in the same way.
     fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure>;
 
-    /// Says that values will be asked for at the first of `points` and, if they are not defined
-    /// there, at the next ones: they may be found side by side beforehand. Nothing need be done, and
-    /// nothing may come of it but time.
+    /// Announces that values will be requested at the first of `points` and, if they are undefined
+    /// there, at the next ones. An implementation may compute them side by side beforehand, or
+    /// ignore the call. It must not change any result.
     fn foresee(&mut self, _points: &[Vec<f64>]) {}
 
     /// Gradient of the objective and Jacobian of the constraints at `x`.
@@ -87,8 +87,8 @@ pub struct EvaluationFailure {
     pub reason: String,
 }
 
-/// Finds the first value that is not finite, among the objective and `rows`, or the first length that
-/// is wrong.
+/// Finds the first value that is not finite, among the objective and `rows`, or the first wrong
+/// length.
 pub(super) fn fault_of_evaluation(
     nlp: &dyn Nlp,
     rows: &[usize],

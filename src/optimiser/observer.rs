@@ -55,7 +55,7 @@ pub trait Observer {
     fn iteration(&mut self, row: &Row<'_>) -> ControlFlow<()>;
 }
 
-/// Observer that ignores what it is told.
+/// An observer that ignores all rows.
 ///
 /// ```
 /// use flexbody::optimiser::{Observer, Phase, Row, Silent};

@@ -11,7 +11,7 @@ pub enum Method {
     InteriorPoint,
     /// Trust-region sequential quadratic programming with elastic subproblems.
     TrustRegion,
-    /// Interior point; the trust region continues from its best point where it does not converge.
+    /// Interior point. If it does not converge, the trust region continues from its best point.
     Auto,
 }
 
@@ -21,7 +21,7 @@ pub enum Method {
 pub enum Barrier {
     /// Fiacco–McCormick: constant until its subproblem is solved, then superlinearly smaller.
     Monotone,
-    /// Chosen at each iteration from a predictor step, monotone where that makes no progress.
+    /// Chosen at each iteration from a predictor step. Monotone if that makes no progress.
     #[default]
     Adaptive,
 }
@@ -32,12 +32,13 @@ pub enum Barrier {
 pub struct Options {
     /// Algorithm (default interior point).
     pub method: Method,
-    /// Largest KKT residual of a solution (default 1e-6): in scaled units; relative to the gradients of
-    /// the run; and in the units of the user relative to max(1, ‖∇f‖∞) and, for the sum of the
-    /// products of multipliers and distances, to max(1, |f|).
+    /// Largest KKT residual of a solution (default 1e-6). It applies in scaled units, relative to
+    /// the gradients of the run, and in the units of the user: relative to max(1, ‖∇f‖∞) and, for
+    /// the sum of the products of multipliers and distances, to max(1, |f|).
     pub tolerance: f64,
-    /// Largest violation of a constraint of a solution, in the units of the user (default 1e-6); it must
-    /// also be below 1e-4 of the constraint's size, the larger of its bound and of Σ |∂c/∂x_i x_i|.
+    /// Largest violation of a constraint of a solution, in the units of the user (default 1e-6). It
+    /// must also be below 1e-4 of the constraint's size, the larger of its bound and of Σ |∂c/∂x_i
+    /// x_i|.
     pub constraint_tolerance: f64,
     /// Iterations allowed (default 500).
     pub max_iterations: usize,
@@ -48,7 +49,7 @@ pub struct Options {
     /// An objective f that changes by this part of max(1, |f|) from the first point to a feasible one
     /// is called unbounded (default −1e20).
     pub unbounded_below: f64,
-    /// Largest gradient, at the start, that is left unscaled (default 100).
+    /// A larger gradient at the start is scaled (default 100).
     pub scaling_gradient: f64,
     /// Divide each variable that has two bounds by their distance (default false).
     pub scale_variables: bool,

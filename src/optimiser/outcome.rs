@@ -11,17 +11,17 @@ pub enum Status {
     /// The point satisfies the first-order conditions to the tolerances in the units of the user
     /// ([`Options::tolerance`](super::Options::tolerance)).
     Converged,
-    /// The tolerances are out of reach in the units of the user: the residuals are small against the
-    /// gradients of the run, what the quasi-Newton model still promises to gain is below the
-    /// rounding of the objective, and a run that began anew at the point gained nothing.
+    /// The tolerances cannot be reached in the units of the user. The residuals are small relative
+    /// to the gradients of the run, the gain predicted by the quasi-Newton model is below the
+    /// rounding of the objective, and a restart at the point gained nothing.
     AtPrecision,
-    /// The point is a stationary point of the constraint violation and not feasible, or bounds of a
+    /// The point is infeasible and a stationary point of the constraint violation, or bounds of a
     /// constraint or variable cross.
     Infeasible {
-        /// Name of the constraint that is violated most, or of that whose bounds cross.
+        /// Name of the most violated constraint, or of the one whose bounds cross.
         constraint: String,
-        /// Its violation, in its own units, where the largest one is least to first order; half the
-        /// distance of bounds that cross.
+        /// Its violation, in its own units, at the point where the largest violation is least to
+        /// first order. Half the distance of bounds that cross.
         violation: f64,
     },
     /// The program or the options make no sense; nothing was evaluated.
@@ -31,12 +31,12 @@ pub enum Status {
     },
     /// The objective falls below every bound along feasible points.
     Unbounded,
-    /// A function is not defined at the start nor at perturbed starts.
+    /// A function is undefined at the start and at perturbed starts.
     UndefinedStart {
         /// Which function, and why.
         what: String,
     },
-    /// No step makes progress although the conditions are not met; the best point is returned.
+    /// No step makes progress although the conditions are violated. The best point is returned.
     Stalled,
     /// The limit of iterations was reached.
     IterationLimit,
@@ -71,13 +71,13 @@ pub struct Kkt {
     pub violation: f64,
     /// Largest |∇f + Jᵀy − z_L + z_U|, in the units of the user.
     pub stationarity: f64,
-    /// `stationarity` divided by ‖∇f‖∞ or, where that vanishes, by a tenth of its typical size
-    /// in the run ([`Scaling::typical_gradient`]). Never divided by multipliers.
+    /// `stationarity` divided by ‖∇f‖∞ or, if that vanishes, by a tenth of its typical size in the
+    /// run ([`Scaling::typical_gradient`]). It is never divided by multipliers.
     pub relative_stationarity: f64,
-    /// Sum of the products of multipliers and distances to their bounds, on either side, in units of
-    /// the objective: to first order, how far the objective is from the least.
+    /// Sum of the products of multipliers and distances to their bounds, on either side, in units
+    /// of the objective. To first order, the distance of the objective from its least value.
     pub complementarity: f64,
-    /// `complementarity` divided by |f| or, where that vanishes, by a hundredth of the typical ‖∇f‖∞
+    /// `complementarity` divided by |f| or, if that vanishes, by a hundredth of the typical ‖∇f‖∞
     /// (a change of a variable by one).
     pub relative_complementarity: f64,
     /// Largest residual in the scaled units in which the iteration runs.
@@ -137,7 +137,8 @@ pub enum Side {
     Equal,
 }
 
-/// Scale factors, of the constraints as chosen at the start, and what looks suspicious in the derivatives there.
+/// Scale factors, those of the constraints as chosen at the start, and suspicious derivatives
+/// there.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scaling {
     /// Factor of the objective.

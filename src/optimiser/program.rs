@@ -1,5 +1,5 @@
-//! The program as the algorithms see it: scaled, without fixed variables and free rows, counted,
-//! and with every failure recorded.
+//! The program that the algorithms see: scaled, without fixed variables and free rows. It counts
+//! evaluations and records every failure.
 
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -14,11 +14,11 @@ use super::options::Options;
 use super::outcome::{Counts, FailedDesign, Scaling, Status};
 use super::scaling::drop_rounding;
 
-/// Most designs kept of those at which an evaluation failed.
+/// Largest number of recorded designs with a failed evaluation.
 const FAILED_DESIGNS_KEPT: usize = 100;
 
-/// Distance from the first point, relative to its size, at which a fall in scaled units shows that the
-/// objective has no bound.
+/// Distance from the first point, relative to its size. Beyond it a fall in scaled units shows an
+/// unbounded objective.
 const FAR: f64 = 1e6;
 
 /// Values of the scaled functions at a scaled point.
@@ -46,16 +46,16 @@ impl Slopes {
     }
 }
 
-/// Why no value came back.
+/// Why an evaluation gave no value.
 #[derive(Clone, Debug)]
 pub(super) enum Trouble {
-    /// The functions are not defined here; another point may do.
+    /// The functions are undefined here. Another point may do.
     Failed(EvaluationFailure),
     /// The run must end.
     Halt(Status),
 }
 
-/// What an iteration reports beyond the point itself.
+/// The data of an iteration besides its point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Progress {
     pub optimality: f64,
@@ -96,20 +96,21 @@ pub(super) struct Program<'a> {
     pub(super) user_row_upper: Vec<f64>,
     template: Vec<f64>,
     pub scaling: Scaling,
-    /// Factor by which the units of all variables were changed on the way.
+    /// Factor by which the units of all variables were changed during the run.
     pub length: f64,
     pub counts: Counts,
     pub failed: Vec<FailedDesign>,
     started: Instant,
-    /// What one unit of each variable of `nlp` is in the unit that forces on it are judged in: that of
-    /// the user, unless the variable is small beside it by its scale and at the start.
+    /// One unit of each variable of `nlp`, in the unit in which forces on it are judged. That is
+    /// the unit of the user, or a smaller one if both the scale and the start of the variable are
+    /// below it.
     pub units_judged: Vec<f64>,
-    /// Norms ‖∇f‖∞ of all points so far, in the units of the user; a point in succession counts once.
+    /// Norms ‖∇f‖∞ of all points so far, in the units of the user. A repeated point counts once.
     pub gradient_norms: Vec<f64>,
     /// Sizes of the rows at the newest derivatives, in the units of the user.
     pub(super) row_sizes: Vec<f64>,
     pub(super) largest_rows: Vec<f64>,
-    /// Iterations and evaluations allowed to the method that runs.
+    /// Iterations and evaluations allowed to the running method.
     allowed: Allowed,
     /// First point reported, and its objective in the units of the user.
     pub(super) first: Option<(DVector<f64>, f64)>,
@@ -194,8 +195,8 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// What a force of one on variable `i` of `nlp`, in the units that forces are judged in, is in
-    /// scaled ones.
+    /// Scaled size of a unit force on variable `i` of `nlp`, given in the units in which forces are
+    /// judged.
     pub fn unit_of_force(&self, i: usize) -> f64 {
         self.scaling.objective * self.scaling.variables[i] * self.units_judged[i]
     }
@@ -250,7 +251,7 @@ impl<'a> Program<'a> {
         })
     }
 
-    /// Announces points at which values may be asked for next.
+    /// Announces points whose values may be requested next.
     pub fn foresee(&mut self, points: impl Iterator<Item = DVector<f64>>) {
         let points: Vec<Vec<f64>> = points.map(|x| self.to_user(&x)).collect();
         let clock = Instant::now();
@@ -340,7 +341,7 @@ impl<'a> Program<'a> {
         self.started.elapsed().as_secs_f64()
     }
 
-    /// Allows the method that runs the part `share` of all iterations and evaluations.
+    /// Allows the running method the part `share` of all iterations and evaluations.
     pub fn allow(&mut self, share: f64) {
         let part = |all: usize| (share * all as f64).ceil() as usize;
         self.allowed = Allowed {
@@ -349,8 +350,9 @@ impl<'a> Program<'a> {
         };
     }
 
-    /// Whether the objective has fallen without bound from the first point to a feasible one: in the
-    /// units of the user or, very far from the first point, in scaled ones where those are smaller.
+    /// Whether the objective has fallen without bound from the first point to a feasible one: in
+    /// the units of the user or, very far from the first point, in scaled units if those are
+    /// smaller.
     pub fn is_unbounded(&self, point: &Point) -> bool {
         let Some((x, f)) = &self.first else {
             return false;

@@ -9,10 +9,10 @@ const CURVATURE: f64 = 1.5e-8;
 /// Factor of the scale σ when pairs without positive curvature clear the memory.
 const FLATTER: f64 = 0.1;
 
-/// Least scale; it lets the steps of an unbounded program grow to 1e20 gradients.
+/// Least scale. It allows steps of 1e20 gradients in an unbounded program.
 const FLATTEST: f64 = 1e-20;
 
-/// Most pairs from which a dense matrix is built again.
+/// Largest number of pairs from which a dense matrix is rebuilt.
 const DENSE_PAIRS: usize = 200;
 
 /// BFGS matrix B, built from pairs s = x₊ − x and y = ∇L(x₊) − ∇L(x).
@@ -79,7 +79,7 @@ impl QuasiNewton {
         }
     }
 
-    /// The matrix without what can be computed again.
+    /// The matrix without cached values.
     pub(super) fn stored(&self) -> QuasiNewton {
         QuasiNewton {
             matrix: None,
@@ -110,7 +110,7 @@ impl QuasiNewton {
         self.matrix = None;
     }
 
-    /// What is wrong with a matrix that was read, for a program of at most `variables` free variables.
+    /// The fault of a matrix that was read, for a program of at most `variables` free variables.
     pub(super) fn fault(&self, variables: usize) -> Option<String> {
         if self.n > variables {
             let n = self.n;
@@ -149,7 +149,7 @@ impl QuasiNewton {
         self.matrix = None;
     }
 
-    /// Takes in a pair.
+    /// Adds a pair.
     pub(super) fn update(&mut self, s: DVector<f64>, y: DVector<f64>) {
         let (sy, ss, yy) = (s.dot(&y), s.norm_squared(), y.norm_squared());
         if !(sy.is_finite() && ss.is_finite() && yy.is_finite()) || ss == 0.0 {

@@ -1,4 +1,5 @@
-//! Solution of a subproblem to the last digits, once an interior-point solver has shown what is active.
+//! Solution of a subproblem to the last digits, after an interior-point solver has found the active
+//! set.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,20 +8,20 @@ use super::elastic_qp::{Hessian, QpData, QpStep};
 /// Distance from a bound of the box, relative to its size, at which a step counts as on it.
 const ON_BOX: f64 = 1e-7;
 
-/// Part of its penalty above which a multiplier counts as held by that.
+/// A multiplier above this part of its penalty counts as limited by the penalty.
 const HELD: f64 = 1.0 - 1e-6;
 
-/// Part of the box by which the refined step may differ, and part of the forces and of the box by which
-/// rounding may violate a condition.
+/// Largest difference of the refined step, as a part of the box. Largest violation of a condition
+/// by rounding, as a part of the forces and of the box.
 const DIFFERENCE: f64 = 1e-2;
 const ROUNDING: f64 = 1e-12;
 
-/// Solves the conditions of the bounds that are active at `found` as equations,
+/// Solves the conditions for the active set of `found` as equations,
 ///
 /// B d + Aᵀ y = −g for the variables inside the box, a_jᵀ d = room_j for the active rows;
 ///
-/// `None` if a row stays violated, the equations are singular, or another bound would be violated or a
-/// multiplier get the wrong sign.
+/// `None` if a row stays violated, the equations are singular, another bound would be violated, or
+/// a multiplier would get the wrong sign.
 pub(super) fn refine(data: &QpData<'_>, found: &QpStep) -> Option<QpStep> {
     let Hessian::Dense(b) = data.b else {
         return None;
@@ -59,7 +60,7 @@ pub(super) fn refine(data: &QpData<'_>, found: &QpStep) -> Option<QpStep> {
     if p < q || p == 0 {
         return None;
     }
-    // Rows and forces get entries of the same size.
+    // Scales rows and forces to entries of the same size.
     let unit = b.amax().max(f64::MIN_POSITIVE);
     let norm = |j: usize| data.a.row(j).amax().max(1e-100);
     let fixed_force = data.g + *b * &d;
@@ -92,8 +93,8 @@ pub(super) fn refine(data: &QpData<'_>, found: &QpStep) -> Option<QpStep> {
     is_valid(data, found, &refined, radius, force).then_some(refined)
 }
 
-/// Whether `refined` is near `found`, in the box, satisfies all rows, and has multipliers of the right
-/// signs.
+/// Whether `refined` is near `found` and in the box, satisfies all rows, and has multipliers of the
+/// right signs.
 fn is_valid(data: &QpData<'_>, found: &QpStep, refined: &QpStep, radius: f64, force: f64) -> bool {
     let QpStep { d, y } = refined;
     let residual = data.g + data.b.multiply(d) + data.a.tr_mul(y);

@@ -1,15 +1,15 @@
-//! Going on from where a method stalled, in units that suit this very point.
+//! Restart of a stalled method, in units that suit the point where it stalled.
 
 use super::ending::Finish;
 use super::outcome::Status;
 use super::program::{Point, Program, Slopes, Trouble};
 
-/// How often a method begins anew in the units of the point where it stalled.
+/// Largest number of restarts.
 const RENEWALS: usize = 6;
 
-/// Runs again from a feasible point where `finish` stalled, with fresh units, a fresh quasi-Newton
-/// matrix and derivatives of points near it alone, as long as that gains anything. Only where it does
-/// not, the end may be called [`Status::AtPrecision`].
+/// Restarts from a feasible point where `finish` stalled. The restart has new units, an empty
+/// quasi-Newton matrix and no earlier derivatives. It is repeated as long as the objective
+/// improves. Only after a restart without improvement may the end be [`Status::AtPrecision`].
 pub(super) fn renewed(
     program: &mut Program<'_>,
     mut finish: Finish,
@@ -42,7 +42,8 @@ pub(super) fn renewed(
         let worth = program.options.tolerance * unit;
         let lost = !program.is_feasible(&next.point.c);
         if !next.is_solved(program) && (lost || gain <= worth) {
-            // Nothing is left to gain: the residuals may be rounding beside what the run has seen.
+            // There is no gain left. The residuals may be rounding relative to the gradients of the
+            // run.
             finish.restore_units(program);
             program.gradient_norms.extend(&norms);
             return finish.with_stall_named(program);

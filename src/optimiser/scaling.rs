@@ -1,4 +1,4 @@
-//! Scale factors of the functions, and the units in which their derivatives count as small.
+//! Scale factors of the functions, and the units of their derivatives.
 
 use std::ops::RangeInclusive;
 
@@ -7,22 +7,22 @@ use nalgebra::DVector;
 use super::outcome::Scaling;
 use super::program::{Point, Program, Slopes, Trouble};
 
-/// An objective whose gradient at the start is below `FLAT` is multiplied until it is `LIFTED`, lest
-/// a start on a plateau be taken for a solution.
+/// An objective whose gradient at the start is below `FLAT` is multiplied until the gradient is
+/// `LIFTED`. Otherwise a start on a plateau would pass for a solution.
 const FLAT: f64 = 1.0;
 const LIFTED: f64 = 1.0;
 const LARGEST_LIFT: f64 = 1e12;
 
-/// Least factor by which a scale is changed on the way.
+/// Least factor by which a scale is changed during a run.
 const WORTHWHILE: f64 = 10.0;
 
-/// Sizes of a point for which the units of the variables are kept when a run begins anew.
+/// A restart keeps the units of the variables if the size of the point is between these.
 const NEAR_ONE: RangeInclusive<f64> = 1e-3..=1e3;
 
-/// Points that count as the first ones of a run.
+/// Number of first points of a run.
 const FIRST_POINTS: usize = 12;
 
-/// Gradients among those of the first points that do not count because they are too large.
+/// Number of largest gradients of the first points that are ignored.
 const LARGEST_LEFT_OUT: usize = 2;
 
 /// Units of a scaled program.
@@ -35,8 +35,8 @@ pub(super) struct Units {
 }
 
 impl Program<'_> {
-    /// Sets the scale factors of functions from derivatives `slopes` and changes point and slopes to
-    /// them.
+    /// Sets the scale factors of the functions from the derivatives `slopes`, and converts point
+    /// and slopes.
     pub fn scale(&mut self, point: &mut Point, slopes: &mut Slopes) {
         let limit = self.options.scaling_gradient;
         let mut units = self.units();
@@ -59,9 +59,9 @@ impl Program<'_> {
         self.change_units(&units, point, slopes);
     }
 
-    /// Uses scale factors and typical gradient of an earlier run on the same objective.
+    /// Uses scale factors and typical gradient of an earlier run with the same objective.
     pub fn adopt_scaling(&mut self, saved: &Scaling, point: &mut Point, slopes: &mut Slopes) {
-        // So many that later points cannot lower it.
+        // So many entries that later points cannot lower it.
         self.gradient_norms = vec![saved.typical_gradient; LARGEST_LEFT_OUT + 1];
         let units = Units {
             objective: saved.objective,
@@ -83,8 +83,8 @@ impl Program<'_> {
         }
     }
 
-    /// Factor by which the scale of the objective has to change to suit a point of gradient `g` and
-    /// curvature `curvature`, both scaled, at which the run has arrived; `None` if it suits.
+    /// Factor by which the scale of the objective should change at a point of the run with gradient
+    /// `g` and curvature `curvature`, both scaled. `None` if the scale suits.
     pub fn better_scale(&self, point: &Point, g: &DVector<f64>, curvature: f64) -> Option<f64> {
         let size = point.x.amax().max(1.0);
         let limit = self.options.scaling_gradient / g.amax().max(curvature * size);
@@ -109,7 +109,7 @@ impl Program<'_> {
         }
     }
 
-    /// Changes to `units`, with bounds and the best point; that of the run is left to the caller.
+    /// Changes to `units`, with bounds and the best point. The caller converts the current point.
     pub fn set_units(&mut self, units: &Units) {
         self.rescale(units.objective / self.scaling.objective);
         for (k, &j) in self.rows.iter().enumerate() {
@@ -136,7 +136,7 @@ impl Program<'_> {
         }
     }
 
-    /// Changes program, point and slopes to `units`.
+    /// Converts program, point and slopes to `units`.
     fn change_units(&mut self, units: &Units, point: &mut Point, slopes: &mut Slopes) {
         let objective = units.objective / self.scaling.objective;
         let length = units.length / self.length;
@@ -153,9 +153,9 @@ impl Program<'_> {
         self.set_units(units);
     }
 
-    /// Fresh units at a point where a method stalled: its size becomes the unit of the variables where
-    /// it is far from one, functions are scaled by their derivatives there, and those of other points
-    /// no longer count. Returns the point and its derivatives in these units.
+    /// New units at a point where a method stalled. The size of the point becomes the unit of the
+    /// variables if it is far from one. Functions are scaled by their derivatives there; earlier
+    /// derivatives are forgotten. Returns the point and its derivatives in these units.
     pub fn renew(&mut self, mut point: Point) -> Result<(Point, Slopes), Trouble> {
         let size = point.x.amax();
         if size > 0.0 && !NEAR_ONE.contains(&size) {
@@ -197,10 +197,10 @@ impl Program<'_> {
         }
     }
 
-    /// The unit in which derivatives of the objective count as small, in the units of the user: the
-    /// third largest ‖∇f‖∞ of the first dozen of points, or the median of all points if that is
-    /// larger. It grows with the objective, neither a cliff nor a plateau at the start decides it,
-    /// and a long tail of points near the optimum does not lower it.
+    /// Unit of the gradient of the objective, in the units of the user: the third largest ‖∇f‖∞ of
+    /// the first dozen points, or the median of all points if that is larger. It scales with the
+    /// objective. Neither a steep nor a flat start determines it, and many points near the optimum
+    /// do not lower it.
     pub fn typical_gradient(&self) -> f64 {
         let largest = |norms: &[f64], most: usize| {
             let mut norms: Vec<f64> = norms.iter().copied().filter(|v| *v > 0.0).collect();
@@ -216,17 +216,17 @@ impl Program<'_> {
         if typical > 0.0 { typical } else { 1.0 }
     }
 
-    /// The unit of an objective that vanishes, in that of the user.
+    /// Unit of an objective that vanishes, in the unit of the user.
     pub fn unit_of_objective(&self) -> f64 {
         UNIT_OF_OBJECTIVE * self.typical_gradient() * self.length
     }
 }
 
-/// Part of the typical gradient, over one unit, that is the unit of an objective that vanishes.
+/// Unit of a vanishing objective, as a part of the typical gradient times one unit.
 const UNIT_OF_OBJECTIVE: f64 = 0.01;
 
-/// Sets derivatives to zero that are nothing but rounding: over the `reach` of its variable each
-/// changes the function by less than the rounding of its largest change.
+/// Sets derivatives to zero that are rounding errors. Over the `reach` of its variable such a
+/// derivative changes the function by less than the rounding of its largest change.
 pub(super) fn drop_rounding(slopes: &mut DVector<f64>, reach: &DVector<f64>) {
     let largest = slopes.component_mul(reach).amax();
     for (slope, reach) in slopes.iter_mut().zip(reach.iter()) {

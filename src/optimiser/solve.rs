@@ -20,21 +20,21 @@ use super::trust_region::{Ending, Goal, TrustRegion};
 use super::verdict::{ScaledMultipliers, is_solved_at_end, scaled_multipliers, scaled_residual};
 use super::well_posed;
 
-/// Shares of iterations and evaluations after which [`Method::Auto`] leaves the interior point, and the
-/// trust region that starts from its best point; the trust region from the start has the rest.
+/// Shares of iterations and evaluations at which [`Method::Auto`] changes: from the interior point
+/// to the trust region from its best point, then to the trust region from the start.
 const FIRST_SHARE: f64 = 0.5;
 const SECOND_SHARE: f64 = 0.75;
 
-/// How often a run goes on from a point beside one that seems infeasible.
+/// How often a run continues from a point near one that seems infeasible.
 const ESCAPES: usize = 3;
 
-/// How often the trust-region method looks for a feasible point where the penalties fail.
+/// How often the trust-region method looks for a feasible point after the penalties failed.
 const FEASIBILITY_PHASES: usize = 2;
 
-/// Least relative distance from a bound of the start of a resumed run.
+/// Least relative distance of the start of a resumed run from a bound.
 const RESUMED_PUSH: f64 = 1e-10;
 
-/// Multipliers above this are replaced by fitted ones when a run ends.
+/// Larger multipliers are replaced by fitted ones at the end of a run.
 const LARGEST_MULTIPLIER: f64 = 1e20;
 
 /// Minimises f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
@@ -77,8 +77,8 @@ pub fn solve(nlp: &mut dyn Nlp, options: &Options, observer: &mut dyn Observer) 
 
 /// As [`solve`], continuing from the point, multipliers and quasi-Newton matrix of an earlier run.
 ///
-/// A state of a program with other numbers of variables or constraints is ignored, that of another
-/// objective gives its point alone, and a damaged one ([`SavedState::fault`]) ends the run as
+/// A state with other numbers of variables or constraints is ignored. A state of another objective
+/// gives its point alone. A damaged state ([`SavedState::fault`]) ends the run as
 /// [`Status::IllPosed`].
 pub fn resume(
     nlp: &mut dyn Nlp,
@@ -164,8 +164,8 @@ fn run(
     outcome(&program, finish, state)
 }
 
-/// Runs one method, and again from a point that violates the rows less where it ends at one that
-/// first derivatives alone make look infeasible.
+/// Runs one method. If it ends at a point that looks infeasible to first order only, it runs again
+/// from a nearby point with a smaller violation.
 fn attempt(
     program: &mut Program<'_>,
     method: Method,
@@ -182,7 +182,7 @@ fn attempt(
         if !matches!(finish.status, Status::Infeasible { .. }) {
             break;
         }
-        // A run that has seen a feasible point has lost its way.
+        // A run that has had a feasible point continues from it.
         if let Some(best) = program.feasible_best() {
             finish = match program.renew(best) {
                 Ok(first) => run(program, first, None),
@@ -224,8 +224,8 @@ fn attempt(
     finish
 }
 
-/// The interior point within its share of the work; where it does not converge, the trust region
-/// from the best point it passed through, then from the start.
+/// The interior point within its share of the work. If it does not converge, the trust region from
+/// the best point so far, then from the start.
 fn auto(
     program: &mut Program<'_>,
     first: (Point, Slopes),
@@ -248,7 +248,7 @@ fn auto(
         if !hopeless || kept.is_solved(program) {
             break;
         }
-        // The best point is where the rows cannot be improved.
+        // At the best point the rows cannot be improved.
         if from_best && matches!(kept.status, Status::Infeasible { .. }) {
             continue;
         }
@@ -262,7 +262,7 @@ fn auto(
         };
         program.allow(share);
         let next = attempt(program, Method::TrustRegion, place, None, push);
-        // A verdict is worth more than having found none, and no verdict more than a better point.
+        // A verdict is preferred to none. Without a verdict the better point is kept.
         let undecided = matches!(
             next.status,
             Status::Stalled | Status::IterationLimit | Status::EvaluationLimit
@@ -309,7 +309,7 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
         let mut point = method.at.point.clone();
         program.rescale(factor);
         point.f *= factor;
-        // Small derivatives were lost beside the large ones of the start.
+        // Small derivatives were lost in the rounding of the large ones at the start.
         let slopes = match program.gradients(&point.x) {
             Ok(slopes) => slopes,
             Err(trouble) => {
@@ -325,8 +325,8 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
     let mut multipliers = method.multipliers(program);
     let mut scaled = method.optimality();
     let (point, slopes) = (method.at.point, method.at.slopes);
-    // Multipliers that grow without limit may hide a point that has finite ones; where the rows
-    // cannot be satisfied they say nothing.
+    // Unbounded multipliers may hide finite ones at the same point. They mean nothing if the rows
+    // cannot be satisfied.
     let bounded = multipliers
         .y
         .iter()
@@ -412,7 +412,7 @@ fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> Fi
     }
 }
 
-/// Runs the trust region, and again in better units where those of the start do not suit its end.
+/// Runs the trust region, and again in better units if those of the start do not suit its end.
 fn optimise(program: &mut Program<'_>, method: &mut TrustRegion) -> Result<Ending, Trouble> {
     loop {
         let ending = method.run(program, |_, _| false)?;

@@ -1,5 +1,5 @@
-//! The quadratic subproblem for many variables, with the low-rank part of its matrix in variables of
-//! its own, so that Clarabel sees sparse matrices.
+//! The quadratic subproblem for many variables. The low-rank part of its matrix has variables of
+//! its own, so Clarabel sees sparse matrices.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
@@ -20,7 +20,7 @@ const SAME: f64 = 1e-6;
 /// tᵀB t = min { σ pᵀp + Σ λ₋ σ/(σ − λ₋) z₋² + Σ (λ₊ − σ) z₊² },
 /// ```
 ///
-/// a diagonal form in p, z₋ and z₊: springs in series are softer and springs side by side stiffer.
+/// a diagonal form in p, z₋ and z₊. Springs in series are softer; parallel springs are stiffer.
 pub(super) fn solve(
     rows: &CscMatrix<f64>,
     b: &Spectrum,

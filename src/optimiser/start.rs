@@ -7,15 +7,16 @@ use super::nlp::EvaluationFailure;
 use super::options::Method;
 use super::program::{Point, Program, Slopes, Trouble};
 
-/// Starts tried where the functions are not defined.
+/// Number of starts tried if the functions are undefined.
 const START_TRIALS: usize = 12;
 
-/// Points tried beside one that seems infeasible, and their distances where no bounds give a measure,
-/// relative to the size of the point.
+/// Points tried near one that seems infeasible, and their distances relative to the size of the
+/// point if there are no bounds.
 const ESCAPE_TRIALS: usize = REACHES.len();
 const REACHES: [f64; 6] = [0.2, 1.0, 5.0, 0.5, 50.0, 500.0];
 
-/// Part of the violation by which it must be less beside a point, and up to which it is unchanged.
+/// A nearby violation is less if it differs by this part, and unchanged if it differs by less than
+/// the second part.
 const LESS: f64 = 1e-6;
 const UNCHANGED: f64 = 1e-12;
 
@@ -46,18 +47,19 @@ pub(super) fn first_point(
     Err(Trouble::Failed(first_failure.unwrap_or(missing)))
 }
 
-/// How the violation changes around a point at which its derivatives show no way down.
+/// The violation around a point at which its derivatives show no descent.
 pub(super) enum Around {
-    /// It is clearly less at this point: that was a maximum, a saddle or one minimum of several.
+    /// It is clearly less at this point. The first point was a maximum, a saddle or one of several
+    /// minima.
     Less(Box<(Point, Slopes)>),
-    /// It changes nowhere: derivatives say nothing.
+    /// It is constant. Derivatives give no direction.
     Flat,
     /// It rises.
     More,
 }
 
-/// Looks at points around `at`, near and far: at a maximum, a saddle or on a plateau of the violation
-/// its derivatives vanish too.
+/// Tries points around `at`, near and far. At a maximum, at a saddle and on a plateau of the
+/// violation its derivatives vanish too.
 pub(super) fn look_around(program: &mut Program<'_>, at: &Point) -> Result<Around, Trouble> {
     let now = program.total_violation(&at.c);
     let mut largest = 0.0_f64;
@@ -88,8 +90,8 @@ pub(super) fn look_around(program: &mut Program<'_>, at: &Point) -> Result<Aroun
     })
 }
 
-/// The start for `trial` 0, then points in changing directions, up to the part `part` of the distance
-/// of two bounds or of the size of the start away.
+/// The start for `trial` 0, then points in changing directions. Their distance is up to the part
+/// `part` of the distance of two bounds or of the size of the start.
 fn perturbed(
     program: &Program<'_>,
     start: &DVector<f64>,

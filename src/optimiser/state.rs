@@ -1,11 +1,11 @@
-//! What a later run needs to continue from where an earlier one ended.
+//! The state from which a later run continues.
 
 use serde::{Deserialize, Serialize};
 
 use super::outcome::{Multipliers, Scaling};
 use super::quasi_newton::QuasiNewton;
 
-/// Relative difference of two values of the same objective at almost the same point.
+/// Two values of one objective at almost the same point differ by less than this, relatively.
 const SAME: f64 = 1e-6;
 
 /// State of the solver, in a form that can be stored.
@@ -13,7 +13,7 @@ const SAME: f64 = 1e-6;
 pub struct SavedState {
     /// Point, in the units of the user.
     pub x: Vec<f64>,
-    /// Objective there: where a program has another value, the state belongs to another objective.
+    /// Objective there. If a program has another value, the state belongs to another objective.
     #[serde(default)]
     pub objective: f64,
     /// Multipliers, in the units of the user.
@@ -29,8 +29,8 @@ pub struct SavedState {
 }
 
 impl SavedState {
-    /// What makes the state useless for a program of `variables` variables and `constraints` rows:
-    /// lengths that disagree or numbers that are out of range, by name; `None` if nothing does.
+    /// The fault of the state for a program of `variables` variables and `constraints` rows, by
+    /// name: lengths that disagree or numbers out of range. `None` if there is none.
     #[must_use]
     pub fn fault(&self, variables: usize, constraints: usize) -> Option<String> {
         let (z, scaling) = (&self.multipliers, &self.scaling);
@@ -77,7 +77,7 @@ impl SavedState {
         self.quasi_newton.fault(variables)
     }
 
-    /// Whether `objective`, found at the start of a run from here, is the one of this state.
+    /// Whether `objective`, the value at this state's point, agrees with the stored one.
     pub(super) fn is_of(&self, objective: f64) -> bool {
         (objective - self.objective).abs() <= SAME * objective.abs().max(self.objective.abs())
     }

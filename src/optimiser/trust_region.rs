@@ -16,22 +16,22 @@ use super::verdict::{ScaledMultipliers, Verdict, judge, scaled_residual};
 /// Share of the predicted reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-4;
 
-/// Steps in succession whose predicted reduction is lost in rounding that are still tried.
+/// Number of successive steps whose predicted reduction may be less than rounding.
 const LOST_STEPS: usize = 4;
 
-/// How often the matrix is forgotten where no progress is left, and the radius that follows,
-/// relative to the size of the point.
+/// How often the matrix is cleared if there is no progress, and the next radius relative to the
+/// size of the point.
 const RENEWALS: usize = 3;
 const RENEWED_RADIUS: f64 = 0.1;
 
-/// Share of the violation that its linearisation may still lose at a point called infeasible.
+/// Share of the violation that the linearisation may still remove at an infeasible point.
 const STATIONARY: f64 = 1e-4;
 
-/// The same at a point that is called infeasible although steps are left.
+/// The same at a point called infeasible before all steps are exhausted.
 pub(super) const IRREDUCIBLE: f64 = 1e-8;
 
-/// Steps refused in succession after which gradients are taken at refused feasible points too: a short
-/// matrix refuses many steps before it knows a curved valley.
+/// After this number of successive refused steps, gradients are evaluated at refused feasible
+/// points too. A matrix from few pairs refuses many steps before it knows a curved valley.
 const LEARN: usize = 1;
 
 /// What the iteration minimises.
@@ -39,7 +39,7 @@ const LEARN: usize = 1;
 pub(super) enum Goal {
     /// Objective and violation.
     Optimum,
-    /// Violation alone; steps keep the share 0.01 of every distance to a bound.
+    /// Violation alone. Steps keep the share 0.01 of every distance to a bound.
     Feasibility,
 }
 
@@ -54,7 +54,7 @@ pub(super) enum Ending {
     Unbounded,
     /// No step is accepted although the radius is tiny.
     Stalled,
-    /// The conditions hold in scaled units that do not suit the point.
+    /// The conditions hold in scaled units, but these do not suit the point.
     Misscaled,
 }
 
@@ -92,7 +92,7 @@ impl TrustRegion {
         }
     }
 
-    /// Goes on with an objective multiplied by `factor` and slopes of that.
+    /// Continues with the objective multiplied by `factor` and with its slopes.
     pub fn rescale(&mut self, factor: f64, slopes: Slopes) {
         self.point.f *= factor;
         self.slopes = slopes;
@@ -110,7 +110,7 @@ impl TrustRegion {
         ScaledMultipliers::polished(program, &self.point, &self.slopes, &self.y)
     }
 
-    /// Iterates until `reached` or an ending of its own.
+    /// Iterates until `reached` holds or the method ends.
     pub fn run(
         &mut self,
         program: &mut Program<'_>,
@@ -153,7 +153,7 @@ impl TrustRegion {
                 if renewals == RENEWALS || self.b.is_empty() {
                     return Ok(self.end(program, STATIONARY));
                 }
-                // Curvature gathered over long steps may make the subproblem too ill-conditioned.
+                // Curvature from long steps may make the subproblem too ill-conditioned.
                 renewals += 1;
                 lost = 0;
                 self.b.reset();
@@ -165,7 +165,8 @@ impl TrustRegion {
             let boundary = size >= 0.99 * self.radius;
             let radius = self.radius;
             if ratio < 0.25 {
-                // One failed evaluation says nothing of the model; a second shows a region.
+                // One failed evaluation is no evidence against the model. A second one shows a
+                // region.
                 failed = if ratio == f64::NEG_INFINITY {
                     failed + 1
                 } else {
@@ -217,7 +218,7 @@ impl TrustRegion {
         }
     }
 
-    /// Names what a point at which no step is left is: infeasible only if the linearised violation
+    /// Classifies a point without further steps. It is infeasible only if the linearised violation
     /// cannot be reduced by more than `share` in a box of the size of the point.
     fn end(&mut self, program: &mut Program<'_>, share: f64) -> Ending {
         if program.is_feasible(&self.point.c) {
@@ -251,7 +252,7 @@ impl TrustRegion {
         program.better_scale(&self.point, &self.slopes.g, curvature)
     }
 
-    /// The ending of a run that has nothing left to do.
+    /// The ending of a run without further steps.
     fn settled(&self, program: &Program<'_>) -> Option<Ending> {
         if self.goal == Goal::Feasibility {
             return None;
@@ -327,7 +328,7 @@ impl TrustRegion {
         })
     }
 
-    /// Takes the curvature on the way to a refused point into the matrix.
+    /// Adds the curvature between the point and a refused point to the matrix.
     fn learn(&mut self, program: &mut Program<'_>, trial: &Point) -> Result<(), Trouble> {
         let slopes = match program.gradients(&trial.x) {
             Ok(slopes) => slopes,

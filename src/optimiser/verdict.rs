@@ -1,4 +1,4 @@
-//! Residuals in the units of the user, by which a point is judged.
+//! Residuals in the units of the user, and the judgement of a point.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,8 +15,8 @@ pub(super) struct ScaledMultipliers {
 }
 
 impl ScaledMultipliers {
-    /// Multipliers of the bounds that belong to the row multipliers `y`: whatever force remains on
-    /// a variable is given to the bound it pushes against, unless that bound is far away.
+    /// Multipliers of the bounds for the row multipliers `y`. The remaining force on a variable
+    /// goes to the bound that it pushes against, unless that bound is far away.
     pub fn from_rows(
         program: &Program<'_>,
         point: &Point,
@@ -43,8 +43,8 @@ impl ScaledMultipliers {
         ScaledMultipliers { y, zl, zu }
     }
 
-    /// As [`ScaledMultipliers::from_rows`] with the better of `y` and the least-squares multipliers
-    /// of the rows that `y` shows to be active.
+    /// As [`ScaledMultipliers::from_rows`], with the better of two choices: `y`, or the
+    /// least-squares multipliers of the rows that are active by `y`.
     pub fn polished(
         program: &Program<'_>,
         point: &Point,
@@ -82,7 +82,7 @@ impl ScaledMultipliers {
         self
     }
 
-    /// Sets to zero what has the wrong sign for the bounds that a row has.
+    /// Sets multipliers to zero that have the wrong sign for the bounds of their row.
     pub fn clip(&mut self, program: &Program<'_>) {
         for k in 0..self.y.len() {
             if program.row_upper[k] == f64::INFINITY {
@@ -131,11 +131,11 @@ fn least_squares(
     Some(all)
 }
 
-/// Part of the typical gradient that is the unit of forces where the gradient vanishes.
+/// Unit of forces where the gradient vanishes, as a part of the typical gradient.
 const UNIT: f64 = 0.1;
 
-/// The size of forces, in the units of the user: that of the gradient or, where it vanishes, of those
-/// at other points of the run.
+/// Size of forces, in the units of the user: that of the gradient or, if it vanishes, of the
+/// gradients at other points of the run.
 pub(super) fn unit_of_forces(program: &Program<'_>, slopes: &Slopes) -> f64 {
     gradient_norm(program, slopes).max(UNIT * program.typical_gradient())
 }
@@ -148,7 +148,7 @@ pub(super) fn gradient_norm(program: &Program<'_>, slopes: &Slopes) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Residuals at a point; `scaled` is left to the caller.
+/// Residuals at a point. The caller sets `scaled`.
 pub(super) fn kkt(
     program: &Program<'_>,
     point: &Point,
@@ -232,27 +232,27 @@ pub(super) fn scaled_residual(
     (force.amax().max(complementarity) / (size.max(100.0) / 100.0)).max(violation)
 }
 
-/// Part of the typical gradient below which the gradient at a point counts as vanishing, and part of
-/// the gradient up to which the force left on the variables shows that multipliers balance it.
+/// A gradient below the first part of the typical gradient counts as vanishing. A remaining force
+/// up to the second part of the gradient shows that multipliers balance it.
 const VANISHING: f64 = 1e-5;
 const BALANCED: f64 = 0.1;
 
-/// Rounding errors of x that are its last digits.
+/// A change of x by this number of rounding errors changes its last digits only.
 const LAST_DIGITS: f64 = 10.0;
 
-/// What the residuals at a point say.
+/// Judgement of the residuals at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
     /// They are too large.
     Unsolved,
-    /// They are small in scaled units and against the gradients of the run alone.
+    /// They are small only in scaled units and relative to the gradients of the run.
     SolvedInScaledUnits,
     /// They meet the tolerances in the units of the user as well.
     Solved,
 }
 
-/// Judges a point. Unless the forces are small against the gradient at the point itself, no multipliers
-/// may balance a gradient that stays.
+/// Judges a point. It is unsolved if multipliers balance a gradient that does not vanish, but the
+/// remaining force is not small relative to this gradient.
 pub(super) fn judge(
     program: &Program<'_>,
     point: &Point,
@@ -276,7 +276,8 @@ pub(super) fn judge(
     }
 }
 
-/// Whether the residuals meet the tolerances in scaled units and relative to the gradients of the run.
+/// Whether the residuals meet the tolerances in scaled units and relative to the gradients of the
+/// run.
 pub(super) fn is_solved_in_scaled_units(program: &Program<'_>, point: &Point, kkt: &Kkt) -> bool {
     let options = program.options;
     let within = |value: f64, limit: f64| value <= limit;
@@ -286,8 +287,8 @@ pub(super) fn is_solved_in_scaled_units(program: &Program<'_>, point: &Point, kk
         && within(kkt.scaled, options.tolerance)
 }
 
-/// Whether the residuals meet the tolerances in the units of the user: they are absolute, or relative
-/// to gradient and objective at the point itself, and know nothing of other points.
+/// Whether the residuals meet the tolerances in the units of the user: absolutely, or relative to
+/// gradient and objective at this point. Other points have no influence.
 pub(super) fn is_solved_in_user_units(
     program: &Program<'_>,
     point: &Point,
@@ -301,9 +302,9 @@ pub(super) fn is_solved_in_user_units(
         && kkt.complementarity <= tolerance * f.abs().max(1.0)
 }
 
-/// Whether nothing is left to gain that the objective could show: relative to the gradients of the run
-/// the residuals meet the tolerances, and the step −B⁻¹∇L gains less than the rounding of f or changes
-/// only the last digits of x.
+/// Whether the objective can show no further gain. The residuals meet the tolerances relative to
+/// the gradients of the run. The step −B⁻¹∇L gains less than the rounding of f, or changes only the
+/// last digits of x.
 pub(super) fn is_at_precision(
     program: &Program<'_>,
     point: &Point,
@@ -322,7 +323,7 @@ pub(super) fn is_at_precision(
     })
 }
 
-/// As [`judge`] says [`Verdict::Solved`], at a point where no step makes progress.
+/// Whether [`judge`] gives [`Verdict::Solved`], at a point where no step makes progress.
 pub(super) fn is_solved_at_end(
     program: &Program<'_>,
     point: &Point,
@@ -335,7 +336,7 @@ pub(super) fn is_solved_at_end(
         && is_solved_in_user_units(program, point, slopes, &kkt)
 }
 
-/// Multipliers in the units of the user; those of fixed variables balance the force on them.
+/// Multipliers in the units of the user. Those of fixed variables balance the force on them.
 pub(super) fn user_multipliers(
     program: &Program<'_>,
     slopes: &Slopes,
@@ -368,7 +369,7 @@ pub(super) fn user_multipliers(
     }
 }
 
-/// Multipliers of a user, in scaled units.
+/// Multipliers of the user, converted to scaled units.
 pub(super) fn scaled_multipliers(program: &Program<'_>, user: &Multipliers) -> ScaledMultipliers {
     let unit_f = program.scaling.objective;
     let row = |&j: &usize| user.constraints[j] * unit_f / program.scaling.constraints[j];
@@ -396,8 +397,8 @@ pub(super) fn steepness(program: &Program<'_>, slopes: &Slopes) -> Vec<f64> {
     all
 }
 
-/// Entries that are active: their distance to a bound, as a distance in the variables, is less than
-/// 1e-6 of max(1, |bound|), or small against their force as a part of `gradient`. One unit of a
+/// Active entries: their distance to a bound, as a distance in the variables, is less than 1e-6 of
+/// max(1, |bound|), or small relative to their force as a part of `gradient`. One unit of a
 /// variable changes entry i by `steepness(i)`.
 pub(super) fn active(
     values: &[f64],

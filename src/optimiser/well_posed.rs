@@ -1,10 +1,10 @@
-//! Faults of a program or of the options that are seen before anything is evaluated.
+//! Faults of a program or of the options that are found before any evaluation.
 
 use super::nlp::Nlp;
 use super::options::Options;
 use super::outcome::Status;
 
-/// How a run on `nlp` ends before it begins; `None` if the program and the options make sense.
+/// Status of a run on `nlp` that cannot begin. `None` if the program and the options make sense.
 pub(super) fn fault(nlp: &dyn Nlp, options: &Options) -> Option<Status> {
     let ill_posed = |what| Some(Status::IllPosed { what });
     if let Some(what) = fault_of_options(options).or_else(|| fault_of_lengths(nlp)) {

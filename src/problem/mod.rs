@@ -191,6 +191,21 @@ impl Problem {
         read::parse(text, file, overrides)
     }
 
+    /// Name of the problem and of its results.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Design variables in the order of the file.
+    pub fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    /// Names of the functions in the order of the file.
+    pub fn functions(&self) -> &[String] {
+        &self.function_names
+    }
+
     /// The design that the file describes.
     pub fn start(&self) -> Vec<f64> {
         self.variables

@@ -1,4 +1,4 @@
-//! The certificate of the gradients that an optimisation went by.
+//! The certificate of an optimisation's gradients.
 
 use super::number::significant;
 use indexmap::IndexMap;
@@ -9,19 +9,19 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GradientCertificate {
-    /// What the direction was drawn with.
+    /// Seed of the direction.
     pub seed: u64,
     /// The direction d: the change of each variable, in its unit.
     pub direction: IndexMap<String, f64>,
-    /// Largest difference that passes, relative to Σᵢ |dᵢ ∂f/∂xᵢ|.
+    /// Largest accepted difference, relative to Σᵢ |dᵢ ∂f/∂xᵢ|.
     pub tolerance: f64,
     /// Whether every derivative passed at both designs.
     pub passed: bool,
-    /// What was found at the start.
+    /// The derivatives at the start.
     pub start: CertifiedDesign,
-    /// What was found at the optimum.
+    /// The derivatives at the optimum.
     pub optimum: CertifiedDesign,
-    /// What it took.
+    /// Its work.
     pub cost: CertificateCost,
 }
 
@@ -42,10 +42,10 @@ pub struct CertifiedDesign {
     /// The derivatives, by function.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub functions: IndexMap<String, CertifiedDerivative>,
-    /// What is wrong: the function, and what of variable, body, joint, step is known.
+    /// The fault: the function, and the variable, body, joint and step as far as known.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<String>,
-    /// What passes and should be known all the same.
+    /// A note on derivatives that pass.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
 }
@@ -60,14 +60,14 @@ pub struct CertifiedDerivative {
     /// By the complex step.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub complex_step: Option<f64>,
-    /// Their difference, relative to Σᵢ |dᵢ ∂f/∂xᵢ|. One above the tolerance passes where it is round-off of
-    /// what the derivatives are sums of.
+    /// Their difference, relative to Σᵢ |dᵢ ∂f/∂xᵢ|. A difference above the tolerance passes if it
+    /// is round-off of the terms of the derivatives.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub difference: Option<f64>,
 }
 
 impl GradientCertificate {
-    /// What is wrong, with the design, one sentence each.
+    /// The faults, with the design, one sentence each.
     pub fn faults(&self) -> Vec<String> {
         self.told(|design| &design.faults)
     }
@@ -92,7 +92,7 @@ pub(super) fn lines(certificate: &GradientCertificate) -> String {
         complex_runs,
     } = certificate.cost;
     let cost = format!("cost: {gradients} gradients and {complex_runs} complex runs");
-    // Of those that vanish, the difference is nothing but round-off.
+    // For derivatives that vanish, the difference is round-off.
     let largest = |design: &CertifiedDesign| {
         let differences = design.functions.values().filter_map(|d| d.difference);
         let judged = differences.filter(|d| *d <= certificate.tolerance);

@@ -22,10 +22,10 @@ pub struct Tolerances {
     /// Sensitivities of constraints: relative to their magnitude, at least one unit. Default 1e-3:
     /// they are first derivatives at an approximate optimum.
     pub multiplier: f64,
-    /// Counts of work, relative. A smaller count is only remarked; small counts may move by two.
-    /// Default 0.25: another machine rounds otherwise.
+    /// Counts of work, relative. A smaller count is only a remark; small counts may move by two.
+    /// Default 0.25: another machine rounds differently.
     pub work: f64,
-    /// Whether another problem is a difference or only a warning. Default false.
+    /// Whether a different problem is a difference or only a warning. Default false.
     pub same_problem: bool,
 }
 
@@ -247,7 +247,7 @@ fn objective_rows(rows: &mut Vec<Row>, new: &Optimum, baseline: &Optimum, tolera
     }
 }
 
-/// What one is to a design variable: the width between its bounds, or its magnitude.
+/// Unit of a design variable's change: the width between its bounds, or its magnitude.
 fn design_unit(variable: &DesignValue) -> f64 {
     match (variable.lower, variable.upper) {
         (Some(lower), Some(upper)) if upper > lower => upper - lower,
@@ -270,7 +270,7 @@ fn text_row(kind: &'static str, name: &str, new: &str, baseline: &str) -> Row {
     }
 }
 
-/// Enough of a hash to see that it differs.
+/// The first digits of a hash, enough to see a difference.
 fn shortened(text: &str) -> String {
     if text.chars().count() > 24 {
         text.chars().take(12).collect::<String>() + "…"
@@ -339,7 +339,7 @@ fn work_row(name: &str, new: u64, baseline: u64, tolerance: f64) -> Row {
 
 type Pair<'a, T> = (Option<&'a T>, Option<&'a T>);
 
-/// Entries of both maps by name, in the order of the first and then what only the second has.
+/// Entries of both maps by name, in the order of the first, then those of the second only.
 fn pairs<'a, T>(
     first: &'a IndexMap<String, T>,
     second: &'a IndexMap<String, T>,

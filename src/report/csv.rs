@@ -19,8 +19,8 @@ pub(super) fn write_record<'a>(out: &mut String, fields: impl Iterator<Item = &'
     out.push('\n');
 }
 
-/// A table with a heading a column: numbers so that they read back exactly, and nothing where one is
-/// not finite.
+/// A table with a heading for each column. Numbers read back exactly; an entry that is not finite
+/// is empty.
 pub fn csv_table(header: &[String], rows: impl Iterator<Item = Vec<f64>>) -> String {
     let mut text = String::new();
     write_record(&mut text, header.iter().map(String::as_str));

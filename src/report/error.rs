@@ -1,4 +1,4 @@
-//! What can go wrong while a record is read or written.
+//! Errors of reading and writing records.
 
 use crate::problem::visible;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ pub enum ReportError {
     /// The operating system refused to write.
     #[error("cannot write {}: {source}", shown(path))]
     Write {
-        /// The file that was asked for; it is as it was before.
+        /// The requested file; it is unchanged.
         path: PathBuf,
         /// What the operating system said.
         source: std::io::Error,
@@ -32,19 +32,19 @@ pub enum ReportError {
     /// The operating system refused to read.
     #[error("cannot read {}: {source}", shown(path))]
     Read {
-        /// The file that was asked for.
+        /// The requested file.
         path: PathBuf,
         /// What the operating system said.
         source: std::io::Error,
     },
-    /// A history is not the table that it should be.
+    /// A history that is no valid table.
     #[error("history, line {line}: found {found}, expected {expected}")]
     History {
         /// Line of the file where the record starts, counted from one.
         line: usize,
-        /// What stands there.
+        /// What was found.
         found: String,
-        /// What should stand there.
+        /// What was expected.
         expected: String,
     },
     /// A record of evaluations is damaged or belongs elsewhere.
@@ -54,24 +54,24 @@ pub enum ReportError {
         path: PathBuf,
         /// Line, counted from one.
         line: usize,
-        /// What stands there.
+        /// What was found.
         found: String,
-        /// What should stand there.
+        /// What was expected.
         expected: String,
     },
-    /// A table of reference positions is not what it should be.
+    /// A table of reference positions that is not valid.
     #[error("{}:{line}: found {found}, expected {expected}", shown(path))]
     Positions {
         /// The file.
         path: PathBuf,
         /// Line, counted from one.
         line: usize,
-        /// What stands there.
+        /// What was found.
         found: String,
-        /// What should stand there.
+        /// What was expected.
         expected: String,
     },
-    /// An optimum is not the JSON document that it should be.
+    /// An optimum that is no valid JSON document.
     #[error("optimum: {0}")]
     Optimum(#[from] serde_json::Error),
     /// A number of an optimum is NaN or infinite, which JSON cannot hold.
@@ -80,7 +80,7 @@ pub enum ReportError {
         /// JSON Pointer of the number.
         pointer: String,
     },
-    /// A figure was asked for without the data that it shows.
+    /// A requested figure without the data that it shows.
     #[error("figure {figure}: {missing}")]
     NothingToDraw {
         /// Name of the figure.

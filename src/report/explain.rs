@@ -1,11 +1,11 @@
-//! What a scene has, what of it is left out before it is integrated, and what its integration
-//! takes: the text of `optimize explain`.
+//! The text of `optimize explain`: the scene, what lowering removes from it, and the work of its
+//! integration.
 
 use super::table::render;
 use serde::Serialize;
 use std::fmt::Write;
 
-/// What `optimize explain` tells.
+/// The explanation of `optimize explain`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Explanation {
     /// Name of the problem.
@@ -16,11 +16,11 @@ pub struct Explanation {
     pub joints: usize,
     /// See above.
     pub loads: usize,
-    /// What is left out, and why it may be.
+    /// The reductions made, and why they are allowed.
     pub left_out: Vec<String>,
-    /// What is not left out, and what stands against it.
+    /// The reductions that failed, and the violated conditions.
     pub kept: Vec<String>,
-    /// What becomes of the start that the file gives, where that is not kept.
+    /// Changes of the given start, if the joints require any.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub start: Vec<String>,
     /// The system as it is written.
@@ -30,7 +30,7 @@ pub struct Explanation {
     /// How the start is integrated, unless that failed.
     #[serde(flatten)]
     pub integration: Option<IntegrationUse>,
-    /// Why the start could not be simulated, or its functions not be derived.
+    /// Why the start could not be simulated, or its functions not be differentiated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
     /// The functions.
@@ -48,17 +48,17 @@ pub struct IntegrationUse {
     pub reason: String,
     /// See above.
     pub steps: usize,
-    /// Where what is left out changes what the method computes by its error, and not by round-off.
+    /// Where lowering changes the discretisation error of the method, and not only round-off.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub merged: Option<String>,
     /// Memory of the samples and of what is kept for gradients (bytes).
     pub samples_bytes: usize,
     /// See above.
     pub tape_bytes: usize,
-    /// Steps that a gradient makes again, because memory does not suffice to keep them.
+    /// Steps that a gradient repeats because memory is limited.
     pub recomputed: usize,
-    /// The part of the motion that was simulated, if the whole takes long: the number of steps, the memory
-    /// and what functions depend on are estimated from it.
+    /// The simulated part of the motion, if the whole takes long. The number of steps, the memory
+    /// and the dependences of functions are estimated from it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stretch: Option<f64>,
 }
@@ -72,27 +72,27 @@ pub struct SystemSize {
     pub rows: usize,
     /// Unknowns of an implicit step, with the rows that stabilise it.
     pub stabilised: usize,
-    /// Bodies in the order of elimination; empty if that is left to sparse LU.
+    /// Bodies in the order of elimination; empty with sparse LU.
     pub order: Vec<String>,
-    /// Why that is left to sparse LU, if it is.
+    /// The reason for sparse LU, if it is used.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sparse: Option<String>,
     /// Joints that close loops, eliminated after the bodies.
     pub closing: Vec<String>,
-    /// Entries of the sparse matrix and of its factors, where it is used.
+    /// Entries of the sparse matrix and of its factors, if it is used.
     pub fill: Option<(usize, usize)>,
     /// Floating-point operations of a factorisation.
     pub operations: usize,
 }
 
-/// What a function is used for, and what it depends on.
+/// Use and dependences of a function.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FunctionUse {
     /// Its name.
     pub name: String,
     /// "objective", "constraint", or nothing if an optimisation never evaluates it.
     pub used: String,
-    /// Whether it looks at the whole motion, or at its end alone.
+    /// Whether it depends on the whole motion, or on its end alone.
     pub whole_motion: bool,
     /// Variables that it depends on at the start, if that could be simulated.
     #[serde(skip_serializing_if = "Option::is_none")]

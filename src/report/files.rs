@@ -1,11 +1,11 @@
-//! Files written whole or not at all, and read with the path in the error.
+//! Files that are written whole or not at all, and read with the path in the error.
 
 use super::ReportError;
 use std::fs::{File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Names of files that are not whole yet begin and end so.
+/// Beginning and end of the names of incomplete files.
 const TEMPORARY: (&str, &str) = (".flexbody-", ".tmp");
 
 /// Writes a file whole or not at all.
@@ -19,8 +19,8 @@ pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
     finish(prepare(path, bytes)?).map(drop)
 }
 
-/// As [`atomic_write`]; what is written to the file that it returns is appended. Its directory is made if
-/// need be.
+/// As [`atomic_write`]. Later text is appended to the returned file. Creates its directory if it is
+/// missing.
 ///
 /// # Errors
 /// As [`atomic_write`].
@@ -31,8 +31,8 @@ pub(super) fn atomic_begin(path: &Path, bytes: &[u8]) -> Result<File, ReportErro
     Ok(file)
 }
 
-/// Writes a group of files: all of them are on the disk under temporary names before the first
-/// one gets its own name, so that a full disk or a forbidden directory leaves no mixture.
+/// Writes a group of files. All of them are on the disk under temporary names before the first one
+/// gets its own name. So a full disk or a forbidden directory leaves no mixture.
 ///
 /// Directories that are missing are made.
 ///
@@ -69,7 +69,7 @@ fn make_directory(path: &Path) -> Result<(), ReportError> {
     })
 }
 
-/// The names of files are on the disk only when their directory is.
+/// The disk has the names of files only after their directory is synchronised.
 #[cfg(unix)]
 fn synchronise_directory(path: &Path) -> Result<(), ReportError> {
     let synchronised = File::open(path).and_then(|opened| opened.sync_all());
@@ -114,8 +114,8 @@ fn prepare(path: &Path, bytes: &[u8]) -> Result<Prepared, ReportError> {
     })
 }
 
-/// A temporary file that others may read, as they may read any file that is made plainly
-/// (the default of `tempfile` is private to the user, and the rename would keep that).
+/// A temporary file that others may read, like an ordinary new file. (The default of `tempfile` is
+/// private to the user, and the rename would keep that.)
 fn new_file(directory: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
@@ -135,17 +135,17 @@ fn finish(prepared: Prepared) -> Result<File, ReportError> {
     })
 }
 
-/// A directory that no other run writes its results to until this is dropped or the process has ended,
+/// A directory in which no other run writes results until this is dropped or the process has ended,
 /// by whatever cause.
 #[derive(Debug)]
 #[must_use]
 pub struct HeldDirectory {
-    /// Locked as long as it is open; `None` where the file system has no locks.
+    /// Locked while it is open; `None` on a file system without locks.
     _lock: Option<File>,
 }
 
 fn hold(path: &Path) -> Result<HeldDirectory, ReportError> {
-    // A directory can be locked itself where it can be opened.
+    // A directory that can be opened can be locked itself.
     #[cfg(unix)]
     let opened = File::open(path);
     #[cfg(not(unix))]
@@ -163,12 +163,12 @@ fn hold(path: &Path) -> Result<HeldDirectory, ReportError> {
     }
 }
 
-/// Makes sure, before work is done for it, that a directory takes files: makes it if need be, holds it
-/// against other runs, and removes the temporary files of runs that were killed there.
+/// Prepares a directory before any work: creates it if it is missing, locks it against other runs,
+/// and removes the temporary files of killed runs.
 ///
 /// # Errors
-/// [`ReportError::InUse`] if another run holds it, with nothing changed, or [`ReportError::Write`], with
-/// the path of the directory.
+/// [`ReportError::InUse`] if another run holds it; nothing is changed then. [`ReportError::Write`]
+/// with the path of the directory.
 pub fn prepare_directory(path: &Path) -> Result<HeldDirectory, ReportError> {
     let fault = |source| ReportError::Write {
         path: path.to_path_buf(),
@@ -180,7 +180,7 @@ pub fn prepare_directory(path: &Path) -> Result<HeldDirectory, ReportError> {
         let name = entry.file_name();
         let name = name.to_string_lossy();
         if name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1) {
-            // One that stays does no harm.
+            // A file that cannot be removed does no harm.
             let _ = std::fs::remove_file(entry.path());
         }
     }

@@ -40,12 +40,11 @@ pub struct HistoryRow {
     pub regularisation: f64,
     /// Trial points of the line search.
     pub line_search_trials: usize,
-    /// What kind of step this was, in the optimiser's own words.
+    /// Kind of step, in the optimiser's words.
     pub phase: String,
-    /// Number of time steps of the motion that the functions were found with, where it is known.
+    /// Number of time steps of the motion of these functions, if known.
     pub steps: Option<usize>,
-    /// How often the steps had been chosen anew by then: rows of different numbers were judged on
-    /// different steps.
+    /// How often the steps had been chosen anew. Rows with different numbers have different steps.
     pub refreshes: Option<usize>,
     /// Design variables, in the order of [`History::variables`].
     pub design: Vec<f64>,
@@ -203,8 +202,8 @@ impl History {
     }
 }
 
-/// The table of a run that goes on: a row is appended when it is known, and what was written before is
-/// not touched. If the process is killed, a last row may be there in part.
+/// The table of a run under way. Each row is appended when it is known; earlier rows do not change.
+/// If the process is killed, the last row may be incomplete.
 #[derive(Debug)]
 pub struct HistoryLog {
     path: PathBuf,
@@ -212,7 +211,7 @@ pub struct HistoryLog {
 }
 
 impl HistoryLog {
-    /// A table that will be in the file `path`, begun anew with the first row.
+    /// A new table in the file `path`, written with the first row.
     pub fn new(path: &Path) -> Self {
         Self {
             path: path.to_path_buf(),
@@ -244,7 +243,7 @@ impl HistoryLog {
     }
 }
 
-/// A new file in place of one that may be there. What a link there points to is left alone.
+/// A new file that replaces an existing one. The target of a link there is unchanged.
 fn new_file(path: &Path) -> std::io::Result<File> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
@@ -261,8 +260,8 @@ impl Column {
         }
     }
 
-    /// `NAME [UNIT]`; a name without unit that ends with a bracket gets `[]`, so that reading is
-    /// unambiguous.
+    /// `NAME [UNIT]`. A name without unit that ends with a bracket gets `[]`, so it reads back
+    /// unambiguously.
     pub(super) fn heading(&self, prefix: &str) -> Result<String, ReportError> {
         let unit = match &self.unit {
             Some(unit) if unit.contains(['[', ']']) => {

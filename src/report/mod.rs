@@ -16,7 +16,7 @@
 //! | [`mod@summary`] | the text that a person reads at the end |
 //! | [`positions`] | tables of reference positions |
 //! | [`work_precision`] | error against run time, `work_precision.csv` and `orders.csv` |
-//! | [`stress`] | the stability table, `stability.md` and `stability.csv` |
+//! | [`stability`] | the stability table, `stability.md` and `stability.csv` |
 //! | [`plots`] | figures as SVG |
 
 pub mod certificate;
@@ -32,7 +32,7 @@ pub mod optima;
 pub mod optimum;
 pub mod plots;
 pub mod positions;
-pub mod stress;
+pub mod stability;
 pub mod summary;
 mod table;
 pub mod work_precision;
@@ -45,6 +45,6 @@ pub use files::{HeldDirectory, atomic_write, prepare_directory, read_text, write
 pub use history::{Column, History, HistoryLog, HistoryRow};
 pub use optima::{FoundOptimum, optima_csv};
 pub use optimum::Optimum;
-pub use stress::{StressFamily, StressOutcome, StressRow, StressTable};
+pub use stability::{StabilityFamily, StabilityOutcome, StabilityRow, StabilityTable};
 pub use summary::summary;
 pub use work_precision::{MethodOrder, PrecisionRow, WorkPrecision};

@@ -7,7 +7,7 @@ use super::history::{Column, OBJECTIVE, VARIABLE, exact};
 /// An optimum that at least one start led to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundOptimum {
-    /// The number of the start that led to the best of what counts as it, from 1.
+    /// The number of the start with the best value there, from 1.
     pub start: usize,
     /// How many starts led there.
     pub starts: usize,

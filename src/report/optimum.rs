@@ -5,7 +5,7 @@ pub use super::certificate::*;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-/// Everything worth keeping of the end of an optimisation.
+/// The record of the end of an optimisation.
 ///
 /// The same run gives the same bytes: there are no dates, times or names of machines. Infinite
 /// bounds are left out.
@@ -18,7 +18,7 @@ pub struct Optimum {
     pub message: String,
     /// The objective at the optimum.
     pub objective: Objective,
-    /// The objective at the start, unless it is not defined there; a warning then says why.
+    /// The objective at the start, unless it is undefined there; a warning then says why.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start_objective: Option<f64>,
     /// Design variables by name.
@@ -33,10 +33,10 @@ pub struct Optimum {
     pub kkt: Kkt,
     /// How the optimiser scaled the problem.
     pub scaling: Scaling,
-    /// Curvature at the optimum, if it was asked for.
+    /// Curvature at the optimum, if requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub second_order: Option<SecondOrder>,
-    /// Gradients beside the complex step, unless that was left out; older records have none.
+    /// Gradients against the complex step, unless skipped; older records have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gradient_certificate: Option<GradientCertificate>,
     /// How the motion was integrated at the end.
@@ -44,7 +44,7 @@ pub struct Optimum {
     pub integration: Option<Integration>,
     /// Work done.
     pub counts: Counts,
-    /// What the user should know before believing the result.
+    /// Warnings about the result.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// Version of flexbody.
@@ -100,10 +100,10 @@ pub struct Objective {
     /// Unit of the value, where it is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
-    /// The largest value over time, where `value` is a smooth aggregate of it.
+    /// The largest value over time, if `value` is a smooth aggregate of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub true_maximum: Option<f64>,
-    /// What it is an aggregate of, where it is one.
+    /// The aggregated quantity, if it is an aggregate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub aggregate: Option<Aggregate>,
     /// Estimated error of `value` by the discretisation in time, absolute.
@@ -153,16 +153,16 @@ pub struct ConstraintValue {
     pub multiplier: f64,
     /// Which bound is active.
     pub active: Activity,
-    /// What it is an aggregate of, where it is one.
+    /// The aggregated quantity, if it is an aggregate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub aggregate: Option<Aggregate>,
 }
 
-/// How a smooth aggregate stands to the largest value over time.
+/// A smooth aggregate and the largest value over time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Aggregate {
-    /// The side of the largest value on which the aggregate lies, whatever the motion.
+    /// The side of the largest value on which the aggregate always lies.
     pub lies: Lies,
     /// The largest value over time, gate included.
     pub true_maximum: f64,
@@ -170,7 +170,7 @@ pub struct Aggregate {
     pub time: f64,
     /// Its estimated error by the discretisation in time, absolute.
     pub error: f64,
-    /// The largest value while the gate is more open than closed, without the gate's factor, where
+    /// The largest value while the gate is more open than closed, without the gate's factor, if
     /// there is a gate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ungated: Option<f64>,
@@ -202,9 +202,9 @@ pub struct Multipliers {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Kkt {
-    /// Of the problem as the optimiser scaled it; these are what stops it.
+    /// In the optimiser's scaled units; these end the run.
     pub scaled: KktResiduals,
-    /// Of the problem in the user's units.
+    /// In the user's units.
     pub unscaled: KktResiduals,
 }
 
@@ -236,7 +236,7 @@ pub struct Scaling {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RowScaling {
-    /// What the function is multiplied by.
+    /// Factor of the function.
     pub factor: f64,
     /// Largest derivative at the start in scaled variables, before the factor.
     pub gradient: f64,
@@ -251,19 +251,19 @@ pub struct SecondOrder {
     pub eigenvalues: Vec<f64>,
     /// Estimated error of its entries.
     pub uncertainty: f64,
-    /// What follows.
+    /// The verdict.
     pub curvature: Curvature,
     /// A feasible direction along which the objective improves, if there is one: the change of each
-    /// variable, in its unit, of a step whose length is one in scaled variables.
+    /// variable, in its unit, for a step of length one in scaled variables.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub descent: Option<IndexMap<String, f64>>,
-    /// Variables at a bound, and constraints, that are active without force: their multiplier is zero or
-    /// next to it, and the eigenvalues are those with them left free.
+    /// Variables at a bound, and constraints, that are weakly active: their multiplier is zero or
+    /// almost zero. The eigenvalues are computed with them left free.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub weakly_active: Vec<String>,
 }
 
-/// What the curvature says of an optimum.
+/// Verdict of the curvature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Curvature {
@@ -275,7 +275,7 @@ pub enum Curvature {
     NoOptimum,
     /// The curvature is zero within its error along some direction, and negative along none.
     Flat,
-    /// The curvature is negative, but only where weakly active bounds stand against it.
+    /// The curvature is negative, but only along directions that weakly active bounds exclude.
     NotDecided,
 }
 
@@ -289,7 +289,7 @@ pub struct Integration {
     pub reason: String,
     /// Number of steps of the motion at the end.
     pub steps: u64,
-    /// How often the steps were chosen anew because they did not suffice for a design any more.
+    /// How often the steps were chosen anew because their error was too large.
     pub refreshes: u64,
 }
 
@@ -299,7 +299,7 @@ pub struct Integration {
 pub struct Counts {
     /// Iterations of the optimiser.
     pub iterations: u64,
-    /// Simulations asked for by the optimiser.
+    /// Simulations requested by the optimiser.
     pub function_evaluations: u64,
     /// Gradients.
     pub gradient_evaluations: u64,
@@ -310,7 +310,7 @@ pub struct Counts {
     pub quadratic_programs: u64,
     /// Time steps of all simulations.
     pub steps: u64,
-    /// Steps that gradients made again, because memory did not suffice to keep them.
+    /// Steps that gradients repeated because memory is limited.
     #[serde(default)]
     pub recomputed_steps: u64,
     /// Newton iterations of all time steps.
@@ -360,8 +360,8 @@ impl Optimum {
     /// [`ReportError::NotFinite`] with the place of a number that is NaN or infinite.
     pub fn to_json(&self) -> Result<String, ReportError> {
         let value = serde_json::to_value(self)?;
-        // An absent value is left out, so a null outside the document was a number that JSON
-        // cannot hold.
+        // An absent value is left out, so a null outside the document is a number that JSON cannot
+        // hold.
         if let Some(pointer) = first_null(&value, String::new()) {
             return Err(ReportError::NotFinite { pointer });
         }

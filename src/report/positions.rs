@@ -7,12 +7,12 @@ use std::path::Path;
 /// Positions of centres of mass (m) by index of the body.
 pub type Positions = Vec<(usize, [f64; 3])>;
 
-/// Reads a table of positions, `time,body,x,y,z` (s and m), and gives those of the instant `end` by
-/// index of the body among `bodies`.
+/// Reads a table of positions, `time,body,x,y,z` (s and m). Returns those of the instant `end` by
+/// index of the body in `bodies`.
 ///
 /// # Errors
-/// [`ReportError::Positions`] with the line if the table is not that, names another body, names one
-/// twice or has no row at the end.
+/// [`ReportError::Positions`] with the line if the table has another form, names another body,
+/// names one twice or has no row at the end.
 pub fn positions_from_csv(
     path: &Path,
     text: &str,

@@ -7,7 +7,7 @@ use super::optimum::{
 };
 use super::table;
 
-/// How many constraints a sentence names.
+/// Largest number of constraints named in a sentence.
 const SHOWN: usize = 3;
 
 /// Status, objective, design, constraints, accuracy and work of an optimisation, as text.
@@ -100,18 +100,18 @@ fn objective(optimum: &Optimum) -> String {
     text
 }
 
-/// Whether an estimated error is no more than the last digit of the value.
+/// Whether an estimated error is at most the last digit of the value.
 pub fn is_rounding(error: f64, value: f64) -> bool {
     error <= f64::EPSILON * value.abs()
 }
 
-/// Which constraints the start violated, and by how much: its objective is then none to compare with.
+/// The constraints that the start violates, and by how much: its objective is then not comparable.
 fn infeasible_start(optimum: &Optimum) -> String {
     let violated = optimum.constraints.iter().filter_map(|(name, constraint)| {
         let start = constraint.start?;
         let below = constraint.lower.map_or(0.0, |lower| lower - start);
         let above = constraint.upper.map_or(0.0, |upper| start - upper);
-        // To the last digits, a start on its bound is feasible.
+        // A start on its bound, to the last digits, is feasible.
         let bound = constraint
             .lower
             .filter(|_| below > above)
@@ -202,7 +202,7 @@ fn constraints(optimum: &Optimum) -> String {
     )
 }
 
-/// When and how exactly the largest value is known, and what a gate takes of it.
+/// Time and accuracy of the largest value, and the effect of a gate on it.
 fn attained(aggregate: &Aggregate, unit: &str) -> String {
     let mut text = format!(
         "(at t = {} s, to about {}{unit}",
@@ -218,7 +218,7 @@ fn attained(aggregate: &Aggregate, unit: &str) -> String {
     text + ")"
 }
 
-/// What constraints on aggregates say of the largest values.
+/// What constraints on aggregates mean for the largest values.
 fn maxima(optimum: &Optimum) -> String {
     let mut text = String::new();
     for (name, constraint) in &optimum.constraints {
@@ -245,7 +245,7 @@ fn maxima(optimum: &Optimum) -> String {
     text
 }
 
-/// What a unit of the bound is worth.
+/// The value of one unit of the bound.
 fn sensitivity(optimum: &Optimum, constraint: &super::optimum::ConstraintValue) -> String {
     format!(
         "{}{} per {}",
@@ -255,7 +255,7 @@ fn sensitivity(optimum: &Optimum, constraint: &super::optimum::ConstraintValue) 
     )
 }
 
-/// What the reduced Hessian says.
+/// The verdict of the reduced Hessian.
 fn curvature(second: &SecondOrder, optimum: &Optimum) -> String {
     let verdict = match second.curvature {
         Curvature::NoFreeDirection => "bounds and constraints leave no free direction",

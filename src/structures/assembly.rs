@@ -1,5 +1,6 @@
 //! Assembly of the stiffness of a structure, into slots that are recorded once.
 
+use super::inertia::LumpedMass;
 use super::mesh::UnknownSet;
 use super::shell::{ElementMatrix, Motion, NODES, ShellCotangent, Terms};
 use super::state::{Configuration, Cotangent, NodalMotion};
@@ -71,6 +72,50 @@ impl Assembly {
                 .shell(index)
                 .tangent(&axes, &motion, terms, &mut matrix);
             self.scatter(index, &matrix, values);
+        }
+    }
+
+    /// Writes the mass matrix into `values`.
+    pub fn mass(&self, configuration: &Configuration<f64>, values: &mut [f64]) {
+        values.fill(0.0);
+        let mut matrix = ElementMatrix::new();
+        let topology = &configuration.structure.topology;
+        for index in 0..topology.mesh.shells.len() {
+            let axes = configuration.element_axes(index);
+            configuration.shell(index).mass_matrix(&axes, &mut matrix);
+            self.scatter(index, &matrix, values);
+        }
+        for (mass, &node) in configuration
+            .structure
+            .masses
+            .iter()
+            .zip(&topology.mass_nodes)
+        {
+            self.add_lumped(configuration, node, mass, values);
+        }
+    }
+
+    /// Adds a lumped mass m u̇·u̇ and θ̇·J θ̇ at a node.
+    fn add_lumped(
+        &self,
+        configuration: &Configuration<f64>,
+        node: usize,
+        mass: &LumpedMass<f64>,
+        values: &mut [f64],
+    ) {
+        let mut add = |i: usize, j: usize, value: f64| {
+            if let Some(slot) = self.pattern.slot(i.max(j), i.min(j)) {
+                values[slot] += value;
+            }
+        };
+        for unknown in self.unknowns.nodes[node].displacements.iter().flatten() {
+            add(*unknown, *unknown, mass.mass);
+        }
+        let (axes, _) = configuration.axes(node);
+        for (k, i) in self.unknowns.rotations_of(node).enumerate() {
+            for (l, j) in self.unknowns.rotations_of(node).enumerate().take(k + 1) {
+                add(i, j, axes[k].dot(&mass.momentum(&axes[l])));
+            }
         }
     }
 

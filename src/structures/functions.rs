@@ -1,6 +1,7 @@
 //! Functions of a structure and of its static solutions, and their partial derivatives.
 
 use super::assembly::add_energy_transpose;
+use super::inertia::{add_mass_moments_transpose, mass_moments};
 use super::loads::{Load, add_work_transpose};
 use super::mesh::UnknownSet;
 use super::shell::{MassMoments, Motion, STRESS_POINTS, ShellCotangent, Terms};
@@ -115,24 +116,19 @@ impl<S: Scalar> Solved<'_, S> {
         let mesh = &self.structure.topology.mesh;
         let motion = |case: usize| configuration.spread(&self.solutions[case]);
         Ok(match function {
-            Function::Mass => self.moments(&configuration).mass,
+            Function::Mass => mass_moments(&configuration).mass,
             Function::Centre(direction) => {
-                let all = self.moments(&configuration);
+                let all = mass_moments(&configuration);
                 all.first.dot(&direction.map(S::from)) / all.mass
             }
             Function::SecondMoment(a, b) => {
-                let all = self.moments(&configuration);
+                let all = mass_moments(&configuration);
                 let weights = second_weights(a, b);
                 let terms = all.second.iter().zip(weights);
                 terms.fold(S::zero(), |sum, (&x, w)| sum + x * w)
             }
             Function::StrainEnergy { case } => {
-                let motion = motion(*case);
-                let shells = mesh.shells.iter().enumerate();
-                shells.fold(S::zero(), |sum, (index, element)| {
-                    let v = motion.of_element(element);
-                    sum + configuration.shell(index).energy(&v, self.terms).total()
-                })
+                configuration.strain_energy(&motion(*case), self.terms)
             }
             Function::Compliance { case } => {
                 let load = self
@@ -189,34 +185,6 @@ impl<S: Scalar> Solved<'_, S> {
         })
     }
 
-    fn moments(&self, configuration: &Configuration<S>) -> MassMoments<S> {
-        let mut all = MassMoments::zeros();
-        for index in 0..self.structure.topology.mesh.shells.len() {
-            let part = configuration.shell(index).mass_moments();
-            all.mass += part.mass;
-            all.first += part.first;
-            for (sum, x) in all.second.iter_mut().zip(part.second) {
-                *sum += x;
-            }
-        }
-        all
-    }
-
-    fn add_moments_transpose(
-        &self,
-        configuration: &Configuration<S>,
-        bar: &MassMoments<S>,
-        to: &mut Cotangent<S>,
-    ) {
-        for index in 0..self.structure.topology.mesh.shells.len() {
-            let mut part = ShellCotangent::zeros();
-            configuration
-                .shell(index)
-                .add_mass_moments_transpose(bar, &mut part);
-            configuration.add_shell_transpose(index, &part, to);
-        }
-    }
-
     /// Stress ratios case by case, shell by shell.
     fn ratios(&self, configuration: &Configuration<S>, cases: &[usize], set: &[usize]) -> Vec<S> {
         let shells = &self.structure.topology.mesh.shells;
@@ -252,20 +220,20 @@ impl<S: Scalar> Solved<'_, S> {
             Function::Mass => {
                 let mut bar = MassMoments::zeros();
                 bar.mass = S::one();
-                self.add_moments_transpose(configuration, &bar, &mut all.to);
+                add_mass_moments_transpose(configuration, &bar, &mut all.to);
             }
             Function::Centre(direction) => {
-                let moments = self.moments(configuration);
+                let moments = mass_moments(configuration);
                 let direction = direction.map(S::from);
                 let mut bar = MassMoments::zeros();
                 bar.first = direction / moments.mass;
                 bar.mass = -(moments.first.dot(&direction) / (moments.mass * moments.mass));
-                self.add_moments_transpose(configuration, &bar, &mut all.to);
+                add_mass_moments_transpose(configuration, &bar, &mut all.to);
             }
             Function::SecondMoment(a, b) => {
                 let mut bar = MassMoments::zeros();
                 bar.second = second_weights(a, b).map(S::from);
-                self.add_moments_transpose(configuration, &bar, &mut all.to);
+                add_mass_moments_transpose(configuration, &bar, &mut all.to);
             }
             Function::StrainEnergy { case } => add_energy_transpose(
                 configuration,

@@ -69,7 +69,7 @@ pub fn gradient(
             let adjoint = problem.solve_factorised(right);
             let (by_structure, by_loads) =
                 adjoint_product(problem, structure, &cases[case], &solutions[case], &adjoint)?;
-            add_structure(&mut all.structure, &by_structure);
+            all.structure.add(&by_structure);
             for (sum, part) in all.cases[case].iter_mut().zip(by_loads) {
                 add_load(sum, &part);
             }
@@ -124,26 +124,8 @@ fn adjoint_product(
     configuration.add_spread_transpose(&state, &force, &mut unused, &mut to.directors);
     configuration.add_spread_transpose(&state, &internal, &mut unused, &mut internal_to.directors);
     let mut all = configuration.finish(to).map(|x| x.du);
-    add_structure(&mut all, &configuration.finish(internal_to).map(|x| -x.du));
+    all.add(&configuration.finish(internal_to).map(|x| -x.du));
     Ok((all, loads))
-}
-
-fn add_structure(sum: &mut Structure<f64>, part: &Structure<f64>) {
-    for (a, b) in sum.nodes.iter_mut().zip(&part.nodes) {
-        *a += b;
-    }
-    for (a, b) in sum.thickness.iter_mut().zip(&part.thickness) {
-        *a += b;
-    }
-    for (a, b) in sum.surface_mass.iter_mut().zip(&part.surface_mass) {
-        *a += b;
-    }
-    for (a, b) in sum.materials.iter_mut().zip(&part.materials) {
-        a.young += b.young;
-        a.poisson += b.poisson;
-        a.density += b.density;
-        a.yield_stress += b.yield_stress;
-    }
 }
 
 fn add_load(sum: &mut Load<f64>, part: &Load<f64>) {

@@ -149,6 +149,16 @@ pub(crate) fn add_work_transpose<S: Scalar>(
             for shell in 0..mesh.shells.len() {
                 add_gravity_transpose(configuration, shell, acceleration, motion, force, to, g_to);
             }
+            let nodes = &configuration.structure.topology.mass_nodes;
+            for (k, &node) in nodes.iter().enumerate() {
+                let (mass, u) = (
+                    configuration.structure.masses[k].mass,
+                    &motion.displacement[node],
+                );
+                force.displacement[node] += acceleration * mass;
+                *g_to += u * mass;
+                to.structure.masses[k].mass += acceleration.dot(u);
+            }
         }
         _ => unreachable!("a load and its cotangent are of one kind"),
     }

@@ -48,6 +48,11 @@ fn find<'a, T>(
 }
 
 impl Mesh {
+    /// The nodes of each element.
+    pub(crate) fn elements(&self) -> impl Iterator<Item = &[usize]> {
+        self.shells.iter().map(|nodes| nodes.as_slice())
+    }
+
     /// The nodes of a set.
     ///
     /// # Errors

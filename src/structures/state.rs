@@ -1,6 +1,6 @@
 //! From the unknowns to the motion of the nodes and of the elements, and back.
 
-use super::shell::{Field, Motion, NODES, RotationAxes, Shell, ShellCotangent};
+use super::shell::{Field, Motion, NODES, RotationAxes, Shell, ShellCotangent, Terms};
 use super::structure::Structure;
 use super::supports::{NodeUnknowns, Unknowns};
 use crate::math::{Scalar, Vec3};
@@ -51,6 +51,16 @@ pub(crate) struct Configuration<'a, S> {
 pub(crate) struct Cotangent<S> {
     pub structure: Structure<S>,
     pub directors: Vec<Vec3<S>>,
+}
+
+impl<S: Scalar> Cotangent<S> {
+    /// Adds `factor` times another collection.
+    pub fn add_scaled(&mut self, other: &Self, factor: S) {
+        self.structure.add(&other.structure.map(|x| x * factor));
+        for (a, b) in self.directors.iter_mut().zip(&other.directors) {
+            *a += b * factor;
+        }
+    }
 }
 
 impl<'a, S: Scalar> Configuration<'a, S> {
@@ -123,8 +133,17 @@ impl<'a, S: Scalar> Configuration<'a, S> {
         material.yield_stress += bar.material.yield_stress;
     }
 
+    /// The strain energy of a motion \[J\].
+    pub fn strain_energy(&self, motion: &NodalMotion<S>, terms: Terms) -> S {
+        let shells = self.structure.topology.mesh.shells.iter().enumerate();
+        shells.fold(S::zero(), |sum, (index, element)| {
+            let v = motion.of_element(element);
+            sum + self.shell(index).energy(&v, terms).total()
+        })
+    }
+
     /// The director of a node that has one.
-    fn director(&self, node: usize) -> Option<&Vec3<S>> {
+    pub fn smooth_director(&self, node: usize) -> Option<&Vec3<S>> {
         let range = self.structure.topology.sheets.of_node[node].clone();
         (range.len() == 1).then(|| &self.directors[range.start])
     }
@@ -133,7 +152,7 @@ impl<'a, S: Scalar> Configuration<'a, S> {
     pub fn axes(&self, node: usize) -> ([Vec3<S>; 3], usize) {
         self.unknowns.nodes[node]
             .rotations
-            .axes(self.director(node))
+            .axes(self.smooth_director(node))
     }
 
     pub fn element_axes(&self, index: usize) -> RotationAxes<S> {
@@ -183,7 +202,7 @@ impl<'a, S: Scalar> Configuration<'a, S> {
             for k in 0..count {
                 to[at.first_rotation + k] += axes[k].dot(moment);
             }
-            if let (Some(d), true) = (self.director(node), count > 0) {
+            if let (Some(d), true) = (self.smooth_director(node), count > 0) {
                 let phi = &x[at.first_rotation..at.first_rotation + count];
                 let at_director =
                     &mut directors[self.structure.topology.sheets.of_node[node].start];

@@ -87,32 +87,7 @@ impl StaticProblem {
             .tangent(&configuration, &rest, Terms::LINEAR, &mut self.values);
         self.solver
             .factorise(&self.assembly.pattern, &self.values)
-            .map_err(|failure| self.mechanism(structure, &failure))
-    }
-
-    /// The part of the structure that moves without resistance.
-    fn mechanism(
-        &self,
-        structure: &Structure<f64>,
-        failure: &NotPositiveDefinite,
-    ) -> StaticFailure {
-        const DISPLACEMENTS: [&str; 3] = ["displacement x", "displacement y", "displacement z"];
-        let x = &failure.direction;
-        let largest = (0..x.len())
-            .max_by(|&a, &b| x[a].abs().total_cmp(&x[b].abs()))
-            .unwrap_or(0);
-        for (node, at) in self.assembly.unknowns.nodes.iter().enumerate() {
-            let displacement = (0..3).find(|&k| at.displacements[k] == Some(largest));
-            let rotates = self.assembly.unknowns.rotations_of(node).contains(&largest);
-            if displacement.is_some() || rotates {
-                return StaticFailure::Mechanism {
-                    node,
-                    place: structure.nodes[node].into(),
-                    freedom: displacement.map_or("rotation", |k| DISPLACEMENTS[k]),
-                };
-            }
-        }
-        unreachable!("every unknown belongs to a node")
+            .map_err(|failure| mechanism(&self.assembly, structure, &failure))
     }
 
     /// Solves K x = b with the factors, the infinitesimal part too.
@@ -215,4 +190,36 @@ impl StaticProblem {
         }
         Ok(x)
     }
+}
+
+/// The part of the structure that moves without resistance.
+pub(crate) fn mechanism(
+    assembly: &Assembly,
+    structure: &Structure<f64>,
+    failure: &NotPositiveDefinite,
+) -> StaticFailure {
+    let (node, freedom) = most_moved(assembly, &failure.direction);
+    StaticFailure::Mechanism {
+        node,
+        place: structure.nodes[node].into(),
+        freedom,
+    }
+}
+
+/// The node and the unknown that a direction moves most.
+pub(crate) fn most_moved(assembly: &Assembly, x: &[f64]) -> (usize, &'static str) {
+    const DISPLACEMENTS: [&str; 3] = ["displacement x", "displacement y", "displacement z"];
+    let largest = (0..x.len())
+        .max_by(|&a, &b| x[a].abs().total_cmp(&x[b].abs()))
+        .unwrap_or(0);
+    for (node, at) in assembly.unknowns.nodes.iter().enumerate() {
+        let displacement = (0..3).find(|&k| at.displacements[k] == Some(largest));
+        if let Some(k) = displacement {
+            return (node, DISPLACEMENTS[k]);
+        }
+        if assembly.unknowns.rotations_of(node).contains(&largest) {
+            return (node, "rotation");
+        }
+    }
+    unreachable!("every unknown belongs to a node")
 }

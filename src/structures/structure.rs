@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::inertia::LumpedMass;
 use super::material::Material;
 use super::mesh::Mesh;
 use super::quality::{MeshFault, faults};
@@ -17,6 +18,8 @@ pub struct Topology {
     pub sheets: Sheets,
     /// Index of the material of each shell.
     pub material: Vec<usize>,
+    /// The node of each lumped mass.
+    pub mass_nodes: Vec<usize>,
 }
 
 /// The numbers of a structure. A structure of zeros collects the derivatives by them.
@@ -30,6 +33,8 @@ pub struct Structure<S> {
     pub thickness: Vec<S>,
     /// Non-structural mass per area of each shell [kg/m²].
     pub surface_mass: Vec<S>,
+    /// Lumped masses.
+    pub masses: Vec<LumpedMass<S>>,
     /// The materials.
     pub materials: Vec<Material<S>>,
 }
@@ -42,8 +47,35 @@ impl<S: Scalar> Structure<S> {
             nodes: self.nodes.iter().map(|x| x.map(&mut f)).collect(),
             thickness: self.thickness.iter().map(|&h| f(h)).collect(),
             surface_mass: self.surface_mass.iter().map(|&m| f(m)).collect(),
+            masses: self.masses.iter().map(|m| m.map(&mut f)).collect(),
             materials: self.materials.iter().map(|m| m.map(&mut f)).collect(),
         }
+    }
+
+    /// All numbers, in the order in which [`Structure::map`] takes them.
+    pub fn values(&self) -> Vec<S> {
+        let mut all = Vec::new();
+        self.map(|x| {
+            all.push(x);
+            x
+        });
+        all
+    }
+
+    /// Joins a mass to a node.
+    ///
+    /// # Panics
+    /// If there is no such node.
+    pub fn add_mass(&mut self, node: usize, mass: LumpedMass<S>) {
+        assert!(node < self.nodes.len());
+        Arc::make_mut(&mut self.topology).mass_nodes.push(node);
+        self.masses.push(mass);
+    }
+
+    /// Adds the numbers of a structure of the same topology.
+    pub(crate) fn add(&mut self, other: &Self) {
+        let mut next = other.values().into_iter();
+        *self = self.map(|x| x + next.next().unwrap_or_else(S::zero));
     }
 
     /// Zeros in the place of every number.
@@ -73,10 +105,12 @@ impl Structure<f64> {
                 sheets: Sheets::new(&mesh, &nodes, FOLD_ANGLE),
                 mesh,
                 material: vec![0; shells],
+                mass_nodes: Vec::new(),
             }),
             nodes,
             thickness: vec![thickness; shells],
             surface_mass: vec![0.0; shells],
+            masses: Vec::new(),
             materials: vec![material],
         })
     }

@@ -7,7 +7,7 @@ fn a_suite_whose_table_cannot_be_written_is_not_run() {
     let at = scratch();
     std::fs::write(at.path().join("file"), "").expect("is written");
     let case = [
-        "stress",
+        "stability",
         "--only",
         "mass-ratio/1e-8",
         "--output",

@@ -92,7 +92,7 @@ fn a_signal_ends_every_command_with_130() {
     let jobs = [
         &["simulate", HAMMER, "--set", long][..],
         &["work-precision", HAMMER, "--seconds", "100"],
-        &["stress"],
+        &["stability"],
         &[HAMMER, "--set", long],
         &["simulate", HAMMER, "--set", long, "--accuracy", "1e-10"],
     ];

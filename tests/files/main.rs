@@ -10,5 +10,5 @@ mod problems_check;
 mod readme;
 mod report_plots;
 mod report_records;
-mod stress;
+mod stability;
 mod trebuchets;

@@ -1,7 +1,7 @@
 //! Functions of static solutions: every derivative against the complex step through the whole solution,
 //! on a curved and distorted mesh with a fold, for both kinds of unknowns.
 
-use crate::sample::{ALUMINIUM, Compared, Numbers, complex_step};
+use crate::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
 use flexbody::math::{Complex64, Scalar, Vec3};
 use flexbody::structures::functions::{Aggregate, Function, Solved};
 use flexbody::structures::generate::panel;
@@ -11,30 +11,6 @@ use flexbody::structures::shell::Terms;
 use flexbody::structures::statics::StaticProblem;
 use flexbody::structures::structure::Structure;
 use flexbody::structures::supports::{NodeUnknowns, Support};
-
-/// All numbers of a structure, and the stretches of equal units.
-fn numbers<S: Scalar>(structure: &Structure<S>) -> (Vec<S>, Vec<usize>) {
-    let mut all: Vec<S> = structure
-        .nodes
-        .iter()
-        .flat_map(|x| [x.x, x.y, x.z])
-        .collect();
-    all.extend(&structure.thickness);
-    all.extend(&structure.surface_mass);
-    let shells = structure.thickness.len();
-    let mut kinds = vec![3 * structure.nodes.len(), shells, shells];
-    for m in &structure.materials {
-        all.extend([m.young, m.poisson, m.density, m.yield_stress]);
-        kinds.extend([1; 4]);
-    }
-    (all, kinds)
-}
-
-fn with_numbers(structure: &Structure<f64>, values: &[Complex64]) -> Structure<Complex64> {
-    let mut next = values.iter().copied();
-    // The order of `map` is that of `numbers`.
-    structure.map(|_| next.next().expect("as many numbers"))
-}
 
 fn load_numbers<S: Scalar>(cases: &[Vec<Load<S>>]) -> Vec<S> {
     let mut all = Vec::new();
@@ -138,7 +114,7 @@ fn every_function_has_exact_derivatives_by_everything() {
             .iter()
             .map(|case| problem.solve_linear(&structure, case).expect("sets"))
             .collect();
-        let (at, kinds) = numbers(&structure);
+        let (at, kinds) = structure_numbers(&structure);
         // The values of all functions for each disturbed number, in one pass.
         let found: Vec<_> = functions
             .iter()
@@ -181,7 +157,7 @@ fn every_function_has_exact_derivatives_by_everything() {
                 value,
                 at: &at,
                 exact: &exact,
-                found: &numbers(&found.structure).0,
+                found: &structure_numbers(&found.structure).0,
                 kinds: &kinds,
             }
             .assert(1e-12);

@@ -2,6 +2,8 @@
 
 mod function_gradients;
 mod mesh_faults;
+mod mode_gradients;
+mod modes;
 mod obstacle_course;
 mod patch_tests;
 mod sample;

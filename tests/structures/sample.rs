@@ -3,6 +3,7 @@
 use flexbody::math::{Complex64, Scalar, Vec3};
 use flexbody::structures::material::Material;
 use flexbody::structures::shell::{Field, Motion, NODES, Shell};
+use flexbody::structures::structure::Structure;
 
 /// A sequence of numbers in (−1, 1), by a congruential generator (Knuth's MMIX constants).
 pub struct Numbers(u64);
@@ -114,6 +115,21 @@ pub fn motion_of<S: Scalar>(numbers: &[S]) -> Motion<S> {
         motion.rotation[a] = Vec3::from_column_slice(&numbers[6 * a + 3..6 * a + 6]);
     }
     motion
+}
+
+/// All numbers of a structure, and the stretches of equal units.
+pub fn structure_numbers<S: Scalar>(structure: &Structure<S>) -> (Vec<S>, Vec<usize>) {
+    let shells = structure.thickness.len();
+    let mut kinds = vec![3 * structure.nodes.len(), shells, shells];
+    kinds.extend(structure.masses.iter().flat_map(|_| [1, 6]));
+    kinds.extend(structure.materials.iter().flat_map(|_| [1; 4]));
+    (structure.values(), kinds)
+}
+
+/// The structure with other numbers.
+pub fn with_numbers(structure: &Structure<f64>, values: &[Complex64]) -> Structure<Complex64> {
+    let mut next = values.iter().copied();
+    structure.map(|_| next.next().expect("as many numbers"))
 }
 
 /// Derivatives of a function of numbers by the complex step.

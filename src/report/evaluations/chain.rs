@@ -1,4 +1,4 @@
-//! The hash that runs through a file of evaluations: it tells where a line was changed, moved or removed.
+//! The chained hash of a file of evaluations. It shows a changed, moved or removed line.
 
 use super::{EvaluationRecord, Head};
 use sha2::{Digest, Sha256};
@@ -6,18 +6,18 @@ use std::borrow::Cow;
 
 /// Bytes of a digest that are written, two hexadecimal digits each.
 const BYTES: usize = 8;
-/// What stands around the hash at the end of a line.
+/// The text around the hash at the end of a line.
 const AROUND: (&str, &str) = (r#","chain":""#, r#""}"#);
 
-/// The hash hₖ = SHA-256(hₖ₋₁ + lineₖ) of the lines so far, line k without its hash; h₀ is that of the
-/// head without its settings, which may change.
+/// The hash hₖ = SHA-256(hₖ₋₁ + lineₖ) of the lines so far, with line k without its hash. h₀ is
+/// that of the head without its settings, which may change.
 #[derive(Clone, Debug)]
 pub(super) struct Chain {
     hash: String,
 }
 
 impl Chain {
-    /// The chain of a file that begins with this head.
+    /// The chain of a file with this head.
     pub fn of(head: &Head) -> Result<Self, serde_json::Error> {
         let lasting = serde_json::to_string(&head.without_settings())?;
         Ok(Self {
@@ -25,7 +25,7 @@ impl Chain {
         })
     }
 
-    /// The hash after one more line, which stands there without its hash.
+    /// The hash after one more line, given without its hash.
     pub fn next(&mut self, line: &[u8]) -> &str {
         self.hash = digest(&self.hash, line);
         &self.hash

@@ -1,4 +1,4 @@
-//! The file of evaluations: read after a run that ended anyhow, and appended to.
+//! The file of evaluations: read after a run that ended in any way, and appended to.
 
 use super::chain::Chain;
 use super::{EvaluationRecord, Found, Head};
@@ -10,24 +10,24 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Longest time for which evaluations are left to the operating system.
+/// Longest time between two synchronisations with the disk.
 const SYNCHRONISE: Duration = Duration::from_secs(1);
 
-/// What an earlier run left: whole evaluations, without what was cut off after them.
+/// The complete evaluations of an earlier run; a truncated last line is dropped.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Earlier {
-    /// What they belong to.
+    /// The head: the problem of the evaluations.
     pub head: Head,
     /// Evaluations and choices of steps, in order.
     pub records: Vec<EvaluationRecord>,
 }
 
 impl Earlier {
-    /// Reads the file of an earlier run; `None` if it was not begun: there is no file, or its first
-    /// line is not whole.
+    /// Reads the file of an earlier run. `None` if there is no file or its first line is
+    /// incomplete.
     ///
-    /// A last line that was cut off does not count, nor do steps that were chosen for an evaluation
-    /// that is missing.
+    /// A truncated last line is ignored, and so are steps that were chosen for a missing
+    /// evaluation.
     ///
     /// # Errors
     /// [`ReportError`] if the file cannot be read, is damaged, or does not belong to `head`.
@@ -101,7 +101,7 @@ impl Earlier {
     }
 }
 
-/// What is wrong with a line, without the number of the line, which is that of the file.
+/// The fault of a line, without its number in the file.
 fn damage(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let what = text.split(" at line ").next().unwrap_or_default();
@@ -122,8 +122,8 @@ pub struct EvaluationLog {
 }
 
 impl EvaluationLog {
-    /// Starts a file anew, in a directory that is made if need be, with the evaluations of an earlier
-    /// run if there is one. Until it is whole, a file that stands there stays.
+    /// Begins a new file with the evaluations of an earlier run, if there is one. Creates the
+    /// directory if it is missing. An existing file stays until the new one is complete.
     ///
     /// # Errors
     /// [`ReportError::Write`] with the path.
@@ -145,8 +145,8 @@ impl EvaluationLog {
         })
     }
 
-    /// Appends an evaluation, in one piece: the operating system has it when this returns, and the
-    /// disk has it if the last time that the file was synchronised is more than a second ago.
+    /// Appends an evaluation in one write. The operating system has it when this returns. The disk
+    /// has it if the last synchronisation was more than a second ago.
     ///
     /// # Errors
     /// [`ReportError::Write`] with the path.
@@ -178,7 +178,7 @@ impl EvaluationLog {
 
 impl Drop for EvaluationLog {
     fn drop(&mut self) {
-        // What the disk refuses now is lost only if the machine fails too.
+        // A failure of the disk here loses data only if the machine fails too.
         let _ = self.synchronise();
     }
 }
@@ -229,7 +229,7 @@ mod tests {
         }
     }
 
-    /// Wherever a file is cut, what is whole before the cut comes back with every bit.
+    /// Wherever a file is cut, every complete evaluation before the cut reads back with every bit.
     #[test]
     fn whole_evaluations_survive_every_cut() {
         let directory = tempfile::tempdir().expect("a directory");
@@ -275,7 +275,7 @@ mod tests {
         assert_eq!(Earlier::read(&path, &head("a", 5)).expect("is none"), None);
     }
 
-    /// Damage within a record is told with its line and what should stand there.
+    /// Damage within a record is reported with its line and what was expected.
     #[test]
     fn damaged_lines_are_refused_by_name() {
         let directory = tempfile::tempdir().expect("a directory");
@@ -339,7 +339,7 @@ mod tests {
         );
     }
 
-    /// Whatever is done to a line within a record, that or the next line is refused; the lines of older
+    /// Any change of a line within a record makes that line or the next one invalid. Lines of older
     /// versions are read as they are.
     #[test]
     fn changed_lines_are_refused_and_lines_without_hashes_read() {

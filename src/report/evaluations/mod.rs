@@ -1,6 +1,6 @@
 //! Every evaluation of an optimisation, `evaluations.jsonl`: one JSON document a line, written as
-//! soon as it is known, so that a run that is killed loses the evaluation under way and no other. If
-//! the machine fails, the evaluations of the last second may be lost too.
+//! soon as it is known. A killed run loses only the evaluation under way. If the machine fails, the
+//! evaluations of the last second may be lost too.
 
 mod chain;
 mod log;
@@ -13,11 +13,12 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// What the evaluations belong to: the first line.
+/// The head of the file, its first line: the problem of the evaluations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Head {
-    /// SHA-256 of all of the problem's document that the functions may follow from, hexadecimal.
+    /// SHA-256, hexadecimal, of those parts of the problem's document that may affect the
+    /// functions.
     pub sha256: String,
     /// The design that the run started from.
     pub start: Vec<f64>,
@@ -25,7 +26,7 @@ pub struct Head {
     pub variables: Vec<String>,
     /// Names of the functions, objective first, in the order of all `values` and `gradients`.
     pub functions: Vec<String>,
-    /// The rest of the document, which another run may change and use the evaluations all the same.
+    /// The rest of the document. Another run may change it and still use the evaluations.
     pub settings: Map<String, Value>,
     /// Whether every line ends with the hash of itself and all lines before it; older versions wrote none.
     #[serde(default, skip_serializing_if = "is_false")]
@@ -37,12 +38,12 @@ fn is_false(yes: &bool) -> bool {
 }
 
 impl Head {
-    /// Whether evaluations of `other` are evaluations of this.
+    /// Whether evaluations of `other` are valid for this.
     fn fits(&self, other: &Head) -> bool {
         self.without_settings() == other.without_settings()
     }
 
-    /// What the evaluations follow from.
+    /// The parts of the document that determine the evaluations.
     fn without_settings(&self) -> Head {
         Head {
             settings: Map::new(),
@@ -95,13 +96,13 @@ fn flatten(value: &Value, pointer: &str, leaves: &mut BTreeMap<String, Value>) {
 pub struct EvaluationRecord {
     /// The design, in the units of the problem file.
     pub design: Vec<f64>,
-    /// What was found there.
+    /// Its results.
     #[serde(flatten)]
     pub found: Found,
-    /// When the event came in the last motion until then, if the scene ends at one (s).
+    /// Time of the event in the last motion so far, if the scene ends at one (s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub event: Option<f64>,
-    /// What it took.
+    /// Its work.
     #[serde(default, skip_serializing_if = "Work::is_none")]
     pub work: Work,
 }
@@ -112,7 +113,7 @@ pub struct EvaluationRecord {
 pub struct Work {
     /// Time steps.
     pub steps: usize,
-    /// Steps of the motion that a gradient made again, because memory did not suffice to keep them.
+    /// Steps of the motion that a gradient repeated because memory is limited.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub recomputed: usize,
     /// Newton iterations of all steps.
@@ -155,7 +156,7 @@ fn is_zero(count: &usize) -> bool {
     *count == 0
 }
 
-/// What an evaluation found.
+/// Results of an evaluation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Found {
@@ -171,10 +172,10 @@ pub enum Found {
     Steps(StepsInUse),
 }
 
-/// Most cells of a step that a record may ask for.
+/// Largest number of cells of a step in a record.
 const MOST_CELLS: u32 = 4096;
 
-/// Method and steps that were chosen at one design and are kept for others.
+/// Method and steps that were chosen at one design and are kept for later ones.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StepsInUse {
@@ -182,17 +183,17 @@ pub struct StepsInUse {
     pub method: String,
     /// Why they were chosen.
     pub reason: String,
-    /// Why the method is used, where that is not what it is used for in general.
+    /// Why this method, if it is not used for its usual purpose.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub method_reason: Option<String>,
-    /// Ends of the steps, as fractions of the duration from 0 to 1; none where they are equal, as many
-    /// as the problem asks for.
+    /// Ends of the steps, as fractions of the duration from 0 to 1. None if they are equal; their
+    /// number is then that of the problem.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ends: Vec<f64>,
-    /// Cells of the steps for sums over the motion; none where each step has one.
+    /// Cells of the steps for sums over the motion. None if each step has one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cells: Vec<u32>,
-    /// Constraint rows that are left out of joints that repeat each other; none where no row is.
+    /// Redundant constraint rows that are left out. None if all are imposed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<RowsLeftOut>,
 }
@@ -210,7 +211,7 @@ pub struct RowsLeftOut {
 }
 
 impl StepsInUse {
-    /// The steps with what is left out in them; `None` where they are equal, or no motion can have them.
+    /// The steps with their redundant rows. `None` if they are equal, or not valid for any motion.
     pub fn grid(&self) -> Option<Grid> {
         let mut grid = Grid::from_ends(self.ends.clone())?.with_cells(self.cells.clone());
         for RowsLeftOut { from, rows, of } in &self.left_out {
@@ -219,7 +220,7 @@ impl StepsInUse {
         Some(grid)
     }
 
-    /// What was found and expected, if no motion can have steps like these.
+    /// What was found and expected, if no motion can have such steps.
     fn fault(&self) -> Option<(String, &'static str)> {
         if Method::adaptive(&self.method).is_none() {
             let found = format!("the method {:?}", self.method);
@@ -254,8 +255,8 @@ impl StepsInUse {
 }
 
 impl EvaluationRecord {
-    /// What was found and expected, if it is no evaluation that belongs to the head: lists of other
-    /// lengths, steps that no motion has.
+    /// What was found and expected, if the evaluation does not fit the head: lists of other
+    /// lengths, or steps that no motion has.
     fn fault(&self, head: &Head) -> Option<(String, &'static str)> {
         let (n, m) = (head.variables.len(), head.functions.len());
         let fits = match &self.found {

@@ -28,7 +28,7 @@ impl Axis {
     /// ticks.
     pub fn linear(values: impl Iterator<Item = f64>, count: usize, label: &str) -> Axis {
         let (low, high) = range(values);
-        // A range that vanishes beside its values has no numbers to tell its ticks apart.
+        // A range that is tiny relative to its values would give equal numbers at all ticks.
         let least = 1e-8 * low.abs().max(high.abs());
         let margin = if high - low > least {
             0.05 * (high - low)

@@ -1,4 +1,4 @@
-//! Designs in motion: time lapses side by side, and the flights of what they throw.
+//! Designs in motion: time lapses side by side, and flights of projectiles.
 
 use super::axis::{Axis, range};
 use super::canvas::{Anchor, BLACK, Canvas, GROUND, INK, PALETTE};
@@ -54,7 +54,7 @@ pub struct Barrier {
     pub top: f64,
 }
 
-/// What stands still, and the names of the directions.
+/// The fixed scenery, and the names of the directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenery {
     /// Height of the ground (m), if a projectile lands on it.
@@ -74,8 +74,8 @@ const GAP: f64 = 20.0;
 const FLIGHT_POINTS: usize = 200;
 
 impl Flight {
-    /// The path until the projectile comes down to the ground; `None` if it starts below it or
-    /// nothing pulls it down.
+    /// The path until the projectile reaches the ground. `None` if it starts below it or gravity
+    /// does not point down.
     ///
     /// r(t) = r₀ + v₀ t − ½ g t² e_y for t from 0 to (v_y + √(v_y² + 2 g (y − y_g))) / g.
     pub fn path(&self, ground: f64) -> Option<Vec<Point>> {
@@ -209,9 +209,9 @@ pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportErr
     canvas.svg()
 }
 
-/// A panel that shows all points, and the ground where it is near, with the same scale in both
-/// directions and width and height (px) within limits: as wide as may be, narrower if it would
-/// be too high; and where that does not suffice, more is shown in one direction.
+/// A panel that shows all points, and the ground if it is near, with the same scale in both
+/// directions. Width and height (px) have limits. It is as wide as possible, and narrower if it
+/// would be too high. If that does not suffice, more is shown in one direction.
 fn equal_axes(points: &[Point], scenery: &Scenery, widths: [f64; 2], heights: [f64; 2]) -> Panel {
     let (mut west, mut east) = range(points.iter().map(|point| point[0]));
     let (mut south, mut north) = range(points.iter().map(|point| point[1]));
@@ -223,7 +223,7 @@ fn equal_axes(points: &[Point], scenery: &Scenery, widths: [f64; 2], heights: [f
     }
     let margin = 0.04 * size;
     (west, east) = (west - margin, east + margin);
-    // A flat scene would drown in the margin of its length.
+    // The margin of a flat scene follows its height, not its length.
     let margin = margin.min(0.1 * (north - south).max(0.2 * margin));
     (south, north) = (south - margin, north + margin);
     let aspect = (north - south) / (east - west);

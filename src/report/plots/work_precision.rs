@@ -9,7 +9,7 @@ use plotters::style::RGBColor;
 /// Width of a panel with its axis, and height of its frame (px).
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 460.0;
-/// Room between the edge of the picture and what is drawn (px).
+/// Margin of the picture (px).
 const MARGIN: f64 = 14.0;
 /// Room below a panel's title (px).
 const TITLE: f64 = 24.0;
@@ -28,7 +28,7 @@ const ORDERS: [RGBColor; 6] = [
 /// The runs of one method with equal steps, or with steps that follow a tolerance.
 struct Curve<'a> {
     color: RGBColor,
-    /// What stands in its markers.
+    /// The text in its markers.
     mark: &'static str,
     adaptive: bool,
     rows: Vec<&'a PrecisionRow>,
@@ -51,7 +51,7 @@ pub fn work_precision(measured: &WorkPrecision) -> Result<String, ReportError> {
     let position = |row: &PrecisionRow| Some((row.cpu_seconds, row.error));
     let gradient = |row: &PrecisionRow| {
         let seconds = row.cpu_seconds + row.gradient_cpu_seconds?;
-        // One that is wrong altogether says nothing of the method.
+        // A completely wrong result says nothing about the method.
         let error = row.gradient_error.filter(|&error| error <= 1.0)?;
         Some((seconds, error))
     };

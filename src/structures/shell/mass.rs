@@ -11,6 +11,7 @@ use super::basis::{GAUSS_POINTS, NODES, TABLES};
 use super::energy::{Motion, Shell, ShellCotangent};
 use super::field::{AtPoint, Field, add_interpolate_transpose, add_sum_transpose, sum};
 use super::frame;
+use super::tangent::{ElementMatrix, RotationAxes};
 use crate::math::{Scalar, Vec3};
 
 /// Scalar nodal masses of an element.
@@ -83,6 +84,37 @@ impl<S: Scalar> Shell<S> {
             }
         }
         all
+    }
+
+    /// Writes the mass matrix, lower part, into `matrix` [kg, kg m, kg m²].
+    pub fn mass_matrix(&self, axes: &RotationAxes<S>, matrix: &mut ElementMatrix<S>) {
+        let masses = self.nodal_masses();
+        let moved: [[Vec3<S>; 3]; NODES] = std::array::from_fn(|a| {
+            axes.axes[a].map(|axis| axis.cross(&self.geometry.directors[a]))
+        });
+        matrix.clear(3 * NODES + axes.total());
+        for a in 0..NODES {
+            for b in 0..=a {
+                for i in 0..3 {
+                    matrix.rows[3 * a + i][3 * b + i] = masses.mass[a][b];
+                }
+            }
+        }
+        let mut row = 3 * NODES;
+        for a in 0..NODES {
+            for k in 0..axes.count[a] {
+                let mut column = 3 * NODES;
+                for b in 0..=a {
+                    let count = if a == b { k + 1 } else { axes.count[b] };
+                    for l in 0..count {
+                        let turned = moved[a][k].dot(&moved[b][l]);
+                        matrix.rows[row][column + l] = masses.rotary[a][b] * turned;
+                    }
+                    column += axes.count[b];
+                }
+                row += 1;
+            }
+        }
     }
 
     /// Kinetic energy of nodal velocities \[J\], in the place of displacements and rotations.

@@ -48,7 +48,7 @@ impl<S: Scalar> RotationAxes<S> {
         }
     }
 
-    fn total(&self) -> usize {
+    pub(super) fn total(&self) -> usize {
         self.count.iter().sum()
     }
 }

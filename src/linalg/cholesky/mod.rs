@@ -1,14 +1,20 @@
 //! Sparse Cholesky factorisation of symmetric positive definite matrices, analysed once.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+mod inertia;
+mod pattern;
+
+pub use pattern::{SymmetricPattern, fill_reducing_order};
+
+use pattern::structure;
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::perm::PermRef;
-use faer::sparse::linalg::amd;
+use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
 /// Growth of a random vector by the solution of the matrix with ones on its diagonal from which on
@@ -16,63 +22,6 @@ use faer::{Conj, MatMut, Par, Side};
 const SINGULAR_GROWTH: f64 = 1e14;
 /// What is added to the diagonal to find the weakest direction of a matrix that has no factors.
 const PROBE_SHIFT: f64 = 1e-9;
-
-/// The lower part, diagonal included, of a symmetric sparse matrix by columns.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SymmetricPattern {
-    starts: Vec<usize>,
-    rows: Vec<usize>,
-}
-
-impl SymmetricPattern {
-    /// The pattern whose column j has `columns[j]` for its rows: sorted, none twice, the first being j.
-    ///
-    /// # Panics
-    /// If that does not hold.
-    pub fn new(columns: &[Vec<usize>]) -> Self {
-        let mut starts = vec![0];
-        let mut rows = Vec::with_capacity(columns.iter().map(Vec::len).sum());
-        for (j, column) in columns.iter().enumerate() {
-            assert!(column.first() == Some(&j) && column.is_sorted_by(|a, b| a < b));
-            rows.extend_from_slice(column);
-            starts.push(rows.len());
-        }
-        Self { starts, rows }
-    }
-
-    /// Number of rows.
-    pub fn order(&self) -> usize {
-        self.starts.len() - 1
-    }
-
-    /// Number of entries of the lower part.
-    pub fn entries(&self) -> usize {
-        self.rows.len()
-    }
-
-    /// Where entry (i, j) of the lower part, i ≥ j, stands among the values.
-    pub fn slot(&self, i: usize, j: usize) -> Option<usize> {
-        let start = self.starts[j];
-        let column = &self.rows[start..self.starts[j + 1]];
-        column.binary_search(&i).ok().map(|at| start + at)
-    }
-
-    /// y = A x.
-    pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
-        y.fill(0.0);
-        for j in 0..self.order() {
-            let mut sum = 0.0;
-            for at in self.starts[j]..self.starts[j + 1] {
-                let (i, a) = (self.rows[at], values[at]);
-                y[i] += a * x[j];
-                if i != j {
-                    sum += a * x[i];
-                }
-            }
-            y[j] += sum;
-        }
-    }
-}
 
 /// The matrix is not positive definite: along `direction` it has no stiffness, or less.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -94,6 +43,8 @@ pub struct SparseCholesky {
     scale: Vec<f64>,
     scaled: Vec<f64>,
     scratch: MemBuffer,
+    /// Right sides that the scratch suffices for.
+    columns: usize,
 }
 
 impl SparseCholesky {
@@ -111,13 +62,13 @@ impl SparseCholesky {
             CholeskySymbolicParams::default(),
         )
         .expect("the analysis fails only when memory is exhausted");
-        let factorise = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
         let solve = symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
         Self {
             factors: vec![0.0; symbolic.len_val()],
             scale: vec![1.0; pattern.order()],
             scaled: vec![0.0; pattern.entries()],
-            scratch: MemBuffer::new(factorise.or(solve)),
+            scratch: MemBuffer::new(factorise_scratch(&symbolic).or(solve)),
+            columns: 1,
             symbolic,
         }
     }
@@ -157,10 +108,8 @@ impl SparseCholesky {
         values: &[f64],
         shift: f64,
     ) -> bool {
+        self.scale_values(pattern, values);
         for j in 0..pattern.order() {
-            for at in pattern.starts[j]..pattern.starts[j + 1] {
-                self.scaled[at] = values[at] * self.scale[j] * self.scale[pattern.rows[at]];
-            }
             self.scaled[pattern.starts[j]] += shift;
         }
         let factors = self.symbolic.factorize_numeric_llt(
@@ -173,6 +122,15 @@ impl SparseCholesky {
             Default::default(),
         );
         factors.is_ok() && self.factors.iter().all(|x| x.is_finite())
+    }
+
+    /// D A D.
+    fn scale_values(&mut self, pattern: &SymmetricPattern, values: &[f64]) {
+        for j in 0..pattern.order() {
+            for at in pattern.starts[j]..pattern.starts[j + 1] {
+                self.scaled[at] = values[at] * self.scale[j] * self.scale[pattern.rows[at]];
+            }
+        }
     }
 
     /// Growth of a vector that no mode is likely to be orthogonal to.
@@ -208,60 +166,74 @@ impl SparseCholesky {
         }
     }
 
-    /// Solves A x = b in place.
+    /// Solves A X = B in place; `b` holds the columns of B one after another.
     pub fn solve(&mut self, b: &mut [f64]) {
-        for (b, s) in b.iter_mut().zip(&self.scale) {
-            *b *= s;
-        }
+        self.scale_columns(b);
         self.solve_scaled(b);
-        for (b, s) in b.iter_mut().zip(&self.scale) {
-            *b *= s;
+        self.scale_columns(b);
+    }
+
+    fn scale_columns(&self, b: &mut [f64]) {
+        for column in b.chunks_exact_mut(self.scale.len().max(1)) {
+            for (b, s) in column.iter_mut().zip(&self.scale) {
+                *b *= s;
+            }
         }
     }
 
     fn solve_scaled(&mut self, b: &mut [f64]) {
-        let order = b.len();
+        let order = self.scale.len();
+        let columns = b.len() / order.max(1);
+        if columns > self.columns {
+            let needed = self
+                .symbolic
+                .solve_in_place_scratch::<f64>(columns, Par::Seq);
+            self.scratch = MemBuffer::new(needed.or(factorise_scratch(&self.symbolic)));
+            self.columns = columns;
+        }
         LltRef::<usize, f64>::new(&self.symbolic, &self.factors).solve_in_place_with_conj(
             Conj::No,
-            MatMut::from_column_major_slice_mut(b, order, 1),
+            MatMut::from_column_major_slice_mut(b, order, columns),
             Par::Seq,
             MemStack::new(&mut self.scratch),
         );
     }
 }
 
+fn factorise_scratch(symbolic: &SymbolicCholesky<usize>) -> StackReq {
+    symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default())
+}
+
 fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// An order of the nodes of a graph that keeps the fill of a factorisation small (approximate minimum
-/// degree): `order[k]` is the node that comes k-th. `neighbours[j]` are the neighbours i > j, sorted.
-///
-/// # Panics
-/// If memory is exhausted.
-pub fn fill_reducing_order(neighbours: &[Vec<usize>]) -> Vec<usize> {
-    let columns: Vec<Vec<usize>> = neighbours
-        .iter()
-        .enumerate()
-        .map(|(j, rows)| std::iter::once(j).chain(rows.iter().copied()).collect())
-        .collect();
-    // The upper part by columns is the lower part by rows; the graph is the same.
-    let pattern = SymmetricPattern::new(&columns);
-    let (n, entries) = (pattern.order(), pattern.entries());
-    let (mut order, mut inverse) = (vec![0; n], vec![0; n]);
-    let mut scratch = MemBuffer::new(amd::order_maybe_unsorted_scratch::<usize>(n, entries));
-    amd::order_maybe_unsorted(
-        &mut order,
-        &mut inverse,
-        structure(&pattern),
-        amd::Control::default(),
-        MemStack::new(&mut scratch),
-    )
-    .expect("the ordering fails only when memory is exhausted");
-    order
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn structure(pattern: &SymmetricPattern) -> SymbolicSparseColMatRef<'_, usize> {
-    let n = pattern.order();
-    SymbolicSparseColMatRef::new_checked(n, n, &pattern.starts, None, &pattern.rows)
+    #[test]
+    fn many_right_sides_are_solved_as_one_by_one() {
+        let columns: Vec<Vec<usize>> = (0..30).map(|j| (j..30.min(j + 3)).collect()).collect();
+        let pattern = SymmetricPattern::new(&columns);
+        let mut values = vec![-1.0; pattern.entries()];
+        for j in 0..30 {
+            values[pattern.slot(j, j).expect("diagonal")] = 5.0 + j as f64;
+        }
+        let mut solver = SparseCholesky::new(&pattern);
+        solver.factorise(&pattern, &values).expect("definite");
+        let right: Vec<f64> = (0..90).map(|i| (i as f64).cos()).collect();
+        let mut together = right.clone();
+        solver.solve(&mut together);
+        for (all, column) in together.chunks(30).zip(right.chunks(30)) {
+            let mut one = column.to_vec();
+            solver.solve(&mut one);
+            let mut product = vec![0.0; 30];
+            pattern.multiply(&values, all, &mut product);
+            for i in 0..30 {
+                assert!((one[i] - all[i]).abs() < 1e-15);
+                assert!((product[i] - column[i]).abs() < 1e-14);
+            }
+        }
+    }
 }

@@ -4,7 +4,7 @@ use super::csv;
 
 /// What became of a case.
 #[derive(Clone, Debug, PartialEq)]
-pub enum StressOutcome {
+pub enum StabilityOutcome {
     /// The numbers agree with their judge.
     Accurate,
     /// The numbers are off, and the program says so.
@@ -31,46 +31,48 @@ pub enum StressOutcome {
     WrongAndSilent,
 }
 
-impl StressOutcome {
+impl StabilityOutcome {
     /// The class in a few words.
     pub fn class(&self) -> &'static str {
         match self {
-            StressOutcome::Accurate => "accurate",
-            StressOutcome::Degraded { .. } => "degraded",
-            StressOutcome::Refused { .. } => "refused",
-            StressOutcome::TimeLimit { .. } => "time limit",
-            StressOutcome::Panicked { .. } => "panicked",
-            StressOutcome::WrongAndSilent => "wrong and silent",
+            StabilityOutcome::Accurate => "accurate",
+            StabilityOutcome::Degraded { .. } => "degraded",
+            StabilityOutcome::Refused { .. } => "refused",
+            StabilityOutcome::TimeLimit { .. } => "time limit",
+            StabilityOutcome::Panicked { .. } => "panicked",
+            StabilityOutcome::WrongAndSilent => "wrong and silent",
         }
     }
 
     /// Whether no program may behave so.
     pub fn is_failure(&self) -> bool {
         match self {
-            StressOutcome::Accurate
-            | StressOutcome::Degraded { .. }
-            | StressOutcome::Refused { .. } => false,
-            StressOutcome::TimeLimit { .. }
-            | StressOutcome::Panicked { .. }
-            | StressOutcome::WrongAndSilent => true,
+            StabilityOutcome::Accurate
+            | StabilityOutcome::Degraded { .. }
+            | StabilityOutcome::Refused { .. } => false,
+            StabilityOutcome::TimeLimit { .. }
+            | StabilityOutcome::Panicked { .. }
+            | StabilityOutcome::WrongAndSilent => true,
         }
     }
 
     /// What the program said, if it did.
     pub fn words(&self) -> &str {
         match self {
-            StressOutcome::Degraded { told } => told,
-            StressOutcome::Refused { message } | StressOutcome::Panicked { message } => message,
-            StressOutcome::Accurate
-            | StressOutcome::TimeLimit { .. }
-            | StressOutcome::WrongAndSilent => "",
+            StabilityOutcome::Degraded { told } => told,
+            StabilityOutcome::Refused { message } | StabilityOutcome::Panicked { message } => {
+                message
+            }
+            StabilityOutcome::Accurate
+            | StabilityOutcome::TimeLimit { .. }
+            | StabilityOutcome::WrongAndSilent => "",
         }
     }
 }
 
 /// One case.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StressRow {
+pub struct StabilityRow {
     /// What is extreme, in one word.
     pub family: String,
     /// How extreme.
@@ -84,7 +86,7 @@ pub struct StressRow {
     /// Steps that were taken.
     pub steps: Option<usize>,
     /// What became of it.
-    pub outcome: StressOutcome,
+    pub outcome: StabilityOutcome,
     /// Largest error of a function relative to the size of the motion.
     pub error: Option<f64>,
     /// Error up to which the numbers count as accurate.
@@ -106,7 +108,7 @@ pub struct StressRow {
     pub command: String,
 }
 
-impl StressRow {
+impl StabilityRow {
     /// Name of the case, by which it can be run alone.
     pub fn name(&self) -> String {
         case_name(&self.family, &self.extreme, &self.method)
@@ -120,7 +122,7 @@ pub fn case_name(family: &str, extreme: &str, method: &str) -> String {
 
 /// What the cases of a family have in common.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StressFamily {
+pub struct StabilityFamily {
     /// Its word.
     pub name: String,
     /// What is tried.
@@ -129,11 +131,11 @@ pub struct StressFamily {
 
 /// All cases, family by family.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StressTable {
+pub struct StabilityTable {
     /// Families in the order of the table.
-    pub families: Vec<StressFamily>,
+    pub families: Vec<StabilityFamily>,
     /// Cases in the order of the table.
-    pub rows: Vec<StressRow>,
+    pub rows: Vec<StabilityRow>,
 }
 
 /// Classes in the order of the summary.
@@ -167,7 +169,7 @@ const COLUMNS: [&str; 18] = [
     "command",
 ];
 
-impl StressTable {
+impl StabilityTable {
     /// The rows as CSV.
     pub fn to_csv(&self) -> String {
         let mut text = String::new();
@@ -202,7 +204,7 @@ impl StressTable {
     /// The rows as Markdown, a table a family.
     pub fn to_markdown(&self) -> String {
         let mut text = String::from(
-            "# Stability\n\nWhat becomes of extreme scenes, as `optimize stress` finds it; how it is \
+            "# Stability\n\nWhat becomes of extreme scenes, as `optimize stability` finds it; how it is \
              judged, and why: [docs/stability.md](../../docs/stability.md).\nThe command of every \
              row stands in [stability.csv](stability.csv).\n\n",
         );
@@ -213,7 +215,7 @@ impl StressTable {
         text += "\n|---|---|";
         CLASSES.iter().for_each(|_| text += "---|");
         text.push('\n');
-        let mut line = |name: &str, rows: &[&StressRow]| {
+        let mut line = |name: &str, rows: &[&StabilityRow]| {
             text += &format!("| {name} | {} |", rows.len());
             for class in CLASSES {
                 let own = rows.iter().filter(|row| row.outcome.class() == class);
@@ -243,7 +245,7 @@ impl StressTable {
         text
     }
 
-    fn of(&self, family: &StressFamily) -> Vec<&StressRow> {
+    fn of(&self, family: &StabilityFamily) -> Vec<&StabilityRow> {
         let own = self.rows.iter().filter(|row| row.family == family.name);
         own.collect()
     }
@@ -267,7 +269,7 @@ impl StressTable {
     }
 }
 
-fn markdown_row(row: &StressRow) -> String {
+fn markdown_row(row: &StabilityRow) -> String {
     let number = |x: Option<f64>| x.map_or_else(|| "–".into(), |x| format!("{x:.1e}"));
     let gradient = match (&row.gradient_error, &row.no_gradient) {
         (None, Some(_)) => "none".into(),
@@ -291,9 +293,9 @@ fn markdown_row(row: &StressRow) -> String {
 }
 
 /// What the program said to the rows, the same words once.
-fn notes(rows: &[&StressRow]) -> String {
+fn notes(rows: &[&StabilityRow]) -> String {
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
-    let mut add = |row: &StressRow, what: String| {
+    let mut add = |row: &StabilityRow, what: String| {
         let which = format!("{} by {}", row.extreme, row.method);
         match said.iter_mut().find(|(words, _)| *words == what) {
             Some((_, all)) => all.push(which),
@@ -317,8 +319,8 @@ fn notes(rows: &[&StressRow]) -> String {
 mod tests {
     use super::*;
 
-    fn row(outcome: StressOutcome) -> StressRow {
-        StressRow {
+    fn row(outcome: StabilityOutcome) -> StabilityRow {
+        StabilityRow {
             family: "speeds".into(),
             extreme: "1e6".into(),
             scene: "fast.json".into(),
@@ -340,18 +342,18 @@ mod tests {
 
     #[test]
     fn words_of_the_program_stand_below_the_table_once() {
-        let refused = StressOutcome::Refused {
+        let refused = StabilityOutcome::Refused {
             message: "too fast".into(),
         };
-        let table = StressTable {
-            families: vec![StressFamily {
+        let table = StabilityTable {
+            families: vec![StabilityFamily {
                 name: "speeds".into(),
                 about: "Fast.".into(),
             }],
             rows: vec![
                 row(refused.clone()),
                 row(refused),
-                row(StressOutcome::Accurate),
+                row(StabilityOutcome::Accurate),
             ],
         };
         let text = table.to_markdown();

@@ -1,4 +1,4 @@
-//! The stress suite: extreme scenes, each judged by something that shares nothing with the method
+//! The stability suite: extreme scenes, each judged by something that shares nothing with the method
 //! under test, so that no number is wrong without a word about it.
 //!
 //! A case is *accurate* if every function agrees with its judge, *degraded* if it does not and the
@@ -8,11 +8,12 @@
 mod case;
 mod cases;
 mod exact;
+mod loops;
 mod reference;
 mod run;
 mod scenes;
 
-use crate::report::{StressFamily, StressOutcome, StressRow, StressTable};
+use crate::report::{StabilityFamily, StabilityOutcome, StabilityRow, StabilityTable};
 use case::Case;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
@@ -32,15 +33,15 @@ pub fn names(fast: bool) -> Vec<String> {
 
 /// Runs the cases that `wanted` says of by their names, several at once; `seen` is told of every row
 /// as it is known. Rows stand in the order of the table.
-pub fn stress(
+pub fn stability(
     wanted: impl Fn(&str) -> bool,
     seconds: f64,
-    seen: &(dyn Fn(&StressRow) + Sync),
-) -> StressTable {
+    seen: &(dyn Fn(&StabilityRow) + Sync),
+) -> StabilityTable {
     let mut chosen = cases::all();
     chosen.retain(|case| wanted(&case.name()));
     let next = AtomicUsize::new(0);
-    let rows: Mutex<Vec<(usize, StressRow)>> = Mutex::new(Vec::new());
+    let rows: Mutex<Vec<(usize, StabilityRow)>> = Mutex::new(Vec::new());
     let workers = std::thread::available_parallelism().map_or(1, usize::from);
     // Threads of their own: a worker waits for its case, and must not hold up those that compute.
     std::thread::scope(|scope| {
@@ -60,13 +61,13 @@ pub fn stress(
     });
     let mut rows = rows.into_inner().unwrap_or_default();
     rows.sort_by_key(|(k, _)| *k);
-    let families = scenes::FAMILIES.map(|(name, about)| StressFamily {
+    let families = scenes::FAMILIES.map(|(name, about)| StabilityFamily {
         name: name.into(),
         about: about.into(),
     });
-    let rows: Vec<StressRow> = rows.into_iter().map(|(_, row)| row).collect();
-    let tried = |family: &StressFamily| rows.iter().any(|row| row.family == family.name);
-    StressTable {
+    let rows: Vec<StabilityRow> = rows.into_iter().map(|(_, row)| row).collect();
+    let tried = |family: &StabilityFamily| rows.iter().any(|row| row.family == family.name);
+    StabilityTable {
         families: families.into_iter().filter(tried).collect(),
         rows,
     }
@@ -79,7 +80,7 @@ pub fn is_named(case: &str, only: &str) -> bool {
 }
 
 /// The row of a case, which may break down and may take so long.
-fn limited(case: &Case, seconds: f64) -> StressRow {
+fn limited(case: &Case, seconds: f64) -> StabilityRow {
     let (send, receive) = mpsc::channel();
     let own = case.clone();
     // A case that does not end cannot be stopped: it is left behind until the program ends.
@@ -89,15 +90,15 @@ fn limited(case: &Case, seconds: f64) -> StressRow {
     });
     let mut row = run::blank(case);
     row.outcome = match started {
-        Err(error) => StressOutcome::Panicked {
+        Err(error) => StabilityOutcome::Panicked {
             message: error.to_string(),
         },
         Ok(_) => match receive.recv_timeout(Duration::from_secs_f64(seconds)) {
             Ok(Ok(row)) => return row,
-            Ok(Err(panic)) => StressOutcome::Panicked {
+            Ok(Err(panic)) => StabilityOutcome::Panicked {
                 message: words(panic.as_ref()),
             },
-            Err(_) => StressOutcome::TimeLimit { seconds },
+            Err(_) => StabilityOutcome::TimeLimit { seconds },
         },
     };
     row

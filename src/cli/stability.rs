@@ -1,13 +1,13 @@
-//! `optimize stress`.
+//! `optimize stability`.
 
 use super::arguments::Suite;
 use super::{DONE, Failure, NOT_REACHED, print, shown, tell};
-use crate::driver::stress::{is_named, names, stress as run};
-use crate::report::{StressRow, prepare_directory, write_all};
+use crate::driver::stability::{is_named, names, stability as run};
+use crate::report::{StabilityRow, prepare_directory, write_all};
 use std::path::Path;
 
-/// Runs the stress suite and writes its table.
-pub fn stress(asked: &Suite) -> Result<u8, Failure> {
+/// Runs the stability suite and writes its table.
+pub fn stability(asked: &Suite) -> Result<u8, Failure> {
     let wanted = |case: &str| asked.only.as_ref().is_none_or(|only| is_named(case, only));
     if let (Some(only), false) = (&asked.only, names(false).iter().any(|case| wanted(case))) {
         let mut families: Vec<String> = Vec::new();
@@ -32,7 +32,7 @@ pub fn stress(asked: &Suite) -> Result<u8, Failure> {
         Some(directory) => Some(prepare_directory(directory)?),
         None => None,
     };
-    let seen = |row: &StressRow| {
+    let seen = |row: &StabilityRow| {
         if !asked.quiet {
             tell(&line(row));
         }
@@ -59,7 +59,7 @@ pub fn stress(asked: &Suite) -> Result<u8, Failure> {
     })
 }
 
-fn line(row: &StressRow) -> String {
+fn line(row: &StabilityRow) -> String {
     let number = |x: Option<f64>| x.map_or_else(|| "-".into(), |x| format!("{x:.1e}"));
     let words = row.outcome.words().replace('\n', " ");
     format!(

@@ -2,7 +2,7 @@
 //! form, or from equations in minimal coordinates.
 
 use super::reference::{integrate, jacobi};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Gravity of the scenes (m/s²).
 const G: f64 = 9.81;
@@ -39,6 +39,12 @@ pub(super) enum Exact {
     Door { time: f64 },
     /// Rods in one line that fly at a speed (m/s) and turn at 3 rad/s.
     Dumbbell { speed: f64, time: f64 },
+    /// A parallelogram that has turned by an angle (rad) at a speed (rad/s).
+    Parallelogram { speed: f64, angle: f64 },
+    /// So many parallelograms in a row (MBS benchmark library, A02).
+    FourBars { cells: usize, time: f64 },
+    /// Bricard's mechanism (A04) after 10 s.
+    Bricard,
 }
 
 /// Numbers that the functions of a scene should have, and the sizes that errors are relative to.
@@ -56,12 +62,15 @@ impl Exact {
                 "Cartesian coordinates by extrapolation"
             }
             Exact::SpringPendulum { .. } => "slow manifold to 1/ω² by extrapolation",
+            Exact::FourBars { .. } => "minimal coordinate by extrapolation",
+            Exact::Bricard => "an integration of its one coordinate to 1e-10",
             Exact::Pendulum { spin, .. } if spin != 0.0 => "minimal coordinate by extrapolation",
             Exact::Pendulum { .. } | Exact::Door { .. } => "elliptic functions",
             Exact::Aggregate { .. } => "quadrature of the closed form",
             Exact::Oscillator { .. }
             | Exact::Top { .. }
             | Exact::Wheel { .. }
+            | Exact::Parallelogram { .. }
             | Exact::Dumbbell { .. } => "closed form",
         }
     }
@@ -107,6 +116,24 @@ impl Exact {
                 let angle = 3.0 * time;
                 (vec![angle.cos(), speed * time + angle.sin()], 1.0)
             }
+            Exact::Parallelogram { speed, angle } => {
+                // ∫ T dt of two rods about their ends, 0.02 m thick, and the coupler.
+                let energy = (1.0 / 3.0 + 0.25 * 0.02 * 0.02 + 0.5) * speed * angle;
+                let square = speed * speed;
+                let values = vec![angle, angle, energy, speed, -square * angle.cos()];
+                let sizes = vec![angle, angle, energy, speed, square];
+                return Numbers { values, sizes };
+            }
+            Exact::FourBars { cells, time } => {
+                let n = cells as f64;
+                let stiffness = (0.5 * (n + 1.0) + n) * G / ((n + 1.0) / 3.0 + n);
+                let angle = pendulum(stiffness, PI, 1.0, time);
+                (vec![-angle.sin(), -angle.cos()], 1.0)
+            }
+            Exact::Bricard => (
+                vec![0.999_999_963_8, -1.000_269_012_7, 0.999_730_951_1],
+                1.0,
+            ),
         };
         let sizes = vec![size; values.len()];
         Numbers { values, sizes }

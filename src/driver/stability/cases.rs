@@ -1,7 +1,8 @@
-//! The cases of the stress suite.
+//! The cases of the stability suite.
 
 use super::case::{Case, Judge, Steps, Way, equal, usual};
 use super::exact::Exact;
+use super::loops;
 use super::scenes::{
     AGGREGATE, DOOR, DOUBLE_PENDULUM, DUMBBELL, INFEASIBLE, LOCKING, OPEN_JOINT, OSCILLATOR,
     PENDULUM, SPRING_PENDULUM, TOP, UNBOUNDED, WHEEL,
@@ -10,10 +11,10 @@ use crate::integrate::Method;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Steps by tolerance, unless said otherwise.
-const TOLERANCE: f64 = 1e-9;
+pub(super) const TOLERANCE: f64 = 1e-9;
 
 /// A number for the table.
-fn decade(x: f64) -> String {
+pub(super) fn decade(x: f64) -> String {
     match x {
         0.0 => "0".into(),
         x if (0.1..1000.0).contains(&x) => format!("{x}"),
@@ -38,6 +39,11 @@ pub(super) fn all() -> Vec<Case> {
         speeds(),
         locking(),
         optima(),
+        loops::passages(),
+        loops::tolerances(),
+        loops::orders(),
+        loops::rotations(),
+        loops::units(),
     ];
     families.concat()
 }
@@ -342,21 +348,13 @@ fn locking() -> Vec<Case> {
     let mut all = Vec::new();
     for length in [1.0, 2.0, 2.09, 2.0999, 2.1, 2.2, 10.0] {
         for way in usual(TOLERANCE, 1000) {
-            all.push(Case {
-                family: "locking",
-                extreme: decade(length),
-                scene: LOCKING,
-                way: Some(way),
-                duration: 0.1,
-                changes: vec![format!("/bodies/coupler/points/to/0={}", length - 0.5)],
-                judge: Judge::OtherMethod,
-                bound: match way.method {
-                    Some(Method::Bdf { .. } | Method::GeneralisedAlpha { .. }) => 1e-3,
-                    _ => 1e-6,
-                },
-                conservative: false,
-                slow: false,
-            });
+            let judge = Judge::OtherMethod {
+                kept: usize::MAX,
+                size: 1.0,
+            };
+            let name = ("locking", decade(length));
+            let case = Case::known(name, LOCKING, (way, 0.1), judge);
+            all.push(case.set("/bodies/coupler/points/to/0", length - 0.5));
         }
     }
     all
@@ -397,6 +395,7 @@ fn optima() -> Vec<Case> {
                 duration: 0.0,
                 changes,
                 judge,
+                length: 1.0,
                 bound: 1e-6,
                 conservative: false,
                 slow: false,

@@ -6,7 +6,7 @@ use crate::driver::{Journal, Simulation, error, optimise, simulate};
 use crate::integrate::{Method, Spacing};
 use crate::optimiser::Status;
 use crate::problem::{Override, Problem};
-use crate::report::{StressOutcome, StressRow};
+use crate::report::{StabilityOutcome, StabilityRow};
 use std::ops::ControlFlow;
 
 /// Part of an error that a number has to reach to tell of it.
@@ -17,46 +17,50 @@ const MOST_STEPS: usize = 100_000;
 const TIGHT: (f64, f64) = (1e-13, 1e-11);
 
 /// Runs a case and judges it.
-pub(super) fn run(case: &Case) -> StressRow {
-    let parse = |text: &String| Override::parse(text);
-    let overrides: Result<Vec<Override>, _> = case.overrides().iter().map(parse).collect();
+pub(super) fn run(case: &Case) -> StabilityRow {
     let mut row = blank(case);
-    let problem = overrides
-        .map_err(|fault| fault.to_string())
-        .and_then(|changes| {
-            Problem::parse(case.scene.text, case.scene.name, &changes)
-                .map_err(|faults| one_line(&faults.to_string()))
-        });
-    let problem = match problem {
+    let problem = match read(case, usize::MAX) {
         Ok(problem) => problem,
         Err(message) => {
-            row.outcome = StressOutcome::Refused { message };
+            row.outcome = StabilityOutcome::Refused { message };
             return row;
         }
     };
     match case.judge {
         Judge::Optimum { value, size } => optimisation(&mut row, case, &problem, (value, size)),
-        Judge::Exact(_) | Judge::OtherMethod => motion(&mut row, case, &problem),
+        Judge::Exact(_) | Judge::OtherMethod { .. } => motion(&mut row, case, &problem),
     }
     row
 }
 
+/// The problem of a case with the first `kept` of its changes.
+fn read(case: &Case, kept: usize) -> Result<Problem, String> {
+    let parse = |text: &String| Override::parse(text);
+    let changes: Result<Vec<Override>, _> = case.overrides(kept).iter().map(parse).collect();
+    let changes = changes.map_err(|fault| fault.to_string())?;
+    Problem::parse(case.scene.text, case.scene.name, &changes)
+        .map_err(|faults| one_line(&faults.to_string()))
+}
+
 /// The row of a case of which nothing is known.
-pub(super) fn blank(case: &Case) -> StressRow {
+pub(super) fn blank(case: &Case) -> StabilityRow {
     let judge = match case.judge {
         Judge::Exact(exact) => exact.source().into(),
-        Judge::OtherMethod => "explicit against implicit at 1e-13 or 1e-11".into(),
+        Judge::OtherMethod { kept, .. } if kept < case.changes.len() => {
+            "the file as it is by the other family at 1e-13 or 1e-11".into()
+        }
+        Judge::OtherMethod { .. } => "explicit against implicit at 1e-13 or 1e-11".into(),
         Judge::Optimum { value, .. } if value.is_nan() => "there is no optimum".into(),
         Judge::Optimum { .. } => "the least that can be in closed form".into(),
     };
-    StressRow {
+    StabilityRow {
         family: case.family.into(),
         extreme: case.extreme.clone(),
         scene: case.scene.name.into(),
         method: case.method(),
         by: None,
         steps: None,
-        outcome: StressOutcome::WrongAndSilent,
+        outcome: StabilityOutcome::WrongAndSilent,
         error: None,
         bound: case.bound,
         judge,
@@ -69,13 +73,13 @@ pub(super) fn blank(case: &Case) -> StressRow {
     }
 }
 
-fn motion(row: &mut StressRow, case: &Case, problem: &Problem) {
+fn motion(row: &mut StabilityRow, case: &Case, problem: &Problem) {
     let start = problem.start();
     let seen = match simulate(problem, &start) {
         Ok(seen) => seen,
         Err(failure) => {
             let message = failure.to_string();
-            row.outcome = StressOutcome::Refused { message };
+            row.outcome = StabilityOutcome::Refused { message };
             return;
         }
     };
@@ -85,10 +89,10 @@ fn motion(row: &mut StressRow, case: &Case, problem: &Problem) {
     row.by = Some(seen.at.run.method.name());
     if values.iter().any(|value| !value.is_finite()) {
         let message = "a function is not finite".into();
-        row.outcome = StressOutcome::Refused { message };
+        row.outcome = StabilityOutcome::Refused { message };
         return;
     }
-    let (exact, sizes) = match known(case, problem) {
+    let (exact, sizes) = match known(case) {
         Ok(known) => known,
         Err(message) => {
             row.judge = format!("nobody: {message}");
@@ -110,11 +114,11 @@ fn motion(row: &mut StressRow, case: &Case, problem: &Problem) {
         });
     }
     row.outcome = if error <= case.bound {
-        StressOutcome::Accurate
+        StabilityOutcome::Accurate
     } else {
         match told(row, problem, &seen, error, &sizes) {
-            Some(told) => StressOutcome::Degraded { told },
-            None => StressOutcome::WrongAndSilent,
+            Some(told) => StabilityOutcome::Degraded { told },
+            None => StabilityOutcome::WrongAndSilent,
         }
     };
     let steps = seen.at.run.grid.steps();
@@ -143,34 +147,39 @@ fn gradient_error(all: &[CheckedDerivative], x: &[f64], sizes: &[f64]) -> f64 {
 }
 
 /// What the functions should be, and the sizes that errors are relative to.
-fn known(case: &Case, problem: &Problem) -> Result<(Vec<f64>, Vec<f64>), String> {
-    match case.judge {
+fn known(case: &Case) -> Result<(Vec<f64>, Vec<f64>), String> {
+    let (values, sizes) = match case.judge {
         Judge::Exact(exact) => {
             let numbers = exact.numbers();
-            Ok((numbers.values, numbers.sizes))
+            (numbers.values, numbers.sizes)
         }
-        Judge::OtherMethod | Judge::Optimum { .. } => {
-            let explicit = matches!(problem.simulation.method, None | Some(Method::Dop853));
+        Judge::OtherMethod { size, .. } | Judge::Optimum { size, .. } => {
+            let kept = match case.judge {
+                Judge::OtherMethod { kept, .. } => kept,
+                _ => usize::MAX,
+            };
+            let mut other = read(case, kept)?;
+            let explicit = matches!(other.simulation.method, None | Some(Method::Dop853));
             let (method, tolerance) = match explicit {
                 true => (Method::Radau { stages: 3 }, TIGHT.1),
                 false => (Method::Dop853, TIGHT.0),
             };
-            let mut other = problem.clone();
             other.simulation.method = Some(method);
             other.simulation.spacing = Spacing::Tolerance(tolerance);
             let seen = simulate(&other, &other.start()).map_err(|failure| failure.to_string())?;
-            let count = problem.function_names.len();
-            let values: Vec<f64> = (0..count).map(|f| seen.at.function(f).value).collect();
-            let sizes = vec![1.0; count];
-            Ok((values, sizes))
+            let count = other.function_names.len();
+            let values = (0..count).map(|f| seen.at.function(f).value).collect();
+            (values, vec![size; count])
         }
-    }
+    };
+    let scaled = |all: Vec<f64>| all.iter().map(|x| x * case.length).collect();
+    Ok((scaled(values), scaled(sizes)))
 }
 
 /// How the program tells that a motion is off by `error`: a warning, the energy that it prints, a joint
 /// that it leaves out altogether, or the estimate of `--error`.
 fn told(
-    row: &StressRow,
+    row: &StabilityRow,
     problem: &Problem,
     seen: &Simulation,
     error: f64,
@@ -200,16 +209,21 @@ fn told(
     }
 }
 
-fn optimisation(row: &mut StressRow, case: &Case, problem: &Problem, (optimum, size): (f64, f64)) {
+fn optimisation(
+    row: &mut StabilityRow,
+    case: &Case,
+    problem: &Problem,
+    (optimum, size): (f64, f64),
+) {
     let go_on = &mut |_: &_| ControlFlow::Continue(());
     let Some(done) = optimise(problem, case.scene.name, None, Journal::default(), go_on) else {
         let message = "nothing to optimise".into();
-        row.outcome = StressOutcome::Refused { message };
+        row.outcome = StabilityOutcome::Refused { message };
         return;
     };
     if let Status::UndefinedStart { what } | Status::IllPosed { what } = &done.outcome.status {
         let message = what.clone();
-        row.outcome = StressOutcome::Refused { message };
+        row.outcome = StabilityOutcome::Refused { message };
         return;
     }
     row.steps = done.end.as_ref().map(|end| end.at.run.grid.steps());
@@ -217,9 +231,9 @@ fn optimisation(row: &mut StressRow, case: &Case, problem: &Problem, (optimum, s
     let error = (found - optimum).abs() / size;
     row.error = Some(error).filter(|error| error.is_finite());
     row.outcome = match done.outcome.status {
-        Status::Converged if error <= case.bound => StressOutcome::Accurate,
-        Status::Converged => StressOutcome::WrongAndSilent,
-        _ => StressOutcome::Refused {
+        Status::Converged if error <= case.bound => StabilityOutcome::Accurate,
+        Status::Converged => StabilityOutcome::WrongAndSilent,
+        _ => StabilityOutcome::Refused {
             message: done.optimum.message.clone(),
         },
     };

@@ -1,14 +1,20 @@
-//! The problem files of the stress suite, and the families of its cases.
+//! The problem files of the stability suite, and the families of its cases.
 
 use super::case::SceneFile;
 
 macro_rules! scene {
     ($name:literal) => {
+        scene!("extreme", $name)
+    };
+    ($folder:literal, $name:literal) => {
         SceneFile {
+            folder: $folder,
             name: concat!($name, ".json"),
             text: include_str!(concat!(
                 env!("CARGO_MANIFEST_DIR"),
-                "/problems/extreme/",
+                "/problems/",
+                $folder,
+                "/",
                 $name,
                 ".json"
             )),
@@ -29,9 +35,17 @@ pub(super) const OPEN_JOINT: SceneFile = scene!("open_joint");
 pub(super) const LOCKING: SceneFile = scene!("locking_linkage");
 pub(super) const UNBOUNDED: SceneFile = scene!("unbounded_throw");
 pub(super) const INFEASIBLE: SceneFile = scene!("infeasible_throw");
+pub(super) const PARALLELOGRAM: SceneFile = scene!("parallelogram");
+pub(super) const FOUR_BARS_1: SceneFile = scene!("benchmarks", "four_bars_1");
+pub(super) const FOUR_BARS_2: SceneFile = scene!("benchmarks", "four_bars_2");
+pub(super) const FOUR_BARS_10: SceneFile = scene!("benchmarks", "four_bars_10");
+pub(super) const BRICARD: SceneFile = scene!("benchmarks", "bricard");
+pub(super) const SQUEEZER: SceneFile = scene!("benchmarks", "andrews_squeezer");
+pub(super) const SLIDER_CRANK: SceneFile = scene!("benchmarks", "balanced_slider_crank");
+pub(super) const GOVERNOR: SceneFile = scene!("benchmarks", "flyball_governor");
 
 /// The families with what they try.
-pub(super) const FAMILIES: [(&str, &str); 14] = [
+pub(super) const FAMILIES: [(&str, &str); 19] = [
     (
         "mass-ratio",
         "Two hinged rods swing for 2 s; the lower one has this many times the mass of the upper one.",
@@ -90,5 +104,27 @@ pub(super) const FAMILIES: [(&str, &str); 14] = [
     (
         "optimum",
         "Optimisations that have no optimum, or run into designs at which the mechanism locks.",
+    ),
+    (
+        "passage",
+        "A parallelogram of rods turns without gravity, ends so far (rad) from one of the positions in \
+         which all rods lie in a line, and passes four of them at this speed (rad/s).",
+    ),
+    (
+        "tolerance",
+        "One, two and ten parallelograms in a row, which pass ten singular positions in 10 s, by steps to \
+         this tolerance.",
+    ),
+    (
+        "order",
+        "Scenes with closed loops, their joints and the two bodies of each in random order.",
+    ),
+    (
+        "rotation",
+        "Scenes with closed loops, turned as a whole about a random axis by a random angle.",
+    ),
+    (
+        "units",
+        "Scenes with closed loops, lengths and masses multiplied by these numbers.",
     ),
 ];

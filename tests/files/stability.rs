@@ -1,7 +1,7 @@
-//! The stress suite: a fast part of it run and compared with the committed table, which is held to
+//! The stability suite: a fast part of it run and compared with the committed table, which is held to
 //! the claims that `docs/stability.md` makes of it.
 
-use flexbody::driver::stress::{names, stress};
+use flexbody::driver::stability::{names, stability};
 use flexbody::problem::Problem;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use std::process::{Command, Output};
 const GRADIENT: f64 = 1e-10;
 
 /// Cases whose derivatives round-off spoils beyond that, and how far; `docs/stability.md` says why.
-const SPOILT: [(&str, f64); 12] = [
+const SPOILT: [(&str, f64); 15] = [
     // ε k l / (m g): the force of a spring of l = 1 m is known to ε k l.
     ("stiffness/10/", 2.3e-9),
     ("stiffness/100/", 2.3e-7),
@@ -29,6 +29,10 @@ const SPOILT: [(&str, f64); 12] = [
     ("hinge-distance/1e-7/", 1e-7),
     // A singular position, 1e-4 of the length away.
     ("locking/2.0999/", 1e-9),
+    // Ends and steps near a singular position, where round-off counts: it moves these by up to 6e-5.
+    ("passage/1e-2 before the first/radau2", 1e-9),
+    ("tolerance/2 to 1e-5/", 1e-9),
+    ("tolerance/2 to 1e-6/", 1e-9),
 ];
 
 fn gradient_bound(case: &str) -> f64 {
@@ -97,7 +101,7 @@ fn no_extreme_scene_is_wrong_without_a_word() {
         .into_iter()
         .map(|row| (row.case, row.outcome))
         .collect();
-    let table = stress(|case| fast.contains(case), 300.0, &|_| {});
+    let table = stability(|case| fast.contains(case), 300.0, &|_| {});
     assert_eq!(table.rows.len(), fast.len());
     let mut wrong = Vec::new();
     for row in &table.rows {
@@ -151,7 +155,8 @@ fn the_committed_table_is_whole_and_has_no_silent_error() {
 
 #[test]
 fn every_scene_is_a_problem_file_that_a_case_uses() {
-    let used: BTreeSet<String> = committed().into_iter().map(|row| row.scene).collect();
+    let mut used: BTreeSet<String> = committed().into_iter().map(|row| row.scene).collect();
+    used.retain(|name| !root().join("problems/benchmarks").join(name).is_file());
     let folder = root().join("problems/extreme");
     let there: BTreeSet<String> = std::fs::read_dir(&folder)
         .expect("scenes")
@@ -166,7 +171,7 @@ fn every_scene_is_a_problem_file_that_a_case_uses() {
 
 fn command(directory: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_optimize"))
-        .arg("stress")
+        .arg("stability")
         .args(arguments)
         .current_dir(directory)
         .output()
@@ -223,4 +228,19 @@ fn a_name_of_no_case_is_bad_input() {
         told.contains("found --only \"mass\"") && told.contains("mass-ratio, "),
         "{told}"
     );
+}
+
+/// The suite was called `stress` once.
+#[test]
+fn the_former_name_of_the_command_names_the_new_one() {
+    for more in [&[][..], &["--only", "damping"], &["--help"]] {
+        let done = Command::new(env!("CARGO_BIN_EXE_optimize"))
+            .arg("stress")
+            .args(more)
+            .output()
+            .expect("the program starts");
+        assert_eq!(done.status.code(), Some(2), "{more:?}");
+        let told = String::from_utf8_lossy(&done.stderr);
+        assert!(told.contains("expected `optimize stability`"), "{told}");
+    }
 }

@@ -1,12 +1,14 @@
-//! A case of the stress suite: a scene, how it is changed and integrated, and who judges it.
+//! A case of the stability suite: a scene, how it is changed and integrated, and who judges it.
 
 use super::exact::Exact;
 use crate::integrate::Method;
-use crate::report::stress::case_name;
+use crate::report::stability::case_name;
 
-/// A problem file under `problems/extreme`.
+/// A problem file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SceneFile {
+    /// Its folder under `problems`.
+    pub folder: &'static str,
     /// Its name.
     pub name: &'static str,
     /// Its text.
@@ -34,11 +36,18 @@ pub(super) struct Way {
 pub(super) enum Judge {
     /// A motion that is known without the program.
     Exact(Exact),
-    /// A run by a method of the other family with a much tighter tolerance.
-    OtherMethod,
+    /// A run by a method of the other family with a much tighter tolerance, with so many of the changes
+    /// only, and the size (m) that its error is relative to.
+    OtherMethod { kept: usize, size: f64 },
     /// The least or largest value of the objective of an optimisation, NaN if there is none, and the
     /// size that its error is relative to.
     Optimum { value: f64, size: f64 },
+}
+
+impl From<Exact> for Judge {
+    fn from(exact: Exact) -> Self {
+        Judge::Exact(exact)
+    }
 }
 
 /// A case.
@@ -58,6 +67,8 @@ pub(super) struct Case {
     pub changes: Vec<String>,
     /// Who judges.
     pub judge: Judge,
+    /// What lengths are multiplied by.
+    pub length: f64,
     /// Error, relative to the size of the motion, up to which it is accurate.
     pub bound: f64,
     /// Whether energy is conserved.
@@ -157,13 +168,14 @@ impl Way {
 }
 
 impl Case {
-    /// A case that conserves energy and whose motion is known.
+    /// A case by usual bounds. It conserves energy if its motion is known.
     pub fn known(
         (family, extreme): (&'static str, String),
         scene: SceneFile,
         (way, duration): (Way, f64),
-        exact: Exact,
+        judge: impl Into<Judge>,
     ) -> Self {
+        let judge = judge.into();
         Self {
             family,
             extreme,
@@ -171,9 +183,10 @@ impl Case {
             way: Some(way),
             duration,
             changes: Vec::new(),
-            judge: Judge::Exact(exact),
+            judge,
+            length: 1.0,
             bound: bound(way),
-            conservative: true,
+            conservative: matches!(judge, Judge::Exact(_)),
             slow: false,
         }
     }
@@ -195,9 +208,9 @@ impl Case {
         case_name(self.family, &self.extreme, &self.method())
     }
 
-    /// All changes of the file.
-    pub fn overrides(&self) -> Vec<String> {
-        let mut all = self.changes.clone();
+    /// The first `kept` changes of the file, and method, steps and duration.
+    pub fn overrides(&self, kept: usize) -> Vec<String> {
+        let mut all: Vec<String> = self.changes.iter().take(kept).cloned().collect();
         if let Some(way) = self.way {
             all.push(format!("/simulation={}", way.json(self.duration)));
         }
@@ -207,11 +220,12 @@ impl Case {
     /// The command that runs the same.
     pub fn command(&self) -> String {
         let verb = match self.judge {
-            Judge::Exact(_) | Judge::OtherMethod => "simulate ",
+            Judge::Exact(_) | Judge::OtherMethod { .. } => "simulate ",
             Judge::Optimum { .. } => "",
         };
-        let mut text = format!("optimize {verb}problems/extreme/{}", self.scene.name);
-        for change in self.overrides() {
+        let SceneFile { folder, name, .. } = self.scene;
+        let mut text = format!("optimize {verb}problems/{folder}/{name}");
+        for change in self.overrides(usize::MAX) {
             text += &format!(" --set '{change}'");
         }
         text

@@ -1,4 +1,4 @@
-//! An integrator of its own for the references of the stress suite: extrapolation of the modified
+//! An integrator of its own for the references of the stability suite: extrapolation of the modified
 //! midpoint rule (Gragg, Bulirsch & Stoer; Hairer, Nørsett & Wanner 1993, section II.9) on equations
 //! in minimal coordinates. It shares nothing with the methods that it judges.
 

@@ -1,0 +1,233 @@
+//! What a user of the library needs of problems: simulate a design, take its functions and exact
+//! gradients, check them, and find the best design.
+//!
+//! The types here hide how a scene is integrated, so that they can stay as they are while that changes.
+//! Bindings to other languages are made of these alone.
+
+use crate::driver::integration::Integration;
+use crate::driver::{self, Evaluated, Journal, Simulation};
+use crate::integrate::IntegrationFailure;
+use crate::problem::Problem;
+use crate::report::optimum::Optimum as Record;
+use std::ops::ControlFlow;
+
+pub use crate::driver::CheckedDerivative;
+
+/// Why a design could not be simulated or differentiated. Its text says when and where.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(transparent)]
+pub struct SimulationError(#[from] IntegrationFailure);
+
+/// Simulates the design `x`, one number a variable, in the units of the problem file.
+///
+/// # Errors
+/// If the joints cannot be closed, or the motion cannot be integrated to its end.
+pub fn simulate(problem: &Problem, x: &[f64]) -> Result<Motion, SimulationError> {
+    let simulation = driver::simulate(problem, x)?;
+    Ok(Motion { simulation })
+}
+
+/// The motion of a design at its sampled instants.
+pub struct Motion {
+    simulation: Simulation,
+}
+
+/// Where a body is at one instant, and how it moves; in ground axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyState {
+    /// Centre of mass \[m\].
+    pub position: [f64; 3],
+    /// Euler parameters of the rotation from body axes to ground axes; the real part comes first.
+    pub orientation: [f64; 4],
+    /// Velocity of the centre of mass \[m/s\].
+    pub velocity: [f64; 3],
+    /// Angular velocity \[rad/s\].
+    pub angular_velocity: [f64; 3],
+}
+
+impl Motion {
+    /// Sampled instants \[s\], from 0 to the end of the motion.
+    pub fn times(&self) -> Vec<f64> {
+        let run = self.simulation.motion();
+        (0..=run.last()).map(|k| run.time(k)).collect()
+    }
+
+    /// State of a body at the instant `k` of [`Motion::times`]. `None` if there is no such body or
+    /// instant.
+    pub fn body(&self, name: &str, k: usize) -> Option<BodyState> {
+        let bodies = &self.simulation.written.model.bodies;
+        let run = self.simulation.motion();
+        let index = bodies.iter().position(|body| body.name == name)?;
+        if k > run.last() {
+            return None;
+        }
+        let q = &run.q(k)[run.numbering.position(index)..];
+        let v = &run.v(k)[run.numbering.velocity(index)..];
+        Some(BodyState {
+            position: [q[0], q[1], q[2]],
+            orientation: [q[3], q[4], q[5], q[6]],
+            velocity: [v[0], v[1], v[2]],
+            angular_velocity: [v[3], v[4], v[5]],
+        })
+    }
+
+    /// Value of every function, in the order of [`Problem::functions`].
+    pub fn values(&self) -> Vec<f64> {
+        values(&self.simulation.at)
+    }
+
+    /// Largest |E(t) − E(0)| of kinetic and potential energy \[J\].
+    pub fn energy_drift(&self) -> f64 {
+        self.simulation.energy_drift()
+    }
+
+    /// Largest violation of a position constraint \[m or 1\] and of a velocity constraint \[m/s or
+    /// rad/s\].
+    pub fn constraint_drift(&self) -> (f64, f64) {
+        self.simulation.constraint_drift()
+    }
+
+    /// Time steps that the method took.
+    pub fn steps(&self) -> usize {
+        self.simulation.at.run.grid.steps()
+    }
+}
+
+fn values(at: &Evaluated) -> Vec<f64> {
+    let count = at.scene.functions.len();
+    (0..count).map(|f| at.function(f).value).collect()
+}
+
+/// Simulates designs one after the other and differentiates them.
+///
+/// It keeps the time steps from design to design, so that values are smooth in the design and gradients
+/// are theirs. It chooses them anew where their error has grown.
+pub struct Analysis<'a> {
+    problem: &'a Problem,
+    integration: Integration,
+}
+
+impl<'a> Analysis<'a> {
+    /// An analysis of all functions of `problem`.
+    pub fn new(problem: &'a Problem) -> Self {
+        let scene = problem.scene(&problem.start());
+        let integration = Integration::new(problem, &scene, None, true);
+        Self {
+            problem,
+            integration,
+        }
+    }
+
+    /// Simulates the design `x`, one number a variable.
+    ///
+    /// # Errors
+    /// If the joints cannot be closed, or the motion cannot be integrated to its end.
+    pub fn at(&mut self, x: &[f64]) -> Result<Design<'a>, SimulationError> {
+        let (evaluated, _) = Evaluated::with(&mut self.integration, self.problem, x)?;
+        Ok(Design {
+            problem: self.problem,
+            evaluated,
+        })
+    }
+}
+
+/// A design that was simulated, of which values and gradients can be taken.
+pub struct Design<'a> {
+    problem: &'a Problem,
+    evaluated: Evaluated,
+}
+
+impl Design<'_> {
+    /// Value of every function, in the order of [`Problem::functions`].
+    pub fn values(&self) -> Vec<f64> {
+        values(&self.evaluated)
+    }
+
+    /// Exact gradients of the functions `which`, by index: one row a function, one number a variable.
+    /// They are found by the discrete adjoint of the time integration, in one backward march together.
+    ///
+    /// # Errors
+    /// If the equations of a step are singular.
+    pub fn gradients(&self, which: &[usize]) -> Result<Vec<Vec<f64>>, SimulationError> {
+        let (gradients, _) = self.evaluated.gradients(self.problem, which)?;
+        Ok(gradients)
+    }
+}
+
+/// Compares every derivative at the design `x`: adjoint against complex step.
+///
+/// # Errors
+/// If a simulation fails.
+pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, SimulationError> {
+    Ok(driver::check(problem, x)?)
+}
+
+/// One iteration of an optimisation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iteration {
+    /// Its number, from 0 at the start.
+    pub number: usize,
+    /// Simulations so far.
+    pub evaluations: usize,
+    /// The objective in the user's sense.
+    pub objective: f64,
+    /// Largest violation of a constraint, in its unit.
+    pub infeasibility: f64,
+    /// Largest residual of the optimality conditions, scaled.
+    pub optimality: f64,
+}
+
+/// Finds the best design from the problem's start. `progress` sees every iteration and may stop the run.
+/// `None` if the problem has no variables, or neither objective nor constraints.
+pub fn optimise(
+    problem: &Problem,
+    progress: &mut dyn FnMut(Iteration) -> ControlFlow<()>,
+) -> Option<Optimum> {
+    let mut seen = |history: &crate::report::history::History| match history.rows.last() {
+        None => ControlFlow::Continue(()),
+        Some(row) => progress(Iteration {
+            number: row.iteration,
+            evaluations: row.evaluations,
+            objective: row.objective,
+            infeasibility: row.infeasibility,
+            optimality: row.optimality,
+        }),
+    };
+    let found = driver::optimise(problem, "", None, Journal::default(), &mut seen)?;
+    Some(Optimum {
+        record: found.optimum,
+    })
+}
+
+/// The end of an optimisation.
+pub struct Optimum {
+    record: Record,
+}
+
+impl Optimum {
+    /// Whether the first-order conditions hold to the tolerances.
+    pub fn converged(&self) -> bool {
+        self.record.status == "converged"
+    }
+
+    /// How the run ended, in one word such as `converged`, and in a sentence.
+    pub fn status(&self) -> (&str, &str) {
+        (&self.record.status, &self.record.message)
+    }
+
+    /// The objective in the user's sense.
+    pub fn objective(&self) -> f64 {
+        self.record.objective.value
+    }
+
+    /// The design, one number a variable.
+    pub fn design(&self) -> Vec<f64> {
+        self.record.design.values().map(|own| own.value).collect()
+    }
+
+    /// The whole record, as the command writes it to `optimum.json`; `None` if a number in it is not
+    /// finite.
+    pub fn to_json(&self) -> Option<String> {
+        self.record.to_json().ok()
+    }
+}

@@ -1,0 +1,94 @@
+//! The pattern of a symmetric matrix, and an order of its rows with little fill.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::amd;
+
+/// The lower part, diagonal included, of a symmetric sparse matrix by columns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SymmetricPattern {
+    pub(super) starts: Vec<usize>,
+    pub(super) rows: Vec<usize>,
+}
+
+impl SymmetricPattern {
+    /// The pattern whose column j has `columns[j]` for its rows: sorted, none twice, the first being j.
+    ///
+    /// # Panics
+    /// If that does not hold.
+    pub fn new(columns: &[Vec<usize>]) -> Self {
+        let mut starts = vec![0];
+        let mut rows = Vec::with_capacity(columns.iter().map(Vec::len).sum());
+        for (j, column) in columns.iter().enumerate() {
+            assert!(column.first() == Some(&j) && column.is_sorted_by(|a, b| a < b));
+            rows.extend_from_slice(column);
+            starts.push(rows.len());
+        }
+        Self { starts, rows }
+    }
+
+    /// Number of rows.
+    pub fn order(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Number of entries of the lower part.
+    pub fn entries(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Where entry (i, j) of the lower part, i ≥ j, stands among the values.
+    pub fn slot(&self, i: usize, j: usize) -> Option<usize> {
+        let start = self.starts[j];
+        let column = &self.rows[start..self.starts[j + 1]];
+        column.binary_search(&i).ok().map(|at| start + at)
+    }
+
+    /// y = A x.
+    pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        for j in 0..self.order() {
+            let mut sum = 0.0;
+            for at in self.starts[j]..self.starts[j + 1] {
+                let (i, a) = (self.rows[at], values[at]);
+                y[i] += a * x[j];
+                if i != j {
+                    sum += a * x[i];
+                }
+            }
+            y[j] += sum;
+        }
+    }
+}
+
+/// An order of the nodes of a graph that keeps the fill of a factorisation small (approximate minimum
+/// degree): `order[k]` is the node that comes k-th. `neighbours[j]` are the neighbours i > j, sorted.
+///
+/// # Panics
+/// If memory is exhausted.
+pub fn fill_reducing_order(neighbours: &[Vec<usize>]) -> Vec<usize> {
+    let columns: Vec<Vec<usize>> = neighbours
+        .iter()
+        .enumerate()
+        .map(|(j, rows)| std::iter::once(j).chain(rows.iter().copied()).collect())
+        .collect();
+    // The upper part by columns is the lower part by rows; the graph is the same.
+    let pattern = SymmetricPattern::new(&columns);
+    let (n, entries) = (pattern.order(), pattern.entries());
+    let (mut order, mut inverse) = (vec![0; n], vec![0; n]);
+    let mut scratch = MemBuffer::new(amd::order_maybe_unsorted_scratch::<usize>(n, entries));
+    amd::order_maybe_unsorted(
+        &mut order,
+        &mut inverse,
+        structure(&pattern),
+        amd::Control::default(),
+        MemStack::new(&mut scratch),
+    )
+    .expect("the ordering fails only when memory is exhausted");
+    order
+}
+
+pub(super) fn structure(pattern: &SymmetricPattern) -> SymbolicSparseColMatRef<'_, usize> {
+    let n = pattern.order();
+    SymbolicSparseColMatRef::new_checked(n, n, &pattern.starts, None, &pattern.rows)
+}

@@ -1,0 +1,143 @@
+//! Natural frequencies and modes of a structure.
+//!
+//! K x = λ M x, f = √λ / 2π. The lowest eigenvalues are found by block Lanczos on (K + sM)⁻¹ M. The
+//! negative pivots of K − μM count the eigenvalues below μ (Sylvester's law of inertia), so none is
+//! missed. Rigid motions are known beforehand and kept out; only where there are some is s > 0.
+
+mod frequencies;
+mod lanczos;
+mod rigid;
+mod search;
+
+pub use frequencies::{
+    LowestFrequency, eigenvalue_gradient, frequency_gradient, lowest_frequency, reduced,
+};
+
+use super::assembly::Assembly;
+use super::mesh::UnknownSet;
+use super::state::NodalMotion;
+use super::statics::StaticFailure;
+use super::structure::Structure;
+use super::supports::{NodeUnknowns, Support};
+use crate::linalg::cholesky::SparseCholesky;
+
+/// Why there are no modes.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ModalFailure {
+    /// The stiffness has no factors.
+    #[error(transparent)]
+    Static(#[from] StaticFailure),
+    /// Nothing has mass.
+    #[error("the structure has no mass, so it has no natural frequencies; give a density")]
+    NoMass,
+    /// The structure has fewer modes than were asked for.
+    #[error("{asked} modes are asked for, and the structure has {there}")]
+    TooMany {
+        /// How many were asked for.
+        asked: usize,
+        /// How many there are.
+        there: usize,
+    },
+    /// The iteration came to no end.
+    #[error("the {asked} lowest modes did not converge; {found} were found")]
+    NoConvergence {
+        /// How many were asked for.
+        asked: usize,
+        /// How many were found.
+        found: usize,
+    },
+    /// A single frequency is asked for that another one equals.
+    #[error(
+        "frequency {index} has no derivative: it lies within {gap:.1e} of its neighbour, relatively; take \
+         a smooth function of the lowest frequencies"
+    )]
+    Repeated {
+        /// The mode.
+        index: usize,
+        /// Relative distance of the eigenvalues.
+        gap: f64,
+    },
+    /// The aggregate takes in more modes than are sensible.
+    #[error(
+        "the aggregate with rho = {rho:.3e} s takes in more than {most} modes; a larger rho takes in fewer"
+    )]
+    RhoTooSmall {
+        /// Its sharpness [s].
+        rho: f64,
+        /// How many modes are allowed.
+        most: usize,
+    },
+}
+
+/// Counted work of [`ModalProblem::solve`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ModalWork {
+    /// Factorisations, with those that count.
+    pub factorisations: usize,
+    /// Right sides that were solved for.
+    pub solves: usize,
+}
+
+/// The lowest modes of a structure, without rigid motions.
+#[derive(Clone, Debug)]
+pub struct Modes {
+    /// Number of rigid motions; their frequencies are zero.
+    pub rigid: usize,
+    /// Eigenvalues λ = (2πf)², ascending [1/s²].
+    pub eigenvalues: Vec<f64>,
+    /// Values of the unknowns in each mode; xᵀ M x = 1.
+    pub vectors: Vec<Vec<f64>>,
+    /// What it took.
+    pub work: ModalWork,
+}
+
+impl Modes {
+    /// Natural frequencies \[Hz\], ascending, without those of rigid motions.
+    pub fn frequencies(&self) -> Vec<f64> {
+        let all = self.eigenvalues.iter();
+        all.map(|x| x.sqrt() / (2.0 * std::f64::consts::PI))
+            .collect()
+    }
+}
+
+/// A structure with supports, ready for its modes: the analysis of its matrices is done.
+pub struct ModalProblem {
+    pub(super) assembly: Assembly,
+    solver: SparseCholesky,
+    stiffness: Vec<f64>,
+    mass: Vec<f64>,
+    /// K + s M, or K − μ M.
+    shifted: Vec<f64>,
+}
+
+impl ModalProblem {
+    /// Analyses a structure with supports.
+    ///
+    /// # Errors
+    /// [`UnknownSet`] if a support names no set of the mesh.
+    pub fn new(
+        structure: &Structure<f64>,
+        supports: &[Support],
+        node_unknowns: NodeUnknowns,
+    ) -> Result<Self, UnknownSet> {
+        let assembly = Assembly::new(structure, supports, node_unknowns)?;
+        let values = vec![0.0; assembly.pattern.entries()];
+        Ok(Self {
+            solver: SparseCholesky::new(&assembly.pattern),
+            stiffness: values.clone(),
+            mass: values.clone(),
+            shifted: values,
+            assembly,
+        })
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.assembly.unknowns.count
+    }
+
+    /// The motion of the nodes in a mode.
+    pub fn motion(&self, structure: &Structure<f64>, mode: &[f64]) -> NodalMotion<f64> {
+        self.assembly.configuration(structure).spread(mode)
+    }
+}
