@@ -80,6 +80,7 @@ impl Case {
                 duration,
                 until: None,
                 functions,
+                unstarted: None,
             },
             settings,
             error: f64::NAN,

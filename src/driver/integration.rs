@@ -201,6 +201,9 @@ impl Integration {
         &mut self,
         scene: &mut Scene<f64>,
     ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {
+        if let Some(failure) = &scene.unstarted {
+            return Err(IntegrationFailure::Assembly(failure.clone()));
+        }
         memory::admit(&scene.model, &self.wanted())?;
         let settled = self.settled.take();
         let waited = scene.duration;

@@ -2,7 +2,7 @@
 //! velocities that are changed as the joints do not admit them, and joints that leave no freedom.
 
 use crate::math::{Vec3, rotation};
-use crate::model::Model;
+use crate::model::{Model, RigidBody};
 use crate::problem::Problem;
 use crate::system::assembly::length_scale;
 use crate::system::initial::{self, InitialState};
@@ -22,6 +22,7 @@ pub fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
     let model = problem.unlowered_scene(x).model;
     let numbering = Numbering::new(&model);
     let mut notes = Vec::new();
+    tell(&mut notes, replaced(problem, &model, x));
     let locked = freedoms(&problem.scene(x).model) == 0 && !model.bodies.is_empty();
     let driven = model.joints.iter().any(|joint| !joint.drives.is_empty());
     let stuck = locked && !driven;
@@ -52,6 +53,46 @@ pub fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
     let changed = changed(&model, &numbering, &start);
     tell(&mut notes, changed);
     notes
+}
+
+/// Bodies whose velocities of the file give way to the starts of joints.
+fn replaced(problem: &Problem, model: &Model<f64>, x: &[f64]) -> Vec<String> {
+    let own = problem.own_velocities(x);
+    let moving: Vec<(&RigidBody<f64>, Velocities, Velocities)> = (model.bodies.iter().zip(own))
+        .filter_map(|(body, own)| {
+            let [v, omega] = own?;
+            let turned = rotation::matrix(&body.orientation) * body.angular_velocity;
+            Some((body, (v, omega), (body.velocity, turned)))
+        })
+        .collect();
+    let sizes = moving.iter().flat_map(|(_, given, start)| [given, start]);
+    let (speed, spin) = sizes.fold((0.0_f64, 0.0_f64), |(speed, spin), (v, omega)| {
+        (speed.max(v.norm()), spin.max(omega.norm()))
+    });
+    let one = |(body, given, start): &(&RigidBody<f64>, Velocities, Velocities)| {
+        let (by, turning) = ((start.0 - given.0).norm(), (start.1 - given.1).norm());
+        (by > TOLD * speed || turning > TOLD * spin).then(|| {
+            format!(
+                "the starts of joints replace the given velocity of body \"{}\": {}",
+                body.name,
+                change(given, start)
+            )
+        })
+    };
+    moving.iter().filter_map(one).collect()
+}
+
+/// What becomes of velocities, in words.
+fn change((v, omega): &Velocities, (v_start, omega_start): &Velocities) -> String {
+    format!(
+        "it starts with {} of {} m/s and {} of {} rad/s (changed by {} m/s and {} rad/s)",
+        short(v_start.norm()),
+        short(v.norm()),
+        short(omega_start.norm()),
+        short(omega.norm()),
+        short((v_start - v).norm()),
+        short((omega_start - omega).norm()),
+    )
 }
 
 fn tell(notes: &mut Vec<String>, all: Vec<String>) {
@@ -92,7 +133,7 @@ fn consistent(model: &Model<f64>, numbering: &Numbering) -> bool {
 /// Bodies that were moved.
 fn moved(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>) -> Vec<String> {
     let length = length_scale(model);
-    let one = |(i, body): (usize, &crate::model::RigidBody<f64>)| {
+    let one = |(i, body): (usize, &RigidBody<f64>)| {
         let q = &start.q[numbering.position(i)..];
         let by = (Vec3::new(q[0], q[1], q[2]) - body.position).norm();
         let p = [q[3], q[4], q[5], q[6]];
@@ -138,15 +179,9 @@ fn changed(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>)
         let (by, turning) = ((v_start - v).norm(), (omega_start - omega).norm());
         (by > TOLD * speed || turning > TOLD * spin).then(|| {
             format!(
-                "the joints do not admit the given velocity of body \"{}\": it starts with {} of {} m/s \
-                 and {} of {} rad/s (changed by {} m/s and {} rad/s)",
+                "the joints do not admit the given velocity of body \"{}\": {}",
                 model.bodies[i].name,
-                short(v_start.norm()),
-                short(v.norm()),
-                short(omega_start.norm()),
-                short(omega.norm()),
-                short(by),
-                short(turning),
+                change(&(v, omega), &(v_start, omega_start)),
             )
         })
     };

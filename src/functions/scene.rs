@@ -6,6 +6,7 @@ use super::{Function, Instant, Reduction};
 use crate::integrate::Trajectory;
 use crate::math::Scalar;
 use crate::model::Model;
+use crate::system::assembly::AssemblyFailure;
 
 /// Model, duration and functions of interest at one design.
 #[derive(Clone, Debug)]
@@ -18,6 +19,9 @@ pub struct Scene<S> {
     pub until: Option<Until<S>>,
     /// Functions of interest, in the order of the problem file.
     pub functions: Vec<Function<S>>,
+    /// Why the starts of joints cannot be as they are given; the bodies are then as they are placed, and
+    /// the scene is not simulated.
+    pub unstarted: Option<AssemblyFailure>,
 }
 
 /// An event: an instant quantity g reaches a value c for the first time. It makes the duration a
@@ -117,6 +121,7 @@ impl<S: Scalar> Scene<S> {
                 .iter()
                 .map(|function| function.map(f))
                 .collect(),
+            unstarted: self.unstarted.clone(),
         }
     }
 

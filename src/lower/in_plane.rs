@@ -28,6 +28,21 @@ pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, V
     }
 }
 
+/// The largest angular velocity of a body, or velocity over its reach (rad/s), or what a `change` of the
+/// variable makes of it: a body that hardly moves has round-off of those that do.
+fn fastest<S: Scalar>(model: &Model<S>, reach: &Reach, change: f64) -> f64 {
+    let size = |v: &Vec3<S>| {
+        v.iter().fold(0.0_f64, |m, x| {
+            m.max(x.re().abs()).max(x.infinitesimal().abs() * change)
+        })
+    };
+    let bodies = model.bodies.iter().enumerate();
+    bodies.fold(0.0, |most, (i, body)| {
+        let swing = size(&body.velocity) / reach.of([Some(i), None]);
+        most.max(size(&body.angular_velocity)).max(swing)
+    })
+}
+
 impl Plane {
     /// Examines whether `model` moves in this plane, and by how much its derivative leaves it for a
     /// `change` of the variable.
@@ -39,7 +54,8 @@ impl Plane {
         let mut examiner = Examiner::new(change);
         let reach = Reach::new(model);
         self.joints(model, &turned, &reach, &mut examiner);
-        self.bodies(model, &turned, &reach, &mut examiner);
+        let rate = fastest(model, &reach, change);
+        self.bodies(model, &turned, (&reach, rate), &mut examiner);
         self.loads(model, &turned, &reach, &mut examiner);
         self.upright(model, &reach, &mut examiner);
         examiner.verdict()
@@ -49,7 +65,7 @@ impl Plane {
         &self,
         model: &Model<S>,
         turned: &Turned<S>,
-        reach: &Reach,
+        (reach, rate): (&Reach, f64),
         examiner: &mut Examiner,
     ) {
         let gravity = largest(&model.gravity);
@@ -86,7 +102,7 @@ impl Plane {
                     "m/s",
                 )
             };
-            let speed = largest(&body.velocity);
+            let speed = largest(&body.velocity).max(rate * reach.of([Some(i), None]));
             examiner.zero(along(&body.velocity, &self.normal), speed, what);
             let omega = &body.angular_velocity;
             let what = || {
@@ -96,7 +112,7 @@ impl Plane {
                     "rad/s",
                 )
             };
-            let spin = largest(omega);
+            let spin = largest(omega).max(rate);
             examiner.vanishes((omega - own * own.dot(omega)).as_slice(), spin, what);
         }
     }

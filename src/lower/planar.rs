@@ -154,6 +154,7 @@ impl Plane {
             duration: 1.0,
             until: None,
             functions: Vec::new(),
+            unstarted: None,
         };
         Self::find(&Designs::single(scene))
     }

@@ -4,6 +4,7 @@
 //! document against its schema; what names, numbers and design variables mean together. Only a
 //! document without a fault becomes a [`Problem`].
 
+mod blocks;
 mod bounds;
 mod check;
 mod drawing;
@@ -23,6 +24,8 @@ mod read;
 mod scene;
 mod schema;
 mod source;
+mod start_rates;
+mod starts;
 mod structure;
 mod syntax;
 #[cfg(test)]
@@ -42,7 +45,7 @@ pub use variables::Variable;
 use crate::functions::{Function, Scene};
 use crate::integrate::{self, Spacing};
 use crate::lower::Lowering;
-use crate::math::Scalar;
+use crate::math::{Scalar, Vec3};
 use crate::model::ConstraintRow;
 use crate::optimiser::Method;
 use crate::system::redundancy::Redundancy;
@@ -270,6 +273,12 @@ impl Problem {
             focus.seen.apply(&mut scene);
         }
         scene
+    }
+
+    /// Velocity [m/s] and angular velocity [rad/s] in ground axes that the file gives each body as its
+    /// own; `None` if it gives it none.
+    pub fn own_velocities(&self, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
+        scene::own_velocities(&self.written, x)
     }
 
     /// The objective that the file states.

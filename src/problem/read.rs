@@ -129,6 +129,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
                 .map(|joint| joint.left_out)
                 .collect();
             let finding = too_many(&problem)
+                .or_else(|| unstarted(&problem))
                 .or_else(|| collapsed(&problem))
                 .or_else(|| oblique(&problem))
                 .or_else(|| points::beside(&problem))
@@ -259,17 +260,52 @@ fn driven_twice(problem: &Problem) -> Option<Finding> {
     ))
 }
 
+/// The fault of joints that cannot start as they are given at the design of the file.
+fn unstarted(problem: &Problem) -> Option<Finding> {
+    let failure = problem.unlowered_scene::<f64>(&problem.start()).unstarted?;
+    let named = match &failure {
+        AssemblyFailure::Determined { joint }
+        | AssemblyFailure::Open { joint, .. }
+        | AssemblyFailure::Turned { joint } => problem.written.joints.get_key_value(joint),
+        _ => None,
+    };
+    let Some((name, joint)) = named else {
+        return Some(cannot_assemble(&failure));
+    };
+    let pointer = join(&join("/joints", name), joint.kind().name());
+    let (pointer, expected) = match joint.start() {
+        Some(_) => (join(&pointer, "start"), "a start that the joints admit"),
+        None => (pointer, "starts at which the joints can be closed"),
+    };
+    let hint = match &failure {
+        AssemblyFailure::Determined { .. } => "give the starts of as many joints as are free",
+        _ => "look at how far the joints let the bodies move",
+    };
+    let finding = Finding::new(pointer, failure.to_string(), expected);
+    Some(finding.of_key().hint(Some(hint.to_owned())))
+}
+
 /// The fault of joints that cannot be closed, or not uniquely, at the design of the file.
 fn unassembled(problem: &Problem) -> Option<Finding> {
     let model = problem.scene(&problem.start()).model;
     let numbering = Numbering::new(&model);
     let mut saddle = SaddlePoint::new(&model, &numbering);
     let failure = initial::solve(&model, &numbering, &mut saddle).err()?;
-    let (pointer, expected, hint) = match &failure {
+    Some(cannot_assemble(&failure))
+}
+
+/// The fault of a scene that cannot start.
+fn cannot_assemble(failure: &AssemblyFailure) -> Finding {
+    let (pointer, expected, hint) = match failure {
         AssemblyFailure::Open { joint, .. } => (
             join("/joints", joint),
             "points that the placed bodies can bring together",
             "look at the lengths, and at where the bodies are placed",
+        ),
+        AssemblyFailure::Determined { joint } => (
+            join("/joints", joint),
+            "a start that the joints admit",
+            "give the starts of as many joints as are free",
         ),
         AssemblyFailure::Turned { joint } => (
             join("/joints", joint),
@@ -298,7 +334,7 @@ fn unassembled(problem: &Problem) -> Option<Finding> {
         ),
     };
     let finding = Finding::new(pointer, failure.to_string(), expected);
-    Some(finding.of_key().hint(Some(hint.to_owned())))
+    finding.of_key().hint(Some(hint.to_owned()))
 }
 
 /// The fault of a key that stands twice.

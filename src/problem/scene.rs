@@ -5,15 +5,17 @@ use super::placement::{Assembly, GROUND};
 use super::quantity::{Vector, vector};
 use super::schema::Document;
 use super::schema::functions::{self as written, CountedFrom, Function as Written};
-use super::schema::mechanics::{Point, Shape};
+use super::schema::mechanics::{Body, Point, Shape};
+use super::starts::Starts;
 use crate::functions::{
     Bound, EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Rotation, Scene,
     Side, Until,
 };
-use crate::math::rotation::{compose, conjugate};
+use crate::math::rotation::{compose, conjugate, matrix};
 use crate::math::scalar::{length, lift3};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Mobility, Model, RigidBody};
+use crate::system::assembly::AssemblyFailure;
 
 /// Gravity where the file gives none (m/s²).
 pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
@@ -26,6 +28,13 @@ pub fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<
         None => lift3(&Vec3::from(GRAVITY)),
     };
     let bodies = (0..document.bodies.len()).map(|index| body(document, &assembly, index, x));
+    let mut model = Model {
+        gravity,
+        bodies: bodies.collect(),
+        joints: super::joints::joints(document, &assembly),
+        loads: super::loads::loads(document, &assembly),
+    };
+    let unstarted = start(document, &assembly, &mut model, x).err();
     let builder = Builder {
         document,
         assembly: &assembly,
@@ -33,12 +42,7 @@ pub fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<
         x,
     };
     Scene {
-        model: Model {
-            gravity,
-            bodies: bodies.collect(),
-            joints: super::joints::joints(document, &assembly),
-            loads: super::loads::loads(document, &assembly),
-        },
+        model,
         duration: document.simulation.duration.get(x),
         until: document
             .simulation
@@ -50,6 +54,7 @@ pub fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<
             .values()
             .map(|f| builder.function(f))
             .collect(),
+        unstarted,
     }
 }
 
@@ -58,7 +63,7 @@ pub(super) fn unit<S: Scalar>(a: Vec3<S>) -> Vec3<S> {
     a * (S::one() / length(&a))
 }
 
-/// A body at its start.
+/// A body at rest where it is placed.
 fn body<S: Scalar>(
     document: &Document,
     assembly: &Assembly<S>,
@@ -71,6 +76,57 @@ fn body<S: Scalar>(
         .expect("the index counts the bodies");
     let pose = &assembly.poses[index];
     let properties = mass_properties(body, x);
+    RigidBody {
+        name: (*name).clone(),
+        mass: properties.mass,
+        inertia: properties.inertia,
+        position: pose.position(),
+        orientation: pose.orientation,
+        velocity: Vec3::zeros(),
+        angular_velocity: Vec3::zeros(),
+        mobility: Mobility::Spatial,
+    }
+}
+
+/// Moves the bodies to where their joints start, and gives them their velocities. If the joints cannot
+/// start so, the bodies stay where they are placed and have the velocities of the file.
+fn start<S: Scalar>(
+    document: &Document,
+    assembly: &Assembly<S>,
+    model: &mut Model<S>,
+    x: &[S],
+) -> Result<(), AssemblyFailure> {
+    let give = |model: &mut Model<S>| {
+        for (body, written) in model.bodies.iter_mut().zip(document.bodies.values()) {
+            let [velocity, omega] = written_velocity(document, written, &body.position, x);
+            body.velocity = velocity;
+            body.angular_velocity = matrix(&body.orientation).tr_mul(&omega);
+        }
+    };
+    let Some(starts) = Starts::of(document, assembly, model) else {
+        give(model);
+        return Ok(());
+    };
+    let mut moved = model.clone();
+    let found = starts.place(&mut moved).and_then(|()| {
+        give(&mut moved);
+        starts.set_rates(&mut moved)
+    });
+    match found {
+        Ok(()) => *model = moved,
+        Err(_) => give(model),
+    }
+    found
+}
+
+/// The velocity of the centre of mass at `position` and the angular velocity that a file gives a body,
+/// in ground axes.
+fn written_velocity<S: Scalar>(
+    document: &Document,
+    body: &Body,
+    position: &Vec3<S>,
+    x: &[S],
+) -> [Vec3<S>; 2] {
     let given = |components: &Option<Vector>| {
         components
             .as_ref()
@@ -80,25 +136,24 @@ fn body<S: Scalar>(
         (Some(own), _) => (given(&own.linear), given(&own.angular)),
         (None, Some(all)) => {
             let omega = given(&all.angular);
-            let arm = pose.position() - given(&all.about);
+            let arm = position - given(&all.about);
             (given(&all.linear) + omega.cross(&arm), omega)
         }
         (None, None) => (Vec3::zeros(), Vec3::zeros()),
     };
-    let omega = match &body.shape {
-        Some(Shape::Point) => Vec3::zeros(),
-        _ => omega,
-    };
-    RigidBody {
-        name: (*name).clone(),
-        mass: properties.mass,
-        inertia: properties.inertia,
-        position: pose.position(),
-        orientation: pose.orientation,
-        velocity,
-        angular_velocity: pose.rotation.tr_mul(&omega),
-        mobility: Mobility::Spatial,
+    match &body.shape {
+        Some(Shape::Point) => [velocity, Vec3::zeros()],
+        _ => [velocity, omega],
     }
+}
+
+/// The velocities of their own that a file gives its bodies, as [`written_velocity`].
+pub fn own_velocities(document: &Document, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
+    let own = |body: &Body| {
+        body.velocity.as_ref()?;
+        Some(written_velocity(document, body, &Vec3::zeros(), x))
+    };
+    document.bodies.values().map(own).collect()
 }
 
 /// What functions are made from.

@@ -53,6 +53,15 @@ pub enum AssemblyFailure {
         /// The joint.
         joint: String,
     },
+    /// The start of a joint is not free to be chosen.
+    #[error(
+        "the start of joint \"{joint}\" cannot be chosen: the other joints, their starts and drives \
+         determine it"
+    )]
+    Determined {
+        /// The joint.
+        joint: String,
+    },
     /// Constraints repeat each other.
     #[error(
         "{redundant} of {constraints} constraints are redundant; joints that repeat each other: \
@@ -202,7 +211,12 @@ pub(super) fn turned_by<S: Scalar>(placed: &Quat<S>, p: &Quat<S>) -> Mat3<S> {
 }
 
 /// Adds E_y, the gradient of the displacement E in the tangent positions: m (r − r_g), w(S R_gᵀ R).
-fn add_displacement<S: Scalar>(model: &Model<S>, numbering: &Numbering, q: &[S], out: &mut [S]) {
+pub(super) fn add_displacement<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    q: &[S],
+    out: &mut [S],
+) {
     for (i, body) in model.bodies.iter().enumerate() {
         let (r, p) = positions_of(&q[numbering.position(i)..]);
         let turned = second_moment(&body.inertia) * turned_by(&body.orientation, &p);

@@ -16,6 +16,7 @@ pub mod kkt;
 pub mod left_out;
 pub mod loads;
 pub mod marker;
+pub mod nearest;
 pub mod numbering;
 pub mod observe;
 pub mod planar;

@@ -172,6 +172,7 @@ fn scene(model: &Model<f64>, duration: f64) -> Scene<f64> {
         duration,
         until: None,
         functions: functions(last, last.saturating_sub(1)),
+        unstarted: None,
     }
 }
 

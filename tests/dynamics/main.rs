@@ -15,6 +15,8 @@ mod events;
 mod gradients_converge_to_references;
 mod gradients_match_complex_step;
 mod initial_conditions;
+mod joint_starts;
+mod joint_starts_in_loops;
 mod joints_and_drives;
 mod limits_of_rounding;
 mod load_derivatives;

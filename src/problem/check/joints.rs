@@ -6,7 +6,7 @@ use crate::problem::fault::Finding;
 use crate::problem::joints::holds_points;
 use crate::problem::pointer::join;
 use crate::problem::schema::drives::Course;
-use crate::problem::schema::joints::{Axis, Ends, Joint, JointPlace, PointPair};
+use crate::problem::schema::joints::{Axis, Ends, Joint, JointPlace, JointStart, PointPair};
 use crate::problem::schema::mechanics::Shape;
 
 impl Checker<'_> {
@@ -15,11 +15,11 @@ impl Checker<'_> {
         self.names("joints", document.joints.keys());
         for (name, joint) in &document.joints {
             let pointer = join(&join("/joints", name), joint.kind().name());
-            self.joint(&pointer, joint);
+            self.joint(&pointer, name, joint);
         }
     }
 
-    fn joint(&mut self, pointer: &str, joint: &Joint) {
+    fn joint(&mut self, pointer: &str, name: &str, joint: &Joint) {
         let between = joint.between();
         self.between(&join(pointer, "between"), between);
         self.point_masses(pointer, joint);
@@ -43,6 +43,46 @@ impl Checker<'_> {
                     self.direction(&join(&pointer, "axis"), &of.axis);
                 }
                 None => {}
+            }
+        }
+        if let Some(start) = joint.start() {
+            self.start(&join(pointer, "start"), (name, joint), start);
+        }
+    }
+
+    /// Checks that the start of a joint says something of motions that it allows and no drive has.
+    fn start(&mut self, pointer: &str, (name, joint): (&str, &Joint), start: &JointStart) {
+        if start.turn.is_none() && start.slide.is_none() {
+            let expected = "\"turn\" or \"slide\"";
+            self.fault(Finding::new(pointer, "a start without motion", expected).of_key());
+        }
+        let motions = [
+            (Freedom::Turn, "turn", "\"angle\" or \"rate\""),
+            (Freedom::Slide, "slide", "\"displacement\" or \"rate\""),
+        ];
+        for (freedom, key, wanted) in motions {
+            let Some(given) = start.of(freedom) else {
+                continue;
+            };
+            let pointer = join(pointer, key);
+            let drive = self.document.drives.iter().find(|(_, drive)| {
+                let driven = match freedom {
+                    Freedom::Turn => drive.turn.is_some(),
+                    Freedom::Slide => drive.slide.is_some(),
+                };
+                drive.joint == name && driven
+            });
+            if !joint.kind().freedoms().contains(&freedom) {
+                let found = format!("\"{key}\" of a joint that is {}", joint.kind().name());
+                let expected = "a motion about or along its axis that the joint allows";
+                self.fault(Finding::new(pointer, found, expected).of_key());
+            } else if let Some((drive, _)) = drive {
+                let found = format!("\"{key}\", which the drive \"{drive}\" prescribes");
+                let expected = "a motion that no drive prescribes";
+                self.fault(Finding::new(pointer, found, expected).of_key());
+            } else if given.iter().all(Option::is_none) {
+                let found = format!("a \"{key}\" without start");
+                self.fault(Finding::new(pointer, found, wanted).of_key());
             }
         }
     }

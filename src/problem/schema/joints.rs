@@ -1,6 +1,7 @@
 //! Joints as they are written in a file.
 
 use super::mechanics::Point;
+use crate::model::Freedom;
 use crate::problem::quantity::{Quantity, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -49,6 +50,56 @@ pub struct Axial {
     pub at: JointPlace,
     /// The joint's axis at the start, of any length but zero.
     pub axis: Axis,
+    /// Where and how fast its motion starts, default as the bodies are placed and move.
+    pub start: Option<JointStart>,
+}
+
+/// Where and how fast the motion of a joint starts.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointStart {
+    /// Turning about the axis.
+    pub turn: Option<TurnStart>,
+    /// Sliding along the axis.
+    pub slide: Option<SlideStart>,
+}
+
+/// The start of a turn.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TurnStart {
+    /// Angle of the first body against the second from where they are placed, default as they are.
+    #[schemars(extend("unit" = "rad"))]
+    pub angle: Option<Quantity>,
+    /// Its rate, default what the velocities of the bodies make.
+    #[schemars(extend("unit" = "rad/s"))]
+    pub rate: Option<Quantity>,
+}
+
+/// The start of a slide.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SlideStart {
+    /// Displacement of the first body against the second from where they are placed, default as they
+    /// are.
+    #[schemars(extend("unit" = "m"))]
+    pub displacement: Option<Quantity>,
+    /// Its rate, default what the velocities of the bodies make.
+    #[schemars(extend("unit" = "m/s"))]
+    pub rate: Option<Quantity>,
+}
+
+impl JointStart {
+    /// What the start says of a motion: its place and its rate. `None` if it does not name it.
+    pub fn of(&self, freedom: Freedom) -> Option<[Option<Quantity>; 2]> {
+        match freedom {
+            Freedom::Turn => self.turn.as_ref().map(|turn| [turn.angle, turn.rate]),
+            Freedom::Slide => {
+                let slide = self.slide.as_ref();
+                slide.map(|slide| [slide.displacement, slide.rate])
+            }
+        }
+    }
 }
 
 /// Bodies, place and axes of a universal joint.
@@ -159,6 +210,17 @@ impl Joint {
             | Joint::Cylindrical(axial) => Some(&axial.at),
             Joint::Universal(crossed) => Some(&crossed.at),
             Joint::Rod(_) => None,
+        }
+    }
+
+    /// Where and how fast its motion starts, as far as the file says.
+    pub fn start(&self) -> Option<&JointStart> {
+        match self {
+            Joint::Revolute(axial)
+            | Joint::Prismatic(axial)
+            | Joint::Planar(axial)
+            | Joint::Cylindrical(axial) => axial.start.as_ref(),
+            Joint::Spherical(_) | Joint::Universal(_) | Joint::Rod(_) | Joint::Weld(_) => None,
         }
     }
 

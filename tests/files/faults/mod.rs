@@ -82,6 +82,7 @@ macro_rules! faults {
 }
 
 mod loads;
+mod starts;
 
 faults! {
     a_misspelt_key: r#""mass": 3,"# => r#""masss": 3,"#;

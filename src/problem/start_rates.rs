@@ -1,0 +1,194 @@
+//! How fast joints start: velocities of the bodies so that the joints have the rates that the file
+//! gives them.
+//!
+//! Blocks of joints are taken from ground outwards (see [`super::blocks`]). A joint in no loop gives the
+//! body beyond it the velocity field of the near body, what the velocities of the file make of their
+//! relative motion, and what its rates lack in that,
+//!
+//! ```text
+//! ω + e (φ̇ − φ̇_file),     ẋ + e × (x − P) (φ̇ − φ̇_file) + e (σ̇ − σ̇_file).
+//! ```
+//!
+//! In loops the velocities relative to the root are those nearest to the file's, in the metric of the
+//! mass, that the joints and rates admit. What lies beyond moves along. Velocities of the file that the
+//! joints do not admit are projected last, all together, with the rates as further rows.
+
+use super::blocks::Block;
+use super::starts::{Asked, FREEDOMS, Hinge, Starts, hinge, put};
+use crate::math::rotation::matrix;
+use crate::math::{Scalar, Vec3};
+use crate::model::{Model, RigidBody};
+use crate::system::assembly::AssemblyFailure;
+use crate::system::bodies::velocities_of;
+use crate::system::nearest::nearest;
+
+/// The velocity field of a rigid body.
+#[derive(Clone, Copy, Debug)]
+struct Twist<S: Scalar> {
+    /// Angular velocity in ground axes (rad/s).
+    omega: Vec3<S>,
+    /// Velocity of the field at the ground's origin (m/s).
+    origin: Vec3<S>,
+}
+
+impl<S: Scalar> Twist<S> {
+    fn zero() -> Self {
+        Self {
+            omega: Vec3::zeros(),
+            origin: Vec3::zeros(),
+        }
+    }
+
+    fn of(body: &RigidBody<S>) -> Self {
+        let omega = matrix(&body.orientation) * body.angular_velocity;
+        Self {
+            omega,
+            origin: body.velocity - omega.cross(&body.position),
+        }
+    }
+
+    /// Velocity of the field at a point.
+    fn at(&self, point: &Vec3<S>) -> Vec3<S> {
+        self.origin + self.omega.cross(point)
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        Self {
+            omega: self.omega + other.omega,
+            origin: self.origin + other.origin,
+        }
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        Self {
+            omega: self.omega - other.omega,
+            origin: self.origin - other.origin,
+        }
+    }
+
+    /// Gives a body this velocity.
+    fn give(&self, body: &mut RigidBody<S>) {
+        body.velocity = self.at(&body.position);
+        body.angular_velocity = matrix(&body.orientation).tr_mul(&self.omega);
+    }
+}
+
+/// Gives the bodies of `model` the velocities that the rates of joints make.
+pub(super) fn set<S: Scalar>(
+    starts: &Starts<S>,
+    model: &mut Model<S>,
+) -> Result<(), AssemblyFailure> {
+    let groups = starts.groups(model, Asked::Rate);
+    let mut closed = model.clone();
+    // Joints that are open are closed as the start of the simulation does it.
+    for (bodies, joints) in &groups {
+        if !starts.is_consistent(bodies, joints) {
+            let mut part = starts.part(&closed, (None, bodies), joints);
+            starts.drive(&mut part, joints, Asked::Place, 1.0);
+            let q = nearest(&part)?.q;
+            put(&mut closed, bodies, &q);
+        }
+    }
+    let mut changes: Vec<Option<Twist<S>>> = vec![None; model.bodies.len()];
+    for block in &starts.blocks.list {
+        if !groups
+            .iter()
+            .any(|(_, joints)| joints.contains(&block.joints[0]))
+        {
+            continue;
+        }
+        let own = match (&block.joints[..], &block.bodies[..]) {
+            (&[joint], &[body]) => vec![lacking(starts, &closed, joint, body, block.root)],
+            _ => of_loops(starts, &closed, block)?,
+        };
+        let root = block.root.and_then(|root| changes[root]);
+        for (&body, own) in block.bodies.iter().zip(own) {
+            changes[body] = match (root, own) {
+                (Some(root), Some(own)) => Some(root.plus(&own)),
+                (root, own) => root.or(own),
+            };
+        }
+    }
+    for (body, change) in closed.bodies.iter_mut().zip(&changes) {
+        if let Some(change) = change {
+            Twist::of(body).plus(change).give(body);
+        }
+    }
+    for (bodies, joints) in &groups {
+        if !starts.is_consistent(bodies, joints) {
+            let mut part = starts.part(&closed, (None, bodies), joints);
+            starts.drive(&mut part, joints, Asked::Rate, 1.0);
+            let v = nearest(&part)?.v;
+            for (&body, v) in bodies.iter().zip(v.chunks(6)) {
+                let body = &mut closed.bodies[body];
+                (body.velocity, body.angular_velocity) = velocities_of(v);
+            }
+        }
+    }
+    for (body, found) in model.bodies.iter_mut().zip(&closed.bodies) {
+        body.velocity = found.velocity;
+        body.angular_velocity = found.angular_velocity;
+    }
+    Ok(())
+}
+
+/// What the rates of a joint in no loop lack in the velocities of the file.
+fn lacking<S: Scalar>(
+    starts: &Starts<S>,
+    model: &Model<S>,
+    joint: usize,
+    beyond: usize,
+    near: Option<usize>,
+) -> Option<Twist<S>> {
+    let [spin, speed] = FREEDOMS.map(|freedom| starts.value(model, joint, freedom, Asked::Rate));
+    if spin.is_none() && speed.is_none() {
+        return None;
+    }
+    let Hinge { axis, point, sign } = hinge(model, joint, beyond);
+    let near = near.map_or(Twist::zero(), |near| Twist::of(&model.bodies[near]));
+    let file = Twist::of(&model.bodies[beyond]).minus(&near);
+    let lacks = |rate: Option<S>, file: S| rate.map_or(S::zero(), |rate| rate * sign - file);
+    let spin = axis * lacks(spin, axis.dot(&file.omega));
+    let slide = axis * lacks(speed, axis.dot(&file.at(&point)));
+    Some(Twist {
+        omega: spin,
+        origin: point.cross(&spin) + slide,
+    })
+}
+
+/// What the rates of loops change of the velocities of the file, each `None` if none of the joints has
+/// one.
+fn of_loops<S: Scalar>(
+    starts: &Starts<S>,
+    model: &Model<S>,
+    block: &Block,
+) -> Result<Vec<Option<Twist<S>>>, AssemblyFailure> {
+    let rate = |&joint: &usize| {
+        let mut rates = FREEDOMS.map(|freedom| starts.value(model, joint, freedom, Asked::Rate));
+        rates.iter_mut().any(|rate| rate.is_some())
+    };
+    if !block.joints.iter().any(rate) {
+        return Ok(vec![None; block.bodies.len()]);
+    }
+    let root = block.root.map(|root| Twist::of(&model.bodies[root]));
+    let root = root.unwrap_or(Twist::zero());
+    let mut part = starts.part(model, (block.root, &block.bodies), &block.joints);
+    starts.check_free(&part, &block.joints, Asked::Rate)?;
+    let count = block.bodies.len();
+    let file: Vec<Twist<S>> = (part.bodies.iter_mut().take(count))
+        .map(|body| {
+            let relative = Twist::of(body).minus(&root);
+            relative.give(body);
+            relative
+        })
+        .collect();
+    starts.drive(&mut part, &block.joints, Asked::Rate, 1.0);
+    let v = nearest(&part)?.v;
+    for (body, v) in part.bodies.iter_mut().zip(v.chunks(6)) {
+        (body.velocity, body.angular_velocity) = velocities_of(v);
+    }
+    let pairs = part.bodies.iter().zip(&file);
+    Ok(pairs
+        .map(|(body, file)| Some(Twist::of(body).minus(file)))
+        .collect())
+}

@@ -1,0 +1,458 @@
+//! Where joints start: bodies are moved from where they are placed so that the joints have the angles
+//! and displacements that the file gives them.
+//!
+//! Blocks of joints are taken from ground outwards (see [`super::blocks`]). A joint in no loop moves what
+//! lies beyond it as one rigid body,
+//!
+//! ```text
+//! x ↦ P + R(e, φ) (x − P) + σ e,     P the joint's point beyond it, e its axis on the near side.
+//! ```
+//!
+//! The bodies of loops go to the nearest position at which the joints have the given fraction of φ and σ,
+//! in [`STEPS`] steps, each from where the last one ended, with the block's root held. What lies beyond
+//! them moves along. Joints that are open as the bodies are placed are closed last, all together.
+
+use super::blocks::{Block, Blocks};
+use super::placement::Assembly;
+use super::quantity::Quantity;
+use super::schema::Document;
+use super::schema::joints::{Ends, Joint as WrittenJoint, JointPlace};
+use super::schema::mechanics::Shape;
+use super::start_rates;
+use crate::math::rotation::{Quat, compose, conjugate, from_axis_angle, matrix};
+use crate::math::{Mat3, Scalar, Vec3};
+use crate::model::{Drive, Freedom, Joint, JointFrame, Mobility, Model, MotionCourse, RigidBody};
+use crate::system::assembly::AssemblyFailure;
+use crate::system::bodies::positions_of;
+use crate::system::nearest::nearest;
+use crate::system::redundancy;
+
+/// Steps in which the joints of loops go to their starts.
+const STEPS: usize = 16;
+
+/// Both motions of a joint.
+pub(super) const FREEDOMS: [Freedom; 2] = [Freedom::Turn, Freedom::Slide];
+
+/// What a file says of the start of a joint's motion.
+#[derive(Clone, Debug)]
+struct Given<S> {
+    joint: usize,
+    freedom: Freedom,
+    /// Angle (rad) or displacement (m), and its rate.
+    values: [Option<S>; 2],
+}
+
+/// What is asked of a joint: its place or its rate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Asked {
+    Place,
+    Rate,
+}
+
+/// The starts of the joints of a scene.
+pub struct Starts<S> {
+    given: Vec<Given<S>>,
+    pub(super) blocks: Blocks,
+    /// Whether the joints are closed wherever the bodies are placed.
+    closed: Vec<bool>,
+    /// Whether the file gives a body a velocity.
+    moving: Vec<bool>,
+}
+
+impl<S: Scalar> Starts<S> {
+    /// The starts of a checked document, whose joints are those of `model`; `None` if it gives none.
+    pub fn of(document: &Document, assembly: &Assembly<S>, model: &Model<S>) -> Option<Self> {
+        let mut given = Vec::new();
+        for (joint, written) in document.joints.values().enumerate() {
+            for freedom in FREEDOMS {
+                let values = written.start().and_then(|start| start.of(freedom));
+                let get = |value: Option<Quantity>| value.map(|value| assembly.quantity(&value));
+                given.extend(values.map(|values| Given {
+                    joint,
+                    freedom,
+                    values: values.map(get),
+                }));
+            }
+        }
+        if given.is_empty() {
+            return None;
+        }
+        let ends: Vec<_> = (model.joints.iter())
+            .map(|joint| (joint.body_a, joint.body_b))
+            .collect();
+        let moving = |body: &super::schema::mechanics::Body| {
+            body.velocity.is_some() || document.initial_velocity.is_some()
+        };
+        let joints = document.joints.values();
+        Some(Self {
+            given,
+            blocks: Blocks::new(model.bodies.len(), &ends),
+            closed: joints.map(|joint| closes(document, joint)).collect(),
+            moving: document.bodies.values().map(moving).collect(),
+        })
+    }
+
+    /// What the file or a drive says of a joint's motion.
+    pub(super) fn value(
+        &self,
+        model: &Model<S>,
+        joint: usize,
+        freedom: Freedom,
+        asked: Asked,
+    ) -> Option<S> {
+        let written = self.written(joint, freedom, asked);
+        written.or_else(|| {
+            let mut drives = model.joints[joint].drives.iter();
+            let drive = drives.find(|drive| drive.freedom == freedom)?;
+            Some(drive.course.derivatives(S::zero())[asked as usize])
+        })
+    }
+
+    fn written(&self, joint: usize, freedom: Freedom, asked: Asked) -> Option<S> {
+        let mut given = self.given.iter();
+        let given = given.find(|given| given.joint == joint && given.freedom == freedom)?;
+        given.values[asked as usize]
+    }
+
+    /// Starts of these joints that the file gives.
+    fn given<'a>(
+        &'a self,
+        joints: &'a [usize],
+        asked: Asked,
+    ) -> impl Iterator<Item = (usize, Freedom, S)> + 'a {
+        let here = move |given: &Given<S>| {
+            let joint = joints.iter().position(|&joint| joint == given.joint)?;
+            Some((joint, given.freedom, given.values[asked as usize]?))
+        };
+        self.given.iter().filter_map(here)
+    }
+
+    /// The groups of joined bodies, without ground, in which the file gives such a start: their bodies
+    /// and joints.
+    pub(super) fn groups(&self, model: &Model<S>, asked: Asked) -> Vec<(Vec<usize>, Vec<usize>)> {
+        let group = &self.blocks.group;
+        let mut firsts: Vec<usize> = (self.given.iter())
+            .filter(|given| given.values[asked as usize].is_some())
+            .map(|given| group[model.joints[given.joint].body_a])
+            .collect();
+        firsts.sort_unstable();
+        firsts.dedup();
+        let members = |first: usize| {
+            let bodies = (0..group.len()).filter(|&body| group[body] == first);
+            let joints =
+                (0..model.joints.len()).filter(|&joint| group[model.joints[joint].body_a] == first);
+            (bodies.collect(), joints.collect())
+        };
+        firsts.into_iter().map(members).collect()
+    }
+
+    /// Whether the joints of a group are closed wherever they start, as they form no loop.
+    fn is_closed(&self, joints: &[usize]) -> bool {
+        let loops = self
+            .blocks
+            .list
+            .iter()
+            .filter(|block| block.joints.len() > 1);
+        joints.iter().all(|&joint| self.closed[joint])
+            && !loops
+                .flat_map(|block| &block.joints)
+                .any(|joint| joints.contains(joint))
+    }
+
+    /// Whether velocities that follow from rates need no projection.
+    pub(super) fn is_consistent(&self, bodies: &[usize], joints: &[usize]) -> bool {
+        self.is_closed(joints) && !bodies.iter().any(|&body| self.moving[body])
+    }
+
+    /// Moves the bodies of `model` to where the joints start.
+    ///
+    /// # Errors
+    /// The joint that cannot start as it is given.
+    pub fn place(&self, model: &mut Model<S>) -> Result<(), AssemblyFailure> {
+        let groups = self.groups(model, Asked::Place);
+        let mut moves: Vec<Option<Move<S>>> = vec![None; model.bodies.len()];
+        for block in &self.blocks.list {
+            if !groups
+                .iter()
+                .any(|(_, joints)| joints.contains(&block.joints[0]))
+            {
+                continue;
+            }
+            let own = match (&block.joints[..], &block.bodies[..]) {
+                (&[joint], &[body]) => vec![self.turned(model, joint, body)],
+                _ => self.closed_loops(model, block)?,
+            };
+            let root = block.root.and_then(|root| moves[root]);
+            for (&body, own) in block.bodies.iter().zip(own) {
+                moves[body] = match (root, own) {
+                    (Some(root), Some(own)) => Some(root.after(&own)),
+                    (root, own) => root.or(own),
+                };
+            }
+        }
+        for (body, moved) in model.bodies.iter_mut().zip(moves) {
+            if let Some(moved) = moved {
+                moved.apply(body);
+            }
+        }
+        for (bodies, joints) in groups {
+            if !self.is_closed(&joints) {
+                let mut part = self.part(model, (None, &bodies), &joints);
+                self.drive(&mut part, &joints, Asked::Place, 1.0);
+                let q = nearest(&part)?.q;
+                put(model, &bodies, &q);
+            }
+        }
+        Ok(())
+    }
+
+    /// How a joint in no loop moves the body beyond it.
+    fn turned(&self, model: &Model<S>, joint: usize, beyond: usize) -> Option<Move<S>> {
+        let [angle, shift] =
+            FREEDOMS.map(|freedom| self.value(model, joint, freedom, Asked::Place));
+        if angle.is_none() && shift.is_none() {
+            return None;
+        }
+        let Hinge { axis, point, sign } = hinge(model, joint, beyond);
+        let by = |x: Option<S>| x.unwrap_or(S::zero()) * sign;
+        let turn = from_axis_angle(&axis, by(angle));
+        let rotation = matrix(&turn);
+        Some(Move {
+            turn,
+            shift: point - rotation * point + axis * by(shift),
+            rotation,
+        })
+    }
+
+    /// How the joints of loops move their bodies, each `None` if none of them has a start.
+    fn closed_loops(
+        &self,
+        model: &Model<S>,
+        block: &Block,
+    ) -> Result<Vec<Option<Move<S>>>, AssemblyFailure> {
+        if self.given(&block.joints, Asked::Place).next().is_none() {
+            return Ok(vec![None; block.bodies.len()]);
+        }
+        let mut part = self.part(model, (block.root, &block.bodies), &block.joints);
+        self.check_free(&part, &block.joints, Asked::Place)?;
+        let own: Vec<usize> = (0..block.bodies.len()).collect();
+        let driven = part.joints.clone();
+        for step in 1..=STEPS {
+            part.joints.clone_from(&driven);
+            self.drive(
+                &mut part,
+                &block.joints,
+                Asked::Place,
+                step as f64 / STEPS as f64,
+            );
+            let q = nearest(&part)?.q;
+            put(&mut part, &own, &q);
+        }
+        let bodies = block.bodies.iter().zip(&part.bodies);
+        let moved = |(&body, to): (&usize, &RigidBody<S>)| {
+            let from = &model.bodies[body];
+            let turn = compose(&to.orientation, &conjugate(&from.orientation));
+            let rotation = matrix(&turn);
+            Some(Move {
+                turn,
+                shift: to.position - rotation * from.position,
+                rotation,
+            })
+        };
+        Ok(bodies.map(moved).collect())
+    }
+
+    /// A part of the model: the `bodies`, then the body `root`, which is held, and the `joints`.
+    pub(super) fn part(
+        &self,
+        model: &Model<S>,
+        (root, bodies): (Option<usize>, &[usize]),
+        joints: &[usize],
+    ) -> Model<S> {
+        let all: Vec<usize> = bodies.iter().copied().chain(root).collect();
+        let number = |body: usize| all.iter().position(|&other| other == body);
+        let joint = |&joint: &usize| {
+            let joint = &model.joints[joint];
+            Joint {
+                body_a: number(joint.body_a).expect("a part has the bodies of its joints"),
+                body_b: joint.body_b.and_then(number),
+                ..joint.clone()
+            }
+        };
+        let mut part = Model {
+            gravity: Vec3::zeros(),
+            bodies: all.iter().map(|&body| model.bodies[body].clone()).collect(),
+            joints: joints.iter().map(joint).collect(),
+            loads: Vec::new(),
+        };
+        let (moving, held) = part.bodies.split_at_mut(bodies.len());
+        for held in held {
+            held.mobility = Mobility::Fixed;
+            (held.velocity, held.angular_velocity) = (Vec3::zeros(), Vec3::zeros());
+        }
+        // Point masses do not turn.
+        for body in moving {
+            if body.inertia.iter().all(|x| x.re() == 0.0) {
+                body.mobility = Mobility::Point;
+            }
+        }
+        part
+    }
+
+    /// Lets drives hold what the file gives of the joints of a part: a fraction of their places, or
+    /// their rates where they are.
+    pub(super) fn drive(&self, part: &mut Model<S>, joints: &[usize], asked: Asked, fraction: f64) {
+        for (joint, freedom, value) in self.given(joints, asked) {
+            let coefficients = match asked {
+                Asked::Place => vec![value * fraction],
+                Asked::Rate => vec![place(part, joint, freedom), value],
+            };
+            part.joints[joint].drives.push(Drive {
+                freedom,
+                course: MotionCourse::Polynomial(coefficients),
+            });
+        }
+    }
+
+    /// Refuses a start that the other joints of a part, their drives and earlier starts determine.
+    pub(super) fn check_free(
+        &self,
+        part: &Model<S>,
+        joints: &[usize],
+        asked: Asked,
+    ) -> Result<(), AssemblyFailure> {
+        // Infinitesimal parts are those of a design that was judged by its values.
+        if S::INFINITESIMAL {
+            return Ok(());
+        }
+        let mut model = part.map(&mut |x| x.re());
+        let Some(before) = redundancy::redundant_rows(&model) else {
+            return Ok(());
+        };
+        let more =
+            |model: &Model<f64>| redundancy::redundant_rows(model).is_some_and(|n| n > before);
+        let mut held = |(joint, freedom): (usize, Freedom)| {
+            let at = place(&model, joint, freedom);
+            model.joints[joint].drives.push(Drive {
+                freedom,
+                course: MotionCourse::Polynomial(vec![at]),
+            });
+            more(&model).then(|| model.joints[joint].name.clone())
+        };
+        let given = self.given(joints, asked);
+        match given
+            .map(|(joint, freedom, _)| (joint, freedom))
+            .find_map(&mut held)
+        {
+            Some(joint) => Err(AssemblyFailure::Determined { joint }),
+            None => Ok(()),
+        }
+    }
+
+    /// Gives the bodies of `model` the velocities that the rates of joints make.
+    ///
+    /// # Errors
+    /// The joint that cannot start at the rate that it is given.
+    pub fn set_rates(&self, model: &mut Model<S>) -> Result<(), AssemblyFailure> {
+        start_rates::set(self, model)
+    }
+}
+
+/// Whether a joint is closed wherever its bodies are placed.
+fn closes(document: &Document, joint: &WrittenJoint) -> bool {
+    let is_point = |body: &String| {
+        let body = document.bodies.get(body);
+        body.is_some_and(|body| matches!(body.shape, Some(Shape::Point)))
+    };
+    let points = joint.between().iter().any(is_point);
+    match (joint, joint.place()) {
+        (WrittenJoint::Rod(rod), _) => match &rod.at {
+            Ends::Ground(_) | Ends::Each(_) => rod.length.is_none() && !points,
+        },
+        (_, Some(JointPlace::Each(_)) | None) => false,
+        (_, Some(JointPlace::Named(_) | JointPlace::Coordinates(_))) => !points,
+    }
+}
+
+/// Puts bodies where q says.
+pub(super) fn put<S: Scalar>(model: &mut Model<S>, bodies: &[usize], q: &[S]) {
+    for (&body, q) in bodies.iter().zip(q.chunks(7)) {
+        let body = &mut model.bodies[body];
+        (body.position, body.orientation) = positions_of(q);
+    }
+}
+
+/// How a body is moved: x ↦ R x + shift.
+#[derive(Clone, Copy, Debug)]
+struct Move<S> {
+    turn: Quat<S>,
+    rotation: Mat3<S>,
+    shift: Vec3<S>,
+}
+
+impl<S: Scalar> Move<S> {
+    /// This move after another.
+    fn after(&self, first: &Self) -> Self {
+        Self {
+            turn: compose(&self.turn, &first.turn),
+            rotation: self.rotation * first.rotation,
+            shift: self.rotation * first.shift + self.shift,
+        }
+    }
+
+    fn apply(&self, body: &mut RigidBody<S>) {
+        body.position = self.rotation * body.position + self.shift;
+        body.orientation = compose(&self.turn, &body.orientation);
+    }
+}
+
+/// A joint in no loop, seen from the body beyond it.
+pub(super) struct Hinge<S> {
+    /// Its axis on the near side in ground axes.
+    pub axis: Vec3<S>,
+    /// Its point on the body beyond it in ground axes.
+    pub point: Vec3<S>,
+    /// 1 if the body beyond it is body A, whose motion against body B is that of the joint, or else −1.
+    pub sign: S,
+}
+
+/// A joint in no loop, seen from the body `beyond` it.
+pub(super) fn hinge<S: Scalar>(model: &Model<S>, joint: usize, beyond: usize) -> Hinge<S> {
+    let [a, b] = frames(model, joint);
+    let first = model.joints[joint].body_a == beyond;
+    let (near, far) = if first { (b, a) } else { (a, b) };
+    Hinge {
+        axis: near.axes[2],
+        point: far.point,
+        sign: S::from(if first { 1.0 } else { -1.0 }),
+    }
+}
+
+/// The frames of a joint in ground axes, where the bodies of the model are.
+fn frames<S: Scalar>(model: &Model<S>, joint: usize) -> [JointFrame<S>; 2] {
+    let joint = &model.joints[joint];
+    let on = |body: &RigidBody<S>, frame: &JointFrame<S>| {
+        let rotation = matrix(&body.orientation);
+        JointFrame {
+            point: body.position + rotation * frame.point,
+            axes: frame.axes.map(|axis| rotation * axis),
+            length: frame.length,
+        }
+    };
+    let b = joint
+        .body_b
+        .map(|body| on(&model.bodies[body], &joint.frame_b));
+    [
+        on(&model.bodies[joint.body_a], &joint.frame_a),
+        b.unwrap_or(joint.frame_b),
+    ]
+}
+
+/// The angle or displacement of a joint where the bodies of the model are.
+fn place<S: Scalar>(model: &Model<S>, joint: usize, freedom: Freedom) -> S {
+    let [a, b] = frames(model, joint);
+    match freedom {
+        Freedom::Turn => (a.axes[0].dot(&b.axes[1])).atan2(a.axes[0].dot(&b.axes[0])),
+        Freedom::Slide => b.axes[2].dot(&(a.point - b.point)),
+    }
+}
