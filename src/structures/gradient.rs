@@ -1,7 +1,7 @@
 //! Exact gradients of functions of static solutions.
 //!
 //! J(x_1 …, p) of the solutions x_c of the load cases and the numbers p of the structure. One adjoint
-//! solve a case, K ψ = ∂J/∂x, gives
+//! solve a case, K ψ = ∂J/∂x with the tangent K at x_c, gives
 //!
 //! ```text
 //! dJ/dp = ∂J/∂p + ψ·∂f/∂p − ψ·∂F/∂p
@@ -16,7 +16,7 @@ use super::loads::{Load, add_work_transpose};
 use super::mesh::UnknownSet;
 use super::shell::Terms;
 use super::state::NodalMotion;
-use super::statics::StaticProblem;
+use super::statics::{StaticFailure, StaticProblem, mechanism};
 use super::structure::Structure;
 use crate::math::Dual;
 
@@ -41,12 +41,57 @@ pub fn gradient(
     solutions: &[Vec<f64>],
     function: &Function,
 ) -> Result<Gradient, UnknownSet> {
+    let one = |failure| match failure {
+        StaticFailure::UnknownSet(unknown) => unknown,
+        other => unreachable!("linear adjoints make no factors: {other}"),
+    };
+    gradient_of(
+        problem,
+        structure,
+        cases,
+        solutions,
+        function,
+        Terms::LINEAR,
+    )
+    .map_err(one)
+}
+
+/// The gradient of a function of states with von Karman's strains. The tangent of each state that the
+/// function depends on is assembled and factorised again.
+///
+/// # Errors
+/// [`StaticFailure`] if a state is not stable, or if function or loads name no set of the mesh.
+pub fn gradient_von_karman(
+    problem: &mut StaticProblem,
+    structure: &Structure<f64>,
+    cases: &[Vec<Load<f64>>],
+    solutions: &[Vec<f64>],
+    function: &Function,
+) -> Result<Gradient, StaticFailure> {
+    gradient_of(
+        problem,
+        structure,
+        cases,
+        solutions,
+        function,
+        Terms::VON_KARMAN,
+    )
+}
+
+fn gradient_of(
+    problem: &mut StaticProblem,
+    structure: &Structure<f64>,
+    cases: &[Vec<Load<f64>>],
+    solutions: &[Vec<f64>],
+    function: &Function,
+    terms: Terms,
+) -> Result<Gradient, StaticFailure> {
     let solved = Solved {
         problem,
         structure,
         cases,
         solutions,
-        terms: Terms::LINEAR,
+        terms,
     };
     let configuration = solved.configuration();
     let Partial {
@@ -66,9 +111,15 @@ pub fn gradient(
     };
     for (case, right) in rights.iter().enumerate() {
         if right.iter().any(|&r| r != 0.0) {
+            let x = &solutions[case];
+            if terms.von_karman {
+                problem
+                    .factorise_at(structure, x)
+                    .map_err(|failure| mechanism(&problem.assembly, structure, &failure))?;
+            }
             let adjoint = problem.solve_factorised(right);
             let (by_structure, by_loads) =
-                adjoint_product(problem, structure, &cases[case], &solutions[case], &adjoint)?;
+                adjoint_product(problem, structure, &cases[case], x, &adjoint, terms)?;
             all.structure.add(&by_structure);
             for (sum, part) in all.cases[case].iter_mut().zip(by_loads) {
                 add_load(sum, &part);
@@ -85,6 +136,7 @@ fn adjoint_product(
     case: &[Load<f64>],
     x: &[f64],
     adjoint: &[f64],
+    terms: Terms,
 ) -> Result<(Structure<f64>, Vec<Load<f64>>), UnknownSet> {
     let lifted = structure.map(Dual::from);
     let configuration = problem.assembly.configuration(&lifted);
@@ -116,7 +168,7 @@ fn adjoint_product(
     add_energy_transpose(
         &configuration,
         &motion,
-        Terms::LINEAR,
+        terms,
         &mut internal,
         &mut internal_to,
     );

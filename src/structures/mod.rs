@@ -17,3 +17,4 @@ mod state;
 pub mod statics;
 pub mod structure;
 pub mod supports;
+pub mod von_karman;

@@ -1,8 +1,8 @@
-//! Static equilibrium of a structure under its load cases: linear, and with von Karman's strains.
+//! Linear static equilibrium of a structure under its load cases.
 //!
 //! F(x) = f, F the derivative of the strain energy, f that of the work of the loads. The iteration is
-//! Newton's, x ← x + K⁻¹ (f − F(x)), with K in real numbers and x in any scalar: one step after the
-//! real part has converged the derivative that a complex or dual number carries has too.
+//! x ← x + K⁻¹ (f − F(x)), with K in real numbers and x in any scalar: one step after the real part has
+//! converged the derivative that a complex or dual number carries has too.
 
 use super::assembly::{Assembly, add_energy_transpose};
 use super::loads::{Load, add_work_transpose};
@@ -11,6 +11,7 @@ use super::shell::Terms;
 use super::state::NodalMotion;
 use super::structure::Structure;
 use super::supports::{NodeUnknowns, Support};
+use super::von_karman::Critical;
 use crate::linalg::cholesky::{NotPositiveDefinite, SparseCholesky};
 use crate::math::Scalar;
 
@@ -34,13 +35,40 @@ pub enum StaticFailure {
         /// Which of its unknowns moves most.
         freedom: &'static str,
     },
+    /// The structure does not carry the whole load.
+    #[error(
+        "the structure carries {factor:.4} of the load and no more: at {kind} its tangent stiffness ceases \
+         to be positive definite, and {freedom} of node {node} at ({:.4}, {:.4}, {:.4}) m gives way; make \
+         the load smaller, or the structure stiffer",
+        place[0], place[1], place[2]
+    )]
+    Critical {
+        /// What kind of point it is.
+        kind: Critical,
+        /// The part of the load that was reached.
+        factor: f64,
+        /// The node that moves most in the direction that goes soft.
+        node: usize,
+        /// Where it stands \[m\].
+        place: [f64; 3],
+        /// Which of its unknowns moves most.
+        freedom: &'static str,
+    },
+    /// The iteration comes to no end though the tangent is definite.
+    #[error(
+        "no equilibrium was found beyond {factor:.4} of the load, though the structure is stable there"
+    )]
+    NoConvergence {
+        /// The part of the load that was reached.
+        factor: f64,
+    },
 }
 
 /// A structure with supports, ready to be loaded: the analysis of its matrix is done.
 pub struct StaticProblem {
     pub(crate) assembly: Assembly,
-    solver: SparseCholesky,
-    values: Vec<f64>,
+    pub(super) solver: SparseCholesky,
+    pub(super) values: Vec<f64>,
 }
 
 impl StaticProblem {

@@ -5,12 +5,13 @@ use crate::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_number
 use flexbody::math::{Complex64, Scalar, Vec3};
 use flexbody::structures::functions::{Aggregate, Function, Solved};
 use flexbody::structures::generate::panel;
-use flexbody::structures::gradient::gradient;
+use flexbody::structures::gradient::{gradient, gradient_von_karman};
 use flexbody::structures::loads::Load;
 use flexbody::structures::shell::Terms;
 use flexbody::structures::statics::StaticProblem;
 use flexbody::structures::structure::Structure;
 use flexbody::structures::supports::{NodeUnknowns, Support};
+use flexbody::structures::von_karman::LoadSteps;
 
 fn load_numbers<S: Scalar>(cases: &[Vec<Load<S>>]) -> Vec<S> {
     let mut all = Vec::new();
@@ -44,9 +45,10 @@ fn structure(numbers: &mut Numbers, fold: bool) -> Structure<f64> {
     structure
 }
 
-fn cases() -> Vec<Vec<Load<f64>>> {
+/// Two load cases, `size` times as large as those that move the panel by far less than its thickness.
+fn cases(size: f64) -> Vec<Vec<Load<f64>>> {
     let all = || "all".to_owned();
-    vec![
+    let cases: Vec<Vec<Load<f64>>> = vec![
         vec![
             Load::Pressure {
                 faces: all(),
@@ -71,11 +73,28 @@ fn cases() -> Vec<Vec<Load<f64>>> {
                 force: Vec3::new(-3e2, 2e2, 1e3),
             },
         ],
-    ]
+    ];
+    let scaled = cases.iter();
+    scaled
+        .map(|case| case.iter().map(|load| load.map(|x| x * size)).collect())
+        .collect()
 }
 
 #[test]
 fn every_function_has_exact_derivatives_by_everything() {
+    check(31, false, NodeUnknowns::Natural, Terms::LINEAR, 1.0);
+    check(32, true, NodeUnknowns::Natural, Terms::LINEAR, 1.0);
+    check(33, true, NodeUnknowns::Six, Terms::LINEAR, 1.0);
+}
+
+/// The strains of von Karman change the displacements by more than 2 %.
+#[test]
+fn every_function_has_exact_derivatives_with_von_karman_strains() {
+    check(34, false, NodeUnknowns::Natural, Terms::VON_KARMAN, 1e3);
+    check(35, true, NodeUnknowns::Six, Terms::VON_KARMAN, 1e3);
+}
+
+fn check(seed: u64, fold: bool, unknowns: NodeUnknowns, terms: Terms, size: f64) {
     let (a, b) = (Vec3::new(0.3, -0.5, 0.8), Vec3::new(1.0, 0.2, -0.4));
     let stress = |aggregate| Function::Stress {
         cases: vec![0, 1],
@@ -101,88 +120,110 @@ fn every_function_has_exact_derivatives_by_everything() {
         Support::of("x0", [true; 3], [true, false, false]),
         Support::of("x1y0", [false, false, true], [false, true, true]),
     ];
-    for (seed, fold, unknowns) in [
-        (31, false, NodeUnknowns::Natural),
-        (32, true, NodeUnknowns::Natural),
-        (33, true, NodeUnknowns::Six),
-    ] {
-        let structure = structure(&mut Numbers::new(seed), fold);
-        let cases = cases();
-        let mut problem = StaticProblem::new(&structure, &supports, unknowns).expect("sets");
-        problem.factorise(&structure).expect("supported");
-        let solutions: Vec<Vec<f64>> = cases
-            .iter()
-            .map(|case| problem.solve_linear(&structure, case).expect("sets"))
-            .collect();
-        let (at, kinds) = structure_numbers(&structure);
-        // The values of all functions for each disturbed number, in one pass.
-        let found: Vec<_> = functions
-            .iter()
-            .map(|f| gradient(&mut problem, &structure, &cases, &solutions, f).expect("sets"))
-            .collect();
-        let shared = std::cell::RefCell::new(problem);
-        let values =
-            |structure: &Structure<Complex64>, cases: &[Vec<Load<Complex64>>], f: &Function| {
-                let solutions: Vec<Vec<Complex64>> = cases
-                    .iter()
-                    .map(|case| {
-                        shared
-                            .borrow_mut()
-                            .solve_linear(structure, case)
-                            .expect("sets")
-                    })
-                    .collect();
-                let solved = Solved {
-                    problem: &shared.borrow(),
-                    structure,
-                    cases,
-                    solutions: &solutions,
-                    terms: Terms::LINEAR,
-                };
-                solved.value(f).expect("sets")
+    let structure = structure(&mut Numbers::new(seed), fold);
+    let cases = cases(size);
+    let mut problem = StaticProblem::new(&structure, &supports, unknowns).expect("sets");
+    problem.factorise(&structure).expect("supported");
+    let solutions: Vec<Vec<f64>> = cases
+        .iter()
+        .map(|case| {
+            if terms.von_karman {
+                let found = problem.solve_von_karman(&structure, case, &LoadSteps::default());
+                problem.factorise(&structure).expect("supported");
+                let linear = problem.solve_linear(&structure, case).expect("sets");
+                let found = found.expect("an equilibrium").x;
+                let apart = found.iter().zip(&linear).map(|(a, b)| (a - b).abs());
+                let largest = |list: &[f64]| list.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                assert!(
+                    apart.fold(0.0, f64::max) > 0.02 * largest(&linear),
+                    "not linear"
+                );
+                found
+            } else {
+                problem.solve_linear(&structure, case).expect("sets")
+            }
+        })
+        .collect();
+    let (at, kinds) = structure_numbers(&structure);
+    // The values of all functions for each disturbed number, in one pass.
+    let found: Vec<_> = functions
+        .iter()
+        .map(|f| {
+            if terms.von_karman {
+                gradient_von_karman(&mut problem, &structure, &cases, &solutions, f)
+                    .expect("stable")
+            } else {
+                gradient(&mut problem, &structure, &cases, &solutions, f).expect("sets")
+            }
+        })
+        .collect();
+    let shared = std::cell::RefCell::new(problem);
+    let real = structure.clone();
+    let values =
+        |structure: &Structure<Complex64>, cases: &[Vec<Load<Complex64>>], f: &Function| {
+            let solutions: Vec<Vec<Complex64>> = cases
+                .iter()
+                .zip(&solutions)
+                .map(|(case, x)| {
+                    let mut problem = shared.borrow_mut();
+                    if terms.von_karman {
+                        let lifted = problem.lift_von_karman(&real, structure, case, x);
+                        lifted.expect("stable")
+                    } else {
+                        problem.solve_linear(structure, case).expect("sets")
+                    }
+                })
+                .collect();
+            let solved = Solved {
+                problem: &shared.borrow(),
+                structure,
+                cases,
+                solutions: &solutions,
+                terms,
             };
-        let lifted_cases: Vec<Vec<Load<Complex64>>> = cases
-            .iter()
-            .map(|case| case.iter().map(|load| load.map(Complex64::from)).collect())
-            .collect();
-        for (function, found) in functions.iter().zip(&found) {
-            let name = format!("{function:?}");
-            let exact = complex_step(&at, |x| {
-                values(&with_numbers(&structure, x), &lifted_cases, function)
-            });
-            let lifted = structure.map(Complex64::from);
-            let value = values(&lifted, &lifted_cases, function).re;
-            Compared {
-                name: &name,
-                value,
-                at: &at,
-                exact: &exact,
-                found: &structure_numbers(&found.structure).0,
-                kinds: &kinds,
-            }
-            .assert(1e-12);
-            let loads = load_numbers(&cases);
-            let exact = complex_step(&loads, |x| {
-                let mut next = x.iter().copied();
-                let moved: Vec<Vec<Load<Complex64>>> = cases
-                    .iter()
-                    .map(|case| {
-                        case.iter()
-                            .map(|load| load.map(|_| next.next().expect("as many")))
-                            .collect()
-                    })
-                    .collect();
-                values(&lifted, &moved, function)
-            });
-            Compared {
-                name: &name,
-                value,
-                at: &loads,
-                exact: &exact,
-                found: &load_numbers(&found.cases),
-                kinds: &[1, 3, 3, 3, 3, 3],
-            }
-            .assert(1e-12);
+            solved.value(f).expect("sets")
+        };
+    let lifted_cases: Vec<Vec<Load<Complex64>>> = cases
+        .iter()
+        .map(|case| case.iter().map(|load| load.map(Complex64::from)).collect())
+        .collect();
+    for (function, found) in functions.iter().zip(&found) {
+        let name = format!("{function:?}");
+        let exact = complex_step(&at, |x| {
+            values(&with_numbers(&structure, x), &lifted_cases, function)
+        });
+        let lifted = structure.map(Complex64::from);
+        let value = values(&lifted, &lifted_cases, function).re;
+        Compared {
+            name: &name,
+            value,
+            at: &at,
+            exact: &exact,
+            found: &structure_numbers(&found.structure).0,
+            kinds: &kinds,
         }
+        .assert(1e-12);
+        let loads = load_numbers(&cases);
+        let exact = complex_step(&loads, |x| {
+            let mut next = x.iter().copied();
+            let moved: Vec<Vec<Load<Complex64>>> = cases
+                .iter()
+                .map(|case| {
+                    case.iter()
+                        .map(|load| load.map(|_| next.next().expect("as many")))
+                        .collect()
+                })
+                .collect();
+            values(&lifted, &moved, function)
+        });
+        Compared {
+            name: &name,
+            value,
+            at: &loads,
+            exact: &exact,
+            found: &load_numbers(&found.cases),
+            kinds: &[1, 3, 3, 3, 3, 3],
+        }
+        .assert(1e-12);
     }
 }

@@ -10,3 +10,4 @@ mod sample;
 mod shell_derivatives;
 mod shell_element;
 mod shell_plate;
+mod von_karman;
