@@ -9,10 +9,10 @@ use super::scale::Scale;
 use crate::linalg::SolveScalar;
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
-use std::f64::consts::SQRT_2;
 
-/// Number whose multiples have fractions without a pattern.
-const GOLDEN: f64 = 0.618_033_988_749_895;
+/// Sets of rates that are solved for. One alone may be nearly orthogonal to the combination of rows that
+/// vanishes.
+const PROBES: usize = 3;
 /// Steadiness, relative to the largest so far, below which it is looked at where it would vanish.
 const NEAR: f64 = 0.6;
 /// Part of its length that a step keeps away from a singular position.
@@ -58,22 +58,22 @@ impl<S: SolveScalar> Steadiness<S> {
     /// The steadiness where the equations stand and were factorised, relative to the scene's scale.
     pub fn of(&mut self, field: &mut Accelerations<S>, scale: &Scale) -> f64 {
         let nv = field.numbering.velocities();
-        let (upper, lower) = self.rhs.split_at_mut(nv);
-        upper.fill(S::zero());
-        for (i, rate) in lower.iter_mut().enumerate() {
-            // No combination of rows is to be missed: numbers without a pattern, of both signs.
-            let [size, sign] = [GOLDEN, SQRT_2].map(|x| (x * (i + 1) as f64).fract());
-            let unit = if field.is_length(i) {
-                scale.length
-            } else {
-                1.0
-            };
-            *rate = S::from(unit * (0.5 + size) * if sign < 0.5 { 1.0 } else { -1.0 });
-        }
-        field.solve(&mut self.rhs);
         let speeds = [scale.length, 1.0];
-        let answer = scale.square(field.numbering, &self.still, &self.rhs[..nv], speeds);
-        1.0 / answer.sqrt()
+        let mut sum = 0.0;
+        for probe in 0..PROBES {
+            let (upper, lower) = self.rhs.split_at_mut(nv);
+            upper.fill(S::zero());
+            for (i, rate) in lower.iter_mut().enumerate() {
+                let unit = match field.is_length(i) {
+                    true => scale.length,
+                    false => 1.0,
+                };
+                *rate = S::from(unit * irregular(PROBES * i + probe));
+            }
+            field.solve(&mut self.rhs);
+            sum += scale.square(field.numbering, &self.still, &self.rhs[..nv], speeds);
+        }
+        (PROBES as f64 / sum).sqrt()
     }
 
     /// How much more than elsewhere errors are magnified where the steadiness is `s`.
@@ -111,6 +111,20 @@ impl<S: SolveScalar> Steadiness<S> {
         let from = self.last[0].map_or(s, |(_, s1)| s1);
         self.magnified(s.min(from)) > SUSPICIOUS && error > ERROR.max(MORE_ERROR * largest)
     }
+}
+
+/// A number of either sign and of a size from 0.5 to 1.5, the same for the same `n` and without linear
+/// relations between several `n`: the finaliser of SplitMix64 (Steele, Lea & Flood 2014). Multiples of an
+/// irrational number would not do: u₁ − u₃ − u₅ + u₇ = 0 is the combination of rows that vanishes where
+/// the bars of a parallelogram are in line.
+fn irregular(n: usize) -> f64 {
+    let mut x = (n as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^= x >> 31;
+    let fraction = (x >> 11) as f64 / (1_u64 << 53) as f64;
+    let sign = if x & 1 == 0 { 1.0 } else { -1.0 };
+    sign * (0.5 + fraction)
 }
 
 /// Largest magnification that a step may end with, by the tolerance that steps follow if they do.
