@@ -27,5 +27,6 @@ mod planar_joints;
 mod reactions_carry_weight;
 mod redundant_joints;
 mod side_by_side;
+mod singular_positions;
 mod steps_in_use;
 mod work_of_gradients;
