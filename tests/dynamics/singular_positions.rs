@@ -97,23 +97,21 @@ fn angle(file: &Value) -> Result<f64, String> {
 #[test]
 fn parallelograms_in_gravity_move_as_pendulums() {
     let mut numbers = Numbers(41);
-    let (mut passages, mut worst) = (0, [0.0_f64; 5]);
+    let mut passages = 0;
     for case in 0..40 {
         let linkage = Parallelogram::random(&mut numbers);
         let exact = angle(&linkage.pendulum()).expect("a pendulum runs");
         let turned = |angle: f64| (angle / std::f64::consts::PI).floor();
         passages += usize::from(turned(linkage.angle + exact) != turned(linkage.angle));
-        for (k, tolerance) in [1e-5, 1e-7, 1e-9, 1e-11, 1e-13].into_iter().enumerate() {
+        for tolerance in [1e-5, 1e-7, 1e-9, 1e-11, 1e-13] {
             let found = angle(&linkage.linkage(tolerance));
             let found = found.unwrap_or_else(|why| panic!("case {case}, {tolerance:e}: {why}"));
             let error = (found - exact).abs();
-            worst[k] = worst[k].max(error);
             assert!(
-                error <= 3e4 * tolerance + 1e-6,
+                error <= 1e3 * tolerance + 1e-8,
                 "case {case}, {tolerance:e}: {error:e}"
             );
         }
     }
-    println!("{passages} {worst:?}");
     assert!(passages > 10, "{passages}");
 }

@@ -61,6 +61,7 @@ pub fn march<S: SolveScalar>(
     run.take_cells(&settings.spacing, settings.samples);
     let mut steadiness = Steadiness::new(numbering);
     let given = !matches!(settings.spacing, Spacing::Tolerance(_));
+    let equal = matches!(settings.spacing, Spacing::Steps(_));
     let most = singular::most(match settings.spacing {
         Spacing::Tolerance(tolerance) => Some(tolerance),
         Spacing::Steps(_) | Spacing::Frozen(_) => None,
@@ -119,7 +120,7 @@ pub fn march<S: SolveScalar>(
                 if let Some(at) = close.filter(|_| controller.may_keep_away()) {
                     return Err(StepFailure::Close(at));
                 }
-                let errs = given && steadiness.errs(steady, error, controller.largest_error());
+                let errs = equal && steadiness.errs(steady, error, controller.largest_error());
                 if steadiness.magnified(steady) > most || errs {
                     return Err(StepFailure::Close(ahead.unwrap_or(end)));
                 }
