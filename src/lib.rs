@@ -36,7 +36,7 @@
 //! | [`math`] | scalars (real, complex, dual), rotations, smooth maxima |
 //! | [`linalg`] | static sparsity patterns, sparse LU and Cholesky |
 //! | [`model`] | bodies, joints, loads, gravity: parameters and nothing that moves |
-//! | [`structures`] | shells as finite elements: statics, stress, exact gradients; nothing moves |
+//! | [`structures`] | shells and beams as finite elements: statics, modes, exact gradients; nothing moves |
 //! | [`system`] | kinematics, dynamics, constraints, loads with all derivatives; consistent starts |
 //! | [`integrate`] | the methods, explicit and implicit; their equations, steps and trajectories |
 //! | [`functions`] | functions of interest and their derivatives |

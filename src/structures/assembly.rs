@@ -1,11 +1,12 @@
 //! Assembly of the stiffness of a structure, into slots that are recorded once.
 
+use super::beam::BEAM_NODES;
 use super::inertia::LumpedMass;
-use super::mesh::UnknownSet;
+use super::mesh::{Mesh, UnknownSet};
 use super::shell::{ElementMatrix, Motion, NODES, ShellCotangent, Terms};
 use super::state::{Configuration, Cotangent, NodalMotion};
 use super::structure::Structure;
-use super::supports::{NodeUnknowns, Support, Unknowns};
+use super::supports::{NodeUnknowns, Rotations, Support, Unknowns};
 use crate::linalg::cholesky::{SymmetricPattern, fill_reducing_order};
 use crate::math::Scalar;
 
@@ -30,12 +31,13 @@ impl Assembly {
         node_unknowns: NodeUnknowns,
     ) -> Result<Self, UnknownSet> {
         let mesh = &structure.topology.mesh;
-        let order = fill_reducing_order(&neighbours(mesh.nodes, &mesh.shells));
+        let order = fill_reducing_order(&neighbours(mesh));
         let unknowns = Unknowns::new(structure, supports, node_unknowns, &order)?;
         let numbers: Vec<Vec<Option<usize>>> = mesh
             .shells
             .iter()
             .map(|element| element_unknowns(&unknowns, element))
+            .chain(mesh.beams.iter().map(|beam| beam_unknowns(&unknowns, beam)))
             .collect();
         let pattern = pattern(unknowns.count, &numbers);
         let slots = numbers.iter().map(|list| record(&pattern, list)).collect();
@@ -58,7 +60,7 @@ impl Assembly {
     pub fn tangent(
         &self,
         configuration: &Configuration<f64>,
-        motion: &NodalMotion<f64>,
+        motion_all: &NodalMotion<f64>,
         terms: Terms,
         values: &mut [f64],
     ) {
@@ -67,11 +69,15 @@ impl Assembly {
         let shells = &configuration.structure.topology.mesh.shells;
         for (index, element) in shells.iter().enumerate() {
             let axes = configuration.element_axes(index);
-            let motion = motion.of_element(element);
+            let motion = motion_all.of_element(element);
             configuration
                 .shell(index)
                 .tangent(&axes, &motion, terms, &mut matrix);
             self.scatter(index, &matrix, values);
+        }
+        for (index, _) in configuration.beams() {
+            configuration.beam_tangent(index, motion_all, terms, &mut matrix);
+            self.scatter(shells.len() + index, &matrix, values);
         }
     }
 
@@ -84,6 +90,10 @@ impl Assembly {
             let axes = configuration.element_axes(index);
             configuration.shell(index).mass_matrix(&axes, &mut matrix);
             self.scatter(index, &matrix, values);
+        }
+        for (index, _) in configuration.beams() {
+            configuration.beam(index).mass_matrix(&mut matrix);
+            self.scatter(topology.mesh.shells.len() + index, &matrix, values);
         }
         for (mass, &node) in configuration
             .structure
@@ -156,12 +166,15 @@ pub(crate) fn add_energy_transpose<S: Scalar>(
         force.add_of_element_transpose(element, &f);
         configuration.add_shell_transpose(index, &bar, to);
     }
+    configuration.add_beams_transpose(motion, force, to, |beam, v, f, bar| {
+        beam.add_energy_transpose(v, terms.von_karman, f, bar);
+    });
 }
 
 /// Neighbours i > j of each node j: those that share an element.
-fn neighbours(nodes: usize, shells: &[[usize; NODES]]) -> Vec<Vec<usize>> {
-    let mut all = vec![Vec::new(); nodes];
-    for element in shells {
+fn neighbours(mesh: &Mesh) -> Vec<Vec<usize>> {
+    let mut all = vec![Vec::new(); mesh.nodes];
+    for element in mesh.elements() {
         for &j in element {
             all[j].extend(element.iter().copied().filter(|&i| i > j));
         }
@@ -181,6 +194,22 @@ fn element_unknowns(unknowns: &Unknowns, element: &[usize; NODES]) -> Vec<Option
     }
     for &node in element {
         all.extend(unknowns.rotations_of(node).map(Some));
+    }
+    all
+}
+
+/// The unknowns of a beam in the order of its matrix; its nodes have rotations about global axes.
+fn beam_unknowns(unknowns: &Unknowns, element: &[usize; BEAM_NODES]) -> Vec<Option<usize>> {
+    let mut all: Vec<Option<usize>> = element
+        .iter()
+        .flat_map(|&node| unknowns.nodes[node].displacements)
+        .collect();
+    for &node in element {
+        let Rotations::Global(free) = unknowns.nodes[node].rotations else {
+            unreachable!("nodes on beams have global rotations")
+        };
+        let mut numbers = unknowns.rotations_of(node);
+        all.extend(free.map(|free| free.then(|| numbers.next()).flatten()));
     }
     all
 }

@@ -61,6 +61,9 @@ pub(crate) fn add_kinetic_energy_transpose<S: Scalar>(
         momentum.add_of_element_transpose(element, &p);
         configuration.add_shell_transpose(index, &bar, to);
     }
+    configuration.add_beams_transpose(rates, momentum, to, |beam, v, p, bar| {
+        beam.add_kinetic_energy_transpose(v, factor, p, bar);
+    });
     let half = factor * 0.5;
     for (k, &node) in topology.mass_nodes.iter().enumerate() {
         let mass = &configuration.structure.masses[k];
@@ -75,12 +78,16 @@ pub(crate) fn add_kinetic_energy_transpose<S: Scalar>(
     }
 }
 
-/// Moments of the mass: of the middle surfaces of shells, and of lumped masses as points.
+/// Moments of the mass: of the middle surfaces of shells, the lines of centres of beams, and of lumped
+/// masses as points.
 pub(crate) fn mass_moments<S: Scalar>(configuration: &Configuration<S>) -> MassMoments<S> {
     let structure = configuration.structure;
     let mut all = MassMoments::zeros();
-    for index in 0..structure.topology.mesh.shells.len() {
-        let part = configuration.shell(index).mass_moments();
+    let shells = 0..structure.topology.mesh.shells.len();
+    let shells = shells.map(|index| configuration.shell(index).mass_moments());
+    let beams = configuration.beams();
+    let beams = beams.map(|(index, _)| configuration.beam(index).mass_moments());
+    for part in shells.chain(beams) {
         all.mass += part.mass;
         all.first += part.first;
         for (sum, x) in all.second.iter_mut().zip(part.second) {
@@ -106,6 +113,12 @@ pub(crate) fn add_mass_moments_transpose<S: Scalar>(
             .shell(index)
             .add_mass_moments_transpose(bar, &mut part);
         configuration.add_shell_transpose(index, &part, to);
+    }
+    for (index, _) in configuration.beams() {
+        let beam = configuration.beam(index);
+        let mut part = beam.zeros();
+        beam.add_mass_moments_transpose(bar, &mut part);
+        configuration.add_beam_transpose(index, &part, to);
     }
     for (k, &node) in structure.topology.mass_nodes.iter().enumerate() {
         let (by_mass, by_place) =

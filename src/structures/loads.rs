@@ -3,6 +3,7 @@
 //! A load case has the work W(v) = f·v at a motion v. Its derivative by v is the load vector f; with
 //! dual numbers its derivatives by structure and loads are those of ψ·f.
 
+use super::beam::BeamMotion;
 use super::mesh::UnknownSet;
 use super::shell::basis::{GAUSS_POINTS, TABLES};
 use super::state::{Configuration, Cotangent, NodalMotion};
@@ -24,6 +25,13 @@ pub enum Load<S> {
     Edge {
         /// Set of edges.
         edges: String,
+        /// Force per length.
+        force: Vec3<S>,
+    },
+    /// A force per length on beams [N/m], at the centres of their sections.
+    Line {
+        /// Set of beams.
+        beams: String,
         /// Force per length.
         force: Vec3<S>,
     },
@@ -73,6 +81,10 @@ impl<S: Scalar> Load<S> {
             },
             Self::Edge { edges, force } => Load::Edge {
                 edges: edges.clone(),
+                force: force.map(&mut f),
+            },
+            Self::Line { beams, force } => Load::Line {
+                beams: beams.clone(),
                 force: force.map(&mut f),
             },
             Self::Pressure { faces, pressure } => Load::Pressure {
@@ -135,6 +147,11 @@ pub(crate) fn add_work_transpose<S: Scalar>(
                 add_edge_transpose(configuration, edge, f, motion, force, to, f_to);
             }
         }
+        (Load::Line { beams, force: f }, Load::Line { force: f_to, .. }) => {
+            for &beam in mesh.beam_set(beams)? {
+                *f_to += add_beam_transpose(configuration, beam, f, false, motion, force, to);
+            }
+        }
         (Load::Pressure { faces, pressure }, Load::Pressure { pressure: p_to, .. }) => {
             for &shell in mesh.face_set(faces)? {
                 add_pressure_transpose(configuration, shell, *pressure, motion, force, to, p_to);
@@ -148,6 +165,10 @@ pub(crate) fn add_work_transpose<S: Scalar>(
         (Load::Gravity { acceleration }, Load::Gravity { acceleration: g_to }) => {
             for shell in 0..mesh.shells.len() {
                 add_gravity_transpose(configuration, shell, acceleration, motion, force, to, g_to);
+            }
+            for beam in 0..mesh.beams.len() {
+                *g_to +=
+                    add_beam_transpose(configuration, beam, acceleration, true, motion, force, to);
             }
             let nodes = &configuration.structure.topology.mass_nodes;
             for (k, &node) in nodes.iter().enumerate() {
@@ -163,6 +184,25 @@ pub(crate) fn add_work_transpose<S: Scalar>(
         _ => unreachable!("a load and its cotangent are of one kind"),
     }
     Ok(())
+}
+
+/// The part of a beam in the work of a line load, or with `of_mass` of gravity; gives that by the load.
+fn add_beam_transpose<S: Scalar>(
+    configuration: &Configuration<S>,
+    index: usize,
+    f: &Vec3<S>,
+    of_mass: bool,
+    motion: &NodalMotion<S>,
+    force: &mut NodalMotion<S>,
+    to: &mut Cotangent<S>,
+) -> Vec3<S> {
+    let element = &configuration.structure.topology.mesh.beams[index];
+    let (beam, mut part) = (configuration.beam(index), BeamMotion::zeros());
+    let (v, mut bar) = (motion.of_beam(element), beam.zeros());
+    let by_f = beam.add_line_work_transpose(f, of_mass, &v, &mut part, &mut bar);
+    force.add_of_beam_transpose(element, &part);
+    configuration.add_beam_transpose(index, &bar, to);
+    by_f
 }
 
 fn add_edge_transpose<S: Scalar>(

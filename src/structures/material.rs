@@ -27,6 +27,14 @@ impl<S: Scalar> Material<S> {
         }
     }
 
+    /// Adds the numbers of another.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.young += other.young;
+        self.poisson += other.poisson;
+        self.density += other.density;
+        self.yield_stress += other.yield_stress;
+    }
+
     /// The same material in another scalar.
     pub fn map<T>(&self, f: &mut impl FnMut(S) -> T) -> Material<T> {
         Material {

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use super::beam::BEAM_NODES;
 use super::shell::NODES;
 
 /// Local nodes of the four edges of a shell element, along s = −1, r = +1, s = +1, r = −1.
 pub(crate) const SHELL_EDGES: [[usize; 3]; 4] = [[0, 1, 2], [2, 5, 8], [6, 7, 8], [0, 3, 6]];
 
-/// A mesh of nine-node shells. Node k = 3j + i of an element stands at (r, s) = (i − 1, j − 1); the
+/// A mesh of nine-node shells and three-node beams. Node k = 3j + i of an element stands at (r, s) = (i − 1, j − 1); the
 /// normal is a_r × a_s.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
@@ -15,12 +16,16 @@ pub struct Mesh {
     pub nodes: usize,
     /// Nodes of each shell.
     pub shells: Vec<[usize; NODES]>,
+    /// Nodes of each beam: an end, the middle, the other end.
+    pub beams: Vec<[usize; BEAM_NODES]>,
     /// Nodes by the name of their set.
     pub node_sets: BTreeMap<String, Vec<usize>>,
     /// Edges (three nodes in a row) by the name of their set.
     pub edge_sets: BTreeMap<String, Vec<[usize; 3]>>,
     /// Shells by the name of their set.
     pub face_sets: BTreeMap<String, Vec<usize>>,
+    /// Beams by the name of their set.
+    pub beam_sets: BTreeMap<String, Vec<usize>>,
 }
 
 /// A name that no set of the mesh has.
@@ -50,7 +55,25 @@ fn find<'a, T>(
 impl Mesh {
     /// The nodes of each element.
     pub(crate) fn elements(&self) -> impl Iterator<Item = &[usize]> {
-        self.shells.iter().map(|nodes| nodes.as_slice())
+        let shells = self.shells.iter().map(|nodes| nodes.as_slice());
+        shells.chain(self.beams.iter().map(|nodes| nodes.as_slice()))
+    }
+
+    /// Which nodes belong to beams.
+    pub(crate) fn on_beams(&self) -> Vec<bool> {
+        let mut all = vec![false; self.nodes];
+        for &node in self.beams.iter().flatten() {
+            all[node] = true;
+        }
+        all
+    }
+
+    /// The beams of a set.
+    ///
+    /// # Errors
+    /// [`UnknownSet`] if there is none of this name.
+    pub fn beam_set(&self, name: &str) -> Result<&[usize], UnknownSet> {
+        find(&self.beam_sets, "set of beams", name)
     }
 
     /// The nodes of a set.

@@ -1,7 +1,9 @@
-//! Shell structures as finite elements, with exact derivatives; nothing moves here. How the pieces fit:
+//! Structures of shells and beams as finite elements, with exact derivatives; nothing moves here. How the pieces fit:
 //! docs/structures.md.
 
 mod assembly;
+pub mod beam;
+mod beams;
 pub mod functions;
 pub mod generate;
 pub mod gradient;

@@ -62,6 +62,44 @@ pub enum MeshFault {
         /// Where it stands along the edge.
         fraction: f64,
     },
+    /// A beam names a node that does not exist, or one twice.
+    #[error("beam {beam} names node {node}, which does not exist or which it names twice")]
+    BeamNode {
+        /// The beam.
+        beam: usize,
+        /// The node.
+        node: usize,
+    },
+    /// The middle node of a beam is far from the middle, or the beam turns back.
+    #[error(
+        "beam {beam}: its middle node stands at {fraction:.3} of its length, not near 0.5 (allowed are \
+         0.3 to 0.7), or the beam turns back within itself: is the order of the nodes right?"
+    )]
+    BeamShape {
+        /// The beam.
+        beam: usize,
+        /// Where the middle node stands along the chord.
+        fraction: f64,
+    },
+    /// A beam without an orientation.
+    #[error("there are {beams} beams and {orientations} orientations")]
+    Orientations {
+        /// Number of beams.
+        beams: usize,
+        /// Number of orientations.
+        orientations: usize,
+    },
+    /// The orientation of a beam runs along it.
+    #[error(
+        "beam {beam}: its orientation is nothing or runs along the beam within 1e-3 rad at node {local} \
+         of it, so its section has no axis 2; give another vector"
+    )]
+    Orientation {
+        /// The beam.
+        beam: usize,
+        /// The local node.
+        local: usize,
+    },
     /// Two elements at an edge have opposite normals.
     #[error("shells {first} and {second} share an edge and are wound in opposite directions")]
     OppositeNormals {
@@ -87,6 +125,9 @@ pub fn faults(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
         for (shell, element) in mesh.shells.iter().enumerate() {
             all.extend(shape(shell, &element.map(|k| nodes[k])));
         }
+        for (beam, element) in mesh.beams.iter().enumerate() {
+            all.extend(beam_shape(beam, &element.map(|k| nodes[k])));
+        }
     }
     all
 }
@@ -101,6 +142,15 @@ fn connectivity(mesh: &Mesh) -> Vec<MeshFault> {
                 all.push(MeshFault::UnknownNode { shell, node, nodes });
             } else if element[..k].contains(&node) {
                 all.push(MeshFault::RepeatedNode { shell, node });
+            } else {
+                used[node] = true;
+            }
+        }
+    }
+    for (beam, element) in mesh.beams.iter().enumerate() {
+        for (k, &node) in element.iter().enumerate() {
+            if node >= mesh.nodes || element[..k].contains(&node) {
+                all.push(MeshFault::BeamNode { beam, node });
             } else {
                 used[node] = true;
             }
@@ -177,4 +227,45 @@ fn shape(shell: usize, x: &[Vec3<f64>; NODES]) -> Option<MeshFault> {
         }
     }
     None
+}
+
+fn beam_shape(beam: usize, x: &[Vec3<f64>; 3]) -> Option<MeshFault> {
+    let chord = x[2] - x[0];
+    let fraction = (x[1] - x[0]).dot(&chord) / chord.norm_squared();
+    // The tangents at both ends go forwards.
+    let ends = [
+        x[1] * 4.0 - x[0] * 3.0 - x[2],
+        x[0] + x[2] * 3.0 - x[1] * 4.0,
+    ];
+    let forwards = ends.iter().all(|t| t.dot(&chord) > 0.0);
+    let sound = forwards && (0.3..=0.7).contains(&fraction);
+    (!sound).then_some(MeshFault::BeamShape { beam, fraction })
+}
+
+/// Orientations that are missing or run along their beams. The mesh has no other faults.
+pub(super) fn orientation_faults(
+    mesh: &Mesh,
+    nodes: &[Vec3<f64>],
+    orientations: &[Vec3<f64>],
+) -> Vec<MeshFault> {
+    if mesh.beams.len() != orientations.len() {
+        return vec![MeshFault::Orientations {
+            beams: mesh.beams.len(),
+            orientations: orientations.len(),
+        }];
+    }
+    let mut all = Vec::new();
+    for (beam, (element, v)) in mesh.beams.iter().zip(orientations).enumerate() {
+        let x = element.map(|k| nodes[k]);
+        let tangents = [
+            x[1] * 4.0 - x[0] * 3.0 - x[2],
+            x[2] - x[0],
+            x[0] + x[2] * 3.0 - x[1] * 4.0,
+        ];
+        let along = |t: &Vec3<f64>| !(t.cross(v).norm() > 1e-3 * t.norm() * v.norm());
+        if let Some(local) = tangents.iter().position(along) {
+            all.push(MeshFault::Orientation { beam, local });
+        }
+    }
+    all
 }

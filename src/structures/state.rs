@@ -127,16 +127,13 @@ impl<'a, S: Scalar> Configuration<'a, S> {
         to.structure.thickness[index] += bar.thickness;
         to.structure.surface_mass[index] += bar.surface_mass;
         let material = &mut to.structure.materials[topology.material[index]];
-        material.young += bar.material.young;
-        material.poisson += bar.material.poisson;
-        material.density += bar.material.density;
-        material.yield_stress += bar.material.yield_stress;
+        material.add(&bar.material);
     }
 
     /// The strain energy of a motion \[J\].
     pub fn strain_energy(&self, motion: &NodalMotion<S>, terms: Terms) -> S {
         let shells = self.structure.topology.mesh.shells.iter().enumerate();
-        shells.fold(S::zero(), |sum, (index, element)| {
+        shells.fold(self.beam_energy(motion, terms), |sum, (index, element)| {
             let v = motion.of_element(element);
             sum + self.shell(index).energy(&v, terms).total()
         })

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use super::beam::{Section, SectionValues};
 use super::inertia::LumpedMass;
 use super::material::Material;
 use super::mesh::Mesh;
-use super::quality::{MeshFault, faults};
+use super::quality::{MeshFault, faults, orientation_faults};
 use super::sheets::{FOLD_ANGLE, Sheets};
 use crate::math::{Scalar, Vec3};
 
@@ -18,6 +19,8 @@ pub struct Topology {
     pub sheets: Sheets,
     /// Index of the material of each shell.
     pub material: Vec<usize>,
+    /// Index of the material of each beam.
+    pub beam_material: Vec<usize>,
     /// The node of each lumped mass.
     pub mass_nodes: Vec<usize>,
 }
@@ -33,6 +36,14 @@ pub struct Structure<S> {
     pub thickness: Vec<S>,
     /// Non-structural mass per area of each shell [kg/m²].
     pub surface_mass: Vec<S>,
+    /// Section of each beam.
+    pub sections: Vec<Section<S>>,
+    /// A vector in the plane of each beam and axis 2 of its section.
+    pub orientations: Vec<Vec3<S>>,
+    /// Where the centre of each section stands from the nodes, along its axes 2 and 3 \[m\].
+    pub offsets: Vec<[S; 2]>,
+    /// Non-structural mass per length of each beam [kg/m].
+    pub line_mass: Vec<S>,
     /// Lumped masses.
     pub masses: Vec<LumpedMass<S>>,
     /// The materials.
@@ -47,6 +58,10 @@ impl<S: Scalar> Structure<S> {
             nodes: self.nodes.iter().map(|x| x.map(&mut f)).collect(),
             thickness: self.thickness.iter().map(|&h| f(h)).collect(),
             surface_mass: self.surface_mass.iter().map(|&m| f(m)).collect(),
+            sections: self.sections.iter().map(|x| x.map(&mut f)).collect(),
+            orientations: self.orientations.iter().map(|x| x.map(&mut f)).collect(),
+            offsets: self.offsets.iter().map(|x| x.map(&mut f)).collect(),
+            line_mass: self.line_mass.iter().map(|&m| f(m)).collect(),
             masses: self.masses.iter().map(|m| m.map(&mut f)).collect(),
             materials: self.materials.iter().map(|m| m.map(&mut f)).collect(),
         }
@@ -95,21 +110,47 @@ impl Structure<f64> {
         thickness: f64,
         material: Material<f64>,
     ) -> Result<Self, Vec<MeshFault>> {
-        let found = faults(&mesh, &nodes);
+        // Without beams no section is ever used.
+        let none = Section::Given(SectionValues::zeros());
+        Self::with_beams(mesh, nodes, thickness, none, Vec::new(), material)
+    }
+
+    /// A structure of beams of one section and one material, and of shells of one thickness \[m\] if the
+    /// mesh has some. Each beam has its orientation.
+    ///
+    /// # Errors
+    /// All [`MeshFault`]s of the mesh, those of orientations among them.
+    pub fn with_beams(
+        mesh: Mesh,
+        nodes: Vec<Vec3<f64>>,
+        thickness: f64,
+        section: Section<f64>,
+        orientations: Vec<Vec3<f64>>,
+        material: Material<f64>,
+    ) -> Result<Self, Vec<MeshFault>> {
+        let mut found = faults(&mesh, &nodes);
+        if found.is_empty() {
+            found = orientation_faults(&mesh, &nodes, &orientations);
+        }
         if !found.is_empty() {
             return Err(found);
         }
-        let shells = mesh.shells.len();
+        let (shells, beams) = (mesh.shells.len(), mesh.beams.len());
         Ok(Self {
             topology: Arc::new(Topology {
                 sheets: Sheets::new(&mesh, &nodes, FOLD_ANGLE),
                 mesh,
                 material: vec![0; shells],
+                beam_material: vec![0; beams],
                 mass_nodes: Vec::new(),
             }),
             nodes,
             thickness: vec![thickness; shells],
             surface_mass: vec![0.0; shells],
+            sections: vec![section; beams],
+            orientations,
+            offsets: vec![[0.0; 2]; beams],
+            line_mass: vec![0.0; beams],
             masses: Vec::new(),
             materials: vec![material],
         })

@@ -1,7 +1,7 @@
 //! Supports, and the unknowns that they leave to the nodes.
 //!
-//! A node on a smooth surface has two unknown rotations, about tangents; a node on a fold, or any node
-//! if six unknowns are asked for, three about the global axes. A support fixes displacements and
+//! A node on a smooth surface has two unknown rotations, about tangents; a node on a fold or a beam, or
+//! any node if six unknowns are asked for, three about the global axes. A support fixes displacements and
 //! rotations in the global axes. The rotation about a director has no unknown on a smooth surface, so
 //! a fixed axis f within 0.1 rad of the director D fixes nothing there; else
 //!
@@ -49,7 +49,7 @@ impl Support {
 /// How many unknowns a node has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NodeUnknowns {
-    /// Five on smooth surfaces, six on folds.
+    /// Five on smooth surfaces, six on folds and beams.
     Natural,
     /// Six everywhere, with a drilling stiffness.
     Six,
@@ -155,6 +155,7 @@ impl Unknowns {
                 }
             }
         }
+        let on_beams = topology.mesh.on_beams();
         let directors = topology.sheets.directors(&topology.mesh, &structure.nodes);
         let mut all = Self {
             nodes: vec![
@@ -177,7 +178,8 @@ impl Unknowns {
                     all.count += 1;
                 }
             }
-            at.rotations = if sheets.len() == 1 && node_unknowns == NodeUnknowns::Natural {
+            let smooth_here = sheets.len() == 1 && !on_beams[node];
+            at.rotations = if smooth_here && node_unknowns == NodeUnknowns::Natural {
                 smooth(&directors[sheets.start], rotations)
             } else {
                 Rotations::Global(rotations.map(|fixed| !fixed))

@@ -1,5 +1,8 @@
 //! Structures of shells and beams: elements, statics, modes, functions and their derivatives.
 
+mod beam_derivatives;
+mod beams;
+mod beams_in_structures;
 mod function_gradients;
 mod mesh_faults;
 mod mode_gradients;

@@ -121,6 +121,13 @@ pub fn motion_of<S: Scalar>(numbers: &[S]) -> Motion<S> {
 pub fn structure_numbers<S: Scalar>(structure: &Structure<S>) -> (Vec<S>, Vec<usize>) {
     let shells = structure.thickness.len();
     let mut kinds = vec![3 * structure.nodes.len(), shells, shells];
+    for section in &structure.sections {
+        let _ = section.map(&mut |_| kinds.push(1));
+    }
+    let beams = structure.sections.len();
+    if beams > 0 {
+        kinds.extend([3 * beams, 2 * beams, beams]);
+    }
     kinds.extend(structure.masses.iter().flat_map(|_| [1, 6]));
     kinds.extend(structure.materials.iter().flat_map(|_| [1; 4]));
     (structure.values(), kinds)

@@ -4,6 +4,10 @@
 //! each direction, both as sets of edges and as sets of nodes; its corners, sets of one node, are
 //! `x0y0`, `x1y0`, `x0y1` and `x1y1`; `all` is the set of all nodes and of all faces.
 
+mod beams;
+
+pub use beams::{GeneratedBeams, Member, any_orientation, curved_beam, frame, line, straight_beam};
+
 use super::mesh::Mesh;
 use crate::math::{Scalar, Vec3};
 

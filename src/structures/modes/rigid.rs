@@ -61,6 +61,7 @@ fn motions_of(configuration: &Configuration<f64>, part: &[usize]) -> Vec<Vec<f64
         .iter()
         .map(|&node| (nodes[node] - centre).norm_squared());
     let size = (spread.sum::<f64>() / count).sqrt();
+    let on_beams = configuration.structure.topology.mesh.on_beams();
     let mut forbidden = DMatrix::<f64>::zeros(6, 6);
     let mut rows = 0;
     for &node in part {
@@ -77,7 +78,9 @@ fn motions_of(configuration: &Configuration<f64>, part: &[usize]) -> Vec<Vec<f64
         }
         let rest: Vec<Vec3<f64>> = motions
             .iter()
-            .map(|(_, turn)| (turn - allowed_turn(configuration, node, turn)) * size)
+            .map(|(_, turn)| {
+                (turn - allowed_turn(configuration, node, on_beams[node], turn)) * size
+            })
             .collect();
         if rest.iter().any(|rest| rest.norm() > 1e-12) {
             for i in 0..3 {
@@ -110,14 +113,20 @@ fn motions_of(configuration: &Configuration<f64>, part: &[usize]) -> Vec<Vec<f64
 
 /// The part of a rotation that the unknowns of a node give, or that has no unknown because it turns
 /// about the director.
-fn allowed_turn(configuration: &Configuration<f64>, node: usize, turn: &Vec3<f64>) -> Vec3<f64> {
+fn allowed_turn(
+    configuration: &Configuration<f64>,
+    node: usize,
+    on_beam: bool,
+    turn: &Vec3<f64>,
+) -> Vec3<f64> {
     let (axes, count) = configuration.axes(node);
     let mut rest = *turn;
     for axis in &axes[..count] {
         rest -= axis * (axis.dot(&rest) / axis.norm_squared());
     }
     let director = configuration.smooth_director(node);
-    if let (Some(d), NodeUnknowns::Natural) = (director, configuration.node_unknowns) {
+    let natural = configuration.node_unknowns == NodeUnknowns::Natural;
+    if let (Some(d), true) = (director, natural && !on_beam) {
         rest -= d * d.dot(&rest);
     }
     turn - rest
