@@ -262,7 +262,10 @@ pub(super) fn orientation_faults(
             x[2] - x[0],
             x[0] + x[2] * 3.0 - x[1] * 4.0,
         ];
-        let along = |t: &Vec3<f64>| !(t.cross(v).norm() > 1e-3 * t.norm() * v.norm());
+        let along = |t: &Vec3<f64>| {
+            let sine = t.cross(v).norm() / (t.norm() * v.norm());
+            sine.is_nan() || sine <= 1e-3
+        };
         if let Some(local) = tangents.iter().position(along) {
             all.push(MeshFault::Orientation { beam, local });
         }

@@ -3,7 +3,7 @@
 use crate::math::Scalar;
 
 /// Σ 1/n⁵ over odd n: (31/32) ζ(5).
-const ODD_FIFTHS: f64 = 31.0 / 32.0 * 1.036_927_755_143_369_9;
+const ODD_FIFTHS: f64 = 31.0 / 32.0 * 1.036_927_755_143_37;
 
 /// J of a rectangle by Saint-Venant's series (Timoshenko & Goodier 1951, eq. 160), and its derivatives by
 /// the two sides. With ρ = long / short it is short⁴ g(ρ),
