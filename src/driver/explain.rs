@@ -256,7 +256,7 @@ fn lowering(
         let name = name(&i);
         if lowering.unturned.contains(i) {
             left_out.push(format!("the rotation of body {name}: its joints hold it"));
-        } else if body.mobility == Mobility::Point {
+        } else if body.mobility == Mobility::point() {
             left_out.push(format!(
                 "the rotation of body {name}: nothing turns it, and no function looks at it"
             ));

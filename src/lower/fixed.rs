@@ -45,7 +45,7 @@ impl Fixed {
         let model = &designs.start.model;
         let held = welded_to_ground(model);
         // Bodies that are carried by others are not among what is held.
-        let free = |body: usize| !held[body] && model.bodies[body].mobility != Mobility::Fixed;
+        let free = |body: usize| !held[body] && model.bodies[body].mobility != Mobility::fixed();
         let some_move = (0..held.len()).any(free);
         if !held.contains(&true) || !some_move {
             return Default::default();
@@ -91,7 +91,7 @@ impl Fixed {
     pub(super) fn apply<S: Scalar>(&self, model: &mut Model<S>) {
         let bodies = model.bodies.iter_mut().zip(&self.held);
         for (body, _) in bodies.filter(|(_, held)| **held) {
-            body.mobility = Mobility::Fixed;
+            body.mobility = Mobility::fixed();
         }
         for joint in &mut model.joints {
             if self.holds_joint(joint) {

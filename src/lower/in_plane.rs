@@ -4,10 +4,9 @@ use super::examine::{Examiner, Verdict};
 use super::fixed::is_void;
 use super::planar::{Plane, Turned, used};
 use super::reach::{Reach, largest};
-use crate::math::scalar::lift3;
+use crate::math::scalar::{along, lift3};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, Freedom, LoadKind, Model};
-use crate::system::reduce::along;
 
 /// Points of a load on its bodies.
 pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, Vec3<S>)>; 2] {

@@ -111,7 +111,7 @@ pub(super) fn merge<S: Scalar>(scene: &mut Scene<S>, clusters: &[Cluster], welds
                 name: std::mem::take(&mut body.name),
                 mass: S::zero(),
                 inertia: Mat3::zeros(),
-                mobility: Mobility::Fixed,
+                mobility: Mobility::fixed(),
                 ..copy.clone()
             };
         }

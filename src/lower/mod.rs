@@ -99,7 +99,7 @@ impl Lowering {
             let reach = Reach::new(model);
             for (index, body) in model.bodies.iter().enumerate() {
                 let held = fixed.holds_end(Some(index)) || unturned.contains(index);
-                if held || body.mobility == Mobility::Fixed {
+                if held || body.mobility == Mobility::fixed() {
                     continue;
                 }
                 // What the start says is enough.
@@ -192,7 +192,7 @@ impl Lowering {
             plane.apply(model);
         }
         for &body in &self.points {
-            model.bodies[body].mobility = Mobility::Point;
+            model.bodies[body].mobility = Mobility::point();
         }
         self.unturned.apply(model);
         self.fixed.apply(model);

@@ -247,13 +247,10 @@ impl Plane {
 
     /// Leaves out of a model that the plane holds for what is across it.
     pub fn apply<S: Scalar>(&self, model: &mut Model<S>) {
-        let moving = |(body, _): &(&mut RigidBody<S>, _)| body.mobility != Mobility::Fixed;
+        let moving = |(body, _): &(&mut RigidBody<S>, _)| body.mobility != Mobility::fixed();
         let bodies = model.bodies.iter_mut().zip(&self.bodies);
         for (body, (normal, _)) in bodies.filter(moving) {
-            body.mobility = Mobility::Planar {
-                along: self.along,
-                normal: *normal,
-            };
+            body.mobility = Mobility::planar(self.along, *normal);
         }
         for (j, own) in self.joints.iter().enumerate() {
             let joint = &mut model.joints[j];

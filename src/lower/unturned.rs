@@ -91,7 +91,7 @@ impl Unturned {
     pub(super) fn apply<S: Scalar>(&self, model: &mut Model<S>) {
         let bodies = model.bodies.iter_mut().zip(&self.bodies);
         for (body, _) in bodies.filter(|(_, own)| **own) {
-            body.mobility = body.mobility.unturned();
+            body.mobility = body.mobility.without_rotation();
         }
         for joint in &mut model.joints {
             if self.holds_joint(joint) {

@@ -318,6 +318,12 @@ pub fn lift3<S: Scalar>(a: &Vec3<f64>) -> Vec3<S> {
     a.map(S::from)
 }
 
+/// aᵀ b of a constant vector b.
+#[inline]
+pub fn along<S: Scalar>(a: &Vec3<S>, b: &Vec3<f64>) -> S {
+    a.x * b.x + a.y * b.y + a.z * b.z
+}
+
 /// The matrix ã of the cross product, ã b = a × b.
 pub fn skew<S: Scalar>(a: &Vec3<S>) -> Mat3<S> {
     let z = S::zero();

@@ -84,7 +84,7 @@ fn body<S: Scalar>(
         orientation: pose.orientation,
         velocity: Vec3::zeros(),
         angular_velocity: Vec3::zeros(),
-        mobility: Mobility::Spatial,
+        mobility: Mobility::spatial(),
     }
 }
 

@@ -68,7 +68,7 @@ impl Numbering {
 
     /// Whether some body cannot turn, or not move at all, so that it stays as it is placed.
     pub fn keeps_placed(&self) -> bool {
-        !self.mobility.iter().all(Mobility::turns)
+        !self.mobility.iter().all(Mobility::has_rotation)
     }
 
     /// Number of constraint rows.

@@ -14,9 +14,9 @@
 use super::bodies::Motion;
 use super::constraint::RowGradient;
 use super::numbering::Numbering;
-use super::reduce::along;
+use crate::math::scalar::along;
 use crate::math::{Scalar, Vec3};
-use crate::model::{ConstraintRow, Joint, JointFrame, Mobility, Model};
+use crate::model::{ConstraintRow, Joint, JointFrame, Model};
 use nalgebra::Vector2;
 
 /// A vector in a plane.
@@ -89,17 +89,6 @@ pub(super) struct Jet<S> {
 }
 
 impl BodyPlane {
-    /// The plane across the unit vector n.
-    fn across(normal: Vec3<f64>) -> Self {
-        let mut farthest = Vec3::zeros();
-        farthest[normal.iamin()] = 1.0;
-        let first = normal.cross(&farthest).normalize();
-        Self {
-            along: [first, normal.cross(&first)],
-            normal,
-        }
-    }
-
     fn components<S: Scalar>(&self, x: &Vec3<S>) -> Vec2<S> {
         Vec2::new(along(x, &self.along[0]), along(x, &self.along[1]))
     }
@@ -191,15 +180,14 @@ impl<S: Scalar> PlanarJoints<S> {
         let mut plane = None;
         let mut planes = Vec::with_capacity(model.bodies.len() + 1);
         for body in &model.bodies {
-            let (Mobility::Planar { along, normal } | Mobility::PlanarPoint { along, normal }) =
-                body.mobility
-            else {
-                return None;
-            };
-            if *plane.get_or_insert(along) != along {
+            let [[t1, t2, _], [normal, first, second]] = body.mobility.plane()?;
+            if *plane.get_or_insert([t1, t2]) != [t1, t2] {
                 return None;
             }
-            planes.push(BodyPlane::across(normal));
+            planes.push(BodyPlane {
+                along: [first, second],
+                normal,
+            });
         }
         let along = plane?;
         planes.push(BodyPlane {

@@ -163,7 +163,7 @@ fn a_free_top_follows_the_exact_solution() {
         orientation: start,
         velocity: Vec3::new(-0.5, 0.4, 0.6),
         angular_velocity: spin,
-        mobility: Mobility::Spatial,
+        mobility: Mobility::spatial(),
     };
     let momentum = rotation::matrix(&start) * (body.inertia * spin);
     let exact = |t: f64| {

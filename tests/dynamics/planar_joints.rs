@@ -4,7 +4,7 @@
 
 use crate::reference;
 
-use flexbody::math::{Complex64, Scalar, Vec3, rotation};
+use flexbody::math::{Complex64, Scalar, rotation};
 use flexbody::model::{Mobility, Model};
 use flexbody::system::constraint::RowGradient;
 use flexbody::system::joints::{self, JointCotangent};
@@ -24,10 +24,7 @@ fn cases() -> Vec<(Case, Vec<f64>, Vec<f64>)> {
                 case.model.joints[0].frame_a.length = 0.7;
                 for body in &mut case.model.bodies {
                     let r = rotation::matrix(&body.orientation);
-                    body.mobility = Mobility::Planar {
-                        along: [t1, t2],
-                        normal: r.tr_mul(&normal),
-                    };
+                    body.mobility = Mobility::planar([t1, t2], r.tr_mul(&normal));
                 }
                 case.numbering = Numbering::new(&case.model);
                 let mut planar = || {
@@ -181,15 +178,10 @@ fn pull_backs_are_those_in_space() {
 #[test]
 fn spatial_scenes_are_told_apart() {
     for (mut case, _, _) in cases().into_iter().take(2) {
-        case.model.bodies[1].mobility = Mobility::Spatial;
+        case.model.bodies[1].mobility = Mobility::spatial();
         assert!(PlanarJoints::of(&case.model).is_none());
-        let Mobility::Planar { along, normal } = case.model.bodies[0].mobility else {
-            panic!("a planar body");
-        };
-        let tilted = Mobility::Planar {
-            along: [along[1], Vec3::zeros() - along[0]],
-            normal,
-        };
+        let [[t1, t2, _], [normal, ..]] = case.model.bodies[0].mobility.plane().expect("planar");
+        let tilted = Mobility::planar([t2, -t1], normal);
         case.model.bodies[1].mobility = tilted;
         assert!(PlanarJoints::of(&case.model).is_none());
     }

@@ -93,7 +93,7 @@ fn model(scene: &Value) -> Model<f64> {
                 orientation: orientation(&r),
                 velocity: vector(&body["v"]),
                 angular_velocity: r.transpose() * vector(&body["omega"]),
-                mobility: Mobility::Spatial,
+                mobility: Mobility::spatial(),
             }
         })
         .collect();

@@ -56,7 +56,7 @@ impl Numbers {
             orientation: self.orientation(),
             velocity: self.vector(),
             angular_velocity: self.vector() * 2.0,
-            mobility: Mobility::Spatial,
+            mobility: Mobility::spatial(),
         }
     }
 }
@@ -121,7 +121,7 @@ pub fn rod(name: &str, mass: f64, x: f64) -> RigidBody<f64> {
         orientation: [1.0, 0.0, 0.0, 0.0],
         velocity: Vec3::zeros(),
         angular_velocity: Vec3::zeros(),
-        mobility: Mobility::Spatial,
+        mobility: Mobility::spatial(),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Bodies and joints eliminated leaf by leaf, in blocks of up to order N.
 
-use super::SMALL;
+use super::blocks::{Factors, inertia, reduced, size, unknowns};
 use super::dense::{axpy, block, decompose, dot, solve};
 use super::links::{Forest, Link};
 use super::loops::Loops;
@@ -10,20 +10,6 @@ use crate::model::Model;
 use crate::system::constraint::RowGradient;
 use crate::system::left_out::LeftOut;
 use crate::system::numbering::Numbering;
-use crate::system::reduce::{inertia, reduced};
-
-/// Factors of one link in blocks of up to order N.
-#[derive(Clone)]
-pub(super) struct Factors<S, const N: usize> {
-    /// Articulated inertia, then its Cholesky factor L D Lᵀ (D inverted on the diagonal).
-    pub inertia: [[S; N]; N],
-    /// G_jb M̂⁻¹, row by row.
-    pub lever: [[S; N]; N],
-    /// G_jp, row by row.
-    pub above: [[S; N]; N],
-    /// L D Lᵀ of S.
-    pub schur: [[S; N]; N],
-}
 
 /// Elimination in blocks of up to order N.
 #[derive(Clone)]
@@ -37,25 +23,6 @@ pub struct Elimination<S, const N: usize> {
     full: bool,
     /// The joints that close loops, if any do.
     pub(super) loops: Option<Loops<S, N>>,
-}
-
-/// Order of the block of a body: known beforehand where all have up to three unknowns.
-pub(super) fn size<const N: usize>(numbering: &Numbering, body: usize) -> usize {
-    match N {
-        SMALL => SMALL,
-        _ => numbering.unknowns_of(body),
-    }
-}
-
-/// Unknowns of a body: known beforehand where all have N.
-pub(super) fn unknowns<const N: usize, const FULL: bool>(
-    numbering: &Numbering,
-    body: usize,
-) -> usize {
-    match FULL {
-        true => N,
-        false => numbering.unknowns_of(body),
-    }
 }
 
 impl<S: Scalar, const N: usize> Elimination<S, N> {

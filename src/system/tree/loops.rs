@@ -16,8 +16,8 @@
 //! over the links that both reach. That matrix is positive definite where the rows are independent; it is
 //! stored by envelope, so that a row of loops that only touch their neighbours costs as much as each.
 
+use super::blocks::{Factors, reduced, size, unknowns};
 use super::dense::{axpy, block, dot, solve};
-use super::elimination::{Factors, size, unknowns};
 use super::envelope::{Envelope, product};
 use super::links::Link;
 use crate::linalg::SingularMatrix;
@@ -26,7 +26,6 @@ use crate::model::Model;
 use crate::system::constraint::RowGradient;
 use crate::system::left_out::LeftOut;
 use crate::system::numbering::Numbering;
-use crate::system::reduce::reduced;
 use std::ops::Range;
 
 /// Most blocks of work of the loops for each link: where loops reach far and overlap, fill in the

@@ -20,6 +20,7 @@
 //! three, the blocks are of order three. The rows of the joints that are not in the forest are
 //! eliminated after it (`loops`).
 
+mod blocks;
 mod dense;
 mod elimination;
 mod envelope;

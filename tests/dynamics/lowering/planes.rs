@@ -69,7 +69,7 @@ fn an_axle_tilted_by_a_nanoradian_keeps_the_scene_spatial() {
             .model
             .bodies
             .iter()
-            .all(|body| body.mobility == Mobility::Spatial)
+            .all(|body| body.mobility == Mobility::spatial())
     );
 }
 

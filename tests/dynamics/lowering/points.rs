@@ -41,7 +41,7 @@ fn a_ball_held_at_its_centre_is_a_point() {
     let turn = json!({"final": {"rotation": {"body": "ball", "axis": [0, 0, 1]}}});
     let point = |problem: &Problem| {
         let scene = problem.scene::<f64>(&problem.start());
-        scene.model.bodies[2].mobility == Mobility::Point
+        scene.model.bodies[2].mobility == Mobility::point()
     };
     let problem = parse(&ball_on_a_double_pendulum(json!([0, 0, 0]), height.clone()));
     assert!(!is_planar(&problem) && point(&problem));
