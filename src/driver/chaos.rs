@@ -13,7 +13,7 @@ use crate::integrate::{Samples, Settings, Spacing, Trajectory, simulate};
 use crate::math::scalar::COMPLEX_STEP;
 use crate::math::{Complex64, Scalar};
 use crate::problem::Problem;
-use crate::system::assembly::length_scale;
+use crate::system::placement::length_scale;
 
 /// Least relative error of a step, by round-off.
 const ROUND_OFF: f64 = 1e-14;

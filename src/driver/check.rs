@@ -8,7 +8,7 @@ use crate::integrate::{IntegrationFailure, Settings, Trajectory, simulate};
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
 use crate::problem::Problem;
-use crate::system::assembly::length_scale;
+use crate::system::placement::length_scale;
 use rayon::prelude::*;
 
 /// A derivative below this part of its terms has lost digits by cancellation.

@@ -8,7 +8,7 @@ use crate::model::{Mobility, Model};
 use crate::problem::Problem;
 use crate::report::{Explanation, FunctionUse, IntegrationUse, SystemSize};
 use crate::system::accelerations::{Accelerations, Untreelike};
-use crate::system::{Numbering, initial};
+use crate::system::{Numbering, placement};
 
 /// The motion of a problem's start, or a stretch of it.
 struct Motion {
@@ -123,7 +123,7 @@ pub fn explain(problem: &Problem) -> Explanation {
     found.left_out.insert(0, line);
     (found.bodies, found.joints) = (model.bodies.len(), model.joints.len());
     found.loads = model.loads.len();
-    found.written = size(model, initial::guess(model));
+    found.written = size(model, placement::guess(model));
     let mut known = found.functions.into_iter();
     let use_of = |(f, name): (usize, &String)| match seen.functions.binary_search(&f) {
         Ok(_) => known.next(),
@@ -179,7 +179,7 @@ fn explain_seen(problem: &Problem) -> Explanation {
         [of(&whole), of(&motion.at.run)]
     });
     let [of_written, of_lowered] =
-        start.unwrap_or_else(|| [initial::guess(&written), initial::guess(&scene.model)]);
+        start.unwrap_or_else(|| [placement::guess(&written), placement::guess(&scene.model)]);
     Explanation {
         name: problem.name.clone(),
         bodies: written.bodies.len(),

@@ -4,9 +4,9 @@
 use crate::math::{Vec3, rotation};
 use crate::model::{Model, RigidBody};
 use crate::problem::Problem;
-use crate::system::assembly::length_scale;
 use crate::system::initial::{self, InitialState};
 use crate::system::kkt::SaddlePoint;
+use crate::system::placement::{guess, length_scale};
 use crate::system::{Motion, Numbering, joints, redundancy};
 
 /// Change of a position or velocity, relative to the largest one, that is told.
@@ -115,7 +115,7 @@ fn freedoms(model: &Model<f64>) -> usize {
 
 /// Whether the joints are closed, and admit the velocities, as the bodies are placed.
 fn consistent(model: &Model<f64>, numbering: &Numbering) -> bool {
-    let (q, v) = initial::guess(model);
+    let (q, v) = guess(model);
     let mut motions = Vec::new();
     Motion::all(numbering, &q, &v, &mut motions);
     let mut rows = vec![0.0; numbering.constraints()];

@@ -6,7 +6,7 @@ use super::{Function, Instant, Reduction};
 use crate::integrate::Trajectory;
 use crate::math::Scalar;
 use crate::model::Model;
-use crate::system::assembly::AssemblyFailure;
+use crate::system::failure::AssemblyFailure;
 
 /// Model, duration and functions of interest at one design.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! How a simulation can fail.
 
-use crate::system::assembly::AssemblyFailure;
+use crate::system::failure::AssemblyFailure;
 
 /// Why a simulation did not reach its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

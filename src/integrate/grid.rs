@@ -1,6 +1,6 @@
 //! Where steps end and where the motion is sampled, in fractions of the duration.
 
-use super::quadrature::Step;
+use super::quadrature::{Step, is_same};
 use crate::system::LeftOut;
 
 /// Ends of the steps as fractions τ_0 = 0 < τ_1 < … < τ_N of the duration T, so that t_k = τ_k T
@@ -17,9 +17,6 @@ pub struct Grid {
     /// Constraint rows that are left out from a step on.
     left_out: Vec<(usize, LeftOut)>,
 }
-
-/// Distance of fractions below which they are the same instant: some round-off of a fraction.
-const SAME: f64 = 1e-15;
 
 impl Grid {
     /// `steps` steps of equal size.
@@ -211,7 +208,7 @@ impl Place {
 /// Where the fraction `at` in (τ_{k−1}, τ_k] stands in step k of the grid.
 pub fn place(grid: &Grid, k: usize, at: f64) -> Place {
     let (start, end) = (grid.ends[k - 1], grid.ends[k]);
-    if (end - at).abs() <= SAME {
+    if is_same(end, at) {
         Place::Node(k)
     } else {
         Place::Inside {
@@ -219,14 +216,4 @@ pub fn place(grid: &Grid, k: usize, at: f64) -> Place {
             theta: (at - start) / (end - start),
         }
     }
-}
-
-/// Whether two fractions are the same instant.
-pub fn is_same(a: f64, b: f64) -> bool {
-    (a - b).abs() <= SAME
-}
-
-/// Whether the fraction `at` belongs to a step that ends at `end`.
-pub fn within(at: f64, end: f64) -> bool {
-    at <= end + SAME
 }

@@ -18,14 +18,17 @@ pub mod settings;
 mod singular;
 mod stops;
 pub mod trajectory;
+pub mod work;
 
 pub use choice::{Chosen, simulate_by};
 pub use failure::IntegrationFailure;
 pub use grid::Grid;
 pub use limits::{Limits, Progress};
 pub use multipliers::Multipliers;
-pub use settings::{MEMORY, Method, Samples, Settings, Spacing, Start};
-pub use trajectory::{Tape, Trajectory, WorkCounts};
+pub use quadrature::Samples;
+pub use settings::{MEMORY, Method, Settings, Spacing, Start};
+pub use trajectory::{Tape, Trajectory};
+pub use work::WorkCounts;
 
 use crate::linalg::SolveScalar;
 use crate::model::Model;

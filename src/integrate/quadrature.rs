@@ -5,8 +5,6 @@
 //! of degree 9. Fractions of a step move with it, and so sums stay smooth in the design. Samples at equal
 //! intervals have the weights of Gregory's rule of order 6, others those of the trapezoidal rule.
 
-use super::settings::Samples;
-
 /// Nodes of a cell as fractions of it.
 pub const NODES: [f64; 7] = [
     0.0,
@@ -50,6 +48,23 @@ const GREGORY: [f64; 5] = [
 ];
 /// Part of an interval by which instants may be off and still be equally spaced.
 const EQUAL: f64 = 1e-6;
+
+/// Distance of fractions below which they are the same instant: some round-off of a fraction.
+const SAME: f64 = 1e-15;
+
+/// At which instants the motion is known after the run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Samples {
+    /// The ends of the steps.
+    StepEnds,
+    /// This many intervals of equal size; between the ends of steps by the method's own
+    /// polynomial. Formulas of one stage are sampled at the ends of their steps whatever is asked
+    /// for.
+    Uniform(usize),
+    /// The nodes of sums over the motion in the [`cells`](super::Grid::cells) of each step and, to be shown,
+    /// the ends of this many intervals of equal size, if any.
+    Quadrature(usize),
+}
 
 /// Weights of samples at these fractions, which add up to one.
 pub fn weights(instants: &[f64]) -> Vec<f64> {
@@ -132,13 +147,12 @@ pub struct Due {
 /// Whether `samples` asks for an instant inside a step of so many `cells` that ends at `end`, where `next`
 /// counts the equal intervals that were taken.
 pub(super) fn looks_inside(samples: Samples, next: usize, (end, cells): (f64, usize)) -> bool {
-    let before = |count: usize| {
-        count > 0 && next <= count && !super::grid::within(end, next as f64 / count as f64)
-    };
+    let before =
+        |count: usize| count > 0 && next <= count && !within(end, next as f64 / count as f64);
     match samples {
-        Samples::StepEnds => !super::grid::within(end, 1.0),
+        Samples::StepEnds => !within(end, 1.0),
         Samples::Uniform(count) => before(count),
-        Samples::Quadrature(count) => cells > 0 || before(count) || !super::grid::within(end, 1.0),
+        Samples::Quadrature(count) => cells > 0 || before(count) || !within(end, 1.0),
     }
 }
 
@@ -159,7 +173,7 @@ pub(super) fn due(
     std::iter::from_fn(move || {
         let shown = (*next <= equal && equal > 0)
             .then(|| *next as f64 / equal as f64)
-            .filter(|&at| super::grid::within(at, step.end));
+            .filter(|&at| within(at, step.end));
         let summed = (node <= nodes).then(|| match weighed {
             true => step.node(node),
             false => (step.end, 0.0),
@@ -168,9 +182,7 @@ pub(super) fn due(
             (None, None) => return None,
             (Some((at, weight)), None) => (at, weight, !weighed),
             (None, Some(at)) => (at, 0.0, true),
-            (Some((at, weight)), Some(shown)) if super::grid::is_same(at, shown) => {
-                (at, weight, true)
-            }
+            (Some((at, weight)), Some(shown)) if is_same(at, shown) => (at, weight, true),
             (Some((at, weight)), Some(shown)) if at < shown => (at, weight, false),
             (Some(_), Some(shown)) => {
                 *next += 1;
@@ -189,6 +201,16 @@ pub(super) fn due(
             shown: is_shown,
         })
     })
+}
+
+/// Whether two fractions are the same instant.
+pub fn is_same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME
+}
+
+/// Whether the fraction `at` belongs to a step that ends at `end`.
+pub fn within(at: f64, end: f64) -> bool {
+    at <= end + SAME
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! Records of vectors, one after the other in one piece of memory.
 
-use super::trajectory::real;
 use crate::math::Complex64;
 
 /// Records of N vectors, whose lengths are the same in all records.
@@ -82,4 +81,9 @@ impl<const N: usize> Rows<Complex64, N> {
             count: self.count,
         }
     }
+}
+
+/// Real parts.
+pub(super) fn real(all: &[Complex64]) -> Vec<f64> {
+    all.iter().map(|x| x.re).collect()
 }

@@ -3,7 +3,7 @@
 use crate::math::Scalar;
 use crate::model::Model;
 use crate::system::initial::InitialState;
-use crate::system::{Numbering, assembly};
+use crate::system::{Numbering, placement};
 
 /// Lengths and speeds of a scene that errors are relative to.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +23,7 @@ impl Scale {
         start: &InitialState<S>,
         duration: f64,
     ) -> Self {
-        let length = assembly::length_scale(model);
+        let length = placement::length_scale(model);
         let gravity = largest(model.gravity.as_slice());
         let fall = (gravity * length).sqrt();
         let [speed, spin] = fastest(numbering, &start.v);

@@ -2,7 +2,7 @@
 
 use super::grid::Grid;
 use super::limits::Limits;
-use super::quadrature::ADDED;
+use super::quadrature::{ADDED, Samples};
 use crate::system::LeftOut;
 
 /// The integration method.
@@ -119,20 +119,6 @@ impl Spacing {
             Spacing::Frozen(_) | Spacing::Steps(_) | Spacing::Tolerance(_) => &[],
         }
     }
-}
-
-/// At which instants the motion is known after the run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Samples {
-    /// The ends of the steps.
-    StepEnds,
-    /// This many intervals of equal size; between the ends of steps by the method's own
-    /// polynomial. Formulas of one stage are sampled at the ends of their steps whatever is asked
-    /// for.
-    Uniform(usize),
-    /// The nodes of sums over the motion in the [`cells`](Grid::cells) of each step and, to be shown,
-    /// the ends of this many intervals of equal size, if any.
-    Quadrature(usize),
 }
 
 /// Memory for gradients where nothing else is said (bytes).

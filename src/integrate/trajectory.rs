@@ -1,53 +1,16 @@
 //! What a run leaves behind.
 
 use super::grid::{Grid, Place};
+use super::quadrature::Samples;
 use super::quadrature::{Due, Step};
+use super::rows::real;
 use super::schedule::Schedule;
-use super::settings::{Method, Samples, Spacing};
+use super::settings::{Method, Spacing};
+use super::work::WorkCounts;
 use super::{explicit, implicit};
 use crate::math::{Complex64, Scalar};
 use crate::system::Numbering;
 use crate::system::initial::InitialState;
-
-/// Work of a run, in counts that do not depend on the machine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct WorkCounts {
-    /// Time steps.
-    pub steps: usize,
-    /// Steps of the motion that a gradient made again, because memory did not suffice to keep them.
-    pub recomputed: usize,
-    /// Steps that were tried and given up for smaller ones.
-    pub rejected: usize,
-    /// Evaluations of the accelerations by an explicit method.
-    pub evaluations: usize,
-    /// Newton iterations.
-    pub newton_iterations: usize,
-    /// Matrices assembled and factorised.
-    pub factorisations: usize,
-    /// Linear systems solved.
-    pub solves: usize,
-}
-
-impl WorkCounts {
-    /// Work of a march by Radau IIA with three stages, in evaluations of the accelerations: a
-    /// factorisation costs about four, an iteration of Newton's method two and a half. Measured on
-    /// scenes of one to five bodies; they agree to a quarter.
-    pub fn implicit_work(&self) -> f64 {
-        4.0 * self.factorisations as f64 + 2.5 * self.newton_iterations as f64
-    }
-}
-
-impl std::ops::AddAssign for WorkCounts {
-    fn add_assign(&mut self, other: Self) {
-        self.steps += other.steps;
-        self.recomputed += other.recomputed;
-        self.rejected += other.rejected;
-        self.evaluations += other.evaluations;
-        self.newton_iterations += other.newton_iterations;
-        self.factorisations += other.factorisations;
-        self.solves += other.solves;
-    }
-}
 
 /// The motion at the sampled instants, and what the adjoint needs of the steps.
 #[derive(Clone, Debug)]
@@ -269,11 +232,6 @@ impl Trajectory<Complex64> {
             counts: self.counts,
         }
     }
-}
-
-/// Real parts.
-pub(super) fn real(all: &[Complex64]) -> Vec<f64> {
-    all.iter().map(|x| x.re).collect()
 }
 
 fn row<S>(all: &[S], width: usize, k: usize) -> &[S] {

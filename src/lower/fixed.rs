@@ -5,8 +5,8 @@ use super::Kept;
 use super::examine::{Designs, Examiner, Verdict};
 use crate::math::Scalar;
 use crate::model::{Joint, JointKind, Mobility, Model};
-use crate::system::assembly::length_scale;
-use crate::system::{Motion, Numbering, constraint, initial, side};
+use crate::system::placement::{guess, length_scale};
+use crate::system::{Motion, Numbering, constraint, side};
 
 /// Bodies that nothing can move.
 #[derive(Clone, Debug, Default)]
@@ -108,7 +108,7 @@ impl Fixed {
             return Ok(());
         }
         let length = length_scale(model);
-        let (q, v) = initial::guess(model);
+        let (q, v) = guess(model);
         let mut motions = Vec::new();
         Motion::all_normalised(&Numbering::new(model), &q, &v, &mut motions);
         let ground = Motion::ground();

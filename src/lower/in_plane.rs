@@ -2,30 +2,11 @@
 
 use super::examine::{Examiner, Verdict};
 use super::fixed::is_void;
-use super::planar::{Plane, Turned, used};
+use super::planar::{Plane, Turned, points, used};
 use super::reach::{Reach, largest};
 use crate::math::scalar::{along, lift3};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, Freedom, LoadKind, Model};
-
-/// Points of a load on its bodies.
-pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, Vec3<S>)>; 2] {
-    match kind {
-        LoadKind::Force { body, point, .. } => [Some((Some(*body), *point)), None],
-        LoadKind::Spring {
-            body_a,
-            body_b,
-            point_a,
-            point_b,
-            ..
-        } => [Some((Some(*body_a), *point_a)), Some((*body_b, *point_b))],
-        LoadKind::Torque { .. }
-        | LoadKind::TorsionSpring { .. }
-        | LoadKind::Damping { .. }
-        | LoadKind::BallDamping { .. }
-        | LoadKind::Friction { .. } => [None, None],
-    }
-}
 
 /// The largest angular velocity of a body, or velocity over its reach (rad/s), or what a `change` of the
 /// variable makes of it: a body that hardly moves has round-off of those that do.

@@ -19,13 +19,12 @@
 use super::Kept;
 use super::examine::{Designs, Obstacle};
 use super::fixed::is_void;
-use super::in_plane::points;
 use super::normal::{candidates, clean};
 use super::tilt;
 use crate::math::scalar::lift3;
 use crate::math::{Mat3, Scalar, Vec3, rotation};
 use crate::model::{ConstraintRow, Joint, JointFrame, JointKind};
-use crate::model::{Mobility, Model, RigidBody};
+use crate::model::{LoadKind, Mobility, Model, RigidBody};
 use crate::system::redundancy;
 use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
@@ -288,6 +287,25 @@ fn turn_to(joint: &Joint<f64>, normal: &Vec3<f64>) -> Option<Mat3<f64>> {
         second.transpose(),
         third.transpose(),
     ]))
+}
+
+/// Points of a load on its bodies.
+pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, Vec3<S>)>; 2] {
+    match kind {
+        LoadKind::Force { body, point, .. } => [Some((Some(*body), *point)), None],
+        LoadKind::Spring {
+            body_a,
+            body_b,
+            point_a,
+            point_b,
+            ..
+        } => [Some((Some(*body_a), *point_a)), Some((*body_b, *point_b))],
+        LoadKind::Torque { .. }
+        | LoadKind::TorsionSpring { .. }
+        | LoadKind::Damping { .. }
+        | LoadKind::BallDamping { .. }
+        | LoadKind::Friction { .. } => [None, None],
+    }
 }
 
 /// A vector for messages.

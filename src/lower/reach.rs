@@ -2,7 +2,7 @@
 
 use crate::math::{Scalar, Vec3};
 use crate::model::Model;
-use crate::system::assembly::length_scale;
+use crate::system::placement::length_scale;
 
 /// Lengths beside which a distance is round-off.
 pub(super) struct Reach {

@@ -11,7 +11,7 @@ use crate::integrate::explicit;
 use crate::integrate::{Tape, Trajectory};
 use crate::math::Scalar;
 use crate::model::{Load, LoadKind, Model};
-use crate::system::{Numbering, initial};
+use crate::system::{Numbering, placement};
 
 /// What is kept of a scene, by index, ascending.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -111,7 +111,7 @@ impl Seen {
     /// The motion of all bodies of the model `written` where those that are left out rest.
     pub fn at_rest(&self, written: &Model<f64>, run: &Trajectory<f64>) -> Trajectory<f64> {
         let numbering = Numbering::new(written);
-        let (placed, _) = initial::guess(written);
+        let (placed, _) = placement::guess(written);
         let (mut q, mut v, mut a) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..=run.last() {
             let (at_q, at_v) = (q.len(), v.len());

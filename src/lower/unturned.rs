@@ -8,7 +8,7 @@ use super::examine::{Designs, Examiner, Verdict};
 use super::fixed::{Fixed, is_void};
 use crate::math::Scalar;
 use crate::model::{ConstraintRow, Freedom, Joint, Model};
-use crate::system::{Motion, Numbering, constraint, initial, side};
+use crate::system::{Motion, Numbering, constraint, placement, side};
 
 /// Bodies that cannot turn, though they move.
 #[derive(Clone, Debug, Default)]
@@ -110,7 +110,7 @@ impl Unturned {
         if self.is_empty() {
             return Ok(());
         }
-        let (q, v) = initial::guess(model);
+        let (q, v) = placement::guess(model);
         let mut motions = Vec::new();
         Motion::all_normalised(&Numbering::new(model), &q, &v, &mut motions);
         let ground = Motion::ground();

@@ -12,7 +12,7 @@ use crate::functions::Scene;
 use crate::integrate::Trajectory;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Joint, JointKind, LoadKind, Model, MotionCourse};
-use crate::system::{Motion, Numbering, constraint, initial, side};
+use crate::system::{Motion, Numbering, constraint, placement, side};
 
 /// Bodies that are merged.
 #[derive(Clone, Debug, Default)]
@@ -224,7 +224,7 @@ fn closed<S: Scalar>(scene: &Scene<S>, joints: &[usize], change: f64) -> Verdict
     let model = &scene.model;
     let duration = scene.duration.re().abs();
     let mut examiner = Examiner::new(change);
-    let (q, v) = initial::guess(model);
+    let (q, v) = placement::guess(model);
     let mut motions = Vec::new();
     Motion::all_normalised(&Numbering::new(model), &q, &v, &mut motions);
     let ground = Motion::ground();

@@ -313,6 +313,11 @@ pub fn length<S: Scalar>(a: &Vec3<S>) -> S {
     a.dot(a).sqrt()
 }
 
+/// The unit vector along `a`.
+pub fn unit<S: Scalar>(a: Vec3<S>) -> Vec3<S> {
+    a * (S::one() / length(&a))
+}
+
 /// A constant vector in the scalar `S`.
 pub fn lift3<S: Scalar>(a: &Vec3<f64>) -> Vec3<S> {
     a.map(S::from)

@@ -17,11 +17,19 @@
 //! table        interpolation between (t_i, m_i), see [`super::table`]; held beyond the ends
 //! ```
 
-use super::joint::Freedom;
 use super::table::{Interpolation, Place, around, by_points, interval, motion, polynomial};
 use crate::math::Scalar;
 use crate::math::scalar::Dual;
 use std::f64::consts::TAU;
+
+/// A motion that a joint allows along or about its axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Freedom {
+    /// Turning about the axis: the rate is φ̇ = e · (ω_A − ω_B).
+    Turn,
+    /// Sliding along the axis: the rate is that of e · (P_A − P_B).
+    Slide,
+}
 
 /// The prescribed motion of a joint along or about its axis.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,17 +14,8 @@
 //! A drive prescribes what a joint would leave free by one more row, see [`super::drive`]. The
 //! equations, Jacobians and pull-backs of the rows are in `system::constraint`.
 
-use super::drive::Drive;
+use super::drive::{Drive, Freedom};
 use crate::math::{Scalar, Vec3};
-
-/// A motion that a joint allows along or about its axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Freedom {
-    /// Turning about the axis: the rate is φ̇ = e · (ω_A − ω_B).
-    Turn,
-    /// Sliding along the axis: the rate is that of e · (P_A − P_B).
-    Slide,
-}
 
 impl Freedom {
     /// The row that holds this motion where a drive has it.

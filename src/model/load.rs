@@ -18,7 +18,7 @@
 //! derivatives are in `system::loads`.
 
 use super::course::Course;
-use super::joint::Freedom;
+use super::drive::Freedom;
 use crate::math::{Scalar, Vec3};
 
 /// A named load.

@@ -14,8 +14,8 @@ pub mod rigid_body;
 pub mod table;
 
 pub use course::Course;
-pub use drive::{Drive, MotionCourse};
-pub use joint::{ConstraintRow, Freedom, Joint, JointFrame, JointKind};
+pub use drive::{Drive, Freedom, MotionCourse};
+pub use joint::{ConstraintRow, Joint, JointFrame, JointKind};
 pub use load::{Axes, Load, LoadKind};
 pub use mobility::Mobility;
 pub use rigid_body::RigidBody;

@@ -3,11 +3,11 @@
 use nalgebra::DVector;
 
 use super::nlp::Nlp;
-use super::outcome::{Counts, Kkt, Outcome, Scaling, Status};
+use super::outcome::{Counts, Kkt, Outcome, Status};
 use super::program::{Point, Program, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
 use super::scaling::Units;
-use super::state::SavedState;
+use super::state::{SavedState, Scaling};
 use super::trust_region::Ending;
 use super::verdict::{
     ScaledMultipliers, active, is_at_precision, is_solved_at_end, is_solved_in_user_units, kkt,

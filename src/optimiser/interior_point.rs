@@ -10,7 +10,8 @@ use super::line_search::{Accepted, LineSearch, infeasibility};
 use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
-use super::trust_region::{Ending, Goal, TrustRegion};
+use super::steering::{Goal, TrustRegion};
+use super::trust_region::Ending;
 use super::verdict::{ScaledMultipliers, Verdict, is_at_precision, judge};
 
 /// Multipliers of bounds stay within this factor of μ/distance.

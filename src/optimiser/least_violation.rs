@@ -2,9 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::elastic_qp::{ElasticQp, Hessian, QpData};
+use super::elastic_qp::ElasticQp;
 use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
+use super::qp::{Hessian, QpData};
 use super::quasi_newton::Spectrum;
 
 /// Largest number of steps.

@@ -16,6 +16,7 @@ mod observer;
 mod options;
 mod outcome;
 mod program;
+mod qp;
 mod quasi_newton;
 mod refined_qp;
 mod renewal;
@@ -32,9 +33,7 @@ mod well_posed;
 pub use nlp::{Evaluation, EvaluationFailure, Gradients, Nlp};
 pub use observer::{Observer, Phase, Row, Silent};
 pub use options::{Barrier, Method, Options};
-pub use outcome::{
-    ActiveBound, Counts, FailedDesign, Kkt, Multipliers, Outcome, Scaling, Side, Status,
-};
+pub use outcome::{ActiveBound, Counts, FailedDesign, Kkt, Outcome, Side, Status};
 pub use quasi_newton::QuasiNewton;
 pub use solve::{resume, solve};
-pub use state::SavedState;
+pub use state::{Multipliers, SavedState, Scaling};

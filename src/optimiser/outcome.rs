@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::state::SavedState;
+use super::state::{Multipliers, SavedState, Scaling};
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,22 +46,6 @@ pub enum Status {
     TimeLimit,
     /// The observer asked to stop.
     Interrupted,
-}
-
-/// Lagrange multipliers in the units of the user.
-///
-/// They satisfy ∇f + (∂c/∂x)ᵀ y − z_L + z_U = 0 with z_L, z_U ≥ 0. Hence moving the active bound
-/// of constraint j up by one unit changes the least objective by −y_j, moving an active lower
-/// bound of variable i by z_Li, and moving an active upper one by −z_Ui.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Multipliers {
-    /// y, one per constraint row: positive where the upper bound is active, negative where the
-    /// lower one is.
-    pub constraints: Vec<f64>,
-    /// z_L, one per variable.
-    pub lower_bounds: Vec<f64>,
-    /// z_U, one per variable.
-    pub upper_bounds: Vec<f64>,
 }
 
 /// Residuals of the Karush–Kuhn–Tucker conditions.
@@ -135,30 +119,6 @@ pub enum Side {
     Upper,
     /// Both bounds coincide.
     Equal,
-}
-
-/// Scale factors, those of the constraints as chosen at the start, and suspicious derivatives
-/// there.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Scaling {
-    /// Factor of the objective.
-    pub objective: f64,
-    /// Factor of each constraint row.
-    pub constraints: Vec<f64>,
-    /// Length of one scaled unit of each variable, in the units of the user.
-    pub variables: Vec<f64>,
-    /// Norm ‖∇f‖∞ at the start, in the units of the user.
-    pub objective_gradient: f64,
-    /// Typical ‖∇f‖∞ of the run, in the units of the user: the third largest of the first dozen of
-    /// points, or the median of all if that is larger.
-    #[serde(default)]
-    pub typical_gradient: f64,
-    /// Norm ‖∇c_j‖∞ of each row at the start, in the units of the user.
-    pub constraint_gradients: Vec<f64>,
-    /// Constraints whose gradient is zero at the start, by name.
-    pub zero_rows: Vec<String>,
-    /// Variables on which neither objective nor constraints depend at the start, by name.
-    pub zero_columns: Vec<String>,
 }
 
 /// What a run found.

@@ -11,8 +11,8 @@ use super::nlp::{
 };
 use super::observer::{Observer, Phase, Row};
 use super::options::Options;
-use super::outcome::{Counts, FailedDesign, Scaling, Status};
-use super::scaling::drop_rounding;
+use super::outcome::{Counts, FailedDesign, Status};
+use super::state::Scaling;
 
 /// Largest number of recorded designs with a failed evaluation.
 const FAILED_DESIGNS_KEPT: usize = 100;
@@ -448,5 +448,16 @@ impl<'a> Program<'a> {
         }
         self.counts.iterations += 1;
         Ok(())
+    }
+}
+
+/// Sets derivatives to zero that are rounding errors. Over the `reach` of its variable such a
+/// derivative changes the function by less than the rounding of its largest change.
+fn drop_rounding(slopes: &mut DVector<f64>, reach: &DVector<f64>) {
+    let largest = slopes.component_mul(reach).amax();
+    for (slope, reach) in slopes.iter_mut().zip(reach.iter()) {
+        if slope.abs() * reach <= f64::EPSILON * largest {
+            *slope = 0.0;
+        }
     }
 }

@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::elastic_qp::{Hessian, QpData, QpStep};
+use super::qp::{Hessian, QpData, QpStep};
 
 /// Distance from a bound of the box, relative to its size, at which a step counts as on it.
 const ON_BOX: f64 = 1e-7;

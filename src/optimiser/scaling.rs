@@ -4,8 +4,8 @@ use std::ops::RangeInclusive;
 
 use nalgebra::DVector;
 
-use super::outcome::Scaling;
 use super::program::{Point, Program, Slopes, Trouble};
+use super::state::Scaling;
 
 /// An objective whose gradient at the start is below `FLAT` is multiplied until the gradient is
 /// `LIFTED`. Otherwise a start on a plateau would pass for a solution.
@@ -224,14 +224,3 @@ impl Program<'_> {
 
 /// Unit of a vanishing objective, as a part of the typical gradient times one unit.
 const UNIT_OF_OBJECTIVE: f64 = 0.01;
-
-/// Sets derivatives to zero that are rounding errors. Over the `reach` of its variable such a
-/// derivative changes the function by less than the rounding of its largest change.
-pub(super) fn drop_rounding(slopes: &mut DVector<f64>, reach: &DVector<f64>) {
-    let largest = slopes.component_mul(reach).amax();
-    for (slope, reach) in slopes.iter_mut().zip(reach.iter()) {
-        if slope.abs() * reach <= f64::EPSILON * largest {
-            *slope = 0.0;
-        }
-    }
-}

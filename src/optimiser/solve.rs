@@ -16,7 +16,8 @@ use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::renewal::renewed;
 use super::start::{Around, first_point, look_around};
 use super::state::SavedState;
-use super::trust_region::{Ending, Goal, TrustRegion};
+use super::steering::{Goal, TrustRegion};
+use super::trust_region::Ending;
 use super::verdict::{ScaledMultipliers, is_solved_at_end, scaled_multipliers, scaled_residual};
 use super::well_posed;
 

@@ -5,7 +5,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
 use nalgebra::DVector;
 
-use super::elastic_qp::settings;
+use super::qp::settings;
 use super::quasi_newton::Spectrum;
 
 /// Eigenvalues this close to σ, relatively, count as σ.

@@ -3,13 +3,39 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::elastic_qp::{Hessian, QpData, QpStep};
-use super::program::Program;
-use super::quasi_newton::Spectrum;
-use super::trust_region::{Goal, IRREDUCIBLE, TrustRegion};
+use super::elastic_qp::ElasticQp;
+use super::program::{Point, Program, Slopes};
+use super::qp::{Hessian, QpData, QpStep};
+use super::quasi_newton::{QuasiNewton, Spectrum};
 
 /// Share of the best possible reduction of the linearised violation that a step must reach.
 const STEERING: f64 = 0.1;
+
+/// Share of the violation that the linearisation may still remove at a point called infeasible before all
+/// steps are exhausted.
+pub(super) const IRREDUCIBLE: f64 = 1e-8;
+
+/// What the iteration minimises.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Goal {
+    /// Objective and violation.
+    Optimum,
+    /// Violation alone. Steps keep the share 0.01 of every distance to a bound.
+    Feasibility,
+}
+
+/// State of the iteration.
+pub(super) struct TrustRegion {
+    pub point: Point,
+    pub slopes: Slopes,
+    /// Multipliers of the rows from the last subproblem.
+    pub y: DVector<f64>,
+    pub b: QuasiNewton,
+    pub radius: f64,
+    pub(super) goal: Goal,
+    pub(super) penalty: DVector<f64>,
+    pub(super) qp: ElasticQp,
+}
 
 /// Trial of one subproblem.
 pub(super) struct Model {

@@ -10,7 +10,7 @@ use super::elastic_qp::ElasticQp;
 use super::observer::Phase;
 use super::program::{Point, Program, Progress, Slopes, Trouble};
 use super::quasi_newton::QuasiNewton;
-use super::steering::Model;
+use super::steering::{Goal, IRREDUCIBLE, Model, TrustRegion};
 use super::verdict::{ScaledMultipliers, Verdict, judge, scaled_residual};
 
 /// Share of the predicted reduction for which a step is accepted.
@@ -27,21 +27,9 @@ const RENEWED_RADIUS: f64 = 0.1;
 /// Share of the violation that the linearisation may still remove at an infeasible point.
 const STATIONARY: f64 = 1e-4;
 
-/// The same at a point called infeasible before all steps are exhausted.
-pub(super) const IRREDUCIBLE: f64 = 1e-8;
-
 /// After this number of successive refused steps, gradients are evaluated at refused feasible
 /// points too. A matrix from few pairs refuses many steps before it knows a curved valley.
 const LEARN: usize = 1;
-
-/// What the iteration minimises.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Goal {
-    /// Objective and violation.
-    Optimum,
-    /// Violation alone. Steps keep the share 0.01 of every distance to a bound.
-    Feasibility,
-}
 
 /// How the iteration ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,19 +44,6 @@ pub(super) enum Ending {
     Stalled,
     /// The conditions hold in scaled units, but these do not suit the point.
     Misscaled,
-}
-
-/// State of the iteration.
-pub(super) struct TrustRegion {
-    pub point: Point,
-    pub slopes: Slopes,
-    /// Multipliers of the rows from the last subproblem.
-    pub y: DVector<f64>,
-    pub b: QuasiNewton,
-    pub radius: f64,
-    pub(super) goal: Goal,
-    pub(super) penalty: DVector<f64>,
-    pub(super) qp: ElasticQp,
 }
 
 impl TrustRegion {

@@ -2,9 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::outcome::{ActiveBound, Kkt, Multipliers, Side};
+use super::outcome::{ActiveBound, Kkt, Side};
 use super::program::{Point, Program, Slopes};
 use super::quasi_newton::QuasiNewton;
+use super::state::Multipliers;
 
 /// Multipliers of the scaled program: rows, then lower and upper bounds of the variables.
 #[derive(Clone, Debug)]

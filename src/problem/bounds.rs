@@ -1,6 +1,6 @@
 //! How large a problem file may be: what is larger is refused before memory is spent on it.
 
-use super::fault::{Finding, Part};
+use super::finding::{Finding, Part};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;

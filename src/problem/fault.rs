@@ -1,5 +1,6 @@
 //! Faults of a problem file: what is wrong, where, and what was meant.
 
+use super::finding::{Finding, Part};
 use super::overrides::Override;
 use super::source::Source;
 use super::text::{shortened, visible};
@@ -11,59 +12,6 @@ const EXCERPT: usize = 96;
 /// Longest words of a message, and longest key of a pointer, that are shown whole [characters].
 const LONGEST_WORDS: usize = 800;
 const LONGEST_KEY: usize = 60;
-
-/// Which part of the entry at a pointer is at fault.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Part {
-    /// The key.
-    Key,
-    /// The value.
-    Value,
-    /// These bytes of the file.
-    Bytes(Range<usize>),
-    /// The file as a whole.
-    File,
-}
-
-/// A fault before its place in the file is looked up.
-#[derive(Clone, Debug)]
-pub(super) struct Finding {
-    pub pointer: String,
-    pub part: Part,
-    pub found: String,
-    pub expected: String,
-    pub hint: Option<String>,
-}
-
-impl Finding {
-    /// A fault of the value at `pointer`.
-    pub fn new(
-        pointer: impl Into<String>,
-        found: impl Into<String>,
-        expected: impl Into<String>,
-    ) -> Self {
-        Self {
-            pointer: pointer.into(),
-            part: Part::Value,
-            found: found.into(),
-            expected: expected.into(),
-            hint: None,
-        }
-    }
-
-    /// The same fault, of the key.
-    pub fn of_key(self) -> Self {
-        Self {
-            part: Part::Key,
-            ..self
-        }
-    }
-
-    /// The same fault with advice.
-    pub fn hint(self, hint: Option<String>) -> Self {
-        Self { hint, ..self }
-    }
-}
 
 /// One fault of a problem file.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,13 +2,12 @@
 
 use super::placement::{Assembly, GROUND, split_location};
 use super::quantity::Quantity;
-use super::scene::unit;
 use super::schema::Document;
 use super::schema::drives::{Course as Written, Drive as WrittenDrive};
 use super::schema::joints::{Joint as WrittenJoint, JointPlace};
 use super::schema::loads::Interpolation;
 use super::schema::mechanics::Shape;
-use crate::math::scalar::length;
+use crate::math::scalar::{length, unit};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Drive, Freedom, Joint, JointFrame, JointKind, MotionCourse};
 

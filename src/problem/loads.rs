@@ -1,12 +1,12 @@
 //! From the loads of a file to those of a model.
 
 use super::placement::{Assembly, GROUND};
-use super::scene::unit;
 use super::schema::Document;
 use super::schema::joints::Joint;
 use super::schema::loads::{
     Axes as WrittenAxes, Course as Written, Interpolation, Load as WrittenLoad, Motion,
 };
+use crate::math::scalar::unit;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, Course, Freedom, Load, LoadKind};
 

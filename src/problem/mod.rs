@@ -9,6 +9,7 @@ mod bounds;
 mod check;
 mod drawing;
 mod fault;
+mod finding;
 mod focus;
 mod joints;
 mod loads;

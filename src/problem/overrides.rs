@@ -1,6 +1,6 @@
 //! One-off changes of a document: `--set PATH=VALUE`.
 
-use super::fault::Finding;
+use super::finding::Finding;
 use super::pointer::{advice, all, is_below, join, nearest, nearest_pointer};
 use serde_json::Value;
 use std::fmt;

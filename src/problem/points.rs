@@ -1,7 +1,7 @@
 //! What cannot be asked of point masses: to be held, pulled or turned beside their own place.
 
 use super::Problem;
-use super::fault::Finding;
+use super::finding::Finding;
 use super::joints::at;
 use super::placement::Assembly;
 use super::pointer::join;
@@ -9,7 +9,7 @@ use super::schema::joints::Joint;
 use super::schema::loads::Load;
 use super::schema::mechanics::Shape;
 use crate::math::Vec3;
-use crate::system::assembly::length_scale;
+use crate::system::placement::length_scale;
 
 /// Distance, relative to the length scale, up to which two places are the same.
 const SAME: f64 = 1e-9;

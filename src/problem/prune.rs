@@ -1,6 +1,6 @@
 //! A document without its structural faults, so that the rest of it can be judged as well.
 
-use super::fault::Finding;
+use super::finding::Finding;
 use super::pointer::{keys, nearest};
 use super::schema::VERSION;
 use serde_json::{Map, Value, json};

@@ -2,7 +2,8 @@
 
 use super::bounds;
 use super::check::check;
-use super::fault::{Faults, Finding, Part};
+use super::fault::Faults;
+use super::finding::{Finding, Part};
 use super::memory;
 use super::overrides::Override;
 use super::placement::{Assembly, placement_order};
@@ -21,8 +22,9 @@ use crate::lower::{self, Lowering};
 use crate::math::Dual;
 use crate::model::{Joint, JointKind, RigidBody};
 use crate::optimiser::Method;
-use crate::system::assembly::{AssemblyFailure, length_scale};
+use crate::system::failure::AssemblyFailure;
 use crate::system::kkt::SaddlePoint;
+use crate::system::placement::length_scale;
 use crate::system::{Numbering, initial, loads, redundancy};
 use serde_json::Value;
 use sha2::{Digest, Sha256};

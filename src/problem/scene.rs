@@ -6,16 +6,17 @@ use super::quantity::{Vector, vector};
 use super::schema::Document;
 use super::schema::functions::{self as written, CountedFrom, Function as Written};
 use super::schema::mechanics::{Body, Point, Shape};
+use super::start_rates;
 use super::starts::Starts;
 use crate::functions::{
     Bound, EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Rotation, Scene,
     Side, Until,
 };
 use crate::math::rotation::{compose, conjugate, matrix};
-use crate::math::scalar::{length, lift3};
+use crate::math::scalar::{lift3, unit};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Mobility, Model, RigidBody};
-use crate::system::assembly::AssemblyFailure;
+use crate::system::failure::AssemblyFailure;
 
 /// Gravity where the file gives none (m/s²).
 pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
@@ -56,11 +57,6 @@ pub fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<
             .collect(),
         unstarted,
     }
-}
-
-/// The unit vector along `a`.
-pub(super) fn unit<S: Scalar>(a: Vec3<S>) -> Vec3<S> {
-    a * (S::one() / length(&a))
 }
 
 /// A body at rest where it is placed.
@@ -110,7 +106,7 @@ fn start<S: Scalar>(
     let mut moved = model.clone();
     let found = starts.place(&mut moved).and_then(|()| {
         give(&mut moved);
-        starts.set_rates(&mut moved)
+        start_rates::set(&starts, &mut moved)
     });
     match found {
         Ok(()) => *model = moved,

@@ -18,8 +18,8 @@ use super::starts::{Asked, FREEDOMS, Hinge, Starts, hinge, put};
 use crate::math::rotation::matrix;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Model, RigidBody};
-use crate::system::assembly::AssemblyFailure;
 use crate::system::bodies::velocities_of;
+use crate::system::failure::AssemblyFailure;
 use crate::system::nearest::nearest;
 
 /// The velocity field of a rigid body.
@@ -74,6 +74,9 @@ impl<S: Scalar> Twist<S> {
 }
 
 /// Gives the bodies of `model` the velocities that the rates of joints make.
+///
+/// # Errors
+/// The joint that cannot start at the rate that it is given.
 pub(super) fn set<S: Scalar>(
     starts: &Starts<S>,
     model: &mut Model<S>,

@@ -18,12 +18,11 @@ use super::quantity::Quantity;
 use super::schema::Document;
 use super::schema::joints::{Ends, Joint as WrittenJoint, JointPlace};
 use super::schema::mechanics::Shape;
-use super::start_rates;
 use crate::math::rotation::{Quat, compose, conjugate, from_axis_angle, matrix};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::{Drive, Freedom, Joint, JointFrame, Mobility, Model, MotionCourse, RigidBody};
-use crate::system::assembly::AssemblyFailure;
 use crate::system::bodies::positions_of;
+use crate::system::failure::AssemblyFailure;
 use crate::system::nearest::nearest;
 use crate::system::redundancy;
 
@@ -287,13 +286,13 @@ impl<S: Scalar> Starts<S> {
         };
         let (moving, held) = part.bodies.split_at_mut(bodies.len());
         for held in held {
-            held.mobility = Mobility::Fixed;
+            held.mobility = Mobility::fixed();
             (held.velocity, held.angular_velocity) = (Vec3::zeros(), Vec3::zeros());
         }
         // Point masses do not turn.
         for body in moving {
             if body.inertia.iter().all(|x| x.re() == 0.0) {
-                body.mobility = Mobility::Point;
+                body.mobility = Mobility::point();
             }
         }
         part
@@ -347,14 +346,6 @@ impl<S: Scalar> Starts<S> {
             Some(joint) => Err(AssemblyFailure::Determined { joint }),
             None => Ok(()),
         }
-    }
-
-    /// Gives the bodies of `model` the velocities that the rates of joints make.
-    ///
-    /// # Errors
-    /// The joint that cannot start at the rate that it is given.
-    pub fn set_rates(&self, model: &mut Model<S>) -> Result<(), AssemblyFailure> {
-        start_rates::set(self, model)
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! It knows the part of JSON Schema that the schema of problem files uses, and no more.
 
-use super::fault::Finding;
+use super::finding::Finding;
 use super::pointer::{advice, join, nearest};
 use indexmap::IndexMap;
 use serde_json::{Map, Value};

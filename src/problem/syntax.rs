@@ -1,6 +1,6 @@
 //! Faults of JSON syntax, in words that help.
 
-use super::fault::{Finding, Part};
+use super::finding::{Finding, Part};
 
 /// The fault that keeps `text` from being JSON.
 pub(super) fn fault(text: &str, error: &serde_json::Error) -> Finding {

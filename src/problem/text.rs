@@ -1,7 +1,7 @@
 //! Names and other words of a user in messages: nothing in them moves a terminal's cursor, breaks a line,
 //! turns the direction of reading, or fills the screen.
 
-use super::fault::{Finding, Part};
+use super::finding::{Finding, Part};
 use super::pointer::join;
 use serde_json::Value;
 use std::borrow::Cow;

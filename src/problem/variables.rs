@@ -1,6 +1,6 @@
 //! Design variables: the numbers that they point at, their start and their bounds.
 
-use super::fault::Finding;
+use super::finding::Finding;
 use super::overrides::nearest_path;
 use super::pointer::{is_below, join, keys, nearest_pointer};
 use super::quantity::Quantity;

@@ -1,7 +1,7 @@
 //! Assembly of the stiffness of a structure, into slots that are recorded once.
 
 use super::beam::BEAM_NODES;
-use super::inertia::LumpedMass;
+use super::lumped_mass::LumpedMass;
 use super::mesh::{Mesh, UnknownSet};
 use super::shell::{ElementMatrix, Motion, NODES, ShellCotangent, Terms};
 use super::state::{Configuration, Cotangent, NodalMotion};

@@ -9,6 +9,7 @@ pub mod generate;
 pub mod gradient;
 pub mod inertia;
 pub mod loads;
+pub mod lumped_mass;
 pub mod material;
 pub mod mesh;
 pub mod modes;

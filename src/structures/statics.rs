@@ -11,9 +11,26 @@ use super::shell::Terms;
 use super::state::NodalMotion;
 use super::structure::Structure;
 use super::supports::{NodeUnknowns, Support};
-use super::von_karman::Critical;
 use crate::linalg::cholesky::{NotPositiveDefinite, SparseCholesky};
 use crate::math::Scalar;
+
+/// What softens where the load cannot be carried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Critical {
+    /// The load has a maximum.
+    LimitPoint,
+    /// Another path branches off.
+    Bifurcation,
+}
+
+impl std::fmt::Display for Critical {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::LimitPoint => "a limit point",
+            Self::Bifurcation => "a bifurcation",
+        })
+    }
+}
 
 /// Why there is no static solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

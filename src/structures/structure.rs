@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::beam::{Section, SectionValues};
-use super::inertia::LumpedMass;
+use super::lumped_mass::LumpedMass;
 use super::material::Material;
 use super::mesh::Mesh;
 use super::quality::{MeshFault, faults, orientation_faults};

@@ -8,7 +8,7 @@
 
 use super::loads::Load;
 use super::shell::Terms;
-use super::statics::{StaticFailure, StaticProblem, most_moved};
+use super::statics::{Critical, StaticFailure, StaticProblem, most_moved};
 use super::structure::Structure;
 use crate::linalg::cholesky::NotPositiveDefinite;
 use crate::math::Scalar;
@@ -57,24 +57,6 @@ pub struct Equilibrium {
     pub x: Vec<f64>,
     /// What it took.
     pub work: LoadWork,
-}
-
-/// What softens where the load cannot be carried.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Critical {
-    /// The load has a maximum.
-    LimitPoint,
-    /// Another path branches off.
-    Bifurcation,
-}
-
-impl std::fmt::Display for Critical {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::LimitPoint => "a limit point",
-            Self::Bifurcation => "a bifurcation",
-        })
-    }
 }
 
 /// φ·f beside |φ| |f|, in the norms of the diagonal, from which on a critical point is a limit point.

@@ -9,9 +9,11 @@
 //! It does not depend on units, and bodies that are welded count as one would.
 
 use super::bodies::{self, Motion, positions_of};
+use super::failure::AssemblyFailure;
 use super::joints;
 use super::kkt::{BodyBlocks, SaddlePoint};
 use super::numbering::Numbering;
+use super::placement::length_scale;
 use super::redundancy;
 use super::side::sides;
 use crate::linalg::SolveScalar;
@@ -28,88 +30,6 @@ const FOLLOWS: f64 = 1e-9;
 
 /// Gap relative to the length scale up to which a singular start is put down to its constraints.
 const NEARLY_CLOSED: f64 = 0.05;
-
-/// Why a model has no consistent initial conditions.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum AssemblyFailure {
-    /// The joints cannot be closed near the given placement.
-    #[error(
-        "joint \"{joint}\" cannot be assembled: its {row} stays open by {gap:.3e} at iteration \
-         {iterations}"
-    )]
-    Open {
-        /// Joint with the largest gap.
-        joint: String,
-        /// Which of its conditions.
-        row: String,
-        /// The gap (m or 1).
-        gap: f64,
-        /// Iterations spent.
-        iterations: usize,
-    },
-    /// The joint's axes meet only after half a turn.
-    #[error("joint \"{joint}\" was assembled with its axes turned by 180 degrees")]
-    Turned {
-        /// The joint.
-        joint: String,
-    },
-    /// The start of a joint is not free to be chosen.
-    #[error(
-        "the start of joint \"{joint}\" cannot be chosen: the other joints, their starts and drives \
-         determine it"
-    )]
-    Determined {
-        /// The joint.
-        joint: String,
-    },
-    /// Constraints repeat each other.
-    #[error(
-        "{redundant} of {constraints} constraints are redundant; joints that repeat each other: \
-         {joints}"
-    )]
-    Redundant {
-        /// Number of constraints that follow from the others.
-        redundant: usize,
-        /// Number of all constraints.
-        constraints: usize,
-        /// Names of the joints that they belong to.
-        joints: String,
-    },
-    /// Constraints follow from each other at this placement, though not beside it.
-    #[error(
-        "the placement is a singular position, in which the joints do not determine how the bodies \
-         move on: {joints}"
-    )]
-    SingularPosition {
-        /// Names of the joints whose constraints depend on each other.
-        joints: String,
-    },
-    /// A motion that the joints allow has no inertia.
-    #[error("bodies that can move without inertia: {bodies}")]
-    WithoutInertia {
-        /// Names of the bodies.
-        bodies: String,
-    },
-    /// The system is singular or not finite for another reason.
-    #[error(
-        "the equations of motion are singular to working precision at this placement, though joints \
-         and inertia determine the motion: lengths, masses or times differ too much from one"
-    )]
-    Singular,
-}
-
-/// A length that the scene's gaps and motions are judged against (m): its largest lever arm or
-/// placement.
-pub fn length_scale<S: Scalar>(model: &Model<S>) -> f64 {
-    let size = |v: &Vec3<S>| v.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
-    let joints = model.joints.iter().flat_map(|j| {
-        let (a, b) = (&j.frame_a, &j.frame_b);
-        [size(&a.point), size(&b.point), a.length.re().abs()]
-    });
-    let bodies = model.bodies.iter().map(|b| size(&b.position));
-    let largest = joints.chain(bodies).fold(0.0, f64::max);
-    if largest > 0.0 { largest } else { 1.0 }
-}
 
 /// Nearest assembled positions by Newton's method: (q, s, iterations).
 pub(super) fn assemble<S: SolveScalar>(

@@ -11,15 +11,15 @@
 //! displacements. So the start does not depend on the units of length, mass and angle. The velocity
 //! projection is what an impulse of the joints does to the given velocities.
 
-use super::assembly::{
-    AssemblyFailure, assemble, displacement_metric, finite, second_moment, turned_by,
-};
+use super::assembly::{assemble, displacement_metric, finite, second_moment, turned_by};
 use super::bodies::{self, Motion, all_force_balances, positions_of, velocities_of};
+use super::failure::AssemblyFailure;
 use super::joints::{self, JointCotangent};
 use super::kkt::{BodyBlocks, SaddlePoint};
 use super::left_out::{LeftOut, WORN, Weighing};
 use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
+use super::placement::guess;
 use super::reduce;
 use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::math::{Mat3, Scalar, rotation};
@@ -44,18 +44,6 @@ pub struct InitialState<S> {
     pub left_out: LeftOut,
     /// Newton iterations of the assembly.
     pub iterations: usize,
-}
-
-/// The placement (q_g, v_g) of the model's bodies.
-pub fn guess<S: Scalar>(model: &Model<S>) -> (Vec<S>, Vec<S>) {
-    let (mut q, mut v) = (Vec::new(), Vec::new());
-    for body in &model.bodies {
-        q.extend(body.position.iter());
-        q.extend(body.orientation);
-        v.extend(body.velocity.iter());
-        v.extend(body.angular_velocity.iter());
-    }
-    (q, v)
 }
 
 /// Finds the consistent state nearest to the model's placement.

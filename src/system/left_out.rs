@@ -5,11 +5,11 @@
 //! through zero the rows that are imposed depend on each other. So a row is exchanged for one of
 //! larger weight before that. The motion does not depend on the choice where all joints are closed.
 
-use super::assembly::length_scale;
 use super::bodies::{Motion, add6};
 use super::constraint::RowGradient;
 use super::joints;
 use super::numbering::Numbering;
+use super::placement::length_scale;
 use crate::math::Scalar;
 use crate::model::Model;
 

@@ -11,13 +11,15 @@
 //! −F_(q,s)⁻¹ F(q, s; p + ε ṗ): one solution with the matrix of real numbers, whose residual is taken in
 //! the scalar.
 
-use super::assembly::{AssemblyFailure, add_displacement, displacement_metric};
+use super::assembly::{add_displacement, displacement_metric};
 use super::bodies::{self, Motion};
+use super::failure::AssemblyFailure;
 use super::initial::{self, InitialState};
 use super::joints;
 use super::kkt::SaddlePoint;
 use super::left_out::LeftOut;
 use super::numbering::Numbering;
+use super::placement::guess;
 use super::{rank, redundancy};
 use crate::math::Scalar;
 use crate::model::Model;
@@ -42,7 +44,7 @@ pub fn nearest<S: Scalar>(model: &Model<S>) -> Result<Nearest<S>, AssemblyFailur
     redundancy::leave_out(&mut real);
     let mut saddle = SaddlePoint::new(&real, &numbering);
     let state = initial::solve(&real, &numbering, &mut saddle)?;
-    let (q_guess, v_guess) = initial::guess(model);
+    let (q_guess, v_guess) = guess(model);
     // The real part of the solution; the infinitesimal part of the placement, to start from.
     let shifted = |guess: &[S], real: &[f64]| -> Vec<S> {
         let pairs = guess.iter().zip(real);
@@ -126,7 +128,7 @@ impl<S: Scalar> FirstOrder<'_, S> {
         Motion::all(numbering, q, v, &mut motions);
         let at = (&motions[..], S::zero());
         joints::gradients(model, numbering, at, &mut gradients);
-        let (_, given) = initial::guess(model);
+        let (_, given) = guess(model);
         let by: Vec<S> = v.iter().zip(&given).map(|(&v, &g)| v - g).collect();
         let mut residual = vec![S::zero(); numbering.velocities()];
         bodies::mass_product(model, numbering, &by, &mut residual);

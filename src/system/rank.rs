@@ -1,7 +1,8 @@
 //! Which joints or bodies make a model singular, by name. Runs only after a factorisation failed.
 
-use super::assembly::{AssemblyFailure, length_scale};
+use super::failure::AssemblyFailure;
 use super::numbering::Numbering;
+use super::placement::length_scale;
 use super::redundancy;
 use crate::math::Scalar;
 use crate::model::Model;

@@ -8,13 +8,12 @@
 //! of G: the first in the order of the joints whose part across the rows kept so far is not small
 //! against the largest such part.
 
-use super::assembly::length_scale;
 use super::bodies::{self, Motion};
 use super::constraint;
-use super::initial::guess;
 use super::joints;
 use super::left_out::LeftOut;
 use super::numbering::Numbering;
+use super::placement::{guess, length_scale};
 use super::reduce;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Model};

@@ -10,10 +10,11 @@ use flexbody::integrate::IntegrationFailure;
 use flexbody::integrate::{Method, Settings, simulate};
 use flexbody::math::{Mat3, Vec3, rotation};
 use flexbody::model::{JointFrame, JointKind, Model, RigidBody};
-use flexbody::system::assembly::AssemblyFailure;
 use flexbody::system::bodies::{Motion, all_force_balances, mass_product};
+use flexbody::system::failure::AssemblyFailure;
 use flexbody::system::initial::{self, InitialState};
 use flexbody::system::kkt::SaddlePoint;
+use flexbody::system::placement;
 use flexbody::system::{Numbering, joints};
 use reference::models::{KINDS, Numbers, free_pair, joint, rod};
 
@@ -91,7 +92,7 @@ fn displacement(model: &Model<f64>, a: &[f64], b: &[f64]) -> f64 {
 fn a_displaced_guess_is_assembled_to_the_nearest_state() {
     for (name, model) in displaced() {
         let numbering = Numbering::new(&model);
-        let (q_guess, _) = initial::guess(&model);
+        let (q_guess, _) = placement::guess(&model);
         let q = solve(&model).expect("assembles").q;
         let closed = |q: &[f64]| {
             let mut phi = vec![0.0; numbering.constraints()];
@@ -148,7 +149,7 @@ fn velocities_are_projected() {
     for (name, model) in displaced() {
         let numbering = Numbering::new(&model);
         let start = solve(&model).expect("is consistent");
-        let (_, v_guess) = initial::guess(&model);
+        let (_, v_guess) = placement::guess(&model);
         let rates = |v: &[f64]| {
             let mut rows = vec![0.0; numbering.constraints()];
             let mut motions = Vec::new();

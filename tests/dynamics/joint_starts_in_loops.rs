@@ -14,6 +14,7 @@ use flexbody::problem::Problem;
 use flexbody::system::Numbering;
 use flexbody::system::initial;
 use flexbody::system::kkt::SaddlePoint;
+use flexbody::system::placement;
 use serde_json::{Value, json};
 
 /// Crank, coupler, rocker and distance of the pivots of a four-bar linkage.
@@ -492,7 +493,7 @@ fn every_hinge_of_a_bricard_loop_can_start() {
                 let numbering = Numbering::new(&driven);
                 let mut saddle = SaddlePoint::new(&driven, &numbering);
                 let exact = initial::solve(&driven, &numbering, &mut saddle).expect("starts");
-                let (q, v) = initial::guess(&scene);
+                let (q, v) = placement::guess(&scene);
                 for (found, exact) in q.iter().chain(&v).zip(exact.q.iter().chain(&exact.v)) {
                     let (found, exact) = (found.im / COMPLEX_STEP, exact.im / COMPLEX_STEP);
                     let off = (found - exact).abs() / (1.0 + exact.abs());

@@ -15,11 +15,11 @@ struct Import {
     folder: String,
 }
 
-fn source() -> PathBuf {
+pub(super) fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
 }
 
-fn read(path: &Path) -> String {
+pub(super) fn read(path: &Path) -> String {
     std::fs::read_to_string(path).expect("a source file")
 }
 
@@ -34,7 +34,7 @@ fn table() -> Vec<String> {
 }
 
 /// The Rust files of a folder and its folders, in order.
-fn files(folder: &Path) -> Vec<PathBuf> {
+pub(super) fn files(folder: &Path) -> Vec<PathBuf> {
     let mut all = Vec::new();
     let mut entries: Vec<PathBuf> = std::fs::read_dir(folder)
         .expect("a folder")
@@ -52,13 +52,13 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// The text without what stands behind `//`, lines kept.
-fn code(text: &str) -> String {
+pub(super) fn code(text: &str) -> String {
     text.lines()
         .map(|line| line.split("//").next().unwrap_or("").to_owned() + "\n")
         .collect()
 }
 
-fn identifier(text: &str) -> &str {
+pub(super) fn identifier(text: &str) -> &str {
     let end = text.find(|c: char| !(c.is_alphanumeric() || c == '_'));
     &text[..end.unwrap_or(text.len())]
 }

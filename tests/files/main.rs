@@ -4,6 +4,7 @@
 mod reference;
 
 mod benchmarks;
+mod circles;
 mod faults;
 mod layers;
 mod problems_check;

@@ -6,7 +6,7 @@ use flexbody::math::{Complex64, Scalar};
 use flexbody::model::Interpolation;
 use flexbody::model::{Drive, Freedom, JointKind, Model, MotionCourse};
 use flexbody::system::bodies::{Motion, rates};
-use flexbody::system::{Numbering, initial, joints};
+use flexbody::system::{Numbering, joints, placement};
 
 /// A model in a state, and random numbers for what the derivatives are multiplied with.
 pub struct Case {
@@ -51,7 +51,7 @@ pub fn case(kind: JointKind, body_b: Option<usize>, seed: u64) -> Case {
         joints: vec![joint],
         loads: Vec::new(),
     };
-    let (q, v) = initial::guess(&model);
+    let (q, v) = placement::guess(&model);
     Case {
         name: format!("{kind:?} {body_b:?} {seed}"),
         numbering: Numbering::new(&model),

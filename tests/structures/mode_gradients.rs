@@ -3,7 +3,7 @@
 use crate::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
 use flexbody::math::{Complex64, Vec3};
 use flexbody::structures::generate::{Generated, panel, plate};
-use flexbody::structures::inertia::LumpedMass;
+use flexbody::structures::lumped_mass::LumpedMass;
 use flexbody::structures::modes::{
     ModalFailure, ModalProblem, Modes, frequency_gradient, lowest_frequency, reduced,
 };

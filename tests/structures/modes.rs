@@ -2,7 +2,7 @@
 
 use crate::sample::ALUMINIUM;
 use flexbody::structures::generate::{Generated, plate};
-use flexbody::structures::inertia::LumpedMass;
+use flexbody::structures::lumped_mass::LumpedMass;
 use flexbody::structures::material::Material;
 use flexbody::structures::modes::{ModalFailure, ModalProblem, Modes};
 use flexbody::structures::structure::Structure;

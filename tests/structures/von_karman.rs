@@ -4,10 +4,10 @@ use crate::sample::ALUMINIUM;
 use flexbody::math::Vec3;
 use flexbody::structures::generate::{Generated, panel, plate};
 use flexbody::structures::loads::Load;
-use flexbody::structures::statics::{StaticFailure, StaticProblem};
+use flexbody::structures::statics::{Critical, StaticFailure, StaticProblem};
 use flexbody::structures::structure::Structure;
 use flexbody::structures::supports::{NodeUnknowns, Support};
-use flexbody::structures::von_karman::{Critical, LoadSteps};
+use flexbody::structures::von_karman::LoadSteps;
 
 const NONE: [bool; 3] = [false; 3];
 const LENGTH: f64 = 1.0;

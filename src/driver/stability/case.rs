@@ -4,6 +4,18 @@ use super::exact::Exact;
 use crate::integrate::Method;
 use crate::report::stability::case_name;
 
+/// Steps by tolerance, unless said otherwise.
+pub(super) const TOLERANCE: f64 = 1e-9;
+
+/// A number for the table.
+pub(super) fn decade(x: f64) -> String {
+    match x {
+        0.0 => "0".into(),
+        x if (0.1..1000.0).contains(&x) => format!("{x}"),
+        x => format!("{x:e}"),
+    }
+}
+
 /// A problem file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SceneFile {

@@ -1,6 +1,6 @@
 //! The cases of the stability suite.
 
-use super::case::{Case, Judge, Steps, Way, equal, usual};
+use super::case::{Case, Judge, Steps, TOLERANCE, Way, decade, equal, usual};
 use super::exact::Exact;
 use super::loops;
 use super::scenes::{
@@ -9,18 +9,6 @@ use super::scenes::{
 };
 use crate::integrate::Method;
 use std::f64::consts::{FRAC_PI_2, TAU};
-
-/// Steps by tolerance, unless said otherwise.
-pub(super) const TOLERANCE: f64 = 1e-9;
-
-/// A number for the table.
-pub(super) fn decade(x: f64) -> String {
-    match x {
-        0.0 => "0".into(),
-        x if (0.1..1000.0).contains(&x) => format!("{x}"),
-        x => format!("{x:e}"),
-    }
-}
 
 /// All cases in the order of the table.
 pub(super) fn all() -> Vec<Case> {

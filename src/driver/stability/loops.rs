@@ -1,8 +1,7 @@
 //! Cases of closed loops: singular positions that are passed, tolerances, and scenes that have to move
 //! as before in another order, in other units and in other axes.
 
-use super::case::{Case, Judge, SceneFile, Steps, Way, usual};
-use super::cases::{TOLERANCE, decade};
+use super::case::{Case, Judge, SceneFile, Steps, TOLERANCE, Way, decade, usual};
 use super::exact::Exact;
 use super::scenes::{
     BRICARD, FOUR_BARS_1, FOUR_BARS_2, FOUR_BARS_10, GOVERNOR, LOCKING, PARALLELOGRAM,

@@ -1,7 +1,7 @@
 //! One run of a work-precision measurement: its error, its drift, its work and its time.
 
 use super::clock::fastest;
-use super::reference::{Reference, distance, gradient_error, positions};
+use super::exact::{Reference, distance, gradient_error, positions};
 use crate::adjoint;
 use crate::driver::integration::{Integration, looks_at_the_whole};
 use crate::driver::memory;

@@ -8,6 +8,7 @@
 
 mod bench;
 mod clock;
+mod exact;
 mod reference;
 
 use crate::integrate::choice::{self, NON_STIFF, STIFF};
@@ -15,10 +16,10 @@ use crate::integrate::{IntegrationFailure, Method, Settings, Spacing, Start, sim
 use crate::problem::Problem;
 use crate::report::positions::Positions;
 use crate::report::{PrecisionRow, WorkPrecision};
-use crate::system::assembly;
+use crate::system::placement;
 use bench::Bench;
 use clock::cpu_seconds;
-use reference::Reference;
+use exact::Reference;
 
 /// What is measured, and how thoroughly.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +81,7 @@ pub fn work_precision(
     let (stiff, usual) = usual(&bench)?;
     let reference = reference::reference(&bench, &plan, stiff)?;
     let mut measurement = Measurement {
-        length: assembly::length_scale(&bench.scene.model),
+        length: placement::length_scale(&bench.scene.model),
         plan: &plan,
         bench: &bench,
         reference: &reference,

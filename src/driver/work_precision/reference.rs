@@ -2,11 +2,9 @@
 
 use super::Plan;
 use super::bench::Bench;
+use super::exact::{Reference, distance, gradient_error, positions};
 use crate::integrate::choice::{NON_STIFF, STIFF};
-use crate::integrate::{
-    IntegrationFailure, Method, Samples, Settings, Spacing, Trajectory, simulate,
-};
-use crate::report::positions::Positions;
+use crate::integrate::{IntegrationFailure, Method, Samples, Settings, Spacing, simulate};
 
 /// Tolerance of the explicit reference.
 const EXPLICIT: f64 = 1e-13;
@@ -16,20 +14,6 @@ const IMPLICIT: [f64; 3] = [1e-11, 1e-10, 1e-9];
 const LOOSER: f64 = 10.0;
 /// Samples of the reference for functions that sum over the motion.
 const SAMPLES: usize = 20_000;
-
-/// Positions at the end and a gradient that count as exact.
-pub struct Reference {
-    /// Centres of mass at the end by body (m).
-    pub positions: Positions,
-    /// Gradient of the function in question.
-    pub gradient: Option<Vec<f64>>,
-    /// Distance of the positions from those of an independent run (m); NaN if there is none.
-    pub difference: f64,
-    /// The same of the gradient, relative.
-    pub gradient_difference: f64,
-    /// Where positions and gradient come from and how far they are from an independent run.
-    pub description: String,
-}
 
 /// One run that could be the reference.
 struct Candidate {
@@ -134,42 +118,5 @@ fn candidate(
         tolerance,
         positions: positions(&run),
         gradient: bench.gradient(run)?,
-    })
-}
-
-/// Centres of mass at the end of a run (m).
-pub fn positions(run: &Trajectory<f64>) -> Vec<[f64; 3]> {
-    let q = run.q(run.last());
-    let place = |body: usize| {
-        let at = run.numbering.position(body);
-        [q[at], q[at + 1], q[at + 2]]
-    };
-    (0..run.numbering.bodies()).map(place).collect()
-}
-
-/// Largest distance of a body from where it should be (m); NaN if one is nowhere.
-pub fn distance(exact: &[(usize, [f64; 3])], found: &[[f64; 3]]) -> f64 {
-    let away = |(body, exact): &(usize, [f64; 3])| -> f64 {
-        let found = &found[*body];
-        let square: f64 = exact.iter().zip(found).map(|(a, b)| (a - b).powi(2)).sum();
-        square.sqrt()
-    };
-    largest(exact.iter().map(away))
-}
-
-/// Largest difference of two gradients relative to the largest component of the exact one.
-pub fn gradient_error(found: &[f64], exact: &[f64]) -> f64 {
-    let size = largest(exact.iter().map(|x| x.abs()));
-    largest(exact.iter().zip(found).map(|(a, b)| (a - b).abs())) / size
-}
-
-/// The largest number; NaN if there is one.
-fn largest(all: impl Iterator<Item = f64>) -> f64 {
-    all.fold(0.0, |m, x| {
-        if x.is_nan() || m.is_nan() {
-            f64::NAN
-        } else {
-            m.max(x)
-        }
     })
 }

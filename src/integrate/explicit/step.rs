@@ -7,7 +7,7 @@ use crate::math::{Vec3, rotation};
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::bodies::{self, add6, positions_of};
-use crate::system::{Numbering, assembly};
+use crate::system::{Numbering, placement};
 
 /// Iterations of the position projection.
 const ITERATIONS: usize = 12;
@@ -59,7 +59,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         Self {
             field: Accelerations::new(model, numbering),
             data: StepData::new(numbering),
-            length: assembly::length_scale(model),
+            length: placement::length_scale(model),
             residual: vec![S::zero(); numbering.velocities() + numbering.constraints()],
             moved: vec![S::zero(); numbering.positions()],
             scratch: (

@@ -2,10 +2,10 @@
 
 use super::record::{Node, StepData};
 use super::tableau::{ALL, STAGES};
+use crate::integrate::quadrature::Samples;
 use crate::integrate::replay;
 use crate::integrate::rows::Rows;
 use crate::integrate::schedule::Room;
-use crate::integrate::settings::Samples;
 use crate::math::{Complex64, Scalar};
 use crate::system::Numbering;
 use crate::system::accelerations::Memory;

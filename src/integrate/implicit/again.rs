@@ -6,7 +6,7 @@ use super::radau::Scheme;
 use super::solver::{Memory, Solver, starting_stage};
 use super::tape::{Block, State};
 use crate::integrate::replay::March;
-use crate::integrate::trajectory::WorkCounts;
+use crate::integrate::work::WorkCounts;
 use crate::integrate::{IntegrationFailure, Trajectory};
 use crate::model::Model;
 

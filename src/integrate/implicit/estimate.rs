@@ -5,7 +5,7 @@ use super::predict::dense;
 use super::radau::Scheme;
 use super::stage_newton::StageNewton;
 use crate::integrate::scale::Scale;
-use crate::integrate::trajectory::WorkCounts;
+use crate::integrate::work::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;

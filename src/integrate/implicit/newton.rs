@@ -5,7 +5,7 @@ use super::formula::Formula;
 use super::ggl::Equations;
 use super::scales::SceneScale;
 use crate::integrate::failure::IntegrationFailure;
-use crate::integrate::trajectory::WorkCounts;
+use crate::integrate::work::WorkCounts;
 use crate::linalg::{Pivots, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::Scalar;
 use crate::model::Model;

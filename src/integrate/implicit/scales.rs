@@ -2,7 +2,7 @@
 
 use crate::math::Scalar;
 use crate::model::Model;
-use crate::system::{Numbering, assembly};
+use crate::system::{Numbering, placement};
 
 /// Changes below this, relative to the largest position or velocity, are round-off.
 const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
@@ -26,7 +26,7 @@ pub(super) struct Scales {
 impl SceneScale {
     pub fn of<S: Scalar>(model: &Model<S>) -> Self {
         Self {
-            length: assembly::length_scale(model),
+            length: placement::length_scale(model),
             gravity: largest(model.gravity.as_slice()),
         }
     }

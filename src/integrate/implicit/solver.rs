@@ -10,7 +10,7 @@ use super::stage_newton::{self, StageNewton};
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::scale::Scale;
 use crate::integrate::settings::Method;
-use crate::integrate::trajectory::WorkCounts;
+use crate::integrate::work::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::initial::InitialState;

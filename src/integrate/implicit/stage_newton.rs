@@ -7,7 +7,7 @@ use super::radau::Scheme;
 use super::scales::{Scales, SceneScale};
 use super::split::SplitMatrix;
 use crate::integrate::failure::IntegrationFailure;
-use crate::integrate::trajectory::WorkCounts;
+use crate::integrate::work::WorkCounts;
 use crate::linalg::{Pivots, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::{Complex64, Scalar};
 use crate::model::Model;

@@ -2,7 +2,7 @@
 
 use super::Checker;
 use crate::model::{Freedom, JointKind};
-use crate::problem::fault::Finding;
+use crate::problem::finding::Finding;
 use crate::problem::joints::holds_points;
 use crate::problem::pointer::join;
 use crate::problem::schema::drives::Course;

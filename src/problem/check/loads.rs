@@ -2,7 +2,7 @@
 
 use super::Checker;
 use crate::model::JointKind;
-use crate::problem::fault::Finding;
+use crate::problem::finding::Finding;
 use crate::problem::loads::named;
 use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join};

@@ -2,7 +2,7 @@
 
 use super::Checker;
 use crate::model::rigid_body::is_inertia_of_solid;
-use crate::problem::fault::Finding;
+use crate::problem::finding::Finding;
 use crate::problem::mass::{mass_properties, volume};
 use crate::problem::placement::{GROUND, placement_order};
 use crate::problem::pointer::join;

@@ -5,7 +5,7 @@ mod loads;
 mod mechanics;
 mod study;
 
-use super::fault::Finding;
+use super::finding::Finding;
 use super::placement::{GROUND, split_location};
 use super::pointer::{advice, join};
 use super::prune::Damage;

@@ -3,7 +3,7 @@
 use super::Checker;
 use crate::math::Vec3;
 use crate::model::JointKind;
-use crate::problem::fault::Finding;
+use crate::problem::finding::Finding;
 use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join};
 use crate::problem::quantity::values;

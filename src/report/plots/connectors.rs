@@ -2,9 +2,11 @@
 //! beside their bodies.
 
 use super::canvas::{BLACK, Canvas, INK, Pixel};
-use super::motion::Point;
 use super::panel::{Key, Panel};
 use plotters::style::RGBColor;
+
+/// A point of the plane that is drawn: horizontal and vertical coordinate (m).
+pub type Point = [f64; 2];
 
 /// What a connector is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,13 +2,10 @@
 
 use super::axis::{Axis, range};
 use super::canvas::{Anchor, BLACK, Canvas, GROUND, INK, PALETTE};
-use super::connectors::{self, Connector, ConnectorKind};
+use super::connectors::{self, Connector, ConnectorKind, Point};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
 use crate::report::ReportError;
 use plotters::style::RGBColor;
-
-/// A point of the plane that is drawn: horizontal and vertical coordinate (m).
-pub type Point = [f64; 2];
 
 /// A body at the instants of a time lapse.
 #[derive(Clone, Debug, PartialEq)]

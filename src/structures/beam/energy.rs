@@ -1,49 +1,12 @@
 //! Strain energy of a beam, its derivatives by everything, and its tangent.
 
 use super::BEAM_NODES;
+use super::element::{Beam, BeamMotion};
 use super::frame::{Axes, add_sum_transpose, shape, strain_points, sum};
 use super::line::{Line, LineCotangent};
-use super::section::{Section, SectionValues};
+use super::section::SectionValues;
 use crate::math::{Scalar, Vec3};
-use crate::structures::material::Material;
 use crate::structures::shell::{ElementMatrix, MOST_UNKNOWNS};
-
-/// What a beam is made of; or derivatives by that.
-#[derive(Clone, Copy, Debug)]
-pub struct Beam<S> {
-    /// Nodes \[m\].
-    pub points: [Vec3<S>; BEAM_NODES],
-    /// A vector in the plane of the beam and axis 2 of its section.
-    pub orientation: Vec3<S>,
-    /// The section.
-    pub section: Section<S>,
-    /// Where the centre of the section stands from the nodes along axes 2 and 3 \[m\].
-    pub offset: [S; 2],
-    /// The material.
-    pub material: Material<S>,
-    /// Non-structural mass per length [kg/m], at the centre of the section.
-    pub line_mass: S,
-}
-
-/// Displacements \[m\] and rotations \[rad\] of the nodes in global axes; or forces \[N\] and moments [N m].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BeamMotion<S> {
-    /// u_a.
-    pub displacement: [Vec3<S>; BEAM_NODES],
-    /// θ_a.
-    pub rotation: [Vec3<S>; BEAM_NODES],
-}
-
-impl<S: Scalar> BeamMotion<S> {
-    /// No motion.
-    pub fn zeros() -> Self {
-        let zero = [Vec3::zeros(); BEAM_NODES];
-        Self {
-            displacement: zero,
-            rotation: zero,
-        }
-    }
-}
 
 /// Motion at a point: w,r, θ and θ,r.
 struct AtPoint<S> {

@@ -3,7 +3,7 @@
 //! y_a = x_a + r_a, w_a = u_a + θ_a × r_a with the arm r_a = o2 e2 + o3 e3 in the axes of the node.
 
 use super::BEAM_NODES;
-use super::energy::{Beam, BeamMotion};
+use super::element::{Beam, BeamMotion};
 use super::frame::{Axes, add_sum_transpose, shape, sum};
 use crate::math::{Scalar, Vec3};
 

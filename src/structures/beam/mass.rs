@@ -5,7 +5,8 @@
 //! ```
 
 use super::BEAM_NODES;
-use super::energy::{Beam, BeamMotion, add_square};
+use super::element::{Beam, BeamMotion};
+use super::energy::add_square;
 use super::frame::{Axes, add_sum_transpose, mass_points, shape, sum};
 use super::line::{Line, LineCotangent};
 use super::section::SectionValues;

@@ -9,6 +9,7 @@
 //! All strains are taken at two Gauss points, where those of a quadratic element are most exact: the
 //! element does not lock, and its stiffness has the rank 12 that 18 unknowns less 6 rigid motions leave.
 
+mod element;
 mod energy;
 mod frame;
 mod line;
@@ -16,7 +17,7 @@ mod mass;
 mod section;
 mod torsion;
 
-pub use energy::{Beam, BeamMotion};
+pub use element::{Beam, BeamMotion};
 pub use section::{Section, SectionValues};
 
 /// Nodes of a beam, at r = −1, 0, 1.

@@ -24,7 +24,7 @@
 use super::basis::{COMPONENTS, GAUSS_POINTS, MIDDLE, NODES, TABLES, TYING_POINTS, component};
 use super::field::{Field, add_sum_transpose, sum};
 use super::frame::Frame;
-use super::strain::{add_carry_transpose, carry};
+use super::tying::{add_carry_transpose, carry};
 use crate::math::{Mat3, Scalar, Vec3, scalar::length};
 
 /// Vectors of the means k = 11, 22, 12: strains Σ_a strain_ka·u_a, curvatures

@@ -9,6 +9,7 @@ mod mass;
 mod strain;
 mod stress;
 mod tangent;
+mod tying;
 
 pub use basis::NODES;
 pub use energy::{EnergyParts, Motion, Shell, ShellCotangent};

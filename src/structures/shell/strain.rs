@@ -20,6 +20,7 @@ use super::field::{
     AtPoint, Field, add_interpolate_transpose, add_sum_transpose, interpolate, sum,
 };
 use super::frame::Frame;
+use super::tying::{add_carry_shear_transpose, add_carry_transpose, carry, carry_shear};
 use crate::math::{Scalar, Vec3};
 
 /// Which terms of the strain are taken.
@@ -156,52 +157,6 @@ impl<S: Scalar> TiedStrain<S> {
             quadratic: [zero; TYING_POINTS],
             bending: [zero; TYING_POINTS],
             shear: [zero; SHEAR_POINTS],
-        }
-    }
-}
-
-/// The components (rr, ss, rs) at Gauss point `g` of values at the tying points.
-#[inline]
-pub(crate) fn carry<S: Scalar>(g: usize, values: &[S; TYING_POINTS]) -> [S; 3] {
-    let tied = &TABLES.tied[g];
-    let sum = |list: &[(usize, f64)]| {
-        list.iter()
-            .fold(S::zero(), |sum, &(p, w)| sum + values[p] * w)
-    };
-    [sum(&tied.rr), sum(&tied.ss), sum(&tied.rs)]
-}
-
-/// Transpose of [`carry`].
-pub(crate) fn add_carry_transpose<S: Scalar>(
-    g: usize,
-    bar: &[S; 3],
-    values: &mut [S; TYING_POINTS],
-) {
-    let tied = &TABLES.tied[g];
-    for (list, &bar) in [&tied.rr[..], &tied.ss, &tied.rs].into_iter().zip(bar) {
-        for &(p, w) in list {
-            values[p] += bar * w;
-        }
-    }
-}
-
-/// The components (r, s) of the shear at Gauss point `g`.
-#[inline]
-pub(crate) fn carry_shear<S: Scalar>(g: usize, values: &[S; SHEAR_POINTS]) -> [S; 2] {
-    let tied = &TABLES.tied[g];
-    let sum = |list: &[(usize, f64); 2]| {
-        list.iter()
-            .fold(S::zero(), |sum, &(p, w)| sum + values[p] * w)
-    };
-    [sum(&tied.rr), sum(&tied.ss)]
-}
-
-/// Transpose of [`carry_shear`].
-fn add_carry_shear_transpose<S: Scalar>(g: usize, bar: &[S; 2], values: &mut [S; SHEAR_POINTS]) {
-    let tied = &TABLES.tied[g];
-    for (list, &bar) in [&tied.rr, &tied.ss].into_iter().zip(bar) {
-        for &(p, w) in list {
-            values[p] += bar * w;
         }
     }
 }

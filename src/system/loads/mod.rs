@@ -10,8 +10,8 @@ mod power;
 mod pull;
 
 use super::bodies::{Motion, add6, velocities_of};
-use super::initial;
 use super::numbering::Numbering;
+use super::placement::guess;
 use super::side::Side;
 use crate::linalg::Emit;
 use crate::math::{Scalar, Vec3};
@@ -224,7 +224,7 @@ fn give_to_states(
 
 /// The first spring whose ends meet where the bodies are placed, if any.
 pub fn without_length(model: &Model<f64>) -> Option<&str> {
-    let (q, v) = initial::guess(model);
+    let (q, v) = guess(model);
     let mut motions = Vec::new();
     Motion::all(&Numbering::new(model), &q, &v, &mut motions);
     let mut found = None;

@@ -1,0 +1,70 @@
+//! Why a model cannot be started.
+
+/// Why a model has no consistent initial conditions.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AssemblyFailure {
+    /// The joints cannot be closed near the given placement.
+    #[error(
+        "joint \"{joint}\" cannot be assembled: its {row} stays open by {gap:.3e} at iteration \
+         {iterations}"
+    )]
+    Open {
+        /// Joint with the largest gap.
+        joint: String,
+        /// Which of its conditions.
+        row: String,
+        /// The gap (m or 1).
+        gap: f64,
+        /// Iterations spent.
+        iterations: usize,
+    },
+    /// The joint's axes meet only after half a turn.
+    #[error("joint \"{joint}\" was assembled with its axes turned by 180 degrees")]
+    Turned {
+        /// The joint.
+        joint: String,
+    },
+    /// The start of a joint is not free to be chosen.
+    #[error(
+        "the start of joint \"{joint}\" cannot be chosen: the other joints, their starts and drives \
+         determine it"
+    )]
+    Determined {
+        /// The joint.
+        joint: String,
+    },
+    /// Constraints repeat each other.
+    #[error(
+        "{redundant} of {constraints} constraints are redundant; joints that repeat each other: \
+         {joints}"
+    )]
+    Redundant {
+        /// Number of constraints that follow from the others.
+        redundant: usize,
+        /// Number of all constraints.
+        constraints: usize,
+        /// Names of the joints that they belong to.
+        joints: String,
+    },
+    /// Constraints follow from each other at this placement, though not beside it.
+    #[error(
+        "the placement is a singular position, in which the joints do not determine how the bodies \
+         move on: {joints}"
+    )]
+    SingularPosition {
+        /// Names of the joints whose constraints depend on each other.
+        joints: String,
+    },
+    /// A motion that the joints allow has no inertia.
+    #[error("bodies that can move without inertia: {bodies}")]
+    WithoutInertia {
+        /// Names of the bodies.
+        bodies: String,
+    },
+    /// The system is singular or not finite for another reason.
+    #[error(
+        "the equations of motion are singular to working precision at this placement, though joints \
+         and inertia determine the motion: lengths, masses or times differ too much from one"
+    )]
+    Singular,
+}

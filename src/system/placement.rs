@@ -1,0 +1,29 @@
+//! Where a model's bodies are placed, and the length that belongs to it.
+
+use crate::math::{Scalar, Vec3};
+use crate::model::Model;
+
+/// The placement (q_g, v_g) of the model's bodies.
+pub fn guess<S: Scalar>(model: &Model<S>) -> (Vec<S>, Vec<S>) {
+    let (mut q, mut v) = (Vec::new(), Vec::new());
+    for body in &model.bodies {
+        q.extend(body.position.iter());
+        q.extend(body.orientation);
+        v.extend(body.velocity.iter());
+        v.extend(body.angular_velocity.iter());
+    }
+    (q, v)
+}
+
+/// A length that the scene's gaps and motions are judged against (m): its largest lever arm or
+/// placement.
+pub fn length_scale<S: Scalar>(model: &Model<S>) -> f64 {
+    let size = |v: &Vec3<S>| v.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
+    let joints = model.joints.iter().flat_map(|j| {
+        let (a, b) = (&j.frame_a, &j.frame_b);
+        [size(&a.point), size(&b.point), a.length.re().abs()]
+    });
+    let bodies = model.bodies.iter().map(|b| size(&b.position));
+    let largest = joints.chain(bodies).fold(0.0, f64::max);
+    if largest > 0.0 { largest } else { 1.0 }
+}
