@@ -7,7 +7,7 @@ use crate::problem::Problem;
 use crate::system::initial::{self, InitialState};
 use crate::system::kkt::SaddlePoint;
 use crate::system::placement::{guess, length_scale};
-use crate::system::{Motion, Numbering, joints, redundancy};
+use crate::system::{InMotion, Motion, Numbering, joints, redundancy};
 
 /// Change of a position or velocity, relative to the largest one, that is told.
 const TOLD: f64 = 1e-6;
@@ -120,12 +120,13 @@ fn consistent(model: &Model<f64>, numbering: &Numbering) -> bool {
     Motion::all(numbering, &q, &v, &mut motions);
     let mut rows = vec![0.0; numbering.constraints()];
     let largest = |rows: &[f64]| rows.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    joints::values(model, numbering, (&motions, 0.0), &mut rows);
+    let at = InMotion::new(model, numbering, &motions, 0.0);
+    joints::values(&at, &mut rows);
     let length = length_scale(model);
     if largest(&rows) > 0.1 * TOLD * length.min(1.0) {
         return false;
     }
-    joints::rates(model, numbering, (&motions, 0.0), &mut rows);
+    joints::rates(&at, &mut rows);
     let driven = largest(&rows) > 0.0 && v.iter().all(|x| *x == 0.0);
     !driven && largest(&rows) <= 0.1 * TOLD * largest(&v) * length.min(1.0)
 }

@@ -8,8 +8,9 @@
 
 use super::bodies::{self, Motion, all_force_balances, velocities_of};
 use super::constraint::RowGradient;
+use super::in_motion::InMotion;
 use super::initial::mass;
-use super::joints::{self, JointCotangent};
+use super::joints::{self, JointCotangent, RowCotangents};
 use super::kkt::{Elimination, SaddlePoint};
 use super::left_out::{LeftOut, Weighing};
 use super::loads::{self, LoadCotangent};
@@ -167,8 +168,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         let left_out = std::mem::take(&mut self.left_out);
         let motions = std::mem::take(&mut self.motions);
         let mut weighing = std::mem::take(&mut self.weighing);
-        let (system, at) = ((self.model, self.numbering), (&motions[..], self.time));
-        let exchanged = left_out.exchanged(system, at, worn, &mut weighing, |rhs| {
+        let at = InMotion::new(self.model, self.numbering, &motions, self.time);
+        let exchanged = left_out.exchanged(&at, worn, &mut weighing, |rhs| {
             self.solve(rhs);
         });
         (self.left_out, self.motions, self.weighing) = (left_out, motions, weighing);
@@ -185,14 +186,17 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
                 planar.stand(&self.motions);
                 planar.gradients(&mut self.gradients);
             }
-            None => joints::gradients(
-                self.model,
-                self.numbering,
-                (&self.motions, time),
-                &mut self.gradients,
-            ),
+            None => {
+                let at = InMotion::new(self.model, self.numbering, &self.motions, time);
+                joints::gradients(&at, &mut self.gradients);
+            }
         }
         self.left_out.clear_gradients(&mut self.gradients);
+    }
+
+    /// Where the solver stands.
+    fn here(&self) -> InMotion<'_, S> {
+        InMotion::new(self.model, self.numbering, &self.motions, self.time)
     }
 
     /// Changes the velocities, the position kept.
@@ -234,13 +238,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         let Solver::Sparse(saddle, zeros) = &mut self.solver else {
             unreachable!("the tree was left above");
         };
-        saddle.factorise(
-            self.model,
-            self.numbering,
-            (&self.motions, self.time),
-            zeros,
-            mass(self.model),
-        )
+        let at = InMotion::new(self.model, self.numbering, &self.motions, self.time);
+        saddle.factorise(&at, zeros, mass(self.model))
     }
 
     /// Solves [M Gᵀ; G 0] (x, λ) = (f, g) in place, with the matrix factorised last.
@@ -313,13 +312,12 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         match &self.planar {
             Some(planar) => planar.accelerations(self.numbering, lower),
             None => {
-                let at = (&self.motions[..], self.time);
-                joints::accelerations(self.model, self.numbering, at, lower);
+                joints::accelerations(&self.here(), lower);
             }
         }
         rhs.iter_mut().for_each(|x| *x = -*x);
         let forces = &mut rhs[..nv];
-        loads::add_forces(self.model, self.numbering, &self.motions, self.time, forces);
+        loads::add_forces(&self.here(), forces);
         self.solve(&mut rhs);
         a.copy_from_slice(&rhs[..nv]);
         lambda.copy_from_slice(&rhs[nv..]);
@@ -345,7 +343,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     pub fn rates(&self, v: &[S], out: &mut [S]) {
         let (model, numbering) = (self.model, self.numbering);
         joints::rates_from_gradients(model, numbering, &self.gradients, v, out);
-        joints::add_driven_rates(model, numbering, (&self.motions, self.time), out);
+        joints::add_driven_rates(&self.here(), out);
         self.left_out.clear(out);
     }
 
@@ -356,8 +354,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
 
     /// Constraints Φ where the solver stands, zero those that are left out.
     pub fn constraints(&self, out: &mut [S]) {
-        let at = (&self.motions[..], self.time);
-        joints::values(self.model, self.numbering, at, out);
+        joints::values(&self.here(), out);
         self.left_out.clear(out);
     }
 
@@ -391,14 +388,7 @@ impl Accelerations<'_, f64> {
             time: &mut by_time,
             model: cot,
         };
-        loads::pull_back(
-            model,
-            numbering,
-            &self.motions,
-            self.time,
-            &psi[..nv],
-            &mut out,
-        );
+        loads::pull_back(&self.here(), &psi[..nv], &mut out);
         psi.iter_mut().for_each(|x| *x = -*x);
         for (i, body) in model.bodies.iter().enumerate() {
             let o = numbering.velocity(i);
@@ -418,9 +408,13 @@ impl Accelerations<'_, f64> {
             }
         }
         // χᵀ (G a + bias) and λᵀ G ψ in one pass.
-        let cotangents = [None, None, Some(&psi[nv..]), Some(lambda)];
+        let cotangents = RowCotangents {
+            acceleration: Some(&psi[nv..]),
+            virtual_rate: Some(lambda),
+            ..Default::default()
+        };
         let moving = (Some(a), Some(&psi[..nv]));
-        by_time += self.pull_rows(moving, cotangents, (y, Some(v)), cot);
+        by_time += self.pull_rows(moving, &cotangents, (y, Some(v)), cot);
         self.rhs = psi;
         by_time
     }
@@ -434,20 +428,29 @@ impl Accelerations<'_, f64> {
         y: &mut [f64],
         cot: &mut Model<f64>,
     ) -> f64 {
-        let cotangents = [None, None, None, Some(lambda)];
-        self.pull_rows((None, Some(w)), cotangents, (y, None), cot)
+        let cotangents = RowCotangents {
+            virtual_rate: Some(lambda),
+            ..Default::default()
+        };
+        self.pull_rows((None, Some(w)), &cotangents, (y, None), cot)
     }
 
     /// As [`Accelerations::pull_rate`] for χᵀ (G v + Φ_t) at the velocities where the solver stands.
     pub fn pull_rates(&mut self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
-        let cotangents = [None, Some(chi), None, None];
-        self.pull_rows((None, None), cotangents, (y, None), cot)
+        let cotangents = RowCotangents {
+            rate: Some(chi),
+            ..Default::default()
+        };
+        self.pull_rows((None, None), &cotangents, (y, None), cot)
     }
 
     /// As [`Accelerations::pull_rate`] for χᵀ Φ(q, t).
     pub fn pull_constraints(&mut self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
-        let cotangents = [Some(chi), None, None, None];
-        self.pull_rows((None, None), cotangents, (y, None), cot)
+        let cotangents = RowCotangents {
+            value: Some(chi),
+            ..Default::default()
+        };
+        self.pull_rows((None, None), &cotangents, (y, None), cot)
     }
 
     /// Pulls the rows' cotangents back where the bodies have these accelerations and virtual
@@ -455,7 +458,7 @@ impl Accelerations<'_, f64> {
     fn pull_rows(
         &mut self,
         (a, w): (Option<&[f64]>, Option<&[f64]>),
-        cotangents: [Option<&[f64]>; 4],
+        cotangents: &RowCotangents,
         (y, v): (&mut [f64], Option<&mut [f64]>),
         cot: &mut Model<f64>,
     ) -> f64 {
@@ -466,9 +469,9 @@ impl Accelerations<'_, f64> {
             model: cot,
         };
         // Values depend on what is across the plane as well.
-        if let (Some(planar), [None, rates @ ..]) = (&mut self.planar, cotangents) {
+        if let (Some(planar), None) = (&mut self.planar, cotangents.value) {
             planar.set_moving(numbering, a, w);
-            planar.pull_back(numbering, rates, &mut out);
+            planar.pull_back(numbering, cotangents, &mut out);
             return 0.0;
         }
         let moving = self.motions.iter().enumerate().map(|(i, motion)| {
@@ -478,7 +481,7 @@ impl Accelerations<'_, f64> {
         });
         self.moving.clear();
         self.moving.extend(moving);
-        let at = (&self.moving[..], self.time);
-        joints::pull_back(model, numbering, at, cotangents, &mut out)
+        let at = InMotion::new(model, numbering, &self.moving, self.time);
+        joints::pull_back(&at, cotangents, &mut out)
     }
 }

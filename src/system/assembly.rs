@@ -10,6 +10,7 @@
 
 use super::bodies::{self, Motion, positions_of};
 use super::failure::AssemblyFailure;
+use super::in_motion::InMotion;
 use super::joints;
 use super::kkt::{BodyBlocks, SaddlePoint};
 use super::numbering::Numbering;
@@ -54,14 +55,15 @@ pub(super) fn assemble<S: SolveScalar>(
     let mut least = f64::INFINITY;
     for iteration in 0..ITERATIONS {
         Motion::all(numbering, &q, v_guess, &mut motions);
-        joints::values(model, numbering, (&motions, S::zero()), &mut phi);
+        let at = InMotion::new(model, numbering, &motions, S::zero());
+        joints::values(&at, &mut phi);
         saddle.left_out().clear(&mut phi);
         let gap = phi.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
         if gap < least {
             least = gap;
             best.clone_from(&phi);
         }
-        joints::gradients(model, numbering, (&motions, S::zero()), &mut gradients);
+        joints::gradients(&at, &mut gradients);
         let mut rhs = vec![S::zero(); nv];
         add_displacement(model, numbering, &q, &mut rhs);
         joints::add_reactions(model, numbering, &gradients, &s, &mut rhs);
@@ -70,17 +72,15 @@ pub(super) fn assemble<S: SolveScalar>(
             *x = -*x;
         }
         let metric = displacement_metric(model, numbering, &q);
-        saddle
-            .factorise(model, numbering, (&motions, S::zero()), &s, metric)
-            .map_err(|_| {
-                // Redundant joints seldom meet exactly before they are assembled.
-                let meet = least <= NEARLY_CLOSED * scale && iteration == 0;
-                if meet || least <= CLOSED * scale.max(1.0) {
-                    super::rank::explain(model, &q)
-                } else {
-                    open(model, numbering, &best, iteration)
-                }
-            })?;
+        saddle.factorise(&at, &s, metric).map_err(|_| {
+            // Redundant joints seldom meet exactly before they are assembled.
+            let meet = least <= NEARLY_CLOSED * scale && iteration == 0;
+            if meet || least <= CLOSED * scale.max(1.0) {
+                super::rank::explain(model, &q)
+            } else {
+                open(model, numbering, &best, iteration)
+            }
+        })?;
         saddle.solve(&mut rhs);
         if !finite(&rhs) {
             return Err(open(model, numbering, &best, iteration));

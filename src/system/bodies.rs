@@ -9,7 +9,6 @@
 //! ```
 
 use super::numbering::Numbering;
-use crate::linalg::Emit;
 use crate::math::rotation::{self, Quat};
 use crate::math::scalar::skew;
 use crate::math::{Mat3, Scalar, Vec3};
@@ -362,48 +361,5 @@ pub fn all_force_balances<S: Scalar>(
         let (force, torque) = force_balance(body, &model.gravity, &motion.omega, &a, &alpha);
         out[o..o + 3].copy_from_slice(force.as_slice());
         out[o + 3..o + 6].copy_from_slice(torque.as_slice());
-    }
-}
-/// Emits the derivatives of P(q) q̇ − v, times h, in tangent positions (∂q̇/∂q = c) and velocities
-/// (column scaled by 1/h), at row `row` and columns `y` and `v`.
-pub fn emit_kinematics<S: Scalar>(
-    numbering: &Numbering,
-    motions: &[Motion<S>],
-    qdot: &[S],
-    (row, y, v): (usize, usize, usize),
-    (c, h): (S, S),
-    emit: &mut dyn Emit<S>,
-) {
-    let identity = Mat3::<S>::identity();
-    for (i, motion) in motions.iter().enumerate() {
-        let o = numbering.velocity(i);
-        let (_, pdot) = positions_of(&qdot[numbering.position(i)..]);
-        let turned = angular_velocity_by_theta(&motion.orientation, &pdot);
-        emit.add_identity(row + o, y + o, c * h);
-        emit.add_block(row + o + 3, y + o + 3, &(identity * (c * h) + turned * h));
-        emit.add_identity(row + o, v + o, -S::one());
-        emit.add_identity(row + o + 3, v + o + 3, -S::one());
-    }
-}
-
-/// Emits the derivatives of M v̇ − f(q, v), times h², in velocities (∂v̇/∂v = c, column scaled by
-/// 1/h) at (`row`, `v`). Neither M nor the forces of rigid bodies under gravity depend on q.
-pub fn emit_force_balance<S: Scalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    motions: &[Motion<S>],
-    (row, v): (usize, usize),
-    (c, h): (S, S),
-    emit: &mut dyn Emit<S>,
-) {
-    for (i, (body, motion)) in model.bodies.iter().zip(motions).enumerate() {
-        let o = numbering.velocity(i);
-        let torque = torque_by_omega(body, &motion.omega);
-        emit.add_identity(row + o, v + o, body.mass * c * h);
-        emit.add_block(
-            row + o + 3,
-            v + o + 3,
-            &(body.inertia * (c * h) + torque * h),
-        );
     }
 }

@@ -14,7 +14,8 @@
 use super::assembly::{assemble, displacement_metric, finite, second_moment, turned_by};
 use super::bodies::{self, Motion, all_force_balances, positions_of, velocities_of};
 use super::failure::AssemblyFailure;
-use super::joints::{self, JointCotangent};
+use super::in_motion::InMotion;
+use super::joints::{self, JointCotangent, RowCotangents};
 use super::kkt::{BodyBlocks, SaddlePoint};
 use super::left_out::{LeftOut, WORN, Weighing};
 use super::loads::{self, LoadCotangent};
@@ -68,13 +69,14 @@ pub fn solve<S: SolveScalar>(
     reduce::project(numbering, &mut v);
     let held: Vec<S> = v_guess.iter().zip(&v).map(|(&g, &v)| g - v).collect();
     Motion::all(numbering, &q, &v, &mut motions);
+    let at = InMotion::new(model, numbering, &motions, S::zero());
     let zeros = vec![S::zero(); nc];
     let singular = |_| super::rank::explain(model, &q);
     saddle
-        .factorise(model, numbering, (&motions, S::zero()), &zeros, mass(model))
+        .factorise(&at, &zeros, mass(model))
         .map_err(singular)?;
     let mut rates = vec![S::zero(); nc];
-    joints::rates(model, numbering, (&motions, S::zero()), &mut rates);
+    joints::rates(&at, &mut rates);
     let mut rhs = vec![S::zero(); nv];
     bodies::mass_product(model, numbering, &held, &mut rhs);
     rhs.extend(rates.into_iter().map(|rate| -rate));
@@ -85,6 +87,7 @@ pub fn solve<S: SolveScalar>(
     }
 
     Motion::all(numbering, &q, &v, &mut motions);
+    let at = InMotion::new(model, numbering, &motions, S::zero());
     let mut balance = vec![S::zero(); nv];
     all_force_balances(
         model,
@@ -94,12 +97,12 @@ pub fn solve<S: SolveScalar>(
         &mut balance,
     );
     let mut forces = vec![S::zero(); nv];
-    loads::add_forces(model, numbering, &motions, S::zero(), &mut forces);
+    loads::add_forces(&at, &mut forces);
     for (balance, &force) in balance.iter_mut().zip(&forces) {
         *balance -= force;
     }
     let mut bias = vec![S::zero(); nc];
-    joints::accelerations(model, numbering, (&motions, S::zero()), &mut bias);
+    joints::accelerations(&at, &mut bias);
     let mut rhs: Vec<S> = balance.into_iter().chain(bias).map(|x| -x).collect();
     saddle.solve(&mut rhs);
     let lambda = rhs.split_off(nv);
@@ -133,14 +136,14 @@ fn choose_left_out<S: SolveScalar>(
     let (mut motions, mut weighing) = (Vec::new(), Weighing::default());
     Motion::all(numbering, q, v, &mut motions);
     let zeros = vec![S::zero(); numbering.constraints()];
-    let at = (&motions[..], S::zero());
+    let at = InMotion::new(model, numbering, &motions, S::zero());
     for _ in 0..numbering.constraints() {
-        let factorised = saddle.factorise(model, numbering, at, &zeros, mass(model));
+        let factorised = saddle.factorise(&at, &zeros, mass(model));
         if factorised.is_err() {
             return;
         }
         let solve = |rhs: &mut [S]| saddle.solve(rhs);
-        match left_out.exchanged((model, numbering), at, WORN, &mut weighing, solve) {
+        match left_out.exchanged(&at, WORN, &mut weighing, solve) {
             Some(other) => left_out = other,
             None => return,
         }
@@ -177,6 +180,7 @@ pub fn pull_back(
     let singular = |_| super::rank::explain(model, &state.q);
     let mut motions = Vec::new();
     Motion::all(numbering, &state.q, &state.v, &mut motions);
+    let at = InMotion::new(model, numbering, &motions, 0.0);
     let zeros = vec![0.0; nc];
     let mut v_bar = v_bar.to_vec();
     let mut y_bar = y_bar.to_vec();
@@ -190,7 +194,7 @@ pub fn pull_back(
     };
     // The start is at t = 0 whatever the design, so derivatives by time are of no use.
     let pull = |motions: &[Motion<f64>],
-                cotangents: [Option<&[f64]>; 4],
+                cotangents: &RowCotangents,
                 y: &mut [f64],
                 cot: &mut Model<f64>| {
         let mut out = JointCotangent {
@@ -198,17 +202,22 @@ pub fn pull_back(
             v: None,
             model: cot,
         };
-        joints::pull_back(model, numbering, (motions, 0.0), cotangents, &mut out);
+        let at = InMotion::new(model, numbering, motions, 0.0);
+        joints::pull_back(&at, cotangents, &mut out);
     };
     // Pulls λᵀ G(q) w, which is linear in w, back to positions and joint frames.
     let pull_rate = |w: &[f64], lambda: &[f64], y: &mut [f64], cot: &mut Model<f64>| {
         let at = |(i, motion): (usize, &Motion<f64>)| motion.virtually(&w[numbering.velocity(i)..]);
         let moving: Vec<Motion<f64>> = motions.iter().enumerate().map(at).collect();
-        pull(&moving, [None, None, None, Some(lambda)], y, cot);
+        let cotangents = RowCotangents {
+            virtual_rate: Some(lambda),
+            ..Default::default()
+        };
+        pull(&moving, &cotangents, y, cot);
     };
 
     saddle
-        .factorise(model, numbering, (&motions, 0.0), &zeros, mass(model))
+        .factorise(&at, &zeros, mass(model))
         .map_err(singular)?;
     if a_bar.iter().any(|&x| x != 0.0) {
         let (psi, chi) = transposed(saddle, a_bar);
@@ -236,7 +245,7 @@ pub fn pull_back(
             time: &mut 0.0,
             model: cot,
         };
-        loads::pull_back(model, numbering, &motions, 0.0, &minus, &mut out);
+        loads::pull_back(&at, &minus, &mut out);
         pull_rate(&psi, &state.lambda, &mut y_bar, cot);
         pull_rate(&state.a, &chi, &mut y_bar, cot);
         let mut out = JointCotangent {
@@ -244,13 +253,20 @@ pub fn pull_back(
             v: Some(&mut v_bar),
             model: cot,
         };
-        let cotangents = [None, None, Some(&chi[..]), None];
-        joints::pull_back(model, numbering, (&motions, 0.0), cotangents, &mut out);
+        let cotangents = RowCotangents {
+            acceleration: Some(&chi),
+            ..Default::default()
+        };
+        joints::pull_back(&at, &cotangents, &mut out);
     }
 
     let (psi, chi) = transposed(saddle, &v_bar);
     pull_rate(&psi, &state.sigma, &mut y_bar, cot);
-    pull(&motions, [None, Some(&chi), None, None], &mut y_bar, cot);
+    let cotangents = RowCotangents {
+        rate: Some(&chi),
+        ..Default::default()
+    };
+    pull(&motions, &cotangents, &mut y_bar, cot);
     // M ψ = −v̄ − Gᵀχ, and the cotangent of v_g is −M ψ.
     let mut v_guess_bar = vec![0.0; nv];
     for (i, body) in model.bodies.iter().enumerate() {
@@ -270,13 +286,15 @@ pub fn pull_back(
     // The assembly leaves out what the joints name.
     saddle.leave_out(&LeftOut::of(model, numbering));
     let metric = displacement_metric(model, numbering, &state.q);
-    saddle
-        .factorise(model, numbering, (&motions, 0.0), &state.s, metric)
-        .map_err(singular)?;
+    saddle.factorise(&at, &state.s, metric).map_err(singular)?;
     let (psi, chi) = transposed(saddle, &y_bar);
     // By the positions where they are those of the placement.
     pull_rate(&psi, &state.s, &mut y_bar, cot);
-    pull(&motions, [Some(&chi), None, None, None], &mut y_bar, cot);
+    let cotangents = RowCotangents {
+        value: Some(&chi),
+        ..Default::default()
+    };
+    pull(&motions, &cotangents, &mut y_bar, cot);
     reduce::keep_placed(numbering, &mut y_bar);
 
     for (i, body) in cot.bodies.iter_mut().enumerate() {

@@ -2,6 +2,7 @@
 
 use super::bodies::{Motion, add6, velocities_of};
 use super::constraint::{self, RowCotangent, RowGradient, SideCotangent, gradient};
+use super::in_motion::InMotion;
 use super::numbering::Numbering;
 use super::reaction::{self, ReactionJacobian};
 use super::side::{Side, pull_driven_frame, sides};
@@ -14,15 +15,13 @@ pub const ROWS: usize = 6;
 
 /// Calls `visit(row numbers, joint, side a, side b)` for every joint.
 fn for_each_joint<S: Scalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    (motions, time): (&[Motion<S>], S),
+    at: &InMotion<S>,
     mut visit: impl FnMut(Range<usize>, &Joint<S>, &Side<S>, &Side<S>),
 ) {
     let ground = Motion::ground();
-    for (j, joint) in model.joints.iter().enumerate() {
-        let (a, b) = sides(joint, motions, &ground, time);
-        visit(numbering.rows(j), joint, &a, &b);
+    for (j, joint) in at.model.joints.iter().enumerate() {
+        let (a, b) = sides(joint, at.motions, &ground, at.time);
+        visit(at.numbering.rows(j), joint, &a, &b);
     }
 }
 
@@ -41,14 +40,9 @@ pub fn for_each_row<S: Scalar>(
     }
 }
 
-/// Constraints Φ(q, t); `at` is where the bodies are, and when.
-pub fn values<S: Scalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    at: (&[Motion<S>], S),
-    out: &mut [S],
-) {
-    for_each_joint(model, numbering, at, |numbers, joint, a, b| {
+/// Constraints Φ(q, t).
+pub fn values<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
+    for_each_joint(at, |numbers, joint, a, b| {
         for (out, row) in out[numbers].iter_mut().zip(joint.rows()) {
             *out = constraint::value(row, a, b);
         }
@@ -77,24 +71,15 @@ pub fn rates_from_gradients<S: Scalar>(
 }
 
 /// Constraint rates G(q) v + Φ_t.
-pub fn rates<S: Scalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    at: (&[Motion<S>], S),
-    out: &mut [S],
-) {
-    for_each_joint(model, numbering, at, |numbers, joint, a, b| {
+pub fn rates<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
+    for_each_joint(at, |numbers, joint, a, b| {
         constraint::rates(joint.rows(), a, b, &mut out[numbers]);
     });
 }
 
 /// Adds the rates Φ_t that the drives make to `out`.
-pub fn add_driven_rates<S: Scalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    (motions, time): (&[Motion<S>], S),
-    out: &mut [S],
-) {
+pub fn add_driven_rates<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
+    let (model, numbering) = (at.model, at.numbering);
     let ground = Motion::ground();
     let held = |motion: &Motion<S>| Motion {
         velocity: Vec3::zeros(),
@@ -105,7 +90,7 @@ pub fn add_driven_rates<S: Scalar>(
         if joint.drives.is_empty() {
             continue;
         }
-        let (mut a, mut b) = sides(joint, motions, &ground, time);
+        let (mut a, mut b) = sides(joint, at.motions, &ground, at.time);
         let (at_a, at_b) = (held(a.motion), held(b.motion));
         (a.motion, b.motion) = (&at_a, &at_b);
         let mut rates = [S::zero(); ROWS];
@@ -119,26 +104,16 @@ pub fn add_driven_rates<S: Scalar>(
 
 /// Second derivatives Φ̈ at the accelerations of `motions`: the biases −γ of Φ̈ = G v̇ − γ if these
 /// are zero.
-pub fn accelerations<S: Scalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    at: (&[Motion<S>], S),
-    out: &mut [S],
-) {
-    for_each_joint(model, numbering, at, |numbers, joint, a, b| {
+pub fn accelerations<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
+    for_each_joint(at, |numbers, joint, a, b| {
         constraint::accelerations(joint.rows(), a, b, &mut out[numbers]);
     });
 }
 
 /// Gradients of all rows (the non-zero blocks of G).
-pub fn gradients<S: Scalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    at: (&[Motion<S>], S),
-    out: &mut Vec<RowGradient<S>>,
-) {
+pub fn gradients<S: Scalar>(at: &InMotion<S>, out: &mut Vec<RowGradient<S>>) {
     out.clear();
-    for_each_joint(model, numbering, at, |_, joint, a, b| {
+    for_each_joint(at, |_, joint, a, b| {
         out.extend(joint.rows().map(|row| gradient(row, a, b)));
     });
 }
@@ -217,28 +192,42 @@ pub struct JointCotangent<'a> {
     pub model: &'a mut Model<f64>,
 }
 
-/// Pulls cotangents of the values, rates, second derivatives and virtual rates of all rows (in this
-/// order, each optional) back to tangent positions, velocities and the parameters of the
+/// Cotangents of all rows; `None` stands for zero.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RowCotangents<'a> {
+    /// Of the values Φ.
+    pub value: Option<&'a [f64]>,
+    /// Of the rates G v + Φ_t.
+    pub rate: Option<&'a [f64]>,
+    /// Of the second derivatives Φ̈.
+    pub acceleration: Option<&'a [f64]>,
+    /// Of the rates G w at the virtual velocities w.
+    pub virtual_rate: Option<&'a [f64]>,
+}
+
+impl RowCotangents<'_> {
+    /// Those of row i.
+    pub fn row(&self, i: usize) -> RowCotangent<f64> {
+        let at = |all: Option<&[f64]>| all.map_or(0.0, |all| all[i]);
+        RowCotangent {
+            value: at(self.value),
+            rate: at(self.rate),
+            acceleration: at(self.acceleration),
+            virtual_rate: at(self.virtual_rate),
+        }
+    }
+}
+
+/// Pulls cotangents of all rows back to tangent positions, velocities and the parameters of the
 /// joints, the accelerations and virtual velocities held; returns the derivative by time.
-pub fn pull_back(
-    model: &Model<f64>,
-    numbering: &Numbering,
-    (motions, time): (&[Motion<f64>], f64),
-    cotangents: [Option<&[f64]>; 4],
-    out: &mut JointCotangent,
-) -> f64 {
+pub fn pull_back(at: &InMotion<f64>, cotangents: &RowCotangents, out: &mut JointCotangent) -> f64 {
+    let (model, numbering, time) = (at.model, at.numbering, at.time);
     let ground = Motion::ground();
     let mut by_time = 0.0;
-    let at = |which: usize, i: usize| cotangents[which].map_or(0.0, |c| c[i]);
     for (j, joint) in model.joints.iter().enumerate() {
-        let (a, b) = sides(joint, motions, &ground, time);
+        let (a, b) = sides(joint, at.motions, &ground, time);
         let first = numbering.rows(j).start;
-        let cot = |i: usize| RowCotangent {
-            value: at(0, first + i),
-            rate: at(1, first + i),
-            acceleration: at(2, first + i),
-            virtual_rate: at(3, first + i),
-        };
+        let cot = |i: usize| cotangents.row(first + i);
         let (by_a, by_b) = constraint::pull_back(joint.rows(), cot, &a, &b);
         let bodies = [(Some(joint.body_a), &by_a), (joint.body_b, &by_b)];
         for (body, by) in bodies {

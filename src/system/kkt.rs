@@ -3,6 +3,7 @@
 
 use super::bodies::Motion;
 use super::constraint::RowGradient;
+use super::in_motion::InMotion;
 use super::joints;
 use super::left_out::LeftOut;
 use super::numbering::Numbering;
@@ -67,16 +68,16 @@ impl<S: Scalar> Emit<S> for Transposed<'_, S> {
 
 /// Emits the derivative of Gᵀλ in the tangent positions, times `scale`, at (`row`, `column`).
 pub fn emit_reaction_jacobian<S: Scalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    at: (&[Motion<S>], S),
+    at: &InMotion<S>,
     lambda: &[S],
     (row, column): (usize, usize),
     scale: S,
     emit: &mut dyn Emit<S>,
 ) {
-    for (j, joint) in model.joints.iter().enumerate() {
-        let k = joints::reaction_jacobian(joint, at, &lambda[numbering.rows(j)]);
+    let numbering = at.numbering;
+    for (j, joint) in at.model.joints.iter().enumerate() {
+        let lambda = &lambda[numbering.rows(j)];
+        let k = joints::reaction_jacobian(joint, (at.motions, at.time), lambda);
         let slides = joint.rows().any(|kind| kind.depends_on_distance());
         let stretches = joint.rows().any(|kind| kind.follows_distance());
         let turns = joint.rows().any(|kind| kind.couples_rotations());
@@ -157,7 +158,8 @@ impl<S: SolveScalar> SaddlePoint<S> {
     pub fn new(model: &Model<S>, numbering: &Numbering) -> Self {
         let motions = vec![Motion::ground(); numbering.bodies()];
         let mut gradients = Vec::new();
-        joints::gradients(model, numbering, (&motions, S::zero()), &mut gradients);
+        let at = InMotion::new(model, numbering, &motions, S::zero());
+        joints::gradients(&at, &mut gradients);
         let zeros = vec![S::zero(); numbering.constraints()];
         let left_out = LeftOut::of(model, numbering);
         let order = numbering.unknowns() + numbering.constraints();
@@ -166,10 +168,9 @@ impl<S: SolveScalar> SaddlePoint<S> {
             angular: Mat3::identity(),
         };
         let pattern = Pattern::record(order, |emit: &mut dyn Emit<S>| {
-            let at = (&motions[..], S::zero());
             emit_reduced(numbering, 1, emit, |emit| {
                 let rows = (&gradients[..], &left_out);
-                emit_saddle_point(model, numbering, at, rows, &zeros, block, emit);
+                emit_saddle_point(&at, rows, &zeros, block, emit);
             });
         });
         let factors = SparseLu::new(&pattern);
@@ -199,25 +200,23 @@ impl<S: SolveScalar> SaddlePoint<S> {
     /// [`SingularMatrix`]: redundant constraints, or a motion without inertia.
     pub fn factorise(
         &mut self,
-        model: &Model<S>,
-        numbering: &Numbering,
-        at: (&[Motion<S>], S),
+        at: &InMotion<S>,
         multipliers: &[S],
         block: impl Fn(usize) -> BodyBlocks<S>,
     ) -> Result<(), SingularMatrix> {
         let (gradients, left_out) = (&mut self.gradients, &self.left_out);
-        joints::gradients(model, numbering, at, gradients);
+        joints::gradients(at, gradients);
         left_out.clear_gradients(gradients);
         self.matrix.assemble(|emit| {
-            emit_reduced(numbering, 1, emit, |emit| {
+            emit_reduced(at.numbering, 1, emit, |emit| {
                 let rows = (&gradients[..], left_out);
-                emit_saddle_point(model, numbering, at, rows, multipliers, block, emit);
+                emit_saddle_point(at, rows, multipliers, block, emit);
             });
         });
         self.factorisations += 1;
         let found = self.factors.factorise(&self.matrix);
         found.map_err(|singular| SingularMatrix {
-            column: unreduced(numbering, 1, singular.column),
+            column: unreduced(at.numbering, 1, singular.column),
         })
     }
 
@@ -265,23 +264,21 @@ impl<S: SolveScalar> SaddlePoint<S> {
 }
 
 fn emit_saddle_point<S: Scalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    at: (&[Motion<S>], S),
+    here: &InMotion<S>,
     (gradients, left_out): (&[RowGradient<S>], &LeftOut),
     multipliers: &[S],
     block: impl Fn(usize) -> BodyBlocks<S>,
     emit: &mut dyn Emit<S>,
 ) {
+    let (model, numbering) = (here.model, here.numbering);
     let n = numbering.velocities();
-    let here = at;
     for body in 0..numbering.bodies() {
         let BodyBlocks { linear, angular } = block(body);
         let at = numbering.velocity(body);
         emit.add_identity(at, at, linear);
         emit.add_block(at + 3, at + 3, &angular);
     }
-    emit_reaction_jacobian(model, numbering, here, multipliers, (0, 0), S::one(), emit);
+    emit_reaction_jacobian(here, multipliers, (0, 0), S::one(), emit);
     emit_transposed_gradients(model, numbering, gradients, (0, n), S::one(), emit);
     emit_gradients(model, numbering, gradients, (n, 0), emit);
     emit_left_out(numbering, left_out, &[(n, n)], emit);

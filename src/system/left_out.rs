@@ -5,8 +5,9 @@
 //! through zero the rows that are imposed depend on each other. So a row is exchanged for one of
 //! larger weight before that. The motion does not depend on the choice where all joints are closed.
 
-use super::bodies::{Motion, add6};
+use super::bodies::add6;
 use super::constraint::RowGradient;
+use super::in_motion::InMotion;
 use super::joints;
 use super::numbering::Numbering;
 use super::placement::length_scale;
@@ -124,8 +125,7 @@ impl LeftOut {
     /// `solve` solves that system in place where the bodies are.
     pub fn exchanged<S: Scalar>(
         &self,
-        (model, numbering): (&Model<S>, &Numbering),
-        at: (&[Motion<S>], S),
+        at: &InMotion<S>,
         worn: f64,
         weighing: &mut Weighing<S>,
         mut solve: impl FnMut(&mut [S]),
@@ -138,7 +138,8 @@ impl LeftOut {
             sizes,
             rhs,
         } = weighing;
-        joints::gradients(model, numbering, at, gradients);
+        let (model, numbering) = (at.model, at.numbering);
+        joints::gradients(at, gradients);
         let arm = 1.0 / length_scale(model);
         let size = |row: &RowGradient<S>| {
             let square = |x: &crate::math::Vec3<S>| x.iter().map(|x| x.re().powi(2)).sum::<f64>();

@@ -10,7 +10,9 @@ pub mod accelerations;
 pub mod assembly;
 pub mod bodies;
 pub mod constraint;
+pub mod emit_bodies;
 pub mod failure;
+pub mod in_motion;
 pub mod initial;
 pub mod joints;
 pub mod kkt;
@@ -31,5 +33,6 @@ pub mod side;
 pub mod tree;
 
 pub use bodies::Motion;
+pub use in_motion::InMotion;
 pub use left_out::LeftOut;
 pub use numbering::Numbering;

@@ -14,6 +14,7 @@
 use super::assembly::{add_displacement, displacement_metric};
 use super::bodies::{self, Motion};
 use super::failure::AssemblyFailure;
+use super::in_motion::InMotion;
 use super::initial::{self, InitialState};
 use super::joints;
 use super::kkt::SaddlePoint;
@@ -100,21 +101,21 @@ impl<S: Scalar> FirstOrder<'_, S> {
         let still = vec![S::zero(); numbering.velocities()];
         let (mut motions, mut gradients) = (Vec::new(), Vec::new());
         Motion::all(numbering, q, &still, &mut motions);
-        let at = (&motions[..], S::zero());
-        joints::gradients(model, numbering, at, &mut gradients);
+        let at = InMotion::new(model, numbering, &motions, S::zero());
+        joints::gradients(&at, &mut gradients);
         let mut residual = still;
         add_displacement(model, numbering, q, &mut residual);
         let s: Vec<S> = self.state.s.iter().map(|&s| s.into()).collect();
         joints::add_reactions(model, numbering, &gradients, &s, &mut residual);
         let mut values = vec![S::zero(); numbering.constraints()];
-        joints::values(model, numbering, at, &mut values);
+        joints::values(&at, &mut values);
         residual.extend(values);
 
         let here = self.motions();
         let metric = displacement_metric(self.real, numbering, &self.state.q);
         self.saddle.leave_out(&LeftOut::of(self.real, numbering));
-        let at = (&here[..], 0.0);
-        let found = (self.saddle).factorise(self.real, numbering, at, &self.state.s, metric);
+        let at = InMotion::new(self.real, numbering, &here, 0.0);
+        let found = (self.saddle).factorise(&at, &self.state.s, metric);
         found.map_err(|_| self.singular())?;
         let change = self.change(&residual);
         let mut increment = vec![S::zero(); q.len()];
@@ -126,8 +127,8 @@ impl<S: Scalar> FirstOrder<'_, S> {
         let (model, numbering) = (self.model, self.numbering);
         let (mut motions, mut gradients) = (Vec::new(), Vec::new());
         Motion::all(numbering, q, v, &mut motions);
-        let at = (&motions[..], S::zero());
-        joints::gradients(model, numbering, at, &mut gradients);
+        let at = InMotion::new(model, numbering, &motions, S::zero());
+        joints::gradients(&at, &mut gradients);
         let (_, given) = guess(model);
         let by: Vec<S> = v.iter().zip(&given).map(|(&v, &g)| v - g).collect();
         let mut residual = vec![S::zero(); numbering.velocities()];
@@ -135,15 +136,15 @@ impl<S: Scalar> FirstOrder<'_, S> {
         let sigma: Vec<S> = self.state.sigma.iter().map(|&s| s.into()).collect();
         joints::add_reactions(model, numbering, &gradients, &sigma, &mut residual);
         let mut rates = vec![S::zero(); numbering.constraints()];
-        joints::rates(model, numbering, at, &mut rates);
+        joints::rates(&at, &mut rates);
         residual.extend(rates);
 
         let here = self.motions();
         let zeros = vec![0.0; numbering.constraints()];
         self.saddle.leave_out(&self.state.left_out);
         let metric = initial::mass(self.real);
-        let at = (&here[..], 0.0);
-        let found = (self.saddle).factorise(self.real, numbering, at, &zeros, metric);
+        let at = InMotion::new(self.real, numbering, &here, 0.0);
+        let found = (self.saddle).factorise(&at, &zeros, metric);
         found.map_err(|_| self.singular())?;
         let change = self.change(&residual);
         v.iter_mut().zip(&change).for_each(|(v, &by)| *v += by);

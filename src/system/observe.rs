@@ -2,6 +2,7 @@
 
 use super::bodies::{Motion, add6};
 use super::constraint::gradient;
+use super::in_motion::InMotion;
 use super::joints;
 use super::loads;
 use super::numbering::Numbering;
@@ -67,9 +68,10 @@ pub fn observe(
     }
     seen.potential += loads::potential(model, &motions);
     let mut rows = vec![0.0; numbering.constraints()];
-    joints::values(model, numbering, (&motions, time), &mut rows);
+    let at = InMotion::new(model, numbering, &motions, time);
+    joints::values(&at, &mut rows);
     seen.position_drift = largest(&rows);
-    joints::rates(model, numbering, (&motions, time), &mut rows);
+    joints::rates(&at, &mut rows);
     seen.velocity_drift = largest(&rows);
     seen
 }
@@ -97,7 +99,7 @@ pub fn reactions(
     Motion::all(numbering, q, &at_rest, &mut motions);
     let lambda = match model.joints.iter().all(|joint| joint.left_out.is_empty()) {
         true => lambda.to_vec(),
-        false => smallest_multipliers(model, numbering, (&motions, time), lambda),
+        false => smallest_multipliers(&InMotion::new(model, numbering, &motions, time), lambda),
     };
     let ground = Motion::ground();
     let reaction = |(j, joint): (usize, &crate::model::Joint<f64>)| {

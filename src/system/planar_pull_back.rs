@@ -2,30 +2,21 @@
 //! [`super::joints::pull_back`] does in space, for rates and second derivatives.
 
 use super::bodies::add6;
-use super::joints::JointCotangent;
+use super::constraint::RowCotangent;
+use super::joints::{JointCotangent, RowCotangents};
 use super::numbering::Numbering;
 use super::planar::{Jet, PlanarFrame, PlanarJoint, PlanarJoints, PlanarMotion, Vec2, spatial};
 use crate::model::{ConstraintRow, JointFrame};
 
-/// Cotangents of a row's rate, second derivative and virtual rate.
-#[derive(Clone, Copy)]
-struct RowCotangent {
-    rate: f64,
-    acceleration: f64,
-    virtual_rate: f64,
-}
-
-impl RowCotangent {
-    /// The cotangent that one factor of a product leaves on the other.
-    fn times(&self, factor: &Jet<f64>) -> Jet<f64> {
-        Jet {
-            x: factor.rate * self.rate
-                + factor.acceleration * self.acceleration
-                + factor.virtual_rate * self.virtual_rate,
-            rate: factor.x * self.rate + factor.rate * (self.acceleration * 2.0),
-            acceleration: factor.x * self.acceleration,
-            virtual_rate: factor.x * self.virtual_rate,
-        }
+/// The cotangent that one factor of a row's product leaves on the other, without that of the value.
+fn on_factor(cot: &RowCotangent<f64>, factor: &Jet<f64>) -> Jet<f64> {
+    Jet {
+        x: factor.rate * cot.rate
+            + factor.acceleration * cot.acceleration
+            + factor.virtual_rate * cot.virtual_rate,
+        rate: factor.x * cot.rate + factor.rate * (cot.acceleration * 2.0),
+        acceleration: factor.x * cot.acceleration,
+        virtual_rate: factor.x * cot.virtual_rate,
     }
 }
 
@@ -85,23 +76,18 @@ impl SideCotangent {
 }
 
 impl PlanarJoints<f64> {
-    /// Pulls cotangents of the rates, second derivatives and virtual rates of all rows (in this
-    /// order, each optional) back to tangent positions, velocities and the parameters of the
+    /// Pulls cotangents of the rates, second derivatives and virtual rates of all rows, none of their
+    /// values, back to tangent positions, velocities and the parameters of the
     /// joints, the accelerations and virtual velocities held.
     pub fn pull_back(
         &self,
         numbering: &Numbering,
-        cotangents: [Option<&[f64]>; 3],
+        cotangents: &RowCotangents,
         out: &mut JointCotangent,
     ) {
-        let at = |which: usize, i: usize| cotangents[which].map_or(0.0, |c| c[i]);
         for (j, joint) in self.joints.iter().enumerate() {
             let first = numbering.rows(j).start;
-            let cot = |i: usize| RowCotangent {
-                rate: at(0, first + i),
-                acceleration: at(1, first + i),
-                virtual_rate: at(2, first + i),
-            };
+            let cot = |i: usize| cotangents.row(first + i);
             let (by_a, by_b, by_length) = self.pull_joint(joint, cot);
             let own = &mut out.model.joints[j];
             own.frame_a.length += by_length;
@@ -126,7 +112,7 @@ impl PlanarJoints<f64> {
     fn pull_joint(
         &self,
         joint: &PlanarJoint<f64>,
-        cot: impl Fn(usize) -> RowCotangent,
+        cot: impl Fn(usize) -> RowCotangent<f64>,
     ) -> (SideCotangent, SideCotangent, f64) {
         let (at_a, at_b) = (&self.motions[joint.body_a], &self.motions[joint.body_b]);
         let (mut by_a, mut by_b) = (SideCotangent::zero(), SideCotangent::zero());
@@ -144,17 +130,17 @@ impl PlanarJoints<f64> {
                 }
                 ConstraintRow::Perpendicular { a, b } => {
                     let (u, w) = self.axes(joint, a, b);
-                    by_a.axis(at_a, &joint.a, a, &cot.times(&w));
-                    by_b.axis(at_b, &joint.b, b, &cot.times(&u));
+                    by_a.axis(at_a, &joint.a, a, &on_factor(&cot, &w));
+                    by_b.axis(at_b, &joint.b, b, &on_factor(&cot, &u));
                 }
                 ConstraintRow::Sliding { a } => {
                     let u = at_a.direction(&joint.a.axes[a]);
-                    by_a.axis(at_a, &joint.a, a, &cot.times(&d));
-                    by_distance.add(&cot.times(&u));
+                    by_a.axis(at_a, &joint.a, a, &on_factor(&cot, &d));
+                    by_distance.add(&on_factor(&cot, &u));
                 }
                 ConstraintRow::Distance => {
                     // d · d / (2 L): both factors are d.
-                    by_distance.add(&cot.times(&d).scaled(1.0 / joint.length));
+                    by_distance.add(&on_factor(&cot, &d).scaled(1.0 / joint.length));
                     let squares = d.x.dot(&d.rate) * cot.rate
                         + (d.x.dot(&d.acceleration) + d.rate.dot(&d.rate)) * cot.acceleration
                         + d.x.dot(&d.virtual_rate) * cot.virtual_rate;

@@ -10,6 +10,7 @@
 
 use super::bodies::{self, Motion};
 use super::constraint;
+use super::in_motion::InMotion;
 use super::joints;
 use super::left_out::LeftOut;
 use super::numbering::Numbering;
@@ -181,6 +182,10 @@ impl<'a> Rows<'a> {
         motions
     }
 
+    fn at<'b>(&'b self, motions: &'b [Motion<f64>]) -> InMotion<'b, f64> {
+        InMotion::new(self.model, &self.numbering, motions, 0.0)
+    }
+
     /// Constraint rows by number, in the order of the joints.
     fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
         self.joints.iter().flat_map(|&j| self.numbering.rows(j))
@@ -191,7 +196,7 @@ impl<'a> Rows<'a> {
     fn gradients(&self, q: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
         let motions = self.motions(q);
         let mut all = Vec::new();
-        joints::gradients(self.model, &self.numbering, (&motions, 0.0), &mut all);
+        joints::gradients(&self.at(&motions), &mut all);
         let count = self.numbers().count();
         let mut g = DMatrix::zeros(self.numbering.velocities(), count);
         let mut i = 0;
@@ -232,7 +237,7 @@ impl<'a> Rows<'a> {
         let mut closed_before = false;
         for _ in 0..ITERATIONS {
             let motions = self.motions(&q);
-            joints::values(self.model, &self.numbering, (&motions, 0.0), &mut values);
+            joints::values(&self.at(&motions), &mut values);
             let gap = self.numbers().fold(0.0_f64, |m, i| m.max(values[i].abs()));
             let closed = gap <= CLOSED * self.length.max(1.0);
             if closed && closed_before {
@@ -369,16 +374,11 @@ pub fn opened<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Wide
 /// Problems*, algorithm 7.4.1 and section 7.4.3), and once more for what is left of λ. A direction in
 /// which G has the size σ then lacks (δ/σ)⁴ if it is of the range, and leaks 2 (σ/δ)² if it is not.
 ///
-/// Each joint's rows follow each other in the order of its kind. `model` has all rows imposed,
-/// `numbering` numbers them and `at` is where it is, and when.
-pub fn smallest_multipliers(
-    model: &Model<f64>,
-    numbering: &Numbering,
-    at: (&[Motion<f64>], f64),
-    lambda: &[f64],
-) -> Vec<f64> {
+/// Each joint's rows follow each other in the order of its kind. The model has all rows imposed.
+pub fn smallest_multipliers(at: &InMotion<f64>, lambda: &[f64]) -> Vec<f64> {
+    let (model, numbering) = (at.model, at.numbering);
     let mut gradients = Vec::new();
-    joints::gradients(model, numbering, at, &mut gradients);
+    joints::gradients(at, &mut gradients);
     let transposed = |x: &[f64]| {
         let mut out = vec![0.0; numbering.velocities()];
         joints::add_reactions(model, numbering, &gradients, x, &mut out);

@@ -11,9 +11,10 @@ use flexbody::integrate::implicit::ggl::{Equations, Instant};
 use flexbody::linalg::{Pattern, SparseMatrix};
 use flexbody::math::{Complex64, Mat3, rotation};
 use flexbody::model::Model;
+use flexbody::system::InMotion;
 use flexbody::system::bodies::{self, Motion, rates, velocity_of_rates};
 use flexbody::system::initial;
-use flexbody::system::joints::{self, JointCotangent, rate_by_position};
+use flexbody::system::joints::{self, JointCotangent, RowCotangents, rate_by_position};
 use flexbody::system::kkt::SaddlePoint;
 use flexbody::system::reaction::ReactionJacobian;
 use flexbody::system::side::sides;
@@ -27,12 +28,8 @@ fn gradients_rates_and_biases() {
         let (model, v) = (case.lifted(), lift(&case.v));
         let mut gradients = Vec::new();
         let motions = case.motions(&case.q, &case.v);
-        joints::gradients(
-            &case.model,
-            &case.numbering,
-            (&motions, TIME),
-            &mut gradients,
-        );
+        let at = InMotion::new(&case.model, &case.numbering, &motions, TIME);
+        joints::gradients(&at, &mut gradients);
         // G by columns, from the values and from the rates.
         let (mut given, mut by_value, mut by_rate) = (Vec::new(), Vec::new(), Vec::new());
         for j in 0..nv {
@@ -55,8 +52,8 @@ fn gradients_rates_and_biases() {
         let now = step((&TIME, &1.0));
         let in_time = case.constraints_at(&model, &case.moved(&case.v), &v, now);
         let (mut rate, mut bias) = (vec![0.0; rows], vec![0.0; rows]);
-        joints::rates(&case.model, &case.numbering, (&motions, TIME), &mut rate);
-        joints::accelerations(&case.model, &case.numbering, (&motions, TIME), &mut bias);
+        joints::rates(&at, &mut rate);
+        joints::accelerations(&at, &mut bias);
         case.assert("rate", &rate, &in_time[..rows]);
         case.assert("bias", &bias, &in_time[rows..2 * rows]);
     }
@@ -152,7 +149,12 @@ fn pull_backs_of_constraints() {
             [true; 3],
         ] {
             let picked = |k: usize| wanted[k].then_some(parts[k]);
-            let cotangents = [picked(0), picked(1), picked(2), None];
+            let cotangents = RowCotangents {
+                value: picked(0),
+                rate: picked(1),
+                acceleration: picked(2),
+                virtual_rate: None,
+            };
             let weights: Vec<f64> = (0..3 * rows)
                 .map(|i| if wanted[i / rows] { cot[i] } else { 0.0 })
                 .collect();
@@ -163,8 +165,8 @@ fn pull_backs_of_constraints() {
                 v: Some(&mut v),
                 model: &mut by_model,
             };
-            let at = (&motions[..], TIME);
-            let by_time = joints::pull_back(&case.model, &case.numbering, at, cotangents, &mut out);
+            let at = InMotion::new(&case.model, &case.numbering, &motions, TIME);
+            let by_time = joints::pull_back(&at, &cotangents, &mut out);
             let model = case.lifted();
             let (now, q) = (step((&TIME, &1.0)), lift(&case.q));
             let slopes = case.constraints_at(&model, &q, &lift(&case.v), now);
@@ -196,20 +198,15 @@ fn pull_backs_of_virtual_rates() {
     for mut case in cases() {
         let cot = case.numbers.list(case.numbering.constraints());
         let w = case.numbers.list(12);
-        let pull = |motions: &[_], cotangents| {
+        let pull = |motions: &[_], cotangents: RowCotangents| {
             let (mut y, mut by_model) = (vec![0.0; 12], case.model.map(&mut |_| 0.0));
             let mut out = JointCotangent {
                 y: Some(&mut y),
                 v: None,
                 model: &mut by_model,
             };
-            joints::pull_back(
-                &case.model,
-                &case.numbering,
-                (motions, TIME),
-                cotangents,
-                &mut out,
-            );
+            let at = InMotion::new(&case.model, &case.numbering, motions, TIME);
+            joints::pull_back(&at, &cotangents, &mut out);
             y.extend(parameters(&by_model));
             y
         };
@@ -217,13 +214,21 @@ fn pull_backs_of_virtual_rates() {
         for (body, motion) in motions.iter_mut().enumerate() {
             *motion = motion.virtually(&w[case.numbering.velocity(body)..]);
         }
-        let given = pull(&motions, [None, None, None, Some(&cot[..])]);
+        let virtually = RowCotangents {
+            virtual_rate: Some(&cot),
+            ..Default::default()
+        };
+        let given = pull(&motions, virtually);
         let moving = case.motions(&case.q, &w);
         if !case.model.joints[0].drives.is_empty() {
             // Its rate has a part that no velocity makes.
             continue;
         }
-        let exact = pull(&moving, [None, Some(&cot[..]), None, None]);
+        let rate = RowCotangents {
+            rate: Some(&cot),
+            ..Default::default()
+        };
+        let exact = pull(&moving, rate);
         case.assert("pull-back of virtual rates", &given, &exact);
     }
 }

@@ -7,7 +7,7 @@ use flexbody::problem::Problem;
 use flexbody::system::accelerations::Accelerations;
 use flexbody::system::initial::mass;
 use flexbody::system::kkt::SaddlePoint;
-use flexbody::system::{Motion, Numbering};
+use flexbody::system::{InMotion, Motion, Numbering};
 use std::path::Path;
 
 /// Problems, and how many joints of each close loops.
@@ -63,10 +63,8 @@ fn differences<S: SolveScalar>(name: &str, model: &Model<S>, closing: usize) -> 
     let mut saddle = SaddlePoint::new(model, &numbering);
     Motion::all(&numbering, &q, &v, &mut motions);
     let zeros = vec![S::zero(); numbering.constraints()];
-    let at = (&motions[..], S::zero());
-    saddle
-        .factorise(model, &numbering, at, &zeros, mass(model))
-        .expect("regular");
+    let at = InMotion::new(model, &numbering, &motions, S::zero());
+    saddle.factorise(&at, &zeros, mass(model)).expect("regular");
     let mut right: Vec<S> = spread(v.len() + zeros.len())
         .into_iter()
         .map(S::from)

@@ -10,6 +10,7 @@ use flexbody::integrate::IntegrationFailure;
 use flexbody::integrate::{Method, Settings, simulate};
 use flexbody::math::{Mat3, Vec3, rotation};
 use flexbody::model::{JointFrame, JointKind, Model, RigidBody};
+use flexbody::system::InMotion;
 use flexbody::system::bodies::{Motion, all_force_balances, mass_product};
 use flexbody::system::failure::AssemblyFailure;
 use flexbody::system::initial::{self, InitialState};
@@ -98,7 +99,7 @@ fn a_displaced_guess_is_assembled_to_the_nearest_state() {
             let mut phi = vec![0.0; numbering.constraints()];
             let mut motions = Vec::new();
             Motion::all(&numbering, q, &[0.0; 12], &mut motions);
-            joints::values(&model, &numbering, (&motions, 0.0), &mut phi);
+            joints::values(&InMotion::new(&model, &numbering, &motions, 0.0), &mut phi);
             largest(&phi)
         };
         assert!(closed(&q_guess) > 0.05, "{name}: the guess is open");
@@ -154,7 +155,7 @@ fn velocities_are_projected() {
             let mut rows = vec![0.0; numbering.constraints()];
             let mut motions = Vec::new();
             Motion::all(&numbering, &start.q, v, &mut motions);
-            joints::rates(&model, &numbering, (&motions, 0.0), &mut rows);
+            joints::rates(&InMotion::new(&model, &numbering, &motions, 0.0), &mut rows);
             largest(&rows)
         };
         assert!(rates(&v_guess) > 0.1, "{name}");
@@ -187,11 +188,14 @@ fn accelerations_obey_constraints_and_equations_of_motion() {
         let start = solve(&model).expect("is consistent");
         let (mut motions, mut gradients) = (Vec::new(), Vec::new());
         Motion::all(&numbering, &start.q, &start.v, &mut motions);
-        joints::gradients(&model, &numbering, (&motions, 0.0), &mut gradients);
+        joints::gradients(
+            &InMotion::new(&model, &numbering, &motions, 0.0),
+            &mut gradients,
+        );
         let rows = numbering.constraints();
         let (mut ga, mut bias) = (vec![0.0; rows], vec![0.0; rows]);
         joints::rates_from_gradients(&model, &numbering, &gradients, &start.a, &mut ga);
-        joints::accelerations(&model, &numbering, (&motions, 0.0), &mut bias);
+        joints::accelerations(&InMotion::new(&model, &numbering, &motions, 0.0), &mut bias);
         assert!(largest(&bias) > 0.1, "{name}");
         let sum: Vec<f64> = ga.iter().zip(&bias).map(|(a, b)| a + b).collect();
         let scale = largest(&ga).max(1.0);

@@ -9,6 +9,7 @@ use flexbody::math::rotation::{from_axis_angle, matrix};
 use flexbody::math::{Mat3, Vec3};
 use flexbody::model::{Model, RigidBody};
 use flexbody::problem::Problem;
+use flexbody::system::InMotion;
 use flexbody::system::initial;
 use flexbody::system::kkt::SaddlePoint;
 use flexbody::system::{Motion, Numbering, joints};
@@ -58,9 +59,10 @@ pub(super) fn started(problem: &Problem, x: &[f64]) -> (Vec<(String, State)>, Mo
     Motion::all(&numbering, &start.q, &start.v, &mut motions);
     let mut rows = vec![0.0; numbering.constraints()];
     let largest = |rows: &[f64]| rows.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    joints::values(&model, &numbering, (&motions, 0.0), &mut rows);
+    let at = InMotion::new(&model, &numbering, &motions, 0.0);
+    joints::values(&at, &mut rows);
     assert!(largest(&rows) <= 1e-12, "{:e}", largest(&rows));
-    joints::rates(&model, &numbering, (&motions, 0.0), &mut rows);
+    joints::rates(&at, &mut rows);
     assert!(largest(&rows) <= 1e-12, "{:e}", largest(&rows));
     let state = |(body, motion): (&RigidBody<f64>, &Motion<f64>)| {
         let state = State {

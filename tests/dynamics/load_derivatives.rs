@@ -13,9 +13,10 @@ use flexbody::math::scalar::COMPLEX_STEP;
 use flexbody::math::{Complex64, Scalar};
 use flexbody::model::Interpolation;
 use flexbody::model::{Axes, Course, Freedom, JointKind, Load, LoadKind, Model};
+use flexbody::system::InMotion;
 use flexbody::system::initial;
 use flexbody::system::kkt::SaddlePoint;
-use flexbody::system::loads::{self, LoadCotangent};
+use flexbody::system::loads::{self, LoadCotangent, LoadEntries};
 use flexbody::system::{Numbering, bodies};
 use nalgebra::DMatrix;
 use reference::cases::{Case, case, dot, lift, parameters, slopes, step, unit};
@@ -140,7 +141,9 @@ fn agree(case: &Case, what: &str, given: &[f64], exact: &[f64]) {
 /// f at the state (q, v).
 fn forces<S: Scalar>(case: &Case, model: &Model<S>, q: &[S], v: &[S], time: S) -> Vec<S> {
     let mut out = vec![S::zero(); v.len()];
-    loads::add_forces(model, &case.numbering, &case.motions(q, v), time, &mut out);
+    let motions = case.motions(q, v);
+    let here = InMotion::new(model, &case.numbering, &motions, time);
+    loads::add_forces(&here, &mut out);
     out
 }
 
@@ -159,10 +162,15 @@ fn jacobians() {
     for case in cases() {
         let motions = case.motions(&case.q, &case.v);
         let mut given = Dense(DMatrix::zeros(13, 26), 0);
-        let scales = (2.0, -0.5);
-        let (model, numbering) = (&case.model, &case.numbering);
-        let at = (1, 2, 14);
-        loads::emit_jacobian(model, numbering, &motions, TIME, at, scales, &mut given);
+        let here = InMotion::new(&case.model, &case.numbering, &motions, TIME);
+        let to = LoadEntries {
+            row: 1,
+            y: 2,
+            v: 14,
+            by_y: -2.0,
+            by_v: 0.5,
+        };
+        loads::emit_jacobian(&here, &to, &mut given);
         let (model, time) = (case.lifted(), TIME.into());
         for j in 0..12 {
             let e = unit(12, j);
@@ -172,7 +180,7 @@ fn jacobians() {
             for (column, by, scale) in [(2 + j, by_y, -2.0), (14 + j, by_v, 0.5)] {
                 let exact: Vec<f64> = slopes(&by).iter().map(|x| x * scale).collect();
                 let given: Vec<f64> = (1..13).map(|i| given.0[(i, column)]).collect();
-                agree(&case, &format!("−∂f by column {column}"), &given, &exact);
+                agree(&case, &format!("∂f by column {column}"), &given, &exact);
             }
         }
     }
@@ -191,7 +199,8 @@ fn pull_backs() {
             model: &mut cot,
         };
         let motions = case.motions(&case.q, &case.v);
-        loads::pull_back(&case.model, &case.numbering, &motions, TIME, &psi, &mut out);
+        let here = InMotion::new(&case.model, &case.numbering, &motions, TIME);
+        loads::pull_back(&here, &psi, &mut out);
         let (model, q0, v0) = (case.lifted(), lift(&case.q), lift(&case.v));
         let power = |model: &Model<Complex64>, q: &[Complex64], v: &[Complex64], time| {
             dot(&slopes(&forces(&case, model, q, v, time)), &psi)

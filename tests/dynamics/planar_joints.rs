@@ -6,8 +6,9 @@ use crate::reference;
 
 use flexbody::math::{Complex64, Scalar, rotation};
 use flexbody::model::{Mobility, Model};
+use flexbody::system::InMotion;
 use flexbody::system::constraint::RowGradient;
-use flexbody::system::joints::{self, JointCotangent};
+use flexbody::system::joints::{self, JointCotangent, RowCotangents};
 use flexbody::system::planar::PlanarJoints;
 use flexbody::system::{Motion, Numbering, reduce};
 use reference::cases::{Case, case, lift, parameters, step};
@@ -76,15 +77,15 @@ fn both<S: Scalar>(
     let numbering = &case.numbering;
     let at_rest = vec![S::zero(); v.len()];
     let motions = moving(case, q, v, a, &at_rest);
-    let at = (&motions[..], S::zero());
+    let at = InMotion::new(model, numbering, &motions, S::zero());
     let (mut spatial, mut own) = (Vec::new(), Vec::new());
-    joints::gradients(model, numbering, at, &mut spatial);
+    joints::gradients(&at, &mut spatial);
     planar.stand(&motions);
     planar.set_moving(numbering, Some(a), None);
     planar.gradients(&mut own);
     let mut second = vec![S::zero(); numbering.constraints()];
     let mut found = [spatial, own].map(|gradients| in_plane(case, model, &gradients));
-    joints::accelerations(model, numbering, at, &mut second);
+    joints::accelerations(&at, &mut second);
     found[0].extend(&second);
     planar.accelerations(numbering, &mut second);
     found[1].extend(&second);
@@ -155,14 +156,18 @@ fn pull_backs_are_those_in_space() {
                     v: Some(&mut v),
                     model: &mut by,
                 };
-                let given = std::array::from_fn(given);
+                let given = RowCotangents {
+                    value: None,
+                    rate: given(0),
+                    acceleration: given(1),
+                    virtual_rate: given(2),
+                };
                 match in_space {
                     true => {
-                        let [rate, second, virtually] = given;
-                        let given = [None, rate, second, virtually];
-                        joints::pull_back(model, numbering, (&motions, 0.0), given, &mut out);
+                        let at = InMotion::new(model, numbering, &motions, 0.0);
+                        joints::pull_back(&at, &given, &mut out);
                     }
-                    false => planar.pull_back(numbering, given, &mut out),
+                    false => planar.pull_back(numbering, &given, &mut out),
                 }
                 reduce::compress(numbering, 1, &mut y);
                 reduce::compress(numbering, 1, &mut v);

@@ -6,7 +6,7 @@ use flexbody::math::{Complex64, Scalar};
 use flexbody::model::Interpolation;
 use flexbody::model::{Drive, Freedom, JointKind, Model, MotionCourse};
 use flexbody::system::bodies::{Motion, rates};
-use flexbody::system::{Numbering, joints, placement};
+use flexbody::system::{InMotion, Numbering, joints, placement};
 
 /// A model in a state, and random numbers for what the derivatives are multiplied with.
 pub struct Case {
@@ -147,12 +147,12 @@ impl Case {
         time: Complex64,
     ) -> Vec<f64> {
         let (numbering, motions) = (&self.numbering, self.motions(q, v));
-        let at = (&motions[..], time);
+        let at = InMotion::new(model, numbering, &motions, time);
         let rows = numbering.constraints();
         let mut all = vec![Complex64::from(0.0); 3 * rows];
-        joints::values(model, numbering, at, &mut all[..rows]);
-        joints::rates(model, numbering, at, &mut all[rows..2 * rows]);
-        joints::accelerations(model, numbering, at, &mut all[2 * rows..]);
+        joints::values(&at, &mut all[..rows]);
+        joints::rates(&at, &mut all[rows..2 * rows]);
+        joints::accelerations(&at, &mut all[2 * rows..]);
         slopes(&all)
     }
 
@@ -165,8 +165,8 @@ impl Case {
         let at_rest = vec![S::zero(); self.v.len()];
         let mut gradients = Vec::new();
         let motions = self.motions(q, &at_rest);
-        let at = (&motions[..], S::from(TIME));
-        joints::gradients(model, &self.numbering, at, &mut gradients);
+        let at = InMotion::new(model, &self.numbering, &motions, S::from(TIME));
+        joints::gradients(&at, &mut gradients);
         let mut out = at_rest;
         joints::add_reactions(model, &self.numbering, &gradients, lambda, &mut out);
         out

@@ -9,7 +9,7 @@ use crate::integrate::work::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
-use crate::system::{LeftOut, Motion, Numbering, bodies, joints};
+use crate::system::{InMotion, LeftOut, Motion, Numbering, bodies, joints};
 
 /// Round-off in an estimated error, relative to that in the stages, and the most that is taken for it.
 const MORE_NOISE: f64 = 30.0;
@@ -109,11 +109,12 @@ impl<'a> Estimate<'a> {
         dense(self.scheme, &self.from, &self.stages, h, 0.5, middle);
         bodies::bring_to_unit(numbering, &mut middle.q);
         Motion::all(numbering, &middle.q, &middle.v, &mut self.motions);
-        let at = (&self.motions[..], self.from.time + 0.5 * h);
+        let time = self.from.time + 0.5 * h;
+        let at = InMotion::new(model, numbering, &self.motions, time);
         let largest = |rows: &[f64]| rows.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        joints::values(model, numbering, at, &mut self.rows);
+        joints::values(&at, &mut self.rows);
         let open = largest(&self.rows) / scale.length;
-        joints::rates(model, numbering, at, &mut self.rows);
+        joints::rates(&at, &mut self.rows);
         open.max(largest(&self.rows) / speeds[0])
     }
 }

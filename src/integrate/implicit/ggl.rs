@@ -17,12 +17,14 @@ use crate::math::{Mat3, Scalar};
 use crate::model::Model;
 use crate::system::bodies::{self, Motion, all_force_balances, velocities_of, velocity_of_rates};
 use crate::system::constraint::RowGradient;
-use crate::system::joints::{self, JointCotangent};
+use crate::system::emit_bodies::{Rates, emit_force_balance, emit_kinematics};
+use crate::system::in_motion::InMotion;
+use crate::system::joints::{self, JointCotangent, RowCotangents};
 use crate::system::kkt::{
     emit_gradients, emit_left_out, emit_reaction_jacobian, emit_transposed_gradients,
 };
 use crate::system::left_out::LeftOut;
-use crate::system::loads::{self, LoadCotangent};
+use crate::system::loads::{self, LoadCotangent, LoadEntries};
 use crate::system::reduce;
 use crate::system::side::sides;
 use crate::system::{Numbering, joints::rate_by_position};
@@ -143,12 +145,8 @@ impl<'a, S: Scalar> Equations<'a, S> {
 
     fn visit(&mut self, at: &Instant<S>) {
         Motion::all(self.numbering, at.q, at.v, &mut self.motions);
-        joints::gradients(
-            self.model,
-            self.numbering,
-            (&self.motions, at.time),
-            &mut self.gradients,
-        );
+        let here = InMotion::new(self.model, self.numbering, &self.motions, at.time);
+        joints::gradients(&here, &mut self.gradients);
         self.left_out.clear_gradients(&mut self.gradients);
     }
 
@@ -168,14 +166,14 @@ impl<'a, S: Scalar> Equations<'a, S> {
         all_force_balances(model, numbering, &self.motions, at.vdot, out2);
         joints::add_reactions(model, numbering, &self.gradients, at.lambda, out2);
         self.loads.fill(S::zero());
-        loads::add_forces(model, numbering, &self.motions, at.time, &mut self.loads);
+        let here = InMotion::new(model, numbering, &self.motions, at.time);
+        loads::add_forces(&here, &mut self.loads);
         for (f, &load) in out2.iter_mut().zip(&self.loads) {
             *f -= load;
         }
-        let here = (&self.motions[..], at.time);
-        joints::values(model, numbering, here, out3);
+        joints::values(&here, out3);
         joints::rates_from_gradients(model, numbering, &self.gradients, at.v, out4);
-        joints::add_driven_rates(model, numbering, here, out4);
+        joints::add_driven_rates(&here, out4);
         for i in self.left_out.numbers() {
             out3[i] = at.lambda[i] * (h * h / self.mass);
             out4[i] = at.mu[i];
@@ -219,22 +217,21 @@ impl<'a, S: Scalar> Equations<'a, S> {
         let (model, numbering, motions) = (self.model, self.numbering, &self.motions);
         let [y, v, lambda, mu] = self.starts();
         let (f1, f2, f3, f4) = (y, v, lambda, mu);
-        bodies::emit_kinematics(numbering, motions, at.qdot, (f1, y, v), (c, h), emit);
-        let here = (&motions[..], at.time);
-        emit_reaction_jacobian(model, numbering, here, at.mu, (f1, y), h, emit);
+        let here = InMotion::new(model, numbering, motions, at.time);
+        let rates = Rates { by_state: c, h };
+        emit_kinematics(&here, at.qdot, (f1, y, v), rates, emit);
+        emit_reaction_jacobian(&here, at.mu, (f1, y), h, emit);
         let by_mass = &mut Times(emit, S::from(1.0 / self.mass));
-        bodies::emit_force_balance(model, numbering, motions, (f2, v), (c, h), by_mass);
-        let scales = (h * h, h);
-        loads::emit_jacobian(
-            model,
-            numbering,
-            motions,
-            at.time,
-            (f2, y, v),
-            scales,
-            by_mass,
-        );
-        emit_reaction_jacobian(model, numbering, here, at.lambda, (f2, y), h * h, by_mass);
+        emit_force_balance(&here, (f2, v), rates, by_mass);
+        let to = LoadEntries {
+            row: f2,
+            y,
+            v,
+            by_y: -(h * h),
+            by_v: -h,
+        };
+        loads::emit_jacobian(&here, &to, by_mass);
+        emit_reaction_jacobian(&here, at.lambda, (f2, y), h * h, by_mass);
         let one = S::one();
         emit_transposed_gradients(model, numbering, &self.gradients, (f1, mu), one, emit);
         emit_transposed_gradients(model, numbering, &self.gradients, (f2, lambda), one, emit);
@@ -402,26 +399,20 @@ impl Equations<'_, f64> {
             time: &mut by_time,
             model: cot,
         };
-        loads::pull_back(
-            model,
-            numbering,
-            &self.motions,
-            at.time,
-            &self.loads,
-            &mut out,
-        );
-        let mut pull = |motions: &[Motion<f64>], cotangents: [Option<&[f64]>; 4]| {
+        let here = InMotion::new(model, numbering, &self.motions, at.time);
+        loads::pull_back(&here, &self.loads, &mut out);
+        let mut pull = |motions: &[Motion<f64>], cotangents: &RowCotangents| {
             let mut out = JointCotangent {
                 y: wanted.then_some(&mut y[..]),
                 v: None,
                 model: cot,
             };
-            by_time +=
-                joints::pull_back(model, numbering, (motions, at.time), cotangents, &mut out);
+            let here = InMotion::new(model, numbering, motions, at.time);
+            by_time += joints::pull_back(&here, cotangents, &mut out);
         };
         // λᵀ G ψ_2 beside Φ and G v, and μᵀ G ψ_1 unless the motion needs no μ.
         let (motions, moving) = (&self.motions, &mut self.moving);
-        let mut virtually = |psi: &[f64], cotangents: [Option<&[f64]>; 4]| {
+        let mut virtually = |psi: &[f64], cotangents: &RowCotangents| {
             let at = |(i, motion): (usize, &Motion<f64>)| {
                 motion.virtually(&psi[numbering.velocity(i)..])
             };
@@ -429,9 +420,19 @@ impl Equations<'_, f64> {
             moving.extend(motions.iter().enumerate().map(at));
             pull(moving, cotangents);
         };
-        virtually(psi2, [Some(psi3), Some(psi4), None, Some(at.lambda)]);
+        let cotangents = RowCotangents {
+            value: Some(psi3),
+            rate: Some(psi4),
+            acceleration: None,
+            virtual_rate: Some(at.lambda),
+        };
+        virtually(psi2, &cotangents);
         if at.mu.iter().any(|&x| x != 0.0) {
-            virtually(psi1, [None, None, None, Some(at.mu)]);
+            let cotangents = RowCotangents {
+                virtual_rate: Some(at.mu),
+                ..Default::default()
+            };
+            virtually(psi1, &cotangents);
         }
         if wanted {
             reduce::keep_placed(numbering, y);

@@ -10,6 +10,7 @@ mod power;
 mod pull;
 
 use super::bodies::{Motion, add6, velocities_of};
+use super::in_motion::InMotion;
 use super::numbering::Numbering;
 use super::placement::guess;
 use super::side::Side;
@@ -72,18 +73,12 @@ fn for_each_load<S: Scalar>(
 
 /// Adds the generalised forces f of all loads (force in ground axes, torque in body axes about the
 /// centre of mass) to `out`, in velocity numbering.
-pub fn add_forces<S: Scalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    motions: &[Motion<S>],
-    time: S,
-    out: &mut [S],
-) {
-    for_each_load(model, motions, |_, kind, at| {
-        let forces = power::forces(kind, at, time);
+pub fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
+    for_each_load(here.model, here.motions, |_, kind, at| {
+        let forces = power::forces(kind, at, here.time);
         for (body, (force, torque)) in at.bodies.into_iter().zip(forces) {
             let Some(body) = body else { continue };
-            add6(&mut out[numbering.velocity(body)..], &force, &torque);
+            add6(&mut out[here.numbering.velocity(body)..], &force, &torque);
         }
     });
 }
@@ -125,18 +120,26 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
     }
 }
 
-/// Emits −∂f/∂y times `by_y_scale` at (`row`, `y`) and −∂f/∂v times `by_v_scale` at (`row`, `v`),
-/// all in velocity numbering; only the blocks that a load has.
-pub fn emit_jacobian<S: Scalar>(
-    model: &Model<S>,
-    numbering: &Numbering,
-    motions: &[Motion<S>],
-    time: S,
-    (row, y, v): (usize, usize, usize),
-    (by_y_scale, by_v_scale): (S, S),
-    emit: &mut dyn Emit<S>,
-) {
-    for_each_load(model, motions, |_, kind, at| {
+/// Where the derivatives of the forces are emitted, in velocity numbering, and what they are multiplied
+/// by.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadEntries<S> {
+    /// Row of the forces.
+    pub row: usize,
+    /// Column of the tangent positions.
+    pub y: usize,
+    /// Column of the velocities.
+    pub v: usize,
+    /// Factor of ∂f/∂y.
+    pub by_y: S,
+    /// Factor of ∂f/∂v.
+    pub by_v: S,
+}
+
+/// Emits ∂f/∂y and ∂f/∂v, f as in [`add_forces`]; only the blocks that a load has.
+pub fn emit_jacobian<S: Scalar>(here: &InMotion<S>, to: &LoadEntries<S>, emit: &mut dyn Emit<S>) {
+    let numbering = here.numbering;
+    for_each_load(here.model, here.motions, |_, kind, at| {
         let blocks = blocks(kind);
         // One row of the Jacobian for each unit velocity of either body.
         for side in 0..2 {
@@ -150,18 +153,18 @@ pub fn emit_jacobian<S: Scalar>(
                 let mut psi = [(Vec3::zeros(), Vec3::zeros()); 2];
                 let (linear, angular) = &mut psi[side];
                 [linear, angular][component / 3][component % 3] = S::one();
-                let pulled = pull(kind, at, time, &psi);
-                let row = row + numbering.velocity(body) + component;
+                let pulled = pull(kind, at, here.time, &psi);
+                let row = to.row + numbering.velocity(body) + component;
                 for (body, by) in at.bodies.into_iter().zip([&pulled.a, &pulled.b]) {
                     let Some(body) = body else { continue };
                     let o = numbering.velocity(body);
                     let columns = [
-                        (blocks.y, y, by_y_scale, [&by.position, &by.theta]),
-                        (blocks.v, v, by_v_scale, [&by.velocity, &by.omega]),
+                        (blocks.y, to.y, to.by_y, [&by.position, &by.theta]),
+                        (blocks.v, to.v, to.by_v, [&by.velocity, &by.omega]),
                     ];
                     for (wanted, start, scale, parts) in columns {
                         for part in (0..2).filter(|&part| wanted[part]) {
-                            emit.add_row(row, start + o + 3 * part, &(parts[part] * -scale));
+                            emit.add_row(row, start + o + 3 * part, &(parts[part] * scale));
                         }
                     }
                 }
@@ -184,15 +187,9 @@ pub struct LoadCotangent<'a> {
 
 /// Adds the derivatives of ψᵀf, f as in [`add_forces`], in tangent positions, velocities, time and
 /// parameters.
-pub fn pull_back(
-    model: &Model<f64>,
-    numbering: &Numbering,
-    motions: &[Motion<f64>],
-    time: f64,
-    psi: &[f64],
-    out: &mut LoadCotangent,
-) {
-    for_each_load(model, motions, |i, kind, at| {
+pub fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
+    let (numbering, time) = (here.numbering, here.time);
+    for_each_load(here.model, here.motions, |i, kind, at| {
         let psi = at.bodies.map(|body| {
             body.map_or((Vec3::zeros(), Vec3::zeros()), |body| {
                 velocities_of(&psi[numbering.velocity(body)..])
