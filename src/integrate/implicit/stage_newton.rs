@@ -26,6 +26,8 @@ const ROUND_OFF: f64 = 1e-14;
 /// that still come from it: they meet a matrix that was made elsewhere.
 const UNIT: f64 = f64::EPSILON;
 const FROM_NOISE: f64 = 100.0;
+/// Magnification of round-off from which the matrix is nearly singular.
+const MAGNIFIED: f64 = 1e3;
 /// Contraction above which the matrices are renewed for the next step.
 const RENEW: f64 = 0.05;
 /// Contraction that is given up.
@@ -227,7 +229,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                 if known || gives_up {
                     let (change, most) = self.magnified(&scales, h);
                     stagnant = known || size <= FROM_NOISE * most;
-                    noise = Some(change);
+                    noise = change;
                 }
             }
             if remaining <= TOLERANCE || stagnant {
@@ -264,8 +266,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     }
 
     /// What the matrix makes of round-off in the constraints: the largest change (δy, h δv) of a stage, and
-    /// its size relative to the increments. It lies across the motion that the joints allow.
-    fn magnified(&mut self, scales: &Scales, h: S) -> (Vec<f64>, f64) {
+    /// its size relative to the increments. It lies across the motion that the joints allow. The change is
+    /// `None` where the matrix magnifies nothing: the round-off of large coordinates is an error of the step.
+    fn magnified(&mut self, scales: &Scales, h: S) -> (Option<Vec<f64>>, f64) {
         let n = 2 * self.numbering.velocities();
         let unit = UNIT * scales.place().max(1.0);
         for residual in &mut self.residuals {
@@ -287,7 +290,8 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             let both = all.iter_mut().zip(&update[..n]);
             both.for_each(|(most, x)| *most = most.max(x.re().abs()));
         }
-        (all, size)
+        let largest = all.iter().fold(0.0_f64, |m, &x| m.max(x));
+        ((largest > MAGNIFIED * unit).then_some(all), size)
     }
 
     /// Change (δy, h δv) that round-off made in the latest step, if a nearly singular matrix magnified it.
