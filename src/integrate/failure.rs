@@ -194,6 +194,20 @@ pub enum IntegrationFailure {
         /// Step number, from 1.
         step: usize,
     },
+    /// A motion that conserves energy has not kept it.
+    #[error(
+        "energy is not conserved: at t = {time:.6e} s it is off by {drift:.3e} J, and {exchanged:.3e} J are \
+         exchanged on the way; nothing in the scene dissipates or drives, and the errors of the steps do \
+         not explain it: this is not its motion; take a smaller tolerance, or another method"
+    )]
+    EnergyLost {
+        /// When it was seen \[s\].
+        time: f64,
+        /// |E(time) − E(0)| \[J\].
+        drift: f64,
+        /// Largest kinetic energy, or change of the potential one, that was seen \[J\].
+        exchanged: f64,
+    },
     /// A body has mass or inertia that no solid has.
     #[error(
         "body \"{body}\" has no mass and inertia of a solid: mass and principal moments are \

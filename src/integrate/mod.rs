@@ -2,6 +2,7 @@
 
 pub mod choice;
 pub mod control;
+pub mod energy;
 pub mod explicit;
 pub mod failure;
 pub mod grid;

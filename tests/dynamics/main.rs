@@ -10,6 +10,7 @@ mod conserves;
 mod constraint_derivatives;
 mod drive_gradients;
 mod elimination;
+mod energy_is_kept;
 mod error_estimate;
 mod events;
 mod gradients_converge_to_references;

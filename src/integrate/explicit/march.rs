@@ -6,6 +6,7 @@ use super::stiffness::{Stiffness, Watch};
 use super::tableau::{ORDER, STAGES};
 use super::tape::{Block, Tape};
 use crate::integrate::control::Controller;
+use crate::integrate::energy::Ledger;
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Place, place};
 use crate::integrate::quadrature;
@@ -17,9 +18,9 @@ use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::{close, watch};
 use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::model::Model;
-use crate::system::Numbering;
 use crate::system::initial::InitialState;
 use crate::system::left_out::WORN;
+use crate::system::{Motion, Numbering};
 
 /// Correction of the velocities, relative to their scale, that is none of the step's error.
 const LOST: f64 = 0.01;
@@ -92,6 +93,12 @@ pub fn march<S: SolveScalar>(
         }
         // Steps that are made again begin without it.
         stepper.field.restore(&before);
+    }
+    let mut ledger = Ledger::open(model, settings, &scale);
+    let mut motions = Vec::new();
+    if let Some(ledger) = &mut ledger {
+        Motion::all(numbering, &from.q, &from.v, &mut motions);
+        ledger.enter(model, &motions, 0.0);
     }
     while let Some(width) = controller.next(run.grid.reached()) {
         let h = duration * width;
@@ -178,6 +185,9 @@ pub fn march<S: SolveScalar>(
         }
         // The equations were left standing at the end of the step.
         watch(model, (&stepper.field.motions, duration * end), number)?;
+        if let Some(ledger) = ledger.as_mut().filter(|_| Ledger::is_due(number)) {
+            ledger.enter(model, &stepper.field.motions, duration.re() * end);
+        }
         run.grid.push(end);
         if let Some(stiffness) = &mut stiffness
             && stiffness.seen(&mut stepper, &scale, to.view(), (h.re(), &run))
@@ -214,6 +224,11 @@ pub fn march<S: SolveScalar>(
         run.grid.leave_out(stepper.field.left_out());
     }
     close(&mut run, &controller)?;
+    if let Some(ledger) = &mut ledger {
+        Motion::all(numbering, &from.q, &from.v, &mut motions);
+        ledger.enter(model, &motions, run.time_reached());
+        ledger.close(run.grid.steps(), run.step_error)?;
+    }
     run.counts.factorisations += stepper.field.factorisations;
     run.counts.solves += stepper.field.solves;
     Ok(run)

@@ -6,6 +6,7 @@ use super::radau::Scheme;
 use super::solver::{Solver, starting_stage};
 use super::tape::{Block, Tape};
 use crate::integrate::control::Controller;
+use crate::integrate::energy::Ledger;
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Grid, Place, place};
 use crate::integrate::quadrature;
@@ -144,6 +145,14 @@ fn march_until<S: SolveScalar>(
     field.leave_out(left_out);
     let loops = field.closes_loops();
     let mut steadiness = Steadiness::new(numbering);
+    let mut ledger = match stretch {
+        Some(_) => None,
+        None => Ledger::open(model, settings, &scale),
+    };
+    if let Some(ledger) = &mut ledger {
+        Motion::all(numbering, &past.from.q, &past.from.v, &mut motions);
+        ledger.enter(model, &motions, 0.0);
+    }
     while let Some(width) = controller.next(run.grid.reached()) {
         if let Some(stretch) = &stretch
             && run.counts.implicit_work() >= stretch.most
@@ -188,9 +197,15 @@ fn march_until<S: SolveScalar>(
         controller.accept();
         let stages = &solver.stages[..count];
         let last = &stages[count - 1];
-        if watched {
+        let due = ledger.as_mut().filter(|_| Ledger::is_due(k));
+        if watched || due.is_some() {
             Motion::all(numbering, &last.q, &last.v, &mut motions);
+        }
+        if watched {
             watch(model, (&motions, last.time), k)?;
+        }
+        if let Some(ledger) = due {
+            ledger.enter(model, &motions, at.1);
         }
         run.grid.push(end);
         let all = (&past.from, stages);
@@ -222,6 +237,11 @@ fn march_until<S: SolveScalar>(
         }
     }
     close(&mut run, &controller)?;
+    if let Some(ledger) = &mut ledger {
+        Motion::all(numbering, &past.from.q, &past.from.v, &mut motions);
+        ledger.enter(model, &motions, run.time_reached());
+        ledger.close(run.grid.steps(), run.step_error)?;
+    }
     solver.count(&mut run.counts);
     run.counts.factorisations += field.factorisations;
     run.counts.solves += field.solves;

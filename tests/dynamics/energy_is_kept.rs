@@ -1,0 +1,330 @@
+//! Energy as a witness of a run: no right run of a scene that conserves it is refused, and one whose states
+//! are spoilt is.
+
+use crate::reference::models::{KINDS, Numbers, joint};
+
+use flexbody::integrate::energy::Ledger;
+use flexbody::integrate::scale::Scale;
+use flexbody::integrate::{
+    Grid, IntegrationFailure, Method, Settings, Spacing, Trajectory, simulate,
+};
+use flexbody::math::{Complex64, Vec3};
+use flexbody::model::{
+    Axes, Course, Drive, Freedom, JointKind, Load, LoadKind, Model, MotionCourse,
+};
+use flexbody::system::Motion;
+
+/// A tree of one to four bodies on random joints, with and without gravity, springs of stiffness 1 to 1e5
+/// between points and about hinges, in lengths of `unit` (m).
+fn scene(seed: u64, unit: f64) -> (Model<f64>, f64) {
+    let mut numbers = Numbers(seed);
+    let mut below = |n: usize| ((numbers.next() + 1.0) * 0.5 * n as f64) as usize;
+    let count = 1 + below(4);
+    let picks: Vec<[usize; 4]> = (0..count)
+        .map(|k| [below(KINDS.len()), below(k + 1), below(3), below(6)])
+        .collect();
+    let floats = below(4) == 0;
+    let names = ["first", "second", "third", "fourth"];
+    let bodies: Vec<_> = (0..count).map(|k| numbers.body(names[k])).collect();
+    let (mut joints, mut loads) = (Vec::new(), Vec::new());
+    for (k, [kind, parent, spring, size]) in picks.into_iter().enumerate() {
+        let parent = (k > 0).then(|| parent.min(k - 1));
+        let (point, axis) = (numbers.vector(), numbers.vector());
+        let name = format!("joint {k}");
+        let index = joints.len();
+        let kind = KINDS[kind];
+        if k > 0 || !floats {
+            joints.push(joint(&bodies, (&name, kind), (k, parent), &point, &axis));
+        }
+        let stiffness = 10.0_f64.powi(size as i32);
+        let turns = index < joints.len() && kind == JointKind::Revolute;
+        let kind = match spring {
+            0 => continue,
+            1 if turns => LoadKind::TorsionSpring {
+                joint: index,
+                rest_angle: 0.3 * numbers.next(),
+                stiffness,
+                damping: 0.0,
+            },
+            _ => LoadKind::Spring {
+                body_a: k,
+                body_b: parent,
+                point_a: numbers.vector(),
+                point_b: numbers.vector() + Vec3::repeat(2.5),
+                rest_length: 2.0,
+                stiffness,
+                cubic: 0.3 * stiffness,
+                damping: 0.0,
+            },
+        };
+        let name = format!("spring {k}");
+        loads.push(Load { name, kind });
+    }
+    let gravity = numbers.vector() * if numbers.next() > 0.0 { 10.0 } else { 0.0 };
+    let mut model = Model {
+        gravity,
+        bodies,
+        joints,
+        loads,
+    };
+    let duration = 0.5 + 0.4 * numbers.next();
+    in_lengths_of(&mut model, unit);
+    (model, duration)
+}
+
+/// The same motion in lengths of `unit`.
+fn in_lengths_of(model: &mut Model<f64>, unit: f64) {
+    model.gravity *= unit;
+    for body in &mut model.bodies {
+        body.position *= unit;
+        body.velocity *= unit;
+        body.inertia *= unit * unit;
+    }
+    for joint in &mut model.joints {
+        for frame in [&mut joint.frame_a, &mut joint.frame_b] {
+            frame.point *= unit;
+            frame.length *= unit;
+        }
+    }
+    for load in &mut model.loads {
+        match &mut load.kind {
+            LoadKind::Spring {
+                point_a,
+                point_b,
+                rest_length,
+                cubic,
+                ..
+            } => {
+                *point_a *= unit;
+                *point_b *= unit;
+                *rest_length *= unit;
+                *cubic /= unit * unit;
+            }
+            LoadKind::TorsionSpring { stiffness, .. } => *stiffness *= unit * unit,
+            _ => {}
+        }
+    }
+}
+
+fn settings(method: Method, spacing: Spacing) -> Settings {
+    Settings {
+        spacing,
+        ..Settings::steps(method, 1)
+    }
+}
+
+const RADAU: Method = Method::Radau { stages: 3 };
+
+/// Runs by tolerances of 1e-3 to 1e-12, and on the steps of another duration and of half the size, are not
+/// refused for their energy. Those of the explicit method may be refused as stiff.
+#[test]
+fn no_right_run_is_refused() {
+    let (mut runs, mut kept) = (0, 0);
+    for seed in 0..24 {
+        let unit = [1.0, 1e-3, 1e2][seed as usize % 3];
+        let (model, duration) = scene(seed, unit);
+        assert!(model.conserves_energy());
+        for (method, exponents) in [
+            (Method::Dop853, &[3, 5, 6, 8, 10, 12][..]),
+            (RADAU, &[3, 4, 6, 9]),
+            (Method::Radau { stages: 2 }, &[3, 5]),
+        ] {
+            for &exponent in exponents {
+                let tolerance = 10.0_f64.powi(-exponent);
+                let name = format!("scene {seed}, {}, {tolerance:e}", method.name());
+                let chosen = settings(method, Spacing::Tolerance(tolerance));
+                let run = match simulate(&model, duration, &chosen) {
+                    Ok(run) => run,
+                    Err(IntegrationFailure::Stiff { .. }) => continue,
+                    Err(failure) => panic!("{name}: {failure}"),
+                };
+                runs += 1;
+                for (grid, duration) in [
+                    (run.grid.clone(), 1.1 * duration),
+                    (run.grid.halved(), duration),
+                ] {
+                    let frozen = settings(method, Spacing::Frozen(grid));
+                    match simulate(&model, duration, &frozen) {
+                        Ok(_) => kept += 1,
+                        Err(failure @ IntegrationFailure::EnergyLost { .. }) => {
+                            panic!("{name}, kept steps: {failure}")
+                        }
+                        Err(_) => {}
+                    }
+                }
+            }
+        }
+    }
+    assert!(
+        runs > 200 && kept > 300,
+        "{runs} runs, {kept} on kept steps"
+    );
+}
+
+/// Judges the states of a run at the ends of its steps after `spoil` has been at their velocities.
+fn judge(
+    model: &Model<f64>,
+    run: &Trajectory<f64>,
+    tolerance: f64,
+    spoil: impl Fn(usize, &mut [f64]),
+) -> Result<(), IntegrationFailure> {
+    let scale = Scale::of(model, &run.numbering, &run.initial, run.duration);
+    let by = settings(run.method, Spacing::Tolerance(tolerance));
+    let mut ledger = Ledger::open(model, &by, &scale).expect("energy is conserved");
+    let mut motions = Vec::new();
+    for k in 0..=run.last() {
+        if !Ledger::is_due(k) && k != run.last() {
+            continue;
+        }
+        let mut v = run.v(k).to_vec();
+        spoil(k, &mut v);
+        Motion::all(&run.numbering, run.q(k), &v, &mut motions);
+        ledger.enter(model, &motions, run.time(k));
+    }
+    ledger.close(run.grid.steps(), run.step_error)
+}
+
+/// A run is refused, by name and where it was seen, if its velocities are off by a half from some step on, or
+/// if a state is not a number, and nearly always if they are off by 5 %; it is not if they are off by 1e-6.
+#[test]
+fn a_spoilt_run_is_refused() {
+    let (mut runs, mut small) = (0, 0);
+    for seed in 0..40 {
+        let unit = [1.0, 1e-2, 1e2][seed as usize % 3];
+        let (mut model, duration) = scene(seed, unit);
+        model.gravity = Vec3::new(0.0, 0.0, -9.81) * unit;
+        let tolerance = 1e-11;
+        let by = settings(Method::Dop853, Spacing::Tolerance(tolerance));
+        let run = match simulate(&model, duration, &by) {
+            Ok(run) => run,
+            Err(IntegrationFailure::Stiff { .. }) => continue,
+            Err(failure) => panic!("scene {seed}: {failure}"),
+        };
+        let judge = |from: usize, factor: f64| {
+            judge(&model, &run, tolerance, |k, v| {
+                if k >= from {
+                    v.iter_mut().for_each(|v| *v *= factor);
+                }
+            })
+        };
+        judge(0, 1.0).expect("as it was");
+        judge(3, 1.0 + 1e-6).expect("nearly as it was");
+        // A body that is welded to ground has no velocity to be off.
+        let fastest = run.v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let moves = fastest > 1e-6 * unit;
+        for factor in [1.5, f64::NAN] {
+            if !moves && factor.is_finite() {
+                continue;
+            }
+            let Err(failure) = judge(3, factor) else {
+                panic!("scene {seed}, {factor}: not refused");
+            };
+            let text = failure.to_string();
+            let IntegrationFailure::EnergyLost { time, drift, .. } = failure else {
+                panic!("scene {seed}: {text}");
+            };
+            // The first end looked at from step 3 on is that of step 4, or the last.
+            assert_eq!(time, run.time(run.last().min(4)), "scene {seed}");
+            assert_eq!(drift.is_nan(), factor.is_nan(), "scene {seed}");
+            let named = text.starts_with("energy is not conserved: at t = ");
+            assert!(named, "{text}");
+        }
+        runs += usize::from(moves);
+        small += usize::from(moves && judge(3, 1.05).is_err());
+    }
+    assert!(runs >= 25 && 10 * small >= 9 * runs, "{small} of {runs}");
+}
+
+/// Nothing is looked at where energy is not conserved, where the user chose equal steps, and in complex
+/// runs.
+#[test]
+fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance() {
+    let by = settings(Method::Dop853, Spacing::Tolerance(1e-9));
+    let scale = Scale {
+        length: 1.0,
+        floor: [1.0, 1.0],
+    };
+    for seed in 0..20 {
+        let mut numbers = Numbers(seed);
+        let bodies = vec![numbers.body("body")];
+        let kind = (
+            ["hinge", "guide"][seed as usize % 2],
+            JointKind::Cylindrical,
+        );
+        let hinge = joint(
+            &bodies,
+            kind,
+            (0, None),
+            &numbers.vector(),
+            &numbers.vector(),
+        );
+        let model = Model {
+            gravity: numbers.vector(),
+            joints: vec![hinge],
+            bodies,
+            loads: Vec::new(),
+        };
+        assert!(Ledger::open(&model, &by, &scale).is_some());
+        let kept = settings(RADAU, Spacing::Frozen(Grid::uniform(3)));
+        assert!(Ledger::open(&model, &kept, &scale).is_some());
+        let equal = Settings::steps(Method::Dop853, 10);
+        assert!(Ledger::open(&model, &equal, &scale).is_none());
+        let complex = model.map(&mut |x| Complex64::new(x, 0.0));
+        assert!(Ledger::open(&complex, &by, &scale).is_none());
+
+        let mut driven = model.clone();
+        driven.joints[0].drives.push(Drive {
+            freedom: Freedom::Turn,
+            course: MotionCourse::Polynomial(vec![0.0, 1.0]),
+        });
+        assert!(Ledger::open(&driven, &by, &scale).is_none());
+        let (joint, freedom) = (0, Freedom::Turn);
+        let spring = |damping: f64| LoadKind::Spring {
+            body_a: 0,
+            body_b: None,
+            point_a: Vec3::zeros(),
+            point_b: Vec3::repeat(3.0),
+            rest_length: 1.0,
+            stiffness: 2.0,
+            cubic: 0.0,
+            damping,
+        };
+        for (kind, conserves) in [
+            (spring(0.0), true),
+            (spring(0.1), false),
+            (
+                LoadKind::Damping {
+                    joint,
+                    freedom,
+                    coefficient: 0.1,
+                },
+                false,
+            ),
+            (
+                LoadKind::Friction {
+                    joint,
+                    freedom,
+                    size: 0.1,
+                    width: 1.0,
+                },
+                false,
+            ),
+            (
+                LoadKind::Force {
+                    body: 0,
+                    point: Vec3::zeros(),
+                    direction: Vec3::x(),
+                    axes: Axes::Ground,
+                    magnitude: Course::Constant(1.0),
+                },
+                false,
+            ),
+        ] {
+            let mut loaded = model.clone();
+            let name = "load".into();
+            loaded.loads.push(Load { name, kind });
+            let open = Ledger::open(&loaded, &by, &scale).is_some();
+            assert_eq!(open, conserves, "{:?}", loaded.loads);
+        }
+    }
+}
