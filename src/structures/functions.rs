@@ -1,9 +1,12 @@
 //! Functions of a structure and of its static solutions, and their partial derivatives.
 
 use super::assembly::add_energy_transpose;
-use super::inertia::{add_mass_moments_transpose, mass_moments};
+use super::inertia::{
+    add_mass_moments_transpose, inertia, inertia_transpose, mass_moments, second_weights,
+};
 use super::loads::{Load, add_work_transpose};
 use super::mesh::UnknownSet;
+use super::reactions::{Reaction, State};
 use super::shell::{MassMoments, Motion, STRESS_POINTS, ShellCotangent, Terms};
 use super::state::{Configuration, Cotangent, NodalMotion};
 use super::statics::StaticProblem;
@@ -20,6 +23,29 @@ pub enum Function {
     Centre(Vec3<f64>),
     /// Second moment ∫ (a·x)(b·x) dm of the mass about the origin [kg m²].
     SecondMoment(Vec3<f64>, Vec3<f64>),
+    /// Inertia a·J b about the centre of mass [kg m²].
+    Inertia(Vec3<f64>, Vec3<f64>),
+    /// Force of the supports on a set of nodes, along a direction \[N\].
+    Reaction {
+        /// The case.
+        case: usize,
+        /// Set of nodes.
+        nodes: String,
+        /// Direction.
+        direction: Vec3<f64>,
+    },
+    /// Moment of the supports on a set of nodes about an axis [N m]. Loads on a smooth surface about its
+    /// director do no work and count as taken by the supports.
+    ReactionMoment {
+        /// The case.
+        case: usize,
+        /// Set of nodes.
+        nodes: String,
+        /// Direction of the axis.
+        axis: Vec3<f64>,
+        /// A point of the axis \[m\].
+        about: Vec3<f64>,
+    },
     /// Strain energy of a load case \[J\].
     StrainEnergy {
         /// The case.
@@ -96,6 +122,8 @@ pub(super) struct Partial<S> {
     pub motions: Vec<NodalMotion<S>>,
     pub to: Cotangent<S>,
     pub cases: Vec<Vec<Load<S>>>,
+    /// Of reactions: the motion ψ of each case whose product ψ·(F − f) the function is.
+    pub virtual_motions: Vec<Option<NodalMotion<S>>>,
 }
 
 pub(super) fn zero_load<S: Scalar>(load: &Load<S>) -> Load<S> {
@@ -105,6 +133,14 @@ pub(super) fn zero_load<S: Scalar>(load: &Load<S>) -> Load<S> {
 impl<S: Scalar> Solved<'_, S> {
     pub(super) fn configuration(&self) -> Configuration<'_, S> {
         self.problem.assembly.configuration(self.structure)
+    }
+
+    fn state(&self, case: usize) -> State<'_, S> {
+        State {
+            x: &self.solutions[case],
+            case: &self.cases[case],
+            terms: self.terms,
+        }
     }
 
     /// The value of a function.
@@ -126,6 +162,11 @@ impl<S: Scalar> Solved<'_, S> {
                 let weights = second_weights(a, b);
                 let terms = all.second.iter().zip(weights);
                 terms.fold(S::zero(), |sum, (&x, w)| sum + x * w)
+            }
+            Function::Inertia(a, b) => inertia(&mass_moments(&configuration), a, b),
+            Function::Reaction { .. } | Function::ReactionMoment { .. } => {
+                let reaction = reaction(function);
+                reaction.value(&configuration, &self.state(reaction.case))?
             }
             Function::StrainEnergy { case } => {
                 configuration.strain_energy(&motion(*case), self.terms)
@@ -198,17 +239,20 @@ impl<S: Scalar> Solved<'_, S> {
         }
         all
     }
+}
 
+impl Solved<'_, f64> {
     /// Partial derivatives of a function by the motions, the structure and the loads.
     pub(super) fn partial(
         &self,
-        configuration: &Configuration<S>,
+        configuration: &Configuration<f64>,
         function: &Function,
-    ) -> Result<Partial<S>, UnknownSet> {
+    ) -> Result<Partial<f64>, UnknownSet> {
         let mesh = &self.structure.topology.mesh;
         let mut all = Partial {
             motions: vec![NodalMotion::zeros(mesh.nodes); self.cases.len()],
             to: configuration.cotangent(),
+            virtual_motions: vec![None; self.cases.len()],
             cases: self
                 .cases
                 .iter()
@@ -219,21 +263,31 @@ impl<S: Scalar> Solved<'_, S> {
         match function {
             Function::Mass => {
                 let mut bar = MassMoments::zeros();
-                bar.mass = S::one();
+                bar.mass = 1.0;
                 add_mass_moments_transpose(configuration, &bar, &mut all.to);
             }
             Function::Centre(direction) => {
                 let moments = mass_moments(configuration);
-                let direction = direction.map(S::from);
                 let mut bar = MassMoments::zeros();
                 bar.first = direction / moments.mass;
-                bar.mass = -(moments.first.dot(&direction) / (moments.mass * moments.mass));
+                bar.mass = -(moments.first.dot(direction) / (moments.mass * moments.mass));
                 add_mass_moments_transpose(configuration, &bar, &mut all.to);
             }
             Function::SecondMoment(a, b) => {
                 let mut bar = MassMoments::zeros();
-                bar.second = second_weights(a, b).map(S::from);
+                bar.second = second_weights(a, b);
                 add_mass_moments_transpose(configuration, &bar, &mut all.to);
+            }
+            Function::Inertia(a, b) => {
+                let bar = inertia_transpose(&mass_moments(configuration), a, b);
+                add_mass_moments_transpose(configuration, &bar, &mut all.to);
+            }
+            Function::Reaction { .. } | Function::ReactionMoment { .. } => {
+                let reaction = reaction(function);
+                let state = self.state(reaction.case);
+                let to = &mut all.to.structure.nodes;
+                let psi = reaction.add_transpose(configuration, &state, to)?;
+                all.virtual_motions[reaction.case] = Some(psi);
             }
             Function::StrainEnergy { case } => add_energy_transpose(
                 configuration,
@@ -262,8 +316,7 @@ impl<S: Scalar> Solved<'_, S> {
             } => {
                 let set = mesh.node_set(nodes)?;
                 for &node in set {
-                    all.motions[*case].displacement[node] +=
-                        direction.map(S::from) / S::from(set.len() as f64);
+                    all.motions[*case].displacement[node] += direction / set.len() as f64;
                 }
             }
             Function::Stress {
@@ -305,13 +358,32 @@ impl<S: Scalar> Solved<'_, S> {
     }
 }
 
-/// Weights of the second moments (xx, yy, zz, xy, yz, zx) in ∫ (a·x)(b·x) dm.
-fn second_weights(a: &Vec3<f64>, b: &Vec3<f64>) -> [f64; 6] {
-    super::shell::SECOND.map(|[i, j]| {
-        if i == j {
-            a[i] * b[i]
-        } else {
-            a[i] * b[j] + a[j] * b[i]
-        }
-    })
+/// The reaction that a function stands for.
+fn reaction(function: &Function) -> Reaction<'_> {
+    match function {
+        Function::Reaction {
+            case,
+            nodes,
+            direction,
+        } => Reaction {
+            case: *case,
+            nodes,
+            force: *direction,
+            moment: Vec3::zeros(),
+            about: Vec3::zeros(),
+        },
+        Function::ReactionMoment {
+            case,
+            nodes,
+            axis,
+            about,
+        } => Reaction {
+            case: *case,
+            nodes,
+            force: Vec3::zeros(),
+            moment: *axis,
+            about: *about,
+        },
+        _ => unreachable!("no other function is a reaction"),
+    }
 }

@@ -14,6 +14,7 @@ use super::assembly::add_energy_transpose;
 use super::functions::{Function, Partial, Solved, zero_load};
 use super::loads::{Load, add_work_transpose};
 use super::mesh::UnknownSet;
+use super::reactions::stiffness_times;
 use super::shell::Terms;
 use super::state::NodalMotion;
 use super::statics::{StaticFailure, StaticProblem, mechanism};
@@ -98,11 +99,19 @@ fn gradient_of(
         motions,
         mut to,
         cases: case_bars,
+        virtual_motions,
     } = solved.partial(&configuration, function)?;
     let mut rights = Vec::with_capacity(cases.len());
-    for (motion, x) in motions.iter().zip(solutions) {
+    for ((motion, x), psi) in motions.iter().zip(solutions).zip(&virtual_motions) {
         let mut right = vec![0.0; x.len()];
         configuration.add_spread_transpose(x, motion, &mut right, &mut to.directors);
+        if let Some(psi) = psi {
+            let (v, assembly) = (configuration.spread(x), &problem.assembly);
+            let product = stiffness_times(structure, assembly, &v, psi, terms);
+            // What directors take from it is in the adjoint product.
+            let mut unused = to.directors.clone();
+            configuration.add_spread_transpose(x, &product, &mut right, &mut unused);
+        }
         rights.push(right);
     }
     let mut all = Gradient {
@@ -110,7 +119,8 @@ fn gradient_of(
         cases: case_bars,
     };
     for (case, right) in rights.iter().enumerate() {
-        if right.iter().any(|&r| r != 0.0) {
+        let psi = virtual_motions[case].as_ref();
+        if psi.is_some() || right.iter().any(|&r| r != 0.0) {
             let x = &solutions[case];
             if terms.von_karman {
                 problem
@@ -118,8 +128,9 @@ fn gradient_of(
                     .map_err(|failure| mechanism(&problem.assembly, structure, &failure))?;
             }
             let adjoint = problem.solve_factorised(right);
+            let at = AdjointPoint { x, adjoint, psi };
             let (by_structure, by_loads) =
-                adjoint_product(problem, structure, &cases[case], x, &adjoint, terms)?;
+                adjoint_product(problem, structure, &cases[case], &at, terms)?;
             all.structure.add(&by_structure);
             for (sum, part) in all.cases[case].iter_mut().zip(by_loads) {
                 add_load(sum, &part);
@@ -129,23 +140,32 @@ fn gradient_of(
     Ok(all)
 }
 
-/// ψ·∂(f − F)/∂p by structure and loads.
+/// A state, its adjoint, and the virtual motion of a reaction.
+struct AdjointPoint<'a> {
+    x: &'a [f64],
+    adjoint: Vec<f64>,
+    psi: Option<&'a NodalMotion<f64>>,
+}
+
+/// ψ·∂(f − F)/∂p by structure and loads, ψ being the adjoint less the virtual motion.
 fn adjoint_product(
     problem: &StaticProblem,
     structure: &Structure<f64>,
     case: &[Load<f64>],
-    x: &[f64],
-    adjoint: &[f64],
+    at: &AdjointPoint,
     terms: Terms,
 ) -> Result<(Structure<f64>, Vec<Load<f64>>), UnknownSet> {
     let lifted = structure.map(Dual::from);
     let configuration = problem.assembly.configuration(&lifted);
-    let state: Vec<Dual> = x
-        .iter()
-        .zip(adjoint)
-        .map(|(&x, &psi)| Dual::new(x, psi))
-        .collect();
-    let motion = configuration.spread(&state);
+    let state: Vec<Dual> =
+        at.x.iter()
+            .zip(&at.adjoint)
+            .map(|(&x, &psi)| Dual::new(x, psi))
+            .collect();
+    let mut motion = configuration.spread(&state);
+    if let Some(psi) = at.psi {
+        motion.add_infinitesimal(psi, -1.0);
+    }
     // Derivatives of the energy less the work, with the opposite sign at the end.
     let mut force = NodalMotion::zeros(structure.nodes.len());
     let mut to = configuration.cotangent();
@@ -172,7 +192,7 @@ fn adjoint_product(
         &mut internal,
         &mut internal_to,
     );
-    let mut unused = vec![Dual::from(0.0); x.len()];
+    let mut unused = vec![Dual::from(0.0); state.len()];
     configuration.add_spread_transpose(&state, &force, &mut unused, &mut to.directors);
     configuration.add_spread_transpose(&state, &internal, &mut unused, &mut internal_to.directors);
     let mut all = configuration.finish(to).map(|x| x.du);

@@ -2,7 +2,7 @@
 
 use super::shell::{MassMoments, Motion, ShellCotangent};
 use super::state::{Configuration, Cotangent, NodalMotion};
-use crate::math::Scalar;
+use crate::math::{Scalar, Vec3};
 
 /// Adds the derivatives of `factor` times the kinetic energy: by the rates (the momenta) to
 /// `momentum`, by the structure to `to`.
@@ -41,7 +41,7 @@ pub(crate) fn add_kinetic_energy_transpose<S: Scalar>(
 }
 
 /// Moments of the mass: of the middle surfaces of shells, the lines of centres of beams, and of lumped
-/// masses as points.
+/// masses with their inertia.
 pub(crate) fn mass_moments<S: Scalar>(configuration: &Configuration<S>) -> MassMoments<S> {
     let structure = configuration.structure;
     let mut all = MassMoments::zeros();
@@ -58,6 +58,13 @@ pub(crate) fn mass_moments<S: Scalar>(configuration: &Configuration<S>) -> MassM
     }
     for (mass, &node) in structure.masses.iter().zip(&structure.topology.mass_nodes) {
         all.add(mass.mass, &structure.nodes[node]);
+        // ∫ y yᵀ dm = ½ tr(J) 1 − J.
+        let [xx, yy, zz, xy, yz, zx] = mass.inertia;
+        let half = (xx + yy + zz) * 0.5;
+        let own = [half - xx, half - yy, half - zz, -xy, -yz, -zx];
+        for (sum, x) in all.second.iter_mut().zip(own) {
+            *sum += x;
+        }
     }
     all
 }
@@ -87,5 +94,54 @@ pub(crate) fn add_mass_moments_transpose<S: Scalar>(
             bar.add_transpose(structure.masses[k].mass, &structure.nodes[node]);
         to.structure.masses[k].mass += by_mass;
         to.structure.nodes[node] += by_place;
+        let half = (bar.second[0] + bar.second[1] + bar.second[2]) * 0.5;
+        let inertia = &mut to.structure.masses[k].inertia;
+        for (i, x) in inertia.iter_mut().enumerate() {
+            *x += if i < 3 { half } else { S::zero() } - bar.second[i];
+        }
     }
+}
+
+/// Inertia a·J b about the centre of mass: (a·b) tr S − a·S b with S = ∫ x xᵀ dm − f fᵀ/m, f = ∫ x dm.
+pub(crate) fn inertia<S: Scalar>(moments: &MassMoments<S>, a: &Vec3<f64>, b: &Vec3<f64>) -> S {
+    let (f, m) = (&moments.first, moments.mass);
+    let [af, bf] = [a, b].map(|v| v.map(S::from).dot(f));
+    let weights = inertia_weights(a, b);
+    let terms = moments.second.iter().zip(weights);
+    let second = terms.fold(S::zero(), |sum, (&x, w)| sum + x * w);
+    second + (af * bf - f.dot(f) * a.dot(b)) / m
+}
+
+/// Derivatives of [`inertia`] by the moments.
+pub(crate) fn inertia_transpose(
+    moments: &MassMoments<f64>,
+    a: &Vec3<f64>,
+    b: &Vec3<f64>,
+) -> MassMoments<f64> {
+    let (f, m) = (&moments.first, moments.mass);
+    let (af, bf, ab) = (a.dot(f), b.dot(f), a.dot(b));
+    MassMoments {
+        mass: (f.dot(f) * ab - af * bf) / (m * m),
+        first: (a * bf + b * af - f * (2.0 * ab)) / m,
+        second: inertia_weights(a, b),
+    }
+}
+
+fn inertia_weights(a: &Vec3<f64>, b: &Vec3<f64>) -> [f64; 6] {
+    let mut weights = second_weights(a, b).map(|w| -w);
+    for w in &mut weights[..3] {
+        *w += a.dot(b);
+    }
+    weights
+}
+
+/// Weights of the second moments (xx, yy, zz, xy, yz, zx) in ∫ (a·x)(b·x) dm.
+pub(crate) fn second_weights(a: &Vec3<f64>, b: &Vec3<f64>) -> [f64; 6] {
+    super::shell::SECOND.map(|[i, j]| {
+        if i == j {
+            a[i] * b[i]
+        } else {
+            a[i] * b[j] + a[j] * b[i]
+        }
+    })
 }

@@ -4,6 +4,7 @@
 mod assembly;
 pub mod beam;
 mod beams;
+pub mod damping;
 pub mod functions;
 pub mod generate;
 pub mod gradient;
@@ -14,6 +15,7 @@ pub mod material;
 pub mod mesh;
 pub mod modes;
 pub mod quality;
+mod reactions;
 mod sheets;
 pub mod shell;
 mod state;

@@ -84,10 +84,23 @@ fn functions_have_exact_derivatives_by_sections_offsets_and_all_else() {
             },
         ]
     };
+    let (a, b) = (Vec3::new(0.3, -0.5, 0.8), Vec3::new(1.0, 0.2, -0.4));
     let functions = [
         Function::Mass,
         Function::Centre(Vec3::new(0.3, -0.5, 0.8)),
         Function::SecondMoment(Vec3::x(), Vec3::new(0.2, 0.5, 1.0)),
+        Function::Inertia(a, b),
+        Function::Reaction {
+            case: 0,
+            nodes: "x0".into(),
+            direction: a,
+        },
+        Function::ReactionMoment {
+            case: 0,
+            nodes: "x0".into(),
+            axis: b,
+            about: Vec3::new(0.3, 0.1, -0.2),
+        },
         Function::StrainEnergy { case: 0 },
         Function::Compliance { case: 0 },
         Function::Displacement {

@@ -34,6 +34,10 @@ fn structure(numbers: &mut Numbers, fold: bool) -> Structure<f64> {
     for node in &mut generated.nodes {
         *node += numbers.vector(0.01);
     }
+    let sets = &mut generated.mesh.node_sets;
+    let mut held = sets["x0"].clone();
+    held.extend(&sets["x1y0"]);
+    sets.insert("held".into(), held);
     let mut structure =
         Structure::uniform(generated.mesh, generated.nodes, 0.15, ALUMINIUM).expect("sound");
     for h in &mut structure.thickness {
@@ -106,6 +110,23 @@ fn check(seed: u64, fold: bool, unknowns: NodeUnknowns, terms: Terms, size: f64)
         Function::Mass,
         Function::Centre(a),
         Function::SecondMoment(a, b),
+        Function::Inertia(a, b),
+        Function::Reaction {
+            case: 0,
+            nodes: "held".into(),
+            direction: a,
+        },
+        Function::ReactionMoment {
+            case: 1,
+            nodes: "held".into(),
+            axis: b,
+            about: Vec3::new(0.3, 0.1, -0.2),
+        },
+        Function::Reaction {
+            case: 0,
+            nodes: "x0".into(),
+            direction: a,
+        },
         Function::StrainEnergy { case: 0 },
         Function::Compliance { case: 1 },
         Function::Displacement {
@@ -189,6 +210,10 @@ fn check(seed: u64, fold: bool, unknowns: NodeUnknowns, terms: Terms, size: f64)
         .collect();
     for (function, found) in functions.iter().zip(&found) {
         let name = format!("{function:?}");
+        // Beside the other support, which takes the rest, the complex step too knows a reaction no better
+        // than the forces of single elements there are rounded.
+        let part = matches!(function, Function::Reaction { nodes, .. } if nodes == "x0");
+        let tolerance = if part { 1e-11 } else { 1e-12 };
         let exact = complex_step(&at, |x| {
             values(&with_numbers(&structure, x), &lifted_cases, function)
         });
@@ -202,7 +227,7 @@ fn check(seed: u64, fold: bool, unknowns: NodeUnknowns, terms: Terms, size: f64)
             found: &structure_numbers(&found.structure).0,
             kinds: &kinds,
         }
-        .assert(1e-12);
+        .assert(tolerance);
         let loads = load_numbers(&cases);
         let exact = complex_step(&loads, |x| {
             let mut next = x.iter().copied();
@@ -224,6 +249,6 @@ fn check(seed: u64, fold: bool, unknowns: NodeUnknowns, terms: Terms, size: f64)
             found: &load_numbers(&found.cases),
             kinds: &[1, 3, 3, 3, 3, 3],
         }
-        .assert(1e-12);
+        .assert(tolerance);
     }
 }

@@ -6,6 +6,8 @@ mod energy;
 mod field;
 mod frame;
 mod mass;
+#[cfg(test)]
+mod pairs;
 mod strain;
 mod stress;
 mod tangent;
