@@ -9,14 +9,12 @@
 
 mod watch;
 
-use flexbody::driver::{Evaluated, simulate};
-use flexbody::integrate::{IntegrationFailure, Method, Spacing, Start};
-use flexbody::problem::Problem;
+use flexbody::{Analysis, Problem, SimulationError, simulate};
 use serde_json::{Map, Value, json};
 use watch::fastest;
 
-/// The chain as a problem file.
-fn chain(bars: usize, duration: f64) -> String {
+/// The chain, simulated as `simulation` says.
+fn problem(bars: usize, simulation: Value) -> Problem {
     let (mut bodies, mut joints) = (Map::new(), Map::new());
     for i in 0..bars {
         let x = i as f64;
@@ -39,34 +37,35 @@ fn chain(bars: usize, duration: f64) -> String {
     let file = json!({
         "version": 1, "name": "chain", "bodies": Value::Object(bodies),
         "joints": Value::Object(joints),
-        "simulation": {"duration": duration, "tolerance": 1e-6, "method": "dop853"},
+        "simulation": simulation,
         "functions": {
             "x": {"final": {"position": {"body": last, "direction": [1, 0, 0]}}},
             "y": {"final": {"position": {"body": last, "direction": [0, 1, 0]}}}
         },
         "variables": {"mass": {"path": "/bodies/bar 0/mass", "lower": 0.1}}
     });
-    file.to_string()
+    Problem::parse(&file.to_string(), "chain.json", &[]).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-fn problem(bars: usize, duration: f64) -> Problem {
-    Problem::parse(&chain(bars, duration), "chain.json", &[])
-        .unwrap_or_else(|faults| panic!("{faults}"))
+/// The whole second of N = 256 at a tolerance.
+fn whole_second(tolerance: f64) -> Problem {
+    let simulation =
+        json!({"duration": 1, "tolerance": tolerance, "method": "dop853", "samples": 100});
+    problem(256, simulation)
 }
 
-/// Centres of mass of all bars at 101 instants (m), instant by instant.
-fn places(problem: &Problem) -> Result<Vec<[f64; 3]>, IntegrationFailure> {
-    let mut problem = problem.clone();
-    problem.simulation.samples = Some(100);
-    let done = simulate(&problem, &problem.start())?;
-    let (run, bars) = (done.motion(), done.written.model.bodies.len());
-    assert_eq!(run.last(), 100);
-    let place = |k: usize, bar: usize| {
-        let at = run.numbering.position(bar);
-        std::array::from_fn(|i| run.q(k)[at + i])
+/// Centres of mass of all bars at 101 instants \[m\], instant by instant.
+fn places(problem: &Problem) -> Result<Vec<[f64; 3]>, SimulationError> {
+    let motion = simulate(problem, &problem.start())?;
+    assert_eq!(motion.times().len(), 101);
+    let place = |k: usize| {
+        let bar = |i: usize| motion.body(&format!("bar {i}"), k);
+        (0..)
+            .map_while(bar)
+            .map(|bar| bar.position)
+            .collect::<Vec<_>>()
     };
-    let all = (0..=100).flat_map(|k| (0..bars).map(move |bar| (k, bar)));
-    Ok(all.map(|(k, bar)| place(k, bar)).collect())
+    Ok((0..=100).flat_map(place).collect())
 }
 
 /// The largest distance of two places (m).
@@ -79,7 +78,7 @@ fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     a.iter().zip(b).map(distance).fold(0.0, f64::max)
 }
 
-fn main() -> Result<(), IntegrationFailure> {
+fn main() -> Result<(), SimulationError> {
     let arguments: Vec<String> = std::env::args()
         .skip(1)
         .filter(|a| a != "--bench")
@@ -92,26 +91,21 @@ fn main() -> Result<(), IntegrationFailure> {
     }
     println!("   N  method          steps     ms/step  us/(step body)  gradient/run");
     for bars in [16, 32, 64, 128, 256, 512, 1024] {
-        let bdf = Method::Bdf {
-            order: 2,
-            start: Start::RisingOrder,
-        };
         // Equal steps, so that every length of chain does the same work a step.
         let steps = 40;
-        let radau = Method::Radau { stages: 3 };
+        let bdf = json!({"bdf": {"order": 2, "start": "rising_order"}});
         for (name, method, duration) in [
-            ("dop853", Method::Dop853, 0.1),
+            ("dop853", json!("dop853"), 0.1),
             ("bdf2, 1 ms", bdf, 0.04),
-            ("radau3, 1 ms", radau, 0.04),
+            ("radau3, 1 ms", json!({"radau": {"stages": 3}}), 0.04),
         ] {
-            let mut problem = problem(bars, duration);
-            problem.simulation.spacing = Spacing::Steps(steps);
-            problem.simulation.method = Some(method);
+            let simulation = json!({"duration": duration, "steps": steps, "method": method});
+            let problem = problem(bars, simulation);
             let x = problem.start();
             let repeats = (2048 / bars).clamp(3, 20);
-            let (seconds, at) = fastest(repeats, || Evaluated::new(&problem, &x));
+            let (seconds, at) = fastest(repeats, || Analysis::new(&problem).at(&x));
             let at = at?;
-            let (gradient, found) = fastest(repeats, || at.gradients(&problem, &[0]));
+            let (gradient, found) = fastest(repeats, || at.gradients(&[0]));
             found?;
             let step = seconds / steps as f64;
             println!(
@@ -123,39 +117,32 @@ fn main() -> Result<(), IntegrationFailure> {
         }
     }
     println!("\nN = 256, the whole second:\n   tolerance      steps          s    error (m)");
-    let mut exact = problem(256, 1.0);
-    exact.simulation.spacing = Spacing::Tolerance(1e-11);
-    let exact = places(&exact)?;
+    let exact = places(&whole_second(1e-11))?;
     for tolerance in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9] {
-        let mut problem = problem(256, 1.0);
-        problem.simulation.spacing = Spacing::Tolerance(tolerance);
-        let (seconds, at) = fastest(3, || Evaluated::new(&problem, &problem.start()));
-        let at = at?;
+        let problem = whole_second(tolerance);
+        let x = problem.start();
+        let (seconds, at) = fastest(3, || Analysis::new(&problem).at(&x));
+        let steps = at?.work().steps;
         let error = apart(&places(&problem)?, &exact);
-        println!(
-            "   {tolerance:9.0e} {:10} {seconds:10.3} {error:12.2e}",
-            at.run.grid.steps()
-        );
+        println!("   {tolerance:9.0e} {steps:10} {seconds:10.3} {error:12.2e}");
     }
     Ok(())
 }
 
-/// Peak resident set of a run and its gradient, beside what the history must take.
-fn memory(bars: usize, steps: usize) -> Result<(), IntegrationFailure> {
-    let mut problem = problem(bars, 1e-3 * steps as f64);
-    problem.simulation.spacing = Spacing::Steps(steps);
-    problem.simulation.samples = Some(1);
+/// Peak resident set of a run and its gradient.
+fn memory(bars: usize, steps: usize) -> Result<(), SimulationError> {
+    let duration = 1e-3 * steps as f64;
+    let simulation =
+        json!({"duration": duration, "steps": steps, "samples": 1, "method": "dop853"});
+    let problem = problem(bars, simulation);
     let before = peak();
-    let at = Evaluated::new(&problem, &problem.start())?;
+    let at = Analysis::new(&problem).at(&problem.start())?;
     let forward = peak();
-    at.gradients(&problem, &[0])?;
-    let numbering = &at.run.numbering;
-    let node = 8 * (numbering.positions() + 2 * numbering.velocities() + numbering.constraints());
+    at.gradients(&[0])?;
     println!(
         "{bars} bars, {steps} steps of dop853: problem {before:.1} MB, after the run {forward:.1} MB, \
-         with its adjoint {:.1} MB; states of all steps {:.1} MB",
-        peak(),
-        (node * steps) as f64 / 1e6
+         with its adjoint {:.1} MB",
+        peak()
     );
     Ok(())
 }

@@ -5,65 +5,43 @@
 
 mod watch;
 
-use flexbody::adjoint::gradients;
-use flexbody::integrate::{
-    IntegrationFailure, Method, Samples, Settings, Start, Tape, Trajectory, simulate,
-};
-use flexbody::problem::Problem;
+use flexbody::{Analysis, Override, Problem, SimulationError};
 use std::path::Path;
 use watch::fastest;
 
-/// Steps of every run, and memory in parts of what all of them take.
+/// Steps of every run.
 const STEPS: usize = 20_000;
-const PARTS: [usize; 7] = [1, 2, 4, 10, 30, 100, 1000];
+/// Memory for what is kept of a run \[MB\].
+const MEGABYTES: [f64; 7] = [1000.0, 60.0, 20.0, 6.0, 2.0, 0.6, 0.1];
 
-fn main() -> Result<(), IntegrationFailure> {
+fn main() -> Result<(), SimulationError> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/extreme/double_pendulum.json");
-    let problem = Problem::load(&path, &[]).unwrap_or_else(|faults| panic!("{faults}"));
-    let scene = problem.scene(&problem.start());
-    let bdf = Method::Bdf {
-        order: 2,
-        start: Start::RisingOrder,
-    };
-    println!(
-        "| method | memory (MB) | steps kept | checkpoints | steps made again / steps | gradient / run |"
-    );
-    println!("|---|---|---|---|---|---|");
-    for method in [Method::Dop853, Method::Radau { stages: 3 }, bdf] {
-        let mut settings = Settings::steps(method, STEPS);
-        settings.samples = Samples::Uniform(1);
-        settings.memory = usize::MAX;
-        let whole = simulate(&scene.model, scene.duration, &settings)?.bytes()[1];
-        for part in PARTS {
-            settings.memory = whole / part + whole / (100 * part);
-            let run = || simulate(&scene.model, scene.duration, &settings);
-            let (forwards, found) = fastest(2, run);
-            let found = found?;
-            let (backwards, adjoint) = fastest(2, || gradients(&scene, &found, &[0]));
-            let counts = adjoint?.counts;
-            let (kept, checkpoints) = kept(&found);
+    println!("| method | memory (MB) | steps made again / steps | gradient / run |");
+    println!("|---|---|---|---|");
+    for method in [
+        r#""dop853""#,
+        r#"{"radau": {"stages": 3}}"#,
+        r#"{"bdf": {"order": 2, "start": "rising_order"}}"#,
+    ] {
+        let simulation = format!(
+            r#"/simulation={{"duration": 2, "steps": {STEPS}, "samples": 1, "method": {method}}}"#
+        );
+        let simulation = Override::parse(&simulation).expect("an override");
+        let mut problem =
+            Problem::load(&path, &[simulation]).unwrap_or_else(|faults| panic!("{faults}"));
+        let x = problem.start();
+        for megabytes in MEGABYTES {
+            problem.limit_memory((1e6 * megabytes) as usize);
+            let (forwards, at) = fastest(2, || Analysis::new(&problem).at(&x));
+            let at = at?;
+            let (backwards, found) = fastest(2, || at.gradients_and_work(&[0]));
+            let (_, work) = found?;
             println!(
-                "| {} | {:.2} | {kept} | {checkpoints} | {:.2} | {:.2} |",
-                method.name(),
-                settings.memory as f64 / 1e6,
-                counts.recomputed as f64 / STEPS as f64,
+                "| {method} | {megabytes} | {:.2} | {:.2} |",
+                work.recomputed as f64 / STEPS as f64,
                 backwards / forwards
             );
         }
     }
     Ok(())
-}
-
-/// Steps that a run keeps, and most checkpoints.
-fn kept(run: &Trajectory<f64>) -> (usize, usize) {
-    let steps = run.grid.steps();
-    let schedule = match &run.tape {
-        Tape::Explicit(tape) => tape.schedule(steps),
-        Tape::Implicit(tape) => tape.schedule(steps),
-    };
-    let checkpoints = match schedule.keeps_all() {
-        true => 0,
-        false => schedule.checkpoints(),
-    };
-    (steps - schedule.head(), checkpoints)
 }

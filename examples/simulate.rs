@@ -26,7 +26,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let drift = motion.energy_drift();
     println!(
         "the energy drifts by {drift:.1e} J in {} steps",
-        motion.steps()
+        motion.work().steps
     );
     assert!(drift < 1e-7);
     Ok(())

@@ -33,37 +33,42 @@
 //!
 //! | Folder | What lives there |
 //! |---|---|
-//! | [`math`] | scalars (real, complex, dual), rotations, smooth maxima |
-//! | [`linalg`] | static sparsity patterns, sparse LU and Cholesky |
-//! | [`model`] | bodies, joints, loads, gravity: parameters and nothing that moves |
-//! | [`structures`] | shells and beams as finite elements: statics, modes, exact gradients; nothing moves |
-//! | [`system`] | kinematics, dynamics, constraints, loads with all derivatives; consistent starts |
-//! | [`integrate`] | the methods, explicit and implicit; their equations, steps and trajectories |
-//! | [`functions`] | functions of interest and their derivatives |
-//! | [`adjoint`] | exact gradients: the backward march through each method |
-//! | [`lower`] | what of a scene is left out before it is integrated, and why not more |
-//! | [`optimiser`] | nonlinear programs; knows nothing of mechanics |
-//! | [`problem`] | the problem file: faults, schema, the map from a design to a scene |
-//! | [`report`] | records, comparison, tables, figures, text |
-//! | [`driver`] | simulate, check, optimise; estimate errors, measure methods |
-//! | [`library`] | what a user of the library needs of problems |
-//! | [`cli`] | the command line |
+//! | `math` | scalars (real, complex, dual), rotations, smooth maxima |
+//! | `linalg` | static sparsity patterns, sparse LU and Cholesky |
+//! | `model` | bodies, joints, loads, gravity: parameters and nothing that moves |
+//! | `structures` | shells and beams as finite elements: statics, modes, exact gradients; nothing moves |
+//! | `system` | kinematics, dynamics, constraints, loads with all derivatives; consistent starts |
+//! | `integrate` | the methods, explicit and implicit; their equations, steps and trajectories |
+//! | `functions` | functions of interest and their derivatives |
+//! | `adjoint` | exact gradients: the backward march through each method |
+//! | `lower` | what of a scene is left out before it is integrated, and why not more |
+//! | `optimiser` | nonlinear programs; knows nothing of mechanics |
+//! | `problem` | the problem file: faults, schema, the map from a design to a scene |
+//! | `report` | records, comparison, tables, figures, text |
+//! | `driver` | simulate, check, optimise; estimate errors, measure methods |
+//! | `library` | what a user of the library needs of problems |
+//! | `cli` | the command line |
 
-pub mod adjoint;
+mod adjoint;
 pub mod cli;
-pub mod driver;
-pub mod functions;
-pub mod integrate;
-pub mod library;
-pub mod linalg;
-pub mod lower;
-pub mod math;
-pub mod model;
+mod driver;
+mod functions;
+mod integrate;
+mod library;
+mod linalg;
+mod lower;
+mod math;
+mod model;
 pub mod optimiser;
-pub mod problem;
-pub mod report;
+mod problem;
+mod report;
 pub mod structures;
-pub mod system;
+mod system;
+#[cfg(test)]
+mod tests;
+
+#[cfg(test)]
+extern crate self as flexbody;
 
 pub use library::{
     Analysis, BodyState, CheckedDerivative, Design, Iteration, Motion, Optimum, SimulationError,

@@ -27,6 +27,7 @@ impl Evaluated {
     ///
     /// # Errors
     /// If the simulation fails.
+    #[cfg(test)]
     pub fn new(problem: &Problem, x: &[f64]) -> Result<Self, IntegrationFailure> {
         let mut integration = Integration::new(problem, &problem.scene(x), None, true);
         Ok(Self::with(&mut integration, problem, x)?.0)

@@ -29,16 +29,13 @@ pub mod warm_start;
 pub mod work_precision;
 
 pub use certificate::certify;
-pub use chaos::{Chaos, chaos};
+pub use chaos::chaos;
 pub use check::{CheckedDerivative, check};
 pub use evaluate::Evaluated;
-pub use evaluator::Evaluator;
 pub use explain::{explain, merged_errs};
 pub use journal::Journal;
 pub use multi_start::multi_start;
-pub use optimise::{Optimisation, Solved, optimise, solve};
+pub use optimise::{Optimisation, optimise};
 pub use second_order::second_order;
 pub use simulate::{Simulation, simulate};
-pub use stability::stability;
 pub use warm_start::WarmStart;
-pub use work_precision::work_precision;

@@ -105,6 +105,7 @@ impl Simulation {
     }
 
     /// Joint reactions at instant k.
+    #[cfg(test)]
     pub fn reactions(&self, k: usize) -> Vec<Reaction> {
         let all = self.reactions_at(std::iter::once(k));
         all.into_iter().flatten().collect()

@@ -120,8 +120,6 @@ impl Polynomial {
 /// A sample or a turning point between samples: a sum over samples.
 #[derive(Clone, Debug)]
 pub struct Point<S> {
-    /// Fraction of the duration.
-    pub at: f64,
     /// The value.
     pub value: S,
     /// Samples and their weights in it.
@@ -154,7 +152,6 @@ impl Stretch {
 /// rises or falls between any two that follow each other.
 pub fn points<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Vec<Point<S>> {
     let sample = |k: usize| Point {
-        at: run.instants[k],
         value: values[k],
         of: vec![(k, 1.0)],
     };
@@ -170,7 +167,7 @@ pub fn points<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Vec<Point<S>> {
                 let value = of
                     .iter()
                     .fold(S::zero(), |sum, &(k, w)| sum + values[k] * w);
-                all.push(Point { at, value, of });
+                all.push(Point { value, of });
             }
             all.push(sample(k));
         }

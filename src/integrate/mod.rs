@@ -27,7 +27,9 @@ pub use grid::Grid;
 pub use limits::{Limits, Progress};
 pub use multipliers::Multipliers;
 pub use quadrature::Samples;
-pub use settings::{MEMORY, Method, Settings, Spacing, Start};
+#[cfg(test)]
+pub use settings::MEMORY;
+pub use settings::{Method, Settings, Spacing, Start};
 pub use trajectory::{Tape, Trajectory};
 pub use work::WorkCounts;
 

@@ -12,6 +12,7 @@ use crate::report::optimum::Optimum as Record;
 use std::ops::ControlFlow;
 
 pub use crate::driver::CheckedDerivative;
+pub use crate::integrate::WorkCounts;
 
 /// Why a design could not be simulated or differentiated. Its text says when and where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -87,9 +88,9 @@ impl Motion {
         self.simulation.constraint_drift()
     }
 
-    /// Time steps that the method took.
-    pub fn steps(&self) -> usize {
-        self.simulation.at.run.grid.steps()
+    /// What the simulation took.
+    pub fn work(&self) -> WorkCounts {
+        self.simulation.at.run.counts
     }
 }
 
@@ -149,8 +150,23 @@ impl Design<'_> {
     /// # Errors
     /// If the equations of a step are singular.
     pub fn gradients(&self, which: &[usize]) -> Result<Vec<Vec<f64>>, SimulationError> {
-        let (gradients, _) = self.evaluated.gradients(self.problem, which)?;
-        Ok(gradients)
+        Ok(self.gradients_and_work(which)?.0)
+    }
+
+    /// As [`Design::gradients`], and what that took.
+    ///
+    /// # Errors
+    /// If the equations of a step are singular.
+    pub fn gradients_and_work(
+        &self,
+        which: &[usize],
+    ) -> Result<(Vec<Vec<f64>>, WorkCounts), SimulationError> {
+        Ok(self.evaluated.gradients(self.problem, which)?)
+    }
+
+    /// What the simulation took.
+    pub fn work(&self) -> WorkCounts {
+        self.evaluated.run.counts
     }
 }
 

@@ -275,6 +275,7 @@ impl<S: Scalar> SparseMatrix<S> {
     }
 
     /// The product A x.
+    #[cfg(test)]
     pub fn multiply(&self, x: &[S]) -> Vec<S> {
         let mut y = vec![S::zero(); x.len()];
         for j in 0..x.len() {

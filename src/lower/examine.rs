@@ -189,6 +189,7 @@ impl Designs {
     }
 
     /// One scene, whatever the design.
+    #[cfg(test)]
     pub fn single(start: Scene<f64>) -> Self {
         Self {
             start,

@@ -18,9 +18,8 @@ pub mod unseen;
 pub mod unturned;
 pub mod welded;
 
-pub use examine::{Obstacle, Range, Verdict};
+pub use examine::{Obstacle, Range};
 pub use fixed::Fixed;
-pub use merge::Cluster;
 pub use planar::Plane;
 pub use unseen::Seen;
 pub use unturned::Unturned;

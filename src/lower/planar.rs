@@ -147,6 +147,7 @@ impl Plane {
     ///
     /// # Errors
     /// What leaves that which most joints turn in.
+    #[cfg(test)]
     pub fn of(model: &Model<f64>) -> Result<Self, Kept> {
         let scene = crate::functions::Scene {
             model: model.clone(),

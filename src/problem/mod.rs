@@ -34,13 +34,13 @@ mod tests;
 mod text;
 mod variables;
 
-pub use drawing::{BarrierLine, Drawing, Outline};
+pub use drawing::{Drawing, Outline};
 pub use fault::{Fault, Faults};
 pub use focus::Focus;
 pub use memory::available as available_memory;
 pub use overrides::{Override, OverrideError};
 pub use schema::schema;
-pub use text::{shortened, visible, visible_lines};
+pub use text::{visible, visible_lines};
 pub use variables::Variable;
 
 use crate::functions::{Function, Scene};
@@ -121,7 +121,7 @@ pub struct Simulation {
 /// A problem: a scene that depends on a design, what is asked of it, and how it is solved.
 ///
 /// ```
-/// use flexbody::problem::Problem;
+/// use flexbody::Problem;
 ///
 /// let text = r#"{
 ///   "version": 1, "name": "ball",
@@ -131,51 +131,46 @@ pub struct Simulation {
 /// }"#;
 /// let problem = Problem::parse(text, "ball.json", &[])?;
 /// assert_eq!(problem.start(), [0.5]);
-/// // 2/5 m r² at r = 1 m.
-/// let inertia = problem.scene(&[1.0]).model.bodies[0].inertia;
-/// assert!((inertia[(0, 0)] - 0.8).abs() < 1e-15);
-/// # Ok::<(), flexbody::problem::Faults>(())
+/// # Ok::<(), flexbody::Faults>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Problem {
     /// Name of the problem and of its results.
-    pub name: String,
-    /// What the problem is about.
-    pub description: Option<String>,
+    pub(crate) name: String,
     /// How the scene is integrated.
-    pub simulation: Simulation,
+    pub(crate) simulation: Simulation,
     /// Design variables in the order of the file.
-    pub variables: Vec<Variable>,
+    pub(crate) variables: Vec<Variable>,
     /// The function that is optimised, if any. A file with constraints and variables and without
     /// objective asks for the feasible design nearest to its own: then it is the last function,
     /// Σ ((x − x0)/scale)².
-    pub objective: Option<Objective>,
+    pub(crate) objective: Option<Objective>,
     /// x0, where the file has no objective.
     nearest_to: Option<Vec<f64>>,
     /// Constraints in the order of the file.
-    pub constraints: Vec<Constraint>,
+    pub(crate) constraints: Vec<Constraint>,
     /// Names of the functions in the order of the file, which is that of [`Scene::functions`].
-    pub function_names: Vec<String>,
+    pub(crate) function_names: Vec<String>,
     /// Settings of the optimiser.
-    pub optimiser: OptimiserSettings,
+    pub(crate) optimiser: OptimiserSettings,
     /// The document with its overrides applied; a problem is made from it again by
     /// [`Problem::parse`].
-    pub document: serde_json::Value,
+    pub(crate) document: serde_json::Value,
     /// SHA-256 of the document without white space, in hexadecimal.
-    pub hash: String,
+    pub(crate) hash: String,
     /// The document with its numbers bound to the design variables.
     written: Document,
     /// Order in which the bodies are placed.
     order: Vec<usize>,
     /// Joints whose rows follow in part from other joints at the start design. Those rows are left
     /// out at every design.
-    pub redundant: Vec<Redundancy>,
+    pub(crate) redundant: Vec<Redundancy>,
     /// The rows that are left out, by joint.
     left_out: Vec<Vec<ConstraintRow>>,
     /// What is left out of its scenes before they are integrated; `None` if nothing shall be.
-    pub lowering: Option<Lowering>,
+    pub(crate) lowering: Option<Lowering>,
     /// The functions that are asked for and the bodies that they can see; `None` is all.
-    pub focus: Option<Focus>,
+    pub(crate) focus: Option<Focus>,
 }
 
 impl Problem {
@@ -208,6 +203,12 @@ impl Problem {
     /// Names of the functions in the order of the file.
     pub fn functions(&self) -> &[String] {
         &self.function_names
+    }
+
+    /// Bounds the memory \[bytes\] of what is kept of a motion for its gradients. The other steps are made
+    /// again from checkpoints.
+    pub fn limit_memory(&mut self, bytes: usize) {
+        self.simulation.memory = Some(bytes);
     }
 
     /// The design that the file describes.

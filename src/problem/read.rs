@@ -414,7 +414,6 @@ fn problem(
     });
     Problem {
         name: written.name.clone(),
-        description: written.description.clone(),
         simulation: simulation(&written.simulation),
         variables,
         objective: objective.or(nearest),

@@ -422,7 +422,7 @@ fn the_drawing_follows_the_design() {
     assert_eq!((drawing.ground, drawing.snapshots), (Some(-1.0), 12));
     assert_eq!(
         drawing.barrier,
-        Some(BarrierLine {
+        Some(drawing::BarrierLine {
             distance: 5.0,
             top: 2.0
         })

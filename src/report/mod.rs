@@ -37,14 +37,14 @@ pub mod summary;
 mod table;
 pub mod work_precision;
 
-pub use compare::{Comparison, Tolerances, compare};
+pub use compare::{Tolerances, compare};
 pub use csv::csv_table;
 pub use error::ReportError;
 pub use explain::{Explanation, FunctionUse, IntegrationUse, SystemSize, size};
-pub use files::{HeldDirectory, atomic_write, prepare_directory, read_text, write_all};
-pub use history::{Column, History, HistoryLog, HistoryRow};
+pub use files::{atomic_write, prepare_directory, read_text, write_all};
+pub use history::{History, HistoryLog, HistoryRow};
 pub use optima::{FoundOptimum, optima_csv};
 pub use optimum::Optimum;
 pub use stability::{StabilityFamily, StabilityOutcome, StabilityRow, StabilityTable};
 pub use summary::summary;
-pub use work_precision::{MethodOrder, PrecisionRow, WorkPrecision};
+pub use work_precision::{PrecisionRow, WorkPrecision};

@@ -326,6 +326,7 @@ pub fn pull_back(
 }
 
 /// Largest change of a velocity coordinate by the projection, relative to the largest velocity.
+#[cfg(test)]
 pub fn velocity_correction<S: Scalar>(model: &Model<S>, state: &InitialState<S>) -> f64 {
     let (_, guess) = guess(model);
     let largest = |x: &mut dyn Iterator<Item = f64>| x.fold(0.0_f64, |m, x| m.max(x.abs()));

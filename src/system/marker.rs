@@ -48,11 +48,6 @@ impl<S: Scalar> Jet<S> {
         }
     }
 
-    /// The direction with components `e` in body axes.
-    pub fn direction(motion: &Motion<S>, e: &Vec3<S>) -> Self {
-        Self::moving_direction(motion, e, None)
-    }
-
     /// The point at `s` from the centre of mass, in body axes.
     pub fn point(motion: &Motion<S>, s: &Vec3<S>) -> Self {
         Self::moving_point(motion, s, None)
@@ -140,7 +135,7 @@ pub struct MarkerCotangent<S> {
     pub local: Local<S>,
 }
 
-/// Pulls the cotangent of a jet back: the transposed derivative of [`Jet::direction`], the virtual
+/// Pulls the cotangent of a jet back: the transposed derivative of [`Jet::moving_direction`], the virtual
 /// velocities held.
 pub fn pull_back<S: Scalar>(motion: &Motion<S>, e: &Vec3<S>, cot: &Jet<S>) -> MarkerCotangent<S> {
     pull_back_moving(motion, e, None, cot)

@@ -1,97 +1,9 @@
 //! What is asked of an optimum besides finding it: another start, many starts, its curvature.
 
-use crate::program::{HAMMER, expect, files, json, read, scratch};
-use flexbody::driver::evaluate::Evaluated;
-use flexbody::driver::{Journal, Optimisation, optimise, second_order};
-use flexbody::problem::Problem;
-use flexbody::report::files::prepare_directory;
-use flexbody::report::optimum::{Curvature, SecondOrder};
-use std::ops::ControlFlow;
+use crate::program::{HAMMER, expect, files, held, json, read, scratch};
 
 /// A bar that is hinged where it swings fastest, at d² = I/m from its centre.
-const SWING: &str = r#"{
-  "version": 1, "name": "swing",
-  "bodies": {"bar": {
-    "shape": {"rod": {"length": 1, "radius": 0.02}}, "mass": 2,
-    "points": {"pin": [-0.4, 0, 0]},
-    "place": {"put": "pin", "at": [0, 0, 0]}
-  }},
-  "joints": {"hinge": {"revolute": {"between": ["bar", "ground"], "at": "bar.pin", "axis": [0, 0, 1]}}},
-  "simulation": {"duration": 0.4, "steps": 200},
-  "functions": {"swept angle": {"final": {"rotation": {"body": "bar", "axis": [0, 0, 1]}}}},
-  "variables": {"pin": {"path": "/bodies/bar/points/pin/0", "lower": -0.5, "upper": 0.5}},
-  "objective": {"minimise": "swept angle"}
-}"#;
-
-fn solved(problem: &Problem) -> Optimisation {
-    let mut progress = |_: &_| ControlFlow::Continue(());
-    let done = optimise(problem, "", None, Journal::default(), &mut progress);
-    let done = done.expect("has an objective");
-    assert!(done.outcome.converged());
-    done
-}
-
-fn curvature(problem: &Problem, done: &Optimisation) -> SecondOrder {
-    let (outcome, integration) = (&done.outcome, &done.integration);
-    second_order(problem, outcome, integration, Journal::default(), &|| false)
-        .expect("runs")
-        .expect("is not stopped")
-}
-
-#[test]
-fn the_curvature_is_that_of_the_function() {
-    let problem = Problem::parse(SWING, "swing.json", &[]).expect("no faults");
-    let done = solved(&problem);
-    let found = curvature(&problem, &done);
-    assert_eq!(found.curvature, Curvature::StrictOptimum);
-    assert!(found.weakly_active.is_empty());
-    // The second difference of the function itself, with steps of the fourth root of round-off.
-    let scale = problem.variables[0].scale;
-    let x = done.optimum.design["pin"].value;
-    let h = 2e-3;
-    let f = |s: f64| {
-        let at = Evaluated::new(&problem, &[x + s * h * scale]).expect("runs");
-        at.function(0).value
-    };
-    let difference = (f(1.0) - 2.0 * f(0.0) + f(-1.0)) / (h * h);
-    assert_eq!(found.eigenvalues.len(), 1);
-    let error = (found.eigenvalues[0] - difference).abs();
-    assert!(error < 1e-3 * difference, "{found:?} {difference}");
-    assert!(
-        difference > 0.0 && found.uncertainty < 1e-3 * difference,
-        "{found:?}"
-    );
-}
-
-/// A bound through the optimum holds it by no force; a bound beside it does.
-#[test]
-fn a_bound_without_force_leaves_its_direction_free() {
-    let free = Problem::parse(SWING, "swing.json", &[]).expect("no faults");
-    let free_end = solved(&free);
-    let best = free_end.optimum.design["pin"].value;
-    let expected = curvature(&free, &free_end).eigenvalues[0];
-    let bounded = |upper: f64| {
-        let text = SWING.replace(
-            r#""upper": 0.5"#,
-            &format!(r#""upper": {upper}, "scale": 0.5"#),
-        );
-        let problem = Problem::parse(&text, "swing.json", &[]).expect("no faults");
-        curvature(&problem, &solved(&problem))
-    };
-    assert!(best < -0.2 && free.variables[0].scale == 0.5);
-    let touched = bounded(best);
-    assert_eq!(touched.weakly_active, ["pin"], "{touched:?}");
-    assert_eq!(touched.curvature, Curvature::StrictOptimum);
-    // The differences are taken inside the bound, a few 1e-4 of the scale beside the optimum.
-    let error = (touched.eigenvalues[0] - expected).abs();
-    assert!(
-        error < 1e-2 * expected && error < 10.0 * touched.uncertainty,
-        "{touched:?} {expected}"
-    );
-    let held = bounded(best - 0.05);
-    assert_eq!(held.curvature, Curvature::NoFreeDirection, "{held:?}");
-    assert!(held.eigenvalues.is_empty() && held.weakly_active.is_empty());
-}
+const SWING: &str = include_str!("../data/swing.json");
 
 /// The check comes after the record: where it fails, the optimum is there.
 #[test]
@@ -337,7 +249,7 @@ fn a_directory_has_one_run_at_a_time() {
     };
     run(0, &["--output", "out"]);
     let before = files(&directory);
-    let held = prepare_directory(&directory).expect("is free");
+    let held = held(&directory);
     for how in [["--output", "out"], ["--resume", "out"]] {
         let ran = run(2, &how);
         assert!(

@@ -549,3 +549,25 @@ fn the_documents_name_commands_and_options_that_exist() {
     assert!(count > 50, "{count}");
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
+
+/// The program says on its error stream which joints repeat others, unless it is to be quiet.
+#[test]
+fn the_program_names_redundant_joints() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/problems/benchmarks/four_bars_1.json"
+    );
+    let short = ["simulate", file, "--set", "/simulation/duration=0.01"];
+    for (more, expected) in [
+        (
+            None,
+            "joint \"C0\": 3 of 5 rows follow from the others to 1e-11",
+        ),
+        (Some("--quiet"), ""),
+    ] {
+        let arguments: Vec<&str> = short.into_iter().chain(more).collect();
+        let told = expect(0, scratch().path(), &arguments).err;
+        assert!(told.starts_with(expected), "{told}");
+        assert_eq!(told.is_empty(), more.is_some(), "{told}");
+    }
+}

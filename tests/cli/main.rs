@@ -9,4 +9,5 @@ mod program;
 mod restart;
 mod results_are_kept;
 mod several_starts;
+mod stability;
 mod work_precision;

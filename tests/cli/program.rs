@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::Instant;
@@ -62,6 +63,14 @@ pub fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
 
 pub fn names(directory: &Path) -> Vec<String> {
     files(directory).into_keys().collect()
+}
+
+/// Holds a directory as a run does that writes to it.
+pub fn held(directory: &Path) -> File {
+    std::fs::create_dir_all(directory).expect("is made");
+    let file = File::open(directory).expect("a directory");
+    file.try_lock().expect("is free");
+    file
 }
 
 pub fn read(path: &Path) -> String {

@@ -1,7 +1,6 @@
 //! What is found is not lost, and what stands there is not touched, whatever the disk or a signal does.
 
-use crate::program::{HAMMER, expect, files, json, names, optimum, read, scratch, start};
-use flexbody::report::files::prepare_directory;
+use crate::program::{HAMMER, expect, files, held, json, names, optimum, read, scratch, start};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -122,7 +121,7 @@ fn a_signal_ends_every_command_with_130() {
 #[test]
 fn the_lock_comes_before_the_accuracy() {
     let at = scratch();
-    let held = prepare_directory(&at.path().join("out")).expect("is free");
+    let held = held(&at.path().join("out"));
     for job in [&[][..], &["work-precision"], &["simulate"]] {
         let arguments = [job, &[HAMMER, "--accuracy", "1e-7", "--output", "out"]].concat();
         let ran = expect(2, at.path(), &arguments);

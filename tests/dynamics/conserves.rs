@@ -7,7 +7,7 @@
 //! step; energy and angular momentum, which are quadratic, are conserved by the equations, and by
 //! BDF up to its order.
 
-use crate::reference;
+use crate::tests::reference;
 
 use flexbody::math::{Mat3, Vec3, rotation};
 use flexbody::model::{JointKind, Mobility, Model, RigidBody};

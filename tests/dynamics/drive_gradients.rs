@@ -1,7 +1,7 @@
 //! Joints and drives in problem files: exact gradients in every number of every kind of drive, by
 //! several methods, and the faults of what they cannot be told.
 
-use crate::numbers;
+use crate::tests::numbers;
 
 use flexbody::driver::check;
 use flexbody::problem::Problem;

@@ -1,6 +1,6 @@
 //! The adjoint gives the derivative of every function in every single parameter of a scene.
 
-use crate::reference;
+use crate::tests::reference;
 
 use flexbody::adjoint::gradients;
 use flexbody::functions::{

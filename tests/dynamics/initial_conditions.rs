@@ -4,7 +4,7 @@
 //! Residuals are of round-off, 1e-12 in SI units of bodies of about 2 kg and 1 m; the nearest
 //! state is judged by its definition, against other states that the joints allow.
 
-use crate::reference;
+use crate::tests::reference;
 
 use flexbody::integrate::IntegrationFailure;
 use flexbody::integrate::{Method, Settings, simulate};

@@ -3,7 +3,7 @@
 //!
 //! Bodies are of about 1 m, 1 kg and 1 rad/s; what differs is round-off, 1e-12.
 
-use crate::reference::models::Numbers;
+use crate::tests::reference::models::Numbers;
 use flexbody::driver::{check, simulate, start::notes};
 use flexbody::math::rotation::{from_axis_angle, matrix};
 use flexbody::math::{Mat3, Vec3};

@@ -3,7 +3,7 @@
 //! Mechanisms are of about 1 m, 1 kg and 1 s; what differs is round-off, 1e-12, unless it says more.
 
 use super::joint_starts::{State, list, named, problem, shuffle, started};
-use crate::reference::models::Numbers;
+use crate::tests::reference::models::Numbers;
 use flexbody::driver::{check, simulate};
 use flexbody::integrate::IntegrationFailure;
 use flexbody::math::rotation::{from_axis_angle, matrix};

@@ -1,7 +1,7 @@
 //! Scenes at the limits of rounding: they run where their motion is known, and are given up after a
 //! bounded number of tries where it is not.
 
-use crate::reference::models::Numbers;
+use crate::tests::reference::models::Numbers;
 use flexbody::driver::simulate;
 use flexbody::integrate::control::Controller;
 use flexbody::integrate::headway::Stop;

@@ -5,7 +5,7 @@
 //! The joints are open and their frames skew, so that no term is hidden. A list of derivatives
 //! agrees to 1e-12 of its largest entry or of 0.01, as some vanish among forces of order one.
 
-use crate::reference;
+use crate::tests::reference;
 
 use flexbody::integrate::implicit::ggl::{Equations, Instant};
 use flexbody::linalg::{Emit, SparseMatrix};

@@ -1,7 +1,7 @@
 //! Loads in problem files: exact gradients in every number of every kind of load, and motions that
 //! are known in closed form.
 
-use crate::numbers;
+use crate::tests::numbers;
 
 use flexbody::driver::{check, simulate};
 use flexbody::problem::Problem;

@@ -5,7 +5,7 @@
 //! of sixteen bars (1 s); how their references were made, and how accurate they are, stands in
 //! `reference`. All tolerances are on the largest error over all bodies and reference instants.
 
-use crate::reference;
+use crate::tests::reference;
 
 use flexbody::integrate::{Method, Samples, Settings, Spacing, Start, Trajectory, simulate};
 use flexbody::model::Model;

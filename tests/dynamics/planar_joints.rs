@@ -2,7 +2,7 @@
 //! of joint with all its rows, between two bodies and between a body and ground, with skew frames in
 //! random planes. What lies in the plane agrees to 1e-14 of the largest number.
 
-use crate::reference;
+use crate::tests::reference;
 
 use flexbody::math::{Complex64, Scalar, rotation};
 use flexbody::model::{Mobility, Model};

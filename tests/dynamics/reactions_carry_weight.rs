@@ -1,7 +1,7 @@
 //! Joints carry what hangs from them: reactions of bodies at rest against statics, to 5e-11 N or
 //! N m (1e-12 of 50 N).
 
-use crate::reference;
+use crate::tests::reference;
 
 use flexbody::integrate::{Method, Multipliers, Settings, Start, simulate};
 use flexbody::math::Vec3;

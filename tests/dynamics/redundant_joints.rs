@@ -1,7 +1,7 @@
 //! Joints that repeat each other: what follows from the others is left out and named, the motion is
 //! that without it, and a singular position or joints that do not fit are told apart from it.
 
-use crate::reference;
+use crate::tests::reference;
 
 use flexbody::driver::{check, simulate};
 use flexbody::integrate::IntegrationFailure;
@@ -10,7 +10,6 @@ use flexbody::system::observe::Reaction;
 use reference::models::Numbers;
 use serde_json::{Value, json};
 use std::path::Path;
-use std::process::Command;
 
 fn problem(file: &Value) -> Problem {
     Problem::parse(&file.to_string(), "redundant.json", &[])
@@ -342,35 +341,6 @@ fn linkages_pass_singular_positions_on_their_branch() {
                 "{n}: {found} against {exact}"
             );
         }
-    }
-}
-
-/// The program says on its error stream which joints repeat others, unless it is to be quiet.
-#[test]
-fn the_program_names_redundant_joints() {
-    let file = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/problems/benchmarks/four_bars_1.json"
-    );
-    let short = ["simulate", file, "--set", "/simulation/duration=0.01"];
-    for (more, expected) in [
-        (
-            None,
-            "joint \"C0\": 3 of 5 rows follow from the others to 1e-11",
-        ),
-        (Some("--quiet"), ""),
-    ] {
-        let done = Command::new(env!("CARGO_BIN_EXE_optimize"))
-            .args(short)
-            .args(more)
-            .output()
-            .expect("the program runs");
-        let told = String::from_utf8(done.stderr).expect("UTF-8");
-        assert!(
-            done.status.success() && told.starts_with(expected),
-            "{told}"
-        );
-        assert_eq!(told.is_empty(), more.is_some(), "{told}");
     }
 }
 

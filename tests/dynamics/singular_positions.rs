@@ -1,7 +1,7 @@
 //! Linkages that pass positions where their bars are in line. A parallelogram in gravity moves as a
 //! pendulum with the same moments does, whatever its lengths, its start and the tolerance.
 
-use crate::reference;
+use crate::tests::reference;
 
 use flexbody::driver::simulate;
 use flexbody::problem::Problem;

@@ -2,8 +2,9 @@
 //! both.
 
 use flexbody::driver::evaluate::Evaluated;
+use flexbody::driver::evaluator::Evaluator;
 use flexbody::driver::integration::Integration;
-use flexbody::driver::{Evaluator, Journal, simulate};
+use flexbody::driver::{Journal, simulate};
 use flexbody::integrate::{IntegrationFailure, Method, Spacing};
 use flexbody::optimiser::Nlp;
 use flexbody::problem::{Override, Problem};

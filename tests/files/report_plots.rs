@@ -1,10 +1,11 @@
 //! Figures show what they should, inside their canvas, whatever the data.
 
+use flexbody::report::history::Column;
 use flexbody::report::plots::{
     Barrier, BodyMotion, Connector, ConnectorKind, EnergyRun, Flight, Motion, Scenery, convergence,
     energy, motion,
 };
-use flexbody::report::{Column, History, HistoryRow};
+use flexbody::report::{History, HistoryRow};
 
 /// Values of an attribute in the order of the file.
 fn attributes<'a>(svg: &'a str, name: &str) -> Vec<&'a str> {

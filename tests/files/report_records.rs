@@ -2,10 +2,12 @@
 
 use flexbody::driver::{Journal, optimise};
 use flexbody::problem::Problem;
+use flexbody::report::compare::Comparison;
+use flexbody::report::history::Column;
 use flexbody::report::optimum::*;
 use flexbody::report::{
-    Column, Comparison, History, HistoryRow, Optimum, ReportError, Tolerances, atomic_write,
-    compare, read_text, summary, write_all,
+    History, HistoryRow, Optimum, ReportError, Tolerances, atomic_write, compare, read_text,
+    summary, write_all,
 };
 use serde_json::json;
 use std::ops::ControlFlow;

@@ -1,7 +1,7 @@
 //! Every derivative of the beam element against the complex step, for all sections, on curved elements with
 //! offsets; the transposes by dot products.
 
-use crate::sample::{ALUMINIUM, Compared, Numbers, complex_step};
+use super::sample::{ALUMINIUM, Compared, Numbers, complex_step};
 use flexbody::math::{Complex64, Scalar, Vec3};
 use flexbody::structures::beam::{BEAM_NODES, Beam, BeamMotion, Section, SectionValues};
 use flexbody::structures::shell::{ElementMatrix, MassMoments};

@@ -1,7 +1,7 @@
 //! Beams against closed forms: in any direction, curved, as frames, slender and stocky; frequencies; where
 //! von Karman's strains end.
 
-use crate::sample::{ALUMINIUM, Numbers};
+use super::sample::{ALUMINIUM, Numbers};
 use flexbody::math::Vec3;
 use flexbody::structures::beam::Section;
 use flexbody::structures::generate::{

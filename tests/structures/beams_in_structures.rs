@@ -1,6 +1,6 @@
 //! Plates with beams on them: derivatives of functions, frequencies and sizes of generators.
 
-use crate::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
+use super::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
 use flexbody::math::{Complex64, Vec3};
 use flexbody::structures::beam::Section;
 use flexbody::structures::functions::{Function, Solved};

@@ -1,7 +1,7 @@
 //! Functions of static solutions: every derivative against the complex step through the whole solution,
 //! on a curved and distorted mesh with a fold, for both kinds of unknowns.
 
-use crate::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
+use super::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
 use flexbody::math::{Complex64, Scalar, Vec3};
 use flexbody::structures::functions::{Aggregate, Function, Solved};
 use flexbody::structures::generate::panel;

@@ -1,6 +1,6 @@
 //! Derivatives of frequencies: against the complex step, and against differences of whole solutions.
 
-use crate::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
+use super::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
 use flexbody::math::{Complex64, Vec3};
 use flexbody::structures::generate::{Generated, panel, plate};
 use flexbody::structures::lumped_mass::LumpedMass;

@@ -1,6 +1,6 @@
 //! Natural frequencies against other codes and solutions, and the count that misses none.
 
-use crate::sample::ALUMINIUM;
+use super::sample::ALUMINIUM;
 use flexbody::structures::generate::{Generated, plate};
 use flexbody::structures::lumped_mass::LumpedMass;
 use flexbody::structures::material::Material;

@@ -1,6 +1,6 @@
 //! Patch tests on distorted meshes, and plates that do not lock.
 
-use crate::sample::{ALUMINIUM, Numbers};
+use super::sample::{ALUMINIUM, Numbers};
 use flexbody::math::Vec3;
 use flexbody::structures::generate::{Generated, plate};
 use flexbody::structures::loads::Load;

@@ -1,6 +1,6 @@
 //! Every derivative of the shell element against the complex step, on curved, distorted elements.
 
-use crate::sample::{
+use super::sample::{
     Compared, Numbers, complex_step, distorted_element, motion_numbers, motion_of, random_motion,
     shell_numbers, shell_of,
 };

@@ -1,7 +1,7 @@
 //! One element against the numbers of an independent prototype (tests/data/structures/
 //! mitc9_element.json: a parallelogram and a curved element, without drilling and correction).
 
-use crate::sample::{Numbers, distorted_element, random_motion};
+use super::sample::{Numbers, distorted_element, random_motion};
 use flexbody::math::{Dual, Vec3};
 use flexbody::structures::material::Material;
 use flexbody::structures::shell::{

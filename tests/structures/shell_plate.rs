@@ -5,7 +5,7 @@
 //! of this plate have the same stress, so its KS is that over points and faces for ρ = 100 only, and
 //! for ρ = 50 it is smaller by ln 2 (1/50 − 1/100).
 
-use crate::sample::ALUMINIUM;
+use super::sample::ALUMINIUM;
 use flexbody::math::Vec3;
 use flexbody::structures::functions::{Aggregate, Function, Solved};
 use flexbody::structures::generate::{Generated, plate};

@@ -1,6 +1,6 @@
 //! Von Karman statics against closed forms; loads that cannot be carried.
 
-use crate::sample::ALUMINIUM;
+use super::sample::ALUMINIUM;
 use flexbody::math::Vec3;
 use flexbody::structures::generate::{Generated, panel, plate};
 use flexbody::structures::loads::Load;

@@ -17,6 +17,6 @@ pub mod tableau;
 pub mod tape;
 
 pub use again::Again;
-pub use record::{Node, NodeView, StepData, StepView, add_rows};
+pub use record::{NodeView, StepView, add_rows};
 pub use step::Stepper;
-pub use tape::{Block, Tape};
+pub use tape::Tape;

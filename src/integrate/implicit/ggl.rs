@@ -353,6 +353,7 @@ fn scale_parts(x: &mut [f64], parts: &[(usize, f64)]) {
 impl Equations<'_, f64> {
     /// Pulls the adjoint ψ (unscaled, of F1 … F4) back to the parameters of `cot`; returns the
     /// derivative of ψᵀF in time.
+    #[cfg(test)]
     pub fn pull_back(&mut self, at: &Instant<f64>, psi: &[f64], cot: &mut Model<f64>) -> f64 {
         self.pull_back_held(at, psi, cot, &mut [])
     }

@@ -16,7 +16,7 @@ pub mod stage_newton;
 pub mod tape;
 
 pub use again::Again;
-pub use tape::{Block, Tape};
+pub use tape::Tape;
 
 use crate::math::Scalar;
 use crate::system::{Numbering, bodies, reduce};

@@ -39,7 +39,8 @@ pub struct Document {
     /// Name of the problem and of its results.
     pub name: String,
     /// What the problem is about.
-    pub description: Option<String>,
+    #[serde(rename = "description")]
+    pub _description: Option<String>,
     /// Gravitational acceleration in ground axes, default [0, −9.81, 0].
     #[schemars(extend("unit" = "m/s²"))]
     pub gravity: Option<Vector>,

@@ -4,7 +4,7 @@
 mod explanation;
 mod planes;
 mod points;
-use crate::reference;
+use crate::tests::reference;
 mod unseen;
 mod welds;
 

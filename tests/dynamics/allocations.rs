@@ -1,33 +1,15 @@
 //! The time loops allocate nothing, forwards and backwards: runs of n and of 2 n kept steps make as many
 //! allocations, as their history is given room before.
 
-use dhat::HeapStats;
 use flexbody::adjoint::gradients;
 use flexbody::functions::Scene;
 use flexbody::integrate::{Grid, Method, Samples, Settings, Spacing, Start, simulate};
 use flexbody::problem::Problem;
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
-#[global_allocator]
-static ALLOCATOR: dhat::Alloc = dhat::Alloc;
-
-/// One test at a time, as all allocations of the process are counted.
-fn one_at_a_time() -> MutexGuard<'static, dhat::Profiler> {
-    static PROFILER: OnceLock<Mutex<dhat::Profiler>> = OnceLock::new();
-    let profiler = || Mutex::new(dhat::Profiler::builder().testing().build());
-    let lock = PROFILER.get_or_init(profiler).lock();
-    // A test that failed has said so itself.
-    lock.unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Allocations while `f` runs.
-fn allocations<T>(f: impl FnOnce() -> T) -> u64 {
-    let before = HeapStats::get().total_blocks;
-    let kept = f();
-    let after = HeapStats::get().total_blocks;
-    drop(kept);
-    after - before
+/// Allocations of this thread while `f` runs.
+fn allocations(f: impl FnOnce()) -> u64 {
+    allocation_counter::measure(f).count_total
 }
 
 fn scene(path: &str) -> Scene<f64> {
@@ -43,7 +25,9 @@ fn of_run(scene: &Scene<f64>, duration: f64, settings: &Settings) -> ([u64; 2], 
         run = Some(simulate(&scene.model, duration, settings).expect("runs"));
     });
     let run = run.expect("it ran");
-    let backwards = allocations(|| gradients(scene, &run, &[0]).expect("differentiates"));
+    let backwards = allocations(|| {
+        gradients(scene, &run, &[0]).expect("differentiates");
+    });
     ([forwards, backwards], run.grid)
 }
 
@@ -85,7 +69,6 @@ const CHECKPOINTS: [u64; 2] = [4 * 12, 4 * 40];
 
 #[test]
 fn explicit_steps_allocate_nothing() {
-    let _one = one_at_a_time();
     for (path, duration) in SCENES {
         let scene = scene(path);
         for (memory, more) in [(1 << 28, [0, 0]), (200_000, CHECKPOINTS)] {
@@ -119,7 +102,6 @@ fn implicit() -> [Method; 5] {
 
 #[test]
 fn implicit_steps_allocate_nothing() {
-    let _one = one_at_a_time();
     for (path, duration) in SCENES {
         let scene = scene(path);
         for method in implicit() {
@@ -135,7 +117,6 @@ const HISTORY: u64 = 9;
 
 #[test]
 fn steps_that_follow_the_error_allocate_their_history_only() {
-    let _one = one_at_a_time();
     for (path, duration) in SCENES {
         let scene = scene(path);
         let mut settings = Settings::steps(Method::Radau { stages: 3 }, 1);

@@ -1,8 +1,5 @@
 //! What is in files: problems, records, figures, documents, and the layers of the source.
 
-#[path = "../reference/mod.rs"]
-mod reference;
-
 mod benchmarks;
 mod circles;
 mod faults;
@@ -11,5 +8,6 @@ mod problems_check;
 mod readme;
 mod report_plots;
 mod report_records;
+mod second_order;
 mod stability;
 mod trebuchets;

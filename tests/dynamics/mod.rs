@@ -1,10 +1,6 @@
 //! Equations of motion, their integration and their derivatives.
 
-#[path = "../reference/numbers.rs"]
-mod numbers;
-#[path = "../reference/mod.rs"]
-mod reference;
-
+mod allocations;
 mod checkpoints;
 mod conserves;
 mod constraint_derivatives;
