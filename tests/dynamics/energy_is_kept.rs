@@ -1,7 +1,7 @@
 //! Energy as a witness of a run: no right run of a scene that conserves it is refused, and one whose states
 //! are spoilt is.
 
-use crate::reference::models::{KINDS, Numbers, joint};
+use crate::tests::reference::models::{KINDS, Numbers, joint};
 
 use flexbody::integrate::energy::Ledger;
 use flexbody::integrate::scale::Scale;

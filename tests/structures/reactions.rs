@@ -1,6 +1,6 @@
 //! Reactions balance the loads; inertia of bodies that are known.
 
-use crate::sample::{ALUMINIUM, Numbers};
+use super::sample::{ALUMINIUM, Numbers};
 use flexbody::math::Vec3;
 use flexbody::structures::beam::Section;
 use flexbody::structures::functions::{Function, Solved};

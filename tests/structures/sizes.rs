@@ -1,7 +1,7 @@
 //! Derivatives by the sizes of generators: lengths, widths, radii, angles, places of ends, through statics and
 //! modes, against the complex step through generator and solution.
 
-use crate::sample::{ALUMINIUM, complex_step};
+use super::sample::{ALUMINIUM, complex_step};
 use flexbody::math::{Complex64, Dual, Scalar, Vec3};
 use flexbody::structures::beam::Section;
 use flexbody::structures::functions::{Aggregate, Function, Solved};
