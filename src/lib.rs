@@ -49,6 +49,8 @@
 //! | `library` | what a user of the library needs of problems |
 //! | `cli` | the command line |
 
+#![cfg_attr(not(test), warn(unreachable_pub))]
+
 mod adjoint;
 pub mod cli;
 mod driver;

@@ -11,7 +11,7 @@ pub(super) struct Compensated {
 
 impl Compensated {
     /// A vector of zeros.
-    pub fn zero(n: usize) -> Self {
+    pub(crate) fn zero(n: usize) -> Self {
         Self {
             value: vec![0.0; n],
             rest: vec![0.0; n],
@@ -19,7 +19,7 @@ impl Compensated {
     }
 
     /// Adds `scale` times `x`.
-    pub fn add(&mut self, scale: f64, x: &[f64]) {
+    pub(crate) fn add(&mut self, scale: f64, x: &[f64]) {
         for ((value, rest), &x) in self.value.iter_mut().zip(&mut self.rest).zip(x) {
             let change = scale * x + *rest;
             let sum = *value + change;

@@ -11,7 +11,7 @@ use crate::integrate::{IntegrationFailure, Tape, Trajectory, WorkCounts};
 
 /// Gradients and the work that they took.
 #[derive(Clone, Debug)]
-pub struct AdjointRun {
+pub(crate) struct AdjointRun {
     /// For each function asked for, its derivative in every parameter of the scene (a cotangent
     /// of the scene).
     pub gradients: Vec<Scene<f64>>,
@@ -24,7 +24,7 @@ pub struct AdjointRun {
 ///
 /// # Errors
 /// If the equations of a step are singular.
-pub fn gradients(
+pub(crate) fn gradients(
     scene: &Scene<f64>,
     run: &Trajectory<f64>,
     which: &[usize],

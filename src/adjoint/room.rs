@@ -7,7 +7,7 @@ pub(super) struct Room(Vec<Vec<f64>>);
 
 impl Room {
     /// A vector of n zeros.
-    pub fn zeros(&mut self, n: usize) -> Vec<f64> {
+    pub(crate) fn zeros(&mut self, n: usize) -> Vec<f64> {
         let mut x = self.0.pop().unwrap_or_default();
         x.clear();
         x.resize(n, 0.0);
@@ -15,7 +15,7 @@ impl Room {
     }
 
     /// A copy of `x`.
-    pub fn copy(&mut self, x: &[f64]) -> Vec<f64> {
+    pub(crate) fn copy(&mut self, x: &[f64]) -> Vec<f64> {
         let mut y = self.0.pop().unwrap_or_default();
         y.clear();
         y.extend_from_slice(x);
@@ -23,7 +23,7 @@ impl Room {
     }
 
     /// Takes vectors back.
-    pub fn back<const N: usize>(&mut self, all: [Vec<f64>; N]) {
+    pub(crate) fn back<const N: usize>(&mut self, all: [Vec<f64>; N]) {
         self.0.extend(all);
     }
 }

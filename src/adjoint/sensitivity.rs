@@ -29,7 +29,7 @@ pub(super) struct Sensitivity<'a> {
 
 impl<'a> Sensitivity<'a> {
     /// Function `own` of the scene at the end of `run`.
-    pub fn new(scene: &'a Scene<f64>, run: &Trajectory<f64>, own: usize) -> Self {
+    pub(crate) fn new(scene: &'a Scene<f64>, run: &Trajectory<f64>, own: usize) -> Self {
         let (nq, nv) = (run.numbering.positions(), run.numbering.velocities());
         Self {
             linearised: Linearised::new(scene.function(own), &scene.model, run),
@@ -43,13 +43,18 @@ impl<'a> Sensitivity<'a> {
     }
 
     /// Whether the function depends on the states of sample k.
-    pub fn depends_on(&self, k: usize) -> bool {
+    pub(crate) fn depends_on(&self, k: usize) -> bool {
         self.linearised.depends_on(k)
     }
 
     /// Puts the partial derivatives of the function at sample k into `sample`; false if there are
     /// none.
-    pub fn linearise(&mut self, scene: &Scene<f64>, run: &Trajectory<f64>, k: usize) -> bool {
+    pub(crate) fn linearise(
+        &mut self,
+        scene: &Scene<f64>,
+        run: &Trajectory<f64>,
+        k: usize,
+    ) -> bool {
         if !self.depends_on(k) {
             return false;
         }
@@ -70,7 +75,7 @@ impl<'a> Sensitivity<'a> {
     ///
     /// # Errors
     /// If the equations of the initial state are singular.
-    pub fn finish(
+    pub(crate) fn finish(
         &mut self,
         scene: &Scene<f64>,
         run: &Trajectory<f64>,

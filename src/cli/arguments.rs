@@ -18,7 +18,7 @@ use std::path::PathBuf;
                   2 bad input; 3 numerical failure; 4 a file cannot be read or written; \
                   130 interrupted by a signal."
 )]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// What to do instead of optimising.
     #[command(subcommand)]
     pub command: Option<Command>,
@@ -32,7 +32,7 @@ pub struct Arguments {
 
 /// Where an optimisation starts and what it does besides.
 #[derive(Args, Debug)]
-pub struct Course {
+pub(crate) struct Course {
     /// Goes on with the run of this directory that was killed, interrupted or at a limit: its
     /// evaluations are not repeated. Settings of the optimiser may differ.
     #[arg(long, value_name = "DIR")]
@@ -57,7 +57,7 @@ pub struct Course {
 
 /// A problem file and what is done with it.
 #[derive(Args, Clone, Debug)]
-pub struct Job {
+pub(crate) struct Job {
     /// Problem file (JSON).
     pub problem: PathBuf,
     /// Directory for the results [default: results/<name of the problem>, for `work-precision`
@@ -91,7 +91,7 @@ pub struct Job {
 
 /// The other jobs.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Simulate the problem's start and report its functions, energy and constraint drift. With
     /// --output it draws the motion and writes simulation.csv (energy, momentum, drift, joint
     /// reactions), motion.csv (all bodies) and functions.csv (all quantities) over time.
@@ -152,7 +152,7 @@ pub enum Command {
 
 /// What `work-precision` measures.
 #[derive(Args, Debug)]
-pub struct Measurement {
+pub(crate) struct Measurement {
     /// The problem.
     #[command(flatten)]
     pub job: Job,
@@ -173,7 +173,7 @@ pub struct Measurement {
 
 /// Which cases `stability` tries.
 #[derive(Args, Debug)]
-pub struct Suite {
+pub(crate) struct Suite {
     /// Directory for the table [default: results/stability; none if only some cases are run].
     #[arg(long, short)]
     pub output: Option<PathBuf>,
@@ -190,7 +190,7 @@ pub struct Suite {
 
 /// Two records.
 #[derive(Args, Debug)]
-pub struct Comparison {
+pub(crate) struct Comparison {
     /// New record: optimum.json, or its directory.
     pub new: PathBuf,
     /// Record to compare with: optimum.json, or its directory.

@@ -7,7 +7,7 @@ use crate::report::{Tolerances, prepare_directory, read_text, write_all};
 use std::path::{Path, PathBuf};
 
 /// Compares two records.
-pub fn compare(files: &Comparison) -> Result<u8, Failure> {
+pub(crate) fn compare(files: &Comparison) -> Result<u8, Failure> {
     let ((_, new), (_, baseline)) = (record(&files.new)?, record(&files.baseline)?);
     let comparison = crate::report::compare(&new, &baseline, &Tolerances::default());
     print(&comparison.text())?;
@@ -19,7 +19,7 @@ pub fn compare(files: &Comparison) -> Result<u8, Failure> {
 }
 
 /// Draws the figures of a result directory again.
-pub fn plot(directory: &Path) -> Result<u8, Failure> {
+pub(crate) fn plot(directory: &Path) -> Result<u8, Failure> {
     let (_, optimum) = record(directory)?;
     let history = read_text(&directory.join("history.csv"))?;
     let history = crate::report::History::from_csv(&history)?;
@@ -34,7 +34,7 @@ pub fn plot(directory: &Path) -> Result<u8, Failure> {
 }
 
 /// Prints the schema of problem files.
-pub fn schema() -> Result<u8, Failure> {
+pub(crate) fn schema() -> Result<u8, Failure> {
     let text =
         serde_json::to_string_pretty(&crate::problem::schema()).map_err(Failure::bad_input)?;
     print(&(text + "\n"))?;

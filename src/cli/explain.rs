@@ -5,7 +5,7 @@ use super::{DONE, Failure, load, print};
 use crate::driver;
 
 /// Says what is left out of a problem's scenes and what is left.
-pub fn explain(job: &Job, json: bool) -> Result<u8, Failure> {
+pub(crate) fn explain(job: &Job, json: bool) -> Result<u8, Failure> {
     if job.output.is_some() || job.error {
         let what = "found --output or --error, expected neither: optimize explain writes no files";
         return Err(Failure::bad_input(what));

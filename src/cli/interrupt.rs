@@ -10,7 +10,7 @@ static ASKED: AtomicBool = AtomicBool::new(false);
 
 /// Makes an interrupt end the program with its exit code: at once, or, the first time while it is
 /// [heeded](heed), when the results are written.
-pub fn listen() {
+pub(crate) fn listen() {
     // Where no handler can be set, the system ends the program.
     let _ = ctrlc::set_handler(|| {
         let first = !ASKED.swap(true, Ordering::Relaxed);
@@ -21,11 +21,11 @@ pub fn listen() {
 }
 
 /// From now on the work looks at [`asked`].
-pub fn heed() {
+pub(crate) fn heed() {
     HEEDED.store(true, Ordering::Relaxed);
 }
 
 /// Whether the work shall end.
-pub fn asked() -> bool {
+pub(crate) fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }

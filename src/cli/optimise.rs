@@ -31,7 +31,7 @@ const STATE: &str = "state.json";
 const OPTIMA: &str = "optima.csv";
 
 /// Optimises a problem and writes its results.
-pub fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
+pub(crate) fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
     let problem = read(job)?;
     complete(&problem, job)?;
     let begin = |problem: Problem| -> Result<_, Failure> {

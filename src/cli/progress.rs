@@ -15,7 +15,7 @@ const LOOK: Duration = Duration::from_millis(500);
 
 /// What the simulations of this process tell how far they are. Those that take long are told of on
 /// standard error: after 2 s, then after twice the time of the line before, at least every 30 s.
-pub fn watched() -> Arc<Progress> {
+pub(crate) fn watched() -> Arc<Progress> {
     static PROGRESS: OnceLock<Arc<Progress>> = OnceLock::new();
     let progress = PROGRESS.get_or_init(|| {
         let progress = Arc::new(Progress::default());
@@ -50,7 +50,7 @@ fn line(view: &View) -> String {
 }
 
 /// One line an iteration, with the column heads every twenty lines.
-pub fn show(history: &History) {
+pub(crate) fn show(history: &History) {
     let Some(row) = history.rows.last() else {
         return;
     };

@@ -15,14 +15,14 @@ const SINGLE: &str = "evaluations.jsonl";
 const SEVERAL: (&str, &str) = ("evaluations.start_", ".jsonl");
 
 /// Where the records of a run are, and where those of an earlier one are, if it goes on with one.
-pub struct Records<'a> {
+pub(crate) struct Records<'a> {
     directory: &'a Path,
     resumed: Option<&'a Path>,
 }
 
 /// Which of the starts of a run: the only one, or one of several, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
+pub(crate) enum Start {
     Only,
     OneOf(usize),
 }
@@ -37,7 +37,7 @@ impl Start {
 }
 
 /// The record of one start, opened.
-pub struct Opened {
+pub(crate) struct Opened {
     log: EvaluationLog,
     earlier: Vec<EvaluationRecord>,
     /// How many evaluations an earlier run left.
@@ -49,7 +49,7 @@ pub struct Opened {
 impl<'a> Records<'a> {
     /// The records of a run in `directory`, which is there. What another run left there goes, unless it
     /// is resumed.
-    pub fn new(directory: &'a Path, resumed: Option<&'a Path>) -> Result<Self, Failure> {
+    pub(crate) fn new(directory: &'a Path, resumed: Option<&'a Path>) -> Result<Self, Failure> {
         let same =
             resumed.is_some_and(
                 |from| match (from.canonicalize(), directory.canonicalize()) {
@@ -64,7 +64,7 @@ impl<'a> Records<'a> {
     }
 
     /// What is told of an earlier run that left so many evaluations.
-    pub fn resumed(&self, known: usize) -> String {
+    pub(crate) fn resumed(&self, known: usize) -> String {
         match (self.resumed, known) {
             (None, _) => String::new(),
             (Some(from), 0) => format!("{}: no evaluation yet, starts anew\n", shown(from)),
@@ -76,12 +76,12 @@ impl<'a> Records<'a> {
     }
 
     /// Opens the record of a start, with what an earlier run left of it.
-    pub fn open(&self, start: Start, problem: &Problem) -> Result<Opened, ReportError> {
+    pub(crate) fn open(&self, start: Start, problem: &Problem) -> Result<Opened, ReportError> {
         self.opened(self.resumed, start, problem)
     }
 
     /// Opens the record of a start of this run again.
-    pub fn reopen(&self, start: Start, problem: &Problem) -> Result<Opened, ReportError> {
+    pub(crate) fn reopen(&self, start: Start, problem: &Problem) -> Result<Opened, ReportError> {
         self.opened(Some(self.directory), start, problem)
     }
 
@@ -113,7 +113,7 @@ impl<'a> Records<'a> {
 impl Opened {
     /// The journal of the record; the first fault in writing is left in `fault`. Choices of steps are
     /// told unless `quiet`.
-    pub fn journal(self, fault: &Mutex<Option<ReportError>>, quiet: bool) -> Journal<'_> {
+    pub(crate) fn journal(self, fault: &Mutex<Option<ReportError>>, quiet: bool) -> Journal<'_> {
         let mut log = self.log;
         Journal::new(self.earlier, move |evaluation| {
             // That equal steps are taken, and by which method, goes without saying until it changes.
@@ -140,7 +140,7 @@ impl Opened {
 }
 
 /// What differs from the run that is resumed, to be told.
-pub fn changed(changes: &[String]) -> String {
+pub(crate) fn changed(changes: &[String]) -> String {
     changes
         .iter()
         .map(|change| format!("changed since the resumed run: {change}\n"))
@@ -149,7 +149,7 @@ pub fn changed(changes: &[String]) -> String {
 
 /// Refuses a directory that holds no run, or one of the other kind, before anything is changed;
 /// `several` is whether the run that shall go on has several starts.
-pub fn refuse_without_run(from: &Path, several: bool) -> Result<(), Failure> {
+pub(crate) fn refuse_without_run(from: &Path, several: bool) -> Result<(), Failure> {
     if !from.is_dir() {
         return Err(Failure::bad_input(format!(
             "found no directory {}, expected that of the run to resume; to begin one, leave --resume \

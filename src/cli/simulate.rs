@@ -13,7 +13,7 @@ use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
 /// Simulates the start of a problem.
-pub fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Failure> {
+pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Failure> {
     let problem = read(job)?;
     // Held, and known to take files, before the work is done.
     let _held = match &job.output {
@@ -200,7 +200,7 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
 }
 
 /// A table of the estimated discretisation errors of all functions and their gradients.
-pub fn errors(problem: &Problem, at: &Evaluated) -> Result<String, Failure> {
+pub(crate) fn errors(problem: &Problem, at: &Evaluated) -> Result<String, Failure> {
     let all: Vec<usize> = (0..problem.function_names.len()).collect();
     let found = error::estimate(problem, at, &all, true).map_err(Failure::numerical)?;
     let names = |all: &mut dyn Iterator<Item = &String>| {
@@ -246,7 +246,7 @@ pub fn errors(problem: &Problem, at: &Evaluated) -> Result<String, Failure> {
 }
 
 /// Checks all gradients of a problem at its start.
-pub fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
+pub(crate) fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
     if job.output.is_some() {
         let what = "found --output, expected none: optimize check writes no files";
         return Err(Failure::bad_input(what));

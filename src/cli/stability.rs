@@ -7,7 +7,7 @@ use crate::report::{StabilityRow, prepare_directory, write_all};
 use std::path::Path;
 
 /// Runs the stability suite and writes its table.
-pub fn stability(asked: &Suite) -> Result<u8, Failure> {
+pub(crate) fn stability(asked: &Suite) -> Result<u8, Failure> {
     let wanted = |case: &str| asked.only.as_ref().is_none_or(|only| is_named(case, only));
     if let (Some(only), false) = (&asked.only, names(false).iter().any(|case| wanted(case))) {
         let mut families: Vec<String> = Vec::new();

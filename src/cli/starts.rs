@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 /// Optimisations from several starts: the best one, and the distinct optima as comma separated values,
 /// after a table of them. Every evaluation is on the disk as soon as it is known, in a file for each
 /// start; the first fault in writing ends the run and is handed back beside what was found by then.
-pub fn several(
+pub(crate) fn several(
     problem: &Problem,
     starts: &[Vec<f64>],
     records: &Records,

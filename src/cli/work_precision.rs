@@ -9,7 +9,7 @@ use crate::report::{PrecisionRow, plots, prepare_directory, read_text, write_all
 use std::path::{Path, PathBuf};
 
 /// Measures all methods on the start of a problem and writes what it finds.
-pub fn measure(asked: &Measurement) -> Result<u8, Failure> {
+pub(crate) fn measure(asked: &Measurement) -> Result<u8, Failure> {
     let job: &Job = &asked.job;
     if job.error {
         let what = "found --error, expected none: optimize work-precision measures errors itself";

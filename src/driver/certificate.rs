@@ -19,9 +19,9 @@ use crate::report::optimum::{
 };
 
 /// Largest accepted difference relative to Σ |gᵢdᵢ|: that of `optimize check`.
-pub const TOLERANCE: f64 = 1e-10;
+pub(crate) const TOLERANCE: f64 = 1e-10;
 /// Seed of the direction.
-pub const SEED: u64 = 20_221_113;
+pub(crate) const SEED: u64 = 20_221_113;
 /// Round-off of a derivative, relative to the terms that it is the sum of.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 /// Largest number of variables that are tested one by one for the error, by a complex run each.
@@ -29,7 +29,11 @@ const LOOKED_AT: usize = 64;
 
 /// Certifies the gradients at both ends of an optimisation, on the steps of their simulations.
 /// Differences up to `tolerance` pass.
-pub fn certify(problem: &Problem, done: &Optimisation, tolerance: f64) -> GradientCertificate {
+pub(crate) fn certify(
+    problem: &Problem,
+    done: &Optimisation,
+    tolerance: f64,
+) -> GradientCertificate {
     let direction = direction(problem, SEED);
     let mut cost = CertificateCost::default();
     let mut at = |simulation: &Option<super::Simulation>| match simulation {

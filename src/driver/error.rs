@@ -27,7 +27,7 @@ const FINEST: (f64, usize) = (1e-14, 10_000_000);
 
 /// A number with its estimated error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
+pub(crate) struct Estimate {
     /// The number on the steps in use.
     pub value: f64,
     /// Its estimated error, absolute.
@@ -40,7 +40,7 @@ pub struct Estimate {
 
 /// A function's value and, if asked for, its gradient in the design variables.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FunctionError {
+pub(crate) struct FunctionError {
     /// The function, by index.
     pub function: usize,
     /// Its value.
@@ -56,7 +56,7 @@ pub struct FunctionError {
 ///
 /// # Errors
 /// If the finer simulation or a gradient fails.
-pub fn estimate(
+pub(crate) fn estimate(
     problem: &Problem,
     at: &Evaluated,
     which: &[usize],
@@ -204,7 +204,7 @@ fn thin(run: &mut Trajectory<f64>) {
 
 /// Steps that reach an accuracy, and their cost.
 #[derive(Clone, Debug)]
-pub struct Accuracy {
+pub(crate) struct Accuracy {
     /// Number of steps.
     pub steps: usize,
     /// Number of steps of equal size or tolerance, if it was refined.
@@ -217,7 +217,7 @@ pub struct Accuracy {
 
 impl Accuracy {
     /// The changes of the problem file that give these steps, as path=value.
-    pub fn overrides(&self) -> Vec<String> {
+    pub(crate) fn overrides(&self) -> Vec<String> {
         let mut all = match self.spacing {
             Some(Spacing::Tolerance(tolerance)) => {
                 vec![format!("/simulation/tolerance={tolerance:e}")]
@@ -230,7 +230,7 @@ impl Accuracy {
     }
 
     /// The reached accuracy beside the requested one.
-    pub fn describe(&self, asked: f64) -> String {
+    pub(crate) fn describe(&self, asked: f64) -> String {
         let missed = match self.error <= asked {
             true => "",
             false => ", which is all that can be reached",
@@ -256,7 +256,7 @@ impl Accuracy {
 ///
 /// # Errors
 /// If a simulation fails.
-pub fn reach(
+pub(crate) fn reach(
     problem: &mut Problem,
     which: usize,
     accuracy: f64,

@@ -13,7 +13,7 @@ use crate::problem::{Focus, Problem};
 use std::borrow::Cow;
 
 /// A design that was simulated.
-pub struct Evaluated {
+pub(crate) struct Evaluated {
     /// The design.
     pub x: Vec<f64>,
     /// The scene there.
@@ -37,7 +37,7 @@ impl Evaluated {
     ///
     /// # Errors
     /// If the simulation fails.
-    pub fn with(
+    pub(crate) fn with(
         integration: &mut Integration,
         problem: &Problem,
         x: &[f64],
@@ -57,7 +57,7 @@ impl Evaluated {
 
     /// The scene as it is written, and the motion of all its bodies. Bodies that no function
     /// observes are simulated for it; if that fails, they rest.
-    pub fn written(&self, problem: &Problem) -> (Scene<f64>, Cow<'_, Trajectory<f64>>) {
+    pub(crate) fn written(&self, problem: &Problem) -> (Scene<f64>, Cow<'_, Trajectory<f64>>) {
         if let Some(whole) = problem.whole() {
             let (scene, run) = self.whole(problem, &whole);
             return (scene, Cow::Owned(run));
@@ -105,7 +105,11 @@ impl Evaluated {
     }
 
     /// A warning for each of the functions `which` that reduces a speed through its kink at rest.
-    pub fn kinks(&self, problem: &Problem, which: impl Iterator<Item = usize>) -> Vec<String> {
+    pub(crate) fn kinks(
+        &self,
+        problem: &Problem,
+        which: impl Iterator<Item = usize>,
+    ) -> Vec<String> {
         let warn = |f: usize| {
             let time = passes_rest(&self.scene.functions[f], &self.scene.model, &self.run)?;
             Some(format!(
@@ -118,7 +122,7 @@ impl Evaluated {
     }
 
     /// A function of interest, by index.
-    pub fn function(&self, index: usize) -> evaluate::Evaluated<f64> {
+    pub(crate) fn function(&self, index: usize) -> evaluate::Evaluated<f64> {
         self.scene.functions[index].evaluate(&self.scene.model, &self.run)
     }
 
@@ -126,7 +130,7 @@ impl Evaluated {
     ///
     /// # Errors
     /// If a step's equations are singular.
-    pub fn gradients(
+    pub(crate) fn gradients(
         &self,
         problem: &Problem,
         which: &[usize],
@@ -140,7 +144,7 @@ impl Evaluated {
     ///
     /// # Errors
     /// If a step's equations are singular.
-    pub fn derivatives(
+    pub(crate) fn derivatives(
         &self,
         problem: &Problem,
         which: &[usize],
@@ -204,7 +208,7 @@ fn along_event(function: &Scene<f64>, event: &Scene<f64>) -> Scene<f64> {
 
 /// A derivative in a variable: the sum over the parameters of the scene that it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Derivative {
+pub(crate) struct Derivative {
     /// The sum.
     pub value: f64,
     /// The sum of the sizes of the terms; its last digits are round-off.

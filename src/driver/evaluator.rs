@@ -16,7 +16,7 @@ use std::rc::Rc;
 
 /// The steps of an evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct JudgedOn {
+pub(crate) struct JudgedOn {
     /// Number of steps.
     pub steps: Option<usize>,
     /// How often they had been chosen anew.
@@ -25,11 +25,11 @@ pub struct JudgedOn {
 
 /// The steps of every evaluated design, keyed by its exact bits; shared with the observer of the
 /// run.
-pub type Judgements = Rc<RefCell<HashMap<Vec<u64>, JudgedOn>>>;
+pub(crate) type Judgements = Rc<RefCell<HashMap<Vec<u64>, JudgedOn>>>;
 
 /// The problem as a nonlinear program. It keeps the last simulated design, so a gradient at the
 /// point just evaluated costs the backward march only.
-pub struct Evaluator<'a> {
+pub(crate) struct Evaluator<'a> {
     problem: &'a Problem,
     objective: usize,
     sign: f64,
@@ -50,7 +50,7 @@ pub struct Evaluator<'a> {
 
 impl<'a> Evaluator<'a> {
     /// The program that `problem` states, or `None` if it has no objective.
-    pub fn new(problem: &'a Problem, journal: Journal<'a>) -> Option<Self> {
+    pub(crate) fn new(problem: &'a Problem, journal: Journal<'a>) -> Option<Self> {
         let objective = problem.objective?;
         let scene = problem.scene(&problem.start());
         let sign = match objective.sense {
@@ -74,7 +74,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// +1 if the objective is minimised, −1 if it is maximised.
-    pub fn sign(&self) -> f64 {
+    pub(crate) fn sign(&self) -> f64 {
         self.sign
     }
 
@@ -84,7 +84,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Work of all simulations and gradients so far, including those that the journal knew.
-    pub fn counts(&self) -> Work {
+    pub(crate) fn counts(&self) -> Work {
         self.journal.work()
     }
 
@@ -107,7 +107,7 @@ impl<'a> Evaluator<'a> {
 
     /// Computes the gradients at `points` side by side, if they will be requested. `x` is scaled as
     /// in the optimiser.
-    pub fn foresee_gradients(&mut self, points: &[Vec<f64>]) {
+    pub(crate) fn foresee_gradients(&mut self, points: &[Vec<f64>]) {
         let functions = self.functions();
         let designs = self.unknown(points, true);
         let wanted = (&designs[..], &functions[..]);
@@ -294,7 +294,7 @@ impl Nlp for Evaluator<'_> {
 }
 
 /// A design in the problem's units from the optimiser's, x = scale · x̂.
-pub fn unscaled(problem: &Problem, x: &[f64]) -> Vec<f64> {
+pub(crate) fn unscaled(problem: &Problem, x: &[f64]) -> Vec<f64> {
     // A scaled bound returns as the bound itself, without round-off.
     let clamp = |x: f64, v: &crate::problem::Variable| (x * v.scale).clamp(v.lower, v.upper);
     x.iter()

@@ -26,7 +26,7 @@ const LONGEST: f64 = 0.2;
 
 /// The events that end a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Admit {
+pub(crate) enum Admit {
     /// Also those a little after the scene's duration.
     Late,
     /// Those within it.
@@ -44,7 +44,7 @@ pub enum Admit {
 ///
 /// # Errors
 /// [`IntegrationFailure::NotReached`].
-pub fn first(
+pub(crate) fn first(
     until: &Until<f64>,
     run: &Trajectory<f64>,
     gaps: &[f64],
@@ -75,7 +75,7 @@ fn side(gaps: &[f64]) -> f64 {
 ///
 /// # Errors
 /// If a run fails, or the event is not found, or not admitted.
-pub fn settle(
+pub(crate) fn settle(
     scene: &mut Scene<f64>,
     settings: &Settings,
     guess: f64,
@@ -165,7 +165,7 @@ fn touches(gaps: &[f64], run: &Trajectory<f64>, waited: f64) -> bool {
 ///
 /// # Errors
 /// If the run fails.
-pub fn rate(
+pub(crate) fn rate(
     scene: &Scene<f64>,
     settings: &Settings,
     duration: f64,
@@ -184,7 +184,7 @@ pub fn rate(
 ///
 /// # Errors
 /// If the run fails.
-pub fn complex_duration(
+pub(crate) fn complex_duration(
     scene: &Scene<Complex64>,
     settings: &Settings,
     (duration, rate): (f64, f64),

@@ -87,7 +87,7 @@ impl Motion {
 /// that an optimisation leaves out because neither objective nor constraint observes them (no
 /// function, if there is no objective) are left out here too. Of a long motion only the first
 /// stretch is simulated.
-pub fn explain(problem: &Problem) -> Explanation {
+pub(crate) fn explain(problem: &Problem) -> Explanation {
     let all: Vec<usize> = (0..problem.function_names.len()).collect();
     let focused = match problem.objective {
         Some(_) => problem.for_optimisation(),
@@ -284,7 +284,7 @@ fn lowering(
 
 /// The warning that the discretisation error of merged bodies differs from that of their parts, if
 /// an implicit method marches some.
-pub fn merged_errs(problem: &Problem, at: &Evaluated) -> Option<&'static str> {
+pub(crate) fn merged_errs(problem: &Problem, at: &Evaluated) -> Option<&'static str> {
     let lowering = problem.lowering.as_ref();
     let merged = lowering.is_some_and(|lowering| !lowering.welded.is_empty());
     (merged && at.run.method != Method::Dop853).then_some(

@@ -15,11 +15,11 @@ use crate::report::plots::{
 use crate::report::{History, Optimum, ReportError};
 
 /// A file's name and content.
-pub type NamedFile = (&'static str, Vec<u8>);
+pub(crate) type NamedFile = (&'static str, Vec<u8>);
 
 /// Why the figures of a record cannot be drawn again.
 #[derive(Debug, thiserror::Error)]
-pub enum RedrawError {
+pub(crate) enum RedrawError {
     /// The document in the record is not a problem that this version can read.
     #[error("{0}")]
     Problem(crate::problem::Faults),
@@ -32,7 +32,7 @@ pub enum RedrawError {
 }
 
 /// Figures of an optimisation. Empty ones are left out.
-pub fn of_optimisation(problem: &Problem, done: &Optimisation) -> Vec<NamedFile> {
+pub(crate) fn of_optimisation(problem: &Problem, done: &Optimisation) -> Vec<NamedFile> {
     let ends = [
         ("initial design", &done.start),
         ("optimal design", &done.end),
@@ -44,7 +44,7 @@ pub fn of_optimisation(problem: &Problem, done: &Optimisation) -> Vec<NamedFile>
 }
 
 /// Figures of a simulation.
-pub fn of_simulation(problem: &Problem, simulation: &Simulation) -> Vec<NamedFile> {
+pub(crate) fn of_simulation(problem: &Problem, simulation: &Simulation) -> Vec<NamedFile> {
     figures(problem, &[("", simulation)], None)
 }
 
@@ -52,7 +52,10 @@ pub fn of_simulation(problem: &Problem, simulation: &Simulation) -> Vec<NamedFil
 ///
 /// # Errors
 /// If the record does not hold a readable problem and a value of each of its variables.
-pub fn of_record(optimum: &Optimum, history: &History) -> Result<Vec<NamedFile>, RedrawError> {
+pub(crate) fn of_record(
+    optimum: &Optimum,
+    history: &History,
+) -> Result<Vec<NamedFile>, RedrawError> {
     let text = optimum.problem.document.to_string();
     let problem =
         Problem::parse(&text, &optimum.problem.file, &[]).map_err(RedrawError::Problem)?;

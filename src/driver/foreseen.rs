@@ -48,7 +48,12 @@ fn simulated(
 
 impl Foreseen {
     /// Simulates the first of `designs`, as many as there are processors.
-    pub fn simulate(&mut self, problem: &Problem, integration: &Integration, designs: &[Vec<f64>]) {
+    pub(crate) fn simulate(
+        &mut self,
+        problem: &Problem,
+        integration: &Integration,
+        designs: &[Vec<f64>],
+    ) {
         if !is_possible(problem, integration) {
             return;
         }
@@ -61,7 +66,7 @@ impl Foreseen {
     }
 
     /// Computes the gradients of `functions` at all `designs`.
-    pub fn differentiate(
+    pub(crate) fn differentiate(
         &mut self,
         problem: &Problem,
         integration: &Integration,
@@ -81,7 +86,7 @@ impl Foreseen {
     }
 
     /// The cached simulation of a design with the steps in use.
-    pub fn take(
+    pub(crate) fn take(
         &mut self,
         integration: &Integration,
         x: &[f64],
@@ -91,7 +96,11 @@ impl Foreseen {
     }
 
     /// The cached gradients of a design.
-    pub fn take_gradients(&mut self, integration: &Integration, x: &[f64]) -> Option<Derived> {
+    pub(crate) fn take_gradients(
+        &mut self,
+        integration: &Integration,
+        x: &[f64],
+    ) -> Option<Derived> {
         self.keep(integration);
         self.derived.remove(&bits(x))
     }

@@ -27,11 +27,11 @@ const LEAST_LATE: f64 = 1e-9;
 const MOST_LATE: f64 = 0.05;
 
 /// Reason of the first choice of steps.
-pub const FIRST_DESIGN: &str = "first design";
+pub(crate) const FIRST_DESIGN: &str = "first design";
 
 /// The method and the steps that are in use.
 #[derive(Clone, Debug)]
-pub struct Integration {
+pub(crate) struct Integration {
     method: Option<Method>,
     spacing: Spacing,
     samples: Samples,
@@ -54,7 +54,7 @@ pub struct Integration {
 }
 
 /// Method and steps of an earlier choice.
-pub struct KeptSteps {
+pub(crate) struct KeptSteps {
     /// The method.
     pub method: Method,
     /// Why, if it is not used for its usual purpose.
@@ -67,7 +67,7 @@ pub struct KeptSteps {
 
 /// A change of the steps in use.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Refresh {
+pub(crate) struct Refresh {
     /// Name of the method.
     pub method: String,
     /// Why this method, if it is not used for its usual purpose.
@@ -82,7 +82,7 @@ impl Integration {
     /// The integration that `problem` requests. `asked` are the functions that will be requested,
     /// or `None` if the whole motion is needed in any case; `gradients` tells whether derivatives
     /// will be.
-    pub fn new(
+    pub(crate) fn new(
         problem: &Problem,
         scene: &Scene<f64>,
         asked: Option<&[usize]>,
@@ -127,13 +127,13 @@ impl Integration {
     }
 
     /// The settings in use and the reason for the method, after the first simulation.
-    pub fn chosen(&self) -> Option<(&Settings, &str)> {
+    pub(crate) fn chosen(&self) -> Option<(&Settings, &str)> {
         let (settings, reason) = self.chosen.as_ref()?;
         Some((settings, reason))
     }
 
     /// Number of steps of the motion, if known.
-    pub fn steps(&self) -> Option<usize> {
+    pub(crate) fn steps(&self) -> Option<usize> {
         let spacing = self.chosen.as_ref().map(|(settings, _)| &settings.spacing);
         match spacing.unwrap_or(&self.spacing) {
             Spacing::Steps(steps) => Some(*steps),
@@ -143,12 +143,12 @@ impl Integration {
     }
 
     /// Where the motion is sampled.
-    pub fn samples(&self) -> Samples {
+    pub(crate) fn samples(&self) -> Samples {
         self.samples
     }
 
     /// Samples the whole motion from now on, for figures. Functions of the end do not change.
-    pub fn see_whole(&mut self) {
+    pub(crate) fn see_whole(&mut self) {
         self.samples = match self.samples {
             Samples::Uniform(1) => Samples::Uniform(self.shown),
             Samples::Quadrature(0) => Samples::Quadrature(self.shown),
@@ -160,7 +160,7 @@ impl Integration {
     }
 
     /// Continues with an earlier choice of steps.
-    pub fn restore(&mut self, kept: KeptSteps) {
+    pub(crate) fn restore(&mut self, kept: KeptSteps) {
         self.refreshes = kept.refreshes;
         let mut settings = Settings {
             method: kept.method,
@@ -175,7 +175,7 @@ impl Integration {
     }
 
     /// A warning about the method in use for a scene whose steps it made.
-    pub fn warning(&self, scene: &Scene<f64>, run: &Trajectory<f64>) -> Option<String> {
+    pub(crate) fn warning(&self, scene: &Scene<f64>, run: &Trajectory<f64>) -> Option<String> {
         let widest = (1..=run.grid.steps()).map(|k| run.grid.width(k));
         let h = run.duration * widest.fold(0.0, f64::max);
         choice::warning(&scene.model, run.method, h)
@@ -197,7 +197,7 @@ impl Integration {
     ///
     /// # Errors
     /// If the simulation fails.
-    pub fn simulate(
+    pub(crate) fn simulate(
         &mut self,
         scene: &mut Scene<f64>,
     ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {

@@ -19,7 +19,7 @@ const SETTINGS: [&str; 5] = ["$schema", "name", "description", "optimiser", "plo
 /// iterations, multipliers and quasi-Newton matrices without a simulation, and then continues. No
 /// design is evaluated twice.
 #[derive(Default)]
-pub struct Journal<'a> {
+pub(crate) struct Journal<'a> {
     /// Keyed by whether they are gradients, and by the exact bits of the design.
     known: HashMap<(bool, Vec<u64>), Known>,
     /// How many evaluations there are.
@@ -50,7 +50,7 @@ struct Known {
 
 /// Additional data of an evaluation.
 #[derive(Default)]
-pub struct Account {
+pub(crate) struct Account {
     /// Before: time of the event at this design with the steps in use, if known (s).
     pub settled: Option<f64>,
     /// Before: whether another process simulated this design just before it ended. The extra
@@ -73,7 +73,10 @@ struct Choice {
 
 impl<'a> Journal<'a> {
     /// A journal that knows `earlier` and passes new evaluations to `record`.
-    pub fn new(earlier: Vec<EvaluationRecord>, record: impl FnMut(EvaluationRecord) + 'a) -> Self {
+    pub(crate) fn new(
+        earlier: Vec<EvaluationRecord>,
+        record: impl FnMut(EvaluationRecord) + 'a,
+    ) -> Self {
         let mut journal = Self {
             record: Some(Box::new(record)),
             ..Self::default()
@@ -105,12 +108,12 @@ impl<'a> Journal<'a> {
     }
 
     /// Index of the choice of steps in use, from 0, if there is one.
-    pub fn choice(&self) -> Option<usize> {
+    pub(crate) fn choice(&self) -> Option<usize> {
         self.in_use
     }
 
     /// Method and steps of the choice in use.
-    pub fn steps(&self) -> Option<KeptSteps> {
+    pub(crate) fn steps(&self) -> Option<KeptSteps> {
         let Choice { steps, refreshes } = &self.choices[self.in_use?];
         Some(KeptSteps {
             method: Method::adaptive(&steps.method)?,
@@ -122,17 +125,17 @@ impl<'a> Journal<'a> {
 
     /// The number of the latest requested evaluation of the record, and the time of the event in
     /// the last motion by then (s).
-    pub fn latest(&self) -> Option<(usize, Option<f64>)> {
+    pub(crate) fn latest(&self) -> Option<(usize, Option<f64>)> {
         self.latest
     }
 
     /// Whether values (or gradients) at a design are known.
-    pub fn knows(&self, of_gradients: bool, design: &[f64]) -> bool {
+    pub(crate) fn knows(&self, of_gradients: bool, design: &[f64]) -> bool {
         self.known.contains_key(&(of_gradients, bits(design)))
     }
 
     /// Work of all requested evaluations, including the known ones.
-    pub fn work(&self) -> Work {
+    pub(crate) fn work(&self) -> Work {
         self.work
     }
 
@@ -153,7 +156,7 @@ impl<'a> Journal<'a> {
     }
 
     /// Values at a design: known, or computed by `evaluate` and recorded.
-    pub fn values(
+    pub(crate) fn values(
         &mut self,
         design: &[f64],
         evaluate: impl FnOnce(&mut Account) -> Result<Vec<f64>, String>,
@@ -181,7 +184,7 @@ impl<'a> Journal<'a> {
     }
 
     /// Gradients at a design, in the same way.
-    pub fn gradients(
+    pub(crate) fn gradients(
         &mut self,
         design: &[f64],
         evaluate: impl FnOnce(&mut Account) -> Result<Vec<Vec<f64>>, String>,
@@ -312,7 +315,7 @@ fn rows_left_out(grid: &Grid) -> Vec<RowsLeftOut> {
 }
 
 /// The head of the record: the problem that the evaluations belong to.
-pub fn head(problem: &Problem) -> Head {
+pub(crate) fn head(problem: &Problem) -> Head {
     let objective = problem.objective.map(|o| o.function);
     let constraints = problem.constraints.iter().map(|c| c.function);
     let document = problem.document.as_object().cloned().unwrap_or_default();

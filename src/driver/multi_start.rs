@@ -16,7 +16,7 @@ const SAME_DESIGN: f64 = 1e-3;
 const SAME_OBJECTIVE: f64 = 1e-6;
 
 /// One of several optimisations.
-pub struct Run {
+pub(crate) struct Run {
     /// The number of its start, from 0.
     pub start: usize,
     /// The problem with its start.
@@ -27,13 +27,13 @@ pub struct Run {
 
 impl Run {
     /// The design that it ended at, in the units of the problem file.
-    pub fn design(&self) -> Vec<f64> {
+    pub(crate) fn design(&self) -> Vec<f64> {
         unscaled(&self.problem, &self.solved.outcome.x)
     }
 }
 
 /// An optimum that at least one run found.
-pub struct LocalOptimum {
+pub(crate) struct LocalOptimum {
     /// The run with the best value there.
     pub run: usize,
     /// How many runs ended there.
@@ -45,7 +45,7 @@ pub struct LocalOptimum {
 ///
 /// # Errors
 /// The name of a variable without two bounds.
-pub fn starts(problem: &Problem, count: usize) -> Result<Vec<Vec<f64>>, String> {
+pub(crate) fn starts(problem: &Problem, count: usize) -> Result<Vec<Vec<f64>>, String> {
     let open = |v: &&Variable| !(v.lower.is_finite() && v.upper.is_finite());
     if count > 1
         && let Some(variable) = problem.variables.iter().find(open)
@@ -63,7 +63,7 @@ pub fn starts(problem: &Problem, count: usize) -> Result<Vec<Vec<f64>>, String> 
 }
 
 /// The problem with another start.
-pub fn started_at(problem: &Problem, start: &[f64]) -> Problem {
+pub(crate) fn started_at(problem: &Problem, start: &[f64]) -> Problem {
     let mut problem = problem.clone();
     problem.restart(start);
     problem
@@ -74,7 +74,7 @@ pub fn started_at(problem: &Problem, start: &[f64]) -> Problem {
 /// number and problem, or `None` if there can be none; the start is then left out. The time limit
 /// of the problem is that of all runs together. Starts that have not begun by then are left out,
 /// except the first.
-pub fn multi_start<'j>(
+pub(crate) fn multi_start<'j>(
     problem: &Problem,
     starts: &[Vec<f64>],
     stopped: &(dyn Fn() -> bool + Sync),
@@ -111,7 +111,7 @@ pub fn multi_start<'j>(
 }
 
 /// Distinct optima of the converged runs, best first.
-pub fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
+pub(crate) fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
     let size = improvement(runs);
     let worth = |run: usize| {
         let value = runs[run].solved.objective();
@@ -147,7 +147,7 @@ pub fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
 
 /// The run with the best design: of the converged ones, else of the feasible ones, else the one
 /// with the least violation.
-pub fn best(runs: &[Run]) -> Option<usize> {
+pub(crate) fn best(runs: &[Run]) -> Option<usize> {
     let rank = |run: &Run| {
         let violation = run.solved.outcome.kkt.violation;
         let value = run.solved.outcome.objective;

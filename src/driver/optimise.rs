@@ -15,7 +15,7 @@ use crate::report::optimum::Optimum;
 use std::ops::ControlFlow;
 
 /// A finished optimisation before the simulations of its figures.
-pub struct Solved {
+pub(crate) struct Solved {
     /// The optimiser's outcome, in its scaled variables.
     pub outcome: Outcome,
     /// Every iteration.
@@ -28,7 +28,7 @@ pub struct Solved {
 }
 
 /// A finished optimisation.
-pub struct Optimisation {
+pub(crate) struct Optimisation {
     /// The optimiser's outcome, in its scaled variables.
     pub outcome: Outcome,
     /// The record of the end.
@@ -47,7 +47,7 @@ pub struct Optimisation {
 /// evaluations. `progress` gets the history after every iteration and may stop the run.
 ///
 /// Returns `None` if the problem has no objective or no variables.
-pub fn optimise<'a>(
+pub(crate) fn optimise<'a>(
     problem: &'a Problem,
     file: &str,
     from: Option<&SavedState>,
@@ -58,7 +58,7 @@ pub fn optimise<'a>(
 }
 
 /// As [`optimise`], without the simulations of its ends.
-pub fn solve<'a>(
+pub(crate) fn solve<'a>(
     problem: &'a Problem,
     from: Option<&SavedState>,
     journal: Journal<'a>,
@@ -123,12 +123,12 @@ fn options(problem: &Problem) -> Options {
 
 impl Solved {
     /// The objective in the user's sense.
-    pub fn objective(&self) -> f64 {
+    pub(crate) fn objective(&self) -> f64 {
         self.sign * self.outcome.objective
     }
 
     /// Simulates both ends and makes the record.
-    pub fn complete(self, problem: &Problem, file: &str) -> Optimisation {
+    pub(crate) fn complete(self, problem: &Problem, file: &str) -> Optimisation {
         let refreshes = self.integration.refreshes;
         // With the steps of its values.
         let mut whole = self.integration.clone();

@@ -10,7 +10,7 @@ use crate::system::observe::{Observation, Reaction, observe, reactions};
 use std::borrow::Cow;
 
 /// A simulated design with its observations at every instant.
-pub struct Simulation {
+pub(crate) struct Simulation {
     /// The design, its scene and motion.
     pub at: Evaluated,
     /// The scene without lowering. Observations and reactions are those of this scene.
@@ -31,7 +31,7 @@ pub struct Simulation {
 ///
 /// # Errors
 /// If the simulation fails.
-pub fn simulate(problem: &Problem, x: &[f64]) -> Result<Simulation, IntegrationFailure> {
+pub(crate) fn simulate(problem: &Problem, x: &[f64]) -> Result<Simulation, IntegrationFailure> {
     let mut integration = Integration::new(problem, &problem.scene(x), None, false);
     simulate_with(&mut integration, problem, x)
 }
@@ -40,7 +40,7 @@ pub fn simulate(problem: &Problem, x: &[f64]) -> Result<Simulation, IntegrationF
 ///
 /// # Errors
 /// If the simulation fails.
-pub fn simulate_with(
+pub(crate) fn simulate_with(
     integration: &mut Integration,
     problem: &Problem,
     x: &[f64],
@@ -83,12 +83,12 @@ impl Simulation {
     }
 
     /// The motion of all bodies.
-    pub fn motion(&self) -> &Trajectory<f64> {
+    pub(crate) fn motion(&self) -> &Trajectory<f64> {
         self.expanded.as_ref().unwrap_or(&self.at.run)
     }
 
     /// Largest |E(t) − E(0)| of the total energy (J).
-    pub fn energy_drift(&self) -> f64 {
+    pub(crate) fn energy_drift(&self) -> f64 {
         let total = |o: &Observation| o.kinetic + o.potential;
         let start = total(&self.observations[0]);
         self.observations
@@ -97,7 +97,7 @@ impl Simulation {
     }
 
     /// Largest position and velocity constraint violations.
-    pub fn constraint_drift(&self) -> (f64, f64) {
+    pub(crate) fn constraint_drift(&self) -> (f64, f64) {
         let all = self.observations.iter();
         all.fold((0.0, 0.0), |(p, v), o| {
             (p.max(o.position_drift), v.max(o.velocity_drift))
@@ -112,7 +112,7 @@ impl Simulation {
     }
 
     /// Joint reactions at the given instants.
-    pub fn reactions_at(&self, instants: impl Iterator<Item = usize>) -> Vec<Vec<Reaction>> {
+    pub(crate) fn reactions_at(&self, instants: impl Iterator<Item = usize>) -> Vec<Vec<Reaction>> {
         let (model, run) = (&self.written.model, self.motion());
         let numbering = Numbering::new(model);
         let mut multipliers = Multipliers::new(model, &numbering, run);

@@ -18,7 +18,7 @@ const NEARLY: f64 = 1e-4;
 
 /// What a user should know of the start at the design `x`, a sentence each; none if the start is as it
 /// is given, or if there is none.
-pub fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
+pub(crate) fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
     let model = problem.unlowered_scene(x).model;
     let numbering = Numbering::new(&model);
     let mut notes = Vec::new();

@@ -13,7 +13,7 @@ use crate::system::observe::Reaction;
 
 /// The axes of joint reactions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReactionAxes {
+pub(crate) enum ReactionAxes {
     /// Those of ground.
     Ground,
     /// Those of the joint on its first body; e3 is the joint's axis.
@@ -21,7 +21,7 @@ pub enum ReactionAxes {
 }
 
 /// `simulation.csv`, `motion.csv` and, if there are functions, `functions.csv`.
-pub fn of_simulation(
+pub(crate) fn of_simulation(
     problem: &Problem,
     simulation: &Simulation,
     axes: ReactionAxes,

@@ -10,7 +10,7 @@ const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// The optimiser's state at the end of a run, and the problem that it belongs to: `state.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct WarmStart {
+pub(crate) struct WarmStart {
     /// Names and scales of the variables.
     variables: Vec<(String, f64)>,
     /// Names of the constraints.
@@ -24,7 +24,7 @@ pub struct WarmStart {
 
 impl WarmStart {
     /// The state at the end of a run.
-    pub fn of(problem: &Problem, outcome: &Outcome) -> Option<Self> {
+    pub(crate) fn of(problem: &Problem, outcome: &Outcome) -> Option<Self> {
         Some(Self {
             variables: variables(problem),
             constraints: constraints(problem),
@@ -35,7 +35,7 @@ impl WarmStart {
 
     /// Whether the state belongs to `design`, in the units of the problem file: equal up to the
     /// round-off of the scales.
-    pub fn is_at(&self, design: &[f64]) -> bool {
+    pub(crate) fn is_at(&self, design: &[f64]) -> bool {
         let point = self.variables.iter().zip(&self.state.x);
         let same = |((_, scale), x): (&(String, f64), &f64), d: &f64| {
             (scale * x - d).abs() <= ROUND_OFF * d.abs()
@@ -45,7 +45,7 @@ impl WarmStart {
 
     /// Whether the state fits `problem`: same variables, scales, constraints and objective, and no
     /// damage.
-    pub fn fits(&self, problem: &Problem) -> bool {
+    pub(crate) fn fits(&self, problem: &Problem) -> bool {
         let (n, m) = (self.variables.len(), self.constraints.len());
         self.variables == variables(problem)
             && self.constraints == constraints(problem)

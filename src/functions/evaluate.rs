@@ -133,7 +133,7 @@ fn turning<S: Scalar>(values: &[S], run: &Trajectory<S>, rho: f64) -> (SoftMax<S
 
 /// The largest range at instants at which a gate is more open than closed, as if there were no gate, if
 /// there is one.
-pub fn ungated_maximum<S: Scalar>(
+pub(crate) fn ungated_maximum<S: Scalar>(
     function: &Function<S>,
     model: &Model<S>,
     run: &Trajectory<S>,
@@ -162,7 +162,7 @@ pub fn ungated_maximum<S: Scalar>(
 }
 
 /// Values of an instant quantity at all instants of a run.
-pub fn sample<S: Scalar>(
+pub(crate) fn sample<S: Scalar>(
     instant: &Instant<S>,
     turns: &Option<Vec<f64>>,
     model: &Model<S>,
@@ -263,7 +263,7 @@ fn without_negligible<S: Scalar>(mut weights: Vec<S>) -> Vec<S> {
 }
 
 /// A function linearised about a run: what it adds to the cotangents of every instant.
-pub struct Linearised<'a> {
+pub(crate) struct Linearised<'a> {
     function: &'a Function<f64>,
     /// Its derivative in the duration at fixed states.
     pub by_duration: f64,
@@ -280,7 +280,11 @@ struct WeightedFlight {
 
 impl<'a> Linearised<'a> {
     /// Linearises `function` about a run of `model`.
-    pub fn new(function: &'a Function<f64>, model: &Model<f64>, run: &Trajectory<f64>) -> Self {
+    pub(crate) fn new(
+        function: &'a Function<f64>,
+        model: &Model<f64>,
+        run: &Trajectory<f64>,
+    ) -> Self {
         let last = |k| if k == run.last() { 1.0 } else { 0.0 };
         let mut this = Self {
             function,
@@ -401,14 +405,14 @@ impl<'a> Linearised<'a> {
     }
 
     /// Whether the function depends on the states of instant k.
-    pub fn depends_on(&self, k: usize) -> bool {
+    pub(crate) fn depends_on(&self, k: usize) -> bool {
         self.quantity.as_ref().is_some_and(|q| q.weights[k] != 0.0)
             || self.flight.as_ref().is_some_and(|f| f.weights[k] != 0.0)
     }
 
     /// Adds the derivative in the states of instant k to `out`, and that in the function's own
     /// parameters to `own`.
-    pub fn pull_back(
+    pub(crate) fn pull_back(
         &self,
         k: usize,
         at: &Snapshot<f64>,
@@ -468,7 +472,7 @@ impl<'a> Linearised<'a> {
     }
 
     /// Adds the derivative in parameters that no instant depends on.
-    pub fn pull_back_parameters(&self, own: &mut Function<f64>) {
+    pub(crate) fn pull_back_parameters(&self, own: &mut Function<f64>) {
         match own {
             Function::Clearance { distance, top, .. } => {
                 *distance += self.by_barrier[0];

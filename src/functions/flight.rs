@@ -157,7 +157,7 @@ impl Flight<f64> {
 }
 
 /// Where the cotangent of a flight goes.
-pub struct FlightCotangent {
+pub(crate) struct FlightCotangent {
     /// By the position of the centre of mass.
     pub position: Vec3<f64>,
     /// By its velocity.
@@ -171,7 +171,7 @@ pub struct FlightCotangent {
 }
 
 /// Pulls the cotangent of a flight back: the transposed derivative of [`Flight::new`].
-pub fn pull_back(
+pub(crate) fn pull_back(
     projectile: &Projectile<f64>,
     motion: &Motion<f64>,
     gravity: &Vec3<f64>,

@@ -142,7 +142,7 @@ impl<S: Scalar> Instant<S> {
 }
 
 /// Energy of the model in a snapshot (J).
-pub fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
+pub(crate) fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
     let mut sum = S::zero();
     let motions = at.motions();
     for (body, motion) in at.model.bodies.iter().zip(&motions) {
@@ -302,7 +302,7 @@ fn pull_point(
 }
 
 /// Pulls the cotangent of a flight back to the snapshot and the projectile's parameters.
-pub fn pull_flight(
+pub(crate) fn pull_flight(
     at: &Snapshot<f64>,
     projectile: &Projectile<f64>,
     cot: [f64; 5],

@@ -1,17 +1,17 @@
 //! Functions of interest: what is measured at an instant, and how a run is reduced to a number.
 
-pub mod evaluate;
-pub mod flight;
-pub mod function;
-pub mod instant;
-pub mod measure;
-pub mod peak;
-pub mod resolution;
-pub mod rest;
-pub mod scene;
-pub mod turning;
+pub(crate) mod evaluate;
+pub(crate) mod flight;
+pub(crate) mod function;
+pub(crate) mod instant;
+pub(crate) mod measure;
+pub(crate) mod peak;
+pub(crate) mod resolution;
+pub(crate) mod rest;
+pub(crate) mod scene;
+pub(crate) mod turning;
 
-pub use function::{Bound, Function, Reduction, Release};
-pub use instant::{EnergyPart, Gate, Instant, Projectile, Side};
-pub use scene::{Scene, Until};
-pub use turning::Rotation;
+pub(crate) use function::{Bound, Function, Reduction, Release};
+pub(crate) use instant::{EnergyPart, Gate, Instant, Projectile, Side};
+pub(crate) use scene::{Scene, Until};
+pub(crate) use turning::Rotation;

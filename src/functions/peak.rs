@@ -119,7 +119,7 @@ impl Polynomial {
 
 /// A sample or a turning point between samples: a sum over samples.
 #[derive(Clone, Debug)]
-pub struct Point<S> {
+pub(crate) struct Point<S> {
     /// The value.
     pub value: S,
     /// Samples and their weights in it.
@@ -150,7 +150,7 @@ impl Stretch {
 
 /// Samples and turning points of a quantity in order of time, as its polynomials have them. The quantity
 /// rises or falls between any two that follow each other.
-pub fn points<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Vec<Point<S>> {
+pub(crate) fn points<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Vec<Point<S>> {
     let sample = |k: usize| Point {
         value: values[k],
         of: vec![(k, 1.0)],
@@ -188,12 +188,12 @@ pub struct Maximum {
 
 /// The largest value of a quantity over the motion: samples and the polynomials between them, wherever
 /// these may exceed the largest sample.
-pub fn maximum<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Maximum {
+pub(crate) fn maximum<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Maximum {
     maximum_where(run, values, |_| true)
 }
 
 /// As [`maximum`], of the parts of the motion all samples of which `counts`.
-pub fn maximum_where<S: Scalar>(
+pub(crate) fn maximum_where<S: Scalar>(
     run: &Trajectory<S>,
     values: &[S],
     counts: impl Fn(usize) -> bool,

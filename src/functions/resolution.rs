@@ -16,7 +16,7 @@ const ORDERS: [f64; 2] = [6.0, 10.0];
 
 /// What the cells in use are worth, and what others should be used.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Resolution {
+pub(crate) struct Resolution {
     /// Largest estimated error of a sum, relative to the sum of sizes.
     pub error: f64,
     /// Cells for the steps that keep each sum below the error that is asked for.
@@ -35,7 +35,7 @@ struct Sum {
 
 /// The cells that the functions `which` need over a run whose samples are nodes of cells, so that each
 /// sum errs by less than `goal` relative to the sum of sizes.
-pub fn resolution(
+pub(crate) fn resolution(
     scene: &Scene<f64>,
     which: &[usize],
     run: &Trajectory<f64>,

@@ -13,7 +13,7 @@ const CLOSE: f64 = 0.05;
 
 /// The time when a speed that `function` reduces over the run first passes zero, where this counts in
 /// its value (s). The start and the end of a run may be at rest: speeds are smooth up to them.
-pub fn passes_rest(
+pub(crate) fn passes_rest(
     function: &Function<f64>,
     model: &Model<f64>,
     run: &Trajectory<f64>,

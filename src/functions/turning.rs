@@ -174,7 +174,10 @@ fn orientation<S: Scalar>(numbering: &Numbering, q: &[S], body: usize) -> Quat<S
 /// Where the rates of the rotation at two samples agree within half a turn over the time between
 /// them, the rotation goes on by their mean, however many turns that makes; else, where a rate says
 /// little, to the nearest angle.
-pub fn turns<S: Scalar>(watched: Option<&Rotation<S>>, run: &Trajectory<S>) -> Option<Vec<f64>> {
+pub(crate) fn turns<S: Scalar>(
+    watched: Option<&Rotation<S>>,
+    run: &Trajectory<S>,
+) -> Option<Vec<f64>> {
     let watched = watched?;
     let mut before: Option<[f64; 3]> = None;
     let all = (0..=run.last()).map(|k| {

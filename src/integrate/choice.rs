@@ -10,9 +10,9 @@ use crate::model::load::LoadKind;
 use crate::model::{Model, RigidBody};
 
 /// The method of scenes that are not stiff.
-pub const NON_STIFF: Method = Method::Dop853;
+pub(crate) const NON_STIFF: Method = Method::Dop853;
 /// The method of stiff scenes.
-pub const STIFF: Method = Method::Radau { stages: 3 };
+pub(crate) const STIFF: Method = Method::Radau { stages: 3 };
 
 /// Ranges of ωh in which BDF of order 3, 4, 5, 6 amplifies undamped vibration.
 const AMPLIFIED: [(f64, f64); 4] = [(0.0, 1.94), (0.0, 4.71), (0.71, 9.39), (0.84, 17.6)];
@@ -24,7 +24,7 @@ const SLOW: f64 = 0.2;
 
 /// A run by the method that was asked for, or else by the one that suits the scene.
 #[derive(Clone, Debug)]
-pub struct Chosen<S: Scalar> {
+pub(crate) struct Chosen<S: Scalar> {
     /// The motion.
     pub run: Trajectory<S>,
     /// Method and spacing that made it; chosen steps are frozen.
@@ -39,7 +39,7 @@ pub struct Chosen<S: Scalar> {
 ///
 /// # Errors
 /// As `simulate`.
-pub fn simulate_by<S: SolveScalar>(
+pub(crate) fn simulate_by<S: SolveScalar>(
     model: &Model<S>,
     duration: S,
     method: Option<Method>,
@@ -102,7 +102,7 @@ pub fn simulate_by<S: SolveScalar>(
 }
 
 /// Why a method is in use: the problem says so, or the scene's stiffness.
-pub fn reason(given: bool, method: Method) -> &'static str {
+pub(crate) fn reason(given: bool, method: Method) -> &'static str {
     match method {
         _ if given => "as the problem says",
         Method::Dop853 => "the scene is rigid and not stiff",
@@ -112,7 +112,7 @@ pub fn reason(given: bool, method: Method) -> &'static str {
 
 /// What is wrong with a method for a scene that takes steps of size h (s), if anything: BDF of order
 /// 3 and more amplifies undamped vibration with ωh in a range around one.
-pub fn warning(model: &Model<f64>, method: Method, h: f64) -> Option<String> {
+pub(crate) fn warning(model: &Model<f64>, method: Method, h: f64) -> Option<String> {
     let Method::Bdf { order, .. } = method else {
         return None;
     };

@@ -56,7 +56,7 @@ fn approach(d: f64, width: f64, rest: f64, (at, more): (f64, f64)) -> Option<f64
 
 /// Gives the width of one step after the other, in fractions of the duration.
 #[derive(Debug)]
-pub struct Controller {
+pub(crate) struct Controller {
     plan: Plan,
     /// Exponent 1/m of the controller.
     exponent: f64,
@@ -99,7 +99,7 @@ enum Plan {
 
 impl Controller {
     /// A controller for a method whose steps have an error of the given order.
-    pub fn new<S: Scalar>(
+    pub(crate) fn new<S: Scalar>(
         settings: &Settings,
         order: usize,
         scale: &Scale,
@@ -154,7 +154,7 @@ impl Controller {
     }
 
     /// The grid of the run, which grows from 0.
-    pub fn growing(&self) -> Grid {
+    pub(crate) fn growing(&self) -> Grid {
         match &self.plan {
             Plan::Given { grid, .. } => grid.to_grow(),
             Plan::Chosen { .. } => Grid::growing(),
@@ -162,7 +162,7 @@ impl Controller {
     }
 
     /// Number of steps, where they are given.
-    pub fn steps(&self) -> Option<usize> {
+    pub(crate) fn steps(&self) -> Option<usize> {
         match &self.plan {
             Plan::Given { grid, .. } => Some(grid.steps()),
             Plan::Chosen { .. } => None,
@@ -170,12 +170,12 @@ impl Controller {
     }
 
     /// Whether the error of steps is of interest: they follow it, or are kept as long as it is small.
-    pub fn estimates(&self) -> bool {
+    pub(crate) fn estimates(&self) -> bool {
         self.estimates
     }
 
     /// Width of the step from `reached`, or `None` at the end or if the march is [stopped](Self::stopped).
-    pub fn next(&mut self, reached: f64) -> Option<f64> {
+    pub(crate) fn next(&mut self, reached: f64) -> Option<f64> {
         self.headway.try_one();
         let (tries, rejected) = self.headway.so_far();
         let clock = self.clock.as_ref();
@@ -236,7 +236,7 @@ impl Controller {
 
     /// The end of a step of `width` from `reached`; the last one ends at 1 exactly, or beyond it if it
     /// leaps over a singular position.
-    pub fn end(&self, reached: f64, width: f64) -> f64 {
+    pub(crate) fn end(&self, reached: f64, width: f64) -> f64 {
         match &self.plan {
             Plan::Given { grid, next } => grid.ends()[*next],
             Plan::Chosen { .. } if width >= 1.0 - reached && !self.beyond => 1.0,
@@ -245,7 +245,7 @@ impl Controller {
     }
 
     /// Whether a step whose error relative to the scale is `error` is accepted.
-    pub fn judge(&mut self, error: f64) -> bool {
+    pub(crate) fn judge(&mut self, error: f64) -> bool {
         match &mut self.plan {
             Plan::Given { .. } => {
                 self.latest = error;
@@ -283,7 +283,7 @@ impl Controller {
     }
 
     /// Records that the step was made.
-    pub fn accept(&mut self) {
+    pub(crate) fn accept(&mut self) {
         self.leap = None;
         self.leaps = 0;
         self.largest = self.largest.max(self.latest);
@@ -301,7 +301,7 @@ impl Controller {
 
     /// Whether a step that could not be made is the end; otherwise another is tried: a smaller one
     /// or, near a `singular` position, which it may leap over, one of another size first.
-    pub fn give_up(&mut self, singular: bool) -> bool {
+    pub(crate) fn give_up(&mut self, singular: bool) -> bool {
         match &mut self.plan {
             Plan::Given { .. } => true,
             Plan::Chosen { width, .. } => {
@@ -319,19 +319,19 @@ impl Controller {
     }
 
     /// Why the march ended before the end of its motion, if it did.
-    pub fn stopped(&self) -> Option<Stop> {
+    pub(crate) fn stopped(&self) -> Option<Stop> {
         self.stopped
     }
 
     /// Whether a step may be given up for another that keeps away from a singular position.
-    pub fn may_keep_away(&self) -> bool {
+    pub(crate) fn may_keep_away(&self) -> bool {
         let chosen = matches!(self.plan, Plan::Chosen { .. });
         chosen && self.leap.is_none_or(|(_, tried)| tried < KEPT_AWAY)
     }
 
     /// As [`Controller::give_up`] for a step that ended too close to a singular position, expected at the
     /// fraction `at` of the duration.
-    pub fn give_up_near(&mut self, at: f64) -> bool {
+    pub(crate) fn give_up_near(&mut self, at: f64) -> bool {
         match &mut self.plan {
             Plan::Given { .. } => true,
             Plan::Chosen { width, .. } => {
@@ -351,13 +351,13 @@ impl Controller {
 
     /// Takes notice of how round-off is magnified at the end of the step made last, and of where a
     /// singular position is expected, if one is.
-    pub fn expect(&mut self, magnified: f64, ahead: Option<f64>) {
+    pub(crate) fn expect(&mut self, magnified: f64, ahead: Option<f64>) {
         self.magnified = magnified;
         self.ahead = ahead.or(self.ahead);
     }
 
     /// Error that steps may have: the tolerance, or what those that are given had so far.
-    pub fn allowed(&self) -> f64 {
+    pub(crate) fn allowed(&self) -> f64 {
         match &self.plan {
             Plan::Given { .. } => self.largest.max(self.latest),
             Plan::Chosen { tolerance, .. } => *tolerance,
@@ -365,7 +365,7 @@ impl Controller {
     }
 
     /// Largest error of an accepted step, relative to the scale.
-    pub fn largest_error(&self) -> f64 {
+    pub(crate) fn largest_error(&self) -> f64 {
         self.largest
     }
 }

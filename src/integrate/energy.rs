@@ -27,7 +27,7 @@ const ROUND_OFF: f64 = 1e-10;
 
 /// Energies of a run at a few instants: at the ends of steps 1, 2, 4, 8 … and of the last.
 #[derive(Clone, Debug)]
-pub struct Ledger {
+pub(crate) struct Ledger {
     /// The tolerance, if steps follow one.
     tolerance: Option<f64>,
     /// K and S \[J\].
@@ -59,7 +59,11 @@ impl Look {
 impl Ledger {
     /// A ledger for a run of `model`, if the model conserves energy and the steps follow a tolerance or did
     /// so when they were chosen. Accuracy by equal steps is the user's choice.
-    pub fn open<S: Scalar>(model: &Model<S>, settings: &Settings, scale: &Scale) -> Option<Self> {
+    pub(crate) fn open<S: Scalar>(
+        model: &Model<S>,
+        settings: &Settings,
+        scale: &Scale,
+    ) -> Option<Self> {
         let tolerance = match settings.spacing {
             Spacing::Steps(_) => return None,
             Spacing::Tolerance(tolerance) => Some(tolerance),
@@ -97,12 +101,12 @@ impl Ledger {
     }
 
     /// Whether the end of step k is looked at; zero is the start.
-    pub fn is_due(k: usize) -> bool {
+    pub(crate) fn is_due(k: usize) -> bool {
         k == 0 || k.is_power_of_two()
     }
 
     /// Enters the energies at `time`.
-    pub fn enter<S: Scalar>(&mut self, model: &Model<S>, motions: &[Motion<S>], time: f64) {
+    pub(crate) fn enter<S: Scalar>(&mut self, model: &Model<S>, motions: &[Motion<S>], time: f64) {
         let (mut kinetic, mut potential) = (0.0, Vec::with_capacity(motions.len() + 1));
         for (body, motion) in model.bodies.iter().zip(motions) {
             let (mass, v, omega) = (body.mass, &motion.velocity, &motion.omega);
@@ -123,7 +127,7 @@ impl Ledger {
     ///
     /// # Errors
     /// [`IntegrationFailure::EnergyLost`].
-    pub fn close(&self, steps: usize, step_error: f64) -> Result<(), IntegrationFailure> {
+    pub(crate) fn close(&self, steps: usize, step_error: f64) -> Result<(), IntegrationFailure> {
         let Some(start) = self.looks.first() else {
             return Ok(());
         };

@@ -206,7 +206,7 @@ impl Place {
 }
 
 /// Where the fraction `at` in (τ_{k−1}, τ_k] stands in step k of the grid.
-pub fn place(grid: &Grid, k: usize, at: f64) -> Place {
+pub(crate) fn place(grid: &Grid, k: usize, at: f64) -> Place {
     let (start, end) = (grid.ends[k - 1], grid.ends[k]);
     if is_same(end, at) {
         Place::Node(k)

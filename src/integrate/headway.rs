@@ -13,11 +13,11 @@ const MOST_REJECTED: usize = 2_000_000;
 const PACE: usize = 5_000;
 /// Most tries in a row that are rejected. One that fails is a fifth as wide as the one before, and twenty of
 /// those are below the smallest step; where the error is round-off, or jumps about, it would take hundreds.
-pub const MOST_IN_A_ROW: usize = 100;
+pub(crate) const MOST_IN_A_ROW: usize = 100;
 
 /// Why a march ended before the end of its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stop {
+pub(crate) enum Stop {
     /// The steps became too small.
     TooSmall,
     /// So many tries in a row were rejected.
@@ -48,7 +48,7 @@ fn unknowns<S>(model: &Model<S>) -> usize {
 
 /// Counts the tries of a march.
 #[derive(Debug)]
-pub struct Headway {
+pub(crate) struct Headway {
     /// Tries, rejected ones among them, and those since the last step that was made.
     tries: usize,
     rejected: usize,
@@ -61,7 +61,7 @@ pub struct Headway {
 
 impl Headway {
     /// Before the first try.
-    pub fn new<S>(model: &Model<S>, limits: &Limits) -> Self {
+    pub(crate) fn new<S>(model: &Model<S>, limits: &Limits) -> Self {
         Self {
             tries: 0,
             rejected: 0,
@@ -76,28 +76,28 @@ impl Headway {
     }
 
     /// Tries so far, and rejected ones among them.
-    pub fn so_far(&self) -> (usize, usize) {
+    pub(crate) fn so_far(&self) -> (usize, usize) {
         (self.tries, self.rejected)
     }
 
     /// Counts a try to come.
-    pub fn try_one(&mut self) {
+    pub(crate) fn try_one(&mut self) {
         self.tries += 1;
     }
 
     /// Counts the latest try as rejected.
-    pub fn reject(&mut self) {
+    pub(crate) fn reject(&mut self) {
         self.rejected += 1;
         self.in_a_row += 1;
     }
 
     /// The latest try was a step.
-    pub fn accept(&mut self) {
+    pub(crate) fn accept(&mut self) {
         self.in_a_row = 0;
     }
 
     /// Why the march is given up at the fraction `reached` of the duration, if it is.
-    pub fn look(&mut self, reached: f64) -> Option<Stop> {
+    pub(crate) fn look(&mut self, reached: f64) -> Option<Stop> {
         if self.in_a_row >= MOST_IN_A_ROW {
             let in_a_row = self.in_a_row;
             return Some(Stop::Rejected { in_a_row });

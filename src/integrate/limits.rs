@@ -7,7 +7,7 @@ use std::time::Instant;
 /// What a simulation may take, and who is told how far it is. The number of steps is limited besides
 /// (see [`Headway`](super::headway::Headway)).
 #[derive(Clone, Debug, Default)]
-pub struct Limits {
+pub(crate) struct Limits {
     /// Longest wall time of one simulation \[s\].
     pub seconds: Option<f64>,
     /// Who is told.
@@ -23,7 +23,7 @@ impl PartialEq for Limits {
 
 /// The simulations under way, on any number of threads.
 #[derive(Debug, Default)]
-pub struct Progress {
+pub(crate) struct Progress {
     running: Mutex<Vec<Arc<Run>>>,
 }
 
@@ -40,7 +40,7 @@ struct Run {
 
 /// How far a simulation is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
+pub(crate) struct View {
     /// Wall time since it began \[s\].
     pub seconds: f64,
     /// Time reached in the motion \[s\].
@@ -55,7 +55,7 @@ pub struct View {
 
 impl Progress {
     /// The simulation that has been under way for the longest time, if there is one.
-    pub fn longest(&self) -> Option<View> {
+    pub(crate) fn longest(&self) -> Option<View> {
         let running = self.running.lock().ok()?;
         let run = running.iter().min_by_key(|run| run.since)?;
         let (tries, rejected) = (run.tries.load(Relaxed), run.rejected.load(Relaxed));
@@ -82,7 +82,7 @@ pub(super) struct Clock {
 
 impl Clock {
     /// A clock that starts now, for a motion of `duration` [s]; `None` if nobody needs one.
-    pub fn start(limits: &Limits, duration: f64) -> Option<Self> {
+    pub(crate) fn start(limits: &Limits, duration: f64) -> Option<Self> {
         if limits.seconds.is_none() && limits.progress.is_none() {
             return None;
         }
@@ -108,7 +108,7 @@ impl Clock {
     }
 
     /// Tells how far the march is; the limit [s], if it is exceeded.
-    pub fn look(&self, reached: f64, tries: usize, rejected: usize) -> Option<f64> {
+    pub(crate) fn look(&self, reached: f64, tries: usize, rejected: usize) -> Option<f64> {
         if !tries.is_multiple_of(LOOKS) {
             return None;
         }

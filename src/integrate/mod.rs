@@ -1,37 +1,37 @@
 //! Time integration: the methods, the steps they take, and the motion they leave behind.
 
-pub mod choice;
-pub mod control;
-pub mod energy;
-pub mod explicit;
-pub mod failure;
-pub mod grid;
-pub mod headway;
-pub mod implicit;
-pub mod limits;
-pub mod multipliers;
-pub mod quadrature;
-pub mod replay;
-pub mod rows;
-pub mod scale;
-pub mod schedule;
-pub mod settings;
+pub(crate) mod choice;
+pub(crate) mod control;
+pub(crate) mod energy;
+pub(crate) mod explicit;
+pub(crate) mod failure;
+pub(crate) mod grid;
+pub(crate) mod headway;
+pub(crate) mod implicit;
+pub(crate) mod limits;
+pub(crate) mod multipliers;
+pub(crate) mod quadrature;
+pub(crate) mod replay;
+pub(crate) mod rows;
+pub(crate) mod scale;
+pub(crate) mod schedule;
+pub(crate) mod settings;
 mod singular;
 mod stops;
-pub mod trajectory;
-pub mod work;
+pub(crate) mod trajectory;
+pub(crate) mod work;
 
-pub use choice::{Chosen, simulate_by};
-pub use failure::IntegrationFailure;
-pub use grid::Grid;
-pub use limits::{Limits, Progress};
-pub use multipliers::Multipliers;
-pub use quadrature::Samples;
+pub(crate) use choice::{Chosen, simulate_by};
+pub(crate) use failure::IntegrationFailure;
+pub(crate) use grid::Grid;
+pub(crate) use limits::{Limits, Progress};
+pub(crate) use multipliers::Multipliers;
+pub(crate) use quadrature::Samples;
 #[cfg(test)]
-pub use settings::MEMORY;
-pub use settings::{Method, Settings, Spacing, Start};
-pub use trajectory::{Tape, Trajectory};
-pub use work::WorkCounts;
+pub(crate) use settings::MEMORY;
+pub(crate) use settings::{Method, Settings, Spacing, Start};
+pub(crate) use trajectory::{Tape, Trajectory};
+pub(crate) use work::WorkCounts;
 
 use crate::linalg::SolveScalar;
 use crate::model::Model;
@@ -46,7 +46,7 @@ use headway::Stop;
 ///
 /// # Errors
 /// [`IntegrationFailure`] says what failed, when and where.
-pub fn simulate<S: SolveScalar>(
+pub(crate) fn simulate<S: SolveScalar>(
     model: &Model<S>,
     duration: S,
     settings: &Settings,

@@ -8,7 +8,7 @@ use crate::system::left_out::WORN;
 
 /// Multipliers λ of a model along a run: as the method marched them or, if it did not or the run left
 /// rows of the model out, from the index-1 equations of the states.
-pub struct Multipliers<'a> {
+pub(crate) struct Multipliers<'a> {
     run: &'a Trajectory<f64>,
     numbering: &'a Numbering,
     /// Solver of the index-1 equations, planned once for all instants.
@@ -17,7 +17,11 @@ pub struct Multipliers<'a> {
 
 impl<'a> Multipliers<'a> {
     /// Those of `model`, which has as many bodies as that of `run`, with its numbering.
-    pub fn new(model: &'a Model<f64>, numbering: &'a Numbering, run: &'a Trajectory<f64>) -> Self {
+    pub(crate) fn new(
+        model: &'a Model<f64>,
+        numbering: &'a Numbering,
+        run: &'a Trajectory<f64>,
+    ) -> Self {
         let marched = !run.lambda.is_empty() && run.numbering == *numbering;
         Self {
             run,
@@ -27,7 +31,7 @@ impl<'a> Multipliers<'a> {
     }
 
     /// λ at instant k; not numbers where the equations are singular.
-    pub fn at(&mut self, k: usize) -> Vec<f64> {
+    pub(crate) fn at(&mut self, k: usize) -> Vec<f64> {
         let (run, nc) = (self.run, self.numbering.constraints());
         let Some(field) = &mut self.field else {
             return run.lambda[k * nc..(k + 1) * nc].to_vec();

@@ -6,7 +6,7 @@
 //! intervals have the weights of Gregory's rule of order 6, others those of the trapezoidal rule.
 
 /// Nodes of a cell as fractions of it.
-pub const NODES: [f64; 7] = [
+pub(crate) const NODES: [f64; 7] = [
     0.0,
     0.091_751_709_536_136_98,
     0.276_393_202_250_021,
@@ -16,7 +16,7 @@ pub const NODES: [f64; 7] = [
     1.0,
 ];
 /// Their weights, which add up to one.
-pub const WEIGHTS: [f64; 7] = [
+pub(crate) const WEIGHTS: [f64; 7] = [
     77.0 / 2940.0,
     432.0 / 2940.0,
     625.0 / 2940.0,
@@ -26,7 +26,7 @@ pub const WEIGHTS: [f64; 7] = [
     77.0 / 2940.0,
 ];
 /// Weights of the Lobatto rule with four of the nodes, exact for polynomials of degree 5.
-pub const LOBATTO: [f64; 7] = [
+pub(crate) const LOBATTO: [f64; 7] = [
     1.0 / 12.0,
     0.0,
     5.0 / 12.0,
@@ -36,7 +36,7 @@ pub const LOBATTO: [f64; 7] = [
     1.0 / 12.0,
 ];
 /// Nodes that a cell adds.
-pub const ADDED: usize = NODES.len() - 1;
+pub(crate) const ADDED: usize = NODES.len() - 1;
 
 /// Weights of the first and the last samples at equal intervals by Gregory's rule.
 const GREGORY: [f64; 5] = [
@@ -67,7 +67,7 @@ pub enum Samples {
 }
 
 /// Weights of samples at these fractions, which add up to one.
-pub fn weights(instants: &[f64]) -> Vec<f64> {
+pub(crate) fn weights(instants: &[f64]) -> Vec<f64> {
     let last = instants.len() - 1;
     let trapezoidal = |k: usize| {
         let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
@@ -84,7 +84,7 @@ pub fn weights(instants: &[f64]) -> Vec<f64> {
 }
 
 /// Order of the sums with these [`weights`].
-pub fn order(instants: &[f64]) -> usize {
+pub(crate) fn order(instants: &[f64]) -> usize {
     let count = instants.len() - 1;
     let place = |(k, at): (usize, &f64)| (at * count as f64 - k as f64).abs() < EQUAL;
     match count >= 2 * GREGORY.len() && instants.iter().enumerate().all(place) {
@@ -204,12 +204,12 @@ pub(super) fn due(
 }
 
 /// Whether two fractions are the same instant.
-pub fn is_same(a: f64, b: f64) -> bool {
+pub(crate) fn is_same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME
 }
 
 /// Whether the fraction `at` belongs to a step that ends at `end`.
-pub fn within(at: f64, end: f64) -> bool {
+pub(crate) fn within(at: f64, end: f64) -> bool {
     at <= end + SAME
 }
 

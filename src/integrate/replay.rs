@@ -31,7 +31,7 @@ pub trait Block {
 }
 
 /// A march that makes the steps of a run again.
-pub trait March {
+pub(crate) trait March {
     /// What it fills.
     type Block: Block;
 
@@ -56,7 +56,7 @@ pub trait March {
 }
 
 /// A state that a march can go on from, with what its solver kept.
-pub type Checkpoint<B> = (<B as Block>::State, <B as Block>::Solver);
+pub(crate) type Checkpoint<B> = (<B as Block>::State, <B as Block>::Solver);
 
 /// What is kept of a run.
 #[derive(Clone, Debug)]
@@ -166,7 +166,7 @@ impl<B: Block> Tape<B> {
 }
 
 /// The steps of a run, from the last to the first: from its tape, or made again.
-pub struct Replay<'t, M: March, F> {
+pub(crate) struct Replay<'t, M: March, F> {
     tape: &'t Tape<M::Block>,
     schedule: Schedule,
     /// Makes the march, which stands at the start.
@@ -181,7 +181,7 @@ pub struct Replay<'t, M: March, F> {
 
 impl<'t, M: March, F: Fn() -> M> Replay<'t, M, F> {
     /// The steps of a run of `steps` steps.
-    pub fn new(tape: &'t Tape<M::Block>, steps: usize, make: F) -> Self {
+    pub(crate) fn new(tape: &'t Tape<M::Block>, steps: usize, make: F) -> Self {
         Self {
             tape,
             schedule: tape.schedule(steps),
@@ -194,7 +194,7 @@ impl<'t, M: March, F: Fn() -> M> Replay<'t, M, F> {
     }
 
     /// The march that makes steps again, if any were.
-    pub fn march(&self) -> Option<&M> {
+    pub(crate) fn march(&self) -> Option<&M> {
         self.march.as_ref().map(|(march, _)| march)
     }
 
@@ -202,7 +202,7 @@ impl<'t, M: March, F: Fn() -> M> Replay<'t, M, F> {
     ///
     /// # Errors
     /// If a step that is made again fails.
-    pub fn block(&mut self, n: usize) -> Result<&M::Block, IntegrationFailure> {
+    pub(crate) fn block(&mut self, n: usize) -> Result<&M::Block, IntegrationFailure> {
         if self.tape.block.steps().contains(&n) {
             return Ok(&self.tape.block);
         }

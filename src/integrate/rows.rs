@@ -4,7 +4,7 @@ use crate::math::Complex64;
 
 /// Records of N vectors, whose lengths are the same in all records.
 #[derive(Clone, Debug)]
-pub struct Rows<S, const N: usize> {
+pub(crate) struct Rows<S, const N: usize> {
     lengths: [usize; N],
     data: Vec<S>,
     count: usize,
@@ -12,7 +12,7 @@ pub struct Rows<S, const N: usize> {
 
 impl<S: Copy, const N: usize> Rows<S, N> {
     /// No record yet.
-    pub fn new(lengths: [usize; N]) -> Self {
+    pub(crate) fn new(lengths: [usize; N]) -> Self {
         Self {
             lengths,
             data: Vec::new(),
@@ -21,17 +21,17 @@ impl<S: Copy, const N: usize> Rows<S, N> {
     }
 
     /// Lengths of the vectors of a record.
-    pub fn lengths(&self) -> [usize; N] {
+    pub(crate) fn lengths(&self) -> [usize; N] {
         self.lengths
     }
 
     /// Number of numbers in a record.
-    pub fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.lengths.iter().sum()
     }
 
     /// Makes room for so many more records.
-    pub fn reserve(&mut self, count: usize) {
+    pub(crate) fn reserve(&mut self, count: usize) {
         self.data.reserve_exact(count * self.width());
     }
 
@@ -39,7 +39,7 @@ impl<S: Copy, const N: usize> Rows<S, N> {
     ///
     /// # Panics
     /// If a vector has another length than in all records.
-    pub fn push(&mut self, record: [&[S]; N]) {
+    pub(crate) fn push(&mut self, record: [&[S]; N]) {
         assert_eq!(record.map(<[S]>::len), self.lengths);
         for part in record {
             self.data.extend_from_slice(part);
@@ -48,13 +48,13 @@ impl<S: Copy, const N: usize> Rows<S, N> {
     }
 
     /// Gives all records up and keeps their memory for others.
-    pub fn restart(&mut self) {
+    pub(crate) fn restart(&mut self) {
         self.data.clear();
         self.count = 0;
     }
 
     /// Number of numbers in all records.
-    pub fn numbers(&self) -> usize {
+    pub(crate) fn numbers(&self) -> usize {
         self.data.len()
     }
 
@@ -62,7 +62,7 @@ impl<S: Copy, const N: usize> Rows<S, N> {
     ///
     /// # Panics
     /// If there is none.
-    pub fn get(&self, k: usize) -> [&[S]; N] {
+    pub(crate) fn get(&self, k: usize) -> [&[S]; N] {
         let mut rest = &self.data[k * self.width()..(k + 1) * self.width()];
         self.lengths.map(|length| {
             let (part, after) = rest.split_at(length);
@@ -74,7 +74,7 @@ impl<S: Copy, const N: usize> Rows<S, N> {
 
 impl<const N: usize> Rows<Complex64, N> {
     /// The real part.
-    pub fn real(&self) -> Rows<f64, N> {
+    pub(crate) fn real(&self) -> Rows<f64, N> {
         Rows {
             lengths: self.lengths,
             data: real(&self.data),

@@ -7,7 +7,7 @@ use crate::system::{Numbering, placement};
 
 /// Lengths and speeds of a scene that errors are relative to.
 #[derive(Clone, Copy, Debug)]
-pub struct Scale {
+pub(crate) struct Scale {
     /// Length (m).
     pub length: f64,
     /// Least speed (m/s) and angular speed (rad/s) to be relative to.
@@ -17,7 +17,7 @@ pub struct Scale {
 impl Scale {
     /// The scale of a model that starts in `start` and moves for `duration` (s): its largest lever
     /// arm; the speed at its start or that of a fall over the length.
-    pub fn of<S: Scalar>(
+    pub(crate) fn of<S: Scalar>(
         model: &Model<S>,
         numbering: &Numbering,
         start: &InitialState<S>,
@@ -35,13 +35,13 @@ impl Scale {
     }
 
     /// Speeds that the errors of a step between the velocities `v` and `w` are relative to.
-    pub fn speeds<S: Scalar>(&self, numbering: &Numbering, v: &[S], w: &[S]) -> [f64; 2] {
+    pub(crate) fn speeds<S: Scalar>(&self, numbering: &Numbering, v: &[S], w: &[S]) -> [f64; 2] {
         let (v, w) = (fastest(numbering, v), fastest(numbering, w));
         std::array::from_fn(|i| self.floor[i].max(v[i]).max(w[i]))
     }
 
     /// Mean square of a difference of positions and velocities, each relative to its scale.
-    pub fn square<S: Scalar>(
+    pub(crate) fn square<S: Scalar>(
         &self,
         numbering: &Numbering,
         q: &[S],
@@ -62,7 +62,7 @@ impl Scale {
     }
 
     /// As [`Scale::square`] for a tangent change y of positions and h times one of velocities.
-    pub fn tangent_square(&self, y: &[f64], hv: &[f64], h: f64, speeds: [f64; 2]) -> f64 {
+    pub(crate) fn tangent_square(&self, y: &[f64], hv: &[f64], h: f64, speeds: [f64; 2]) -> f64 {
         let part = |x: &[f64], scale: f64| -> f64 { x.iter().map(|x| (x / scale).powi(2)).sum() };
         let both = y.chunks_exact(6).zip(hv.chunks_exact(6));
         let sum: f64 = both

@@ -41,7 +41,7 @@ const MOST_TIMES: usize = 20;
 
 /// The least memory that a run of `steps` steps keeps for a gradient (bytes): two steps, and as many
 /// checkpoints as let every step be made again twenty times at most.
-pub fn least(steps: usize, room: Room) -> usize {
+pub(crate) fn least(steps: usize, room: Room) -> usize {
     let mut checkpoints = 1;
     while repetitions(steps, checkpoints) > MOST_TIMES {
         checkpoints += 1;
@@ -224,7 +224,7 @@ fn repetitions(l: usize, s: usize) -> usize {
 }
 
 /// t(l, s): advances over a block that reverse l blocks with s checkpoints.
-pub fn advances(l: usize, s: usize) -> usize {
+pub(crate) fn advances(l: usize, s: usize) -> usize {
     match repetitions(l, s) {
         0 => 0,
         r => (r.saturating_mul(l)).saturating_sub(most(s + 1, r - 1)),
@@ -234,7 +234,7 @@ pub fn advances(l: usize, s: usize) -> usize {
 /// How many of l > 1 blocks to advance over before the next checkpoint, with s of them, the one that
 /// the blocks start from included: as many as leave both parts the least advances,
 /// t(l, s) = j + t(j, s) + t(l − j, s − 1).
-pub fn split(l: usize, s: usize) -> usize {
+pub(crate) fn split(l: usize, s: usize) -> usize {
     if s <= 1 {
         return l - 1;
     }

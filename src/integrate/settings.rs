@@ -100,7 +100,7 @@ impl Method {
 
 /// Where the steps end.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Spacing {
+pub(crate) enum Spacing {
     /// This many steps of equal size.
     Steps(usize),
     /// Steps whose estimated error, relative to the scene's lengths and speeds, stays below this.
@@ -122,11 +122,11 @@ impl Spacing {
 }
 
 /// Memory for gradients where nothing else is said (bytes).
-pub const MEMORY: usize = 1 << 28;
+pub(crate) const MEMORY: usize = 1 << 28;
 
 /// Method, steps and what is kept.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+pub(crate) struct Settings {
     /// Method.
     pub method: Method,
     /// Where the steps end.
@@ -156,7 +156,7 @@ impl Samples {
 
 impl Settings {
     /// `steps` equal steps, sampled at their ends.
-    pub fn steps(method: Method, steps: usize) -> Self {
+    pub(crate) fn steps(method: Method, steps: usize) -> Self {
         Self {
             method,
             spacing: Spacing::Steps(steps),

@@ -25,7 +25,7 @@ const LEAST: f64 = 1e-11;
 const MOST: f64 = 1e3;
 const MOST_GIVEN: f64 = 3e3;
 /// The same for steps of implicit methods, which do not build on accelerations.
-pub const MOST_IMPLICIT: f64 = 1e4;
+pub(crate) const MOST_IMPLICIT: f64 = 1e4;
 /// Magnification from which a given step must not err by more than this, nor by so much more than those
 /// before it.
 const SUSPICIOUS: f64 = 3.0;
@@ -34,7 +34,7 @@ const MORE_ERROR: f64 = 100.0;
 
 /// Steadiness of the ends of steps: the reciprocal of how much the index-1 equations magnify errors of
 /// the constraints' rates. It vanishes where rows depend on each other.
-pub struct Steadiness<S> {
+pub(crate) struct Steadiness<S> {
     largest: f64,
     /// The last two ends, the latest in front.
     last: [Option<(f64, f64)>; 2],
@@ -45,7 +45,7 @@ pub struct Steadiness<S> {
 
 impl<S: SolveScalar> Steadiness<S> {
     /// Before any end.
-    pub fn new(numbering: &Numbering) -> Self {
+    pub(crate) fn new(numbering: &Numbering) -> Self {
         let (nv, nc) = (numbering.velocities(), numbering.constraints());
         Self {
             largest: 0.0,
@@ -56,7 +56,7 @@ impl<S: SolveScalar> Steadiness<S> {
     }
 
     /// The steadiness where the equations stand and were factorised, relative to the scene's scale.
-    pub fn of(&mut self, field: &mut Accelerations<S>, scale: &Scale) -> f64 {
+    pub(crate) fn of(&mut self, field: &mut Accelerations<S>, scale: &Scale) -> f64 {
         let nv = field.numbering.velocities();
         let speeds = [scale.length, 1.0];
         let mut sum = 0.0;
@@ -77,19 +77,19 @@ impl<S: SolveScalar> Steadiness<S> {
     }
 
     /// How much more than elsewhere errors are magnified where the steadiness is `s`.
-    pub fn magnified(&self, s: f64) -> f64 {
+    pub(crate) fn magnified(&self, s: f64) -> f64 {
         (self.largest / s).max(1.0)
     }
 
     /// Takes notice of the steadiness `s` at the fraction `at` of the duration.
-    pub fn see(&mut self, at: f64, s: f64) {
+    pub(crate) fn see(&mut self, at: f64, s: f64) {
         self.largest = self.largest.max(s);
         self.last = [Some((at, s)), self.last[0]];
     }
 
     /// Where it would vanish, if it is `s` at the fraction `at` and the motion comes close to that: by
     /// the parabola of the last three ends.
-    pub fn foresee(&self, at: f64, s: f64) -> Option<f64> {
+    pub(crate) fn foresee(&self, at: f64, s: f64) -> Option<f64> {
         let (t1, s1) = self.last[0].filter(|(_, s1)| s < *s1 && s < NEAR * self.largest)?;
         let slope = (s - s1) / (at - t1);
         let bent = self.last[1].map_or(0.0, |(t0, s0)| {
@@ -100,14 +100,14 @@ impl<S: SolveScalar> Steadiness<S> {
     }
 
     /// Whether a step from the last end to `at` ends too close to where the steadiness vanishes.
-    pub fn too_close(&self, at: f64, vanishes: f64) -> bool {
+    pub(crate) fn too_close(&self, at: f64, vanishes: f64) -> bool {
         let from = self.last[0].map_or(0.0, |(t1, _)| t1);
         vanishes - at < AWAY * (at - from)
     }
 
     /// Whether a given step to an end of steadiness `s` errs near a singular position, and more than the
     /// `largest` of those before it.
-    pub fn errs(&self, s: f64, error: f64, largest: f64) -> bool {
+    pub(crate) fn errs(&self, s: f64, error: f64, largest: f64) -> bool {
         let from = self.last[0].map_or(s, |(_, s1)| s1);
         self.magnified(s.min(from)) > SUSPICIOUS && error > ERROR.max(MORE_ERROR * largest)
     }
@@ -128,7 +128,7 @@ fn irregular(n: usize) -> f64 {
 }
 
 /// Largest magnification that a step may end with, by the tolerance that steps follow if they do.
-pub fn most(tolerance: Option<f64>) -> f64 {
+pub(crate) fn most(tolerance: Option<f64>) -> f64 {
     match tolerance {
         Some(tolerance) => {
             let noise = NOISE * tolerance.max(LEAST);

@@ -10,7 +10,7 @@ const PART_OF_PERIOD: f64 = 0.25;
 
 /// What the loads and drives of a model say of the steps: fractions of the duration at which steps must end,
 /// ascending, and their largest width.
-pub fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64>, f64) {
+pub(crate) fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64>, f64) {
     let mut stops = Vec::new();
     let mut widest = 1.0_f64;
     for course in model.loads.iter().filter_map(|load| load.kind.course()) {

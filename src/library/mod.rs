@@ -12,7 +12,7 @@ use crate::report::optimum::Optimum as Record;
 use std::ops::ControlFlow;
 
 pub use crate::driver::CheckedDerivative;
-pub use crate::integrate::WorkCounts;
+pub(crate) use crate::integrate::WorkCounts;
 
 /// Why a design could not be simulated or differentiated. Its text says when and where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,10 +1,10 @@
 //! Sparse linear algebra: static patterns, the LU and the Cholesky factorisation.
 
-pub mod cholesky;
-pub mod pattern;
+pub(crate) mod cholesky;
+pub(crate) mod pattern;
 mod replay;
 mod scaling;
-pub mod sparse_lu;
+pub(crate) mod sparse_lu;
 
-pub use pattern::{Emit, Pattern, SparseMatrix};
-pub use sparse_lu::{Pivots, REFINED_SOLVES, SingularMatrix, SolveScalar, SparseLu};
+pub(crate) use pattern::{Emit, Pattern, SparseMatrix};
+pub(crate) use sparse_lu::{Pivots, REFINED_SOLVES, SingularMatrix, SolveScalar, SparseLu};

@@ -7,7 +7,7 @@
 use crate::math::{Mat3, Scalar, Vec3};
 
 /// Receives the entries of an assembly, in its fixed order.
-pub trait Emit<S: Scalar> {
+pub(crate) trait Emit<S: Scalar> {
     /// Adds `value` at (`row`, `column`).
     fn add(&mut self, row: usize, column: usize, value: S);
 
@@ -44,7 +44,7 @@ pub trait Emit<S: Scalar> {
 
 /// Places of the non-zeros of a square matrix by compressed columns.
 #[derive(Clone, Debug)]
-pub struct Pattern {
+pub(crate) struct Pattern {
     column_starts: Vec<usize>,
     rows: Vec<usize>,
     record: Record,
@@ -73,7 +73,7 @@ impl<S: Scalar> Emit<S> for Recorder {
 
 impl Pattern {
     /// Records the pattern of order `n` of the given assembly.
-    pub fn record<S: Scalar>(n: usize, assemble: impl FnOnce(&mut dyn Emit<S>)) -> Self {
+    pub(crate) fn record<S: Scalar>(n: usize, assemble: impl FnOnce(&mut dyn Emit<S>)) -> Self {
         let mut recorder = Recorder(Vec::new());
         assemble(&mut recorder);
         let (column_starts, sorted) = Self::sort(n, &recorder.0);
@@ -87,7 +87,7 @@ impl Pattern {
 
     /// Records the pattern of order `n` of Bᵀ A B for an assembly of A, of which B is given by row:
     /// `shares` are the columns of its non-zeros and these (a zero counts as none).
-    pub fn record_reduced<S: Scalar>(
+    pub(crate) fn record_reduced<S: Scalar>(
         n: usize,
         shares: impl Fn(usize) -> [(usize, f64); 2],
         assemble: impl FnOnce(&mut dyn Emit<S>),
@@ -132,17 +132,17 @@ impl Pattern {
     }
 
     /// Order of the matrix.
-    pub fn order(&self) -> usize {
+    pub(crate) fn order(&self) -> usize {
         self.column_starts.len() - 1
     }
 
     /// Number of stored entries.
-    pub fn entries(&self) -> usize {
+    pub(crate) fn entries(&self) -> usize {
         self.rows.len()
     }
 
     /// Start of each column among the entries, and one past the last.
-    pub fn column_starts(&self) -> &[usize] {
+    pub(crate) fn column_starts(&self) -> &[usize] {
         &self.column_starts
     }
 
@@ -150,7 +150,7 @@ impl Pattern {
     ///
     /// # Panics
     /// If an entry of the other is none of this.
-    pub fn slots_of(&self, other: &Self) -> Vec<usize> {
+    pub(crate) fn slots_of(&self, other: &Self) -> Vec<usize> {
         let mut slots = Vec::with_capacity(other.entries());
         for j in 0..other.order() {
             let own = self.column_starts[j]..self.column_starts[j + 1];
@@ -163,7 +163,7 @@ impl Pattern {
     }
 
     /// Row of each entry.
-    pub fn rows(&self) -> &[usize] {
+    pub(crate) fn rows(&self) -> &[usize] {
         &self.rows
     }
 }
@@ -178,7 +178,7 @@ fn slot(sorted: &[(usize, usize)], place: &(usize, usize)) -> u32 {
 
 /// A matrix in a static pattern.
 #[derive(Clone, Debug)]
-pub struct SparseMatrix<S> {
+pub(crate) struct SparseMatrix<S> {
     /// Where the entries are.
     pub pattern: Pattern,
     /// Their values.
@@ -221,13 +221,13 @@ impl<S: Scalar> Emit<S> for SharedReplay<'_, S> {
 
 impl<S: Scalar> SparseMatrix<S> {
     /// A matrix of zeros.
-    pub fn new(pattern: Pattern) -> Self {
+    pub(crate) fn new(pattern: Pattern) -> Self {
         let values = vec![S::zero(); pattern.entries()];
         Self { pattern, values }
     }
 
     /// Replaces the values by those that the recorded assembly emits now.
-    pub fn assemble(&mut self, assemble: impl FnOnce(&mut dyn Emit<S>)) {
+    pub(crate) fn assemble(&mut self, assemble: impl FnOnce(&mut dyn Emit<S>)) {
         self.values.fill(S::zero());
         let values = &mut self.values[..];
         let whole = match &self.pattern.record {
@@ -252,7 +252,7 @@ impl<S: Scalar> SparseMatrix<S> {
     }
 
     /// Emits every entry, moved down and to the right by `at` and scaled by `scale`.
-    pub fn emit(&self, at: (usize, usize), scale: S, emit: &mut dyn Emit<S>) {
+    pub(crate) fn emit(&self, at: (usize, usize), scale: S, emit: &mut dyn Emit<S>) {
         let starts = self.pattern.column_starts();
         for j in 0..self.pattern.order() {
             for k in starts[j]..starts[j + 1] {
@@ -266,7 +266,7 @@ impl<S: Scalar> SparseMatrix<S> {
     }
 
     /// The product Aᵀ x.
-    pub fn multiply_transposed(&self, x: &[S], out: &mut [S]) {
+    pub(crate) fn multiply_transposed(&self, x: &[S], out: &mut [S]) {
         for (j, out) in out.iter_mut().enumerate().take(self.pattern.order()) {
             let own = self.pattern.column_starts[j]..self.pattern.column_starts[j + 1];
             let entries = self.values[own.clone()].iter().zip(&self.pattern.rows[own]);

@@ -85,7 +85,7 @@ pub(super) struct Replay<S> {
 
 impl<S: Scalar> Replay<S> {
     /// Eliminates the columns of matrices of this pattern in the given order; not planned yet.
-    pub fn new(pattern: &Pattern, columns: &[usize]) -> Self {
+    pub(crate) fn new(pattern: &Pattern, columns: &[usize]) -> Self {
         let n = pattern.order();
         Self {
             columns: columns.to_vec(),
@@ -103,7 +103,7 @@ impl<S: Scalar> Replay<S> {
     }
 
     /// Plans the elimination with pivot j in row `pivot_rows[j]` of a matrix that is scaled like this.
-    pub fn plan(&mut self, pattern: &Pattern, scaling: &Scaling, pivot_rows: &[usize]) {
+    pub(crate) fn plan(&mut self, pattern: &Pattern, scaling: &Scaling, pivot_rows: &[usize]) {
         self.scaling.set(scaling);
         self.pivot_rows.copy_from_slice(pivot_rows);
         for (j, &row) in pivot_rows.iter().enumerate() {
@@ -149,12 +149,12 @@ impl<S: Scalar> Replay<S> {
     }
 
     /// The rows of the pivots and the scaling in use.
-    pub fn planned(&self) -> (&[usize], &Scaling) {
+    pub(crate) fn planned(&self) -> (&[usize], &Scaling) {
         (&self.pivot_rows, &self.scaling)
     }
 
     /// Entries of both factors, and floating-point operations of a factorisation.
-    pub fn cost(&self) -> (usize, usize) {
+    pub(crate) fn cost(&self) -> (usize, usize) {
         let n = self.columns.len();
         let column = |j: usize| {
             let updates = self.upper.rows(j).iter();
@@ -168,7 +168,7 @@ impl<S: Scalar> Replay<S> {
     }
 
     /// The smallest pivot in the columns from `first` on, of the scaled matrix, and its column.
-    pub fn smallest_pivot(&self, first: usize) -> (f64, usize) {
+    pub(crate) fn smallest_pivot(&self, first: usize) -> (f64, usize) {
         let mut found = (0.0, first);
         for (&inverse, &column) in self.inverse_pivots.iter().zip(&self.columns) {
             if column >= first && size(inverse) > found.0 {
@@ -182,7 +182,7 @@ impl<S: Scalar> Replay<S> {
     ///
     /// # Errors
     /// [`BadPivot`]; the factors are then of no use.
-    pub fn factorise(&mut self, matrix: &SparseMatrix<S>) -> Result<(), BadPivot> {
+    pub(crate) fn factorise(&mut self, matrix: &SparseMatrix<S>) -> Result<(), BadPivot> {
         let starts = matrix.pattern.column_starts();
         let x = &mut self.work;
         for (j, &column) in self.columns.iter().enumerate() {
@@ -226,7 +226,7 @@ impl<S: Scalar> Replay<S> {
     }
 
     /// Solves A x = b in place.
-    pub fn solve(&mut self, b: &mut [S]) {
+    pub(crate) fn solve(&mut self, b: &mut [S]) {
         let x = &mut self.work;
         for (x, &row) in x.iter_mut().zip(&self.pivot_rows) {
             *x = b[row] * self.scaling.rows[row];
@@ -250,7 +250,7 @@ impl<S: Scalar> Replay<S> {
     }
 
     /// Solves Aᵀ x = b in place.
-    pub fn solve_transposed(&mut self, b: &mut [S]) {
+    pub(crate) fn solve_transposed(&mut self, b: &mut [S]) {
         let x = &mut self.work;
         for (x, &column) in x.iter_mut().zip(&self.columns) {
             *x = b[column] * self.scaling.columns[column];

@@ -23,7 +23,7 @@ pub(super) struct Scaling {
 
 impl Scaling {
     /// No scaling yet.
-    pub fn new(pattern: &Pattern) -> Self {
+    pub(crate) fn new(pattern: &Pattern) -> Self {
         Self {
             rows: vec![1.0; pattern.order()],
             columns: vec![1.0; pattern.order()],
@@ -32,14 +32,14 @@ impl Scaling {
     }
 
     /// Becomes equal to another scaling of the same pattern.
-    pub fn set(&mut self, other: &Self) {
+    pub(crate) fn set(&mut self, other: &Self) {
         self.rows.copy_from_slice(&other.rows);
         self.columns.copy_from_slice(&other.columns);
         self.entries.copy_from_slice(&other.entries);
     }
 
     /// Scales for a matrix: first its rows, then the columns of what that makes.
-    pub fn fit<S: Scalar>(&mut self, matrix: &SparseMatrix<S>) {
+    pub(crate) fn fit<S: Scalar>(&mut self, matrix: &SparseMatrix<S>) {
         let pattern = &matrix.pattern;
         self.rows.fill(0.0);
         for (&row, &value) in pattern.rows().iter().zip(&matrix.values) {

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Steps of iterative refinement of a transposed solution.
 const REFINEMENTS: usize = 2;
 /// Solves with the factors that a refined solution takes.
-pub const REFINED_SOLVES: usize = 1 + REFINEMENTS;
+pub(crate) const REFINED_SOLVES: usize = 1 + REFINEMENTS;
 
 /// A scalar that linear systems are solved in: `f64` and `Complex64`.
 pub trait SolveScalar: Scalar + faer::traits::ComplexField {}
@@ -22,7 +22,7 @@ impl<S: Scalar + faer::traits::ComplexField> SolveScalar for S {}
 /// The matrix has no usable pivot in some column.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("singular matrix: column {column} has no usable pivot")]
-pub struct SingularMatrix {
+pub(crate) struct SingularMatrix {
     /// A column that depends on the others.
     pub column: usize,
 }
@@ -32,7 +32,7 @@ pub struct SingularMatrix {
 /// R and C are powers of two that make the largest entries of all rows and columns alike, to 2⁸. They and P,
 /// which is found by partial pivoting, are those of the first matrix and kept while their pivots stay
 /// good; what is found anew is put where the old was, so that factorisations allocate nothing.
-pub struct SparseLu<S> {
+pub(crate) struct SparseLu<S> {
     symbolic: SymbolicLu<usize>,
     pivoting: Pivoting<S>,
     replay: Option<Replay<S>>,
@@ -44,7 +44,7 @@ pub struct SparseLu<S> {
 
 /// Which pivots a factorisation takes, and how it scales: what its factors depend on besides the matrix.
 #[derive(Clone, Debug)]
-pub struct Pivots {
+pub(crate) struct Pivots {
     rows: Vec<usize>,
     scaling: Scaling,
 }
@@ -101,7 +101,7 @@ impl<S: SolveScalar> SparseLu<S> {
     ///
     /// # Panics
     /// If memory is exhausted.
-    pub fn new(pattern: &Pattern) -> Self {
+    pub(crate) fn new(pattern: &Pattern) -> Self {
         let symbolic = factorize_symbolic_lu(structure(pattern), LuSymbolicParams::default())
             .expect("the analysis fails only when memory is exhausted");
         let n = pattern.order();
@@ -118,7 +118,7 @@ impl<S: SolveScalar> SparseLu<S> {
     ///
     /// # Errors
     /// [`SingularMatrix`] if a pivot of the scaled matrix is zero or not finite.
-    pub fn factorise(&mut self, matrix: &SparseMatrix<S>) -> Result<(), SingularMatrix> {
+    pub(crate) fn factorise(&mut self, matrix: &SparseMatrix<S>) -> Result<(), SingularMatrix> {
         if let Some(replay) = &mut self.replay {
             match replay.factorise(matrix) {
                 Ok(()) => return Ok(()),
@@ -139,7 +139,7 @@ impl<S: SolveScalar> SparseLu<S> {
     }
 
     /// The pivots in use; none before the first factorisation.
-    pub fn pivots(&mut self) -> Option<Arc<Pivots>> {
+    pub(crate) fn pivots(&mut self) -> Option<Arc<Pivots>> {
         let replay = self.replay.as_ref()?;
         let found = self.pivots.get_or_insert_with(|| {
             let (rows, scaling) = replay.planned();
@@ -152,7 +152,7 @@ impl<S: SolveScalar> SparseLu<S> {
     }
 
     /// Goes on with pivots that were in use for matrices of the same pattern.
-    pub fn set_pivots(&mut self, pattern: &Pattern, pivots: Option<&Arc<Pivots>>) {
+    pub(crate) fn set_pivots(&mut self, pattern: &Pattern, pivots: Option<&Arc<Pivots>>) {
         let Some(new) = pivots else {
             (self.replay, self.pivots) = (None, None);
             return;
@@ -171,7 +171,7 @@ impl<S: SolveScalar> SparseLu<S> {
     ///
     /// # Panics
     /// If no matrix was factorised.
-    pub fn cost(&mut self) -> (usize, usize) {
+    pub(crate) fn cost(&mut self) -> (usize, usize) {
         self.factors().cost()
     }
 
@@ -186,7 +186,7 @@ impl<S: SolveScalar> SparseLu<S> {
     ///
     /// # Panics
     /// If no matrix was factorised.
-    pub fn solve(&mut self, b: &mut [S]) {
+    pub(crate) fn solve(&mut self, b: &mut [S]) {
         self.factors().solve(b);
     }
 
@@ -194,7 +194,7 @@ impl<S: SolveScalar> SparseLu<S> {
     ///
     /// # Panics
     /// If no matrix was factorised.
-    pub fn solve_transposed(&mut self, b: &mut [S]) {
+    pub(crate) fn solve_transposed(&mut self, b: &mut [S]) {
         self.factors().solve_transposed(b);
     }
 
@@ -203,7 +203,7 @@ impl<S: SolveScalar> SparseLu<S> {
     ///
     /// # Panics
     /// If no matrix was factorised.
-    pub fn smallest_pivot(&mut self, first: usize) -> (f64, usize) {
+    pub(crate) fn smallest_pivot(&mut self, first: usize) -> (f64, usize) {
         self.factors().smallest_pivot(first)
     }
 
@@ -213,7 +213,7 @@ impl<S: SolveScalar> SparseLu<S> {
     ///
     /// # Panics
     /// If no matrix was factorised.
-    pub fn solve_transposed_refined(&mut self, matrix: &SparseMatrix<S>, b: &mut [S]) {
+    pub(crate) fn solve_transposed_refined(&mut self, matrix: &SparseMatrix<S>, b: &mut [S]) {
         let [mut rhs, mut correction] = std::mem::take(&mut self.refined);
         rhs.copy_from_slice(b);
         self.solve_transposed(b);

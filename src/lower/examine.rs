@@ -8,7 +8,7 @@ pub(super) const ROUND_OFF: f64 = 1e-13;
 
 /// What stands against a reduction.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Obstacle {
+pub(crate) struct Obstacle {
     /// What it is, with the name of the part of the scene.
     pub what: String,
     /// By how much (or, if a variable is at fault, by how much for a typical change of it); zero if
@@ -53,7 +53,7 @@ impl std::fmt::Display for Obstacle {
 }
 
 /// Whether something may be left out, or all that stands against it.
-pub type Verdict = Result<(), Vec<Obstacle>>;
+pub(crate) type Verdict = Result<(), Vec<Obstacle>>;
 
 /// Collects the quantities that do not vanish.
 pub(super) struct Examiner {
@@ -63,7 +63,7 @@ pub(super) struct Examiner {
 }
 
 impl Examiner {
-    pub fn new(change: f64) -> Self {
+    pub(crate) fn new(change: f64) -> Self {
         Self {
             change,
             found: Vec::new(),
@@ -71,7 +71,7 @@ impl Examiner {
     }
 
     /// What was found.
-    pub fn verdict(self) -> Verdict {
+    pub(crate) fn verdict(self) -> Verdict {
         match self.found.is_empty() {
             true => Ok(()),
             false => Err(self.found),
@@ -79,12 +79,12 @@ impl Examiner {
     }
 
     /// Tells an obstacle that has no size.
-    pub fn tell(&mut self, what: String) {
+    pub(crate) fn tell(&mut self, what: String) {
         self.add(Obstacle::plain(what));
     }
 
     /// Asks that `value` vanishes beside `scale`; `what` tells it with its unit if it does not.
-    pub fn zero<S: Scalar>(
+    pub(crate) fn zero<S: Scalar>(
         &mut self,
         value: S,
         scale: f64,
@@ -94,7 +94,7 @@ impl Examiner {
     }
 
     /// As [`Examiner::zero`], of a vector.
-    pub fn vanishes<S: Scalar>(
+    pub(crate) fn vanishes<S: Scalar>(
         &mut self,
         vector: &[S],
         scale: f64,
@@ -138,7 +138,7 @@ impl Examiner {
 
 /// A design variable, as far as it matters here.
 #[derive(Clone, Debug)]
-pub struct Range {
+pub(crate) struct Range {
     /// Name.
     pub name: String,
     /// Where the design starts.
@@ -165,7 +165,7 @@ pub(super) struct Designs {
 
 impl Designs {
     /// The scenes that `real` and `dual` make.
-    pub fn new(
+    pub(crate) fn new(
         real: &dyn Fn(&[f64]) -> Scene<f64>,
         dual: &dyn Fn(&[Dual]) -> Scene<Dual>,
         variables: &[Range],
@@ -199,7 +199,11 @@ impl Designs {
     }
 
     /// Changes all scenes.
-    pub fn change(&mut self, real: impl Fn(&mut Scene<f64>), dual: impl Fn(&mut Scene<Dual>)) {
+    pub(crate) fn change(
+        &mut self,
+        real: impl Fn(&mut Scene<f64>),
+        dual: impl Fn(&mut Scene<Dual>),
+    ) {
         real(&mut self.start);
         self.others.iter_mut().for_each(real);
         self.derived.iter_mut().for_each(|(.., scene)| dual(scene));
@@ -207,7 +211,7 @@ impl Designs {
 
     /// Asks a question of the start, of the derivatives by the variables and of the other designs,
     /// the latter for what is not known by then.
-    pub fn ask(
+    pub(crate) fn ask(
         &self,
         real: impl Fn(&Scene<f64>) -> Verdict,
         dual: impl Fn(&Scene<Dual>, f64) -> Verdict,

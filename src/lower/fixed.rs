@@ -10,7 +10,7 @@ use crate::system::{Motion, Numbering, constraint, side};
 
 /// Bodies that nothing can move.
 #[derive(Clone, Debug, Default)]
-pub struct Fixed {
+pub(crate) struct Fixed {
     /// By body, whether it is one; empty if none is.
     held: Vec<bool>,
 }
@@ -68,12 +68,12 @@ impl Fixed {
     }
 
     /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.held.is_empty()
     }
 
     /// Whether body `index` is one.
-    pub fn contains(&self, index: usize) -> bool {
+    pub(crate) fn contains(&self, index: usize) -> bool {
         self.held.get(index) == Some(&true)
     }
 

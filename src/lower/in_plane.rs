@@ -29,7 +29,7 @@ impl Plane {
     ///
     /// # Errors
     /// What leaves it.
-    pub fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Verdict {
+    pub(crate) fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Verdict {
         let turned = Turned::new(model, &self.normal);
         let mut examiner = Examiner::new(change);
         let reach = Reach::new(model);

@@ -22,7 +22,7 @@ use crate::system::Numbering;
 
 /// Bodies that move as one.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Cluster {
+pub(crate) struct Cluster {
     /// The body whose states are kept.
     pub host: usize,
     /// All of them, the host included.

@@ -6,24 +6,24 @@
 //! every variable. The same examination, in values, is repeated wherever a scene is made.
 
 mod examine;
-pub mod fixed;
+pub(crate) mod fixed;
 mod in_plane;
 mod merge;
 mod normal;
-pub mod planar;
+pub(crate) mod planar;
 mod point;
 mod reach;
 mod tilt;
-pub mod unseen;
-pub mod unturned;
-pub mod welded;
+pub(crate) mod unseen;
+pub(crate) mod unturned;
+pub(crate) mod welded;
 
-pub use examine::{Obstacle, Range};
-pub use fixed::Fixed;
-pub use planar::Plane;
-pub use unseen::Seen;
-pub use unturned::Unturned;
-pub use welded::Welded;
+pub(crate) use examine::{Obstacle, Range};
+pub(crate) use fixed::Fixed;
+pub(crate) use planar::Plane;
+pub(crate) use unseen::Seen;
+pub(crate) use unturned::Unturned;
+pub(crate) use welded::Welded;
 
 use crate::functions::Scene;
 use crate::integrate::Trajectory;
@@ -35,7 +35,7 @@ use reach::Reach;
 
 /// A reduction that is not made.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Kept {
+pub(crate) struct Kept {
     /// What could have been left out.
     pub reduction: String,
     /// What stands against it.
@@ -59,7 +59,7 @@ impl std::fmt::Display for Kept {
 
 /// What is left out of the scenes of a problem.
 #[derive(Clone, Debug)]
-pub struct Lowering {
+pub(crate) struct Lowering {
     /// Bodies that are welded to each other.
     pub welded: Welded,
     /// The plane that all motion stays in, or what leaves every plane.
@@ -78,7 +78,7 @@ pub struct Lowering {
 
 impl Lowering {
     /// Finds what can be left out of the scenes that `real` and `dual` make of a design.
-    pub fn find(
+    pub(crate) fn find(
         real: &dyn Fn(&[f64]) -> Scene<f64>,
         dual: &dyn Fn(&[Dual]) -> Scene<Dual>,
         variables: &[Range],
@@ -141,7 +141,7 @@ impl Lowering {
     }
 
     /// Every reduction that is not made, with what stands against it.
-    pub fn kept(&self) -> Vec<&Kept> {
+    pub(crate) fn kept(&self) -> Vec<&Kept> {
         self.plane
             .as_ref()
             .err()
@@ -152,7 +152,7 @@ impl Lowering {
 
     /// Leaves out of `scene` what can be; false if its design does not admit all of it, and it stays as
     /// it is.
-    pub fn apply<S: Scalar>(&self, scene: &mut Scene<S>) -> bool {
+    pub(crate) fn apply<S: Scalar>(&self, scene: &mut Scene<S>) -> bool {
         if self.welded.is_empty() {
             let admitted = self.admits(scene);
             if admitted {
@@ -202,7 +202,11 @@ impl Lowering {
 
     /// The motion of all bodies of `written`, the model that a lowered scene was made of, from the run
     /// of that; `None` if that is it.
-    pub fn expand(&self, written: &Model<f64>, run: &Trajectory<f64>) -> Option<Trajectory<f64>> {
+    pub(crate) fn expand(
+        &self,
+        written: &Model<f64>,
+        run: &Trajectory<f64>,
+    ) -> Option<Trajectory<f64>> {
         (!self.welded.is_empty()).then(|| self.welded.expand(written, run))
     }
 }

@@ -30,7 +30,7 @@ use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
 /// A plane, and where the parts of a scene stand in it.
 #[derive(Clone, Debug)]
-pub struct Plane {
+pub(crate) struct Plane {
     /// Its unit normal, ground axes.
     pub normal: Vec3<f64>,
     /// Two orthonormal directions in it.
@@ -64,7 +64,7 @@ pub(super) struct Turned<S> {
 }
 
 impl<S: Scalar> Turned<S> {
-    pub fn new(model: &Model<S>, normal: &Vec3<f64>) -> Self {
+    pub(crate) fn new(model: &Model<S>, normal: &Vec3<f64>) -> Self {
         let ground: Vec3<S> = lift3(normal);
         let bodies = model.bodies.iter();
         Self {
@@ -75,7 +75,7 @@ impl<S: Scalar> Turned<S> {
         }
     }
 
-    pub fn normal(&self, body: Option<usize>) -> &Vec3<S> {
+    pub(crate) fn normal(&self, body: Option<usize>) -> &Vec3<S> {
         body.map_or(&self.ground, |body| &self.normals[body])
     }
 }
@@ -108,7 +108,7 @@ pub(super) fn used<S>(joint: &Joint<S>) -> [[bool; 3]; 2] {
 
 impl Plane {
     /// Its normal for messages.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         vector(&self.normal)
     }
 
@@ -246,7 +246,7 @@ impl Plane {
     }
 
     /// Leaves out of a model that the plane holds for what is across it.
-    pub fn apply<S: Scalar>(&self, model: &mut Model<S>) {
+    pub(crate) fn apply<S: Scalar>(&self, model: &mut Model<S>) {
         let moving = |(body, _): &(&mut RigidBody<S>, _)| body.mobility != Mobility::fixed();
         let bodies = model.bodies.iter_mut().zip(&self.bodies);
         for (body, (normal, _)) in bodies.filter(moving) {

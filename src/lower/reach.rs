@@ -13,7 +13,7 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    pub fn new<S: Scalar>(model: &Model<S>) -> Self {
+    pub(crate) fn new<S: Scalar>(model: &Model<S>) -> Self {
         let bodies = model.bodies.iter();
         let mut own: Vec<f64> = bodies.map(|body| largest(&body.position)).collect();
         for joint in &model.joints {
@@ -35,7 +35,7 @@ impl Reach {
     }
 
     /// That of some bodies; of the whole scene where they have none.
-    pub fn of(&self, bodies: [Option<usize>; 2]) -> f64 {
+    pub(crate) fn of(&self, bodies: [Option<usize>; 2]) -> f64 {
         let own = bodies.into_iter().flatten().map(|body| self.bodies[body]);
         let longest = own.fold(0.0, f64::max);
         if longest > 0.0 { longest } else { self.whole }

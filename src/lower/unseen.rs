@@ -15,7 +15,7 @@ use crate::system::{Numbering, placement};
 
 /// What is kept of a scene, by index, ascending.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Seen {
+pub(crate) struct Seen {
     /// Bodies.
     pub bodies: Vec<usize>,
     /// Functions: those asked for.
@@ -24,7 +24,7 @@ pub struct Seen {
 
 impl Seen {
     /// What the functions `asked` and the event of `scene` can see.
-    pub fn find<S: Scalar>(scene: &Scene<S>, asked: &[usize]) -> Self {
+    pub(crate) fn find<S: Scalar>(scene: &Scene<S>, asked: &[usize]) -> Self {
         let model = &scene.model;
         let mut parts = Groups::new(model.bodies.len());
         let loads = model.loads.iter().map(|load| ends(load, model));
@@ -69,7 +69,7 @@ impl Seen {
     }
 
     /// Everything of a scene with so many bodies, but functions that are not asked for.
-    pub fn all_bodies(&self, bodies: usize) -> Self {
+    pub(crate) fn all_bodies(&self, bodies: usize) -> Self {
         Self {
             bodies: (0..bodies).collect(),
             functions: self.functions.clone(),
@@ -77,17 +77,17 @@ impl Seen {
     }
 
     /// Whether all bodies of a model are kept.
-    pub fn keeps_all<S>(&self, model: &Model<S>) -> bool {
+    pub(crate) fn keeps_all<S>(&self, model: &Model<S>) -> bool {
         self.bodies.len() == model.bodies.len()
     }
 
     /// Whether a body is kept.
-    pub fn keeps(&self, body: usize) -> bool {
+    pub(crate) fn keeps(&self, body: usize) -> bool {
         self.bodies.binary_search(&body).is_ok()
     }
 
     /// Leaves the rest out of `scene`. The bodies that are kept are numbered anew.
-    pub fn apply<S: Scalar>(&self, scene: &mut Scene<S>) {
+    pub(crate) fn apply<S: Scalar>(&self, scene: &mut Scene<S>) {
         let mut functions = std::mem::take(&mut scene.functions).into_iter().map(Some);
         let mut functions: Vec<Option<Function<S>>> = functions.by_ref().collect();
         let kept = self.functions.iter().map(|&f| functions[f].take());
@@ -109,7 +109,7 @@ impl Seen {
     }
 
     /// The motion of all bodies of the model `written` where those that are left out rest.
-    pub fn at_rest(&self, written: &Model<f64>, run: &Trajectory<f64>) -> Trajectory<f64> {
+    pub(crate) fn at_rest(&self, written: &Model<f64>, run: &Trajectory<f64>) -> Trajectory<f64> {
         let numbering = Numbering::new(written);
         let (placed, _) = placement::guess(written);
         let (mut q, mut v, mut a) = (Vec::new(), Vec::new(), Vec::new());

@@ -12,7 +12,7 @@ use crate::system::{Motion, Numbering, constraint, placement, side};
 
 /// Bodies that cannot turn, though they move.
 #[derive(Clone, Debug, Default)]
-pub struct Unturned {
+pub(crate) struct Unturned {
     /// By body, whether it is one; empty if none is.
     bodies: Vec<bool>,
     /// By body, whether it is one or cannot move at all.
@@ -72,12 +72,12 @@ impl Unturned {
     }
 
     /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.bodies.is_empty()
     }
 
     /// Whether body `index` is one.
-    pub fn contains(&self, index: usize) -> bool {
+    pub(crate) fn contains(&self, index: usize) -> bool {
         self.bodies.get(index) == Some(&true)
     }
 

@@ -16,7 +16,7 @@ use crate::system::{Motion, Numbering, constraint, placement, side};
 
 /// Bodies that are merged.
 #[derive(Clone, Debug, Default)]
-pub struct Welded {
+pub(crate) struct Welded {
     /// The bodies that move as one.
     pub clusters: Vec<Cluster>,
     /// The welds that vanish.
@@ -180,7 +180,7 @@ impl Welded {
     }
 
     /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.clusters.is_empty()
     }
 
@@ -297,12 +297,12 @@ fn alike<S: Scalar>(model: &Model<S>, pairs: &[[usize; 2]], change: f64) -> Verd
 pub(super) struct Groups(Vec<usize>);
 
 impl Groups {
-    pub fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize) -> Self {
         Self((0..count).collect())
     }
 
     /// The number that stands for the group of i.
-    pub fn of(&mut self, mut i: usize) -> usize {
+    pub(crate) fn of(&mut self, mut i: usize) -> usize {
         while self.0[i] != i {
             self.0[i] = self.0[self.0[i]];
             i = self.0[i];
@@ -310,7 +310,7 @@ impl Groups {
         i
     }
 
-    pub fn join(&mut self, a: usize, b: usize) {
+    pub(crate) fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.of(a), self.of(b));
         self.0[a] = b;
     }

@@ -1,7 +1,7 @@
 //! Scalars, vectors, rotations and smooth maxima: mathematics without mechanics.
 
-pub mod rotation;
-pub mod scalar;
-pub mod soft_max;
+pub(crate) mod rotation;
+pub(crate) mod scalar;
+pub(crate) mod soft_max;
 
-pub use scalar::{Complex64, Dual, Mat3, Scalar, Vec3};
+pub(crate) use scalar::{Complex64, Dual, Mat3, Scalar, Vec3};

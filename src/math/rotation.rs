@@ -7,7 +7,7 @@
 use super::scalar::{Mat3, Scalar, Vec3, length};
 
 /// Euler parameters (p0, e1, e2, e3).
-pub type Quat<S> = [S; 4];
+pub(crate) type Quat<S> = [S; 4];
 
 /// Vector part e of the Euler parameters.
 fn vector<S: Scalar>(p: &Quat<S>) -> Vec3<S> {
@@ -15,7 +15,7 @@ fn vector<S: Scalar>(p: &Quat<S>) -> Vec3<S> {
 }
 
 /// Rotation matrix R(p), body axes to ground.
-pub fn matrix<S: Scalar>(p: &Quat<S>) -> Mat3<S> {
+pub(crate) fn matrix<S: Scalar>(p: &Quat<S>) -> Mat3<S> {
     let [a, b, c, d] = *p;
     let (aa, bb, cc, dd) = (a * a, b * b, c * c, d * d);
     let two = |x: S| x * 2.0;
@@ -34,13 +34,13 @@ pub fn matrix<S: Scalar>(p: &Quat<S>) -> Mat3<S> {
 
 /// The product L(p) w of a four-vector, L(p) = [−e, p0 I − ẽ]; bilinear in (p, w), and
 /// L(p) w = −L(w) p.
-pub fn rate_product<S: Scalar>(p: &Quat<S>, w: &Quat<S>) -> Vec3<S> {
+pub(crate) fn rate_product<S: Scalar>(p: &Quat<S>, w: &Quat<S>) -> Vec3<S> {
     let (e, u) = (vector(p), vector(w));
     u * p[0] - e * w[0] - e.cross(&u)
 }
 
 /// The transposed product L(p)ᵀ a.
-pub fn rate_transposed<S: Scalar>(p: &Quat<S>, a: &Vec3<S>) -> Quat<S> {
+pub(crate) fn rate_transposed<S: Scalar>(p: &Quat<S>, a: &Vec3<S>) -> Quat<S> {
     let e = vector(p);
     let w = a * p[0] + e.cross(a);
     [-e.dot(a), w.x, w.y, w.z]
@@ -48,7 +48,7 @@ pub fn rate_transposed<S: Scalar>(p: &Quat<S>, a: &Vec3<S>) -> Quat<S> {
 
 /// Pulls a cotangent of the rotation matrix back to the Euler parameters, each of its own: the
 /// derivatives of Σ by_ij R_ij(p).
-pub fn pull_matrix<S: Scalar>(p: &Quat<S>, by: &Mat3<S>) -> Quat<S> {
+pub(crate) fn pull_matrix<S: Scalar>(p: &Quat<S>, by: &Mat3<S>) -> Quat<S> {
     let e = vector(p);
     // Σ by_ij ẽ_ij = e · w.
     let w = Vec3::new(
@@ -63,19 +63,19 @@ pub fn pull_matrix<S: Scalar>(p: &Quat<S>, by: &Mat3<S>) -> Quat<S> {
 }
 
 /// Rate of the Euler parameters, ṗ = ½ L(p)ᵀ ω, ω in body axes (rad/s).
-pub fn rates<S: Scalar>(p: &Quat<S>, omega: &Vec3<S>) -> Quat<S> {
+pub(crate) fn rates<S: Scalar>(p: &Quat<S>, omega: &Vec3<S>) -> Quat<S> {
     rate_transposed(p, omega).map(|x| x * 0.5)
 }
 
 /// Angular velocity in body axes, ω = 2 L(p) ṗ (rad/s).
-pub fn angular_velocity<S: Scalar>(p: &Quat<S>, pdot: &Quat<S>) -> Vec3<S> {
+pub(crate) fn angular_velocity<S: Scalar>(p: &Quat<S>, pdot: &Quat<S>) -> Vec3<S> {
     rate_product(p, pdot) * S::from(2.0)
 }
 
 /// Change of p that the small body-axes rotation δθ makes when p is moved by ½ L(p)ᵀ δθ and
 /// brought back onto the unit sphere; the rotation itself up to third order. The change keeps its
 /// relative accuracy however small it is.
-pub fn retraction<S: Scalar>(p: &Quat<S>, dtheta: &Vec3<S>) -> Quat<S> {
+pub(crate) fn retraction<S: Scalar>(p: &Quat<S>, dtheta: &Vec3<S>) -> Quat<S> {
     let step = rates(p, dtheta);
     let square = step.iter().fold(S::zero(), |sum, &x| sum + x * x);
     // (p + step) / root − p with root = √(1 + square), step ⟂ p.
@@ -85,51 +85,51 @@ pub fn retraction<S: Scalar>(p: &Quat<S>, dtheta: &Vec3<S>) -> Quat<S> {
 }
 
 /// Change that brings p back to unit length.
-pub fn normalisation<S: Scalar>(p: &Quat<S>) -> Quat<S> {
+pub(crate) fn normalisation<S: Scalar>(p: &Quat<S>) -> Quat<S> {
     let square = p.iter().fold(S::zero(), |sum, &x| sum + x * x);
     let excess = S::one() / square.sqrt() - 1.0;
     p.map(|x| x * excess)
 }
 
 /// p / |p|.
-pub fn unit<S: Scalar>(p: &Quat<S>) -> Quat<S> {
+pub(crate) fn unit<S: Scalar>(p: &Quat<S>) -> Quat<S> {
     let square = p.iter().fold(S::zero(), |sum, &x| sum + x * x);
     let inverse = S::one() / square.sqrt();
     p.map(|x| x * inverse)
 }
 
 /// Cotangent of p from that of the tangent rotation δθ of u = p / |p|: 2 L(u)ᵀ θ̄ / |p|.
-pub fn unit_pull_back(p: &Quat<f64>, theta: &Vec3<f64>) -> Quat<f64> {
+pub(crate) fn unit_pull_back(p: &Quat<f64>, theta: &Vec3<f64>) -> Quat<f64> {
     let square = p.iter().map(|x| x * x).sum::<f64>();
     rate_transposed(p, theta).map(|x| x * (2.0 / square))
 }
 
 /// Euler parameters of the rotation by `angle` (rad) about `axis` (any length but zero).
-pub fn from_axis_angle<S: Scalar>(axis: &Vec3<S>, angle: S) -> Quat<S> {
+pub(crate) fn from_axis_angle<S: Scalar>(axis: &Vec3<S>, angle: S) -> Quat<S> {
     let (s, c) = (angle * 0.5).sin_cos();
     let e = axis * (s / length(axis));
     [c, e.x, e.y, e.z]
 }
 
 /// Euler parameters of the rotation `second` after `first`: R = R(second) R(first).
-pub fn compose<S: Scalar>(second: &Quat<S>, first: &Quat<S>) -> Quat<S> {
+pub(crate) fn compose<S: Scalar>(second: &Quat<S>, first: &Quat<S>) -> Quat<S> {
     let (a, b) = (vector(second), vector(first));
     let e = b * second[0] + a * first[0] + a.cross(&b);
     [second[0] * first[0] - a.dot(&b), e.x, e.y, e.z]
 }
 
 /// Euler parameters of the inverse rotation (their quaternion's conjugate).
-pub fn conjugate<S: Scalar>(p: &Quat<S>) -> Quat<S> {
+pub(crate) fn conjugate<S: Scalar>(p: &Quat<S>) -> Quat<S> {
     [p[0], -p[1], -p[2], -p[3]]
 }
 
 /// Rotation angle about the unit axis n (its twist), 2 atan2(eᵀn, p0), in (−2π, 2π] (rad).
-pub fn twist<S: Scalar>(p: &Quat<S>, n: &Vec3<S>) -> S {
+pub(crate) fn twist<S: Scalar>(p: &Quat<S>, n: &Vec3<S>) -> S {
     vector(p).dot(n).atan2(p[0]) * 2.0
 }
 
 /// Derivative of [`twist`] in p and in n.
-pub fn twist_derivative(p: &Quat<f64>, n: &Vec3<f64>) -> (Quat<f64>, Vec3<f64>) {
+pub(crate) fn twist_derivative(p: &Quat<f64>, n: &Vec3<f64>) -> (Quat<f64>, Vec3<f64>) {
     let e = vector(p);
     let y = e.dot(n);
     let scale = 2.0 / (y * y + p[0] * p[0]);

@@ -6,15 +6,15 @@ use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// Column vector of three scalars.
-pub type Vec3<S> = Vector3<S>;
+pub(crate) type Vec3<S> = Vector3<S>;
 /// Square matrix of three rows.
-pub type Mat3<S> = Matrix3<S>;
+pub(crate) type Mat3<S> = Matrix3<S>;
 /// The scalar of the complex-step derivative.
-pub type Complex64 = num_complex::Complex<f64>;
+pub(crate) type Complex64 = num_complex::Complex<f64>;
 
 /// Step of the complex-step derivative; no subtraction takes place, so it may be tiny
 /// (Martins, Sturdza & Alonso 2003, eq. 6).
-pub const COMPLEX_STEP: f64 = 1e-30;
+pub(crate) const COMPLEX_STEP: f64 = 1e-30;
 
 /// A number that analytic formulas can be evaluated in.
 ///
@@ -309,28 +309,28 @@ impl Scalar for Dual {
 }
 
 /// Length √(aᵀa), analytic (not a norm: nothing is conjugated).
-pub fn length<S: Scalar>(a: &Vec3<S>) -> S {
+pub(crate) fn length<S: Scalar>(a: &Vec3<S>) -> S {
     a.dot(a).sqrt()
 }
 
 /// The unit vector along `a`.
-pub fn unit<S: Scalar>(a: Vec3<S>) -> Vec3<S> {
+pub(crate) fn unit<S: Scalar>(a: Vec3<S>) -> Vec3<S> {
     a * (S::one() / length(&a))
 }
 
 /// A constant vector in the scalar `S`.
-pub fn lift3<S: Scalar>(a: &Vec3<f64>) -> Vec3<S> {
+pub(crate) fn lift3<S: Scalar>(a: &Vec3<f64>) -> Vec3<S> {
     a.map(S::from)
 }
 
 /// aᵀ b of a constant vector b.
 #[inline]
-pub fn along<S: Scalar>(a: &Vec3<S>, b: &Vec3<f64>) -> S {
+pub(crate) fn along<S: Scalar>(a: &Vec3<S>, b: &Vec3<f64>) -> S {
     a.x * b.x + a.y * b.y + a.z * b.z
 }
 
 /// The matrix ã of the cross product, ã b = a × b.
-pub fn skew<S: Scalar>(a: &Vec3<S>) -> Mat3<S> {
+pub(crate) fn skew<S: Scalar>(a: &Vec3<S>) -> Mat3<S> {
     let z = S::zero();
     Mat3::new(z, -a.z, a.y, a.z, z, -a.x, -a.y, a.x, z)
 }

@@ -6,7 +6,7 @@ use super::Scalar;
 ///
 /// Every exponent is ρ (g_k − g_m) ≤ 0 with g_m the largest value, so no ρ overflows.
 #[derive(Clone, Debug)]
-pub struct SoftMax<S> {
+pub(crate) struct SoftMax<S> {
     /// Weights w_k = c_k e^{ρ(g_k − g_m)} / Σ, Σ w_k = 1.
     pub weights: Vec<S>,
     /// g_m + (1/ρ) ln Σ c_k e^{ρ(g_k − g_m)} (Kennedy & Hicken 2015, eq. 10).
@@ -23,7 +23,7 @@ impl<S: Scalar> SoftMax<S> {
     ///
     /// # Panics
     /// If `values` is empty.
-    pub fn new(values: &[S], c: impl Fn(usize) -> f64, rho: f64) -> Self {
+    pub(crate) fn new(values: &[S], c: impl Fn(usize) -> f64, rho: f64) -> Self {
         let peak = (0..values.len())
             .reduce(|best, k| {
                 if values[k].re() > values[best].re() {
@@ -52,7 +52,7 @@ impl<S: Scalar> SoftMax<S> {
     }
 
     /// The induced exponential Σ w_k g_k (Kennedy & Hicken 2015, eq. 16).
-    pub fn induced_exponential(&self, values: &[S]) -> S {
+    pub(crate) fn induced_exponential(&self, values: &[S]) -> S {
         let top = values[self.peak];
         let sum = |sum, (&w, &g): (&S, &S)| sum + w * (g - top);
         self.weights.iter().zip(values).fold(top, sum)

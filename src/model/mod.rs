@@ -5,21 +5,21 @@
 //! steps or dual numbers. A model of zeros in `f64` also serves as the cotangent of a model:
 //! every parameter's place then holds the derivative of a function with respect to it.
 
-pub mod course;
-pub mod drive;
-pub mod joint;
-pub mod load;
-pub mod mobility;
-pub mod rigid_body;
-pub mod table;
+pub(crate) mod course;
+pub(crate) mod drive;
+pub(crate) mod joint;
+pub(crate) mod load;
+pub(crate) mod mobility;
+pub(crate) mod rigid_body;
+pub(crate) mod table;
 
-pub use course::Course;
-pub use drive::{Drive, Freedom, MotionCourse};
-pub use joint::{ConstraintRow, Joint, JointFrame, JointKind};
-pub use load::{Axes, Load, LoadKind};
-pub use mobility::Mobility;
-pub use rigid_body::RigidBody;
-pub use table::Interpolation;
+pub(crate) use course::Course;
+pub(crate) use drive::{Drive, Freedom, MotionCourse};
+pub(crate) use joint::{ConstraintRow, Joint, JointFrame, JointKind};
+pub(crate) use load::{Axes, Load, LoadKind};
+pub(crate) use mobility::Mobility;
+pub(crate) use rigid_body::RigidBody;
+pub(crate) use table::Interpolation;
 
 use crate::math::{Scalar, Vec3};
 

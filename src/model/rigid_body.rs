@@ -55,7 +55,7 @@ impl RigidBody<f64> {
 
 /// Whether an inertia is that of some solid. Principal moments are integrals of squares: none is
 /// negative, and none is larger than the sum of the other two.
-pub fn is_inertia_of_solid(inertia: &Mat3<f64>) -> bool {
+pub(crate) fn is_inertia_of_solid(inertia: &Mat3<f64>) -> bool {
     let moments = inertia.symmetric_eigenvalues();
     let sum: f64 = moments.iter().sum();
     let slack = ROUNDING * moments.amax();

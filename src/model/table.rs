@@ -45,7 +45,11 @@ pub enum Interpolation {
 const ROUNDED: f64 = 0.2;
 
 /// Instants at which a course of magnitude or motion is no longer smooth, where steps should end.
-pub fn breaks<S: Scalar>(times: &[S], interpolation: Interpolation, of_motion: bool) -> Vec<f64> {
+pub(crate) fn breaks<S: Scalar>(
+    times: &[S],
+    interpolation: Interpolation,
+    of_motion: bool,
+) -> Vec<f64> {
     let mut all: Vec<f64> = times.iter().map(|t| t.re()).collect();
     if of_motion && interpolation == Interpolation::Linear {
         for pair in times.windows(2) {

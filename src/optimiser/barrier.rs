@@ -31,7 +31,7 @@ pub(super) struct BarrierRule {
 }
 
 impl BarrierRule {
-    pub fn new(options: &Options) -> BarrierRule {
+    pub(crate) fn new(options: &Options) -> BarrierRule {
         let adaptive = options.barrier == Barrier::Adaptive;
         BarrierRule {
             mu: options.initial_barrier,
@@ -44,7 +44,7 @@ impl BarrierRule {
     }
 
     /// Updates μ for the iteration that starts at `at`; returns whether it changed.
-    pub fn update(&mut self, at: &Iterate, layout: &Layout, b: &mut QuasiNewton) -> bool {
+    pub(crate) fn update(&mut self, at: &Iterate, layout: &Layout, b: &mut QuasiNewton) -> bool {
         let before = self.mu;
         if at.products(layout).is_empty() {
             self.mu = self.least;

@@ -34,7 +34,7 @@ pub(super) struct NewtonSystem {
 
 impl NewtonSystem {
     /// Factors the system at `at`; `None` if it cannot be made regular.
-    pub fn new(
+    pub(crate) fn new(
         at: &Iterate,
         layout: &Layout,
         b: &mut QuasiNewton,
@@ -55,13 +55,13 @@ impl NewtonSystem {
     }
 
     /// δ that was added to dependent rows.
-    pub fn regularisation(&self) -> f64 {
+    pub(crate) fn regularisation(&self) -> f64 {
         self.system.regularisation
     }
 
     /// Step towards the point of the central path with parameter `mu`, where the rows have the
     /// residual `r`.
-    pub fn step(
+    pub(crate) fn step(
         &self,
         at: &Iterate,
         layout: &Layout,
@@ -113,7 +113,7 @@ impl NewtonSystem {
 
 impl Direction {
     /// Largest step in (0, 1] that keeps the share 1 − τ of every distance to a bound.
-    pub fn primal_limit(&self, at: &Iterate, layout: &Layout, tau: f64) -> f64 {
+    pub(crate) fn primal_limit(&self, at: &Iterate, layout: &Layout, tau: f64) -> f64 {
         let (below, above) = layout.distances(&at.point.x, &at.s);
         let dw = |i: usize| {
             if i < layout.n {
@@ -134,7 +134,7 @@ impl Direction {
     }
 
     /// Largest step in (0, 1] that keeps the share 1 − τ of every multiplier of a bound.
-    pub fn dual_limit(&self, at: &Iterate, tau: f64) -> f64 {
+    pub(crate) fn dual_limit(&self, at: &Iterate, tau: f64) -> f64 {
         let limit = |alpha: f64, z: &DVector<f64>, dz: &DVector<f64>| {
             z.iter().zip(dz.iter()).fold(alpha, |alpha: f64, (z, dz)| {
                 if *dz < 0.0 {
@@ -148,13 +148,13 @@ impl Direction {
     }
 
     /// Largest component of the step in x and s.
-    pub fn size(&self) -> f64 {
+    pub(crate) fn size(&self) -> f64 {
         self.x.amax().max(self.s.amax())
     }
 
     /// Stiffness, to be added to Σ. With it every overshooting entry, taken alone, would stop
     /// before its bound. `None` if no entry overshoots.
-    pub fn stiffened(
+    pub(crate) fn stiffened(
         &self,
         at: &Iterate,
         layout: &Layout,
@@ -182,7 +182,7 @@ impl Direction {
     }
 
     /// Whether every component is a number.
-    pub fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         let parts = [&self.x, &self.s, &self.y, &self.zl, &self.zu];
         parts.iter().all(|v| v.iter().all(|e| e.is_finite()))
     }

@@ -29,7 +29,7 @@ pub(super) struct ElasticQp {
 
 impl ElasticQp {
     /// A solver for `n` variables and rows with the given sets of finite bounds.
-    pub fn new(n: usize, row_lower: &DVector<f64>, row_upper: &DVector<f64>) -> ElasticQp {
+    pub(crate) fn new(n: usize, row_lower: &DVector<f64>, row_upper: &DVector<f64>) -> ElasticQp {
         let finite = |v: &DVector<f64>| v.iter().map(|b| b.is_finite()).collect();
         ElasticQp {
             n,
@@ -42,7 +42,7 @@ impl ElasticQp {
     /// Solves the subproblem. A short step is solved again in a smaller box. Then the equations of
     /// the active set are solved. `None` if Clarabel fails or its answer violates the optimality
     /// conditions.
-    pub fn solve(&mut self, data: &QpData<'_>, counts: &mut Counts) -> Option<QpStep> {
+    pub(crate) fn solve(&mut self, data: &QpData<'_>, counts: &mut Counts) -> Option<QpStep> {
         let found = self.solve_in_boxes(data, counts)?;
         Some(refine(data, &found).unwrap_or(found))
     }

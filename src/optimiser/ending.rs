@@ -36,12 +36,12 @@ pub(super) struct Finish {
 
 impl Finish {
     /// Sets the program to the units of this iterate.
-    pub fn restore_units(&self, program: &mut Program<'_>) {
+    pub(crate) fn restore_units(&self, program: &mut Program<'_>) {
         program.set_units(&self.units);
     }
 
     /// Whether `other` is feasible and its objective is lower by more than the tolerance.
-    pub fn is_worse_than(&self, other: &Finish, program: &Program<'_>) -> bool {
+    pub(crate) fn is_worse_than(&self, other: &Finish, program: &Program<'_>) -> bool {
         let (mine, theirs) = (self.objective(), other.objective());
         mine - theirs > program.options.tolerance * theirs.abs().max(program.unit_of_objective())
     }
@@ -52,7 +52,12 @@ impl Finish {
     }
 
     /// An infeasible final iterate: the largest violation is least here.
-    pub fn infeasible_at(self, program: &Program<'_>, point: Point, slopes: Slopes) -> Finish {
+    pub(crate) fn infeasible_at(
+        self,
+        program: &Program<'_>,
+        point: Point,
+        slopes: Slopes,
+    ) -> Finish {
         let (violation, j) = program.worst_violation(&point.c);
         let y = DVector::zeros(point.c.len());
         let multipliers = ScaledMultipliers::polished(program, &point, &slopes, &y);
@@ -82,7 +87,7 @@ impl Finish {
     /// The same, with a new status if a method stalled: [`Status::Converged`] if the conditions
     /// hold in the units of the user, [`Status::AtPrecision`] if rounding caused the stall. In
     /// neither case may the Lagrangian fall nearby.
-    pub fn with_stall_named(mut self, program: &mut Program<'_>) -> Finish {
+    pub(crate) fn with_stall_named(mut self, program: &mut Program<'_>) -> Finish {
         if self.status != Status::Stalled || self.is_solved(program) {
             return self;
         }
@@ -124,7 +129,7 @@ impl Finish {
     }
 
     /// Whether the conditions hold, whatever the status of the method.
-    pub fn is_solved(&self, program: &Program<'_>) -> bool {
+    pub(crate) fn is_solved(&self, program: &Program<'_>) -> bool {
         self.confirmed
             || is_solved_at_end(
                 program,

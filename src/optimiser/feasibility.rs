@@ -12,7 +12,7 @@ const LEAST_SIZE: f64 = 1e-8;
 
 impl Program<'_> {
     /// Largest violation of a row, in the units of the user, and the row's index there.
-    pub fn worst_violation(&self, c: &DVector<f64>) -> (f64, usize) {
+    pub(crate) fn worst_violation(&self, c: &DVector<f64>) -> (f64, usize) {
         let mut worst = (0.0, self.rows.first().copied().unwrap_or(0));
         for (k, &j) in self.rows.iter().enumerate() {
             let value = c[k] / self.scaling.constraints[j];
@@ -34,14 +34,14 @@ impl Program<'_> {
     }
 
     /// The smallest allowed violation of all rows, in the units of the user.
-    pub fn least_allowed(&self) -> f64 {
+    pub(crate) fn least_allowed(&self) -> f64 {
         let rows = self.rows.iter();
         rows.map(|&j| self.allowed_violation(j))
             .fold(self.options.constraint_tolerance, f64::min)
     }
 
     /// The smallest allowed violation among the rows that exceed theirs at `c`, or the tolerance.
-    pub fn least_exceeded(&self, c: &DVector<f64>) -> f64 {
+    pub(crate) fn least_exceeded(&self, c: &DVector<f64>) -> f64 {
         let exceeded = |k: usize| {
             let j = self.rows[k];
             let allowed = self.allowed_violation(j);
@@ -53,7 +53,7 @@ impl Program<'_> {
     }
 
     /// Largest ratio of a row's violation to its allowed violation.
-    pub fn relative_violation(&self, c: &DVector<f64>) -> f64 {
+    pub(crate) fn relative_violation(&self, c: &DVector<f64>) -> f64 {
         let ratio = |k: usize| {
             let j = self.rows[k];
             self.row_violation(c, k) / self.scaling.constraints[j] / self.allowed_violation(j)
@@ -62,7 +62,7 @@ impl Program<'_> {
     }
 
     /// Whether no row exceeds its allowed violation.
-    pub fn is_feasible(&self, c: &DVector<f64>) -> bool {
+    pub(crate) fn is_feasible(&self, c: &DVector<f64>) -> bool {
         self.relative_violation(c) <= 1.0
     }
 
@@ -85,12 +85,12 @@ impl Program<'_> {
     }
 
     /// Sum of the violations of the scaled rows.
-    pub fn total_violation(&self, c: &DVector<f64>) -> f64 {
+    pub(crate) fn total_violation(&self, c: &DVector<f64>) -> f64 {
         (0..c.len()).map(|k| self.row_violation(c, k)).sum()
     }
 
     /// Violation of scaled row `k`.
-    pub fn row_violation(&self, c: &DVector<f64>, k: usize) -> f64 {
+    pub(crate) fn row_violation(&self, c: &DVector<f64>, k: usize) -> f64 {
         (self.row_lower[k] - c[k])
             .max(c[k] - self.row_upper[k])
             .max(0.0)

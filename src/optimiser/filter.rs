@@ -16,7 +16,7 @@ pub(super) struct Filter {
 
 impl Filter {
     /// A filter that refuses every infeasibility above `largest`.
-    pub fn new(largest: f64) -> Filter {
+    pub(crate) fn new(largest: f64) -> Filter {
         Filter {
             largest,
             entries: Vec::new(),
@@ -24,18 +24,18 @@ impl Filter {
     }
 
     /// Clears the filter at a point of infeasibility `theta`. It may then grow a hundredfold.
-    pub fn clear(&mut self, theta: f64) {
+    pub(crate) fn clear(&mut self, theta: f64) {
         self.entries.clear();
         self.largest = self.largest.min(GROWTH * theta.max(10.0));
     }
 
     /// Whether (θ, φ) is acceptable to every entry.
-    pub fn accepts(&self, theta: f64, phi: f64) -> bool {
+    pub(crate) fn accepts(&self, theta: f64, phi: f64) -> bool {
         theta <= self.largest && self.entries.iter().all(|&(t, p)| theta < t || phi < p)
     }
 
     /// Adds the entry of the point just left, with its margin, and drops the entries it dominates.
-    pub fn add(&mut self, theta: f64, phi: f64) {
+    pub(crate) fn add(&mut self, theta: f64, phi: f64) {
         let (t, p) = ((1.0 - MARGIN) * theta, phi - MARGIN * theta);
         self.entries.retain(|&(a, b)| a < t || b < p);
         self.entries.push((t, p));

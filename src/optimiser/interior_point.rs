@@ -50,7 +50,12 @@ pub(super) struct InteriorPoint {
 
 impl InteriorPoint {
     /// Starts from a strictly interior point; slacks keep the share `push` from their bounds.
-    pub fn new(program: &Program<'_>, point: Point, slopes: Slopes, push: f64) -> InteriorPoint {
+    pub(crate) fn new(
+        program: &Program<'_>,
+        point: Point,
+        slopes: Slopes,
+        push: f64,
+    ) -> InteriorPoint {
         let mut layout = Layout::new(program);
         let idle: Vec<usize> = (0..layout.n).filter(|&k| slopes.is_idle(k)).collect();
         for &k in &idle {
@@ -94,7 +99,7 @@ impl InteriorPoint {
     }
 
     /// Continues with multipliers of an earlier run.
-    pub fn adopt(&mut self, multipliers: &ScaledMultipliers, b: QuasiNewton, mu: f64) {
+    pub(crate) fn adopt(&mut self, multipliers: &ScaledMultipliers, b: QuasiNewton, mu: f64) {
         let n = self.layout.n;
         self.barrier.mu = mu;
         if b.order() == n {
@@ -113,7 +118,7 @@ impl InteriorPoint {
     }
 
     /// Multipliers of the program at the present point.
-    pub fn multipliers(&self, program: &Program<'_>) -> ScaledMultipliers {
+    pub(crate) fn multipliers(&self, program: &Program<'_>) -> ScaledMultipliers {
         let n = self.layout.n;
         let mut z = ScaledMultipliers {
             y: self.at.y.clone(),
@@ -125,12 +130,12 @@ impl InteriorPoint {
     }
 
     /// Scaled residual of the optimality conditions.
-    pub fn optimality(&self) -> f64 {
+    pub(crate) fn optimality(&self) -> f64 {
         self.at.residuals(&self.layout, 0.0).largest()
     }
 
     /// Iterates until the run ends.
-    pub fn run(&mut self, program: &mut Program<'_>) -> Result<Ending, Trouble> {
+    pub(crate) fn run(&mut self, program: &mut Program<'_>) -> Result<Ending, Trouble> {
         let mut failures = 0;
         let mut lost = 0;
         loop {
@@ -310,7 +315,7 @@ impl InteriorPoint {
     }
 
     /// Factor by which the objective should be scaled further, if any.
-    pub fn better_scale(&self, program: &Program<'_>) -> Option<f64> {
+    pub(crate) fn better_scale(&self, program: &Program<'_>) -> Option<f64> {
         let curvature = self.b.newest_curvature().unwrap_or(0.0);
         program.better_scale(&self.at.point, &self.at.slopes.g, curvature)
     }
@@ -412,7 +417,7 @@ fn slacks(layout: &Layout, point: &Point) -> DVector<f64> {
 
 impl Iterate {
     /// Least-squares multipliers of the rows, unless they exceed `largest`, which sets zero.
-    pub fn estimate_multipliers(&mut self, layout: &Layout, largest: f64) {
+    pub(crate) fn estimate_multipliers(&mut self, layout: &Layout, largest: f64) {
         if let Some(y) = self.least_squares_multipliers(layout) {
             if y.amax() <= largest {
                 self.y = y;

@@ -41,7 +41,7 @@ pub(super) struct Residuals {
 }
 
 impl Residuals {
-    pub fn largest(&self) -> f64 {
+    pub(crate) fn largest(&self) -> f64 {
         self.stationarity
             .max(self.violation)
             .max(self.complementarity)
@@ -49,7 +49,7 @@ impl Residuals {
 }
 
 impl Layout {
-    pub fn new(program: &Program<'_>) -> Layout {
+    pub(crate) fn new(program: &Program<'_>) -> Layout {
         let (n, m) = (program.lower.len(), program.row_lower.len());
         let slack_rows: Vec<usize> = (0..m)
             .filter(|&j| program.row_lower[j] < program.row_upper[j])
@@ -68,17 +68,21 @@ impl Layout {
     }
 
     /// Number of entries of w.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.lower.len()
     }
 
     /// Row of entry `i` of w, if it is a slack.
-    pub fn row_of(&self, i: usize) -> Option<usize> {
+    pub(crate) fn row_of(&self, i: usize) -> Option<usize> {
         (i >= self.n).then(|| self.slack_rows[i - self.n])
     }
 
     /// Distances of w from its bounds; infinite where there is none.
-    pub fn distances(&self, x: &DVector<f64>, s: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+    pub(crate) fn distances(
+        &self,
+        x: &DVector<f64>,
+        s: &DVector<f64>,
+    ) -> (DVector<f64>, DVector<f64>) {
         let value = |i: usize| if i < self.n { x[i] } else { s[i - self.n] };
         let below = DVector::from_fn(self.len(), |i, _| value(i) - self.lower[i]);
         let above = DVector::from_fn(self.len(), |i, _| self.upper[i] - value(i));
@@ -86,7 +90,7 @@ impl Layout {
     }
 
     /// Residuals c(x) − s, or c(x) − target in equality rows.
-    pub fn residual(&self, c: &DVector<f64>, s: &DVector<f64>) -> DVector<f64> {
+    pub(crate) fn residual(&self, c: &DVector<f64>, s: &DVector<f64>) -> DVector<f64> {
         let mut r = c - &self.target;
         for (k, &j) in self.slack_rows.iter().enumerate() {
             r[j] = c[j] - s[k];
@@ -95,14 +99,20 @@ impl Layout {
     }
 
     /// Barrier function φ = f − μ Σ ln(distance).
-    pub fn barrier_function(&self, f: f64, x: &DVector<f64>, s: &DVector<f64>, mu: f64) -> f64 {
+    pub(crate) fn barrier_function(
+        &self,
+        f: f64,
+        x: &DVector<f64>,
+        s: &DVector<f64>,
+        mu: f64,
+    ) -> f64 {
         let (below, above) = self.distances(x, s);
         let logarithm = |d: &f64| if d.is_finite() { d.ln() } else { 0.0 };
         f - mu * below.iter().chain(above.iter()).map(logarithm).sum::<f64>()
     }
 
     /// Moves `value`, entry `i` of w, into the interior of its bounds.
-    pub fn push_inside(&self, i: usize, value: f64, push: f64) -> f64 {
+    pub(crate) fn push_inside(&self, i: usize, value: f64, push: f64) -> f64 {
         let (l, u) = (self.lower[i], self.upper[i]);
         let width = u - l;
         // A variable inside its bounds stays where it is. Its scale may come from distant bounds
@@ -126,7 +136,7 @@ impl Layout {
 
 impl Iterate {
     /// Complementarity products' right-hand sides: gradient of the barrier terms over w.
-    pub fn barrier_slope(&self, layout: &Layout, mu: f64) -> DVector<f64> {
+    pub(crate) fn barrier_slope(&self, layout: &Layout, mu: f64) -> DVector<f64> {
         let (below, above) = layout.distances(&self.point.x, &self.s);
         DVector::from_fn(layout.len(), |i, _| {
             let f = if i < layout.n { self.slopes.g[i] } else { 0.0 };
@@ -135,7 +145,7 @@ impl Iterate {
     }
 
     /// Jᵀ y over w: Aᵀ y for the variables, −y for the slacks.
-    pub fn row_force(&self, layout: &Layout) -> DVector<f64> {
+    pub(crate) fn row_force(&self, layout: &Layout) -> DVector<f64> {
         let x = self.slopes.a.tr_mul(&self.y);
         DVector::from_fn(layout.len(), |i, _| match layout.row_of(i) {
             None => x[i],
@@ -144,7 +154,7 @@ impl Iterate {
     }
 
     /// Σ = z_L/(w − l) + z_U/(u − w).
-    pub fn sigma(&self, layout: &Layout) -> DVector<f64> {
+    pub(crate) fn sigma(&self, layout: &Layout) -> DVector<f64> {
         let (below, above) = layout.distances(&self.point.x, &self.s);
         DVector::from_fn(layout.len(), |i, _| {
             self.zl[i] / below[i] + self.zu[i] / above[i]
@@ -152,7 +162,7 @@ impl Iterate {
     }
 
     /// Gradient of the Lagrangian over w.
-    pub fn lagrangian_slope(&self, layout: &Layout) -> DVector<f64> {
+    pub(crate) fn lagrangian_slope(&self, layout: &Layout) -> DVector<f64> {
         let mut slope = self.row_force(layout) - &self.zl + &self.zu;
         for i in 0..layout.n {
             slope[i] += self.slopes.g[i];
@@ -161,7 +171,7 @@ impl Iterate {
     }
 
     /// Products of multipliers and distances, one per finite bound.
-    pub fn products(&self, layout: &Layout) -> Vec<f64> {
+    pub(crate) fn products(&self, layout: &Layout) -> Vec<f64> {
         let (below, above) = layout.distances(&self.point.x, &self.s);
         let lower = (0..layout.len()).map(|i| (below[i], self.zl[i]));
         let upper = (0..layout.len()).map(|i| (above[i], self.zu[i]));
@@ -173,7 +183,7 @@ impl Iterate {
     }
 
     /// Residuals of the conditions perturbed by `mu`.
-    pub fn residuals(&self, layout: &Layout, mu: f64) -> Residuals {
+    pub(crate) fn residuals(&self, layout: &Layout, mu: f64) -> Residuals {
         let products = self.products(layout);
         let bounds: f64 = self.zl.lp_norm(1) + self.zu.lp_norm(1);
         let size = (self.y.len() + products.len()).max(1) as f64;
@@ -189,7 +199,7 @@ impl Iterate {
 
     /// Multipliers of the rows that minimise the norm of the gradient of the Lagrangian, or `None`
     /// if their system cannot be solved.
-    pub fn least_squares_multipliers(&self, layout: &Layout) -> Option<DVector<f64>> {
+    pub(crate) fn least_squares_multipliers(&self, layout: &Layout) -> Option<DVector<f64>> {
         let a = &self.slopes.a;
         let m = a.nrows();
         let force = |i: usize| self.zu[i] - self.zl[i];

@@ -29,7 +29,7 @@ pub(super) struct KktSystem {
 
 impl KktSystem {
     /// Factors the system; `None` if B + Σ or S cannot be made positive definite.
-    pub fn factor(
+    pub(crate) fn factor(
         b: &mut QuasiNewton,
         sigma: DVector<f64>,
         a: &DMatrix<f64>,
@@ -72,7 +72,7 @@ impl KktSystem {
     }
 
     /// Solves for dx and dy, with iterative refinement where no δ was added.
-    pub fn solve(
+    pub(crate) fn solve(
         &self,
         b: &mut QuasiNewton,
         a: &DMatrix<f64>,

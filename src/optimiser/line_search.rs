@@ -90,7 +90,7 @@ struct Measure {
 impl LineSearch<'_> {
     /// Searches along `direction`; `None` if the step becomes too small. The filter is augmented
     /// when a step is accepted for its feasibility.
-    pub fn run(
+    pub(crate) fn run(
         &self,
         program: &mut Program<'_>,
         b: &mut QuasiNewton,

@@ -41,7 +41,7 @@ pub(super) struct Slopes {
 
 impl Slopes {
     /// Whether neither objective nor rows depend on variable `k` here.
-    pub fn is_idle(&self, k: usize) -> bool {
+    pub(crate) fn is_idle(&self, k: usize) -> bool {
         self.g[k] == 0.0 && self.a.column(k).iter().all(|v| *v == 0.0)
     }
 }
@@ -120,7 +120,7 @@ pub(super) struct Program<'a> {
 
 impl<'a> Program<'a> {
     /// Takes the bounds from `nlp`; scale factors are 1 until [`Program::scale`] is called.
-    pub fn new(
+    pub(crate) fn new(
         nlp: &'a mut dyn Nlp,
         options: &'a Options,
         observer: &'a mut dyn Observer,
@@ -197,23 +197,23 @@ impl<'a> Program<'a> {
 
     /// Scaled size of a unit force on variable `i` of `nlp`, given in the units in which forces are
     /// judged.
-    pub fn unit_of_force(&self, i: usize) -> f64 {
+    pub(crate) fn unit_of_force(&self, i: usize) -> f64 {
         self.scaling.objective * self.scaling.variables[i] * self.units_judged[i]
     }
 
     /// Scaled start of the user.
-    pub fn start(&self) -> DVector<f64> {
+    pub(crate) fn start(&self) -> DVector<f64> {
         self.to_scaled(&self.template)
     }
 
     /// Scaled free variables of a point of the user.
-    pub fn to_scaled(&self, x: &[f64]) -> DVector<f64> {
+    pub(crate) fn to_scaled(&self, x: &[f64]) -> DVector<f64> {
         let unit = |&i: &usize| x[i] / self.scaling.variables[i];
         DVector::from_iterator(self.free.len(), self.free.iter().map(unit))
     }
 
     /// Point of the user, with the fixed variables; never outside the bounds by rounding.
-    pub fn to_user(&self, x: &DVector<f64>) -> Vec<f64> {
+    pub(crate) fn to_user(&self, x: &DVector<f64>) -> Vec<f64> {
         let mut full = self.template.clone();
         for (k, &i) in self.free.iter().enumerate() {
             let value = x[k] * self.scaling.variables[i];
@@ -223,7 +223,7 @@ impl<'a> Program<'a> {
     }
 
     /// Values of the scaled functions at `x`.
-    pub fn evaluate(&mut self, x: &DVector<f64>) -> Result<Point, Trouble> {
+    pub(crate) fn evaluate(&mut self, x: &DVector<f64>) -> Result<Point, Trouble> {
         self.check_limits()?;
         let full = self.to_user(x);
         let clock = Instant::now();
@@ -252,7 +252,7 @@ impl<'a> Program<'a> {
     }
 
     /// Announces points whose values may be requested next.
-    pub fn foresee(&mut self, points: impl Iterator<Item = DVector<f64>>) {
+    pub(crate) fn foresee(&mut self, points: impl Iterator<Item = DVector<f64>>) {
         let points: Vec<Vec<f64>> = points.map(|x| self.to_user(&x)).collect();
         let clock = Instant::now();
         self.nlp.foresee(&points);
@@ -260,7 +260,7 @@ impl<'a> Program<'a> {
     }
 
     /// Derivatives of the scaled functions at `x`.
-    pub fn gradients(&mut self, x: &DVector<f64>) -> Result<Slopes, Trouble> {
+    pub(crate) fn gradients(&mut self, x: &DVector<f64>) -> Result<Slopes, Trouble> {
         let full = self.to_user(x);
         let clock = Instant::now();
         let mut result = self.nlp.gradients(&full);
@@ -337,12 +337,12 @@ impl<'a> Program<'a> {
     }
 
     /// Wall time since the start of the run (s).
-    pub fn seconds(&self) -> f64 {
+    pub(crate) fn seconds(&self) -> f64 {
         self.started.elapsed().as_secs_f64()
     }
 
     /// Allows the running method the part `share` of all iterations and evaluations.
-    pub fn allow(&mut self, share: f64) {
+    pub(crate) fn allow(&mut self, share: f64) {
         let part = |all: usize| (share * all as f64).ceil() as usize;
         self.allowed = Allowed {
             iterations: part(self.options.max_iterations),
@@ -353,7 +353,7 @@ impl<'a> Program<'a> {
     /// Whether the objective has fallen without bound from the first point to a feasible one: in
     /// the units of the user or, very far from the first point, in scaled units if those are
     /// smaller.
-    pub fn is_unbounded(&self, point: &Point) -> bool {
+    pub(crate) fn is_unbounded(&self, point: &Point) -> bool {
         let Some((x, f)) = &self.first else {
             return false;
         };
@@ -366,17 +366,17 @@ impl<'a> Program<'a> {
     }
 
     /// Name of constraint `j` of the user.
-    pub fn constraint_name(&self, j: usize) -> String {
+    pub(crate) fn constraint_name(&self, j: usize) -> String {
         self.nlp.constraint_name(j)
     }
 
     /// The program of the user.
-    pub fn nlp(&self) -> &dyn Nlp {
+    pub(crate) fn nlp(&self) -> &dyn Nlp {
         self.nlp
     }
 
     /// The best point reported, if it is feasible.
-    pub fn feasible_best(&self) -> Option<Point> {
+    pub(crate) fn feasible_best(&self) -> Option<Point> {
         let best = self.best.clone();
         best.filter(|best| self.is_feasible(&best.c))
     }
@@ -396,14 +396,14 @@ impl<'a> Program<'a> {
     }
 
     /// Starts from the design `x` instead of that of the user.
-    pub fn start_from(&mut self, x: &[f64]) {
+    pub(crate) fn start_from(&mut self, x: &[f64]) {
         for &i in &self.free {
             self.template[i] = x[i].clamp(self.user_lower[i], self.user_upper[i]);
         }
     }
 
     /// Values of all rows in the units of the user; zero for rows without bounds.
-    pub fn user_constraints(&self, c: &DVector<f64>) -> Vec<f64> {
+    pub(crate) fn user_constraints(&self, c: &DVector<f64>) -> Vec<f64> {
         let mut constraints = vec![0.0; self.scaling.constraints.len()];
         for (k, &j) in self.rows.iter().enumerate() {
             constraints[j] = c[k] / self.scaling.constraints[j];
@@ -412,7 +412,7 @@ impl<'a> Program<'a> {
     }
 
     /// Tells the observer of an iteration.
-    pub fn report(&mut self, point: &Point, progress: &Progress) -> Result<(), Trouble> {
+    pub(crate) fn report(&mut self, point: &Point, progress: &Progress) -> Result<(), Trouble> {
         self.keep_best(point);
         let f = point.f / self.scaling.objective;
         self.first.get_or_insert_with(|| (point.x.clone(), f));
@@ -441,7 +441,7 @@ impl<'a> Program<'a> {
     }
 
     /// Counts an iteration and checks the limits before it.
-    pub fn next_iteration(&mut self) -> Result<(), Trouble> {
+    pub(crate) fn next_iteration(&mut self) -> Result<(), Trouble> {
         self.check_limits()?;
         if self.counts.iterations >= self.allowed.iterations {
             return Err(Trouble::Halt(Status::IterationLimit));

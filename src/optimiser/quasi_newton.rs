@@ -319,11 +319,16 @@ mod as_list {
     use nalgebra::DVector;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    pub fn serialize<S: Serializer>(v: &DVector<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(
+        v: &DVector<f64>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
         v.as_slice().serialize(serializer)
     }
 
-    pub fn deserialize<'de, D: Deserializer<'de>>(input: D) -> Result<DVector<f64>, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
+        input: D,
+    ) -> Result<DVector<f64>, D::Error> {
         Vec::deserialize(input).map(DVector::from_vec)
     }
 }

@@ -37,7 +37,7 @@ pub(super) struct Units {
 impl Program<'_> {
     /// Sets the scale factors of the functions from the derivatives `slopes`, and converts point
     /// and slopes.
-    pub fn scale(&mut self, point: &mut Point, slopes: &mut Slopes) {
+    pub(crate) fn scale(&mut self, point: &mut Point, slopes: &mut Slopes) {
         let limit = self.options.scaling_gradient;
         let mut units = self.units();
         let norm = slopes.g.amax() / self.scaling.objective;
@@ -60,7 +60,12 @@ impl Program<'_> {
     }
 
     /// Uses scale factors and typical gradient of an earlier run with the same objective.
-    pub fn adopt_scaling(&mut self, saved: &Scaling, point: &mut Point, slopes: &mut Slopes) {
+    pub(crate) fn adopt_scaling(
+        &mut self,
+        saved: &Scaling,
+        point: &mut Point,
+        slopes: &mut Slopes,
+    ) {
         // So many entries that later points cannot lower it.
         self.gradient_norms = vec![saved.typical_gradient; LARGEST_LEFT_OUT + 1];
         let units = Units {
@@ -85,7 +90,12 @@ impl Program<'_> {
 
     /// Factor by which the scale of the objective should change at a point of the run with gradient
     /// `g` and curvature `curvature`, both scaled. `None` if the scale suits.
-    pub fn better_scale(&self, point: &Point, g: &DVector<f64>, curvature: f64) -> Option<f64> {
+    pub(crate) fn better_scale(
+        &self,
+        point: &Point,
+        g: &DVector<f64>,
+        curvature: f64,
+    ) -> Option<f64> {
         let size = point.x.amax().max(1.0);
         let limit = self.options.scaling_gradient / g.amax().max(curvature * size);
         let factor = limit.min(1.0 / self.scaling.objective);
@@ -93,7 +103,7 @@ impl Program<'_> {
     }
 
     /// Multiplies the scale of the objective by `factor`.
-    pub fn rescale(&mut self, factor: f64) {
+    pub(crate) fn rescale(&mut self, factor: f64) {
         self.scaling.objective *= factor;
         if let Some(best) = &mut self.best {
             best.f *= factor;
@@ -101,7 +111,7 @@ impl Program<'_> {
     }
 
     /// The units in use.
-    pub fn units(&self) -> Units {
+    pub(crate) fn units(&self) -> Units {
         Units {
             objective: self.scaling.objective,
             constraints: self.scaling.constraints.clone(),
@@ -110,7 +120,7 @@ impl Program<'_> {
     }
 
     /// Changes to `units`, with bounds and the best point. The caller converts the current point.
-    pub fn set_units(&mut self, units: &Units) {
+    pub(crate) fn set_units(&mut self, units: &Units) {
         self.rescale(units.objective / self.scaling.objective);
         for (k, &j) in self.rows.iter().enumerate() {
             let factor = units.constraints[j] / self.scaling.constraints[j];
@@ -156,7 +166,7 @@ impl Program<'_> {
     /// New units at a point where a method stalled. The size of the point becomes the unit of the
     /// variables if it is far from one. Functions are scaled by their derivatives there; earlier
     /// derivatives are forgotten. Returns the point and its derivatives in these units.
-    pub fn renew(&mut self, mut point: Point) -> Result<(Point, Slopes), Trouble> {
+    pub(crate) fn renew(&mut self, mut point: Point) -> Result<(Point, Slopes), Trouble> {
         let size = point.x.amax();
         if size > 0.0 && !NEAR_ONE.contains(&size) {
             let mut units = self.units();
@@ -171,7 +181,7 @@ impl Program<'_> {
     }
 
     /// Records gradients and zero rows and columns for the scaling report, before scaling.
-    pub fn survey(&mut self, slopes: &Slopes) {
+    pub(crate) fn survey(&mut self, slopes: &Slopes) {
         let unit = |k: usize| self.scaling.variables[self.free[k]];
         let in_user_units = |v: f64, k: usize| (v / unit(k)).abs();
         let n = self.free.len();
@@ -201,7 +211,7 @@ impl Program<'_> {
     /// the first dozen points, or the median of all points if that is larger. It scales with the
     /// objective. Neither a steep nor a flat start determines it, and many points near the optimum
     /// do not lower it.
-    pub fn typical_gradient(&self) -> f64 {
+    pub(crate) fn typical_gradient(&self) -> f64 {
         let largest = |norms: &[f64], most: usize| {
             let mut norms: Vec<f64> = norms.iter().copied().filter(|v| *v > 0.0).collect();
             norms.sort_by(|a, b| b.total_cmp(a));
@@ -217,7 +227,7 @@ impl Program<'_> {
     }
 
     /// Unit of an objective that vanishes, in the unit of the user.
-    pub fn unit_of_objective(&self) -> f64 {
+    pub(crate) fn unit_of_objective(&self) -> f64 {
         UNIT_OF_OBJECTIVE * self.typical_gradient() * self.length
     }
 }

@@ -47,7 +47,12 @@ pub(super) enum Ending {
 }
 
 impl TrustRegion {
-    pub fn new(program: &Program<'_>, point: Point, slopes: Slopes, goal: Goal) -> TrustRegion {
+    pub(crate) fn new(
+        program: &Program<'_>,
+        point: Point,
+        slopes: Slopes,
+        goal: Goal,
+    ) -> TrustRegion {
         let (n, m) = (point.x.len(), point.c.len());
         let options = program.options;
         let point_size = point.x.amax().max(1.0);
@@ -68,7 +73,7 @@ impl TrustRegion {
     }
 
     /// Continues with the objective multiplied by `factor` and with its slopes.
-    pub fn rescale(&mut self, factor: f64, slopes: Slopes) {
+    pub(crate) fn rescale(&mut self, factor: f64, slopes: Slopes) {
         self.point.f *= factor;
         self.slopes = slopes;
         self.b = self.b.times(factor);
@@ -81,12 +86,12 @@ impl TrustRegion {
     }
 
     /// Multipliers of the whole program at the present point.
-    pub fn multipliers(&self, program: &Program<'_>) -> ScaledMultipliers {
+    pub(crate) fn multipliers(&self, program: &Program<'_>) -> ScaledMultipliers {
         ScaledMultipliers::polished(program, &self.point, &self.slopes, &self.y)
     }
 
     /// Iterates until `reached` holds or the method ends.
-    pub fn run(
+    pub(crate) fn run(
         &mut self,
         program: &mut Program<'_>,
         mut reached: impl FnMut(&Program<'_>, &Point) -> bool,
@@ -216,13 +221,13 @@ impl TrustRegion {
     }
 
     /// Largest scaled residual of the optimality conditions.
-    pub fn optimality(&self, program: &Program<'_>) -> f64 {
+    pub(crate) fn optimality(&self, program: &Program<'_>) -> f64 {
         let z = self.multipliers(program);
         scaled_residual(program, &self.point, &self.slopes, &z)
     }
 
     /// Factor by which the objective should be scaled further, if any.
-    pub fn better_scale(&self, program: &Program<'_>) -> Option<f64> {
+    pub(crate) fn better_scale(&self, program: &Program<'_>) -> Option<f64> {
         let curvature = self.b.newest_curvature().unwrap_or(0.0);
         program.better_scale(&self.point, &self.slopes.g, curvature)
     }

@@ -18,7 +18,7 @@ pub(super) struct ScaledMultipliers {
 impl ScaledMultipliers {
     /// Multipliers of the bounds for the row multipliers `y`. The remaining force on a variable
     /// goes to the bound that it pushes against, unless that bound is far away.
-    pub fn from_rows(
+    pub(crate) fn from_rows(
         program: &Program<'_>,
         point: &Point,
         slopes: &Slopes,
@@ -46,7 +46,7 @@ impl ScaledMultipliers {
 
     /// As [`ScaledMultipliers::from_rows`], with the better of two choices: `y`, or the
     /// least-squares multipliers of the rows that are active by `y`.
-    pub fn polished(
+    pub(crate) fn polished(
         program: &Program<'_>,
         point: &Point,
         slopes: &Slopes,
@@ -76,7 +76,7 @@ impl ScaledMultipliers {
     }
 
     /// Multipliers of the program whose objective is multiplied by `factor`.
-    pub fn times(mut self, factor: f64) -> Self {
+    pub(crate) fn times(mut self, factor: f64) -> Self {
         self.y *= factor;
         self.zl *= factor;
         self.zu *= factor;
@@ -84,7 +84,7 @@ impl ScaledMultipliers {
     }
 
     /// Sets multipliers to zero that have the wrong sign for the bounds of their row.
-    pub fn clip(&mut self, program: &Program<'_>) {
+    pub(crate) fn clip(&mut self, program: &Program<'_>) {
         for k in 0..self.y.len() {
             if program.row_upper[k] == f64::INFINITY {
                 self.y[k] = self.y[k].min(0.0);

@@ -6,7 +6,7 @@
 
 /// A joint that lies in no loop, or a network of loops.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Block {
+pub(crate) struct Block {
     /// The body nearest to ground; `None` is ground itself.
     pub root: Option<usize>,
     /// The other bodies.
@@ -17,7 +17,7 @@ pub struct Block {
 
 /// The blocks of a scene.
 #[derive(Clone, Debug)]
-pub struct Blocks {
+pub(crate) struct Blocks {
     /// From ground outwards: the root of each is ground, or first of its kind, or in an earlier one.
     pub list: Vec<Block>,
     /// For every body the first of those that are joined with it other than by ground.
@@ -26,7 +26,7 @@ pub struct Blocks {
 
 impl Blocks {
     /// The blocks of joints that have the given `ends`, ground being `None`, of `bodies` bodies.
-    pub fn new(bodies: usize, ends: &[(usize, Option<usize>)]) -> Self {
+    pub(crate) fn new(bodies: usize, ends: &[(usize, Option<usize>)]) -> Self {
         let tree = Tree::new(bodies, ends);
         let mut same: Vec<usize> = (0..ends.len()).collect();
         for (joint, &(a, b)) in ends.iter().enumerate() {

@@ -6,7 +6,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// Largest file (bytes).
-pub const LARGEST: usize = 256 << 20;
+pub(crate) const LARGEST: usize = 256 << 20;
 /// Most entries of a list or an object, and of all of them.
 const MOST_ENTRIES: usize = 1_000_000;
 const MOST_VALUES: usize = 8_000_000;

@@ -53,7 +53,7 @@ pub struct Drawing {
 }
 
 /// The drawing of a checked document at the design `x`.
-pub fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawing {
+pub(crate) fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawing {
     let assembly = Assembly::new(document, order, x);
     let (right, up) = axes(document.plot.view.unwrap_or_default());
     let scene = super::scene::scene(document, order, x);

@@ -27,7 +27,7 @@ pub(super) struct Finding {
 
 impl Finding {
     /// A fault of the value at `pointer`.
-    pub fn new(
+    pub(crate) fn new(
         pointer: impl Into<String>,
         found: impl Into<String>,
         expected: impl Into<String>,
@@ -42,7 +42,7 @@ impl Finding {
     }
 
     /// The same fault, of the key.
-    pub fn of_key(self) -> Self {
+    pub(crate) fn of_key(self) -> Self {
         Self {
             part: Part::Key,
             ..self
@@ -50,7 +50,7 @@ impl Finding {
     }
 
     /// The same fault with advice.
-    pub fn hint(self, hint: Option<String>) -> Self {
+    pub(crate) fn hint(self, hint: Option<String>) -> Self {
         Self { hint, ..self }
     }
 }

@@ -5,7 +5,7 @@ use crate::lower::{Lowering, Seen};
 
 /// What is left of a problem's scenes.
 #[derive(Clone, Debug)]
-pub struct Focus {
+pub(crate) struct Focus {
     /// Bodies and functions that are kept.
     pub seen: Seen,
     /// What is left out of the whole scenes before they are integrated.

@@ -12,7 +12,7 @@ use crate::math::{Scalar, Vec3};
 use crate::model::{Drive, Freedom, Joint, JointFrame, JointKind, MotionCourse};
 
 /// The joints of a checked document, in its order, with their drives.
-pub fn joints<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Joint<S>> {
+pub(crate) fn joints<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Joint<S>> {
     let one = |(name, written): (&String, &WrittenJoint)| Joint {
         drives: drives(document, assembly, name),
         ..joint(document, assembly, name, written)
@@ -167,6 +167,6 @@ fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> MotionCourse<S
 }
 
 /// What a joint of this kind cannot do to a point mass: hold it beside itself, or turn it.
-pub fn holds_points(kind: JointKind) -> bool {
+pub(crate) fn holds_points(kind: JointKind) -> bool {
     matches!(kind, JointKind::Spherical | JointKind::Rod)
 }

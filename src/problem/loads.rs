@@ -11,7 +11,7 @@ use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, Course, Freedom, Load, LoadKind};
 
 /// The loads of a checked document, in its order.
-pub fn loads<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Load<S>> {
+pub(crate) fn loads<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Load<S>> {
     let one = |(name, written): (&String, &WrittenLoad)| Load {
         name: name.clone(),
         kind: kind(document, assembly, written),
@@ -146,7 +146,7 @@ fn freedom(joint: &Joint, motion: Option<Motion>) -> Option<Freedom> {
 }
 
 /// The motion that a name in the file stands for.
-pub fn named(motion: Motion) -> Freedom {
+pub(crate) fn named(motion: Motion) -> Freedom {
     match motion {
         Motion::Turn => Freedom::Turn,
         Motion::Slide => Freedom::Slide,

@@ -6,7 +6,7 @@ use crate::math::{Mat3, Scalar, Vec3};
 use std::f64::consts::PI;
 
 /// Mass, centre of mass and inertia of a body.
-pub struct MassProperties<S> {
+pub(crate) struct MassProperties<S> {
     /// Mass (kg).
     pub mass: S,
     /// Centre of mass from the origin of the body's axes (m).
@@ -16,7 +16,7 @@ pub struct MassProperties<S> {
 }
 
 /// Mass properties at the design `x`. What a checked file cannot lack counts as zero here.
-pub fn mass_properties<S: Scalar>(body: &Body, x: &[S]) -> MassProperties<S> {
+pub(crate) fn mass_properties<S: Scalar>(body: &Body, x: &[S]) -> MassProperties<S> {
     let number = |quantity: &Option<Quantity>| quantity.map_or(S::zero(), |q| q.get(x));
     let mass = match (&body.shape, &body.density) {
         (Some(shape), Some(density)) => density.get(x) * volume(shape, x),
@@ -44,7 +44,7 @@ fn matrix<S: Scalar>(inertia: &Inertia, x: &[S]) -> Mat3<S> {
 }
 
 /// Volume of a shape (m³).
-pub fn volume<S: Scalar>(shape: &Shape, x: &[S]) -> S {
+pub(crate) fn volume<S: Scalar>(shape: &Shape, x: &[S]) -> S {
     match shape {
         Shape::Box { size } => size[0].get(x) * size[1].get(x) * size[2].get(x),
         Shape::Cylinder { radius, length } | Shape::Rod { length, radius } => {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 /// Memory that this process can still take (bytes): what the machine has, and what the control groups
 /// of the process leave it. `None` if the machine does not say.
-pub fn available() -> Option<usize> {
+pub(crate) fn available() -> Option<usize> {
     let machine = std::fs::read_to_string("/proc/meminfo").ok();
     let machine = machine.and_then(|text| of_machine(&text));
     let groups = std::fs::read_to_string("/proc/self/cgroup").unwrap_or_default();

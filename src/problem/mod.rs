@@ -34,13 +34,13 @@ mod tests;
 mod text;
 mod variables;
 
-pub use drawing::{Drawing, Outline};
+pub(crate) use drawing::{Drawing, Outline};
 pub use fault::{Fault, Faults};
-pub use focus::Focus;
-pub use memory::available as available_memory;
+pub(crate) use focus::Focus;
+pub(crate) use memory::available as available_memory;
 pub use overrides::{Override, OverrideError};
-pub use schema::schema;
-pub use text::{visible, visible_lines};
+pub(crate) use schema::schema;
+pub(crate) use text::{visible, visible_lines};
 pub use variables::Variable;
 
 use crate::functions::{Function, Scene};
@@ -73,7 +73,7 @@ pub struct Objective {
 
 /// Bounds on a function.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Constraint {
+pub(crate) struct Constraint {
     /// Name in the problem file.
     pub name: String,
     /// Index of the function.
@@ -86,7 +86,7 @@ pub struct Constraint {
 
 /// Settings of the optimiser that a file may give.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct OptimiserSettings {
+pub(crate) struct OptimiserSettings {
     /// Algorithm.
     pub method: Option<Method>,
     /// Scaled residual of the optimality conditions at which it stops.
@@ -105,7 +105,7 @@ pub struct OptimiserSettings {
 
 /// How a scene is integrated, as far as the file says.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Simulation {
+pub(crate) struct Simulation {
     /// The method; `None` if the scene chooses.
     pub method: Option<integrate::Method>,
     /// Steps or tolerance.

@@ -12,11 +12,11 @@ use crate::math::{Mat3, Scalar, Vec3};
 const CHECKED: &str = "names are checked when a problem is read";
 
 /// The name of the body that does not move.
-pub const GROUND: &str = "ground";
+pub(crate) const GROUND: &str = "ground";
 
 /// Where a body is.
 #[derive(Clone, Copy, Debug)]
-pub struct Pose<S> {
+pub(crate) struct Pose<S> {
     /// Origin of the body's axes in ground axes (m).
     pub origin: Vec3<S>,
     /// Centre of mass from the origin, in body axes (m).
@@ -39,13 +39,13 @@ impl<S: Scalar> Pose<S> {
     }
 
     /// Centre of mass in ground axes (m).
-    pub fn position(&self) -> Vec3<S> {
+    pub(crate) fn position(&self) -> Vec3<S> {
         self.origin + self.rotation * self.centre
     }
 }
 
 /// Splits `"body.point"` into the body and the point; the origin of its axes if there is no dot.
-pub fn split_location(text: &str) -> (&str, Option<&str>) {
+pub(crate) fn split_location(text: &str) -> (&str, Option<&str>) {
     match text.split_once('.') {
         Some((body, point)) => (body, Some(point)),
         None => (text, None),
@@ -53,7 +53,7 @@ pub fn split_location(text: &str) -> (&str, Option<&str>) {
 }
 
 /// The bodies that a body is placed by.
-pub fn placed_by<'a>(document: &'a Document, body: &str) -> impl Iterator<Item = &'a str> {
+pub(crate) fn placed_by<'a>(document: &'a Document, body: &str) -> impl Iterator<Item = &'a str> {
     let place = document.bodies.get(body).map(|body| &body.place);
     let at = place.and_then(|place| match &place.at {
         Some(Location::Named(name)) => Some(split_location(name).0),
@@ -67,7 +67,7 @@ pub fn placed_by<'a>(document: &'a Document, body: &str) -> impl Iterator<Item =
 ///
 /// # Errors
 /// The names along a cycle, its first one again at the end.
-pub fn placement_order(document: &Document) -> Result<Vec<usize>, Vec<String>> {
+pub(crate) fn placement_order(document: &Document) -> Result<Vec<usize>, Vec<String>> {
     /// Visits `name` after all that it is placed by; `path` holds those that wait for it.
     fn visit(
         document: &Document,
@@ -101,7 +101,7 @@ pub fn placement_order(document: &Document) -> Result<Vec<usize>, Vec<String>> {
 }
 
 /// All bodies of a checked document where they are at the start of the design `x`.
-pub struct Assembly<'a, S> {
+pub(crate) struct Assembly<'a, S> {
     document: &'a Document,
     x: &'a [S],
     /// Poses in the order of the file.
@@ -110,7 +110,7 @@ pub struct Assembly<'a, S> {
 
 impl<'a, S: Scalar> Assembly<'a, S> {
     /// Places the bodies in `order`.
-    pub fn new(document: &'a Document, order: &[usize], x: &'a [S]) -> Self {
+    pub(crate) fn new(document: &'a Document, order: &[usize], x: &'a [S]) -> Self {
         let mut assembly = Self {
             document,
             x,
@@ -156,12 +156,12 @@ impl<'a, S: Scalar> Assembly<'a, S> {
     }
 
     /// Index of a body; `None` is ground.
-    pub fn index(&self, body: &str) -> Option<usize> {
+    pub(crate) fn index(&self, body: &str) -> Option<usize> {
         (body != GROUND).then(|| self.document.bodies.get_index_of(body).expect(CHECKED))
     }
 
     /// Pose of a body or ground.
-    pub fn pose(&self, body: &str) -> Pose<S> {
+    pub(crate) fn pose(&self, body: &str) -> Pose<S> {
         self.index(body)
             .map_or(Pose::ground(), |index| self.poses[index])
     }
@@ -173,7 +173,7 @@ impl<'a, S: Scalar> Assembly<'a, S> {
     }
 
     /// A point of a body (or of ground) from the origin of its axes.
-    pub fn in_body(&self, body: &str, point: &Point) -> Vec3<S> {
+    pub(crate) fn in_body(&self, body: &str, point: &Point) -> Vec3<S> {
         match point {
             Point::Named(name) => self.point(body, name),
             Point::Coordinates(point) => vector(point, self.x),
@@ -181,27 +181,27 @@ impl<'a, S: Scalar> Assembly<'a, S> {
     }
 
     /// A named place in ground axes.
-    pub fn named(&self, text: &str) -> Vec3<S> {
+    pub(crate) fn named(&self, text: &str) -> Vec3<S> {
         let (body, _) = split_location(text);
         let pose = self.pose(body);
         pose.origin + pose.rotation * self.named_in_body(text)
     }
 
     /// A named place from the origin of the axes of the body that it belongs to.
-    pub fn named_in_body(&self, text: &str) -> Vec3<S> {
+    pub(crate) fn named_in_body(&self, text: &str) -> Vec3<S> {
         let (body, point) = split_location(text);
         point.map_or(Vec3::zeros(), |point| self.point(body, point))
     }
 
     /// A point of a body (or of ground) from the origin of its axes, given by its ground
     /// coordinates at the start.
-    pub fn at_ground(&self, body: &str, point: &Vector) -> Vec3<S> {
+    pub(crate) fn at_ground(&self, body: &str, point: &Vector) -> Vec3<S> {
         let pose = self.pose(body);
         pose.rotation.tr_mul(&(self.ground(point) - pose.origin))
     }
 
     /// An end of a rod or spring on its body (or on ground) from the centre of mass.
-    pub fn end(&self, between: &[String; 2], at: &Ends, side: usize) -> Vec3<S> {
+    pub(crate) fn end(&self, between: &[String; 2], at: &Ends, side: usize) -> Vec3<S> {
         let name = &between[side];
         let point = match at {
             Ends::Each(pair) => self.in_body(name, [&pair.a, &pair.b][side]),
@@ -211,17 +211,17 @@ impl<'a, S: Scalar> Assembly<'a, S> {
     }
 
     /// A number of the file at this design.
-    pub fn quantity(&self, quantity: &Quantity) -> S {
+    pub(crate) fn quantity(&self, quantity: &Quantity) -> S {
         quantity.get(self.x)
     }
 
     /// A vector of the file at this design.
-    pub fn ground(&self, components: &Vector) -> Vec3<S> {
+    pub(crate) fn ground(&self, components: &Vector) -> Vec3<S> {
         vector(components, self.x)
     }
 
     /// A joint's axis in ground axes, of the length in the file.
-    pub fn axis(&self, axis: &Axis) -> Vec3<S> {
+    pub(crate) fn axis(&self, axis: &Axis) -> Vec3<S> {
         match axis {
             Axis::Ground(axis) => vector(axis, self.x),
             Axis::OfBody(of) => self.pose(&of.body).rotation * vector(&of.axis, self.x),

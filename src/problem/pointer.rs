@@ -3,13 +3,13 @@
 use serde_json::Value;
 
 /// The pointer to `key` below `pointer`.
-pub fn join(pointer: &str, key: impl std::fmt::Display) -> String {
+pub(crate) fn join(pointer: &str, key: impl std::fmt::Display) -> String {
     let key = key.to_string().replace('~', "~0").replace('/', "~1");
     format!("{pointer}/{key}")
 }
 
 /// The keys along a pointer.
-pub fn keys(pointer: &str) -> Vec<String> {
+pub(crate) fn keys(pointer: &str) -> Vec<String> {
     pointer
         .split('/')
         .skip(1)
@@ -18,14 +18,14 @@ pub fn keys(pointer: &str) -> Vec<String> {
 }
 
 /// True if `pointer` is `above` or below it.
-pub fn is_below(pointer: &str, above: &str) -> bool {
+pub(crate) fn is_below(pointer: &str, above: &str) -> bool {
     pointer
         .strip_prefix(above)
         .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 
 /// Pointers to every value of a document, its root left out.
-pub fn all(value: &Value) -> Vec<String> {
+pub(crate) fn all(value: &Value) -> Vec<String> {
     fn collect(value: &Value, pointer: &str, list: &mut Vec<String>) {
         if !pointer.is_empty() {
             list.push(pointer.to_owned());
@@ -59,7 +59,10 @@ fn distance(wanted: &str, name: &str) -> Option<usize> {
 }
 
 /// The name nearest to `wanted`, if one is near.
-pub fn nearest<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub(crate) fn nearest<'a>(
+    wanted: &str,
+    names: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
     names
         .into_iter()
         .filter_map(|name| Some((distance(wanted, name)?, name)))
@@ -69,7 +72,7 @@ pub fn nearest<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> Op
 
 /// The pointer nearest to `wanted`, if one is near: each key is near its own, or keys between are
 /// left out.
-pub fn nearest_pointer<'a>(
+pub(crate) fn nearest_pointer<'a>(
     wanted: &str,
     pointers: impl Iterator<Item = &'a str> + Clone,
 ) -> Option<&'a str> {
@@ -96,7 +99,7 @@ pub fn nearest_pointer<'a>(
 }
 
 /// Advice after a wrong name: the nearest valid one, else all of them; `what` they are.
-pub fn advice<'a>(
+pub(crate) fn advice<'a>(
     wanted: &str,
     what: &str,
     names: impl IntoIterator<Item = &'a str>,

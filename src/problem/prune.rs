@@ -26,12 +26,12 @@ pub(super) struct Damage {
 
 impl Damage {
     /// True if something of a section was there but is at fault.
-    pub fn touches(&self, section: &str) -> bool {
+    pub(crate) fn touches(&self, section: &str) -> bool {
         self.sections.contains(section) || self.entries.iter().any(|(own, _)| own == section)
     }
 
     /// True if an entry of this name was there but is at fault.
-    pub fn holds(&self, section: &str, name: &str) -> bool {
+    pub(crate) fn holds(&self, section: &str, name: &str) -> bool {
         let entry = (section.to_owned(), name.to_owned());
         self.sections.contains(section) || self.entries.contains(&entry)
     }

@@ -10,7 +10,7 @@ use std::fmt;
 /// A physical number. In a file it is always written as a number; those that the file's design
 /// variables point at are bound to them before the document is deserialised.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Quantity {
+pub(crate) struct Quantity {
     /// Value in the file.
     pub value: f64,
     /// Index of the design variable that takes its place, if any.
@@ -18,7 +18,7 @@ pub struct Quantity {
 }
 
 /// Three quantities: components of a vector.
-pub type Vector = [Quantity; 3];
+pub(crate) type Vector = [Quantity; 3];
 
 /// Key of the design variable in the bound form of a quantity.
 const VARIABLE: &str = "variable";
@@ -27,7 +27,7 @@ const VALUE: &str = "value";
 
 impl Quantity {
     /// A number that no design changes.
-    pub fn fixed(value: f64) -> Self {
+    pub(crate) fn fixed(value: f64) -> Self {
         Self {
             value,
             variable: None,
@@ -35,23 +35,23 @@ impl Quantity {
     }
 
     /// Its value at the design `x`.
-    pub fn get<S: Scalar>(&self, x: &[S]) -> S {
+    pub(crate) fn get<S: Scalar>(&self, x: &[S]) -> S {
         self.variable.map_or(S::from(self.value), |index| x[index])
     }
 
     /// The form that [`Quantity`] deserialises from once it is bound to a design variable.
-    pub fn bound(variable: usize, value: f64) -> serde_json::Value {
+    pub(crate) fn bound(variable: usize, value: f64) -> serde_json::Value {
         serde_json::json!({ VARIABLE: variable, VALUE: value })
     }
 }
 
 /// Components of a vector at the design `x`.
-pub fn vector<S: Scalar>(components: &Vector, x: &[S]) -> Vec3<S> {
+pub(crate) fn vector<S: Scalar>(components: &Vector, x: &[S]) -> Vec3<S> {
     Vec3::from(components.map(|component| component.get(x)))
 }
 
 /// Components of a vector as they stand in the file.
-pub fn values(components: &Vector) -> Vec3<f64> {
+pub(crate) fn values(components: &Vector) -> Vec3<f64> {
     Vec3::from(components.map(|component| component.value))
 }
 

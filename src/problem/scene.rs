@@ -19,10 +19,10 @@ use crate::model::{Mobility, Model, RigidBody};
 use crate::system::failure::AssemblyFailure;
 
 /// Gravity where the file gives none (m/s²).
-pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
+pub(crate) const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
 
 /// The scene of a checked document at the design `x`; bodies are placed in `order`.
-pub fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<S> {
+pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<S> {
     let assembly = Assembly::new(document, order, x);
     let gravity = match &document.gravity {
         Some(gravity) => vector(gravity, x),
@@ -144,7 +144,7 @@ fn written_velocity<S: Scalar>(
 }
 
 /// The velocities of their own that a file gives its bodies, as [`written_velocity`].
-pub fn own_velocities(document: &Document, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
+pub(crate) fn own_velocities(document: &Document, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
     let own = |body: &Body| {
         body.velocity.as_ref()?;
         Some(written_velocity(document, body, &Vec3::zeros(), x))
@@ -358,7 +358,7 @@ impl<S: Scalar> Builder<'_, S> {
 
 /// The range function of this name, and the parameter ρ of its aggregation; none for its final
 /// value. `None` if there is no such function or nothing is let go in it.
-pub fn released<'a>(
+pub(crate) fn released<'a>(
     document: &'a Document,
     name: &str,
 ) -> Option<(&'a written::Range, Option<f64>)> {

@@ -49,7 +49,7 @@ pub(super) enum Asked {
 }
 
 /// The starts of the joints of a scene.
-pub struct Starts<S> {
+pub(crate) struct Starts<S> {
     given: Vec<Given<S>>,
     pub(super) blocks: Blocks,
     /// Whether the joints are closed wherever the bodies are placed.
@@ -60,7 +60,11 @@ pub struct Starts<S> {
 
 impl<S: Scalar> Starts<S> {
     /// The starts of a checked document, whose joints are those of `model`; `None` if it gives none.
-    pub fn of(document: &Document, assembly: &Assembly<S>, model: &Model<S>) -> Option<Self> {
+    pub(crate) fn of(
+        document: &Document,
+        assembly: &Assembly<S>,
+        model: &Model<S>,
+    ) -> Option<Self> {
         let mut given = Vec::new();
         for (joint, written) in document.joints.values().enumerate() {
             for freedom in FREEDOMS {
@@ -167,7 +171,7 @@ impl<S: Scalar> Starts<S> {
     ///
     /// # Errors
     /// The joint that cannot start as it is given.
-    pub fn place(&self, model: &mut Model<S>) -> Result<(), AssemblyFailure> {
+    pub(crate) fn place(&self, model: &mut Model<S>) -> Result<(), AssemblyFailure> {
         let groups = self.groups(model, Asked::Place);
         let mut moves: Vec<Option<Move<S>>> = vec![None; model.bodies.len()];
         for block in &self.blocks.list {

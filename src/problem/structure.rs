@@ -12,7 +12,7 @@ const LARGEST: f64 = 1e50;
 
 /// What the schema says of a number.
 #[derive(Clone, Debug, Default)]
-pub struct Number {
+pub(crate) struct Number {
     /// Unit, if it has one.
     pub unit: String,
     /// Why no design variable may point at it; `None` if one may.

@@ -33,17 +33,17 @@ fn escaped(text: &str, kept: &[char]) -> String {
 }
 
 /// A text of one line with escapes, as in \u{1b}, in place of what is not seen.
-pub fn visible(text: &str) -> String {
+pub(crate) fn visible(text: &str) -> String {
     escaped(text, &[])
 }
 
 /// As [`visible`], of a text that may have lines.
-pub fn visible_lines(text: &str) -> String {
+pub(crate) fn visible_lines(text: &str) -> String {
     escaped(text, &['\n', '\t'])
 }
 
 /// The beginning and the end of a text that is longer than `most` characters.
-pub fn shortened(text: &str, most: usize) -> Cow<'_, str> {
+pub(crate) fn shortened(text: &str, most: usize) -> Cow<'_, str> {
     let count = text.chars().count();
     if count <= most {
         return text.into();

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// adjoint, Σᵢ dᵢ ∂f/∂xᵢ, and by the complex step, Im f(x + i h d)/h, on the same steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct GradientCertificate {
+pub(crate) struct GradientCertificate {
     /// Seed of the direction.
     pub seed: u64,
     /// The direction d: the change of each variable, in its unit.
@@ -28,7 +28,7 @@ pub struct GradientCertificate {
 /// Work of a certificate, in whole runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct CertificateCost {
+pub(crate) struct CertificateCost {
     /// Backward marches of all functions.
     pub gradients: u64,
     /// Runs in complex numbers.
@@ -38,7 +38,7 @@ pub struct CertificateCost {
 /// The derivatives at one design.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct CertifiedDesign {
+pub(crate) struct CertifiedDesign {
     /// The derivatives, by function.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub functions: IndexMap<String, CertifiedDerivative>,
@@ -53,7 +53,7 @@ pub struct CertifiedDesign {
 /// A directional derivative, computed twice; a number that is not finite is left out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct CertifiedDerivative {
+pub(crate) struct CertifiedDerivative {
     /// By the adjoint.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adjoint: Option<f64>,
@@ -68,7 +68,7 @@ pub struct CertifiedDerivative {
 
 impl GradientCertificate {
     /// The faults, with the design, one sentence each.
-    pub fn faults(&self) -> Vec<String> {
+    pub(crate) fn faults(&self) -> Vec<String> {
         self.told(|design| &design.faults)
     }
 

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 
 /// How far each kind of number may move.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerances {
+pub(crate) struct Tolerances {
     /// Objective, start objective and true maximum: relative to the baseline's magnitude (or to
     /// 1e-12 if that is larger). Default 1e-6: an optimum is flat, so the objective is as
     /// exact as the stopping tolerance.
@@ -44,7 +44,7 @@ impl Default for Tolerances {
 
 /// What a row of a comparison means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub(crate) enum Verdict {
     /// Within tolerance.
     Same,
     /// Worth knowing, not a failure.
@@ -55,7 +55,7 @@ pub enum Verdict {
 
 /// One quantity of two records.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub(crate) struct Row {
     /// Kind of quantity: `design`, `constraint`, `work`, ...
     pub kind: &'static str,
     /// Name of the quantity.
@@ -72,7 +72,7 @@ pub struct Row {
 
 /// All quantities of two records, side by side.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Comparison {
+pub(crate) struct Comparison {
     /// Rows in the order of the record.
     pub rows: Vec<Row>,
 }
@@ -82,7 +82,7 @@ pub struct Comparison {
 /// Compared are status, problem, objective, design, constraints, active bounds, sensitivities and
 /// work; a variable or constraint that only one of them has is a difference. A number that is not
 /// finite never agrees.
-pub fn compare(new: &Optimum, baseline: &Optimum, tolerances: &Tolerances) -> Comparison {
+pub(crate) fn compare(new: &Optimum, baseline: &Optimum, tolerances: &Tolerances) -> Comparison {
     let mut rows = Vec::new();
     rows.push(text_row("status", "", &new.status, &baseline.status));
     let mut problem = text_row(
@@ -154,12 +154,12 @@ pub fn compare(new: &Optimum, baseline: &Optimum, tolerances: &Tolerances) -> Co
 
 impl Comparison {
     /// Whether nothing moved beyond tolerance; warnings do not count.
-    pub fn passed(&self) -> bool {
+    pub(crate) fn passed(&self) -> bool {
         self.rows.iter().all(|row| row.verdict != Verdict::Moved)
     }
 
     /// The verdict in a sentence and a table of what moved or is worth knowing.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let count = |verdict| {
             self.rows
                 .iter()

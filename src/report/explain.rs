@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// The explanation of `optimize explain`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Explanation {
+pub(crate) struct Explanation {
     /// Name of the problem.
     pub name: String,
     /// Numbers of bodies, joints and loads.
@@ -41,7 +41,7 @@ pub struct Explanation {
 
 /// How a scene is integrated.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct IntegrationUse {
+pub(crate) struct IntegrationUse {
     /// The method, why it was chosen, and how many steps it takes at the start.
     pub method: String,
     /// See above.
@@ -65,7 +65,7 @@ pub struct IntegrationUse {
 
 /// Size of the equations of a scene, and how they are eliminated.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SystemSize {
+pub(crate) struct SystemSize {
     /// Velocities.
     pub velocities: usize,
     /// Constraint rows.
@@ -87,7 +87,7 @@ pub struct SystemSize {
 
 /// Use and dependences of a function.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct FunctionUse {
+pub(crate) struct FunctionUse {
     /// Its name.
     pub name: String,
     /// "objective", "constraint", or nothing if an optimisation never evaluates it.
@@ -101,7 +101,7 @@ pub struct FunctionUse {
 
 impl Explanation {
     /// The explanation as text.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut text = format!(
             "{}: {} bodies, {} joints, {} loads\n",
             self.name, self.bodies, self.joints, self.loads
@@ -220,13 +220,13 @@ impl Explanation {
     }
 
     /// The explanation as JSON.
-    pub fn json(&self) -> serde_json::Result<String> {
+    pub(crate) fn json(&self) -> serde_json::Result<String> {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 }
 
 /// Bytes as a person reads them.
-pub fn size(bytes: usize) -> String {
+pub(crate) fn size(bytes: usize) -> String {
     match bytes as f64 {
         bytes if bytes < 1e3 => format!("{bytes} B"),
         bytes if bytes < 1e6 => format!("{:.1} kB", bytes / 1e3),

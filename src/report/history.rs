@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// Name and unit of a column.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Column {
+pub(crate) struct Column {
     /// Name, as in the problem file.
     pub name: String,
     /// Unit such as `kg` or `m/s`, where it is known; without square brackets.
@@ -17,7 +17,7 @@ pub struct Column {
 
 /// One iteration of an optimisation.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct HistoryRow {
+pub(crate) struct HistoryRow {
     /// Iteration; the start is 0.
     pub iteration: usize,
     /// Function evaluations until here.
@@ -54,7 +54,7 @@ pub struct HistoryRow {
 
 /// All iterations of an optimisation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct History {
+pub(crate) struct History {
     /// The objective's name and unit.
     pub objective: Column,
     /// Design variables.
@@ -97,7 +97,7 @@ impl History {
     /// # Errors
     /// [`ReportError::History`] if a row has not one entry for each variable and constraint, or
     /// if a unit contains a square bracket.
-    pub fn to_csv(&self) -> Result<String, ReportError> {
+    pub(crate) fn to_csv(&self) -> Result<String, ReportError> {
         let mut text = self.header()?;
         for i in 0..self.rows.len() {
             self.write_row(&mut text, i)?;
@@ -145,7 +145,7 @@ impl History {
     ///
     /// # Errors
     /// [`ReportError::History`] with the line, what was found and what was expected.
-    pub fn from_csv(text: &str) -> Result<History, ReportError> {
+    pub(crate) fn from_csv(text: &str) -> Result<History, ReportError> {
         let records = csv::parse(text)
             .map_err(|bad| fault(bad.line, "a quote out of place", "quotes as in RFC 4180"))?;
         let Some((header, rows)) = records.split_first() else {
@@ -205,14 +205,14 @@ impl History {
 /// The table of a run under way. Each row is appended when it is known; earlier rows do not change.
 /// If the process is killed, the last row may be incomplete.
 #[derive(Debug)]
-pub struct HistoryLog {
+pub(crate) struct HistoryLog {
     path: PathBuf,
     file: Option<File>,
 }
 
 impl HistoryLog {
     /// A new table in the file `path`, written with the first row.
-    pub fn new(path: &Path) -> Self {
+    pub(crate) fn new(path: &Path) -> Self {
         Self {
             path: path.to_path_buf(),
             file: None,
@@ -223,7 +223,7 @@ impl HistoryLog {
     ///
     /// # Errors
     /// [`ReportError::Write`] with the path, or as [`History::to_csv`].
-    pub fn append(&mut self, history: &History) -> Result<(), ReportError> {
+    pub(crate) fn append(&mut self, history: &History) -> Result<(), ReportError> {
         let Some(last) = history.rows.len().checked_sub(1) else {
             return Ok(());
         };
@@ -253,7 +253,7 @@ fn new_file(path: &Path) -> std::io::Result<File> {
 
 impl Column {
     /// A column by name and unit.
-    pub fn new(name: &str, unit: Option<&str>) -> Column {
+    pub(crate) fn new(name: &str, unit: Option<&str>) -> Column {
         Column {
             name: name.to_owned(),
             unit: unit.map(str::to_owned),

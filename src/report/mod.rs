@@ -19,32 +19,32 @@
 //! | [`stability`] | the stability table, `stability.md` and `stability.csv` |
 //! | [`plots`] | figures as SVG |
 
-pub mod certificate;
-pub mod compare;
+pub(crate) mod certificate;
+pub(crate) mod compare;
 mod csv;
 mod error;
-pub mod evaluations;
-pub mod explain;
-pub mod files;
-pub mod history;
+pub(crate) mod evaluations;
+pub(crate) mod explain;
+pub(crate) mod files;
+pub(crate) mod history;
 mod number;
-pub mod optima;
-pub mod optimum;
-pub mod plots;
-pub mod positions;
-pub mod stability;
-pub mod summary;
+pub(crate) mod optima;
+pub(crate) mod optimum;
+pub(crate) mod plots;
+pub(crate) mod positions;
+pub(crate) mod stability;
+pub(crate) mod summary;
 mod table;
-pub mod work_precision;
+pub(crate) mod work_precision;
 
-pub use compare::{Tolerances, compare};
-pub use csv::csv_table;
-pub use error::ReportError;
-pub use explain::{Explanation, FunctionUse, IntegrationUse, SystemSize, size};
-pub use files::{atomic_write, prepare_directory, read_text, write_all};
-pub use history::{History, HistoryLog, HistoryRow};
-pub use optima::{FoundOptimum, optima_csv};
-pub use optimum::Optimum;
-pub use stability::{StabilityFamily, StabilityOutcome, StabilityRow, StabilityTable};
-pub use summary::summary;
-pub use work_precision::{PrecisionRow, WorkPrecision};
+pub(crate) use compare::{Tolerances, compare};
+pub(crate) use csv::csv_table;
+pub(crate) use error::ReportError;
+pub(crate) use explain::{Explanation, FunctionUse, IntegrationUse, SystemSize, size};
+pub(crate) use files::{atomic_write, prepare_directory, read_text, write_all};
+pub(crate) use history::{History, HistoryLog, HistoryRow};
+pub(crate) use optima::{FoundOptimum, optima_csv};
+pub(crate) use optimum::Optimum;
+pub(crate) use stability::{StabilityFamily, StabilityOutcome, StabilityRow, StabilityTable};
+pub(crate) use summary::summary;
+pub(crate) use work_precision::{PrecisionRow, WorkPrecision};

@@ -6,7 +6,7 @@ use super::history::{Column, OBJECTIVE, VARIABLE, exact};
 
 /// An optimum that at least one start led to.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FoundOptimum {
+pub(crate) struct FoundOptimum {
     /// The number of the start with the best value there, from 1.
     pub start: usize,
     /// How many starts led there.
@@ -22,7 +22,7 @@ pub struct FoundOptimum {
 ///
 /// # Errors
 /// [`ReportError::History`] if a unit contains a square bracket.
-pub fn optima_csv(
+pub(crate) fn optima_csv(
     objective: &Column,
     variables: &[Column],
     optima: &[FoundOptimum],

@@ -1,7 +1,7 @@
 //! The end of an optimisation as a record, `optimum.json`.
 
 use super::ReportError;
-pub use super::certificate::*;
+pub(crate) use super::certificate::*;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// bounds are left out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Optimum {
+pub(crate) struct Optimum {
     /// How the run ended, in one word such as `converged`.
     pub status: String,
     /// How the run ended, in a sentence.
@@ -56,7 +56,7 @@ pub struct Optimum {
 /// Whether the objective is made small or large.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Sense {
+pub(crate) enum Sense {
     /// Smaller is better.
     Minimise,
     /// Larger is better.
@@ -66,7 +66,7 @@ pub enum Sense {
 /// A side of an interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Side {
+pub(crate) enum Side {
     /// The lower bound.
     Lower,
     /// The upper bound.
@@ -76,7 +76,7 @@ pub enum Side {
 /// Which bounds of a constraint are active.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Activity {
+pub(crate) enum Activity {
     /// None.
     Inactive,
     /// The lower bound.
@@ -90,7 +90,7 @@ pub enum Activity {
 /// The objective at the optimum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Objective {
+pub(crate) struct Objective {
     /// Name of the function in the problem file.
     pub function: String,
     /// Whether it is minimised or maximised.
@@ -114,7 +114,7 @@ pub struct Objective {
 /// A design variable at the optimum, in the units of the problem file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct DesignValue {
+pub(crate) struct DesignValue {
     /// Value at the optimum.
     pub value: f64,
     /// Value at the start.
@@ -133,7 +133,7 @@ pub struct DesignValue {
 /// A constraint at the optimum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ConstraintValue {
+pub(crate) struct ConstraintValue {
     /// Value at the optimum.
     pub value: f64,
     /// Value at the start, where it is known; older records have none.
@@ -161,7 +161,7 @@ pub struct ConstraintValue {
 /// A smooth aggregate and the largest value over time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Aggregate {
+pub(crate) struct Aggregate {
     /// The side of the largest value on which the aggregate always lies.
     pub lies: Lies,
     /// The largest value over time, gate included.
@@ -179,7 +179,7 @@ pub struct Aggregate {
 /// A side of the largest value over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Lies {
+pub(crate) enum Lies {
     /// Never above it.
     Below,
     /// Never below it.
@@ -189,7 +189,7 @@ pub enum Lies {
 /// Lagrange multipliers, unscaled, with the signs of the optimiser's own Lagrangian.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Multipliers {
+pub(crate) struct Multipliers {
     /// Of the constraints, by name.
     pub constraints: IndexMap<String, f64>,
     /// Of the lower bounds, by variable.
@@ -201,7 +201,7 @@ pub struct Multipliers {
 /// Residuals of the optimality conditions, largest components.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Kkt {
+pub(crate) struct Kkt {
     /// In the optimiser's scaled units; these end the run.
     pub scaled: KktResiduals,
     /// In the user's units.
@@ -211,7 +211,7 @@ pub struct Kkt {
 /// One set of optimality residuals.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct KktResiduals {
+pub(crate) struct KktResiduals {
     /// Gradient of the Lagrangian.
     pub stationarity: f64,
     /// Violation of constraints and bounds.
@@ -223,7 +223,7 @@ pub struct KktResiduals {
 /// How the optimiser scaled the problem at the start.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Scaling {
+pub(crate) struct Scaling {
     /// Of the objective.
     pub objective: RowScaling,
     /// Of the constraints, by name.
@@ -235,7 +235,7 @@ pub struct Scaling {
 /// Scaling of one function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RowScaling {
+pub(crate) struct RowScaling {
     /// Factor of the function.
     pub factor: f64,
     /// Largest derivative at the start in scaled variables, before the factor.
@@ -246,7 +246,7 @@ pub struct RowScaling {
 /// constraints leave free.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SecondOrder {
+pub(crate) struct SecondOrder {
     /// Eigenvalues of the reduced Hessian in scaled variables, ascending; none at a vertex.
     pub eigenvalues: Vec<f64>,
     /// Estimated error of its entries.
@@ -266,7 +266,7 @@ pub struct SecondOrder {
 /// Verdict of the curvature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Curvature {
+pub(crate) enum Curvature {
     /// Strictly active bounds and constraints leave no direction free.
     NoFreeDirection,
     /// The curvature is positive along all free directions.
@@ -282,7 +282,7 @@ pub enum Curvature {
 /// How the motion was integrated.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Integration {
+pub(crate) struct Integration {
     /// Name of the method.
     pub method: String,
     /// Why it was chosen.
@@ -296,7 +296,7 @@ pub struct Integration {
 /// Work done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Counts {
+pub(crate) struct Counts {
     /// Iterations of the optimiser.
     pub iterations: u64,
     /// Simulations requested by the optimiser.
@@ -323,7 +323,7 @@ pub struct Counts {
 
 impl Counts {
     /// All counts with their names, in order.
-    pub fn named(&self) -> [(&'static str, u64); 10] {
+    pub(crate) fn named(&self) -> [(&'static str, u64); 10] {
         [
             ("iterations", self.iterations),
             ("function evaluations", self.function_evaluations),
@@ -342,7 +342,7 @@ impl Counts {
 /// The problem that was solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ProblemRecord {
+pub(crate) struct ProblemRecord {
     /// Name of the problem.
     pub name: String,
     /// Name of the problem file, without directories.
@@ -358,7 +358,7 @@ impl Optimum {
     ///
     /// # Errors
     /// [`ReportError::NotFinite`] with the place of a number that is NaN or infinite.
-    pub fn to_json(&self) -> Result<String, ReportError> {
+    pub(crate) fn to_json(&self) -> Result<String, ReportError> {
         let value = serde_json::to_value(self)?;
         // An absent value is left out, so a null outside the document is a number that JSON cannot
         // hold.
@@ -372,7 +372,7 @@ impl Optimum {
     ///
     /// # Errors
     /// [`ReportError::Optimum`] with line and column.
-    pub fn from_json(text: &str) -> Result<Optimum, ReportError> {
+    pub(crate) fn from_json(text: &str) -> Result<Optimum, ReportError> {
         Ok(serde_json::from_str(text)?)
     }
 }

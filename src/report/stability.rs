@@ -4,7 +4,7 @@ use super::csv;
 
 /// What became of a case.
 #[derive(Clone, Debug, PartialEq)]
-pub enum StabilityOutcome {
+pub(crate) enum StabilityOutcome {
     /// The numbers agree with their judge.
     Accurate,
     /// The numbers are off, and the program says so.
@@ -33,7 +33,7 @@ pub enum StabilityOutcome {
 
 impl StabilityOutcome {
     /// The class in a few words.
-    pub fn class(&self) -> &'static str {
+    pub(crate) fn class(&self) -> &'static str {
         match self {
             StabilityOutcome::Accurate => "accurate",
             StabilityOutcome::Degraded { .. } => "degraded",
@@ -45,7 +45,7 @@ impl StabilityOutcome {
     }
 
     /// Whether no program may behave so.
-    pub fn is_failure(&self) -> bool {
+    pub(crate) fn is_failure(&self) -> bool {
         match self {
             StabilityOutcome::Accurate
             | StabilityOutcome::Degraded { .. }
@@ -57,7 +57,7 @@ impl StabilityOutcome {
     }
 
     /// What the program said, if it did.
-    pub fn words(&self) -> &str {
+    pub(crate) fn words(&self) -> &str {
         match self {
             StabilityOutcome::Degraded { told } => told,
             StabilityOutcome::Refused { message } | StabilityOutcome::Panicked { message } => {
@@ -72,7 +72,7 @@ impl StabilityOutcome {
 
 /// One case.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StabilityRow {
+pub(crate) struct StabilityRow {
     /// What is extreme, in one word.
     pub family: String,
     /// How extreme.
@@ -110,19 +110,19 @@ pub struct StabilityRow {
 
 impl StabilityRow {
     /// Name of the case, by which it can be run alone.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         case_name(&self.family, &self.extreme, &self.method)
     }
 }
 
 /// Name of a case: what is extreme, how extreme, by which method.
-pub fn case_name(family: &str, extreme: &str, method: &str) -> String {
+pub(crate) fn case_name(family: &str, extreme: &str, method: &str) -> String {
     format!("{family}/{extreme}/{method}")
 }
 
 /// What the cases of a family have in common.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StabilityFamily {
+pub(crate) struct StabilityFamily {
     /// Its word.
     pub name: String,
     /// What is tried.
@@ -131,7 +131,7 @@ pub struct StabilityFamily {
 
 /// All cases, family by family.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StabilityTable {
+pub(crate) struct StabilityTable {
     /// Families in the order of the table.
     pub families: Vec<StabilityFamily>,
     /// Cases in the order of the table.
@@ -171,7 +171,7 @@ const COLUMNS: [&str; 18] = [
 
 impl StabilityTable {
     /// The rows as CSV.
-    pub fn to_csv(&self) -> String {
+    pub(crate) fn to_csv(&self) -> String {
         let mut text = String::new();
         csv::write_record(&mut text, COLUMNS.into_iter());
         let number = |x: Option<f64>| x.map_or_else(String::new, |x| format!("{x:.3e}"));
@@ -202,7 +202,7 @@ impl StabilityTable {
     }
 
     /// The rows as Markdown, a table a family.
-    pub fn to_markdown(&self) -> String {
+    pub(crate) fn to_markdown(&self) -> String {
         let mut text = String::from(
             "# Stability\n\nWhat becomes of extreme scenes, as `optimize stability` finds it; how it is \
              judged, and why: [docs/stability.md](../../docs/stability.md).\nThe command of every \
@@ -251,7 +251,7 @@ impl StabilityTable {
     }
 
     /// Number of rows of every class that occurs, as text.
-    pub fn summary(&self) -> String {
+    pub(crate) fn summary(&self) -> String {
         let mut parts = Vec::new();
         for class in CLASSES {
             let count = self.rows.iter().filter(|row| row.outcome.class() == class);
@@ -264,7 +264,7 @@ impl StabilityTable {
     }
 
     /// Whether a row is wrong and silent, panicked or had to be stopped.
-    pub fn has_failures(&self) -> bool {
+    pub(crate) fn has_failures(&self) -> bool {
         self.rows.iter().any(|row| row.outcome.is_failure())
     }
 }

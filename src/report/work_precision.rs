@@ -8,7 +8,7 @@ use crate::integrate::WorkCounts;
 
 /// What one method does with one step size or tolerance.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PrecisionRow {
+pub(crate) struct PrecisionRow {
     /// Name of the method.
     pub method: String,
     /// Its formal order.
@@ -37,7 +37,7 @@ pub struct PrecisionRow {
 
 /// A measurement of all methods on a problem.
 #[derive(Clone, Debug, PartialEq)]
-pub struct WorkPrecision {
+pub(crate) struct WorkPrecision {
     /// Name of the problem.
     pub problem: String,
     /// Length of the motion (s).
@@ -60,7 +60,7 @@ pub struct WorkPrecision {
 
 /// Order of convergence of a method with equal steps.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MethodOrder {
+pub(crate) struct MethodOrder {
     /// Name of the method.
     pub method: String,
     /// Formal order.
@@ -108,7 +108,7 @@ const HALVINGS: usize = 3;
 
 impl WorkPrecision {
     /// The rows as CSV.
-    pub fn to_csv(&self) -> String {
+    pub(crate) fn to_csv(&self) -> String {
         let mut text = String::new();
         csv::write_record(&mut text, COLUMNS.into_iter());
         let plain = |x: f64| format!("{x:.6e}");
@@ -142,7 +142,7 @@ impl WorkPrecision {
 
     /// Orders of all methods with equal steps, by the median over the finest halvings whose errors
     /// are small beside the scene and clear of round-off.
-    pub fn orders(&self) -> Vec<MethodOrder> {
+    pub(crate) fn orders(&self) -> Vec<MethodOrder> {
         let mut names: Vec<&str> = Vec::new();
         for row in self.rows.iter().filter(|row| row.step.is_some()) {
             if !names.contains(&row.method.as_str()) {
@@ -170,7 +170,7 @@ impl WorkPrecision {
     }
 
     /// The orders as CSV.
-    pub fn orders_csv(&self) -> String {
+    pub(crate) fn orders_csv(&self) -> String {
         let mut text = String::new();
         let columns = [
             "problem",
@@ -200,7 +200,7 @@ impl WorkPrecision {
     }
 
     /// The text that a person reads: reference, time to an error by method, orders, notes.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut text = format!(
             "{}: {} s, errors at the end against {}\n",
             self.problem,

@@ -25,7 +25,7 @@ pub(crate) struct Assembly {
 }
 
 impl Assembly {
-    pub fn new(
+    pub(crate) fn new(
         structure: &Structure<f64>,
         supports: &[Support],
         node_unknowns: NodeUnknowns,
@@ -49,7 +49,7 @@ impl Assembly {
         })
     }
 
-    pub fn configuration<'a, S: Scalar>(
+    pub(crate) fn configuration<'a, S: Scalar>(
         &'a self,
         structure: &'a Structure<S>,
     ) -> Configuration<'a, S> {
@@ -57,7 +57,7 @@ impl Assembly {
     }
 
     /// Writes the tangent stiffness at a motion into `values`.
-    pub fn tangent(
+    pub(crate) fn tangent(
         &self,
         configuration: &Configuration<f64>,
         motion_all: &NodalMotion<f64>,
@@ -82,7 +82,7 @@ impl Assembly {
     }
 
     /// Writes the mass matrix into `values`.
-    pub fn mass(&self, configuration: &Configuration<f64>, values: &mut [f64]) {
+    pub(crate) fn mass(&self, configuration: &Configuration<f64>, values: &mut [f64]) {
         values.fill(0.0);
         let mut matrix = ElementMatrix::new();
         let topology = &configuration.structure.topology;

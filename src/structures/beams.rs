@@ -28,11 +28,11 @@ impl<S: Scalar> NodalMotion<S> {
 
 impl<S: Scalar> Configuration<'_, S> {
     /// Nodes of each beam, with its number.
-    pub fn beams(&self) -> impl Iterator<Item = (usize, &[usize; BEAM_NODES])> {
+    pub(crate) fn beams(&self) -> impl Iterator<Item = (usize, &[usize; BEAM_NODES])> {
         self.structure.topology.mesh.beams.iter().enumerate()
     }
 
-    pub fn beam(&self, index: usize) -> Beam<S> {
+    pub(crate) fn beam(&self, index: usize) -> Beam<S> {
         let (structure, topology) = (self.structure, &self.structure.topology);
         Beam {
             points: topology.mesh.beams[index].map(|node| structure.nodes[node]),
@@ -45,7 +45,7 @@ impl<S: Scalar> Configuration<'_, S> {
     }
 
     /// Transpose of the derivative of [`Configuration::beam`].
-    pub fn add_beam_transpose(&self, index: usize, bar: &Beam<S>, to: &mut Cotangent<S>) {
+    pub(crate) fn add_beam_transpose(&self, index: usize, bar: &Beam<S>, to: &mut Cotangent<S>) {
         let topology = &self.structure.topology;
         for (a, &node) in topology.mesh.beams[index].iter().enumerate() {
             to.structure.nodes[node] += bar.points[a];
@@ -60,7 +60,7 @@ impl<S: Scalar> Configuration<'_, S> {
     }
 
     /// Strain energy of the beams \[J\].
-    pub fn beam_energy(&self, motion: &NodalMotion<S>, terms: Terms) -> S {
+    pub(crate) fn beam_energy(&self, motion: &NodalMotion<S>, terms: Terms) -> S {
         self.beams().fold(S::zero(), |sum, (index, element)| {
             let v = motion.of_beam(element);
             sum + self.beam(index).energy(&v, terms.von_karman)
@@ -68,7 +68,7 @@ impl<S: Scalar> Configuration<'_, S> {
     }
 
     /// Adds what each beam makes of its motion: derivatives by the motion to `force`, by the beam to `to`.
-    pub fn add_beams_transpose(
+    pub(crate) fn add_beams_transpose(
         &self,
         motion: &NodalMotion<S>,
         force: &mut NodalMotion<S>,
@@ -85,7 +85,7 @@ impl<S: Scalar> Configuration<'_, S> {
     }
 
     /// The tangent of a beam at a motion.
-    pub fn beam_tangent(
+    pub(crate) fn beam_tangent(
         &self,
         index: usize,
         motion: &NodalMotion<S>,

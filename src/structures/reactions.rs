@@ -67,7 +67,7 @@ impl Reaction<'_> {
     }
 
     /// The value in a state of a load case.
-    pub fn value<S: Scalar>(
+    pub(crate) fn value<S: Scalar>(
         &self,
         configuration: &Configuration<S>,
         state: &State<S>,
@@ -84,7 +84,7 @@ impl Reaction<'_> {
     }
 
     /// Adds to the cotangent of the nodes that ψ moves with them; gives ψ for the adjoint product.
-    pub fn add_transpose(
+    pub(crate) fn add_transpose(
         &self,
         configuration: &Configuration<f64>,
         state: &State<f64>,

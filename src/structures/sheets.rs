@@ -10,7 +10,7 @@ use super::shell::basis::TABLES;
 use crate::math::{Scalar, Vec3, scalar::length};
 
 /// Angle between normals from which on a node stands on a fold [rad].
-pub const FOLD_ANGLE: f64 = 0.35;
+pub(crate) const FOLD_ANGLE: f64 = 0.35;
 
 /// Which director each corner of each element has.
 #[derive(Clone, Debug)]

@@ -79,7 +79,7 @@ impl NodalMotion<Dual> {
 
 impl<S: Scalar> Cotangent<S> {
     /// Adds `factor` times another collection.
-    pub fn add_scaled(&mut self, other: &Self, factor: S) {
+    pub(crate) fn add_scaled(&mut self, other: &Self, factor: S) {
         self.structure.add(&other.structure.map(|x| x * factor));
         for (a, b) in self.directors.iter_mut().zip(&other.directors) {
             *a += b * factor;
@@ -88,7 +88,7 @@ impl<S: Scalar> Cotangent<S> {
 }
 
 impl<'a, S: Scalar> Configuration<'a, S> {
-    pub fn new(
+    pub(crate) fn new(
         structure: &'a Structure<S>,
         unknowns: &'a Unknowns,
         node_unknowns: NodeUnknowns,
@@ -102,7 +102,7 @@ impl<'a, S: Scalar> Configuration<'a, S> {
         }
     }
 
-    pub fn cotangent(&self) -> Cotangent<S> {
+    pub(crate) fn cotangent(&self) -> Cotangent<S> {
         Cotangent {
             structure: self.structure.zeros(),
             directors: vec![Vec3::zeros(); self.directors.len()],
@@ -110,7 +110,7 @@ impl<'a, S: Scalar> Configuration<'a, S> {
     }
 
     /// Ends a collection: what the directors take from the nodes.
-    pub fn finish(&self, mut cotangent: Cotangent<S>) -> Structure<S> {
+    pub(crate) fn finish(&self, mut cotangent: Cotangent<S>) -> Structure<S> {
         let topology = &self.structure.topology;
         topology.sheets.add_directors_transpose(
             &topology.mesh,
@@ -121,7 +121,7 @@ impl<'a, S: Scalar> Configuration<'a, S> {
         cotangent.structure
     }
 
-    pub fn shell(&self, index: usize) -> Shell<S> {
+    pub(crate) fn shell(&self, index: usize) -> Shell<S> {
         let (structure, topology) = (self.structure, &self.structure.topology);
         let corners = &topology.sheets.corners[index];
         Shell {
@@ -137,7 +137,7 @@ impl<'a, S: Scalar> Configuration<'a, S> {
     }
 
     /// Transpose of the derivative of [`Configuration::shell`].
-    pub fn add_shell_transpose(
+    pub(crate) fn add_shell_transpose(
         &self,
         index: usize,
         bar: &ShellCotangent<S>,
@@ -155,7 +155,7 @@ impl<'a, S: Scalar> Configuration<'a, S> {
     }
 
     /// The strain energy of a motion \[J\].
-    pub fn strain_energy(&self, motion: &NodalMotion<S>, terms: Terms) -> S {
+    pub(crate) fn strain_energy(&self, motion: &NodalMotion<S>, terms: Terms) -> S {
         let shells = self.structure.topology.mesh.shells.iter().enumerate();
         shells.fold(self.beam_energy(motion, terms), |sum, (index, element)| {
             let v = motion.of_element(element);
@@ -164,19 +164,19 @@ impl<'a, S: Scalar> Configuration<'a, S> {
     }
 
     /// The director of a node that has one.
-    pub fn smooth_director(&self, node: usize) -> Option<&Vec3<S>> {
+    pub(crate) fn smooth_director(&self, node: usize) -> Option<&Vec3<S>> {
         let range = self.structure.topology.sheets.of_node[node].clone();
         (range.len() == 1).then(|| &self.directors[range.start])
     }
 
     /// The axes of the unknown rotations of a node.
-    pub fn axes(&self, node: usize) -> ([Vec3<S>; 3], usize) {
+    pub(crate) fn axes(&self, node: usize) -> ([Vec3<S>; 3], usize) {
         self.unknowns.nodes[node]
             .rotations
             .axes(self.smooth_director(node))
     }
 
-    pub fn element_axes(&self, index: usize) -> RotationAxes<S> {
+    pub(crate) fn element_axes(&self, index: usize) -> RotationAxes<S> {
         let mut all = RotationAxes::global();
         for (a, &node) in self.structure.topology.mesh.shells[index]
             .iter()
@@ -188,7 +188,7 @@ impl<'a, S: Scalar> Configuration<'a, S> {
     }
 
     /// The motion of the nodes that values of the unknowns make.
-    pub fn spread(&self, x: &[S]) -> NodalMotion<S> {
+    pub(crate) fn spread(&self, x: &[S]) -> NodalMotion<S> {
         let mut motion = NodalMotion::zeros(self.structure.nodes.len());
         for (node, at) in self.unknowns.nodes.iter().enumerate() {
             for k in 0..3 {
@@ -205,7 +205,7 @@ impl<'a, S: Scalar> Configuration<'a, S> {
     }
 
     /// Transpose of the derivative of [`Configuration::spread`].
-    pub fn add_spread_transpose(
+    pub(crate) fn add_spread_transpose(
         &self,
         x: &[S],
         bar: &NodalMotion<S>,

@@ -76,7 +76,7 @@ impl Rotations {
     }
 
     /// The axes, and how many there are.
-    pub fn axes<S: Scalar>(self, director: Option<&Vec3<S>>) -> ([Vec3<S>; 3], usize) {
+    pub(crate) fn axes<S: Scalar>(self, director: Option<&Vec3<S>>) -> ([Vec3<S>; 3], usize) {
         let mut axes = [Vec3::zeros(); 3];
         let d = director.copied().unwrap_or_else(Vec3::zeros);
         match self {
@@ -95,7 +95,12 @@ impl Rotations {
     }
 
     /// Transpose of the derivative of Σ axis_k φ_k by the director, for the cotangent `bar`.
-    pub fn director_transpose<S: Scalar>(self, d: &Vec3<S>, phi: &[S], bar: &Vec3<S>) -> Vec3<S> {
+    pub(crate) fn director_transpose<S: Scalar>(
+        self,
+        d: &Vec3<S>,
+        phi: &[S],
+        bar: &Vec3<S>,
+    ) -> Vec3<S> {
         match self {
             Self::Global(_) => Vec3::zeros(),
             Self::Tangents(k) => {
@@ -133,13 +138,13 @@ pub(crate) struct Unknowns {
 
 impl Unknowns {
     /// Numbers of the unknown rotations of a node.
-    pub fn rotations_of(&self, node: usize) -> std::ops::Range<usize> {
+    pub(crate) fn rotations_of(&self, node: usize) -> std::ops::Range<usize> {
         let at = &self.nodes[node];
         at.first_rotation..at.first_rotation + at.rotations.count()
     }
 
     /// Numbers the unknowns that the supports leave, the nodes coming in `order`.
-    pub fn new(
+    pub(crate) fn new(
         structure: &Structure<f64>,
         supports: &[Support],
         node_unknowns: NodeUnknowns,

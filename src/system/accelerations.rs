@@ -23,7 +23,7 @@ use crate::model::Model;
 use std::sync::Arc;
 
 /// Solver of the index-1 equations at one position after the other.
-pub struct Accelerations<'a, S> {
+pub(crate) struct Accelerations<'a, S> {
     /// The model.
     pub model: &'a Model<S>,
     /// Its numbering.
@@ -65,7 +65,7 @@ pub struct Memory {
 
 /// Why the tree of joints does not serve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Untreelike {
+pub(crate) enum Untreelike {
     /// Loops of joints reach so far and overlap so much that sparse LU costs less.
     Loops,
     /// A body, with what hangs from it, has a motion without inertia, or one whose inertia loses five
@@ -77,7 +77,7 @@ pub enum Untreelike {
 
 impl<'a, S: SolveScalar> Accelerations<'a, S> {
     /// Plans the solver.
-    pub fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
+    pub(crate) fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
         let (solver, left_to_sparse) = match Tree::plan(model, numbering) {
             Some(tree) => (Solver::Tree(Box::new(tree)), None),
             None => (Self::sparse(model, numbering), Some(Untreelike::Loops)),
@@ -101,12 +101,12 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// Whether its factors depend on more than the state that it stands at.
-    pub fn remembers(&self) -> bool {
+    pub(crate) fn remembers(&self) -> bool {
         matches!(self.solver, Solver::Sparse(..))
     }
 
     /// What its factors depend on besides the state.
-    pub fn memory(&mut self) -> Memory {
+    pub(crate) fn memory(&mut self) -> Memory {
         Memory {
             left_to_sparse: self.left_to_sparse,
             pivots: match &mut self.solver {
@@ -117,7 +117,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// Takes the memory of another solver of the same model.
-    pub fn restore(&mut self, memory: &Memory) {
+    pub(crate) fn restore(&mut self, memory: &Memory) {
         if self.left_to_sparse != memory.left_to_sparse {
             let tree = || Tree::plan(self.model, self.numbering);
             self.solver = match memory.left_to_sparse.is_none().then(tree).flatten() {
@@ -137,7 +137,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// Whether the joints close loops, or a body lacks inertia so that the tree does not serve.
-    pub fn closes_loops(&self) -> bool {
+    pub(crate) fn closes_loops(&self) -> bool {
         match &self.solver {
             Solver::Tree(tree) => tree.closes_loops(),
             Solver::Sparse(..) => true,
@@ -145,12 +145,12 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// Rows that are not imposed.
-    pub fn left_out(&self) -> &LeftOut {
+    pub(crate) fn left_out(&self) -> &LeftOut {
         &self.left_out
     }
 
     /// Leaves other rows out from where the solver stands next.
-    pub fn leave_out(&mut self, left_out: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, left_out: &LeftOut) {
         if self.left_out != *left_out {
             self.left_out.clone_from(left_out);
             if let Solver::Sparse(saddle, _) = &mut self.solver {
@@ -161,7 +161,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
 
     /// What should be left out from here on, where that is another choice (see [`LeftOut::exchanged`]),
     /// with the matrix factorised where the solver stands.
-    pub fn exchanged(&mut self, worn: f64) -> Option<LeftOut> {
+    pub(crate) fn exchanged(&mut self, worn: f64) -> Option<LeftOut> {
         if self.left_out.is_empty() {
             return None;
         }
@@ -178,7 +178,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
 
     /// Moves to the state (q, v) at `time` without factorising; the Euler parameters in `q` need not
     /// be of unit length.
-    pub fn stand(&mut self, q: &[S], v: &[S], time: S) {
+    pub(crate) fn stand(&mut self, q: &[S], v: &[S], time: S) {
         self.time = time;
         Motion::all_normalised(self.numbering, q, v, &mut self.motions);
         match &mut self.planar {
@@ -200,7 +200,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// Changes the velocities, the position kept.
-    pub fn set_velocities(&mut self, v: &[S]) {
+    pub(crate) fn set_velocities(&mut self, v: &[S]) {
         for (body, motion) in self.motions.iter_mut().enumerate() {
             (motion.velocity, motion.omega) = velocities_of(&v[self.numbering.velocity(body)..]);
         }
@@ -213,7 +213,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     ///
     /// # Errors
     /// [`SingularMatrix`]: redundant constraints, or a motion without inertia.
-    pub fn factorise(&mut self) -> Result<(), SingularMatrix> {
+    pub(crate) fn factorise(&mut self) -> Result<(), SingularMatrix> {
         self.factorisations += 1;
         if let Solver::Tree(tree) = &mut self.solver {
             let Err(at) = tree.factorise(
@@ -243,7 +243,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// Solves [M Gᵀ; G 0] (x, λ) = (f, g) in place, with the matrix factorised last.
-    pub fn solve(&mut self, rhs: &mut [S]) {
+    pub(crate) fn solve(&mut self, rhs: &mut [S]) {
         self.solves += 1;
         self.left_out.clear(&mut rhs[self.numbering.velocities()..]);
         if let Solver::Sparse(saddle, _) = &mut self.solver {
@@ -260,7 +260,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// How the matrix that was factorised last is eliminated.
-    pub fn elimination(&mut self) -> Elimination {
+    pub(crate) fn elimination(&mut self) -> Elimination {
         match &mut self.solver {
             Solver::Tree(tree) => tree.elimination(self.numbering),
             Solver::Sparse(saddle, _) => saddle.elimination(),
@@ -268,7 +268,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// Why that is left to sparse LU, if it is.
-    pub fn left_to_sparse(&self) -> Option<Untreelike> {
+    pub(crate) fn left_to_sparse(&self) -> Option<Untreelike> {
         self.left_to_sparse
     }
 
@@ -303,7 +303,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// Accelerations and multipliers where the solver stands and was factorised.
-    pub fn accelerations(&mut self, a: &mut [S], lambda: &mut [S]) {
+    pub(crate) fn accelerations(&mut self, a: &mut [S], lambda: &mut [S]) {
         let mut rhs = std::mem::take(&mut self.rhs);
         let nv = self.numbering.velocities();
         let (upper, lower) = rhs.split_at_mut(nv);
@@ -326,7 +326,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
 
     /// The correction of the velocities that makes G v + Φ_t = 0 in the metric of the mass, and
     /// its multipliers: M δ + Gᵀσ = 0, G (v + δ) + Φ_t = 0.
-    pub fn velocity_correction(&mut self, v: &[S], delta: &mut [S], sigma: &mut [S]) {
+    pub(crate) fn velocity_correction(&mut self, v: &[S], delta: &mut [S], sigma: &mut [S]) {
         let mut rhs = std::mem::take(&mut self.rhs);
         let nv = self.numbering.velocities();
         rhs.fill(S::zero());
@@ -340,7 +340,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
 
     /// Rates G v + Φ_t of the constraints at the velocities `v`, where the solver stands, zero those that
     /// are left out.
-    pub fn rates(&self, v: &[S], out: &mut [S]) {
+    pub(crate) fn rates(&self, v: &[S], out: &mut [S]) {
         let (model, numbering) = (self.model, self.numbering);
         joints::rates_from_gradients(model, numbering, &self.gradients, v, out);
         joints::add_driven_rates(&self.here(), out);
@@ -348,18 +348,18 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// Whether row i is a length (m), as those of points are, rather than the product of two axes.
-    pub fn is_length(&self, i: usize) -> bool {
+    pub(crate) fn is_length(&self, i: usize) -> bool {
         self.gradients[i].force.iter().any(|x| x.re() != 0.0)
     }
 
     /// Constraints Φ where the solver stands, zero those that are left out.
-    pub fn constraints(&self, out: &mut [S]) {
+    pub(crate) fn constraints(&self, out: &mut [S]) {
         joints::values(&self.here(), out);
         self.left_out.clear(out);
     }
 
     /// Adds Gᵀ λ to `out`.
-    pub fn add_reactions(&self, lambda: &[S], out: &mut [S]) {
+    pub(crate) fn add_reactions(&self, lambda: &[S], out: &mut [S]) {
         joints::add_reactions(self.model, self.numbering, &self.gradients, lambda, out);
     }
 }
@@ -368,7 +368,7 @@ impl Accelerations<'_, f64> {
     /// Pulls the cotangent ā of the accelerations back to tangent positions, velocities, time
     /// (returned) and parameters, where the solver stands and was factorised. `a` and `lambda` are what
     /// [`Accelerations::accelerations`] gave there.
-    pub fn pull_back(
+    pub(crate) fn pull_back(
         &mut self,
         (a, lambda): (&[f64], &[f64]),
         a_bar: &[f64],
@@ -421,7 +421,7 @@ impl Accelerations<'_, f64> {
 
     /// Pulls λᵀ G(q, t) w, which is linear in w, back to tangent positions, the parameters of the
     /// joints and time (returned).
-    pub fn pull_rate(
+    pub(crate) fn pull_rate(
         &mut self,
         w: &[f64],
         lambda: &[f64],
@@ -436,7 +436,7 @@ impl Accelerations<'_, f64> {
     }
 
     /// As [`Accelerations::pull_rate`] for χᵀ (G v + Φ_t) at the velocities where the solver stands.
-    pub fn pull_rates(&mut self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
+    pub(crate) fn pull_rates(&mut self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
         let cotangents = RowCotangents {
             rate: Some(chi),
             ..Default::default()
@@ -445,7 +445,12 @@ impl Accelerations<'_, f64> {
     }
 
     /// As [`Accelerations::pull_rate`] for χᵀ Φ(q, t).
-    pub fn pull_constraints(&mut self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
+    pub(crate) fn pull_constraints(
+        &mut self,
+        chi: &[f64],
+        y: &mut [f64],
+        cot: &mut Model<f64>,
+    ) -> f64 {
         let cotangents = RowCotangents {
             value: Some(chi),
             ..Default::default()

@@ -224,7 +224,10 @@ fn check_turned<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> Result<()
 
 /// A driven joint that is at the spurious root of its rows, in which a frame is turned by 180°, where
 /// and when the bodies are as `at` says. Steps of half a turn lead there.
-pub fn turned<'a, S: Scalar>(model: &'a Model<S>, at: (&[Motion<S>], S)) -> Option<&'a Joint<S>> {
+pub(crate) fn turned<'a, S: Scalar>(
+    model: &'a Model<S>,
+    at: (&[Motion<S>], S),
+) -> Option<&'a Joint<S>> {
     let driven = model.joints.iter().filter(|joint| !joint.drives.is_empty());
     driven.into_iter().find(|joint| is_turned(joint, at))
 }

@@ -124,21 +124,21 @@ impl<S: Scalar> Motion<S> {
 
 /// The linear and the angular part of six velocity (or tangent) coordinates.
 #[inline]
-pub fn velocities_of<S: Scalar>(v: &[S]) -> (Vec3<S>, Vec3<S>) {
+pub(crate) fn velocities_of<S: Scalar>(v: &[S]) -> (Vec3<S>, Vec3<S>) {
     let v = &v[..6];
     (Vec3::new(v[0], v[1], v[2]), Vec3::new(v[3], v[4], v[5]))
 }
 
 /// The position and the Euler-parameter part of seven position coordinates.
 #[inline]
-pub fn positions_of<S: Scalar>(q: &[S]) -> (Vec3<S>, Quat<S>) {
+pub(crate) fn positions_of<S: Scalar>(q: &[S]) -> (Vec3<S>, Quat<S>) {
     let q = &q[..7];
     (Vec3::new(q[0], q[1], q[2]), [q[3], q[4], q[5], q[6]])
 }
 
 /// Adds a linear and an angular part to six coordinates.
 #[inline]
-pub fn add6<S: Scalar>(out: &mut [S], linear: &Vec3<S>, angular: &Vec3<S>) {
+pub(crate) fn add6<S: Scalar>(out: &mut [S], linear: &Vec3<S>, angular: &Vec3<S>) {
     let out = &mut out[..6];
     for i in 0..3 {
         out[i] += linear[i];
@@ -148,7 +148,7 @@ pub fn add6<S: Scalar>(out: &mut [S], linear: &Vec3<S>, angular: &Vec3<S>) {
 
 /// Adds a position and an Euler-parameter part to seven coordinates.
 #[inline]
-pub fn add7<S: Scalar>(out: &mut [S], position: &Vec3<S>, orientation: &Quat<S>) {
+pub(crate) fn add7<S: Scalar>(out: &mut [S], position: &Vec3<S>, orientation: &Quat<S>) {
     let out = &mut out[..7];
     for i in 0..3 {
         out[i] += position[i];
@@ -160,7 +160,12 @@ pub fn add7<S: Scalar>(out: &mut [S], position: &Vec3<S>, orientation: &Quat<S>)
 
 /// Moves the positions `q` of every body by the tangent step δy, the Euler parameters staying on
 /// the unit sphere, and adds the same change to `increment`, which stays accurate to its own size.
-pub fn advance<S: Scalar>(numbering: &Numbering, q: &mut [S], increment: &mut [S], step: &[S]) {
+pub(crate) fn advance<S: Scalar>(
+    numbering: &Numbering,
+    q: &mut [S],
+    increment: &mut [S],
+    step: &[S],
+) {
     for body in 0..numbering.bodies() {
         let o = numbering.position(body);
         let (dr, dtheta) = velocities_of(&step[numbering.velocity(body)..]);
@@ -172,7 +177,7 @@ pub fn advance<S: Scalar>(numbering: &Numbering, q: &mut [S], increment: &mut [S
 }
 
 /// Brings the Euler parameters in `q` to unit length and adds the change to `increment`.
-pub fn normalise<S: Scalar>(numbering: &Numbering, q: &mut [S], increment: &mut [S]) {
+pub(crate) fn normalise<S: Scalar>(numbering: &Numbering, q: &mut [S], increment: &mut [S]) {
     for body in 0..numbering.bodies() {
         let o = numbering.position(body);
         let dp = rotation::normalisation(&positions_of(&q[o..]).1);
@@ -182,7 +187,7 @@ pub fn normalise<S: Scalar>(numbering: &Numbering, q: &mut [S], increment: &mut 
 }
 
 /// Replaces the Euler parameters in `q` by p / |p|.
-pub fn bring_to_unit<S: Scalar>(numbering: &Numbering, q: &mut [S]) {
+pub(crate) fn bring_to_unit<S: Scalar>(numbering: &Numbering, q: &mut [S]) {
     for body in 0..numbering.bodies() {
         let o = numbering.position(body);
         let p = rotation::unit(&positions_of(&q[o..]).1);
@@ -191,7 +196,7 @@ pub fn bring_to_unit<S: Scalar>(numbering: &Numbering, q: &mut [S]) {
 }
 
 /// Rates of the positions, q̇ = T(q) v.
-pub fn rates<S: Scalar>(numbering: &Numbering, q: &[S], v: &[S], out: &mut [S]) {
+pub(crate) fn rates<S: Scalar>(numbering: &Numbering, q: &[S], v: &[S], out: &mut [S]) {
     for body in 0..numbering.bodies() {
         let (_, p) = positions_of(&q[numbering.position(body)..]);
         let (velocity, omega) = velocities_of(&v[numbering.velocity(body)..]);
@@ -202,7 +207,12 @@ pub fn rates<S: Scalar>(numbering: &Numbering, q: &[S], v: &[S], out: &mut [S]) 
 }
 
 /// Velocity coordinates of position rates, P(q) q̇ = (ṙ, 2 L(p) ṗ), the left inverse of T.
-pub fn velocity_of_rates<S: Scalar>(numbering: &Numbering, q: &[S], rates: &[S], out: &mut [S]) {
+pub(crate) fn velocity_of_rates<S: Scalar>(
+    numbering: &Numbering,
+    q: &[S],
+    rates: &[S],
+    out: &mut [S],
+) {
     for body in 0..numbering.bodies() {
         let (_, p) = positions_of(&q[numbering.position(body)..]);
         let (rdot, pdot) = positions_of(&rates[numbering.position(body)..]);
@@ -213,7 +223,7 @@ pub fn velocity_of_rates<S: Scalar>(numbering: &Numbering, q: &[S], rates: &[S],
 }
 
 /// Derivative of 2 L(p) ṗ in the tangent δθ of p, ṗ held: the matrix −L(ṗ) L(p)ᵀ.
-pub fn angular_velocity_by_theta<S: Scalar>(p: &Quat<S>, pdot: &Quat<S>) -> Mat3<S> {
+pub(crate) fn angular_velocity_by_theta<S: Scalar>(p: &Quat<S>, pdot: &Quat<S>) -> Mat3<S> {
     let mut out = Mat3::zeros();
     for j in 0..3 {
         let mut unit = Vec3::zeros();
@@ -226,7 +236,7 @@ pub fn angular_velocity_by_theta<S: Scalar>(p: &Quat<S>, pdot: &Quat<S>) -> Mat3
 
 /// The angular velocity at the positions `q` (of one body) that a tangent rotation rate at the
 /// positions `other` makes: L(p) L(p')ᵀ.
-pub fn turn_between<S: Scalar>(q: &[S], other: &[S]) -> Mat3<S> {
+pub(crate) fn turn_between<S: Scalar>(q: &[S], other: &[S]) -> Mat3<S> {
     let (p, other) = (positions_of(q).1, positions_of(other).1);
     let mut out = Mat3::zeros();
     for j in 0..3 {
@@ -239,7 +249,12 @@ pub fn turn_between<S: Scalar>(q: &[S], other: &[S]) -> Mat3<S> {
 }
 
 /// Tangent cotangent of a cotangent of q: T(q)ᵀ g, per body (g_r, ½ L(p) g_p).
-pub fn tangent_of_cotangent<S: Scalar>(numbering: &Numbering, q: &[S], g: &[S], out: &mut [S]) {
+pub(crate) fn tangent_of_cotangent<S: Scalar>(
+    numbering: &Numbering,
+    q: &[S],
+    g: &[S],
+    out: &mut [S],
+) {
     for body in 0..numbering.bodies() {
         let (_, p) = positions_of(&q[numbering.position(body)..]);
         let (gr, gp) = positions_of(&g[numbering.position(body)..]);
@@ -250,7 +265,7 @@ pub fn tangent_of_cotangent<S: Scalar>(numbering: &Numbering, q: &[S], g: &[S], 
 }
 
 /// Cotangent of q̇ from one of the velocity coordinates: P(q)ᵀ ψ, per body (ψ_r, 2 L(p)ᵀ ψ_θ).
-pub fn rates_cotangent<S: Scalar>(numbering: &Numbering, q: &[S], psi: &[S], out: &mut [S]) {
+pub(crate) fn rates_cotangent<S: Scalar>(numbering: &Numbering, q: &[S], psi: &[S], out: &mut [S]) {
     for body in 0..numbering.bodies() {
         let (_, p) = positions_of(&q[numbering.position(body)..]);
         let (linear, angular) = velocities_of(&psi[numbering.velocity(body)..]);
@@ -261,7 +276,7 @@ pub fn rates_cotangent<S: Scalar>(numbering: &Numbering, q: &[S], psi: &[S], out
 }
 
 /// Pulls the cotangent of q̇ = T(q) v back to q and v.
-pub fn pull_rates(
+pub(crate) fn pull_rates(
     numbering: &Numbering,
     (q, v): (&[f64], &[f64]),
     qdot_bar: &[f64],
@@ -282,7 +297,7 @@ pub fn pull_rates(
 
 /// Adds the cotangent of positions whose Euler parameters are brought to unit length, given the
 /// cotangent of the tangent there.
-pub fn add_unit_cotangent(numbering: &Numbering, q: &[f64], y: &[f64], out: &mut [f64]) {
+pub(crate) fn add_unit_cotangent(numbering: &Numbering, q: &[f64], y: &[f64], out: &mut [f64]) {
     for body in 0..numbering.bodies() {
         let o = numbering.position(body);
         let six = &y[numbering.velocity(body)..][..6];
@@ -300,7 +315,7 @@ pub fn add_unit_cotangent(numbering: &Numbering, q: &[f64], y: &[f64], out: &mut
 }
 
 /// Inertial minus applied forces M v̇ − f(q, v) of a rigid body: (m (v̇ − g), J ω̇ + ω × J ω).
-pub fn force_balance<S: Scalar>(
+pub(crate) fn force_balance<S: Scalar>(
     body: &RigidBody<S>,
     gravity: &Vec3<S>,
     omega: &Vec3<S>,
@@ -315,13 +330,13 @@ pub fn force_balance<S: Scalar>(
 }
 
 /// Derivative of the torque balance in ω: ω̃ J − (J ω)~.
-pub fn torque_by_omega<S: Scalar>(body: &RigidBody<S>, omega: &Vec3<S>) -> Mat3<S> {
+pub(crate) fn torque_by_omega<S: Scalar>(body: &RigidBody<S>, omega: &Vec3<S>) -> Mat3<S> {
     skew(omega) * body.inertia - skew(&(body.inertia * omega))
 }
 
 /// Pulls the cotangent ψ = (ψ_r, ψ_θ) of [`force_balance`] back to ω (returned) and to the
 /// parameters (added to `cot` and `gravity_cot`).
-pub fn pull_force_balance(
+pub(crate) fn pull_force_balance(
     body: &RigidBody<f64>,
     gravity: &Vec3<f64>,
     omega: &Vec3<f64>,
@@ -338,7 +353,12 @@ pub fn pull_force_balance(
 }
 
 /// The product M x, transposed: per body (m x_r, Jᵀ x_θ).
-pub fn mass_product<S: Scalar>(model: &Model<S>, numbering: &Numbering, x: &[S], out: &mut [S]) {
+pub(crate) fn mass_product<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    x: &[S],
+    out: &mut [S],
+) {
     for (i, body) in model.bodies.iter().enumerate() {
         let o = numbering.velocity(i);
         let (linear, angular) = velocities_of(&x[o..]);
@@ -348,7 +368,7 @@ pub fn mass_product<S: Scalar>(model: &Model<S>, numbering: &Numbering, x: &[S],
 }
 
 /// Inertial minus applied forces of all bodies.
-pub fn all_force_balances<S: Scalar>(
+pub(crate) fn all_force_balances<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
     motions: &[Motion<S>],

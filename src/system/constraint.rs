@@ -95,7 +95,7 @@ fn unit<S: Scalar>(k: usize) -> Vec3<S> {
 }
 
 /// Value Φ of a row.
-pub fn value<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
+pub(crate) fn value<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
     match row {
         Coincident(k) => a.point()[k] - b.point()[k],
         Perpendicular { a: i, b: j } => a.axis(i).dot(&b.axis(j)),
@@ -108,14 +108,14 @@ pub fn value<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
 }
 
 /// Rate G v + Φ_t of a row.
-pub fn rate<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
+pub(crate) fn rate<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
     let mut out = [S::zero()];
     rates(std::iter::once(row), a, b, &mut out);
     out[0]
 }
 
 /// Rates G v + Φ_t of the rows of a joint.
-pub fn rates<S: Scalar>(
+pub(crate) fn rates<S: Scalar>(
     rows: impl Iterator<Item = ConstraintRow> + Clone,
     a: &Side<S>,
     b: &Side<S>,
@@ -130,7 +130,7 @@ pub fn rates<S: Scalar>(
 
 /// Second derivatives Φ̈ of the rows of a joint at the accelerations of the motions: the
 /// acceleration bias if these are zero.
-pub fn accelerations<S: Scalar>(
+pub(crate) fn accelerations<S: Scalar>(
     rows: impl Iterator<Item = ConstraintRow> + Clone,
     a: &Side<S>,
     b: &Side<S>,
@@ -161,7 +161,7 @@ pub struct RowGradient<S> {
 }
 
 /// Gradient of a row.
-pub fn gradient<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> RowGradient<S> {
+pub(crate) fn gradient<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> RowGradient<S> {
     let (ra, rb) = (&a.motion.rotation, &b.motion.rotation);
     let (sa, sb) = (&a.frame.point, &b.frame.point);
     match row {
@@ -201,7 +201,7 @@ pub fn gradient<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> RowG
 
 /// Cotangents of one side of a joint.
 #[derive(Clone, Debug)]
-pub struct SideCotangent<S> {
+pub(crate) struct SideCotangent<S> {
     /// By the tangent position: δr (ground axes).
     pub position: Vec3<S>,
     /// By the tangent position: δθ (body axes).
@@ -218,7 +218,7 @@ pub struct SideCotangent<S> {
 
 impl<S: Scalar> SideCotangent<S> {
     /// All cotangents of a side whose frame does not move zero.
-    pub fn fixed() -> Self {
+    pub(crate) fn fixed() -> Self {
         let zero = Vec3::zeros();
         Self {
             position: zero,
@@ -231,7 +231,7 @@ impl<S: Scalar> SideCotangent<S> {
     }
 
     /// Adds another cotangent of a side whose frame does not move.
-    pub fn add(&mut self, other: &Self) {
+    pub(crate) fn add(&mut self, other: &Self) {
         self.position += other.position;
         self.theta += other.theta;
         self.velocity += other.velocity;
@@ -252,7 +252,7 @@ impl<S: Scalar> SideCotangent<S> {
 /// Pulls the cotangents of the rows of a joint back to positions, velocities and joint frames of
 /// both bodies: the transposed derivative of [`value`], [`rates`] and [`accelerations`], the
 /// accelerations of the bodies held.
-pub fn pull_back<S: Scalar>(
+pub(crate) fn pull_back<S: Scalar>(
     rows: impl Iterator<Item = ConstraintRow> + Clone,
     cot: impl Fn(usize) -> RowCotangent<S>,
     a: &Side<S>,
@@ -323,7 +323,7 @@ pub fn pull_back<S: Scalar>(
 
 /// Cotangents of a row's value, rate, second derivative and virtual rate.
 #[derive(Clone, Copy, Debug)]
-pub struct RowCotangent<S> {
+pub(crate) struct RowCotangent<S> {
     /// Of Φ.
     pub value: S,
     /// Of G v.

@@ -7,7 +7,7 @@ use crate::math::{Mat3, Scalar};
 
 /// The derivatives of the rates in the unknowns of a step of size h: ∂q̇/∂q = ∂v̇/∂v = c.
 #[derive(Clone, Copy, Debug)]
-pub struct Rates<S> {
+pub(crate) struct Rates<S> {
     /// c (1/s).
     pub by_state: S,
     /// h (s).
@@ -16,7 +16,7 @@ pub struct Rates<S> {
 
 /// Emits the derivatives of P(q) q̇ − v, times h, in tangent positions and velocities (column scaled by
 /// 1/h), at row `row` and columns `y` and `v`.
-pub fn emit_kinematics<S: Scalar>(
+pub(crate) fn emit_kinematics<S: Scalar>(
     at: &InMotion<S>,
     qdot: &[S],
     (row, y, v): (usize, usize, usize),
@@ -38,7 +38,7 @@ pub fn emit_kinematics<S: Scalar>(
 
 /// Emits the derivatives of M v̇ − f(q, v), times h², in velocities (column scaled by 1/h) at
 /// (`row`, `v`). Neither M nor the forces of rigid bodies under gravity depend on q.
-pub fn emit_force_balance<S: Scalar>(
+pub(crate) fn emit_force_balance<S: Scalar>(
     at: &InMotion<S>,
     (row, v): (usize, usize),
     rates: Rates<S>,

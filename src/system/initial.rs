@@ -51,7 +51,7 @@ pub struct InitialState<S> {
 ///
 /// # Errors
 /// [`AssemblyFailure`] names the joint that cannot be closed, or what is singular.
-pub fn solve<S: SolveScalar>(
+pub(crate) fn solve<S: SolveScalar>(
     model: &Model<S>,
     numbering: &Numbering,
     saddle: &mut SaddlePoint<S>,
@@ -152,7 +152,7 @@ fn choose_left_out<S: SolveScalar>(
 }
 
 /// Mass and inertia of each body.
-pub fn mass<S: Scalar>(model: &Model<S>) -> impl Fn(usize) -> BodyBlocks<S> + '_ {
+pub(crate) fn mass<S: Scalar>(model: &Model<S>) -> impl Fn(usize) -> BodyBlocks<S> + '_ {
     |body| {
         let body = &model.bodies[body];
         BodyBlocks {
@@ -167,7 +167,7 @@ pub fn mass<S: Scalar>(model: &Model<S>) -> impl Fn(usize) -> BodyBlocks<S> + '_
 ///
 /// # Errors
 /// [`AssemblyFailure`] if a matrix that was regular forwards is not any more.
-pub fn pull_back(
+pub(crate) fn pull_back(
     model: &Model<f64>,
     numbering: &Numbering,
     saddle: &mut SaddlePoint<f64>,

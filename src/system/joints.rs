@@ -11,7 +11,7 @@ use crate::model::{ConstraintRow, Joint, Model};
 use std::ops::Range;
 
 /// Most rows of a joint.
-pub const ROWS: usize = 6;
+pub(crate) const ROWS: usize = 6;
 
 /// Calls `visit(row numbers, joint, side a, side b)` for every joint.
 fn for_each_joint<S: Scalar>(
@@ -26,7 +26,7 @@ fn for_each_joint<S: Scalar>(
 }
 
 /// Calls `visit(joint number, row, side a, side b)` for every row.
-pub fn for_each_row<S: Scalar>(
+pub(crate) fn for_each_row<S: Scalar>(
     model: &Model<S>,
     (motions, time): (&[Motion<S>], S),
     mut visit: impl FnMut(usize, ConstraintRow, &Side<S>, &Side<S>),
@@ -41,7 +41,7 @@ pub fn for_each_row<S: Scalar>(
 }
 
 /// Constraints Φ(q, t).
-pub fn values<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
+pub(crate) fn values<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
     for_each_joint(at, |numbers, joint, a, b| {
         for (out, row) in out[numbers].iter_mut().zip(joint.rows()) {
             *out = constraint::value(row, a, b);
@@ -50,7 +50,7 @@ pub fn values<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
 }
 
 /// Products G(q) v from the gradients.
-pub fn rates_from_gradients<S: Scalar>(
+pub(crate) fn rates_from_gradients<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
     gradients: &[RowGradient<S>],
@@ -71,14 +71,14 @@ pub fn rates_from_gradients<S: Scalar>(
 }
 
 /// Constraint rates G(q) v + Φ_t.
-pub fn rates<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
+pub(crate) fn rates<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
     for_each_joint(at, |numbers, joint, a, b| {
         constraint::rates(joint.rows(), a, b, &mut out[numbers]);
     });
 }
 
 /// Adds the rates Φ_t that the drives make to `out`.
-pub fn add_driven_rates<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
+pub(crate) fn add_driven_rates<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
     let (model, numbering) = (at.model, at.numbering);
     let ground = Motion::ground();
     let held = |motion: &Motion<S>| Motion {
@@ -104,14 +104,14 @@ pub fn add_driven_rates<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
 
 /// Second derivatives Φ̈ at the accelerations of `motions`: the biases −γ of Φ̈ = G v̇ − γ if these
 /// are zero.
-pub fn accelerations<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
+pub(crate) fn accelerations<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
     for_each_joint(at, |numbers, joint, a, b| {
         constraint::accelerations(joint.rows(), a, b, &mut out[numbers]);
     });
 }
 
 /// Gradients of all rows (the non-zero blocks of G).
-pub fn gradients<S: Scalar>(at: &InMotion<S>, out: &mut Vec<RowGradient<S>>) {
+pub(crate) fn gradients<S: Scalar>(at: &InMotion<S>, out: &mut Vec<RowGradient<S>>) {
     out.clear();
     for_each_joint(at, |_, joint, a, b| {
         out.extend(joint.rows().map(|row| gradient(row, a, b)));
@@ -119,7 +119,7 @@ pub fn gradients<S: Scalar>(at: &InMotion<S>, out: &mut Vec<RowGradient<S>>) {
 }
 
 /// Adds G(q)ᵀ λ to `out` (velocity coordinates).
-pub fn add_reactions<S: Scalar>(
+pub(crate) fn add_reactions<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
     gradients: &[RowGradient<S>],
@@ -153,7 +153,7 @@ pub fn add_reactions<S: Scalar>(
 }
 
 /// Derivative of G(q)ᵀ λ of one joint in the tangent positions of its two bodies.
-pub fn reaction_jacobian<S: Scalar>(
+pub(crate) fn reaction_jacobian<S: Scalar>(
     joint: &Joint<S>,
     (motions, time): (&[Motion<S>], S),
     lambda: &[S],
@@ -168,7 +168,7 @@ pub fn reaction_jacobian<S: Scalar>(
 }
 
 /// Derivative of the rate of one row in the tangent positions of its two bodies.
-pub fn rate_by_position<S: Scalar>(
+pub(crate) fn rate_by_position<S: Scalar>(
     row: ConstraintRow,
     a: &Side<S>,
     b: &Side<S>,
@@ -183,7 +183,7 @@ pub fn rate_by_position<S: Scalar>(
 }
 
 /// Where the pull-back of the constraints is added to.
-pub struct JointCotangent<'a> {
+pub(crate) struct JointCotangent<'a> {
     /// Tangent positions, velocity numbering; `None` if not wanted.
     pub y: Option<&'a mut [f64]>,
     /// Velocities; `None` if not wanted.
@@ -194,7 +194,7 @@ pub struct JointCotangent<'a> {
 
 /// Cotangents of all rows; `None` stands for zero.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct RowCotangents<'a> {
+pub(crate) struct RowCotangents<'a> {
     /// Of the values Φ.
     pub value: Option<&'a [f64]>,
     /// Of the rates G v + Φ_t.
@@ -207,7 +207,7 @@ pub struct RowCotangents<'a> {
 
 impl RowCotangents<'_> {
     /// Those of row i.
-    pub fn row(&self, i: usize) -> RowCotangent<f64> {
+    pub(crate) fn row(&self, i: usize) -> RowCotangent<f64> {
         let at = |all: Option<&[f64]>| all.map_or(0.0, |all| all[i]);
         RowCotangent {
             value: at(self.value),
@@ -220,7 +220,11 @@ impl RowCotangents<'_> {
 
 /// Pulls cotangents of all rows back to tangent positions, velocities and the parameters of the
 /// joints, the accelerations and virtual velocities held; returns the derivative by time.
-pub fn pull_back(at: &InMotion<f64>, cotangents: &RowCotangents, out: &mut JointCotangent) -> f64 {
+pub(crate) fn pull_back(
+    at: &InMotion<f64>,
+    cotangents: &RowCotangents,
+    out: &mut JointCotangent,
+) -> f64 {
     let (model, numbering, time) = (at.model, at.numbering, at.time);
     let ground = Motion::ground();
     let mut by_time = 0.0;

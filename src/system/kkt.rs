@@ -14,7 +14,7 @@ use crate::model::Model;
 use std::sync::Arc;
 
 /// Emits Gᵀ at (`row`, `column`) with the body blocks stacked by `numbering`.
-pub fn emit_transposed_gradients<S: Scalar>(
+pub(crate) fn emit_transposed_gradients<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
     gradients: &[RowGradient<S>],
@@ -45,7 +45,7 @@ pub fn emit_transposed_gradients<S: Scalar>(
 }
 
 /// Emits G at (`row`, `column`).
-pub fn emit_gradients<S: Scalar>(
+pub(crate) fn emit_gradients<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
     gradients: &[RowGradient<S>],
@@ -67,7 +67,7 @@ impl<S: Scalar> Emit<S> for Transposed<'_, S> {
 }
 
 /// Emits the derivative of Gᵀλ in the tangent positions, times `scale`, at (`row`, `column`).
-pub fn emit_reaction_jacobian<S: Scalar>(
+pub(crate) fn emit_reaction_jacobian<S: Scalar>(
     at: &InMotion<S>,
     lambda: &[S],
     (row, column): (usize, usize),
@@ -117,7 +117,7 @@ pub fn emit_reaction_jacobian<S: Scalar>(
 }
 
 /// What stands in the upper left block B: 3 × 3 blocks of each body's linear and angular part.
-pub struct BodyBlocks<S> {
+pub(crate) struct BodyBlocks<S> {
     /// Linear.
     pub linear: S,
     /// Angular.
@@ -126,7 +126,7 @@ pub struct BodyBlocks<S> {
 
 /// How a matrix of the index-1 equations is eliminated, and what that takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Elimination {
+pub(crate) struct Elimination {
     /// Order of the matrix: unknowns of the bodies, and rows.
     pub order: usize,
     /// Bodies in the order of elimination, each with the joint that it hangs from; `None` if a sparse
@@ -142,7 +142,7 @@ pub struct Elimination {
 
 /// The matrix [B + (Gᵀs)_y, Gᵀ; G, 0] in the unknowns of the bodies, and its factors. Vectors are of
 /// length n_v + n_c.
-pub struct SaddlePoint<S> {
+pub(crate) struct SaddlePoint<S> {
     numbering: Numbering,
     matrix: SparseMatrix<S>,
     factors: SparseLu<S>,
@@ -155,7 +155,7 @@ pub struct SaddlePoint<S> {
 
 impl<S: SolveScalar> SaddlePoint<S> {
     /// Plans the matrix for a model.
-    pub fn new(model: &Model<S>, numbering: &Numbering) -> Self {
+    pub(crate) fn new(model: &Model<S>, numbering: &Numbering) -> Self {
         let motions = vec![Motion::ground(); numbering.bodies()];
         let mut gradients = Vec::new();
         let at = InMotion::new(model, numbering, &motions, S::zero());
@@ -185,12 +185,12 @@ impl<S: SolveScalar> SaddlePoint<S> {
     }
 
     /// Rows that are not imposed.
-    pub fn left_out(&self) -> &LeftOut {
+    pub(crate) fn left_out(&self) -> &LeftOut {
         &self.left_out
     }
 
     /// Leaves other rows out from the next factorisation on.
-    pub fn leave_out(&mut self, left_out: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, left_out: &LeftOut) {
         self.left_out.clone_from(left_out);
     }
 
@@ -198,7 +198,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
     ///
     /// # Errors
     /// [`SingularMatrix`]: redundant constraints, or a motion without inertia.
-    pub fn factorise(
+    pub(crate) fn factorise(
         &mut self,
         at: &InMotion<S>,
         multipliers: &[S],
@@ -221,12 +221,12 @@ impl<S: SolveScalar> SaddlePoint<S> {
     }
 
     /// The pivots in use.
-    pub fn pivots(&mut self) -> Option<Arc<Pivots>> {
+    pub(crate) fn pivots(&mut self) -> Option<Arc<Pivots>> {
         self.factors.pivots()
     }
 
     /// Goes on with pivots that were in use for the same system.
-    pub fn set_pivots(&mut self, pivots: Option<&Arc<Pivots>>) {
+    pub(crate) fn set_pivots(&mut self, pivots: Option<&Arc<Pivots>>) {
         self.factors.set_pivots(&self.matrix.pattern, pivots);
     }
 
@@ -234,7 +234,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
     ///
     /// # Panics
     /// If it was not factorised.
-    pub fn elimination(&mut self) -> Elimination {
+    pub(crate) fn elimination(&mut self) -> Elimination {
         let (factor_entries, operations) = self.factors.cost();
         let pattern = &self.matrix.pattern;
         Elimination {
@@ -247,14 +247,14 @@ impl<S: SolveScalar> SaddlePoint<S> {
     }
 
     /// Solves in place.
-    pub fn solve(&mut self, rhs: &mut [S]) {
+    pub(crate) fn solve(&mut self, rhs: &mut [S]) {
         self.left_out.clear(&mut rhs[self.numbering.velocities()..]);
         let factors = &mut self.factors;
         through(&self.numbering, 1, rhs, |rhs| factors.solve(rhs));
     }
 
     /// Solves the transposed system in place, with one step of iterative refinement.
-    pub fn solve_transposed(&mut self, rhs: &mut [S]) {
+    pub(crate) fn solve_transposed(&mut self, rhs: &mut [S]) {
         self.left_out.clear(&mut rhs[self.numbering.velocities()..]);
         let (factors, matrix) = (&mut self.factors, &self.matrix);
         through(&self.numbering, 1, rhs, |rhs| {
@@ -286,7 +286,7 @@ fn emit_saddle_point<S: Scalar>(
 
 /// Emits λ_i = 0 for the rows that are left out, at each of `places`; entries of zero for the others,
 /// so that the pattern serves every choice, if there is one.
-pub fn emit_left_out<S: Scalar>(
+pub(crate) fn emit_left_out<S: Scalar>(
     numbering: &Numbering,
     left_out: &LeftOut,
     places: &[(usize, usize)],

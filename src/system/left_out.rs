@@ -16,7 +16,7 @@ use crate::model::Model;
 
 /// Weight of an imposed row, relative to that of a row that is left out, at which the two are
 /// exchanged between steps.
-pub const WORN: f64 = 2.0;
+pub(crate) const WORN: f64 = 2.0;
 
 /// What the weights of rows are found in, used again.
 #[derive(Clone, Debug)]

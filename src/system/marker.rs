@@ -12,7 +12,7 @@ use crate::math::{Scalar, Vec3};
 
 /// Value, velocity, acceleration and virtual velocity of a marker, in ground axes.
 #[derive(Clone, Copy, Debug)]
-pub struct Jet<S> {
+pub(crate) struct Jet<S> {
     /// Value.
     pub x: Vec3<S>,
     /// First derivative in time.
@@ -25,7 +25,7 @@ pub struct Jet<S> {
 
 /// Motion of a marker's vector on its body, in the body's axes.
 #[derive(Clone, Copy, Debug)]
-pub struct Local<S> {
+pub(crate) struct Local<S> {
     /// ė.
     pub rate: Vec3<S>,
     /// ë.
@@ -34,12 +34,12 @@ pub struct Local<S> {
 
 impl<S: Scalar> Jet<S> {
     /// A jet that does not move from zero.
-    pub fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         Self::fixed(Vec3::zeros())
     }
 
     /// A jet that does not move.
-    pub fn fixed(x: Vec3<S>) -> Self {
+    pub(crate) fn fixed(x: Vec3<S>) -> Self {
         Self {
             x,
             rate: Vec3::zeros(),
@@ -49,12 +49,16 @@ impl<S: Scalar> Jet<S> {
     }
 
     /// The point at `s` from the centre of mass, in body axes.
-    pub fn point(motion: &Motion<S>, s: &Vec3<S>) -> Self {
+    pub(crate) fn point(motion: &Motion<S>, s: &Vec3<S>) -> Self {
         Self::moving_point(motion, s, None)
     }
 
     /// The direction with components `e` in body axes, which may move on the body.
-    pub fn moving_direction(motion: &Motion<S>, e: &Vec3<S>, local: Option<&Local<S>>) -> Self {
+    pub(crate) fn moving_direction(
+        motion: &Motion<S>,
+        e: &Vec3<S>,
+        local: Option<&Local<S>>,
+    ) -> Self {
         let (r, w) = (&motion.rotation, &motion.omega);
         let (rate, acceleration) = derivatives(motion, e, local);
         Jet {
@@ -66,7 +70,7 @@ impl<S: Scalar> Jet<S> {
     }
 
     /// The point at `s` from the centre of mass, in body axes, which may move on the body.
-    pub fn moving_point(motion: &Motion<S>, s: &Vec3<S>, local: Option<&Local<S>>) -> Self {
+    pub(crate) fn moving_point(motion: &Motion<S>, s: &Vec3<S>, local: Option<&Local<S>>) -> Self {
         let mut jet = Self::moving_direction(motion, s, local);
         jet.x += motion.position;
         jet.rate += motion.velocity;
@@ -76,7 +80,7 @@ impl<S: Scalar> Jet<S> {
     }
 
     /// The difference of two jets.
-    pub fn minus(&self, other: &Self) -> Self {
+    pub(crate) fn minus(&self, other: &Self) -> Self {
         Jet {
             x: self.x - other.x,
             rate: self.rate - other.rate,
@@ -86,7 +90,7 @@ impl<S: Scalar> Jet<S> {
     }
 
     /// The jet times a number.
-    pub fn scaled(&self, scale: S) -> Self {
+    pub(crate) fn scaled(&self, scale: S) -> Self {
         Jet {
             x: self.x * scale,
             rate: self.rate * scale,
@@ -96,7 +100,7 @@ impl<S: Scalar> Jet<S> {
     }
 
     /// Adds another jet.
-    pub fn add(&mut self, other: &Self) {
+    pub(crate) fn add(&mut self, other: &Self) {
         self.x += other.x;
         self.rate += other.rate;
         self.acceleration += other.acceleration;
@@ -122,7 +126,7 @@ fn derivatives<S: Scalar>(
 /// Cotangents that a marker's jet leaves on its body (for a point, those of r, ṙ and r̈ are the
 /// jet's own cotangents).
 #[derive(Clone, Copy, Debug)]
-pub struct MarkerCotangent<S> {
+pub(crate) struct MarkerCotangent<S> {
     /// By the tangent rotation δθ, body axes.
     pub theta: Vec3<S>,
     /// By ω.
@@ -137,12 +141,16 @@ pub struct MarkerCotangent<S> {
 
 /// Pulls the cotangent of a jet back: the transposed derivative of [`Jet::moving_direction`], the virtual
 /// velocities held.
-pub fn pull_back<S: Scalar>(motion: &Motion<S>, e: &Vec3<S>, cot: &Jet<S>) -> MarkerCotangent<S> {
+pub(crate) fn pull_back<S: Scalar>(
+    motion: &Motion<S>,
+    e: &Vec3<S>,
+    cot: &Jet<S>,
+) -> MarkerCotangent<S> {
     pull_back_moving(motion, e, None, cot)
 }
 
 /// As [`pull_back`] for a marker that moves on its body.
-pub fn pull_back_moving<S: Scalar>(
+pub(crate) fn pull_back_moving<S: Scalar>(
     motion: &Motion<S>,
     e: &Vec3<S>,
     local: Option<&Local<S>>,

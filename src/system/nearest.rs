@@ -27,7 +27,7 @@ use crate::model::Model;
 
 /// Positions and velocities of a model's bodies.
 #[derive(Clone, Debug)]
-pub struct Nearest<S> {
+pub(crate) struct Nearest<S> {
     /// Positions q.
     pub q: Vec<S>,
     /// Velocities v.
@@ -39,7 +39,7 @@ pub struct Nearest<S> {
 ///
 /// # Errors
 /// [`AssemblyFailure`] names the joint that cannot be closed, or what is singular.
-pub fn nearest<S: Scalar>(model: &Model<S>) -> Result<Nearest<S>, AssemblyFailure> {
+pub(crate) fn nearest<S: Scalar>(model: &Model<S>) -> Result<Nearest<S>, AssemblyFailure> {
     let numbering = Numbering::new(model);
     let mut real = model.map(&mut |x| x.re());
     redundancy::leave_out(&mut real);

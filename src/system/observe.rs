@@ -13,7 +13,7 @@ use crate::model::Model;
 
 /// What a state is judged by.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Observation {
+pub(crate) struct Observation {
     /// ½ Σ (m ṙᵀṙ + ωᵀJω) (J).
     pub kinetic: f64,
     /// −Σ m gᵀr from the origin, and the energy of springs (J).
@@ -30,7 +30,7 @@ pub struct Observation {
 
 /// Force and torque of a joint on its body A, at the joint's point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reaction {
+pub(crate) struct Reaction {
     /// Force in the joint's axes e1, e2, e3 on body A (N).
     pub force: Vec3<f64>,
     /// Torque about the joint's point in the joint's axes on body A (N m).
@@ -42,7 +42,7 @@ pub struct Reaction {
 }
 
 /// Observes the state (q, v) at `time` (s).
-pub fn observe(
+pub(crate) fn observe(
     model: &Model<f64>,
     numbering: &Numbering,
     (q, v): (&[f64], &[f64]),
@@ -88,7 +88,7 @@ fn largest(x: &[f64]) -> f64 {
 ///
 /// Where rows are left out, as they follow from others, reactions are not unique: these are those
 /// of the smallest multipliers over all rows that move the bodies in the same way.
-pub fn reactions(
+pub(crate) fn reactions(
     model: &Model<f64>,
     numbering: &Numbering,
     (q, lambda): (&[f64], &[f64]),

@@ -4,7 +4,7 @@ use crate::math::{Scalar, Vec3};
 use crate::model::Model;
 
 /// The placement (q_g, v_g) of the model's bodies.
-pub fn guess<S: Scalar>(model: &Model<S>) -> (Vec<S>, Vec<S>) {
+pub(crate) fn guess<S: Scalar>(model: &Model<S>) -> (Vec<S>, Vec<S>) {
     let (mut q, mut v) = (Vec::new(), Vec::new());
     for body in &model.bodies {
         q.extend(body.position.iter());
@@ -17,7 +17,7 @@ pub fn guess<S: Scalar>(model: &Model<S>) -> (Vec<S>, Vec<S>) {
 
 /// A length that the scene's gaps and motions are judged against (m): its largest lever arm or
 /// placement.
-pub fn length_scale<S: Scalar>(model: &Model<S>) -> f64 {
+pub(crate) fn length_scale<S: Scalar>(model: &Model<S>) -> f64 {
     let size = |v: &Vec3<S>| v.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
     let joints = model.joints.iter().flat_map(|j| {
         let (a, b) = (&j.frame_a, &j.frame_b);

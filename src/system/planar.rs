@@ -24,7 +24,7 @@ pub(super) type Vec2<S> = Vector2<S>;
 
 /// The joints of a planar scene without drives, and where its bodies stand.
 #[derive(Clone)]
-pub struct PlanarJoints<S> {
+pub(crate) struct PlanarJoints<S> {
     /// Two orthonormal directions of the plane, ground axes.
     pub(super) along: [Vec3<f64>; 2],
     /// The planes of the bodies, then that of the ground.
@@ -176,7 +176,7 @@ impl<S: Scalar> Jet<S> {
 
 impl<S: Scalar> PlanarJoints<S> {
     /// The joints of `model`, if all its bodies move in one plane and no joint is driven.
-    pub fn of(model: &Model<S>) -> Option<Self> {
+    pub(crate) fn of(model: &Model<S>) -> Option<Self> {
         let mut plane = None;
         let mut planes = Vec::with_capacity(model.bodies.len() + 1);
         for body in &model.bodies {
@@ -226,7 +226,7 @@ impl<S: Scalar> PlanarJoints<S> {
 
     /// Moves to where the bodies are, with their velocities; accelerations and virtual velocities are
     /// zero.
-    pub fn stand(&mut self, motions: &[Motion<S>]) {
+    pub(crate) fn stand(&mut self, motions: &[Motion<S>]) {
         let [t1, t2] = &self.along;
         let plane = |x: &Vec3<S>| Vec2::new(along(x, t1), along(x, t2));
         for ((at, motion), body) in self.motions.iter_mut().zip(motions).zip(&self.planes) {
@@ -243,7 +243,7 @@ impl<S: Scalar> PlanarJoints<S> {
     }
 
     /// Takes the velocities of the motions, the positions kept.
-    pub fn set_velocities(&mut self, numbering: &Numbering, v: &[S]) {
+    pub(crate) fn set_velocities(&mut self, numbering: &Numbering, v: &[S]) {
         for body in 0..numbering.bodies() {
             (self.motions[body].velocity, self.motions[body].omega) =
                 self.planar(body, &v[numbering.velocity(body)..]);
@@ -251,7 +251,7 @@ impl<S: Scalar> PlanarJoints<S> {
     }
 
     /// Takes accelerations and virtual velocities, zero where they are not given.
-    pub fn set_moving(&mut self, numbering: &Numbering, a: Option<&[S]>, w: Option<&[S]>) {
+    pub(crate) fn set_moving(&mut self, numbering: &Numbering, a: Option<&[S]>, w: Option<&[S]>) {
         let rest = (Vec2::zeros(), S::zero());
         for body in 0..numbering.bodies() {
             let o = numbering.velocity(body);
@@ -273,7 +273,7 @@ impl<S: Scalar> PlanarJoints<S> {
 
     /// Gradients of all rows, as [`super::joints::gradients`] finds them but for torques across the
     /// normal.
-    pub fn gradients(&self, out: &mut Vec<RowGradient<S>>) {
+    pub(crate) fn gradients(&self, out: &mut Vec<RowGradient<S>>) {
         out.clear();
         for joint in &self.joints {
             let (ma, mb) = (&self.motions[joint.body_a], &self.motions[joint.body_b]);
@@ -318,7 +318,7 @@ impl<S: Scalar> PlanarJoints<S> {
     }
 
     /// Second derivatives Φ̈ at the accelerations taken last: the biases if these are zero.
-    pub fn accelerations(&self, numbering: &Numbering, out: &mut [S]) {
+    pub(crate) fn accelerations(&self, numbering: &Numbering, out: &mut [S]) {
         for (j, joint) in self.joints.iter().enumerate() {
             let d = self.distance(joint);
             for (out, &row) in out[numbering.rows(j)].iter_mut().zip(&joint.rows) {

@@ -79,7 +79,7 @@ impl PlanarJoints<f64> {
     /// Pulls cotangents of the rates, second derivatives and virtual rates of all rows, none of their
     /// values, back to tangent positions, velocities and the parameters of the
     /// joints, the accelerations and virtual velocities held.
-    pub fn pull_back(
+    pub(crate) fn pull_back(
         &self,
         numbering: &Numbering,
         cotangents: &RowCotangents,

@@ -15,7 +15,7 @@ const NEGLIGIBLE: f64 = 1e-10;
 const LOOSE: f64 = 1e-13;
 
 /// Says which constraints are redundant at q, or else which bodies can move without inertia.
-pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
+pub(crate) fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     let numbering = Numbering::new(model);
     let real = model.map(&mut |x| x.re());
     let q: Vec<f64> = q.iter().map(|x| x.re()).collect();

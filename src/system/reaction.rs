@@ -11,7 +11,7 @@ use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 /// likewise; 3 × 3 blocks. Blocks that vanish for every row are left out, and the rows of r_B are
 /// the negatives of those of r_A.
 #[derive(Clone, Copy, Debug)]
-pub struct ReactionJacobian<S> {
+pub(crate) struct ReactionJacobian<S> {
     /// (r_A, r_A); (r_A, r_B) is its negative.
     pub force_by_position: Mat3<S>,
     /// (r_A, θ_A).
@@ -34,7 +34,7 @@ pub struct ReactionJacobian<S> {
 
 impl<S: Scalar> ReactionJacobian<S> {
     /// All blocks zero.
-    pub fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         let zero = Mat3::zeros();
         Self {
             force_by_position: zero,
@@ -51,7 +51,7 @@ impl<S: Scalar> ReactionJacobian<S> {
 }
 
 /// Adds the derivative of λ (row of G)ᵀ to `out`.
-pub fn add_reaction_jacobian<S: Scalar>(
+pub(crate) fn add_reaction_jacobian<S: Scalar>(
     row: ConstraintRow,
     lambda: S,
     a: &Side<S>,

@@ -14,7 +14,7 @@ use crate::math::{Scalar, Vec3};
 
 /// Replaces `x` by its reduced form, which stands at its head: Bᵀ of each of the `parts`, then the
 /// rest. Returns its length.
-pub fn compress<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) -> usize {
+pub(crate) fn compress<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) -> usize {
     if !numbering.is_reduced() {
         return x.len();
     }
@@ -35,7 +35,7 @@ pub fn compress<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) -> 
 
 /// The inverse of [`compress`]: the reduced form at the head of `x` becomes B u of each of the
 /// `parts`, then the rest.
-pub fn expand<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) {
+pub(crate) fn expand<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) {
     if !numbering.is_reduced() {
         return;
     }
@@ -54,7 +54,7 @@ pub fn expand<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) {
 }
 
 /// Lets `solve` work in place on the reduced form of `x`.
-pub fn through<S: Scalar>(
+pub(crate) fn through<S: Scalar>(
     numbering: &Numbering,
     parts: usize,
     x: &mut [S],
@@ -66,13 +66,13 @@ pub fn through<S: Scalar>(
 }
 
 /// Leaves of the velocities `x` the part that the mobilities admit, B Bᵀ x.
-pub fn project<S: Scalar>(numbering: &Numbering, x: &mut [S]) {
+pub(crate) fn project<S: Scalar>(numbering: &Numbering, x: &mut [S]) {
     through(numbering, 1, x, |_| {});
 }
 
 /// Leaves of tangent positions those that stay as the bodies are placed: all of a body that cannot
 /// move, and the rotation of one that cannot turn.
-pub fn keep_placed(numbering: &Numbering, y: &mut [f64]) {
+pub(crate) fn keep_placed(numbering: &Numbering, y: &mut [f64]) {
     for body in 0..numbering.bodies() {
         let at = numbering.velocity(body);
         let mobility = numbering.mobility(body);
@@ -87,7 +87,7 @@ pub fn keep_placed(numbering: &Numbering, y: &mut [f64]) {
 /// Takes what the mobilities do not admit out of the increments (dq, dv) from a state (q0, v0) to
 /// (q, v). The reduced equations do not see such round-off, so that it would grow from step to step
 /// by extrapolation.
-pub fn hold<S: Scalar>(
+pub(crate) fn hold<S: Scalar>(
     numbering: &Numbering,
     (q0, v0): (&[S], &[S]),
     (q, dq): (&mut [S], &mut [S]),
@@ -147,7 +147,7 @@ fn turn_about<S: Scalar>(p0: &Quat<S>, dp: &Quat<S>, n: &Vec3<f64>) -> Quat<S> {
 }
 
 /// The place in unreduced numbering that stands for a reduced one in messages.
-pub fn unreduced(numbering: &Numbering, parts: usize, place: usize) -> usize {
+pub(crate) fn unreduced(numbering: &Numbering, parts: usize, place: usize) -> usize {
     let (nv, nu) = (numbering.velocities(), numbering.unknowns());
     match place.checked_div(nu) {
         Some(part) if part < parts => part * nv + numbering.velocity_of_unknown(place % nu),
@@ -156,7 +156,7 @@ pub fn unreduced(numbering: &Numbering, parts: usize, place: usize) -> usize {
 }
 
 /// Calls `assemble` with what takes entries in unreduced numbering and emits them reduced.
-pub fn emit_reduced<S: Scalar>(
+pub(crate) fn emit_reduced<S: Scalar>(
     numbering: &Numbering,
     parts: usize,
     emit: &mut dyn Emit<S>,
@@ -181,7 +181,7 @@ struct Reduced<'a, S> {
 }
 
 /// The reduced places that an unreduced one has a share in, and its shares: a row of B.
-pub fn shares(numbering: &Numbering, parts: usize, place: usize) -> [(usize, f64); 2] {
+pub(crate) fn shares(numbering: &Numbering, parts: usize, place: usize) -> [(usize, f64); 2] {
     let (nv, nu) = (numbering.velocities(), numbering.unknowns());
     let part = place / nv.max(1);
     if part >= parts {

@@ -29,7 +29,7 @@ const CLOSED: f64 = 1e-12;
 /// Weight that keeps the equations of a closing step regular, against unit rows.
 const REGULAR: f64 = 1e-10;
 /// Gap relative to the length scale from which a row that is left out counts as open in a run.
-pub const OPENED: f64 = 1e-6;
+pub(crate) const OPENED: f64 = 1e-6;
 /// Size relative to the largest row below which G has no part in a direction of the multipliers.
 const DAMPED: f64 = 1e-6;
 /// Closing steps.
@@ -40,7 +40,7 @@ const BESIDE: [f64; 3] = [0.03, -0.02, 0.005];
 
 /// A joint some of whose rows follow from the other joints.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Redundancy {
+pub(crate) struct Redundancy {
     /// The joint.
     pub joint: String,
     /// How many of its rows are left out.
@@ -62,7 +62,7 @@ impl std::fmt::Display for Redundancy {
 
 /// Leaves the redundant rows out of the joints of `model` and names them. Joints that cannot be
 /// closed are left as they are; assembly tells which.
-pub fn leave_out(model: &mut Model<f64>) -> Vec<Redundancy> {
+pub(crate) fn leave_out(model: &mut Model<f64>) -> Vec<Redundancy> {
     for joint in &mut model.joints {
         joint.left_out.clear();
     }
@@ -94,7 +94,7 @@ pub fn leave_out(model: &mut Model<f64>) -> Vec<Redundancy> {
 
 /// Number of rows of the model that follow from the others, those that are left out included;
 /// `None` if its joints cannot be closed.
-pub fn redundant_rows(model: &Model<f64>) -> Option<usize> {
+pub(crate) fn redundant_rows(model: &Model<f64>) -> Option<usize> {
     let mut model = model.clone();
     for joint in &mut model.joints {
         joint.left_out.clear();
@@ -105,7 +105,7 @@ pub fn redundant_rows(model: &Model<f64>) -> Option<usize> {
 
 /// Unit rows of G at q as columns, in the order of the joints, without those that are left out, angles
 /// counted as arcs at the length scale; and the joint of each.
-pub fn unit_rows(model: &Model<f64>, q: &[f64]) -> (DMatrix<f64>, Vec<usize>) {
+pub(crate) fn unit_rows(model: &Model<f64>, q: &[f64]) -> (DMatrix<f64>, Vec<usize>) {
     let joints: Vec<usize> = (0..model.joints.len()).collect();
     let rows = Rows::new(model, &joints);
     let left_out = LeftOut::of(model, &rows.numbering);
@@ -328,7 +328,7 @@ fn normal(g: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
 
 /// A row, and how far it is open.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Widest {
+pub(crate) struct Widest {
     /// Its joint.
     pub joint: usize,
     /// The row.
@@ -338,7 +338,7 @@ pub struct Widest {
 }
 
 /// The row that is open most; `None` if no row is left out, so that all are imposed.
-pub fn widest<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Widest> {
+pub(crate) fn widest<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Widest> {
     if model.joints.iter().all(|joint| joint.left_out.is_empty()) {
         return None;
     }
@@ -354,7 +354,7 @@ pub fn widest<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Wide
 
 /// The row that is open by more than [`OPENED`] of the model's length scale where the bodies are, if
 /// one is.
-pub fn opened<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Widest> {
+pub(crate) fn opened<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Widest> {
     widest(model, at).filter(|widest| {
         let limit = OPENED * length_scale(model);
         widest.gap.is_nan() || widest.gap > limit
@@ -375,7 +375,7 @@ pub fn opened<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Wide
 /// which G has the size σ then lacks (δ/σ)⁴ if it is of the range, and leaks 2 (σ/δ)² if it is not.
 ///
 /// Each joint's rows follow each other in the order of its kind. The model has all rows imposed.
-pub fn smallest_multipliers(at: &InMotion<f64>, lambda: &[f64]) -> Vec<f64> {
+pub(crate) fn smallest_multipliers(at: &InMotion<f64>, lambda: &[f64]) -> Vec<f64> {
     let (model, numbering) = (at.model, at.numbering);
     let mut gradients = Vec::new();
     joints::gradients(at, &mut gradients);

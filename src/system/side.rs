@@ -14,7 +14,7 @@ use crate::model::{Freedom, Joint, JointFrame};
 
 /// One side of a joint.
 #[derive(Clone, Debug)]
-pub struct Side<'a, S> {
+pub(crate) struct Side<'a, S> {
     /// Motion of the body (ground at rest if there is none).
     pub motion: &'a Motion<S>,
     /// The joint's frame on the body at this time.
@@ -25,7 +25,7 @@ pub struct Side<'a, S> {
 
 /// First and second derivative in time of a frame, in the axes of its body.
 #[derive(Clone, Debug)]
-pub struct FrameMotion<S> {
+pub(crate) struct FrameMotion<S> {
     /// First derivative.
     pub rate: JointFrame<S>,
     /// Second derivative.
@@ -34,7 +34,7 @@ pub struct FrameMotion<S> {
 
 impl<S: Scalar> FrameMotion<S> {
     /// All zero.
-    pub fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         Self {
             rate: JointFrame::zero(),
             acceleration: JointFrame::zero(),
@@ -42,7 +42,7 @@ impl<S: Scalar> FrameMotion<S> {
     }
 
     /// The motion of axis i.
-    pub fn axis(&self, i: usize) -> Local<S> {
+    pub(crate) fn axis(&self, i: usize) -> Local<S> {
         Local {
             rate: self.rate.axes[i],
             acceleration: self.acceleration.axes[i],
@@ -50,7 +50,7 @@ impl<S: Scalar> FrameMotion<S> {
     }
 
     /// The motion of the point.
-    pub fn point(&self) -> Local<S> {
+    pub(crate) fn point(&self) -> Local<S> {
         Local {
             rate: self.rate.point,
             acceleration: self.acceleration.point,
@@ -60,7 +60,7 @@ impl<S: Scalar> FrameMotion<S> {
 
 impl<'a, S: Scalar> Side<'a, S> {
     /// A side whose frame does not move.
-    pub fn fixed(motion: &'a Motion<S>, frame: JointFrame<S>) -> Self {
+    pub(crate) fn fixed(motion: &'a Motion<S>, frame: JointFrame<S>) -> Self {
         Self {
             motion,
             frame,
@@ -69,30 +69,30 @@ impl<'a, S: Scalar> Side<'a, S> {
     }
 
     /// Axis i in ground axes.
-    pub fn axis(&self, i: usize) -> Vec3<S> {
+    pub(crate) fn axis(&self, i: usize) -> Vec3<S> {
         self.motion.rotation * self.frame.axes[i]
     }
 
     /// The point in ground axes.
-    pub fn point(&self) -> Vec3<S> {
+    pub(crate) fn point(&self) -> Vec3<S> {
         self.motion.position + self.motion.rotation * self.frame.point
     }
 
     /// Axis i in motion.
-    pub fn axis_jet(&self, i: usize) -> Jet<S> {
+    pub(crate) fn axis_jet(&self, i: usize) -> Jet<S> {
         let local = self.moving.as_ref().map(|moving| moving.axis(i));
         Jet::moving_direction(self.motion, &self.frame.axes[i], local.as_ref())
     }
 
     /// The point in motion.
-    pub fn point_jet(&self) -> Jet<S> {
+    pub(crate) fn point_jet(&self) -> Jet<S> {
         let local = self.moving.as_ref().map(|moving| moving.point());
         Jet::moving_point(self.motion, &self.frame.point, local.as_ref())
     }
 }
 
 /// Both sides of a joint at `time` (s); `ground` is the motion of a missing body B.
-pub fn sides<'a, S: Scalar>(
+pub(crate) fn sides<'a, S: Scalar>(
     joint: &Joint<S>,
     motions: &'a [Motion<S>],
     ground: &'a Motion<S>,
@@ -146,7 +146,7 @@ fn driven_frame<S: Scalar>(joint: &Joint<S>, time: S) -> (JointFrame<S>, FrameMo
 
 /// Pulls the cotangents of the frame on body B at `time`, and of its motion, back to the joint's
 /// parameters (added to `own`); returns the derivative by time.
-pub fn pull_driven_frame(
+pub(crate) fn pull_driven_frame(
     joint: &Joint<f64>,
     time: f64,
     by_frame: &JointFrame<f64>,

@@ -120,7 +120,7 @@ const RADAU: Method = Method::Radau { stages: 3 };
 #[test]
 fn no_right_run_is_refused() {
     let (mut runs, mut kept) = (0, 0);
-    for seed in 0..24 {
+    for seed in 0..9 {
         let unit = [1.0, 1e-3, 1e2][seed as usize % 3];
         let (model, duration) = scene(seed, unit);
         assert!(model.conserves_energy());
@@ -156,7 +156,7 @@ fn no_right_run_is_refused() {
         }
     }
     assert!(
-        runs > 200 && kept > 300,
+        runs > 75 && kept > 110,
         "{runs} runs, {kept} on kept steps"
     );
 }

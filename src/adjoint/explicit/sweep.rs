@@ -34,7 +34,7 @@ pub(super) struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    pub fn new(of: Sensitivity<'a>, numbering: &Numbering) -> Self {
+    pub(crate) fn new(of: Sensitivity<'a>, numbering: &Numbering) -> Self {
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         Self {
             of,
@@ -50,7 +50,7 @@ impl<'a> Sweep<'a> {
 
     /// Adds the function's own derivatives at sample k; `inside` is the step that it stands in and
     /// the node that this starts from.
-    pub fn sample(
+    pub(crate) fn sample(
         &mut self,
         scene: &Scene<f64>,
         run: &Trajectory<f64>,
@@ -117,7 +117,7 @@ impl<'a> Sweep<'a> {
 
     /// Pulls the cotangents of the derivatives at stage i back to its state (returned), where `field`
     /// stands.
-    pub fn stage(
+    pub(crate) fn stage(
         &mut self,
         i: usize,
         field: &mut Accelerations<f64>,
@@ -140,7 +140,7 @@ impl<'a> Sweep<'a> {
 
     /// Hands the cotangents of a stage's state on to the stages that it was made of and to the node
     /// before the step.
-    pub fn spread(&mut self, weights: &[(usize, f64)], (q, v): (&[f64], &[f64]), h: f64) {
+    pub(crate) fn spread(&mut self, weights: &[(usize, f64)], (q, v): (&[f64], &[f64]), h: f64) {
         add_scaled(&mut self.before.0, 1.0, q);
         add_scaled(&mut self.before.1, 1.0, v);
         self.hand_on(weights, (q, v), h);
@@ -156,7 +156,12 @@ impl<'a> Sweep<'a> {
 
     /// Pulls the cotangents of the derivatives at the node after the step back to its state, where
     /// `field` stands.
-    pub fn node(&mut self, field: &mut Accelerations<f64>, to: NodeView<f64>, fraction: f64) {
+    pub(crate) fn node(
+        &mut self,
+        field: &mut Accelerations<f64>,
+        to: NodeView<f64>,
+        fraction: f64,
+    ) {
         let (nq, nv) = (to.q.len(), to.v.len());
         if self.touched[END] {
             add_scaled(&mut self.node.0, 1.0, row(&self.qdot, nq, END));
@@ -178,7 +183,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Pulls the cotangent of q̇ at the node back to its state.
-    pub fn node_rates(&mut self, numbering: &Numbering, to: NodeView<f64>) {
+    pub(crate) fn node_rates(&mut self, numbering: &Numbering, to: NodeView<f64>) {
         let (mut q, mut v) = (self.room.zeros(to.q.len()), self.room.zeros(to.v.len()));
         let bars = (&mut q[..], &mut v[..]);
         bodies::pull_rates(numbering, (to.q, to.v), &self.node.0, bars);
@@ -188,7 +193,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Hands the cotangents of the unprojected end on to the stages and to the node before.
-    pub fn end(&mut self, h: f64) {
+    pub(crate) fn end(&mut self, h: f64) {
         let q = self.room.copy(&self.of.q.value);
         let v = self.room.copy(&self.of.v.value);
         self.hand_on(B, (&q, &v), h);
@@ -198,7 +203,7 @@ impl<'a> Sweep<'a> {
     /// Moves to the node before a step of a run of this duration. Whatever the derivatives k_i of the
     /// stages were used for, it was with weights that are proportional to the step's size h, and so
     /// h df/dh = Σ k̄_i · k_i.
-    pub fn leave_step(&mut self, data: StepView<f64>, duration: f64) {
+    pub(crate) fn leave_step(&mut self, data: StepView<f64>, duration: f64) {
         let (nq, nv) = (self.before.0.len(), self.before.1.len());
         for i in (0..ALL).filter(|&i| self.touched[i]) {
             let slope = dot(row(&self.qdot, nq, i), row(data.qdot, nq, i))

@@ -29,7 +29,7 @@ pub(super) struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    pub fn new(model: &'a Model<f64>, numbering: &'a Numbering) -> Self {
+    pub(crate) fn new(model: &'a Model<f64>, numbering: &'a Numbering) -> Self {
         let mut equations = Equations::new(model, numbering);
         let split = SplitMatrix::new(&mut equations, &Stage::zero(numbering));
         let matrix = split.held.clone();
@@ -50,7 +50,7 @@ impl<'a> Plan<'a> {
     }
 
     /// The plan with these rows left out, if any are.
-    pub fn leaving_out(&mut self, rows: Option<&LeftOut>) -> &mut Self {
+    pub(crate) fn leaving_out(&mut self, rows: Option<&LeftOut>) -> &mut Self {
         if let Some(rows) = rows {
             self.equations.leave_out(rows);
         }
@@ -61,7 +61,7 @@ impl<'a> Plan<'a> {
     ///
     /// # Errors
     /// What the equations are singular in.
-    pub fn step(
+    pub(crate) fn step(
         &mut self,
         formula: &Formula,
         stage: &Stage<f64>,

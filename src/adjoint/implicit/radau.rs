@@ -78,7 +78,7 @@ impl Blocks {
 }
 
 impl<'a> Plan<'a> {
-    pub fn new(model: &'a Model<f64>, numbering: &'a Numbering, scheme: &'a Scheme) -> Self {
+    pub(crate) fn new(model: &'a Model<f64>, numbering: &'a Numbering, scheme: &'a Scheme) -> Self {
         let mut equations = Equations::new(model, numbering);
         let zero = Stage::zero(numbering);
         let blocks = Blocks::new(&mut equations, scheme, &zero);
@@ -102,7 +102,7 @@ impl<'a> Plan<'a> {
     }
 
     /// The plan with these rows left out, if any are.
-    pub fn leaving_out(&mut self, rows: Option<&LeftOut>) -> &mut Self {
+    pub(crate) fn leaving_out(&mut self, rows: Option<&LeftOut>) -> &mut Self {
         if let Some(rows) = rows {
             self.equations.leave_out(rows);
         }
@@ -113,7 +113,7 @@ impl<'a> Plan<'a> {
     ///
     /// # Errors
     /// What the equations are singular in.
-    pub fn step(
+    pub(crate) fn step(
         &mut self,
         stages: &[Stage<f64>],
         (h, width, end): (f64, f64, f64),

@@ -33,7 +33,7 @@ pub(super) struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    pub fn new(
+    pub(crate) fn new(
         of: Sensitivity<'a>,
         numbering: &Numbering,
         (method, stages): (Method, usize),
@@ -52,7 +52,7 @@ impl<'a> Sweep<'a> {
 
     /// Adds the function's own derivatives at sample k; `step` are the coefficients, the state that
     /// the step starts from and its stages.
-    pub fn sample(
+    pub(crate) fn sample(
         &mut self,
         scene: &Scene<f64>,
         run: &Trajectory<f64>,
@@ -92,7 +92,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Hands the cotangents of a memory that started as h times the initial rates on to these.
-    pub fn starting_memory(&mut self, start: &Stage<f64>, h: f64, width: f64) {
+    pub(crate) fn starting_memory(&mut self, start: &Stage<f64>, h: f64, width: f64) {
         let [by_q, by_v] = &self.memory;
         for (q, v) in by_q.iter().zip(by_v) {
             add_scaled(&mut self.rates.0, h, q);
@@ -102,7 +102,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Pulls the cotangent of the initial q̇ = T(q) v back to the initial state.
-    pub fn pull_starting_rates(&mut self, numbering: &Numbering, start: &Stage<f64>) {
+    pub(crate) fn pull_starting_rates(&mut self, numbering: &Numbering, start: &Stage<f64>) {
         let (q_bar, v_bar) = (&mut self.of.q.value, &mut self.of.v.value);
         bodies::pull_rates(
             numbering,

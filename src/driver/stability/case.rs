@@ -148,7 +148,7 @@ pub(super) fn equal(steps: usize) -> Vec<Way> {
 
 impl Way {
     /// Name for the table.
-    pub fn name(self) -> String {
+    pub(crate) fn name(self) -> String {
         let method = self.method.map_or_else(|| "chosen".into(), Method::name);
         match self.steps {
             Steps::Tolerance(tolerance) => format!("{method} to {tolerance:.0e}"),
@@ -181,7 +181,7 @@ impl Way {
 
 impl Case {
     /// A case by usual bounds. It conserves energy if its motion is known.
-    pub fn known(
+    pub(crate) fn known(
         (family, extreme): (&'static str, String),
         scene: SceneFile,
         (way, duration): (Way, f64),
@@ -204,24 +204,24 @@ impl Case {
     }
 
     /// With another change of the file.
-    pub fn set(mut self, path: &str, value: impl std::fmt::Display) -> Self {
+    pub(crate) fn set(mut self, path: &str, value: impl std::fmt::Display) -> Self {
         self.changes.push(format!("{path}={value}"));
         self
     }
 
     /// Method and steps for the table.
-    pub fn method(&self) -> String {
+    pub(crate) fn method(&self) -> String {
         self.way
             .map_or_else(|| "as the file says".into(), Way::name)
     }
 
     /// Name by which it can be run alone.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         case_name(self.family, &self.extreme, &self.method())
     }
 
     /// The first `kept` changes of the file, and method, steps and duration.
-    pub fn overrides(&self, kept: usize) -> Vec<String> {
+    pub(crate) fn overrides(&self, kept: usize) -> Vec<String> {
         let mut all: Vec<String> = self.changes.iter().take(kept).cloned().collect();
         if let Some(way) = self.way {
             all.push(format!("/simulation={}", way.json(self.duration)));
@@ -230,7 +230,7 @@ impl Case {
     }
 
     /// The command that runs the same.
-    pub fn command(&self) -> String {
+    pub(crate) fn command(&self) -> String {
         let verb = match self.judge {
             Judge::Exact(_) | Judge::OtherMethod { .. } => "simulate ",
             Judge::Optimum { .. } => "",

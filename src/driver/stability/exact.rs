@@ -55,7 +55,7 @@ pub(super) struct Numbers {
 
 impl Exact {
     /// What it is, for the table.
-    pub fn source(self) -> &'static str {
+    pub(crate) fn source(self) -> &'static str {
         match self {
             Exact::DoublePendulum { .. } => "minimal coordinates by extrapolation",
             Exact::SpringPendulum { omega, .. } if omega < SLOW => {
@@ -76,7 +76,7 @@ impl Exact {
     }
 
     /// The numbers, in the order of the functions of the scene.
-    pub fn numbers(self) -> Numbers {
+    pub(crate) fn numbers(self) -> Numbers {
         let (values, size) = match self {
             Exact::DoublePendulum {
                 masses,

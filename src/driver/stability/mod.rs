@@ -22,10 +22,10 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 /// Time that a case may take (s).
-pub const LIMIT: f64 = 300.0;
+pub(crate) const LIMIT: f64 = 300.0;
 
 /// Names of all cases, in the order of the table; `fast` leaves those out that take seconds.
-pub fn names(fast: bool) -> Vec<String> {
+pub(crate) fn names(fast: bool) -> Vec<String> {
     let wanted = |case: &&Case| !(fast && case.slow);
     let all = cases::all();
     all.iter().filter(wanted).map(Case::name).collect()
@@ -33,7 +33,7 @@ pub fn names(fast: bool) -> Vec<String> {
 
 /// Runs the cases that `wanted` says of by their names, several at once; `seen` is told of every row
 /// as it is known. Rows stand in the order of the table.
-pub fn stability(
+pub(crate) fn stability(
     wanted: impl Fn(&str) -> bool,
     seconds: f64,
     seen: &(dyn Fn(&StabilityRow) + Sync),
@@ -74,7 +74,7 @@ pub fn stability(
 }
 
 /// Whether `only` names a case or the beginning of its name, in whole parts.
-pub fn is_named(case: &str, only: &str) -> bool {
+pub(crate) fn is_named(case: &str, only: &str) -> bool {
     let rest = case.strip_prefix(only.trim_end_matches('/'));
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }

@@ -15,7 +15,7 @@ use crate::report::PrecisionRow;
 use std::hint::black_box;
 
 /// The scene that is run again and again.
-pub struct Bench<'a> {
+pub(crate) struct Bench<'a> {
     problem: &'a Problem,
     x: &'a [f64],
     /// The scene at the design x.
@@ -25,7 +25,7 @@ pub struct Bench<'a> {
 
 impl<'a> Bench<'a> {
     /// The scene of `problem` at `x`; gradients are those of `function`.
-    pub fn new(problem: &'a Problem, x: &'a [f64], function: Option<usize>) -> Self {
+    pub(crate) fn new(problem: &'a Problem, x: &'a [f64], function: Option<usize>) -> Self {
         Self {
             scene: problem.scene(x),
             problem,
@@ -35,12 +35,12 @@ impl<'a> Bench<'a> {
     }
 
     /// What a simulation may take.
-    pub fn limits(&self) -> Limits {
+    pub(crate) fn limits(&self) -> Limits {
         self.problem.simulation.limits.clone()
     }
 
     /// Whether the function sums over the motion, so that its gradient needs samples of it.
-    pub fn sums(&self) -> bool {
+    pub(crate) fn sums(&self) -> bool {
         self.function
             .is_some_and(|f| looks_at_the_whole(&self.scene.functions[f]))
     }
@@ -49,7 +49,10 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// If a step's equations are singular.
-    pub fn gradient(&self, run: Trajectory<f64>) -> Result<Option<Vec<f64>>, IntegrationFailure> {
+    pub(crate) fn gradient(
+        &self,
+        run: Trajectory<f64>,
+    ) -> Result<Option<Vec<f64>>, IntegrationFailure> {
         let Some(function) = self.function else {
             return Ok(None);
         };
@@ -61,7 +64,7 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// If a simulation or a gradient fails.
-    pub fn row(
+    pub(crate) fn row(
         &self,
         (method, spacing): (Method, &Spacing),
         reference: &Reference,

@@ -2,7 +2,7 @@
 
 /// CPU time that this process has used (s).
 #[cfg(unix)]
-pub fn cpu_seconds() -> f64 {
+pub(crate) fn cpu_seconds() -> f64 {
     let now = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     now.tv_sec as f64 + 1e-9 * now.tv_nsec as f64
 }
@@ -24,7 +24,7 @@ const LONG: f64 = 2.0;
 ///
 /// # Errors
 /// That of the first run that fails.
-pub fn fastest<E>(runs: usize, mut work: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
+pub(crate) fn fastest<E>(runs: usize, mut work: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
     let mut timed = || {
         let start = cpu_seconds();
         work().map(|()| cpu_seconds() - start)

@@ -4,7 +4,7 @@ use crate::integrate::Trajectory;
 use crate::report::positions::Positions;
 
 /// Positions at the end and a gradient that count as exact.
-pub struct Reference {
+pub(crate) struct Reference {
     /// Centres of mass at the end by body (m).
     pub positions: Positions,
     /// Gradient of the function in question.
@@ -18,7 +18,7 @@ pub struct Reference {
 }
 
 /// Centres of mass at the end of a run (m).
-pub fn positions(run: &Trajectory<f64>) -> Vec<[f64; 3]> {
+pub(crate) fn positions(run: &Trajectory<f64>) -> Vec<[f64; 3]> {
     let q = run.q(run.last());
     let place = |body: usize| {
         let at = run.numbering.position(body);
@@ -28,7 +28,7 @@ pub fn positions(run: &Trajectory<f64>) -> Vec<[f64; 3]> {
 }
 
 /// Largest distance of a body from where it should be (m); NaN if one is nowhere.
-pub fn distance(exact: &[(usize, [f64; 3])], found: &[[f64; 3]]) -> f64 {
+pub(crate) fn distance(exact: &[(usize, [f64; 3])], found: &[[f64; 3]]) -> f64 {
     let away = |(body, exact): &(usize, [f64; 3])| -> f64 {
         let found = &found[*body];
         let square: f64 = exact.iter().zip(found).map(|(a, b)| (a - b).powi(2)).sum();
@@ -38,7 +38,7 @@ pub fn distance(exact: &[(usize, [f64; 3])], found: &[[f64; 3]]) -> f64 {
 }
 
 /// Largest difference of two gradients relative to the largest component of the exact one.
-pub fn gradient_error(found: &[f64], exact: &[f64]) -> f64 {
+pub(crate) fn gradient_error(found: &[f64], exact: &[f64]) -> f64 {
     let size = largest(exact.iter().map(|x| x.abs()));
     largest(exact.iter().zip(found).map(|(a, b)| (a - b).abs())) / size
 }

@@ -23,7 +23,7 @@ use exact::Reference;
 
 /// What is measured, and how thoroughly.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub(crate) struct Plan {
     /// CPU time that the runs of one method with equal steps, or with chosen ones, may take (s).
     pub seconds: f64,
     /// Runs of which the fastest counts.
@@ -49,7 +49,7 @@ const STAGNANT: (f64, f64) = (1e-6, 0.7);
 const DEARER: f64 = 2.0;
 
 /// All methods: those that can follow a tolerance first.
-pub fn methods() -> Vec<Method> {
+pub(crate) fn methods() -> Vec<Method> {
     let bdf = |order, start| Method::Bdf { order, start };
     let mut all = vec![
         Method::Dop853,
@@ -66,7 +66,7 @@ pub fn methods() -> Vec<Method> {
 ///
 /// # Errors
 /// If no reference run reaches the end; a method that fails is noted and left out.
-pub fn work_precision(
+pub(crate) fn work_precision(
     problem: &Problem,
     x: &[f64],
     plan: &Plan,

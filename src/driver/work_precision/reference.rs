@@ -29,7 +29,11 @@ struct Candidate {
 ///
 /// # Errors
 /// If no run reaches the end.
-pub fn reference(bench: &Bench, plan: &Plan, stiff: bool) -> Result<Reference, IntegrationFailure> {
+pub(crate) fn reference(
+    bench: &Bench,
+    plan: &Plan,
+    stiff: bool,
+) -> Result<Reference, IntegrationFailure> {
     let implicit = |tolerances: &[f64]| {
         let mut found = candidate(bench, STIFF, tolerances[0]);
         for &tolerance in &tolerances[1..] {

@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::system::accelerations::Memory;
 
 /// Makes the steps of a run again.
-pub struct Again<'a> {
+pub(crate) struct Again<'a> {
     run: &'a Trajectory<f64>,
     /// The steps.
     pub stepper: Stepper<'a, f64>,
@@ -22,7 +22,7 @@ pub struct Again<'a> {
 
 impl<'a> Again<'a> {
     /// At the start of `run`, which is one of `model`.
-    pub fn new(model: &'a Model<f64>, run: &'a Trajectory<f64>) -> Self {
+    pub(crate) fn new(model: &'a Model<f64>, run: &'a Trajectory<f64>) -> Self {
         let start = &run.initial;
         let node = Node {
             q: start.q.clone(),

@@ -37,7 +37,7 @@ const LEAST_ERROR: f64 = 1e-10;
 ///
 /// # Errors
 /// [`IntegrationFailure`] says what failed, when and where.
-pub fn march<S: SolveScalar>(
+pub(crate) fn march<S: SolveScalar>(
     model: &Model<S>,
     numbering: &Numbering,
     duration: S,
@@ -339,7 +339,7 @@ fn describe<S>(model: &Model<S>, numbering: &Numbering, singular: SingularMatrix
 }
 
 /// What a step that could not be made is told as, with its number and the time of its end.
-pub fn failed<S: SolveScalar>(
+pub(crate) fn failed<S: SolveScalar>(
     failure: StepFailure,
     (model, numbering): (&Model<S>, &Numbering),
     (step, time): (usize, f64),

@@ -8,15 +8,15 @@
 //!
 //! (Hairer & Wanner 1996, *Solving Ordinary Differential Equations II*, section VII.2.)
 
-pub mod again;
-pub mod march;
-pub mod record;
-pub mod step;
-pub mod stiffness;
-pub mod tableau;
-pub mod tape;
+pub(crate) mod again;
+pub(crate) mod march;
+pub(crate) mod record;
+pub(crate) mod step;
+pub(crate) mod stiffness;
+pub(crate) mod tableau;
+pub(crate) mod tape;
 
-pub use again::Again;
-pub use record::{NodeView, StepView, add_rows};
-pub use step::Stepper;
-pub use tape::Tape;
+pub(crate) use again::Again;
+pub(crate) use record::{NodeView, StepView, add_rows};
+pub(crate) use step::Stepper;
+pub(crate) use tape::Tape;

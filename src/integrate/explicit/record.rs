@@ -19,9 +19,9 @@ pub struct Node<V> {
 }
 
 /// A view of a node.
-pub type NodeView<'a, S> = Node<&'a [S]>;
+pub(crate) type NodeView<'a, S> = Node<&'a [S]>;
 /// A view of a step.
-pub type StepView<'a, S> = StepData<&'a [S]>;
+pub(crate) type StepView<'a, S> = StepData<&'a [S]>;
 
 impl<V> Node<V> {
     /// Lengths of its vectors.
@@ -157,7 +157,7 @@ impl<S: SolveScalar> StepData<&[S]> {
 
 /// Adds `scale` · Σ w_i · (row i of `rows`) to `out`, which is the part of every row that starts at
 /// `at`; rows are `width` long.
-pub fn add_rows<S: Scalar>(
+pub(crate) fn add_rows<S: Scalar>(
     out: &mut [S],
     scale: S,
     weights: &[(usize, f64)],

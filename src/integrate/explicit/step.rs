@@ -19,7 +19,7 @@ const CLOSED: f64 = 2e-15;
 
 /// Why a step could not be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum StepFailure {
+pub(crate) enum StepFailure {
     /// The index-1 equations are singular.
     Singular(SingularMatrix),
     /// The positions could not be projected onto the constraints.
@@ -41,7 +41,7 @@ impl From<SingularMatrix> for StepFailure {
 }
 
 /// Makes steps of one model.
-pub struct Stepper<'a, S> {
+pub(crate) struct Stepper<'a, S> {
     /// The index-1 equations.
     pub field: Accelerations<'a, S>,
     /// The step made last.
@@ -55,7 +55,7 @@ pub struct Stepper<'a, S> {
 
 impl<'a, S: SolveScalar> Stepper<'a, S> {
     /// Plans the steps of a model.
-    pub fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
+    pub(crate) fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
         Self {
             field: Accelerations::new(model, numbering),
             data: StepData::new(numbering),
@@ -75,7 +75,11 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
     ///
     /// # Errors
     /// [`StepFailure`].
-    pub fn stages(&mut self, node: NodeView<S>, (start, h): (S, S)) -> Result<(), StepFailure> {
+    pub(crate) fn stages(
+        &mut self,
+        node: NodeView<S>,
+        (start, h): (S, S),
+    ) -> Result<(), StepFailure> {
         self.data.dense = false;
         self.put_node(node, 0);
         for i in 1..STAGES {
@@ -99,7 +103,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
     ///
     /// # Errors
     /// [`StepFailure`].
-    pub fn dense_stages(
+    pub(crate) fn dense_stages(
         &mut self,
         (node, end): (NodeView<S>, NodeView<S>),
         (start, h): (S, S),
@@ -153,7 +157,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
     ///
     /// # Errors
     /// [`StepFailure`].
-    pub fn finish(&mut self, out: &mut Node<Vec<S>>, end: S) -> Result<(), StepFailure> {
+    pub(crate) fn finish(&mut self, out: &mut Node<Vec<S>>, end: S) -> Result<(), StepFailure> {
         self.project_positions(&mut out.q, end)?;
         self.field.factorise()?;
         let data = &mut self.data;
@@ -230,7 +234,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
     /// How far the motion inside the step of size h from `node` leaves the joints at its fraction θ, at
     /// `time`: the largest |Φ|, relative to the length scale or 1, and |G v + Φ_t|, relative to these
     /// speeds (m/s, rad/s). The equations are left standing there.
-    pub fn open(
+    pub(crate) fn open(
         &mut self,
         node: NodeView<S>,
         (h, theta): (S, f64),
@@ -265,7 +269,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
 
     /// Estimated errors of positions and velocities of the step of size h, Σ h e_i k_i for the
     /// embedded formulas of order 5 and 3, each measured by `measure`.
-    pub fn errors(&mut self, h: S, measure: impl Fn(&[S], &[S]) -> f64) -> [f64; 2] {
+    pub(crate) fn errors(&mut self, h: S, measure: impl Fn(&[S], &[S]) -> f64) -> [f64; 2] {
         let (q, v, _) = &mut self.scratch;
         let data = &self.data;
         [E5, E3].map(|e| {
@@ -280,7 +284,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
 
     /// The correction of the velocities by the projection of the step made last, measured by `measure`;
     /// zero if the joints close no loop, as such scenes have no singular positions.
-    pub fn velocity_correction(&mut self, measure: impl Fn(&[S], &[S]) -> f64) -> f64 {
+    pub(crate) fn velocity_correction(&mut self, measure: impl Fn(&[S], &[S]) -> f64) -> f64 {
         if !self.field.closes_loops() {
             return 0.0;
         }
@@ -291,7 +295,11 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
 
     /// How far the last stage is from the end of the step in state and in derivative, measured by
     /// `measure`.
-    pub fn last_stage(&mut self, to: NodeView<S>, measure: impl Fn(&[S], &[S]) -> f64) -> [f64; 2] {
+    pub(crate) fn last_stage(
+        &mut self,
+        to: NodeView<S>,
+        measure: impl Fn(&[S], &[S]) -> f64,
+    ) -> [f64; 2] {
         let (q, v, _) = &mut self.scratch;
         let data = &self.data;
         let last = STAGES - 1;
@@ -314,7 +322,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
 
     /// The motion inside the step of size h from `node`, at its fraction θ: positions, velocities and
     /// accelerations.
-    pub fn inside(&mut self, node: NodeView<S>, h: S, theta: f64) -> [&[S]; 3] {
+    pub(crate) fn inside(&mut self, node: NodeView<S>, h: S, theta: f64) -> [&[S]; 3] {
         let (q, v, a) = &mut self.scratch;
         self.data.view().dense(node, h, theta, [q, v, a]);
         bodies::bring_to_unit(self.field.numbering, q);

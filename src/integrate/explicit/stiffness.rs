@@ -23,7 +23,7 @@ use crate::system::initial::InitialState;
 
 /// What an explicit march looks out for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Watch {
+pub(crate) enum Watch {
     /// Steps that stability bounds, whatever another method would cost.
     Stability,
     /// A method that costs less.
@@ -81,7 +81,7 @@ impl Streak {
 }
 
 /// Watches whether stability rather than accuracy bounds the steps.
-pub struct Stiffness {
+pub(crate) struct Stiffness {
     watch: Watch,
     unstable: Streak,
     suspicious: Streak,
@@ -94,7 +94,7 @@ pub struct Stiffness {
 
 impl Stiffness {
     /// Watches for `watch`.
-    pub fn new(watch: Watch) -> Self {
+    pub(crate) fn new(watch: Watch) -> Self {
         Self {
             watch,
             unstable: Streak::default(),
@@ -107,7 +107,7 @@ impl Stiffness {
 
     /// Whether it is time to decide on the scene after the step in `stepper`, of size h, which ended in
     /// `to` and is the last of `run`.
-    pub fn seen<S: SolveScalar>(
+    pub(crate) fn seen<S: SolveScalar>(
         &mut self,
         stepper: &mut Stepper<S>,
         scale: &Scale,
@@ -135,7 +135,7 @@ impl Stiffness {
 
     /// Decides on a suspicious scene at the end of `run`, in the state `at`: the part of the explicit
     /// method's work that the implicit one needs, where that is known, if it takes over.
-    pub fn decides<S: SolveScalar>(
+    pub(crate) fn decides<S: SolveScalar>(
         &mut self,
         (model, numbering): (&Model<S>, &Numbering),
         settings: &Settings,

@@ -2,16 +2,16 @@
 //! Nørsett & Wanner 1993, *Solving Ordinary Differential Equations I*, section II.5 and II.6).
 
 /// Stages that a step needs; stage 0 is the derivative at its start.
-pub const STAGES: usize = 12;
+pub(crate) const STAGES: usize = 12;
 /// Index of the derivative at the step's end, which is stage 0 of the next step.
-pub const END: usize = 12;
+pub(crate) const END: usize = 12;
 /// Stages with those that only the dense output needs.
-pub const ALL: usize = 16;
+pub(crate) const ALL: usize = 16;
 /// Order of the method.
-pub const ORDER: usize = 8;
+pub(crate) const ORDER: usize = 8;
 
 /// Nodes c.
-pub const C: [f64; ALL] = [
+pub(crate) const C: [f64; ALL] = [
     0.0,
     0.05260015195876773,
     0.0789002279381516,
@@ -31,7 +31,7 @@ pub const C: [f64; ALL] = [
 ];
 
 /// Runge–Kutta matrix a, the non-zeros of each row (stage END has the weights b of the step).
-pub const A: [&[(usize, f64)]; ALL] = [
+pub(crate) const A: [&[(usize, f64)]; ALL] = [
     &[],
     &[(0, 0.05260015195876773)],
     &[(0, 0.0197250569845379), (1, 0.0591751709536137)],
@@ -140,7 +140,7 @@ pub const A: [&[(usize, f64)]; ALL] = [
 ];
 
 /// Weights b of order 8.
-pub const B: &[(usize, f64)] = &[
+pub(crate) const B: &[(usize, f64)] = &[
     (0, 0.054293734116568765),
     (5, 4.450312892752409),
     (6, 1.8915178993145003),
@@ -152,7 +152,7 @@ pub const B: &[(usize, f64)] = &[
 ];
 
 /// Difference to the embedded weights of order 3.
-pub const E3: &[(usize, f64)] = &[
+pub(crate) const E3: &[(usize, f64)] = &[
     (0, -0.18980075407240762),
     (5, 4.450312892752409),
     (6, 1.8915178993145003),
@@ -164,7 +164,7 @@ pub const E3: &[(usize, f64)] = &[
 ];
 
 /// Difference to the embedded weights of order 5.
-pub const E5: &[(usize, f64)] = &[
+pub(crate) const E5: &[(usize, f64)] = &[
     (0, 0.01312004499419488),
     (5, -1.2251564463762044),
     (6, -0.4957589496572502),
@@ -176,7 +176,7 @@ pub const E5: &[(usize, f64)] = &[
 ];
 
 /// Rows of the dense output beyond the cubic Hermite part.
-pub const D: [&[(usize, f64)]; 4] = [
+pub(crate) const D: [&[(usize, f64)]; 4] = [
     &[
         (0, -8.428938276109013),
         (5, 0.5667149535193777),
@@ -236,14 +236,14 @@ pub const D: [&[(usize, f64)]; 4] = [
 ];
 
 /// Weights of the stages that the dense output is made of: 0 and 5 … 15.
-pub type DenseWeights = [(usize, f64); 12];
+pub(crate) type DenseWeights = [(usize, f64); 12];
 
 /// Weights of the derivatives k_i in the dense output y(θ) = y_0 + h Σ w_i(θ) k_i, and their
 /// derivatives w_i'(θ), for 0 ≤ θ ≤ 1.
 ///
 /// y(θ) = y_0 + θ (F_0 + (1−θ) (F_1 + θ (F_2 + (1−θ) (F_3 + θ (F_4 + …))))), with F_0 the
 /// increment of the step, F_1 and F_2 those of the cubic Hermite polynomial and F_3 … F_6 = h D k.
-pub fn dense_weights(theta: f64) -> (DenseWeights, DenseWeights) {
+pub(crate) fn dense_weights(theta: f64) -> (DenseWeights, DenseWeights) {
     let (t, u) = (theta, 1.0 - theta);
     // Basis polynomials θ, θ(1−θ), θ²(1−θ), θ²(1−θ)², … and their derivatives.
     let tu = t * u;

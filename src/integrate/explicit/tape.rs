@@ -12,7 +12,7 @@ use crate::system::accelerations::Memory;
 use std::ops::Range;
 
 /// What is kept of a run.
-pub type Tape<S> = replay::Tape<Block<S>>;
+pub(crate) type Tape<S> = replay::Tape<Block<S>>;
 
 /// The nodes of steps in a row, and their stages.
 #[derive(Clone, Debug)]

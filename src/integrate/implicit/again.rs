@@ -11,7 +11,7 @@ use crate::integrate::{IntegrationFailure, Trajectory};
 use crate::model::Model;
 
 /// Makes the steps of a run again.
-pub struct Again<'a> {
+pub(crate) struct Again<'a> {
     run: &'a Trajectory<f64>,
     solver: Solver<'a, f64>,
     past: Past<f64>,
@@ -21,7 +21,7 @@ pub struct Again<'a> {
 
 impl<'a> Again<'a> {
     /// At the start of `run`, which is one of `model`.
-    pub fn new(model: &'a Model<f64>, run: &'a Trajectory<f64>, scheme: &'a Scheme) -> Self {
+    pub(crate) fn new(model: &'a Model<f64>, run: &'a Trajectory<f64>, scheme: &'a Scheme) -> Self {
         let numbering = &run.numbering;
         let system = (numbering, scheme);
         let first: Stage<f64> = starting_stage(numbering, &run.initial);

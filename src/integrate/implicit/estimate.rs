@@ -31,7 +31,7 @@ pub(super) struct Estimate<'a> {
 }
 
 impl<'a> Estimate<'a> {
-    pub fn new(model: &'a Model<f64>, numbering: &'a Numbering, scheme: &'a Scheme) -> Self {
+    pub(crate) fn new(model: &'a Model<f64>, numbering: &'a Numbering, scheme: &'a Scheme) -> Self {
         let zero = Stage::zero(numbering);
         Self {
             model,
@@ -47,18 +47,18 @@ impl<'a> Estimate<'a> {
     }
 
     /// Leaves other rows out.
-    pub fn leave_out(&mut self, left_out: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, left_out: &LeftOut) {
         self.field.leave_out(left_out);
     }
 
     /// Adds the work so far.
-    pub fn count(&self, counts: &mut WorkCounts) {
+    pub(crate) fn count(&self, counts: &mut WorkCounts) {
         counts.factorisations += self.field.factorisations;
         counts.solves += self.field.solves;
     }
 
     /// Estimated error of the step that `newton` just made, relative to the scene's scale.
-    pub fn error<S: SolveScalar>(
+    pub(crate) fn error<S: SolveScalar>(
         &mut self,
         newton: &mut StageNewton<S>,
         (from, stages): (&Stage<S>, &[Stage<S>]),

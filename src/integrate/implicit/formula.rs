@@ -17,7 +17,7 @@ const MOST: usize = 5;
 
 /// Coefficients of a step; they do not depend on its size.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Formula {
+pub(crate) struct Formula {
     /// c.
     pub lead: f64,
     /// Number m of memory vectors.
@@ -84,17 +84,17 @@ impl Formula {
     }
 
     /// e_j.
-    pub fn past(&self) -> &[f64] {
+    pub(crate) fn past(&self) -> &[f64] {
         &self.past[..self.slots]
     }
 
     /// (f_i, F_i1 … F_im) for each memory vector; what follows in a row is zero.
-    pub fn memory(&self) -> &[(f64, [f64; MOST])] {
+    pub(crate) fn memory(&self) -> &[(f64, [f64; MOST])] {
         &self.memory[..self.slots]
     }
 
     /// Moves component k of the memory past a step with the increment `delta`.
-    pub fn remember<S: Scalar>(&self, delta: S, memory: &mut [Vec<S>], k: usize) {
+    pub(crate) fn remember<S: Scalar>(&self, delta: S, memory: &mut [Vec<S>], k: usize) {
         let mut old = [S::zero(); MOST];
         for (old, m) in old.iter_mut().zip(&*memory) {
             *old = m[k];
@@ -108,7 +108,7 @@ impl Formula {
     /// The transpose of [`Formula::remember`] and of the rates' part: replaces component k of the
     /// cotangents of the memory after the step by that of the memory before it, given the cotangent
     /// `rate` of h times the rates.
-    pub fn recall(&self, rate: f64, memory: &mut [Vec<f64>], k: usize) {
+    pub(crate) fn recall(&self, rate: f64, memory: &mut [Vec<f64>], k: usize) {
         let mut later = [0.0; MOST];
         for (later, m) in later.iter_mut().zip(&*memory) {
             *later = m[k];
@@ -122,7 +122,7 @@ impl Formula {
     }
 
     /// The formula of step k ≥ 1 of a method, or `None` where the step is made by Radau IIA.
-    pub fn of_step(method: Method, k: usize) -> Option<Self> {
+    pub(crate) fn of_step(method: Method, k: usize) -> Option<Self> {
         match method {
             Method::Dop853 | Method::Radau { .. } => None,
             Method::Bdf { order, start } => match start {
@@ -136,7 +136,7 @@ impl Formula {
 }
 
 /// Number of memory vectors of a method.
-pub fn memory_size(method: Method) -> usize {
+pub(crate) fn memory_size(method: Method) -> usize {
     match method {
         Method::Dop853 | Method::Radau { .. } => 0,
         Method::Bdf { order, .. } => order - 1,
@@ -145,7 +145,7 @@ pub fn memory_size(method: Method) -> usize {
 }
 
 /// Whether the memory starts with h times the initial rates (rather than with nothing).
-pub fn remembers_start(method: Method) -> bool {
+pub(crate) fn remembers_start(method: Method) -> bool {
     matches!(method, Method::GeneralisedAlpha { .. })
 }
 

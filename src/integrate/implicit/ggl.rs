@@ -52,7 +52,7 @@ pub struct Instant<'a, S> {
 }
 
 /// The equations of one model, with the workspace that evaluating them needs.
-pub struct Equations<'a, S> {
+pub(crate) struct Equations<'a, S> {
     model: &'a Model<S>,
     numbering: &'a Numbering,
     motions: Vec<Motion<S>>,
@@ -79,7 +79,7 @@ impl<S: Scalar> Emit<S> for Times<'_, S> {
 
 impl<'a, S: Scalar> Equations<'a, S> {
     /// The equations of `model`.
-    pub fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
+    pub(crate) fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
         Self {
             model,
             numbering,
@@ -94,7 +94,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
     }
 
     /// Leaves other rows out; whether that is a change.
-    pub fn leave_out(&mut self, left_out: &LeftOut) -> bool {
+    pub(crate) fn leave_out(&mut self, left_out: &LeftOut) -> bool {
         let changes = self.left_out != *left_out;
         if changes {
             self.left_out.clone_from(left_out);
@@ -103,37 +103,37 @@ impl<'a, S: Scalar> Equations<'a, S> {
     }
 
     /// Mass that the dynamics are divided by (kg).
-    pub fn mass(&self) -> f64 {
+    pub(crate) fn mass(&self) -> f64 {
         self.mass
     }
 
     /// The model.
-    pub fn model(&self) -> &'a Model<S> {
+    pub(crate) fn model(&self) -> &'a Model<S> {
         self.model
     }
 
     /// Length of a residual or of a vector of unknowns: 2 (n_v + n_c).
-    pub fn length(&self) -> usize {
+    pub(crate) fn length(&self) -> usize {
         2 * (self.numbering.velocities() + self.numbering.constraints())
     }
 
     /// Order of the iteration matrix, which is in the unknowns of the bodies: 2 (n_u + n_c).
-    pub fn order(&self) -> usize {
+    pub(crate) fn order(&self) -> usize {
         2 * (self.numbering.unknowns() + self.numbering.constraints())
     }
 
     /// Lets `solve` work in place on the reduced form of a residual.
-    pub fn through<T: Scalar>(&self, x: &mut [T], solve: impl FnOnce(&mut [T])) {
+    pub(crate) fn through<T: Scalar>(&self, x: &mut [T], solve: impl FnOnce(&mut [T])) {
         reduce::through(self.numbering, PARTS, x, solve);
     }
 
     /// Brings a residual to its reduced form, of [`Equations::order`] entries at its head.
-    pub fn compress<T: Scalar>(&self, x: &mut [T]) {
+    pub(crate) fn compress<T: Scalar>(&self, x: &mut [T]) {
         reduce::compress(self.numbering, PARTS, x);
     }
 
     /// The inverse of [`Equations::compress`].
-    pub fn expand<T: Scalar>(&self, x: &mut [T]) {
+    pub(crate) fn expand<T: Scalar>(&self, x: &mut [T]) {
         reduce::expand(self.numbering, PARTS, x);
     }
 
@@ -151,7 +151,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
     }
 
     /// Residual in the scaling of step h.
-    pub fn residual(&mut self, at: &Instant<S>, h: S, out: &mut [S]) {
+    pub(crate) fn residual(&mut self, at: &Instant<S>, h: S, out: &mut [S]) {
         self.visit(at);
         let (model, numbering) = (self.model, self.numbering);
         let [_, f2, f3, f4] = self.starts();
@@ -187,14 +187,14 @@ impl<'a, S: Scalar> Equations<'a, S> {
     }
 
     /// Records the pattern of the iteration matrix, which is in the unknowns of the bodies.
-    pub fn pattern(&mut self, at: &Instant<S>) -> Pattern {
+    pub(crate) fn pattern(&mut self, at: &Instant<S>) -> Pattern {
         self.visit(at);
         let this = &*self;
         this.record(|emit| this.emit(at, S::one(), S::one(), emit))
     }
 
     /// Records the pattern of [`Equations::emit_rates`].
-    pub fn pattern_of_rates(&self) -> Pattern {
+    pub(crate) fn pattern_of_rates(&self) -> Pattern {
         self.record(|emit| self.emit_own_rates(emit))
     }
 
@@ -208,7 +208,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
     }
 
     /// Emits the scaled iteration matrix for ∂q̇/∂q = ∂v̇/∂v = c, in velocity numbering.
-    pub fn jacobian(&mut self, at: &Instant<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
+    pub(crate) fn jacobian(&mut self, at: &Instant<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
         self.visit(at);
         self.emit(at, h, c, emit);
     }
@@ -265,7 +265,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
 
     /// Emits the scaled derivative in the unknowns of another stage with positions `other`, of which
     /// h times the rates at the positions `q` contain the tangent: (P(q) T(q'), M).
-    pub fn emit_rates(&self, q: &[S], other: &[S], emit: &mut dyn Emit<S>) {
+    pub(crate) fn emit_rates(&self, q: &[S], other: &[S], emit: &mut dyn Emit<S>) {
         self.emit_rates_turned(emit, |i| {
             let o = self.numbering.position(i);
             bodies::turn_between(&q[o..], &other[o..])
@@ -273,7 +273,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
     }
 
     /// As [`Equations::emit_rates`] for the stage itself: (1, M).
-    pub fn emit_own_rates(&self, emit: &mut dyn Emit<S>) {
+    pub(crate) fn emit_own_rates(&self, emit: &mut dyn Emit<S>) {
         self.emit_rates_turned(emit, |_| Mat3::identity());
     }
 
@@ -291,20 +291,20 @@ impl<'a, S: Scalar> Equations<'a, S> {
 
     /// Multiplies an unscaled cotangent of the unknowns by the column scaling, or the solution of
     /// the scaled transposed system by the row scaling.
-    pub fn scale_columns(&self, h: f64, b: &mut [f64]) {
+    pub(crate) fn scale_columns(&self, h: f64, b: &mut [f64]) {
         let [_, v, lambda, mu] = self.starts();
         let by_lambda = self.mass / (h * h);
         scale_parts(b, &[(v, 1.0 / h), (lambda, by_lambda), (mu, 1.0 / h)]);
     }
 
     /// The inverse of [`Equations::scale_columns`].
-    pub fn unscale_columns(&self, h: f64, b: &mut [f64]) {
+    pub(crate) fn unscale_columns(&self, h: f64, b: &mut [f64]) {
         let [_, v, lambda, mu] = self.starts();
         scale_parts(b, &[(v, h), (lambda, h * h / self.mass), (mu, h)]);
     }
 
     /// See [`Equations::scale_columns`].
-    pub fn scale_rows(&self, h: f64, psi: &mut [f64]) {
+    pub(crate) fn scale_rows(&self, h: f64, psi: &mut [f64]) {
         let [_, f2, f3, f4] = self.starts();
         for x in &mut psi[..f2] {
             *x *= h;
@@ -313,12 +313,12 @@ impl<'a, S: Scalar> Equations<'a, S> {
     }
 
     /// The body or joint that a row or column of the iteration matrix belongs to, for messages.
-    pub fn describe_reduced(&self, row: usize) -> String {
+    pub(crate) fn describe_reduced(&self, row: usize) -> String {
         self.describe(reduce::unreduced(self.numbering, PARTS, row))
     }
 
     /// The body or joint that an equation (or unknown) belongs to, for messages.
-    pub fn describe(&self, row: usize) -> String {
+    pub(crate) fn describe(&self, row: usize) -> String {
         let [_, f2, f3, f4] = self.starts();
         let body = |i: usize| &self.model.bodies[self.numbering.body_of_velocity(i)].name;
         let joint = |i: usize| &self.model.joints[self.numbering.joint_of_row(i)].name;
@@ -361,7 +361,7 @@ impl Equations<'_, f64> {
     /// As [`Equations::pull_back`], and adds the part of F_yᵀψ that the mobilities do not admit, by
     /// positions that stay as the bodies are placed, to the tangent positions `held`, unless these are
     /// none.
-    pub fn pull_back_held(
+    pub(crate) fn pull_back_held(
         &mut self,
         at: &Instant<f64>,
         psi: &[f64],

@@ -27,7 +27,7 @@ use crate::system::{Motion, Numbering, bodies};
 ///
 /// # Errors
 /// [`IntegrationFailure`] says what failed, when and where.
-pub fn march<S: SolveScalar>(
+pub(crate) fn march<S: SolveScalar>(
     model: &Model<S>,
     numbering: &Numbering,
     duration: S,
@@ -39,7 +39,7 @@ pub fn march<S: SolveScalar>(
 
 /// Part of a motion, on which the pace of a method is measured.
 #[derive(Clone, Debug)]
-pub struct Stretch {
+pub(crate) struct Stretch {
     /// Fraction of the duration that it begins at.
     from: f64,
     /// Work after which it ends [evaluations].
@@ -50,7 +50,7 @@ pub struct Stretch {
 
 impl Stretch {
     /// A stretch from the fraction `from` that ends after so much work.
-    pub fn new(from: f64, most: f64) -> Self {
+    pub(crate) fn new(from: f64, most: f64) -> Self {
         Self {
             from,
             most,
@@ -60,7 +60,7 @@ impl Stretch {
 
     /// Fraction of the duration for a unit of work, in its second half where it has several steps: the
     /// first steps are small and have no past.
-    pub fn pace(&self) -> Option<f64> {
+    pub(crate) fn pace(&self) -> Option<f64> {
         let &(work, reached) = self.steps.last()?;
         let half = self.steps.iter().find(|(before, _)| *before >= 0.5 * work);
         match half {
@@ -76,7 +76,7 @@ impl Stretch {
 ///
 /// # Errors
 /// As [`march`].
-pub fn march_stretch<S: SolveScalar>(
+pub(crate) fn march_stretch<S: SolveScalar>(
     (model, numbering): (&Model<S>, &Numbering),
     duration: S,
     settings: &Settings,

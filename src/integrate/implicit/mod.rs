@@ -1,22 +1,22 @@
 //! Implicit methods on the GGL-stabilised equations: Radau IIA, and one-stage formulas with a
 //! memory (BDF, generalised-α).
 
-pub mod again;
+pub(crate) mod again;
 mod estimate;
-pub mod formula;
-pub mod ggl;
-pub mod march;
-pub mod newton;
-pub mod predict;
-pub mod radau;
+pub(crate) mod formula;
+pub(crate) mod ggl;
+pub(crate) mod march;
+pub(crate) mod newton;
+pub(crate) mod predict;
+pub(crate) mod radau;
 mod scales;
-pub mod solver;
-pub mod split;
-pub mod stage_newton;
-pub mod tape;
+pub(crate) mod solver;
+pub(crate) mod split;
+pub(crate) mod stage_newton;
+pub(crate) mod tape;
 
-pub use again::Again;
-pub use tape::Tape;
+pub(crate) use again::Again;
+pub(crate) use tape::Tape;
 
 use crate::math::Scalar;
 use crate::system::{Numbering, bodies, reduce};

@@ -27,7 +27,7 @@ const ITERATIONS: usize = 25;
 
 /// How rates follow from increments in this step: q̇ = c dq + `qdot`, v̇ = c dv + `vdot`.
 #[derive(Clone, Debug)]
-pub struct History<S> {
+pub(crate) struct History<S> {
     /// c, the formula's lead coefficient divided by h.
     pub c: S,
     /// History part of q̇.
@@ -38,7 +38,7 @@ pub struct History<S> {
 
 impl<S: Scalar> History<S> {
     /// Nothing remembered yet.
-    pub fn new(numbering: &Numbering) -> Self {
+    pub(crate) fn new(numbering: &Numbering) -> Self {
         Self {
             c: S::zero(),
             qdot: vec![S::zero(); numbering.positions()],
@@ -48,7 +48,7 @@ impl<S: Scalar> History<S> {
 
     /// What a formula makes of its memory, of q and of v, in a step of size h:
     /// h ẏ = c Δ + Σ e_j m_j.
-    pub fn set(&mut self, formula: &Formula, memory: &[Vec<Vec<S>>; 2], h: S) {
+    pub(crate) fn set(&mut self, formula: &Formula, memory: &[Vec<Vec<S>>; 2], h: S) {
         self.c = S::from(formula.lead) / h;
         for (rates, memory) in [&mut self.qdot, &mut self.vdot].into_iter().zip(memory) {
             rates.fill(S::zero());
@@ -72,7 +72,7 @@ impl<S: Scalar> History<S> {
 
 /// What it keeps from step to step.
 #[derive(Clone, Debug)]
-pub struct Memory<S> {
+pub(crate) struct Memory<S> {
     /// Where the kept factors were made, the step size there, and c.
     made: Option<(Stage<S>, [S; 2])>,
     contraction: f64,
@@ -81,7 +81,7 @@ pub struct Memory<S> {
 }
 
 /// Newton's method with everything that it needs again in every step.
-pub struct Newton<'a, S> {
+pub(crate) struct Newton<'a, S> {
     equations: Equations<'a, S>,
     numbering: &'a Numbering,
     matrix: SparseMatrix<S>,
@@ -100,7 +100,7 @@ pub struct Newton<'a, S> {
 
 impl<'a, S: SolveScalar> Newton<'a, S> {
     /// Plans the solution of the model's equations.
-    pub fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
+    pub(crate) fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
         let mut equations = Equations::new(model, numbering);
         let length = equations.length();
         let pattern = equations.pattern(&Stage::zero(numbering).instant());
@@ -119,7 +119,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
     }
 
     /// What it keeps from step to step.
-    pub fn memory(&mut self) -> Memory<S> {
+    pub(crate) fn memory(&mut self) -> Memory<S> {
         Memory {
             made: self.factored.map(|_| self.made.clone()),
             contraction: self.contraction,
@@ -129,7 +129,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
     }
 
     /// Takes what another one kept, and makes its factors again.
-    pub fn restore(&mut self, kept: &Memory<S>, counts: &mut WorkCounts) {
+    pub(crate) fn restore(&mut self, kept: &Memory<S>, counts: &mut WorkCounts) {
         self.contraction = kept.contraction;
         self.unseen = kept.unseen;
         self.factors
@@ -149,14 +149,14 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
     }
 
     /// Leaves other rows out.
-    pub fn leave_out(&mut self, left_out: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, left_out: &LeftOut) {
         if self.equations.leave_out(left_out) {
             self.factored = None;
         }
     }
 
     /// Forgets the kept factors.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.factored = None;
     }
 
@@ -165,7 +165,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
     ///
     /// # Errors
     /// Stalled, singular or not finite, with the time and the worst equation by name.
-    pub fn solve(
+    pub(crate) fn solve(
         &mut self,
         x: &mut Stage<S>,
         history: &History<S>,

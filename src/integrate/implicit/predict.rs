@@ -118,7 +118,7 @@ impl<S: SolveScalar> Past<S> {
 /// The collocation polynomial at the fraction θ of a step of size h (beyond the step for θ > 1):
 /// positions before their Euler parameters are brought to unit length, velocities, accelerations
 /// and multipliers.
-pub fn dense<S: SolveScalar>(
+pub(crate) fn dense<S: SolveScalar>(
     scheme: &Scheme,
     from: &Stage<S>,
     stages: &[Stage<S>],

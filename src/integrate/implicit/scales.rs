@@ -24,7 +24,7 @@ pub(super) struct Scales {
 }
 
 impl SceneScale {
-    pub fn of<S: Scalar>(model: &Model<S>) -> Self {
+    pub(crate) fn of<S: Scalar>(model: &Model<S>) -> Self {
         Self {
             length: placement::length_scale(model),
             gravity: largest(model.gravity.as_slice()),
@@ -33,7 +33,12 @@ impl SceneScale {
 
     /// The scales of a step of size `h` with the increments `dq`, `dv` to (q, v): never less than
     /// what gravity moves in a step, so that a model at rest is not judged by its noise.
-    pub fn step<S: Scalar>(&self, n: &Numbering, [q, v, dq, dv]: [&[S]; 4], h: f64) -> Scales {
+    pub(crate) fn step<S: Scalar>(
+        &self,
+        n: &Numbering,
+        [q, v, dq, dv]: [&[S]; 4],
+        h: f64,
+    ) -> Scales {
         let (mut shift, mut turn, mut place) = (0.0_f64, 0.0_f64, self.length);
         for body in 0..n.bodies() {
             let (dq, q) = (&dq[n.position(body)..], &q[n.position(body)..]);
@@ -64,13 +69,13 @@ impl SceneScale {
 impl Scales {
     /// Largest coordinate of a body, or the scene's length if that is larger (m): positions have
     /// round-off of its size.
-    pub fn place(&self) -> f64 {
+    pub(crate) fn place(&self) -> f64 {
         self.parts[0][1]
     }
 
     /// Largest change relative to the increments, round-off left out, of the scaled update (δy,
     /// h δv); NaN if it is not finite.
-    pub fn size<S: Scalar>(&self, update: &[S], h: f64) -> f64 {
+    pub(crate) fn size<S: Scalar>(&self, update: &[S], h: f64) -> f64 {
         let (positions, velocities) = update.split_at(update.len() / 2);
         let mut size = 0.0_f64;
         for (half, all, scale) in [(0, positions, 1.0), (2, velocities, 1.0 / h)] {

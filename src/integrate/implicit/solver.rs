@@ -25,7 +25,10 @@ pub struct Memory<S> {
 }
 
 /// The start as a stage, with its rates q̇ = T(q) v and v̇.
-pub fn starting_stage<S: SolveScalar>(numbering: &Numbering, start: &InitialState<S>) -> Stage<S> {
+pub(crate) fn starting_stage<S: SolveScalar>(
+    numbering: &Numbering,
+    start: &InitialState<S>,
+) -> Stage<S> {
     let mut first = Stage::zero(numbering);
     first.q.copy_from_slice(&start.q);
     first.v.copy_from_slice(&start.v);
@@ -59,7 +62,7 @@ pub(super) struct Solver<'a, S> {
 impl<'a, S: SolveScalar> Solver<'a, S> {
     /// The steps of `method` for a model, whose real part is `real`; `estimates` is whether errors will
     /// be asked for.
-    pub fn new(
+    pub(crate) fn new(
         method: Method,
         (model, real): (&'a Model<S>, &'a Model<f64>),
         (numbering, scheme): (&'a Numbering, &'a Scheme),
@@ -83,7 +86,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
     }
 
     /// What Newton's methods keep from step to step.
-    pub fn newton(&mut self) -> Memory<S> {
+    pub(crate) fn newton(&mut self) -> Memory<S> {
         Memory {
             one: self.one.as_mut().map(Newton::memory),
             coupled: self.coupled.as_mut().map(StageNewton::memory),
@@ -92,7 +95,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
     }
 
     /// Takes what Newton's methods kept.
-    pub fn restore(&mut self, newton: &Memory<S>, counts: &mut WorkCounts) {
+    pub(crate) fn restore(&mut self, newton: &Memory<S>, counts: &mut WorkCounts) {
         self.leave_out(&newton.left_out);
         match &newton.one {
             None => self.one = None,
@@ -118,7 +121,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
     }
 
     /// Leaves other rows out of the steps to come.
-    pub fn leave_out(&mut self, rows: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, rows: &LeftOut) {
         self.left_out.clone_from(rows);
         if let Some(newton) = &mut self.one {
             newton.leave_out(rows);
@@ -132,14 +135,14 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
     }
 
     /// Forgets the factors of steps that were given up.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         if let Some(newton) = &mut self.coupled {
             newton.forget();
         }
     }
 
     /// Makes step `at.0` of size `h`; returns its number of stages.
-    pub fn step(
+    pub(crate) fn step(
         &mut self,
         past: &mut Past<S>,
         (start, h): (S, S),
@@ -194,7 +197,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
     }
 
     /// Moves the memory past step k of `count` stages.
-    pub fn remember(&mut self, count: usize, k: usize) {
+    pub(crate) fn remember(&mut self, count: usize, k: usize) {
         let last = &self.stages[count - 1];
         let formula = Formula::of_step(self.method, k);
         for (memory, delta) in self.memory.iter_mut().zip([&last.dq, &last.dv]) {
@@ -217,7 +220,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
 
     /// Estimated error of the step that was just made from `from`, relative to the scene's scale;
     /// zero without an estimate.
-    pub fn error(&mut self, from: &Stage<S>, h: f64, scale: &Scale) -> f64 {
+    pub(crate) fn error(&mut self, from: &Stage<S>, h: f64, scale: &Scale) -> f64 {
         match (&mut self.coupled, &mut self.estimate) {
             (Some(newton), Some(estimate)) => {
                 estimate.error(newton, (from, &self.stages), h, scale)
@@ -227,7 +230,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
     }
 
     /// Adds the work of the estimates.
-    pub fn count(&self, counts: &mut WorkCounts) {
+    pub(crate) fn count(&self, counts: &mut WorkCounts) {
         if let Some(estimate) = &self.estimate {
             estimate.count(counts);
         }

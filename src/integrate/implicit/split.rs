@@ -9,7 +9,7 @@ use crate::math::Scalar;
 /// state: H with the rates held, and B = (1, M) in the rows of kinematics and dynamics, as these are
 /// scaled. One assembly of H serves every c.
 #[derive(Clone, Debug)]
-pub struct SplitMatrix {
+pub(crate) struct SplitMatrix {
     /// H.
     pub held: SparseMatrix<f64>,
     /// B, in a pattern of its own.
@@ -20,7 +20,7 @@ pub struct SplitMatrix {
 
 impl SplitMatrix {
     /// Plans the matrix of `equations`; `zero` is any stage of theirs.
-    pub fn new(equations: &mut Equations<f64>, zero: &Stage<f64>) -> Self {
+    pub(crate) fn new(equations: &mut Equations<f64>, zero: &Stage<f64>) -> Self {
         let held = SparseMatrix::new(equations.pattern(&zero.instant()));
         let mut rates = SparseMatrix::new(equations.pattern_of_rates());
         rates.assemble(|emit| equations.emit_own_rates(emit));
@@ -32,13 +32,13 @@ impl SplitMatrix {
     }
 
     /// Assembles H at an instant in a step of size h.
-    pub fn assemble(&mut self, equations: &mut Equations<f64>, at: &Instant<f64>, h: f64) {
+    pub(crate) fn assemble(&mut self, equations: &mut Equations<f64>, at: &Instant<f64>, h: f64) {
         self.held
             .assemble(|emit| equations.jacobian(at, h, 0.0, emit));
     }
 
     /// Fills `out`, which has the pattern of H, with H + c h B.
-    pub fn fill<S: Scalar>(&self, ch: S, out: &mut SparseMatrix<S>) {
+    pub(crate) fn fill<S: Scalar>(&self, ch: S, out: &mut SparseMatrix<S>) {
         for (out, &value) in out.values.iter_mut().zip(&self.held.values) {
             *out = S::from(value);
         }

@@ -42,7 +42,7 @@ const INFINITESIMAL_ITERATIONS: usize = 12;
 
 /// What it keeps from step to step.
 #[derive(Clone, Debug)]
-pub struct Memory {
+pub(crate) struct Memory {
     /// Where the kept factors were made, and the step size there.
     made: Option<(Stage<f64>, f64)>,
     /// Pivots of the real and of the complex matrix.
@@ -50,7 +50,7 @@ pub struct Memory {
 }
 
 /// Newton's method with what it needs again in every step.
-pub struct StageNewton<'a, S> {
+pub(crate) struct StageNewton<'a, S> {
     equations: Equations<'a, S>,
     /// The same equations in real numbers, for the matrices.
     real: Equations<'a, f64>,
@@ -79,7 +79,7 @@ pub struct StageNewton<'a, S> {
 impl<'a, S: SolveScalar> StageNewton<'a, S> {
     /// Plans the solution; `real` is the real part of `model`, and `estimates` whether errors will
     /// be asked for.
-    pub fn new(
+    pub(crate) fn new(
         model: &'a Model<S>,
         real: &'a Model<f64>,
         numbering: &'a Numbering,
@@ -120,7 +120,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     }
 
     /// What it keeps from step to step.
-    pub fn memory(&mut self) -> Memory {
+    pub(crate) fn memory(&mut self) -> Memory {
         let real = self.real_mode.as_mut();
         Memory {
             made: self.factored.map(|h| (self.middle.clone(), h)),
@@ -132,7 +132,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     }
 
     /// Takes what another one kept, and makes its factors again.
-    pub fn restore(&mut self, kept: &Memory, counts: &mut WorkCounts) {
+    pub(crate) fn restore(&mut self, kept: &Memory, counts: &mut WorkCounts) {
         let [real, complex] = &kept.pivots;
         if let Some((matrix, factors)) = &mut self.real_mode {
             factors.set_pivots(&matrix.pattern, real.as_ref());
@@ -148,12 +148,12 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     }
 
     /// Forgets the kept factors.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.factored = None;
     }
 
     /// Leaves other rows out.
-    pub fn leave_out(&mut self, left_out: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, left_out: &LeftOut) {
         if self.equations.leave_out(left_out) {
             self.real.leave_out(left_out);
             self.factored = None;
@@ -164,7 +164,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     ///
     /// # Errors
     /// Stalled, singular or not finite, with the time and the worst equation by name.
-    pub fn solve(
+    pub(crate) fn solve(
         &mut self,
         stages: &mut [Stage<S>],
         h: S,
@@ -295,7 +295,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     }
 
     /// Change (δy, h δv) that round-off made in the latest step, if a nearly singular matrix magnified it.
-    pub fn noise(&self) -> Option<&[f64]> {
+    pub(crate) fn noise(&self) -> Option<&[f64]> {
         self.noise.as_deref()
     }
 
@@ -443,7 +443,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     /// filtered by the real matrix, (K δ) = B (b̂_0 h ẏ_n + Σ e_i Z_i) / (b̂_0 h) in the equations
     /// of motion and 0 in the constraints (Hairer & Wanner 1996, eq. IV.8.19 and 20). `rates` are
     /// the rates (q̇, v̇) at the start.
-    pub fn error(
+    pub(crate) fn error(
         &mut self,
         stages: &[Stage<f64>],
         (qdot, vdot): (&[f64], &[f64]),

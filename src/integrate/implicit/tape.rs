@@ -13,7 +13,7 @@ use crate::system::Numbering;
 use std::ops::Range;
 
 /// What is kept of a run.
-pub type Tape<S> = replay::Tape<Block<S>>;
+pub(crate) type Tape<S> = replay::Tape<Block<S>>;
 
 /// The stages of steps in a row, one for a formula, all for Radau IIA, and the state that the first one
 /// starts from. The last stage stands at the step's end.
@@ -96,7 +96,7 @@ impl<S: Scalar> Block<S> {
 }
 
 /// What is behind a step, and the memory of a formula, of q and of v.
-pub type State<S> = (Past<S>, [Vec<Vec<S>>; 2]);
+pub(crate) type State<S> = (Past<S>, [Vec<Vec<S>>; 2]);
 
 impl<S: Scalar> replay::Block for Block<S> {
     type State = State<S>;

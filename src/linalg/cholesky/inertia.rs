@@ -16,7 +16,7 @@ const SOUND_PIVOTS: f64 = 1e-4;
 impl SparseCholesky {
     /// Number of negative eigenvalues of the matrix of these values, by Sylvester's law of inertia: the
     /// negative pivots of L D Lᵀ. `None` if rounding spoils the pivots. The factors are lost.
-    pub fn negative_eigenvalues(
+    pub(crate) fn negative_eigenvalues(
         &mut self,
         pattern: &SymmetricPattern,
         values: &[f64],

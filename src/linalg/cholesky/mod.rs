@@ -3,7 +3,7 @@
 mod inertia;
 mod pattern;
 
-pub use pattern::{SymmetricPattern, fill_reducing_order};
+pub(crate) use pattern::{SymmetricPattern, fill_reducing_order};
 
 use pattern::structure;
 
@@ -28,7 +28,7 @@ const PROBE_SHIFT: f64 = 1e-9;
 #[error(
     "the matrix is not positive definite: xᵀA x / xᵀ diag(A) x = {quotient:.1e} along a direction"
 )]
-pub struct NotPositiveDefinite {
+pub(crate) struct NotPositiveDefinite {
     /// xᵀ A x / xᵀ diag(A) x.
     pub quotient: f64,
     /// The direction x.
@@ -37,7 +37,7 @@ pub struct NotPositiveDefinite {
 
 /// Factors L Lᵀ = D A D, D making the diagonal ones. The order of the rows is the caller's: see
 /// [`fill_reducing_order`].
-pub struct SparseCholesky {
+pub(crate) struct SparseCholesky {
     symbolic: SymbolicCholesky<usize>,
     factors: Vec<f64>,
     scale: Vec<f64>,
@@ -52,7 +52,7 @@ impl SparseCholesky {
     ///
     /// # Panics
     /// If memory is exhausted.
-    pub fn new(pattern: &SymmetricPattern) -> Self {
+    pub(crate) fn new(pattern: &SymmetricPattern) -> Self {
         let same: Vec<usize> = (0..pattern.order()).collect();
         // faer reads the lower part of a matrix only when it is given an order.
         let symbolic = factorize_symbolic_cholesky(
@@ -74,7 +74,7 @@ impl SparseCholesky {
     }
 
     /// Entries of the factor.
-    pub fn entries(&self) -> usize {
+    pub(crate) fn entries(&self) -> usize {
         self.factors.len()
     }
 
@@ -82,7 +82,7 @@ impl SparseCholesky {
     ///
     /// # Errors
     /// [`NotPositiveDefinite`] if a pivot is not positive, or if the matrix is singular to round-off.
-    pub fn factorise(
+    pub(crate) fn factorise(
         &mut self,
         pattern: &SymmetricPattern,
         values: &[f64],
@@ -167,7 +167,7 @@ impl SparseCholesky {
     }
 
     /// Solves A X = B in place; `b` holds the columns of B one after another.
-    pub fn solve(&mut self, b: &mut [f64]) {
+    pub(crate) fn solve(&mut self, b: &mut [f64]) {
         self.scale_columns(b);
         self.solve_scaled(b);
         self.scale_columns(b);

@@ -6,7 +6,7 @@ use faer::sparse::linalg::amd;
 
 /// The lower part, diagonal included, of a symmetric sparse matrix by columns.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SymmetricPattern {
+pub(crate) struct SymmetricPattern {
     pub(super) starts: Vec<usize>,
     pub(super) rows: Vec<usize>,
 }
@@ -16,7 +16,7 @@ impl SymmetricPattern {
     ///
     /// # Panics
     /// If that does not hold.
-    pub fn new(columns: &[Vec<usize>]) -> Self {
+    pub(crate) fn new(columns: &[Vec<usize>]) -> Self {
         let mut starts = vec![0];
         let mut rows = Vec::with_capacity(columns.iter().map(Vec::len).sum());
         for (j, column) in columns.iter().enumerate() {
@@ -28,24 +28,24 @@ impl SymmetricPattern {
     }
 
     /// Number of rows.
-    pub fn order(&self) -> usize {
+    pub(crate) fn order(&self) -> usize {
         self.starts.len() - 1
     }
 
     /// Number of entries of the lower part.
-    pub fn entries(&self) -> usize {
+    pub(crate) fn entries(&self) -> usize {
         self.rows.len()
     }
 
     /// Where entry (i, j) of the lower part, i ≥ j, stands among the values.
-    pub fn slot(&self, i: usize, j: usize) -> Option<usize> {
+    pub(crate) fn slot(&self, i: usize, j: usize) -> Option<usize> {
         let start = self.starts[j];
         let column = &self.rows[start..self.starts[j + 1]];
         column.binary_search(&i).ok().map(|at| start + at)
     }
 
     /// y = A x.
-    pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+    pub(crate) fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         for j in 0..self.order() {
             let mut sum = 0.0;
@@ -66,7 +66,7 @@ impl SymmetricPattern {
 ///
 /// # Panics
 /// If memory is exhausted.
-pub fn fill_reducing_order(neighbours: &[Vec<usize>]) -> Vec<usize> {
+pub(crate) fn fill_reducing_order(neighbours: &[Vec<usize>]) -> Vec<usize> {
     let columns: Vec<Vec<usize>> = neighbours
         .iter()
         .enumerate()

@@ -9,7 +9,7 @@ use serde::Deserialize;
 /// second (ground counts as the second), from where the bodies are placed.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Drive {
+pub(crate) struct Drive {
     /// Name of a revolute, planar, prismatic or cylindrical joint.
     pub joint: String,
     /// Angle about the axis in time.
@@ -24,7 +24,7 @@ macro_rules! courses {
         #[doc = concat!("Course of ", $what, " in time.")]
         #[derive(Clone, Debug, Deserialize, JsonSchema)]
         #[serde(rename_all = "snake_case", deny_unknown_fields)]
-        pub enum $course {
+        pub(crate) enum $course {
             /// A constant rate, from zero.
             Rate(#[schemars(extend("unit" = $rate))] Quantity),
             /// Coefficients c0, c1, c2, … of c0 + c1 t + c2 t² + …
@@ -65,7 +65,7 @@ macro_rules! courses {
 
         impl $course {
             /// The course, whatever its unit.
-            pub fn parts(&self) -> Course<'_> {
+            pub(crate) fn parts(&self) -> Course<'_> {
                 match self {
                     Self::Rate(rate) => Course::Rate(rate),
                     Self::Polynomial(coefficients) => Course::Polynomial(coefficients),
@@ -90,7 +90,7 @@ courses!(Turning, "an angle", "rad", "rad/s", "rad, rad/s, rad/s², …");
 courses!(Sliding, "a displacement", "m", "m/s", "m, m/s, m/s², …");
 
 /// A course in time, whatever its unit.
-pub enum Course<'a> {
+pub(crate) enum Course<'a> {
     /// Constant rate.
     Rate(&'a Quantity),
     /// Coefficients.

@@ -8,7 +8,7 @@ use serde::Deserialize;
 /// A function of interest: an instant quantity reduced over the run, or a clearance.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Function {
+pub(crate) enum Function {
     /// Kreisselmeier–Steinhauser function, a smooth bound of the maximum over the run.
     Ks(Ks),
     /// Induced exponential, a smooth mean that leans to the maximum over the run.
@@ -26,7 +26,7 @@ pub enum Function {
 /// What is aggregated, how sharply, and on which side of the maximum.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Ks {
+pub(crate) struct Ks {
     /// Aggregation parameter in 1/unit of the quantity; larger is closer to the maximum.
     #[schemars(extend(
         "unit" = "1/unit of the quantity",
@@ -43,7 +43,7 @@ pub struct Ks {
 /// A side of the true maximum.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Bound {
+pub(crate) enum Bound {
     /// Never above it.
     Below,
     /// Never below it.
@@ -53,7 +53,7 @@ pub enum Bound {
 /// What is aggregated, and how sharply.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Aggregate {
+pub(crate) struct Aggregate {
     /// Aggregation parameter in 1/unit of the quantity; larger is closer to the maximum.
     #[schemars(extend(
         "unit" = "1/unit of the quantity",
@@ -68,7 +68,7 @@ pub struct Aggregate {
 /// A quantity at an instant.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Instant {
+pub(crate) enum Instant {
     /// Component of a point's position (m).
     Position(Component),
     /// Component of a point's velocity (m/s).
@@ -92,7 +92,7 @@ pub enum Instant {
 /// A point of a body and a direction.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Component {
+pub(crate) struct Component {
     /// The body.
     pub body: String,
     /// Its point, by name or in body axes; default the centre of mass.
@@ -105,7 +105,7 @@ pub struct Component {
 /// A point of a body.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Moving {
+pub(crate) struct Moving {
     /// The body.
     pub body: String,
     /// Its point, by name or in body axes; default the centre of mass.
@@ -115,7 +115,7 @@ pub struct Moving {
 /// Which energy.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Energy {
+pub(crate) enum Energy {
     /// Kinetic energy.
     Kinetic,
     /// Potential energy, zero with the centre of mass at the origin.
@@ -127,7 +127,7 @@ pub enum Energy {
 /// A body and an axis.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Rotation {
+pub(crate) struct Rotation {
     /// The body.
     pub body: String,
     /// Axis in ground axes where the bodies are placed, of any length but zero; it stays fixed in
@@ -143,7 +143,7 @@ pub struct Rotation {
 /// Where a rotation is zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum CountedFrom {
+pub(crate) enum CountedFrom {
     /// Where the axes of the body are parallel to those of the other, or of ground.
     #[default]
     Axes,
@@ -154,7 +154,7 @@ pub enum CountedFrom {
 /// A joint whose angle is measured.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct JointAngle {
+pub(crate) struct JointAngle {
     /// Name of a revolute, planar or cylindrical joint. The angle is that of its first body against
     /// the second (ground counts as the second) about the axis, from where the bodies are placed.
     pub joint: String,
@@ -163,7 +163,7 @@ pub struct JointAngle {
 /// A projectile and how its range is measured. Up is against gravity.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Range {
+pub(crate) struct Range {
     /// The body that is thrown.
     pub body: String,
     /// Its point that flies, by name or in body axes; default the centre of mass.
@@ -182,7 +182,7 @@ pub struct Range {
 /// `body` and `axis`, or `joint`; and one of `above` and `below`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Gate {
+pub(crate) struct Gate {
     /// The body whose rotation is watched.
     pub body: Option<String>,
     /// Axis of the rotation in ground axes where the bodies are placed, of any length but zero.
@@ -222,7 +222,7 @@ pub struct Gate {
 /// Height of a projectile's flight path above the top of a barrier.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Clearance {
+pub(crate) struct Clearance {
     /// Name of the range function whose release is meant: the final state of a `final` one, the
     /// weighted mean state of a `ks` or an `induced_exponential` one.
     pub release: String,
@@ -233,7 +233,7 @@ pub struct Clearance {
 /// A barrier across the direction of flight.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Barrier {
+pub(crate) struct Barrier {
     /// Its place along the direction of flight, from the origin.
     #[schemars(extend("unit" = "m"))]
     pub distance: Quantity,

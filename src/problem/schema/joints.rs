@@ -9,7 +9,7 @@ use serde::Deserialize;
 /// A joint between two bodies, or a body and "ground".
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Joint {
+pub(crate) enum Joint {
     /// A ball joint: the points coincide.
     Spherical(Ball),
     /// A hinge: the points coincide and the bodies turn about the axis.
@@ -33,7 +33,7 @@ pub enum Joint {
 /// Bodies and place of a joint without an axis.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Ball {
+pub(crate) struct Ball {
     /// The two bodies; one of them may be "ground".
     pub between: [String; 2],
     /// Where the joint is at the start.
@@ -43,7 +43,7 @@ pub struct Ball {
 /// Bodies, place and axis of a joint.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Axial {
+pub(crate) struct Axial {
     /// The two bodies; one of them may be "ground".
     pub between: [String; 2],
     /// Where the joint is at the start.
@@ -57,7 +57,7 @@ pub struct Axial {
 /// Where and how fast the motion of a joint starts.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct JointStart {
+pub(crate) struct JointStart {
     /// Turning about the axis.
     pub turn: Option<TurnStart>,
     /// Sliding along the axis.
@@ -67,7 +67,7 @@ pub struct JointStart {
 /// The start of a turn.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct TurnStart {
+pub(crate) struct TurnStart {
     /// Angle of the first body against the second from where they are placed, default as they are.
     #[schemars(extend("unit" = "rad"))]
     pub angle: Option<Quantity>,
@@ -79,7 +79,7 @@ pub struct TurnStart {
 /// The start of a slide.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SlideStart {
+pub(crate) struct SlideStart {
     /// Displacement of the first body against the second from where they are placed, default as they
     /// are.
     #[schemars(extend("unit" = "m"))]
@@ -91,7 +91,7 @@ pub struct SlideStart {
 
 impl JointStart {
     /// What the start says of a motion: its place and its rate. `None` if it does not name it.
-    pub fn of(&self, freedom: Freedom) -> Option<[Option<Quantity>; 2]> {
+    pub(crate) fn of(&self, freedom: Freedom) -> Option<[Option<Quantity>; 2]> {
         match freedom {
             Freedom::Turn => self.turn.as_ref().map(|turn| [turn.angle, turn.rate]),
             Freedom::Slide => {
@@ -105,7 +105,7 @@ impl JointStart {
 /// Bodies, place and axes of a universal joint.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Crossed {
+pub(crate) struct Crossed {
     /// The two bodies; one of them may be "ground".
     pub between: [String; 2],
     /// Where the joint is at the start.
@@ -119,7 +119,7 @@ pub struct Crossed {
 /// A rod between points of two bodies.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Rod {
+pub(crate) struct Rod {
     /// The two bodies; one of them may be "ground".
     pub between: [String; 2],
     /// Its ends.
@@ -132,7 +132,7 @@ pub struct Rod {
 /// Ends of a rod or spring.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Ends {
+pub(crate) enum Ends {
     // First, as a pair of points could be read from a list as well.
     /// Ground coordinates of both at the start, in the order of the bodies.
     #[schemars(extend("unit" = "m"))]
@@ -144,7 +144,7 @@ pub enum Ends {
 /// Where a joint is at the start.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub enum JointPlace {
+pub(crate) enum JointPlace {
     /// `"body.point"`, or `"body"` for the origin of its axes.
     Named(String),
     /// Ground coordinates.
@@ -157,7 +157,7 @@ pub enum JointPlace {
 /// One point on each body of a joint.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct PointPair {
+pub(crate) struct PointPair {
     /// Point of the first body, by name or in its axes (ground coordinates if it is ground).
     pub a: Point,
     /// Point of the second body, likewise.
@@ -167,7 +167,7 @@ pub struct PointPair {
 /// Direction of a joint's axis.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Axis {
+pub(crate) enum Axis {
     /// In ground axes.
     #[schemars(extend("unit" = "1"))]
     Ground(Vector),
@@ -178,7 +178,7 @@ pub enum Axis {
 /// An axis fixed in a body.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct BodyAxis {
+pub(crate) struct BodyAxis {
     /// The body.
     pub body: String,
     /// Direction in its axes.
@@ -188,7 +188,7 @@ pub struct BodyAxis {
 
 impl Joint {
     /// Its bodies.
-    pub fn between(&self) -> &[String; 2] {
+    pub(crate) fn between(&self) -> &[String; 2] {
         match self {
             Joint::Spherical(ball) | Joint::Weld(ball) => &ball.between,
             Joint::Revolute(axial)
@@ -201,7 +201,7 @@ impl Joint {
     }
 
     /// Where it is; `None` for a rod, which has two ends.
-    pub fn place(&self) -> Option<&JointPlace> {
+    pub(crate) fn place(&self) -> Option<&JointPlace> {
         match self {
             Joint::Spherical(ball) | Joint::Weld(ball) => Some(&ball.at),
             Joint::Revolute(axial)
@@ -214,7 +214,7 @@ impl Joint {
     }
 
     /// Where and how fast its motion starts, as far as the file says.
-    pub fn start(&self) -> Option<&JointStart> {
+    pub(crate) fn start(&self) -> Option<&JointStart> {
         match self {
             Joint::Revolute(axial)
             | Joint::Prismatic(axial)
@@ -225,7 +225,7 @@ impl Joint {
     }
 
     /// Its axis and cross axis.
-    pub fn axes(&self) -> [Option<&Axis>; 2] {
+    pub(crate) fn axes(&self) -> [Option<&Axis>; 2] {
         match self {
             Joint::Spherical(_) | Joint::Weld(_) | Joint::Rod(_) => [None, None],
             Joint::Revolute(axial)
@@ -237,7 +237,7 @@ impl Joint {
     }
 
     /// Its key in the file.
-    pub fn kind(&self) -> crate::model::JointKind {
+    pub(crate) fn kind(&self) -> crate::model::JointKind {
         use crate::model::JointKind;
         match self {
             Joint::Spherical(_) => JointKind::Spherical,

@@ -10,7 +10,7 @@ use serde::Deserialize;
 /// A force, torque, spring, damper or friction.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Load {
+pub(crate) enum Load {
     /// A force at a point of a body.
     Force(Force),
     /// A torque on a body.
@@ -29,7 +29,7 @@ pub enum Load {
 /// A force at a point of a body.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Force {
+pub(crate) struct Force {
     /// The body that it acts on.
     pub body: String,
     /// The point that it acts at, by name or in body axes; default the centre of mass.
@@ -50,7 +50,7 @@ pub struct Force {
 /// A torque on a body.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Torque {
+pub(crate) struct Torque {
     /// The body that it acts on.
     pub body: String,
     /// Its direction, of any length but zero.
@@ -66,7 +66,7 @@ pub struct Torque {
 /// The axes that a direction is fixed in.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Axes {
+pub(crate) enum Axes {
     /// Those of ground.
     #[default]
     Ground,
@@ -77,7 +77,7 @@ pub enum Axes {
 /// What stands between the values of a table.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Interpolation {
+pub(crate) enum Interpolation {
     /// Straight lines. Those of a motion are rounded at each end, so that accelerations stay finite.
     Linear,
     /// Smooth without overshoot.
@@ -88,7 +88,7 @@ pub enum Interpolation {
 
 impl Interpolation {
     /// That of the model.
-    pub fn of(written: Option<Self>) -> model::Interpolation {
+    pub(crate) fn of(written: Option<Self>) -> model::Interpolation {
         match written {
             Some(Self::Linear) => model::Interpolation::Linear,
             Some(Self::Spline) => model::Interpolation::Spline,
@@ -103,7 +103,7 @@ macro_rules! courses {
         #[doc = concat!("Magnitude of a ", $what, ".")]
         #[derive(Clone, Debug, Deserialize, JsonSchema)]
         #[serde(untagged)]
-        pub enum $course {
+        pub(crate) enum $course {
             /// The same at all times.
             #[schemars(extend("unit" = $unit))]
             Constant(Quantity),
@@ -114,7 +114,7 @@ macro_rules! courses {
         #[doc = concat!("Course of a ", $what, " in time.")]
         #[derive(Clone, Debug, Deserialize, JsonSchema)]
         #[serde(rename_all = "snake_case", deny_unknown_fields)]
-        pub enum $varying {
+        pub(crate) enum $varying {
             /// amplitude · sin(2π frequency t + phase).
             Harmonic {
                 /// Amplitude.
@@ -146,7 +146,7 @@ macro_rules! courses {
 
         impl $course {
             /// Its course, whatever its unit.
-            pub fn parts(&self) -> Course<'_> {
+            pub(crate) fn parts(&self) -> Course<'_> {
                 match self {
                     $course::Constant(value) => Course::Constant(value),
                     $course::Varying($varying::Harmonic {
@@ -169,7 +169,7 @@ courses!(ForceCourse, VaryingForce, "force", "N");
 courses!(TorqueCourse, VaryingTorque, "torque", "N m");
 
 /// A course in time, whatever its unit.
-pub enum Course<'a> {
+pub(crate) enum Course<'a> {
     /// The same at all times.
     Constant(&'a Quantity),
     /// Amplitude, frequency and phase.
@@ -186,7 +186,7 @@ fn nothing() -> Quantity {
 /// A spring with a damper between points of two bodies.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Spring {
+pub(crate) struct Spring {
     /// The two bodies; one of them may be "ground".
     pub between: [String; 2],
     /// Its ends.
@@ -210,7 +210,7 @@ pub struct Spring {
 /// A spring with a damper about the axis of a joint.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct TorsionSpring {
+pub(crate) struct TorsionSpring {
     /// Name of a revolute, planar or cylindrical joint.
     pub joint: String,
     /// Angle without torque, of the first body against the second (ground counts as the second)
@@ -230,7 +230,7 @@ pub struct TorsionSpring {
 /// A motion of a joint.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Motion {
+pub(crate) enum Motion {
     /// Turning about its axis.
     Turn,
     /// Sliding along its axis.
@@ -240,7 +240,7 @@ pub enum Motion {
 /// Viscous damping in a joint.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Damping {
+pub(crate) struct Damping {
     /// Name of a revolute, prismatic, cylindrical, planar, spherical or universal joint.
     pub joint: String,
     /// Which motion of a cylindrical joint; default turning.
@@ -253,7 +253,7 @@ pub struct Damping {
 /// Coulomb friction in a joint.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Friction {
+pub(crate) struct Friction {
     /// Name of a revolute, prismatic, cylindrical or planar joint.
     pub joint: String,
     /// Which motion of a cylindrical joint; default turning.
@@ -268,7 +268,7 @@ pub struct Friction {
 
 impl Load {
     /// Its key in the file.
-    pub fn key(&self) -> &'static str {
+    pub(crate) fn key(&self) -> &'static str {
         match self {
             Load::Force(_) => "force",
             Load::Torque(_) => "torque",

@@ -9,7 +9,7 @@ use serde::Deserialize;
 /// inertia.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Body {
+pub(crate) struct Body {
     /// A homogeneous solid, centred at the origin of the body's axes; it gives the inertia.
     pub shape: Option<Shape>,
     /// Density of the shape, instead of a mass.
@@ -38,7 +38,7 @@ pub struct Body {
 /// A homogeneous solid, centred at the origin of the body's axes.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Shape {
+pub(crate) enum Shape {
     /// A box with edges along the body's axes.
     Box {
         /// Edges along x, y and z.
@@ -83,7 +83,7 @@ fn nothing() -> Quantity {
 /// minus the integral of x y over the mass.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Inertia {
+pub(crate) struct Inertia {
     /// Moment about x.
     #[schemars(extend("unit" = "kg m²", "minimum" = 0))]
     pub xx: Quantity,
@@ -110,7 +110,7 @@ pub struct Inertia {
 /// Where a body is at the start: `put` this point of the body `at` that place, with this `turn`.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Place {
+pub(crate) struct Place {
     /// Point of this body, by name or in body axes; default the origin of its axes.
     pub put: Option<Point>,
     /// Where that point goes: `"body.point"`, `"body"` for the origin of its axes, or ground
@@ -126,7 +126,7 @@ pub struct Place {
 /// A point of a body.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Point {
+pub(crate) enum Point {
     /// Name of one of the body's points.
     Named(String),
     /// Coordinates in body axes from their origin.
@@ -137,7 +137,7 @@ pub enum Point {
 /// A place in space.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Location {
+pub(crate) enum Location {
     /// `"body.point"`, or `"body"` for the origin of its axes.
     Named(String),
     /// Ground coordinates.
@@ -148,7 +148,7 @@ pub enum Location {
 /// One rotation or several.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Turns {
+pub(crate) enum Turns {
     /// One rotation.
     One(Turn),
     /// Several, applied in order.
@@ -157,7 +157,7 @@ pub enum Turns {
 
 impl Turns {
     /// The rotations in order.
-    pub fn list(&self) -> &[Turn] {
+    pub(crate) fn list(&self) -> &[Turn] {
         match self {
             Turns::One(turn) => std::slice::from_ref(turn),
             Turns::Several(turns) => turns,
@@ -168,7 +168,7 @@ impl Turns {
 /// A rotation by an angle about an axis.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Turn {
+pub(crate) struct Turn {
     /// Axis of any length but zero.
     #[schemars(extend("unit" = "1"))]
     pub axis: Vector,
@@ -180,7 +180,7 @@ pub struct Turn {
 /// Velocity of one body at the start.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct BodyVelocity {
+pub(crate) struct BodyVelocity {
     /// Velocity of the centre of mass in ground axes, default 0.
     #[schemars(extend("unit" = "m/s"))]
     pub linear: Option<Vector>,
@@ -192,7 +192,7 @@ pub struct BodyVelocity {
 /// Velocity of the whole assembly at the start, moving as one rigid body.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct AssemblyVelocity {
+pub(crate) struct AssemblyVelocity {
     /// Velocity of the point `about` in ground axes, default 0.
     #[schemars(extend("unit" = "m/s"))]
     pub linear: Option<Vector>,

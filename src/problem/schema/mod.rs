@@ -1,10 +1,10 @@
 //! The problem file as it is written: serde structures, whose documentation is the JSON Schema.
 
-pub mod drives;
-pub mod functions;
-pub mod joints;
-pub mod loads;
-pub mod mechanics;
+pub(crate) mod drives;
+pub(crate) mod functions;
+pub(crate) mod joints;
+pub(crate) mod loads;
+pub(crate) mod mechanics;
 
 use super::quantity::{Quantity, Vector};
 use drives::Drive;
@@ -17,7 +17,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// The version of the format that is read.
-pub const VERSION: u64 = 1;
+pub(crate) const VERSION: u64 = 1;
 
 /// A multibody scene, what is asked of it and what may be designed. Units are SI, angles are in
 /// radians; the keys of bodies, joints, loads, drives, functions, variables and constraints are their
@@ -25,7 +25,7 @@ pub const VERSION: u64 = 1;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "flexbody problem")]
-pub struct Document {
+pub(crate) struct Document {
     /// Address of this schema, for editors.
     #[serde(rename = "$schema")]
     pub _schema: Option<String>,
@@ -80,7 +80,7 @@ pub struct Document {
 /// How long and how finely the scene is simulated.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Simulation {
+pub(crate) struct Simulation {
     /// Simulated time; with `until`, the longest that the event is waited for.
     #[schemars(extend("unit" = "s", "exclusiveMinimum" = 0))]
     pub duration: Quantity,
@@ -122,7 +122,7 @@ pub struct Simulation {
 /// An event that ends the run.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Until {
+pub(crate) struct Until {
     /// The quantity.
     pub measure: Instant,
     /// The value that it reaches.
@@ -133,7 +133,7 @@ pub struct Until {
 /// An integration method.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Method {
+pub(crate) enum Method {
     /// Explicit Runge-Kutta method of order 8 with projection onto the joints: for scenes that are
     /// not stiff.
     Dop853,
@@ -174,7 +174,7 @@ pub enum Method {
 /// How a formula of several steps begins.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Start {
+pub(crate) enum Start {
     /// By Radau IIA, which keeps the order.
     Radau,
     /// By formulas of rising order, which caps the order of the whole at 2.
@@ -185,7 +185,7 @@ pub enum Start {
 /// at the value that stands there.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Variable {
+pub(crate) struct Variable {
     /// JSON Pointer to the number, such as /bodies/arm/mass.
     pub path: Option<String>,
     /// JSON Pointers to several numbers with one value, instead of `path`.
@@ -209,7 +209,7 @@ pub struct Variable {
 /// The function that is optimised.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Objective {
+pub(crate) enum Objective {
     /// Name of the function to make as small as can be.
     Minimise(String),
     /// Name of the function to make as large as can be.
@@ -219,7 +219,7 @@ pub enum Objective {
 /// Bounds on a function; equal bounds ask for equality.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Constraint {
+pub(crate) struct Constraint {
     /// Name of the function.
     pub function: String,
     /// Smallest value, default none.
@@ -233,7 +233,7 @@ pub struct Constraint {
 /// An optimisation algorithm.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum OptimisationMethod {
+pub(crate) enum OptimisationMethod {
     /// Primal-dual interior point with a filter line search.
     InteriorPoint,
     /// Trust-region sequential quadratic programming: fewest simulations for few variables.
@@ -245,7 +245,7 @@ pub enum OptimisationMethod {
 /// Settings of the optimiser.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Optimiser {
+pub(crate) struct Optimiser {
     /// Algorithm, default interior point.
     pub method: Option<OptimisationMethod>,
     /// Scaled residual of the optimality conditions at which it stops.
@@ -291,7 +291,7 @@ pub struct Optimiser {
 /// How the motion is drawn.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Plot {
+pub(crate) struct Plot {
     /// Plane that is looked at, first axis to the right, second one up; default xy.
     pub view: Option<View>,
     /// Number of instants of the time lapse, default 12.
@@ -308,7 +308,7 @@ pub struct Plot {
 /// A plane that is looked at: first axis to the right, second one up.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum View {
+pub(crate) enum View {
     /// x to the right, y up.
     #[default]
     Xy,
@@ -326,7 +326,7 @@ pub enum View {
 
 /// The JSON Schema of a problem file: `unit` is a number's unit, `design_variable` is true where a
 /// design variable may point, or says why it may not.
-pub fn schema() -> serde_json::Value {
+pub(crate) fn schema() -> serde_json::Value {
     let mut schema = schemars::schema_for!(Document).to_value();
     tidy(&mut schema);
     schema

@@ -15,7 +15,7 @@ const SYNCHRONISE: Duration = Duration::from_secs(1);
 
 /// The complete evaluations of an earlier run; a truncated last line is dropped.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Earlier {
+pub(crate) struct Earlier {
     /// The head: the problem of the evaluations.
     pub head: Head,
     /// Evaluations and choices of steps, in order.
@@ -31,7 +31,7 @@ impl Earlier {
     ///
     /// # Errors
     /// [`ReportError`] if the file cannot be read, is damaged, or does not belong to `head`.
-    pub fn read(path: &Path, head: &Head) -> Result<Option<Self>, ReportError> {
+    pub(crate) fn read(path: &Path, head: &Head) -> Result<Option<Self>, ReportError> {
         let bytes = match std::fs::read(path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             found => found.map_err(|source| ReportError::Read {
@@ -114,7 +114,7 @@ fn damage(error: &serde_json::Error) -> String {
 
 /// The open file.
 #[derive(Debug)]
-pub struct EvaluationLog {
+pub(crate) struct EvaluationLog {
     path: PathBuf,
     file: File,
     chain: Chain,
@@ -127,7 +127,7 @@ impl EvaluationLog {
     ///
     /// # Errors
     /// [`ReportError::Write`] with the path.
-    pub fn create(
+    pub(crate) fn create(
         path: &Path,
         head: &Head,
         earlier: Option<&Earlier>,
@@ -150,7 +150,7 @@ impl EvaluationLog {
     ///
     /// # Errors
     /// [`ReportError::Write`] with the path.
-    pub fn append(&mut self, record: &EvaluationRecord) -> Result<(), ReportError> {
+    pub(crate) fn append(&mut self, record: &EvaluationRecord) -> Result<(), ReportError> {
         let line = self.chain.line(record)?;
         self.file
             .write_all(line.as_bytes())

@@ -5,7 +5,7 @@
 mod chain;
 mod log;
 
-pub use log::{Earlier, EvaluationLog};
+pub(crate) use log::{Earlier, EvaluationLog};
 
 use crate::integrate::{Grid, Method, WorkCounts};
 use crate::system::LeftOut;
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 /// The head of the file, its first line: the problem of the evaluations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Head {
+pub(crate) struct Head {
     /// SHA-256, hexadecimal, of those parts of the problem's document that may affect the
     /// functions.
     pub sha256: String,
@@ -53,7 +53,7 @@ impl Head {
     }
 
     /// The settings that differ from those of `earlier`, as `POINTER was OLD, is NEW`.
-    pub fn changes(&self, earlier: &Head) -> Vec<String> {
+    pub(crate) fn changes(&self, earlier: &Head) -> Vec<String> {
         let all = |head: &Head| {
             let mut leaves = BTreeMap::new();
             flatten(&Value::Object(head.settings.clone()), "", &mut leaves);
@@ -93,7 +93,7 @@ fn flatten(value: &Value, pointer: &str, leaves: &mut BTreeMap<String, Value>) {
 /// One evaluation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct EvaluationRecord {
+pub(crate) struct EvaluationRecord {
     /// The design, in the units of the problem file.
     pub design: Vec<f64>,
     /// Its results.
@@ -110,7 +110,7 @@ pub struct EvaluationRecord {
 /// Work of an evaluation: nothing for one that failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Work {
+pub(crate) struct Work {
     /// Time steps.
     pub steps: usize,
     /// Steps of the motion that a gradient repeated because memory is limited.
@@ -159,7 +159,7 @@ fn is_zero(count: &usize) -> bool {
 /// Results of an evaluation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Found {
+pub(crate) enum Found {
     /// Values of the functions.
     Values(Vec<f64>),
     /// Gradients of the functions, function by function.
@@ -178,7 +178,7 @@ const MOST_CELLS: u32 = 4096;
 /// Method and steps that were chosen at one design and are kept for later ones.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct StepsInUse {
+pub(crate) struct StepsInUse {
     /// Name of the method.
     pub method: String,
     /// Why they were chosen.
@@ -201,7 +201,7 @@ pub struct StepsInUse {
 /// Constraint rows that are left out from a step on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RowsLeftOut {
+pub(crate) struct RowsLeftOut {
     /// The step, counted from 1.
     pub from: usize,
     /// Numbers of the rows, counted from 0.
@@ -212,7 +212,7 @@ pub struct RowsLeftOut {
 
 impl StepsInUse {
     /// The steps with their redundant rows. `None` if they are equal, or not valid for any motion.
-    pub fn grid(&self) -> Option<Grid> {
+    pub(crate) fn grid(&self) -> Option<Grid> {
         let mut grid = Grid::from_ends(self.ends.clone())?.with_cells(self.cells.clone());
         for RowsLeftOut { from, rows, of } in &self.left_out {
             grid.leave_out_from(*from, &LeftOut::from_rows(rows, *of)?);

@@ -72,7 +72,7 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    pub fn new(width: f64, height: f64) -> Canvas {
+    pub(crate) fn new(width: f64, height: f64) -> Canvas {
         Canvas {
             width: width.ceil(),
             height: height.ceil(),
@@ -81,7 +81,7 @@ impl Canvas {
     }
 
     /// A line through points, of a width in pixels.
-    pub fn path(&mut self, points: &[Pixel], color: RGBColor, width: f64, alpha: f64) {
+    pub(crate) fn path(&mut self, points: &[Pixel], color: RGBColor, width: f64, alpha: f64) {
         let points = thinned(points);
         if points.len() > 1 {
             self.shapes.push((Shape::Path(points, width), color, alpha));
@@ -89,43 +89,43 @@ impl Canvas {
     }
 
     /// A line of dashes.
-    pub fn dashes(&mut self, points: &[Pixel], color: RGBColor, width: f64) {
+    pub(crate) fn dashes(&mut self, points: &[Pixel], color: RGBColor, width: f64) {
         for dash in dashes(points, 6.0, 3.5) {
             self.path(&dash, color, width, 1.0);
         }
     }
 
     /// A filled polygon.
-    pub fn area(&mut self, points: &[Pixel], color: RGBColor, alpha: f64) {
+    pub(crate) fn area(&mut self, points: &[Pixel], color: RGBColor, alpha: f64) {
         self.shapes
             .push((Shape::Area(points.to_vec()), color, alpha));
     }
 
     /// A filled circle.
-    pub fn disc(&mut self, centre: Pixel, radius: f64, color: RGBColor) {
+    pub(crate) fn disc(&mut self, centre: Pixel, radius: f64, color: RGBColor) {
         self.shapes.push((Shape::Disc(centre, radius), color, 1.0));
     }
 
     /// A triangle that points downwards: the value lies below the axis.
-    pub fn below_mark(&mut self, (x, y): Pixel, color: RGBColor) {
+    pub(crate) fn below_mark(&mut self, (x, y): Pixel, color: RGBColor) {
         let triangle = [(x - 4.0, y - 7.0), (x + 4.0, y - 7.0), (x, y)];
         self.area(&triangle, color, 1.0);
     }
 
     /// Text of ordinary size, centred vertically on the point.
-    pub fn text(&mut self, at: Pixel, text: &str, anchor: Anchor) {
+    pub(crate) fn text(&mut self, at: Pixel, text: &str, anchor: Anchor) {
         let shape = Shape::Text(at, visible(text), anchor, false);
         self.shapes.push((shape, INK, 1.0));
     }
 
     /// Bold text, centred vertically on the point.
-    pub fn title(&mut self, at: Pixel, text: &str, anchor: Anchor) {
+    pub(crate) fn title(&mut self, at: Pixel, text: &str, anchor: Anchor) {
         let shape = Shape::Text(at, visible(text), anchor, true);
         self.shapes.push((shape, BLACK, 1.0));
     }
 
     /// The picture as SVG.
-    pub fn svg(&self) -> Result<String, ReportError> {
+    pub(crate) fn svg(&self) -> Result<String, ReportError> {
         let fine = |length: f64| (length * FINE).round() as i32;
         let mut svg = String::new();
         let size = (

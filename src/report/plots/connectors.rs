@@ -6,11 +6,11 @@ use super::panel::{Key, Panel};
 use plotters::style::RGBColor;
 
 /// A point of the plane that is drawn: horizontal and vertical coordinate (m).
-pub type Point = [f64; 2];
+pub(crate) type Point = [f64; 2];
 
 /// What a connector is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ConnectorKind {
+pub(crate) enum ConnectorKind {
     /// A joint that turns, at the first of its points.
     Hinge,
     /// A joint that slides, at its first point along the line to the second.
@@ -28,7 +28,7 @@ pub enum ConnectorKind {
 
 /// A connector at the instants of a time lapse.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Connector {
+pub(crate) struct Connector {
     /// What it is.
     pub kind: ConnectorKind,
     /// Whether it joins a body to ground.

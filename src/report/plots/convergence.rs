@@ -26,7 +26,7 @@ struct Curve<'a> {
 ///
 /// # Errors
 /// [`ReportError::NothingToDraw`] for a history without rows.
-pub fn convergence(history: &History) -> Result<String, ReportError> {
+pub(crate) fn convergence(history: &History) -> Result<String, ReportError> {
     let Some(last) = history.rows.iter().map(|row| row.iteration).max() else {
         return Err(ReportError::NothingToDraw {
             figure: "convergence",

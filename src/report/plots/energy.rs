@@ -8,7 +8,7 @@ use plotters::style::RGBColor;
 
 /// Energies of one simulation, one entry an instant.
 #[derive(Clone, Debug, PartialEq)]
-pub struct EnergyRun {
+pub(crate) struct EnergyRun {
     /// What was simulated, such as `initial design`; may be empty for a single run.
     pub title: String,
     /// Instants (s).
@@ -25,7 +25,7 @@ pub struct EnergyRun {
 /// # Errors
 /// [`ReportError::NothingToDraw`] if there is no run, or if a run has no instants or not one
 /// energy of each kind for every instant.
-pub fn energy(runs: &[EnergyRun]) -> Result<String, ReportError> {
+pub(crate) fn energy(runs: &[EnergyRun]) -> Result<String, ReportError> {
     let nothing = |missing| ReportError::NothingToDraw {
         figure: "energy",
         missing,

@@ -12,8 +12,8 @@ mod motion;
 mod panel;
 mod work_precision;
 
-pub use connectors::{Connector, ConnectorKind};
-pub use convergence::convergence;
-pub use energy::{EnergyRun, energy};
-pub use motion::{Barrier, BodyMotion, Flight, Motion, Scenery, motion};
-pub use work_precision::work_precision;
+pub(crate) use connectors::{Connector, ConnectorKind};
+pub(crate) use convergence::convergence;
+pub(crate) use energy::{EnergyRun, energy};
+pub(crate) use motion::{Barrier, BodyMotion, Flight, Motion, Scenery, motion};
+pub(crate) use work_precision::work_precision;

@@ -9,7 +9,7 @@ use plotters::style::RGBColor;
 
 /// A body at the instants of a time lapse.
 #[derive(Clone, Debug, PartialEq)]
-pub struct BodyMotion {
+pub(crate) struct BodyMotion {
     /// Name of the body.
     pub name: String,
     /// Its outline at each instant, early to late: a polygon, or a line of two points.
@@ -18,7 +18,7 @@ pub struct BodyMotion {
 
 /// A projectile at the instant of its release; from here it falls freely.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Flight {
+pub(crate) struct Flight {
     /// Place of the release (m).
     pub position: Point,
     /// Velocity at the release (m/s).
@@ -29,7 +29,7 @@ pub struct Flight {
 
 /// One design in motion.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
+pub(crate) struct Motion {
     /// What it is, such as `optimal design`.
     pub title: String,
     /// Bodies in the order of the problem file; the same for all designs.
@@ -44,7 +44,7 @@ pub struct Motion {
 
 /// A barrier that the projectile must clear.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Barrier {
+pub(crate) struct Barrier {
     /// Horizontal coordinate (m).
     pub distance: f64,
     /// Vertical coordinate of its top (m).
@@ -53,7 +53,7 @@ pub struct Barrier {
 
 /// The fixed scenery, and the names of the directions.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scenery {
+pub(crate) struct Scenery {
     /// Height of the ground (m), if a projectile lands on it.
     pub ground: Option<f64>,
     /// The barrier, if there is one.
@@ -75,7 +75,7 @@ impl Flight {
     /// does not point down.
     ///
     /// r(t) = r₀ + v₀ t − ½ g t² e_y for t from 0 to (v_y + √(v_y² + 2 g (y − y_g))) / g.
-    pub fn path(&self, ground: f64) -> Option<Vec<Point>> {
+    pub(crate) fn path(&self, ground: f64) -> Option<Vec<Point>> {
         let ([x, y], [vx, vy], g) = (self.position, self.velocity, self.gravity);
         let landing = (vy + (vy * vy + 2.0 * g * (y - ground)).sqrt()) / g;
         if !(g > 0.0 && y >= ground && landing.is_finite()) {
@@ -95,7 +95,7 @@ impl Flight {
 ///
 /// # Errors
 /// [`ReportError::NothingToDraw`] if there is no outline with a finite point.
-pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportError> {
+pub(crate) fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportError> {
     let outlines = |design: &Motion| {
         let bodies = design.bodies.iter().flat_map(|body| &body.outlines);
         bodies.flatten().copied().collect::<Vec<Point>>()

@@ -40,7 +40,7 @@ struct Curve<'a> {
 ///
 /// # Errors
 /// [`ReportError::NothingToDraw`] if there are no rows.
-pub fn work_precision(measured: &WorkPrecision) -> Result<String, ReportError> {
+pub(crate) fn work_precision(measured: &WorkPrecision) -> Result<String, ReportError> {
     let curves = curves(&measured.rows);
     if curves.is_empty() {
         return Err(ReportError::NothingToDraw {

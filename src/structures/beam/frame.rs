@@ -55,7 +55,7 @@ pub(super) struct Axes<S> {
 }
 
 impl<S: Scalar> Axes<S> {
-    pub fn zeros() -> Self {
+    pub(crate) fn zeros() -> Self {
         Self {
             t: Vec3::zeros(),
             e2: Vec3::zeros(),
@@ -65,7 +65,7 @@ impl<S: Scalar> Axes<S> {
     }
 
     /// The axes of a tangent x,r and an orientation v.
-    pub fn of(tangent: &Vec3<S>, orientation: &Vec3<S>) -> Self {
+    pub(crate) fn of(tangent: &Vec3<S>, orientation: &Vec3<S>) -> Self {
         let speed = length(tangent);
         let t = tangent / speed;
         let across = t.cross(orientation);
@@ -79,7 +79,7 @@ impl<S: Scalar> Axes<S> {
     }
 
     /// Transpose of the derivative of [`Axes::of`].
-    pub fn add_of_transpose(
+    pub(crate) fn add_of_transpose(
         &self,
         bar: &Self,
         orientation: &Vec3<S>,

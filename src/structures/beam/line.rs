@@ -26,7 +26,7 @@ pub(super) struct LineCotangent<S> {
 }
 
 impl<S: Scalar> LineCotangent<S> {
-    pub fn zeros() -> Self {
+    pub(crate) fn zeros() -> Self {
         let zero = [Vec3::zeros(); BEAM_NODES];
         Self {
             points: zero,
@@ -38,7 +38,7 @@ impl<S: Scalar> LineCotangent<S> {
 }
 
 impl<S: Scalar> Line<S> {
-    pub fn new(beam: &Beam<S>) -> Self {
+    pub(crate) fn new(beam: &Beam<S>) -> Self {
         let axes = PLACES.map(|r| Axes::of(&sum(&shape(r).1, &beam.points), &beam.orientation));
         let [o2, o3] = beam.offset;
         let arms = [0, 1, 2].map(|a: usize| axes[a].e2 * o2 + axes[a].e3 * o3);
@@ -50,7 +50,7 @@ impl<S: Scalar> Line<S> {
     }
 
     /// The motion w_a of the line; rotations stay.
-    pub fn motion(&self, motion: &BeamMotion<S>) -> BeamMotion<S> {
+    pub(crate) fn motion(&self, motion: &BeamMotion<S>) -> BeamMotion<S> {
         let w = [0, 1, 2]
             .map(|a: usize| motion.displacement[a] + motion.rotation[a].cross(&self.arms[a]));
         BeamMotion {
@@ -60,7 +60,7 @@ impl<S: Scalar> Line<S> {
     }
 
     /// Transpose of the derivative of [`Line::new`] and [`Line::motion`].
-    pub fn add_transpose(
+    pub(crate) fn add_transpose(
         &self,
         beam: &Beam<S>,
         motion: &BeamMotion<S>,

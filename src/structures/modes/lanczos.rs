@@ -37,12 +37,12 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Basis {
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.vectors.len()
     }
 
     /// Takes from `w` its parts along the basis, twice; gives the parts.
-    pub fn orthogonalise(&self, w: &mut [f64]) -> Vec<f64> {
+    pub(crate) fn orthogonalise(&self, w: &mut [f64]) -> Vec<f64> {
         let mut parts = vec![0.0; self.len()];
         for _ in 0..2 {
             for ((v, product), part) in self.vectors.iter().zip(&self.products).zip(&mut parts) {
@@ -58,7 +58,12 @@ impl Basis {
 
     /// Adds a vector that is orthogonal to the others after scaling it; gives its length before, or
     /// nothing if it is not longer than `least`.
-    pub fn push(&mut self, operator: &impl Operator, mut w: Vec<f64>, least: f64) -> Option<f64> {
+    pub(crate) fn push(
+        &mut self,
+        operator: &impl Operator,
+        mut w: Vec<f64>,
+        least: f64,
+    ) -> Option<f64> {
         let mut product = vec![0.0; w.len()];
         operator.mass(&w, &mut product);
         let square = dot(&w, &product);

@@ -62,7 +62,7 @@ pub enum ModalFailure {
         "the aggregate with rho = {rho:.3e} s takes in more than {most} modes; a larger rho takes in fewer"
     )]
     RhoTooSmall {
-        /// Its sharpness [s].
+        /// Its sharpness \[s\].
         rho: f64,
         /// How many modes are allowed.
         most: usize,

@@ -19,13 +19,13 @@ use std::sync::LazyLock;
 /// Nodes of an element.
 pub const NODES: usize = 9;
 /// Gauss points of an element, 3 × 3; point g = 3j + i like the nodes.
-pub const GAUSS_POINTS: usize = 9;
+pub(crate) const GAUSS_POINTS: usize = 9;
 /// The Gauss point in the middle, r = s = 0.
 pub(crate) const MIDDLE: usize = 4;
 /// Tying points of membrane and bending: six A, six B, four C.
-pub const TYING_POINTS: usize = 16;
+pub(crate) const TYING_POINTS: usize = 16;
 /// Tying points of shear: those of A and B.
-pub const SHEAR_POINTS: usize = 12;
+pub(crate) const SHEAR_POINTS: usize = 12;
 
 /// The shape functions N_a and their derivatives N_a,r and N_a,s at a point.
 #[derive(Clone, Copy, Debug, Default)]

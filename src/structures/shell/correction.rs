@@ -37,7 +37,7 @@ pub(crate) struct Correction<S> {
 }
 
 impl<S: Scalar> Correction<S> {
-    pub fn zeros() -> Self {
+    pub(crate) fn zeros() -> Self {
         let zero = [[Vec3::zeros(); NODES]; 3];
         Self {
             strain: zero,

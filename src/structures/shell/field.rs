@@ -35,7 +35,7 @@ pub(crate) struct AtPoint<S> {
 }
 
 impl<S: Scalar> AtPoint<S> {
-    pub fn zeros() -> Self {
+    pub(crate) fn zeros() -> Self {
         let zero = Vec3::zeros();
         Self {
             by: [zero; 2],

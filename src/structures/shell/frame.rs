@@ -64,7 +64,7 @@ impl<S: Scalar> Axes<S> {
 }
 
 impl<S: Scalar> Frame<S> {
-    pub fn zeros() -> Self {
+    pub(crate) fn zeros() -> Self {
         Self {
             t: [[S::zero(); 2]; 2],
             area: S::zero(),
@@ -73,7 +73,7 @@ impl<S: Scalar> Frame<S> {
 
     /// The frame of the tangents a_r and a_s [m] along a reference direction.
     #[inline]
-    pub fn of(tangents: &[Vec3<S>; 2], reference: &Vec3<S>) -> Self {
+    pub(crate) fn of(tangents: &[Vec3<S>; 2], reference: &Vec3<S>) -> Self {
         let axes = Axes::new(tangents, reference);
         let [ar, as_] = tangents;
         let by = S::one() / axes.area;
@@ -87,7 +87,7 @@ impl<S: Scalar> Frame<S> {
     }
 
     /// Transpose of the derivative of [`Frame::of`].
-    pub fn add_of_transpose(
+    pub(crate) fn add_of_transpose(
         &self,
         bar: &Self,
         tangents: &[Vec3<S>; 2],
@@ -121,7 +121,7 @@ impl<S: Scalar> Frame<S> {
 
     /// In-plane strains (E_11, E_22, 2 E_12) of covariant components (rr, ss, rs).
     #[inline]
-    pub fn strain(&self, covariant: &[S; 3]) -> [S; 3] {
+    pub(crate) fn strain(&self, covariant: &[S; 3]) -> [S; 3] {
         let [[a, b], [c, d]] = self.t;
         let [rr, ss, rs] = *covariant;
         [
@@ -133,7 +133,7 @@ impl<S: Scalar> Frame<S> {
 
     /// Transpose of [`Frame::strain`] in the covariant components.
     #[inline]
-    pub fn strain_transpose(&self, bar: &[S; 3]) -> [S; 3] {
+    pub(crate) fn strain_transpose(&self, bar: &[S; 3]) -> [S; 3] {
         let [[a, b], [c, d]] = self.t;
         let [x, y, xy] = *bar;
         [
@@ -144,7 +144,12 @@ impl<S: Scalar> Frame<S> {
     }
 
     /// Transpose of the derivative of [`Frame::strain`] in the frame, added to `to`.
-    pub fn add_strain_frame_transpose(&self, covariant: &[S; 3], bar: &[S; 3], to: &mut Self) {
+    pub(crate) fn add_strain_frame_transpose(
+        &self,
+        covariant: &[S; 3],
+        bar: &[S; 3],
+        to: &mut Self,
+    ) {
         let [[a, b], [c, d]] = self.t;
         let [rr, ss, rs] = *covariant;
         let [x, y, xy] = *bar;
@@ -156,7 +161,7 @@ impl<S: Scalar> Frame<S> {
 
     /// Transverse shear strains (γ_1, γ_2) of covariant components (r, s).
     #[inline]
-    pub fn shear(&self, covariant: &[S; 2]) -> [S; 2] {
+    pub(crate) fn shear(&self, covariant: &[S; 2]) -> [S; 2] {
         let [[a, b], [c, d]] = self.t;
         let [r, s] = *covariant;
         [a * r + c * s, b * r + d * s]
@@ -164,13 +169,18 @@ impl<S: Scalar> Frame<S> {
 
     /// Transpose of [`Frame::shear`] in the covariant components.
     #[inline]
-    pub fn shear_transpose(&self, bar: &[S; 2]) -> [S; 2] {
+    pub(crate) fn shear_transpose(&self, bar: &[S; 2]) -> [S; 2] {
         let [[a, b], [c, d]] = self.t;
         [a * bar[0] + b * bar[1], c * bar[0] + d * bar[1]]
     }
 
     /// Transpose of the derivative of [`Frame::shear`] in the frame, added to `to`.
-    pub fn add_shear_frame_transpose(&self, covariant: &[S; 2], bar: &[S; 2], to: &mut Self) {
+    pub(crate) fn add_shear_frame_transpose(
+        &self,
+        covariant: &[S; 2],
+        bar: &[S; 2],
+        to: &mut Self,
+    ) {
         for i in 0..2 {
             to.t[0][i] += covariant[0] * bar[i];
             to.t[1][i] += covariant[1] * bar[i];

@@ -59,7 +59,7 @@ pub(crate) struct Strain<S> {
 }
 
 impl<S: Scalar> Strain<S> {
-    pub fn zeros() -> Self {
+    pub(crate) fn zeros() -> Self {
         let zero = S::zero();
         Self {
             membrane: [zero; 3],
@@ -177,7 +177,7 @@ pub(crate) struct ElementStrain<'a, S> {
 
 impl<'a, S: Scalar> ElementStrain<'a, S> {
     /// Strains of a motion of a geometry.
-    pub fn new(geometry: &'a Field<S>, motion: &'a Field<S>, terms: Terms) -> Self {
+    pub(crate) fn new(geometry: &'a Field<S>, motion: &'a Field<S>, terms: Terms) -> Self {
         let mut all = Self {
             geometry,
             motion,
@@ -283,7 +283,7 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
 
     /// Transpose of the derivative of [`ElementStrain::new`]: adds to the cotangents of geometry and
     /// motion what those of the strains and areas make of them.
-    pub fn add_transpose(
+    pub(crate) fn add_transpose(
         &self,
         bar: &[Strain<S>; GAUSS_POINTS],
         geometry: &mut Field<S>,

@@ -73,7 +73,7 @@ fn for_each_load<S: Scalar>(
 
 /// Adds the generalised forces f of all loads (force in ground axes, torque in body axes about the
 /// centre of mass) to `out`, in velocity numbering.
-pub fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
+pub(crate) fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
     for_each_load(here.model, here.motions, |_, kind, at| {
         let forces = power::forces(kind, at, here.time);
         for (body, (force, torque)) in at.bodies.into_iter().zip(forces) {
@@ -123,7 +123,7 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
 /// Where the derivatives of the forces are emitted, in velocity numbering, and what they are multiplied
 /// by.
 #[derive(Clone, Copy, Debug)]
-pub struct LoadEntries<S> {
+pub(crate) struct LoadEntries<S> {
     /// Row of the forces.
     pub row: usize,
     /// Column of the tangent positions.
@@ -137,7 +137,11 @@ pub struct LoadEntries<S> {
 }
 
 /// Emits ∂f/∂y and ∂f/∂v, f as in [`add_forces`]; only the blocks that a load has.
-pub fn emit_jacobian<S: Scalar>(here: &InMotion<S>, to: &LoadEntries<S>, emit: &mut dyn Emit<S>) {
+pub(crate) fn emit_jacobian<S: Scalar>(
+    here: &InMotion<S>,
+    to: &LoadEntries<S>,
+    emit: &mut dyn Emit<S>,
+) {
     let numbering = here.numbering;
     for_each_load(here.model, here.motions, |_, kind, at| {
         let blocks = blocks(kind);
@@ -174,7 +178,7 @@ pub fn emit_jacobian<S: Scalar>(here: &InMotion<S>, to: &LoadEntries<S>, emit: &
 }
 
 /// Where the pull-back of the loads is added to.
-pub struct LoadCotangent<'a> {
+pub(crate) struct LoadCotangent<'a> {
     /// Tangent positions, velocity numbering; `None` if not wanted.
     pub y: Option<&'a mut [f64]>,
     /// Velocities; `None` if not wanted.
@@ -187,7 +191,7 @@ pub struct LoadCotangent<'a> {
 
 /// Adds the derivatives of ψᵀf, f as in [`add_forces`], in tangent positions, velocities, time and
 /// parameters.
-pub fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
+pub(crate) fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
     let (numbering, time) = (here.numbering, here.time);
     for_each_load(here.model, here.motions, |i, kind, at| {
         let psi = at.bodies.map(|body| {
@@ -220,7 +224,7 @@ fn give_to_states(
 }
 
 /// The first spring whose ends meet where the bodies are placed, if any.
-pub fn without_length(model: &Model<f64>) -> Option<&str> {
+pub(crate) fn without_length(model: &Model<f64>) -> Option<&str> {
     let (q, v) = guess(model);
     let mut motions = Vec::new();
     Motion::all(&Numbering::new(model), &q, &v, &mut motions);
@@ -236,7 +240,7 @@ pub fn without_length(model: &Model<f64>) -> Option<&str> {
 }
 
 /// Potential energy of the springs, Σ ½ k x² + ¼ k3 x⁴ (J).
-pub fn potential<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> S {
+pub(crate) fn potential<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> S {
     let mut sum = S::zero();
     for_each_load(model, motions, |_, kind, at| {
         sum += power::potential(kind, at);
@@ -245,7 +249,7 @@ pub fn potential<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> S {
 }
 
 /// Adds `weight` times the derivative of [`potential`] to tangent positions and parameters.
-pub fn pull_potential(
+pub(crate) fn pull_potential(
     model: &Model<f64>,
     numbering: &Numbering,
     motions: &[Motion<f64>],

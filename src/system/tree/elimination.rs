@@ -13,7 +13,7 @@ use crate::system::numbering::Numbering;
 
 /// Elimination in blocks of up to order N.
 #[derive(Clone)]
-pub struct Elimination<S, const N: usize> {
+pub(crate) struct Elimination<S, const N: usize> {
     /// Leaves first.
     pub(super) links: Vec<Link>,
     factors: Vec<Factors<S, N>>,

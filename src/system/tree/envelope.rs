@@ -18,7 +18,7 @@ pub(super) struct Envelope<S> {
 
 impl<S: Scalar> Envelope<S> {
     /// A matrix whose row i starts in column `first[i]`.
-    pub fn new(first: Vec<usize>) -> Self {
+    pub(crate) fn new(first: Vec<usize>) -> Self {
         let mut start = vec![0];
         for (row, first) in first.iter().enumerate() {
             start.push(start[row] + row + 1 - first);
@@ -32,7 +32,7 @@ impl<S: Scalar> Envelope<S> {
     }
 
     /// Operations of a decomposition.
-    pub fn operations(&self) -> usize {
+    pub(crate) fn operations(&self) -> usize {
         let row = |(row, &first): (usize, &usize)| {
             let column = |column: usize| 2 * (column - first.max(self.first[column]));
             (first..=row).map(column).sum::<usize>()
@@ -41,13 +41,13 @@ impl<S: Scalar> Envelope<S> {
     }
 
     /// Sets all entries to zero.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.entries.fill(S::zero());
     }
 
     /// Sets an entry of the lower triangle. `size` is that of what it is a difference of, if on the
     /// diagonal.
-    pub fn set(&mut self, row: usize, column: usize, value: S, size: f64) {
+    pub(crate) fn set(&mut self, row: usize, column: usize, value: S, size: f64) {
         self.entries[self.start[row] + column - self.first[row]] = value;
         if row == column {
             self.sizes[row] = size;
@@ -58,7 +58,7 @@ impl<S: Scalar> Envelope<S> {
     ///
     /// # Errors
     /// A row whose pivot has lost too many digits.
-    pub fn decompose(&mut self) -> Result<(), usize> {
+    pub(crate) fn decompose(&mut self) -> Result<(), usize> {
         for i in 0..self.first.len() {
             let first = self.first[i];
             let (above, rest) = self.entries.split_at_mut(self.start[i]);
@@ -87,7 +87,7 @@ impl<S: Scalar> Envelope<S> {
     }
 
     /// Solves A x = b in place.
-    pub fn solve(&self, b: &mut [S]) {
+    pub(crate) fn solve(&self, b: &mut [S]) {
         let row = |i: usize| &self.entries[self.start[i]..self.start[i + 1]];
         for i in 0..b.len() {
             let (known, rest) = b.split_at_mut(i);

@@ -93,7 +93,7 @@ pub(super) struct Loops<S, const N: usize> {
 
 impl<S: Scalar, const N: usize> Loops<S, N> {
     /// Plans the rows of the joints `joints`, or `None` if sparse LU serves better.
-    pub fn plan<M>(
+    pub(crate) fn plan<M>(
         model: &Model<M>,
         numbering: &Numbering,
         links: &[Link],
@@ -164,12 +164,12 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
     }
 
     /// The closing joints.
-    pub fn joints(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn joints(&self) -> impl Iterator<Item = usize> + '_ {
         self.closing.iter().map(|closing| closing.joint)
     }
 
     /// Operations of a factorisation.
-    pub fn operations(&self, numbering: &Numbering, links: &[Link]) -> usize {
+    pub(crate) fn operations(&self, numbering: &Numbering, links: &[Link]) -> usize {
         let sweep = |closing: &Closing| {
             let link = |&l: &usize| {
                 let m = numbering.unknowns_of(links[l].body);
@@ -190,7 +190,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
     ///
     /// # Errors
     /// [`SingularMatrix`] with the place (n_v + row) of a row that follows from the others.
-    pub fn factorise(
+    pub(crate) fn factorise(
         &mut self,
         numbering: &Numbering,
         (gradients, left_out): (&[RowGradient<S>], &LeftOut),
@@ -292,7 +292,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
 
     /// Finds μ from `x` and `multipliers` as the forward sweep of the forest leaves them (f̂_b, and
     /// S⁻¹ ê_j; g in the closing rows), and takes Lᵀ μ, swept, off them.
-    pub fn close<const FULL: bool>(
+    pub(crate) fn close<const FULL: bool>(
         &mut self,
         numbering: &Numbering,
         links: &[Link],

@@ -42,7 +42,7 @@ const SMALL: usize = 3;
 
 /// Planned elimination of a model.
 #[derive(Clone)]
-pub enum Tree<S> {
+pub(crate) enum Tree<S> {
     /// Blocks of order three.
     Small(Elimination<S, SMALL>),
     /// Blocks of up to order six.
@@ -52,7 +52,7 @@ pub enum Tree<S> {
 impl<S: Scalar> Tree<S> {
     /// Plans the elimination, or `None` if so many joints of `model` close loops that sparse LU
     /// serves better.
-    pub fn plan(model: &Model<S>, numbering: &Numbering) -> Option<Self> {
+    pub(crate) fn plan(model: &Model<S>, numbering: &Numbering) -> Option<Self> {
         let forest = links::forest(model, numbering);
         let small = forest
             .links
@@ -66,7 +66,7 @@ impl<S: Scalar> Tree<S> {
     }
 
     /// Whether joints close loops.
-    pub fn closes_loops(&self) -> bool {
+    pub(crate) fn closes_loops(&self) -> bool {
         match self {
             Tree::Small(elimination) => elimination.loops.is_some(),
             Tree::Large(elimination) => elimination.loops.is_some(),
@@ -76,7 +76,7 @@ impl<S: Scalar> Tree<S> {
     /// How the matrix is eliminated. Operations are those of blocks of the sizes at hand: a
     /// decomposition of order k takes k³/3, a solution 2 k², a product of all rows what its
     /// factors say.
-    pub fn elimination(&self, numbering: &Numbering) -> kkt::Elimination {
+    pub(crate) fn elimination(&self, numbering: &Numbering) -> kkt::Elimination {
         let (links, closing, more) = match self {
             Tree::Small(elimination) => elimination.parts(numbering),
             Tree::Large(elimination) => elimination.parts(numbering),
@@ -105,7 +105,7 @@ impl<S: Scalar> Tree<S> {
     /// # Errors
     /// [`SingularMatrix`] with a velocity coordinate that has no inertia or a constraint
     /// (n_v + row) that follows from the others.
-    pub fn factorise(
+    pub(crate) fn factorise(
         &mut self,
         model: &Model<S>,
         numbering: &Numbering,
@@ -118,7 +118,7 @@ impl<S: Scalar> Tree<S> {
     }
 
     /// Solves in place for (u, λ) given (Bᵀ f, g), with the factors made last.
-    pub fn solve(&mut self, numbering: &Numbering, rhs: &mut [S]) {
+    pub(crate) fn solve(&mut self, numbering: &Numbering, rhs: &mut [S]) {
         match self {
             Tree::Small(elimination) => elimination.solve(numbering, rhs),
             Tree::Large(elimination) => elimination.solve(numbering, rhs),
