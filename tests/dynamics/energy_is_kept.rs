@@ -155,10 +155,7 @@ fn no_right_run_is_refused() {
             }
         }
     }
-    assert!(
-        runs > 75 && kept > 110,
-        "{runs} runs, {kept} on kept steps"
-    );
+    assert!(runs > 75 && kept > 110, "{runs} runs, {kept} on kept steps");
 }
 
 /// Judges the states of a run at the ends of its steps after `spoil` has been at their velocities.
