@@ -571,3 +571,21 @@ fn the_program_names_redundant_joints() {
         assert_eq!(told.is_empty(), more.is_some(), "{told}");
     }
 }
+
+/// The speed of a hammer that is let go is zero at the start, and again where it turns back.
+#[test]
+fn an_aggregate_of_a_speed_that_passes_zero_is_warned_of() {
+    let at = scratch();
+    let long = ["--set", "/simulation/duration=2"];
+    let warned = |quantity: &str| {
+        let function = format!(
+            r#"/functions/strike={{"ks": {{"rho": 1, "of": {{"{quantity}": {{"body": "handle"}}}}}}}}"#
+        );
+        let arguments = ["simulate", HAMMER, long[0], long[1], "--set", &function];
+        let out = expect(0, at.path(), &arguments).out;
+        out.contains("the speed of \"strike\" passes zero at t = ")
+            && out.contains("\"speed_squared\"")
+    };
+    assert!(warned("speed"));
+    assert!(!warned("speed_squared"));
+}
