@@ -572,19 +572,20 @@ fn the_program_names_redundant_joints() {
     }
 }
 
-/// The speed of a hammer that is let go is zero at the start, and again where it turns back.
+/// The speed of a pendulum is zero where it turns back.
 #[test]
 fn an_aggregate_of_a_speed_that_passes_zero_is_warned_of() {
     let at = scratch();
-    let long = ["--set", "/simulation/duration=2"];
+    let swing = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/swing.json");
     let warned = |quantity: &str| {
         let function = format!(
-            r#"/functions/strike={{"ks": {{"rho": 1, "of": {{"{quantity}": {{"body": "handle"}}}}}}}}"#
+            r#"/functions/swept angle={{"ks": {{"rho": 1, "of": {{"{quantity}": {{"body": "bar"}}}}}}}}"#
         );
-        let arguments = ["simulate", HAMMER, long[0], long[1], "--set", &function];
+        let long = "/simulation/duration=2";
+        let arguments = ["simulate", swing, "--set", long, "--set", &function];
         let out = expect(0, at.path(), &arguments).out;
-        out.contains("the speed of \"strike\" passes zero at t = ")
-            && out.contains("\"speed_squared\"")
+        out.contains("the speed of \"swept angle\" passes zero at t = 0.92")
+            && out.contains("take \"speed_squared\"")
     };
     assert!(warned("speed"));
     assert!(!warned("speed_squared"));
