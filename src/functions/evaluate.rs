@@ -13,7 +13,7 @@ use crate::model::Model;
 
 /// A function's value over a run, and what else is worth reporting.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Evaluated<S> {
+pub(crate) struct Evaluated<S> {
     /// The value.
     pub value: S,
     /// For an aggregate: the largest value over the motion.
@@ -26,7 +26,7 @@ pub struct Evaluated<S> {
 
 impl<S: Scalar> Function<S> {
     /// Value over a run of `model`.
-    pub fn evaluate(&self, model: &Model<S>, run: &Trajectory<S>) -> Evaluated<S> {
+    pub(crate) fn evaluate(&self, model: &Model<S>, run: &Trajectory<S>) -> Evaluated<S> {
         match self {
             Function::Reduced { instant, reduction } => reduce(instant, *reduction, model, run),
             Function::OfDesign(value) => Evaluated {

@@ -8,7 +8,7 @@ use crate::system::marker::{self, Jet, MarkerCotangent};
 
 /// State of a projectile in its plane of flight, and the gravity that it flies in.
 #[derive(Clone, Copy, Debug)]
-pub struct Flight<S> {
+pub(crate) struct Flight<S> {
     /// Distance along the direction of flight (m).
     pub x: S,
     /// Height above the origin (m).
@@ -23,7 +23,7 @@ pub struct Flight<S> {
 
 impl<S: Scalar> Flight<S> {
     /// The flight that starts from the present motion of the projectile's body.
-    pub fn new(projectile: &Projectile<S>, motion: &Motion<S>, gravity: &Vec3<S>) -> Self {
+    pub(crate) fn new(projectile: &Projectile<S>, motion: &Motion<S>, gravity: &Vec3<S>) -> Self {
         let g = length(gravity);
         let up = gravity * (S::from(-1.0) / g);
         let jet = Jet::point(motion, &projectile.point);
@@ -37,12 +37,12 @@ impl<S: Scalar> Flight<S> {
     }
 
     /// The flight's five numbers.
-    pub fn to_array(self) -> [S; 5] {
+    pub(crate) fn to_array(self) -> [S; 5] {
         [self.x, self.y, self.vx, self.vy, self.g]
     }
 
     /// The flight of five numbers in the order of [`Flight::to_array`].
-    pub fn from_array([x, y, vx, vy, g]: [S; 5]) -> Self {
+    pub(crate) fn from_array([x, y, vx, vy, g]: [S; 5]) -> Self {
         Self { x, y, vx, vy, g }
     }
 
@@ -50,7 +50,7 @@ impl<S: Scalar> Flight<S> {
     /// R = x + (v_x/g)(v_y + √s0), s0 = v_y² + 2 g (y − y_g) (m), where the path comes that high.
     /// Where it does not, R is the distance x + v_x v_y/g of the path's highest point. In between
     /// `smooth_root` joins the two.
-    pub fn range(&self, ground: S) -> S {
+    pub(crate) fn range(&self, ground: S) -> S {
         let [s0, scale] = self.reach(ground);
         self.x + self.vx / self.g * (self.vy + smooth_root(s0, scale))
     }
@@ -74,7 +74,7 @@ impl<S: Scalar> Flight<S> {
 
     /// Height of the path above `top` at the distance x_b,
     /// y + v_y T − ½ g T² − h_b with T = (x_b − x)/v_x (m).
-    pub fn clearance(&self, distance: S, top: S) -> S {
+    pub(crate) fn clearance(&self, distance: S, top: S) -> S {
         let t = (distance - self.x) / self.vx;
         self.y + self.vy * t - self.g * t * t * 0.5 - top
     }
@@ -119,7 +119,7 @@ fn smooth_root_derivative(s0: f64, scale: f64) -> [f64; 2] {
 
 impl Flight<f64> {
     /// Derivatives of [`Flight::range`] in (x, y, v_x, v_y, g) and in the ground's height.
-    pub fn range_derivative(&self, ground: f64) -> ([f64; 5], f64) {
+    pub(crate) fn range_derivative(&self, ground: f64) -> ([f64; 5], f64) {
         let Flight { y, vx, vy, g, .. } = *self;
         let [s0, scale] = self.reach(ground);
         let [by_s0, by_scale] = smooth_root_derivative(s0, scale);
@@ -148,7 +148,7 @@ impl Flight<f64> {
     }
 
     /// Derivatives of [`Flight::clearance`] in (x, y, v_x, v_y, g) and in (distance, top).
-    pub fn clearance_derivative(&self, distance: f64) -> ([f64; 5], [f64; 2]) {
+    pub(crate) fn clearance_derivative(&self, distance: f64) -> ([f64; 5], [f64; 2]) {
         let t = (distance - self.x) / self.vx;
         let by_t = self.vy - self.g * t;
         let by_x = -by_t / self.vx;
@@ -201,7 +201,7 @@ pub(crate) fn pull_back(
 
 impl<P: Scalar> Gate<P> {
     /// Openness σ(±(θ − θ_c)/w) in [0, 1] at the rotation θ.
-    pub fn openness<S: Scalar>(&self, rotation: S) -> S {
+    pub(crate) fn openness<S: Scalar>(&self, rotation: S) -> S {
         let z = (rotation - self.limit) * (self.sign() / self.width);
         // Either form is the same function; the exponent stays negative.
         if z.re() >= 0.0 {
@@ -213,7 +213,7 @@ impl<P: Scalar> Gate<P> {
     }
 
     /// Derivative of [`Gate::openness`].
-    pub fn openness_derivative(&self, rotation: f64) -> f64 {
+    pub(crate) fn openness_derivative(&self, rotation: f64) -> f64 {
         let open = self.openness(rotation);
         // 1 − σ(z) = σ(−z), without cancellation.
         let mut closed = *self;

@@ -5,7 +5,7 @@ use crate::math::{Scalar, Vec3};
 
 /// On which side of the maximum over time an aggregate lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Bound {
+pub(crate) enum Bound {
     /// Never above it.
     #[default]
     Below,
@@ -15,7 +15,7 @@ pub enum Bound {
 
 /// How the values g_k of an instant quantity become one number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reduction {
+pub(crate) enum Reduction {
     /// The value at the end of the run.
     Final,
     /// ∫ g dt.
@@ -40,7 +40,7 @@ pub enum Reduction {
 
 /// When a projectile is let go.
 #[derive(Clone, Debug)]
-pub enum Release<S> {
+pub(crate) enum Release<S> {
     /// At the end of the run.
     Final,
     /// Around the best instant: the mean state z̄ = Σ w_k z_k with the weights
@@ -57,7 +57,7 @@ pub enum Release<S> {
 
 /// A function of interest.
 #[derive(Clone, Debug)]
-pub enum Function<S> {
+pub(crate) enum Function<S> {
     /// An instant quantity, reduced over the run.
     Reduced {
         /// What is measured at each instant.
@@ -85,7 +85,7 @@ pub enum Function<S> {
 
 impl<S: Scalar> Function<S> {
     /// SI unit of the value.
-    pub fn unit(&self) -> String {
+    pub(crate) fn unit(&self) -> String {
         match self {
             Function::Reduced {
                 instant,
@@ -99,7 +99,7 @@ impl<S: Scalar> Function<S> {
     }
 
     /// The function with every parameter replaced by `f` of it.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Function<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Function<T> {
         match self {
             Function::Reduced { instant, reduction } => Function::Reduced {
                 instant: instant.map(f),
@@ -134,7 +134,10 @@ impl<S: Scalar> Function<S> {
 
     /// Calls `visit` with every body that the function looks at and the point of it, or with none
     /// if it watches how the body is turned.
-    pub fn for_each_place(&mut self, visit: &mut impl FnMut(&mut usize, Option<&mut Vec3<S>>)) {
+    pub(crate) fn for_each_place(
+        &mut self,
+        visit: &mut impl FnMut(&mut usize, Option<&mut Vec3<S>>),
+    ) {
         match self {
             Function::Reduced { instant, .. } => match instant {
                 Instant::Position { body, point, .. }

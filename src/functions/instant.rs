@@ -5,7 +5,7 @@ use crate::math::{Scalar, Vec3};
 
 /// A thrown point and how its range is measured. Up is against gravity.
 #[derive(Clone, Copy, Debug)]
-pub struct Projectile<S> {
+pub(crate) struct Projectile<S> {
     /// The body that is thrown.
     pub body: usize,
     /// The point of it that flies, from the centre of mass in body axes (m).
@@ -18,7 +18,7 @@ pub struct Projectile<S> {
 
 /// On which side of its limit a gate is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub(crate) enum Side {
     /// Open while the rotation is above the limit.
     Above,
     /// Open while the rotation is below the limit.
@@ -28,7 +28,7 @@ pub enum Side {
 /// A smooth gate σ(±(θ − θ_c) / w) on a rotation θ, counted over whole turns: it keeps the later,
 /// unphysical maxima of a whirling sling out of a range.
 #[derive(Clone, Copy, Debug)]
-pub struct Gate<S> {
+pub(crate) struct Gate<S> {
     /// The rotation that is watched.
     pub rotation: Rotation<S>,
     /// The rotation θ_c at which the gate is half open (rad).
@@ -41,7 +41,7 @@ pub struct Gate<S> {
 
 /// Which energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EnergyPart {
+pub(crate) enum EnergyPart {
     /// ½ Σ (m ṙᵀṙ + ωᵀJω).
     Kinetic,
     /// −Σ m gᵀr, from the origin, and the energy of springs.
@@ -53,7 +53,7 @@ pub enum EnergyPart {
 /// A quantity at an instant. Points are from the centre of mass in body axes (m); directions are
 /// in ground axes and used as they are given (a unit vector gives a component).
 #[derive(Clone, Debug)]
-pub enum Instant<S> {
+pub(crate) enum Instant<S> {
     /// Component of a point's position (m).
     Position {
         /// The body.
@@ -112,7 +112,7 @@ pub enum Instant<S> {
 
 impl<S: Scalar> Gate<S> {
     /// The gate with every parameter replaced by `f` of it.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Gate<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Gate<T> {
         Gate {
             rotation: self.rotation.map(f),
             limit: self.limit,
@@ -124,7 +124,7 @@ impl<S: Scalar> Gate<S> {
 
 impl<S: Scalar> Projectile<S> {
     /// The projectile with every parameter replaced by `f` of it.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Projectile<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Projectile<T> {
         Projectile {
             body: self.body,
             point: self.point.map(&mut *f),
@@ -136,7 +136,7 @@ impl<S: Scalar> Projectile<S> {
 
 impl<S: Scalar> Instant<S> {
     /// SI unit of the quantity.
-    pub fn unit(&self) -> &'static str {
+    pub(crate) fn unit(&self) -> &'static str {
         match self {
             Instant::Position { .. } | Instant::Range { .. } => "m",
             Instant::Velocity { .. } | Instant::Speed { .. } => "m/s",
@@ -148,7 +148,7 @@ impl<S: Scalar> Instant<S> {
     }
 
     /// SI unit of its integral over time.
-    pub fn integral_unit(&self) -> String {
+    pub(crate) fn integral_unit(&self) -> String {
         match self.unit() {
             "m/s" => "m".into(),
             "m/s²" => "m/s".into(),
@@ -158,7 +158,7 @@ impl<S: Scalar> Instant<S> {
     }
 
     /// What it is, for messages.
-    pub fn describe(&self) -> &'static str {
+    pub(crate) fn describe(&self) -> &'static str {
         match self {
             Instant::Position { .. } => "position",
             Instant::Velocity { .. } => "velocity",
@@ -172,7 +172,7 @@ impl<S: Scalar> Instant<S> {
     }
 
     /// The quantity with every parameter replaced by `f` of it.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Instant<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Instant<T> {
         match self {
             Instant::Position {
                 body,

@@ -15,7 +15,7 @@ const REST: f64 = 1e-25;
 
 /// A model at one instant.
 #[derive(Clone, Copy)]
-pub struct Snapshot<'a, S> {
+pub(crate) struct Snapshot<'a, S> {
     /// The model.
     pub model: &'a Model<S>,
     /// Its numbering.
@@ -30,7 +30,7 @@ pub struct Snapshot<'a, S> {
 
 impl<'a, S: Scalar> Snapshot<'a, S> {
     /// Instant k of a run.
-    pub fn of(model: &'a Model<S>, run: &'a Trajectory<S>, k: usize) -> Self {
+    pub(crate) fn of(model: &'a Model<S>, run: &'a Trajectory<S>, k: usize) -> Self {
         Self {
             model,
             numbering: &run.numbering,
@@ -41,7 +41,7 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
     }
 
     /// Motion of a body.
-    pub fn motion(&self, body: usize) -> Motion<S> {
+    pub(crate) fn motion(&self, body: usize) -> Motion<S> {
         let a = &self.a[self.numbering.velocity(body)..];
         Motion::of(self.numbering, body, self.q, self.v).accelerated(a)
     }
@@ -54,7 +54,7 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
     }
 
     /// The flight of a projectile let go now.
-    pub fn flight(&self, projectile: &Projectile<S>) -> Flight<S> {
+    pub(crate) fn flight(&self, projectile: &Projectile<S>) -> Flight<S> {
         Flight::new(
             projectile,
             &self.motion(projectile.body),
@@ -68,7 +68,7 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
     }
 
     /// How far a gate is open, 1 without one.
-    pub fn openness(&self, gate: &Option<Gate<S>>, turns: f64) -> S {
+    pub(crate) fn openness(&self, gate: &Option<Gate<S>>, turns: f64) -> S {
         gate.as_ref().map_or(S::one(), |gate| {
             gate.openness(self.rotation(&gate.rotation, turns))
         })
@@ -77,7 +77,7 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
 
 /// Cotangents of a snapshot, in tangent positions, velocities and accelerations (all in velocity
 /// numbering).
-pub struct SnapshotCotangent<'a> {
+pub(crate) struct SnapshotCotangent<'a> {
     /// Of the tangent positions.
     pub y: &'a mut [f64],
     /// Of the velocities.
@@ -90,7 +90,7 @@ pub struct SnapshotCotangent<'a> {
 
 impl<S: Scalar> Instant<S> {
     /// The rotation that has to be counted in whole turns, if any.
-    pub fn watched_rotation(&self) -> Option<&Rotation<S>> {
+    pub(crate) fn watched_rotation(&self) -> Option<&Rotation<S>> {
         match self {
             Instant::Rotation(rotation) => Some(rotation),
             Instant::Range {
@@ -102,7 +102,7 @@ impl<S: Scalar> Instant<S> {
 
     /// Value in a snapshot; `turns` is the multiple of 2π that makes the watched rotation
     /// continuous.
-    pub fn value(&self, at: &Snapshot<S>, turns: f64) -> S {
+    pub(crate) fn value(&self, at: &Snapshot<S>, turns: f64) -> S {
         match self {
             Instant::Position {
                 body,
@@ -164,7 +164,7 @@ pub(crate) fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
 impl Instant<f64> {
     /// Adds `weight` times the derivative of [`Instant::value`] to the cotangents of the snapshot
     /// and of this quantity's parameters (`own`, of the same kind).
-    pub fn pull_back(
+    pub(crate) fn pull_back(
         &self,
         at: &Snapshot<f64>,
         turns: f64,

@@ -177,7 +177,7 @@ pub(crate) fn points<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Vec<Point<
 
 /// The largest value over the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Maximum {
+pub(crate) struct Maximum {
     /// The value.
     pub value: f64,
     /// When it is attained (s).

@@ -10,7 +10,7 @@ use crate::system::failure::AssemblyFailure;
 
 /// Model, duration and functions of interest at one design.
 #[derive(Clone, Debug)]
-pub struct Scene<S> {
+pub(crate) struct Scene<S> {
     /// Bodies, joints, gravity.
     pub model: Model<S>,
     /// Simulated time T (s); with an event, the longest that it is waited for until T is known.
@@ -27,7 +27,7 @@ pub struct Scene<S> {
 /// An event: an instant quantity g reaches a value c for the first time. It makes the duration a
 /// function of the design, g(T) = c.
 #[derive(Clone, Debug)]
-pub struct Until<S> {
+pub(crate) struct Until<S> {
     /// g at the end of the run.
     pub measure: Function<S>,
     /// c.
@@ -36,7 +36,7 @@ pub struct Until<S> {
 
 impl<S: Scalar> Until<S> {
     /// The event that `instant` reaches `value`.
-    pub fn new(instant: Instant<S>, value: S) -> Self {
+    pub(crate) fn new(instant: Instant<S>, value: S) -> Self {
         let reduction = Reduction::Final;
         Self {
             measure: Function::Reduced { instant, reduction },
@@ -45,7 +45,7 @@ impl<S: Scalar> Until<S> {
     }
 
     /// g − c at the end of a run.
-    pub fn gap(&self, model: &Model<S>, run: &Trajectory<S>) -> S {
+    pub(crate) fn gap(&self, model: &Model<S>, run: &Trajectory<S>) -> S {
         self.measure.evaluate(model, run).value - self.value
     }
 
@@ -59,7 +59,7 @@ impl<S: Scalar> Until<S> {
 
 impl Until<f64> {
     /// What is waited for, for messages.
-    pub fn describe(&self) -> String {
+    pub(crate) fn describe(&self) -> String {
         match &self.measure {
             Function::Reduced { instant, .. } => instant.describe().into(),
             Function::Clearance { .. } => "clearance".into(),
@@ -69,7 +69,7 @@ impl Until<f64> {
     }
 
     /// g − c at all instants of a run.
-    pub fn gaps(&self, model: &Model<f64>, run: &Trajectory<f64>) -> Vec<f64> {
+    pub(crate) fn gaps(&self, model: &Model<f64>, run: &Trajectory<f64>) -> Vec<f64> {
         let Function::Reduced { instant, .. } = &self.measure else {
             unreachable!("an event is an instant quantity");
         };
@@ -81,7 +81,7 @@ impl Until<f64> {
 
 impl<S: Scalar> Scene<S> {
     /// Number of the event's quantity among the functions: one past the last.
-    pub fn event(&self) -> usize {
+    pub(crate) fn event(&self) -> usize {
         self.functions.len()
     }
 
@@ -89,7 +89,7 @@ impl<S: Scalar> Scene<S> {
     ///
     /// # Panics
     /// If there is none.
-    pub fn function(&self, number: usize) -> &Function<S> {
+    pub(crate) fn function(&self, number: usize) -> &Function<S> {
         match &self.until {
             Some(until) if number == self.event() => &until.measure,
             _ => &self.functions[number],
@@ -100,7 +100,10 @@ impl<S: Scalar> Scene<S> {
     ///
     /// # Panics
     /// If there is none.
-    pub fn model_and_function(&mut self, number: usize) -> (&mut Model<S>, &mut Function<S>) {
+    pub(crate) fn model_and_function(
+        &mut self,
+        number: usize,
+    ) -> (&mut Model<S>, &mut Function<S>) {
         let event = self.event();
         let function = match &mut self.until {
             Some(until) if number == event => &mut until.measure,
@@ -111,7 +114,7 @@ impl<S: Scalar> Scene<S> {
 
     /// The scene with every parameter replaced by `f` of it, visited in one fixed order: model,
     /// duration, event, functions.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Scene<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Scene<T> {
         Scene {
             model: self.model.map(f),
             duration: f(self.duration),
@@ -126,7 +129,7 @@ impl<S: Scalar> Scene<S> {
     }
 
     /// All parameters in the order of [`Scene::map`].
-    pub fn parameters(&self) -> Vec<S> {
+    pub(crate) fn parameters(&self) -> Vec<S> {
         let mut all = Vec::new();
         self.map(&mut |x| {
             all.push(x);
@@ -136,7 +139,7 @@ impl<S: Scalar> Scene<S> {
     }
 
     /// The cotangent of this scene: every parameter zero.
-    pub fn zero_cotangent(&self) -> Scene<f64> {
+    pub(crate) fn zero_cotangent(&self) -> Scene<f64> {
         self.map(&mut |_| 0.0)
     }
 }

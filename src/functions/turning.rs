@@ -19,7 +19,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Which rotation is measured.
 #[derive(Clone, Copy, Debug)]
-pub struct Rotation<S> {
+pub(crate) struct Rotation<S> {
     /// The body that turns.
     pub body: usize,
     /// The body that it is seen from; `None` is ground.
@@ -40,7 +40,7 @@ struct ByRotation {
 
 impl<S: Scalar> Rotation<S> {
     /// The rotation with every parameter replaced by `f` of it.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Rotation<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Rotation<T> {
         Rotation {
             body: self.body,
             relative_to: self.relative_to,
@@ -60,7 +60,7 @@ impl<S: Scalar> Rotation<S> {
     }
 
     /// θ of the positions `q`, less whole turns (rad).
-    pub fn angle(&self, numbering: &Numbering, q: &[S]) -> S {
+    pub(crate) fn angle(&self, numbering: &Numbering, q: &[S]) -> S {
         rotation::twist(&self.turned(numbering, q), &self.axis)
     }
 
@@ -92,7 +92,7 @@ impl<S: Scalar> Rotation<S> {
     }
 
     /// Calls `visit` with both bodies.
-    pub fn for_each_body(&mut self, visit: &mut impl FnMut(&mut usize)) {
+    pub(crate) fn for_each_body(&mut self, visit: &mut impl FnMut(&mut usize)) {
         visit(&mut self.body);
         if let Some(other) = &mut self.relative_to {
             visit(other);
@@ -129,7 +129,7 @@ impl Rotation<f64> {
     }
 
     /// Adds another cotangent of the parameters.
-    pub fn add(&mut self, other: &Self) {
+    pub(crate) fn add(&mut self, other: &Self) {
         self.axis += other.axis;
         for (own, by) in self.placed.iter_mut().zip(&other.placed) {
             for (own, by) in own.iter_mut().zip(by) {
@@ -140,7 +140,7 @@ impl Rotation<f64> {
 
     /// Adds `weight` times the derivative of [`Rotation::angle`] to the cotangents of the tangent
     /// positions, `y` in velocity numbering, and of this rotation's parameters.
-    pub fn pull_back(
+    pub(crate) fn pull_back(
         &self,
         (numbering, q): (&Numbering, &[f64]),
         weight: f64,

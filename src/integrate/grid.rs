@@ -7,7 +7,7 @@ use crate::system::LeftOut;
 /// moves with the duration and with nothing else. τ_N is 1; it is larger where the motion ends too close
 /// to a singular position for a step to end there.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grid {
+pub(crate) struct Grid {
     ends: Vec<f64>,
     /// Width of every step if all are equal, free of the round-off of their ends.
     equal: Option<f64>,
@@ -20,7 +20,7 @@ pub struct Grid {
 
 impl Grid {
     /// `steps` steps of equal size.
-    pub fn uniform(steps: usize) -> Self {
+    pub(crate) fn uniform(steps: usize) -> Self {
         Self {
             ends: (0..=steps).map(|k| k as f64 / steps as f64).collect(),
             equal: Some(1.0 / steps as f64),
@@ -30,12 +30,12 @@ impl Grid {
     }
 
     /// A grid that grows step by step from 0.
-    pub fn growing() -> Self {
+    pub(crate) fn growing() -> Self {
         Self::growing_from(0.0)
     }
 
     /// A grid that grows step by step from the fraction `start`, over a part of a motion.
-    pub fn growing_from(start: f64) -> Self {
+    pub(crate) fn growing_from(start: f64) -> Self {
         Self {
             ends: vec![start],
             equal: None,
@@ -45,7 +45,7 @@ impl Grid {
     }
 
     /// A grid that grows from 0 to this one.
-    pub fn to_grow(&self) -> Self {
+    pub(crate) fn to_grow(&self) -> Self {
         Self {
             ends: vec![0.0],
             equal: self.equal,
@@ -55,7 +55,7 @@ impl Grid {
     }
 
     /// The grid with these ends, if they rise from 0 and the last step alone reaches 1 or beyond.
-    pub fn from_ends(ends: Vec<f64>) -> Option<Self> {
+    pub(crate) fn from_ends(ends: Vec<f64>) -> Option<Self> {
         let rises = ends.windows(2).all(|pair| pair[0] < pair[1]);
         let whole = match &ends[..] {
             [first, .., before, last] => *first == 0.0 && *before < 1.0 && *last >= 1.0,
@@ -72,39 +72,39 @@ impl Grid {
     }
 
     /// Ends τ_0 … τ_N.
-    pub fn ends(&self) -> &[f64] {
+    pub(crate) fn ends(&self) -> &[f64] {
         &self.ends
     }
 
     /// Makes room for so many steps.
-    pub fn reserve(&mut self, steps: usize) {
+    pub(crate) fn reserve(&mut self, steps: usize) {
         self.ends.reserve(steps);
     }
 
     /// Adds a step that ends at `end`.
-    pub fn push(&mut self, end: f64) {
+    pub(crate) fn push(&mut self, end: f64) {
         self.ends.push(end);
     }
 
     /// Constraint rows that are left out in step k = 1 … N; `None` if that was not recorded, or if no row
     /// ever is.
-    pub fn left_out(&self, k: usize) -> Option<&LeftOut> {
+    pub(crate) fn left_out(&self, k: usize) -> Option<&LeftOut> {
         let from = self.left_out.iter().rev().find(|(from, _)| *from <= k);
         from.map(|(_, rows)| rows)
     }
 
     /// All changes of the rows that are left out: the step from which on, and the rows.
-    pub fn choices(&self) -> &[(usize, LeftOut)] {
+    pub(crate) fn choices(&self) -> &[(usize, LeftOut)] {
         &self.left_out
     }
 
     /// Records what is left out from the step after the last one on, if that is a change.
-    pub fn leave_out(&mut self, rows: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, rows: &LeftOut) {
         self.leave_out_from(self.steps() + 1, rows);
     }
 
     /// Records what is left out from step k on, in rising order, if that is a change.
-    pub fn leave_out_from(&mut self, k: usize, rows: &LeftOut) {
+    pub(crate) fn leave_out_from(&mut self, k: usize, rows: &LeftOut) {
         let known = self.left_out.last().map(|(_, rows)| rows);
         if !rows.is_empty() && known != Some(rows) {
             self.left_out.push((k, rows.clone()));
@@ -112,34 +112,34 @@ impl Grid {
     }
 
     /// Number of steps N.
-    pub fn steps(&self) -> usize {
+    pub(crate) fn steps(&self) -> usize {
         self.ends.len() - 1
     }
 
     /// Length of step k = 1 … N.
-    pub fn width(&self, k: usize) -> f64 {
+    pub(crate) fn width(&self, k: usize) -> f64 {
         self.equal
             .unwrap_or_else(|| self.ends[k] - self.ends[k - 1])
     }
 
     /// The grid with these cells of its steps.
-    pub fn with_cells(mut self, cells: Vec<u32>) -> Self {
+    pub(crate) fn with_cells(mut self, cells: Vec<u32>) -> Self {
         self.cells = cells;
         self
     }
 
     /// Cells of all steps; none where each step has one.
-    pub fn all_cells(&self) -> &[u32] {
+    pub(crate) fn all_cells(&self) -> &[u32] {
         &self.cells
     }
 
     /// Cells of step k = 1 … N.
-    pub fn cells(&self, k: usize) -> usize {
+    pub(crate) fn cells(&self, k: usize) -> usize {
         self.cells.get(k - 1).map_or(1, |&cells| cells as usize)
     }
 
     /// Step k = 1 … N with its cells, as far as the motion goes.
-    pub fn step(&self, k: usize) -> Step {
+    pub(crate) fn step(&self, k: usize) -> Step {
         Step {
             from: self.ends[k - 1],
             end: self.ends[k].min(1.0),
@@ -148,13 +148,13 @@ impl Grid {
     }
 
     /// The same steps with twice as many cells.
-    pub fn with_double_cells(&self) -> Self {
+    pub(crate) fn with_double_cells(&self) -> Self {
         let cells = (1..=self.steps()).map(|k| 2 * self.cells(k) as u32);
         self.clone().with_cells(cells.collect())
     }
 
     /// The grid with every step cut into two halves of as many cells.
-    pub fn halved(&self) -> Self {
+    pub(crate) fn halved(&self) -> Self {
         let mut ends = vec![0.0];
         for pair in self.ends.windows(2) {
             ends.extend([0.5 * (pair[0] + pair[1]), pair[1]]);
@@ -176,14 +176,14 @@ impl Grid {
     }
 
     /// The last end so far.
-    pub fn reached(&self) -> f64 {
+    pub(crate) fn reached(&self) -> f64 {
         self.ends[self.ends.len() - 1]
     }
 }
 
 /// A sample between or at the ends of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
+pub(crate) enum Place {
     /// The end of step k (the start for k = 0).
     Node(usize),
     /// Inside step `step` ≥ 1 at the fraction θ of it.
@@ -198,7 +198,7 @@ pub enum Place {
 impl Place {
     /// The step that the sample belongs to: the one that it stands in or at the end of; 0 for the
     /// start.
-    pub fn step(&self) -> usize {
+    pub(crate) fn step(&self) -> usize {
         match *self {
             Place::Node(step) | Place::Inside { step, .. } => step,
         }

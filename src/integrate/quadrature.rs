@@ -54,7 +54,7 @@ const SAME: f64 = 1e-15;
 
 /// At which instants the motion is known after the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Samples {
+pub(crate) enum Samples {
     /// The ends of the steps.
     StepEnds,
     /// This many intervals of equal size; between the ends of steps by the method's own
@@ -96,7 +96,7 @@ pub(crate) fn order(instants: &[f64]) -> usize {
 /// A step from one fraction of the duration to another, and how many cells it is cut into; without any
 /// the motion counts at its two ends, by the trapezoidal rule.
 #[derive(Clone, Copy, Debug)]
-pub struct Step {
+pub(crate) struct Step {
     /// Start.
     pub from: f64,
     /// End.
@@ -107,12 +107,12 @@ pub struct Step {
 
 impl Step {
     /// Number of nodes without the first.
-    pub fn nodes(&self) -> usize {
+    pub(crate) fn nodes(&self) -> usize {
         (ADDED * self.cells).max(1)
     }
 
     /// Weight of its start.
-    pub fn first_weight(&self) -> f64 {
+    pub(crate) fn first_weight(&self) -> f64 {
         match self.cells {
             0 => 0.5 * (self.end - self.from),
             cells => WEIGHTS[0] * (self.end - self.from) / cells as f64,
@@ -135,7 +135,7 @@ impl Step {
 
 /// An instant at which the motion is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Due {
+pub(crate) struct Due {
     /// Fraction of the duration.
     pub at: f64,
     /// Weight in sums over the motion; zero where none is known yet.

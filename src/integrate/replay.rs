@@ -8,7 +8,7 @@ use std::fmt::Debug;
 use std::ops::Range;
 
 /// Steps in a row with all that the adjoint needs of them.
-pub trait Block {
+pub(crate) trait Block {
     /// A state that a march can go on from.
     type State: Clone + Debug;
     /// What its solver keeps from step to step, so that the same steps come out to the last bit.
@@ -60,7 +60,7 @@ pub(crate) type Checkpoint<B> = (<B as Block>::State, <B as Block>::Solver);
 
 /// What is kept of a run.
 #[derive(Clone, Debug)]
-pub struct Tape<B: Block> {
+pub(crate) struct Tape<B: Block> {
     /// The last steps. There are none if memory did not suffice for steps that were chosen on the way.
     pub block: B,
     /// Where the steps are known beforehand.
@@ -80,7 +80,7 @@ pub struct Tape<B: Block> {
 impl<B: Block> Tape<B> {
     /// A tape that takes `memory` bytes; `steps` is how many there will be, if that is known. Without any
     /// memory nothing is kept: a gradient that is asked for all the same makes the motion again.
-    pub fn new(mut block: B, (memory, room): (usize, Room), steps: Option<usize>) -> Self {
+    pub(crate) fn new(mut block: B, (memory, room): (usize, Room), steps: Option<usize>) -> Self {
         let known = steps.filter(|_| memory > 0);
         let schedule = known.map(|steps| Schedule::new(steps, memory, room));
         let mut due = Vec::new();
@@ -103,7 +103,7 @@ impl<B: Block> Tape<B> {
     }
 
     /// Whether step k, the next one, is to be kept.
-    pub fn keeps(&mut self, k: usize) -> bool {
+    pub(crate) fn keeps(&mut self, k: usize) -> bool {
         if let Some(schedule) = &self.schedule {
             return k > schedule.head();
         }
@@ -115,33 +115,33 @@ impl<B: Block> Tape<B> {
     }
 
     /// Whether a checkpoint is due after step k.
-    pub fn is_due(&mut self, k: usize) -> bool {
+    pub(crate) fn is_due(&mut self, k: usize) -> bool {
         self.due.pop_if(|due| *due == k).is_some()
     }
 
     /// Leaves a checkpoint after step k.
-    pub fn leave(&mut self, k: usize, checkpoint: Checkpoint<B>) {
+    pub(crate) fn leave(&mut self, k: usize, checkpoint: Checkpoint<B>) {
         self.checkpoints.push((k, checkpoint));
     }
 
     /// Says what the solver keeps when it tries step k once more.
-    pub fn retry(&mut self, k: usize, solver: B::Solver) {
+    pub(crate) fn retry(&mut self, k: usize, solver: B::Solver) {
         self.retried.pop_if(|(step, _)| *step == k);
         self.retried.push((k, solver));
     }
 
     /// Memory that it takes (bytes).
-    pub fn bytes(&self, number: usize) -> usize {
+    pub(crate) fn bytes(&self, number: usize) -> usize {
         self.block.numbers() * number + self.checkpoints.len() * self.room.checkpoint
     }
 
     /// How a run of so many steps is kept.
-    pub fn schedule(&self, steps: usize) -> Schedule {
+    pub(crate) fn schedule(&self, steps: usize) -> Schedule {
         self.schedule.unwrap_or_else(|| self.foreseen(steps).0)
     }
 
     /// How a run of so many steps would be kept, and what that takes (bytes).
-    pub fn foreseen(&self, steps: usize) -> (Schedule, usize) {
+    pub(crate) fn foreseen(&self, steps: usize) -> (Schedule, usize) {
         let memory = match self.memory {
             0 => MEMORY,
             memory => memory,
@@ -151,7 +151,7 @@ impl<B: Block> Tape<B> {
     }
 
     /// The tape with another block, without checkpoints.
-    pub fn with<C: Block>(&self, block: C) -> Tape<C> {
+    pub(crate) fn with<C: Block>(&self, block: C) -> Tape<C> {
         Tape {
             block,
             schedule: self.schedule,

@@ -15,7 +15,7 @@
 
 /// Room that the parts of a tape take (bytes).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Room {
+pub(crate) struct Room {
     /// A step that is kept.
     pub step: usize,
     /// A checkpoint.
@@ -24,7 +24,7 @@ pub struct Room {
 
 /// What is kept of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Schedule {
+pub(crate) struct Schedule {
     steps: usize,
     /// Steps before those that the run keeps.
     head: usize,
@@ -53,7 +53,7 @@ impl Schedule {
     /// The schedule of a run of `steps` steps that makes the fewest steps again in `memory` bytes, or in the
     /// [`least`] if they would be made again too often. Without memory it keeps the start, and one step at
     /// a time.
-    pub fn new(steps: usize, memory: usize, room: Room) -> Self {
+    pub(crate) fn new(steps: usize, memory: usize, room: Room) -> Self {
         let own = Self::within(steps, memory, room);
         match memory > 0 && own.recomputed() > steps.saturating_mul(MOST_TIMES) {
             true => Self::within(steps, least(steps, room), room),
@@ -108,22 +108,23 @@ impl Schedule {
     }
 
     /// Whether all steps are kept.
-    pub fn keeps_all(&self) -> bool {
+    pub(crate) fn keeps_all(&self) -> bool {
         self.head == 0
     }
 
     /// Number of steps before those that the run keeps.
-    pub fn head(&self) -> usize {
+    pub(crate) fn head(&self) -> usize {
         self.head
     }
 
     /// Steps of a block that is made again, at most.
-    pub fn block(&self) -> usize {
+    #[cfg(test)]
+    pub(crate) fn block(&self) -> usize {
         self.block
     }
 
     /// Most checkpoints at a time.
-    pub fn checkpoints(&self) -> usize {
+    pub(crate) fn checkpoints(&self) -> usize {
         self.checkpoints
     }
 
@@ -150,7 +151,7 @@ impl Schedule {
     }
 
     /// Steps after which the run leaves checkpoints, without the start.
-    pub fn of_run(&self) -> Vec<usize> {
+    pub(crate) fn of_run(&self) -> Vec<usize> {
         let (mut first, mut left) = (0, self.checkpoints);
         let mut all = Vec::new();
         while first < self.blocks() && left > 1 {
@@ -167,14 +168,14 @@ impl Schedule {
     /// What to do for step n, when checkpoints `left` may be set and the last one stands after step
     /// `from`: the step to go on to and to leave a checkpoint after, or `None` if the steps from there
     /// on are to be kept.
-    pub fn next(&self, from: usize, n: usize, left: usize) -> Option<usize> {
+    pub(crate) fn next(&self, from: usize, n: usize, left: usize) -> Option<usize> {
         let first = self.block_of(from + 1);
         let length = self.block_of(n) + 1 - first;
         (length > 1).then(|| self.start(first + split(length, left + 1)))
     }
 
     /// Steps that a gradient makes again, of a function that looks at the end of the motion.
-    pub fn recomputed(&self) -> usize {
+    pub(crate) fn recomputed(&self) -> usize {
         if self.keeps_all() {
             return 0;
         }
@@ -191,7 +192,7 @@ impl Schedule {
     }
 
     /// What it keeps at most (bytes).
-    pub fn bytes(&self, room: Room) -> usize {
+    pub(crate) fn bytes(&self, room: Room) -> usize {
         if self.keeps_all() {
             return self.steps * room.step;
         }

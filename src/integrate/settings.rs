@@ -7,7 +7,7 @@ use crate::system::LeftOut;
 
 /// The integration method.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Method {
+pub(crate) enum Method {
     /// Explicit Runge–Kutta pair of order 8 of Dormand & Prince on the index-1 equations, projected
     /// onto the constraints after each step (Hairer, Nørsett & Wanner 1993, section II.5; Hairer
     /// & Wanner 1996, section VII.2): for scenes that are not stiff.
@@ -35,7 +35,7 @@ pub enum Method {
 
 /// How a multistep formula of order m makes its first m − 1 steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
+pub(crate) enum Start {
     /// By Radau IIA with three stages, which keeps the order m.
     Radau,
     /// Step k by the formula of order min(k, m) (Kennedy & Boopathy, section II.A): the order of
@@ -45,7 +45,7 @@ pub enum Start {
 
 impl Method {
     /// Order of convergence.
-    pub fn order(self) -> usize {
+    pub(crate) fn order(self) -> usize {
         match self {
             Method::Dop853 => 8,
             Method::Radau { stages } => 2 * stages - 1,
@@ -62,7 +62,7 @@ impl Method {
     }
 
     /// Whether the step size can follow an error estimate.
-    pub fn is_adaptive(self) -> bool {
+    pub(crate) fn is_adaptive(self) -> bool {
         match self {
             Method::Dop853 | Method::Radau { .. } => true,
             Method::Bdf { .. } | Method::GeneralisedAlpha { .. } => false,
@@ -70,7 +70,7 @@ impl Method {
     }
 
     /// The method that chooses its steps with this [`Method::name`].
-    pub fn adaptive(name: &str) -> Option<Self> {
+    pub(crate) fn adaptive(name: &str) -> Option<Self> {
         [
             Method::Dop853,
             Method::Radau { stages: 2 },
@@ -81,7 +81,7 @@ impl Method {
     }
 
     /// The method's name with its parameters.
-    pub fn name(self) -> String {
+    pub(crate) fn name(self) -> String {
         match self {
             Method::Dop853 => "dop853".into(),
             Method::Radau { stages } => format!("radau{stages}"),
@@ -142,7 +142,7 @@ pub(crate) struct Settings {
 
 impl Samples {
     /// At most so many samples of so many steps, if their cells are known.
-    pub fn count(self, steps: usize, grid: Option<&Grid>) -> usize {
+    pub(crate) fn count(self, steps: usize, grid: Option<&Grid>) -> usize {
         match self {
             Samples::StepEnds => steps,
             Samples::Uniform(samples) => samples,

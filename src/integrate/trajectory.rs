@@ -14,7 +14,7 @@ use crate::system::initial::InitialState;
 
 /// The motion at the sampled instants, and what the adjoint needs of the steps.
 #[derive(Clone, Debug)]
-pub struct Trajectory<S: Scalar> {
+pub(crate) struct Trajectory<S: Scalar> {
     /// Numbering of the states.
     pub numbering: Numbering,
     /// The method that made it.
@@ -55,7 +55,7 @@ pub struct Trajectory<S: Scalar> {
 
 /// What the adjoint of each family of methods needs.
 #[derive(Clone, Debug)]
-pub enum Tape<S: Scalar> {
+pub(crate) enum Tape<S: Scalar> {
     /// Of the explicit method.
     Explicit(explicit::Tape<S>),
     /// Of an implicit method.
@@ -64,7 +64,7 @@ pub enum Tape<S: Scalar> {
 
 impl<S: Scalar> Trajectory<S> {
     /// A trajectory that holds its start only.
-    pub fn start(
+    pub(crate) fn start(
         numbering: Numbering,
         method: Method,
         duration: S,
@@ -93,7 +93,7 @@ impl<S: Scalar> Trajectory<S> {
     }
 
     /// Makes room for the history of `steps` steps and `samples` instants.
-    pub fn reserve(&mut self, steps: usize, samples: usize) {
+    pub(crate) fn reserve(&mut self, steps: usize, samples: usize) {
         let (nq, nv) = (self.numbering.positions(), self.numbering.velocities());
         self.grid.reserve(steps);
         self.instants.reserve(samples);
@@ -109,7 +109,7 @@ impl<S: Scalar> Trajectory<S> {
     }
 
     /// Adds an instant.
-    pub fn push(&mut self, due: Due, place: Place, [q, v, a, lambda]: [&[S]; 4]) {
+    pub(crate) fn push(&mut self, due: Due, place: Place, [q, v, a, lambda]: [&[S]; 4]) {
         self.instants.push(due.at);
         self.weights.push(due.weight);
         self.shown.push(due.shown);
@@ -136,12 +136,12 @@ impl<S: Scalar> Trajectory<S> {
     }
 
     /// The sampled instants that tables and figures show.
-    pub fn shown(&self) -> Vec<usize> {
+    pub(crate) fn shown(&self) -> Vec<usize> {
         (0..=self.last()).filter(|&k| self.shown[k]).collect()
     }
 
     /// Memory of the samples and of what is kept for the adjoint (bytes).
-    pub fn bytes(&self) -> [usize; 2] {
+    pub(crate) fn bytes(&self) -> [usize; 2] {
         let samples = [&self.q, &self.v, &self.a, &self.lambda];
         let samples: usize = samples.iter().map(|all| all.len()).sum();
         let number = size_of::<S>();
@@ -154,7 +154,7 @@ impl<S: Scalar> Trajectory<S> {
 
     /// How a run of so many steps would be kept for gradients in the same memory, and what that takes
     /// (bytes).
-    pub fn foreseen(&self, steps: usize) -> (Schedule, usize) {
+    pub(crate) fn foreseen(&self, steps: usize) -> (Schedule, usize) {
         match &self.tape {
             Tape::Explicit(tape) => tape.foreseen(steps),
             Tape::Implicit(tape) => tape.foreseen(steps),
@@ -162,44 +162,44 @@ impl<S: Scalar> Trajectory<S> {
     }
 
     /// Time that the steps have reached \[s\].
-    pub fn time_reached(&self) -> f64 {
+    pub(crate) fn time_reached(&self) -> f64 {
         self.duration.re() * self.grid.reached()
     }
 
     /// Index of the last instant.
-    pub fn last(&self) -> usize {
+    pub(crate) fn last(&self) -> usize {
         self.instants.len() - 1
     }
 
     /// Time of instant k (s).
-    pub fn time(&self, k: usize) -> S {
+    pub(crate) fn time(&self, k: usize) -> S {
         self.duration * self.instants[k]
     }
 
     /// Positions at instant k.
-    pub fn q(&self, k: usize) -> &[S] {
+    pub(crate) fn q(&self, k: usize) -> &[S] {
         row(&self.q, self.numbering.positions(), k)
     }
 
     /// Velocities at instant k.
-    pub fn v(&self, k: usize) -> &[S] {
+    pub(crate) fn v(&self, k: usize) -> &[S] {
         row(&self.v, self.numbering.velocities(), k)
     }
 
     /// Accelerations at instant k.
-    pub fn a(&self, k: usize) -> &[S] {
+    pub(crate) fn a(&self, k: usize) -> &[S] {
         row(&self.a, self.numbering.velocities(), k)
     }
 
     /// Weight of instant k in sums over [0, 1].
-    pub fn quadrature_weight(&self, k: usize) -> f64 {
+    pub(crate) fn quadrature_weight(&self, k: usize) -> f64 {
         self.weights[k]
     }
 }
 
 impl Trajectory<Complex64> {
     /// The real part of a complex run.
-    pub fn real(&self) -> Trajectory<f64> {
+    pub(crate) fn real(&self) -> Trajectory<f64> {
         Trajectory {
             numbering: self.numbering.clone(),
             method: self.method,

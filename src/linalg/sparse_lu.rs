@@ -16,7 +16,7 @@ const REFINEMENTS: usize = 2;
 pub(crate) const REFINED_SOLVES: usize = 1 + REFINEMENTS;
 
 /// A scalar that linear systems are solved in: `f64` and `Complex64`.
-pub trait SolveScalar: Scalar + faer::traits::ComplexField {}
+pub(crate) trait SolveScalar: Scalar + faer::traits::ComplexField {}
 impl<S: Scalar + faer::traits::ComplexField> SolveScalar for S {}
 
 /// The matrix has no usable pivot in some column.

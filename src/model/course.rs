@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 
 /// A magnitude as a function of time.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Course<S> {
+pub(crate) enum Course<S> {
     /// The same at all times (N or N m).
     Constant(S),
     /// A sine of time.
@@ -38,7 +38,7 @@ pub enum Course<S> {
 
 impl<S: Scalar> Course<S> {
     /// The course with every parameter replaced by `f` of it.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Course<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Course<T> {
         match self {
             Course::Constant(value) => Course::Constant(f(*value)),
             Course::Harmonic {
@@ -63,7 +63,7 @@ impl<S: Scalar> Course<S> {
     }
 
     /// Value at `time` (s).
-    pub fn value(&self, time: S) -> S {
+    pub(crate) fn value(&self, time: S) -> S {
         match self {
             Course::Constant(value) => *value,
             Course::Harmonic {
@@ -90,7 +90,13 @@ impl<S: Scalar> Course<S> {
 impl Course<f64> {
     /// Adds `weight` times the derivatives of [`Course::value`] to those in the parameters, `own`
     /// (of the same kind), and in the time.
-    pub fn pull_back(&self, time: f64, weight: f64, own: &mut Course<f64>, time_bar: &mut f64) {
+    pub(crate) fn pull_back(
+        &self,
+        time: f64,
+        weight: f64,
+        own: &mut Course<f64>,
+        time_bar: &mut f64,
+    ) {
         match (self, own) {
             (Course::Constant(_), Course::Constant(own)) => *own += weight,
             (

@@ -24,7 +24,7 @@ use std::f64::consts::TAU;
 
 /// A motion that a joint allows along or about its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Freedom {
+pub(crate) enum Freedom {
     /// Turning about the axis: the rate is φ̇ = e · (ω_A − ω_B).
     Turn,
     /// Sliding along the axis: the rate is that of e · (P_A − P_B).
@@ -33,7 +33,7 @@ pub enum Freedom {
 
 /// The prescribed motion of a joint along or about its axis.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drive<S> {
+pub(crate) struct Drive<S> {
     /// Which motion.
     pub freedom: Freedom,
     /// Angle (rad) or displacement (m) in time.
@@ -42,7 +42,7 @@ pub struct Drive<S> {
 
 /// An angle or displacement as a function of time.
 #[derive(Clone, Debug, PartialEq)]
-pub enum MotionCourse<S> {
+pub(crate) enum MotionCourse<S> {
     /// Coefficients of 1, t, t², …; at least one.
     Polynomial(Vec<S>),
     /// A sine of time about a mean.
@@ -69,7 +69,7 @@ pub enum MotionCourse<S> {
 
 impl<S: Scalar> Drive<S> {
     /// The drive with every parameter replaced by `f` of it.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Drive<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Drive<T> {
         Drive {
             freedom: self.freedom,
             course: self.course.map(f),
@@ -79,7 +79,7 @@ impl<S: Scalar> Drive<S> {
 
 impl<S: Scalar> MotionCourse<S> {
     /// The course with every parameter replaced by `f` of it.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> MotionCourse<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> MotionCourse<T> {
         let mut list = |list: &[S]| list.iter().map(|&x| f(x)).collect::<Vec<T>>();
         match self {
             Self::Polynomial(coefficients) => MotionCourse::Polynomial(list(coefficients)),
@@ -107,7 +107,7 @@ impl<S: Scalar> MotionCourse<S> {
     }
 
     /// Value and first to third derivative at `time` (s).
-    pub fn derivatives(&self, time: S) -> [S; 4] {
+    pub(crate) fn derivatives(&self, time: S) -> [S; 4] {
         match self {
             Self::Polynomial(coefficients) => polynomial(coefficients, time),
             Self::Harmonic {
@@ -135,7 +135,7 @@ impl<S: Scalar> MotionCourse<S> {
 impl MotionCourse<f64> {
     /// Adds the derivatives of w0 m + w1 ṁ + w2 m̈ by the parameters, at `time`, to those in `own`
     /// (of the same kind); returns that by time.
-    pub fn pull_back(&self, time: f64, weights: [f64; 3], own: &mut Self) -> f64 {
+    pub(crate) fn pull_back(&self, time: f64, weights: [f64; 3], own: &mut Self) -> f64 {
         let [w0, w1, w2] = weights;
         let along = |d: [Dual; 4]| w0 * d[0].du + w1 * d[1].du + w2 * d[2].du;
         let now = Dual::from(time);

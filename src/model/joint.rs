@@ -19,7 +19,7 @@ use crate::math::{Scalar, Vec3};
 
 impl Freedom {
     /// The row that holds this motion where a drive has it.
-    pub fn driven_row(self) -> ConstraintRow {
+    pub(crate) fn driven_row(self) -> ConstraintRow {
         match self {
             Freedom::Turn => Perpendicular { a: 0, b: 1 },
             Freedom::Slide => Sliding { a: 2 },
@@ -29,7 +29,7 @@ impl Freedom {
 
 /// One scalar constraint equation; indices are 0-based components or axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ConstraintRow {
+pub(crate) enum ConstraintRow {
     /// Component `k` of d in ground axes vanishes.
     Coincident(usize),
     /// Axis `a` of the frame on body A is perpendicular to axis `b` of the frame on body B.
@@ -50,7 +50,7 @@ pub enum ConstraintRow {
 
 impl ConstraintRow {
     /// The component, if the row's force points along a ground axis.
-    pub fn ground_component(self) -> Option<usize> {
+    pub(crate) fn ground_component(self) -> Option<usize> {
         match self {
             Coincident(k) => Some(k),
             Perpendicular { .. } | Sliding { .. } | Distance => None,
@@ -58,7 +58,7 @@ impl ConstraintRow {
     }
 
     /// What the row holds, for messages.
-    pub fn describe(self) -> &'static str {
+    pub(crate) fn describe(self) -> &'static str {
         match self {
             Coincident(0) => "x distance",
             Coincident(1) => "y distance",
@@ -70,7 +70,7 @@ impl ConstraintRow {
     }
 
     /// True if the row transmits a force.
-    pub fn has_force(self) -> bool {
+    pub(crate) fn has_force(self) -> bool {
         match self {
             Coincident(_) | Sliding { .. } | Distance => true,
             Perpendicular { .. } => false,
@@ -78,7 +78,7 @@ impl ConstraintRow {
     }
 
     /// True if the gradient depends on d, and with it on where the bodies are.
-    pub fn depends_on_distance(self) -> bool {
+    pub(crate) fn depends_on_distance(self) -> bool {
         match self {
             Sliding { .. } | Distance => true,
             Coincident(_) | Perpendicular { .. } => false,
@@ -86,7 +86,7 @@ impl ConstraintRow {
     }
 
     /// True if the force turns with d.
-    pub fn follows_distance(self) -> bool {
+    pub(crate) fn follows_distance(self) -> bool {
         match self {
             Distance => true,
             Coincident(_) | Perpendicular { .. } | Sliding { .. } => false,
@@ -94,7 +94,7 @@ impl ConstraintRow {
     }
 
     /// True if the reaction on one body depends on the rotation of the other.
-    pub fn couples_rotations(self) -> bool {
+    pub(crate) fn couples_rotations(self) -> bool {
         match self {
             Perpendicular { .. } | Sliding { .. } | Distance => true,
             Coincident(_) => false,
@@ -104,7 +104,7 @@ impl ConstraintRow {
 
 /// The kinds of joint; e3 of the joint frame is the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum JointKind {
+pub(crate) enum JointKind {
     /// Two points coincide: 3 rows.
     Spherical,
     /// Two points coincide and one axis is common: 5 rows.
@@ -127,7 +127,7 @@ use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
 impl JointKind {
     /// The constraint rows of this joint.
-    pub fn rows(self) -> &'static [ConstraintRow] {
+    pub(crate) fn rows(self) -> &'static [ConstraintRow] {
         match self {
             JointKind::Spherical => &[Coincident(0), Coincident(1), Coincident(2)],
             JointKind::Revolute => &[
@@ -174,7 +174,7 @@ impl JointKind {
     }
 
     /// What the joint allows along or about its axis, turning first.
-    pub fn freedoms(self) -> &'static [Freedom] {
+    pub(crate) fn freedoms(self) -> &'static [Freedom] {
         match self {
             JointKind::Revolute | JointKind::Planar => &[Freedom::Turn],
             JointKind::Prismatic => &[Freedom::Slide],
@@ -184,7 +184,7 @@ impl JointKind {
     }
 
     /// Frame axes that both bodies share; the rows alone would also admit them turned by 180°.
-    pub fn common_axes(self) -> &'static [usize] {
+    pub(crate) fn common_axes(self) -> &'static [usize] {
         match self {
             JointKind::Spherical | JointKind::Universal | JointKind::Rod => &[],
             JointKind::Revolute | JointKind::Planar | JointKind::Cylindrical => &[2],
@@ -193,7 +193,7 @@ impl JointKind {
     }
 
     /// The joint's name in problem files.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             JointKind::Spherical => "spherical",
             JointKind::Revolute => "revolute",
@@ -209,7 +209,7 @@ impl JointKind {
 
 /// Where a joint sits on a body.
 #[derive(Clone, Copy, Debug)]
-pub struct JointFrame<S> {
+pub(crate) struct JointFrame<S> {
     /// Point from the centre of mass, in body axes (ground axes from the origin if ground) (m).
     pub point: Vec3<S>,
     /// Orthonormal axes e1, e2, e3 in body axes; e3 is the joint's axis.
@@ -220,7 +220,7 @@ pub struct JointFrame<S> {
 
 impl<S: Scalar> JointFrame<S> {
     /// The frame of zeros (a cotangent).
-    pub fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         Self {
             point: Vec3::zeros(),
             axes: [Vec3::zeros(); 3],
@@ -229,7 +229,7 @@ impl<S: Scalar> JointFrame<S> {
     }
 
     /// Adds another frame (of cotangents).
-    pub fn add(&mut self, other: &Self) {
+    pub(crate) fn add(&mut self, other: &Self) {
         self.point += other.point;
         for (axis, by) in self.axes.iter_mut().zip(&other.axes) {
             *axis += by;
@@ -240,7 +240,7 @@ impl<S: Scalar> JointFrame<S> {
 
 /// A joint between two bodies, or a body and ground.
 #[derive(Clone, Debug)]
-pub struct Joint<S> {
+pub(crate) struct Joint<S> {
     /// Name in the problem file.
     pub name: String,
     /// Which equations it imposes.
@@ -265,24 +265,24 @@ pub struct Joint<S> {
 
 impl<S> Joint<S> {
     /// The rows of the kind and of the drives.
-    pub fn all_rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
+    pub(crate) fn all_rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
         let driven = self.drives.iter().map(|drive| drive.freedom.driven_row());
         self.kind.rows().iter().copied().chain(driven)
     }
 
     /// The rows that do not hold identically.
-    pub fn rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
         let counts = |row: &ConstraintRow| !self.identical.contains(row);
         self.all_rows().filter(counts)
     }
 
     /// Those of [`Joint::rows`] that are imposed at the start.
-    pub fn imposed(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
+    pub(crate) fn imposed(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
         self.rows().filter(|row| !self.left_out.contains(row))
     }
 
     /// Frame axes that both bodies share once the joint is closed.
-    pub fn common_axes(&self) -> &'static [usize] {
+    pub(crate) fn common_axes(&self) -> &'static [usize] {
         let turned = |drive: &Drive<S>| drive.freedom == Freedom::Turn;
         match self.drives.iter().any(turned) {
             true => &[0, 1, 2],
@@ -293,7 +293,7 @@ impl<S> Joint<S> {
 
 impl<S: Scalar> Joint<S> {
     /// The joint with every parameter replaced by `f` of it.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Joint<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Joint<T> {
         let mut frame = |frame: &JointFrame<S>| JointFrame {
             point: frame.point.map(&mut *f),
             axes: frame.axes.map(|axis| axis.map(&mut *f)),

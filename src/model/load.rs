@@ -23,7 +23,7 @@ use crate::math::{Scalar, Vec3};
 
 /// A named load.
 #[derive(Clone, Debug)]
-pub struct Load<S> {
+pub(crate) struct Load<S> {
     /// Name in the problem file.
     pub name: String,
     /// What acts.
@@ -32,7 +32,7 @@ pub struct Load<S> {
 
 /// The axes that a force or torque keeps its direction in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axes {
+pub(crate) enum Axes {
     /// Those of ground.
     Ground,
     /// Those of the body that it acts on, which it turns with.
@@ -41,7 +41,7 @@ pub enum Axes {
 
 /// The kinds of load.
 #[derive(Clone, Debug)]
-pub enum LoadKind<S> {
+pub(crate) enum LoadKind<S> {
     /// A force at a point of a body.
     Force {
         /// The body.
@@ -130,7 +130,7 @@ pub enum LoadKind<S> {
 
 impl<S: Scalar> Load<S> {
     /// The load with every parameter replaced by `f` of it.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Load<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Load<T> {
         Load {
             name: self.name.clone(),
             kind: self.kind.map(f),
@@ -140,7 +140,7 @@ impl<S: Scalar> Load<S> {
 
 impl<S: Scalar> LoadKind<S> {
     /// How the load changes in time, if it does.
-    pub fn course(&self) -> Option<&Course<S>> {
+    pub(crate) fn course(&self) -> Option<&Course<S>> {
         match self {
             LoadKind::Force { magnitude, .. } | LoadKind::Torque { magnitude, .. } => {
                 Some(magnitude)
@@ -154,7 +154,7 @@ impl<S: Scalar> LoadKind<S> {
     }
 
     /// The load with every parameter replaced by `f` of it.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> LoadKind<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> LoadKind<T> {
         match self {
             LoadKind::Force {
                 body,

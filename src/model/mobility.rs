@@ -7,7 +7,7 @@ use crate::math::{Mat3, Scalar, Vec3};
 /// orthonormal columns: the directions of its translation, then those of its rotation. A body that
 /// cannot leave a subspace has its equations solved in it alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mobility {
+pub(crate) struct Mobility {
     /// Directions of ṙ, ground axes.
     pub translation: Directions,
     /// Directions of ω, body axes.
@@ -17,14 +17,14 @@ pub struct Mobility {
 /// Orthonormal axes of space, of which the first ones are free. Where all are, they are the unit
 /// vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Directions {
+pub(crate) struct Directions {
     axes: [Vec3<f64>; 3],
     free: usize,
 }
 
 impl Mobility {
     /// Any velocity: six unknowns.
-    pub fn spatial() -> Self {
+    pub(crate) fn spatial() -> Self {
         Self {
             translation: Directions::all(),
             rotation: Directions::all(),
@@ -33,7 +33,7 @@ impl Mobility {
 
     /// Translation along two orthonormal directions of a plane, ground axes, and rotation about its unit
     /// normal, body axes, which a motion in the plane does not change: three unknowns.
-    pub fn planar([t1, t2]: [Vec3<f64>; 2], normal: Vec3<f64>) -> Self {
+    pub(crate) fn planar([t1, t2]: [Vec3<f64>; 2], normal: Vec3<f64>) -> Self {
         let mut farthest = Vec3::zeros();
         farthest[normal.iamin()] = 1.0;
         let first = normal.cross(&farthest).normalize();
@@ -50,44 +50,44 @@ impl Mobility {
     }
 
     /// Any translation without rotation: three unknowns.
-    pub fn point() -> Self {
+    pub(crate) fn point() -> Self {
         Self::spatial().without_rotation()
     }
 
     /// None: no unknowns.
-    pub fn fixed() -> Self {
+    pub(crate) fn fixed() -> Self {
         let mut none = Self::point();
         none.translation.free = 0;
         none
     }
 
     /// This mobility without rotation.
-    pub fn without_rotation(mut self) -> Self {
+    pub(crate) fn without_rotation(mut self) -> Self {
         self.rotation.free = 0;
         self
     }
 
     /// Number of unknowns u.
-    pub fn unknowns(&self) -> usize {
+    pub(crate) fn unknowns(&self) -> usize {
         self.translation.free + self.rotation.free
     }
 
     /// Whether it has rotation.
-    pub fn has_rotation(&self) -> bool {
+    pub(crate) fn has_rotation(&self) -> bool {
         self.rotation.free > 0
     }
 
     /// The axes of translation, if that is along the first two of them, and those of the body, if it
     /// turns about none but the first of them: the normal of the plane that it stays in is the third of
     /// the former and the first of the latter.
-    pub fn plane(&self) -> Option<[[Vec3<f64>; 3]; 2]> {
+    pub(crate) fn plane(&self) -> Option<[[Vec3<f64>; 3]; 2]> {
         let planar = self.translation.free == 2 && self.rotation.free <= 1;
         planar.then_some([self.translation.axes, self.rotation.axes])
     }
 
     /// Writes u = Bᵀ (x, y) of a linear and an angular part to the head of `out`.
     #[inline]
-    pub fn reduce<S: Scalar>(&self, linear: &Vec3<S>, angular: &Vec3<S>, out: &mut [S]) {
+    pub(crate) fn reduce<S: Scalar>(&self, linear: &Vec3<S>, angular: &Vec3<S>, out: &mut [S]) {
         if let Some([t1, t2, normal]) = self.planar_axes() {
             let u = [along(linear, t1), along(linear, t2), along(angular, normal)];
             out[..3].copy_from_slice(&u);
@@ -100,7 +100,7 @@ impl Mobility {
 
     /// The linear and the angular part of B u, with u at the head of `u`.
     #[inline]
-    pub fn expand<S: Scalar>(&self, u: &[S]) -> (Vec3<S>, Vec3<S>) {
+    pub(crate) fn expand<S: Scalar>(&self, u: &[S]) -> (Vec3<S>, Vec3<S>) {
         if let Some([t1, t2, normal]) = self.planar_axes() {
             let u = [u[0], u[1], u[2]];
             let linear = Vec3::from_fn(|k, _| u[0] * t1[k] + u[1] * t2[k]);
@@ -120,7 +120,7 @@ impl Mobility {
     }
 
     /// Row k of B, as places in u and entries: entries of zero stand for none.
-    pub fn row(&self, k: usize) -> [(usize, f64); 2] {
+    pub(crate) fn row(&self, k: usize) -> [(usize, f64); 2] {
         match k {
             0..3 => self.translation.row(k, 0),
             _ => self.rotation.row(k - 3, self.translation.free),
@@ -137,18 +137,18 @@ impl Directions {
     }
 
     /// How many are free.
-    pub fn free(&self) -> usize {
+    pub(crate) fn free(&self) -> usize {
         self.free
     }
 
     /// Axis i, free or not.
-    pub fn axis(&self, i: usize) -> &Vec3<f64> {
+    pub(crate) fn axis(&self, i: usize) -> &Vec3<f64> {
         &self.axes[i]
     }
 
     /// Writes the components of `x` in the free directions to the head of `out`.
     #[inline]
-    pub fn components<S: Scalar>(&self, x: &Vec3<S>, out: &mut [S]) {
+    pub(crate) fn components<S: Scalar>(&self, x: &Vec3<S>, out: &mut [S]) {
         match self.free {
             3 => out[..3].copy_from_slice(x.as_slice()),
             2 => {
@@ -162,7 +162,7 @@ impl Directions {
 
     /// The vector with the components at the head of `u` in the free directions.
     #[inline]
-    pub fn combine<S: Scalar>(&self, u: &[S]) -> Vec3<S> {
+    pub(crate) fn combine<S: Scalar>(&self, u: &[S]) -> Vec3<S> {
         match self.free {
             3 => Vec3::new(u[0], u[1], u[2]),
             2 => {
@@ -175,7 +175,7 @@ impl Directions {
     }
 
     /// The part of `x` in the free directions.
-    pub fn project<S: Scalar>(&self, x: &Vec3<S>) -> Vec3<S> {
+    pub(crate) fn project<S: Scalar>(&self, x: &Vec3<S>) -> Vec3<S> {
         let mut u = [S::zero(); 3];
         self.components(x, &mut u);
         self.combine(&u)
@@ -183,7 +183,7 @@ impl Directions {
 
     /// dᵢᵀ A dₖ of the free directions i and k.
     #[inline]
-    pub fn quadratic<S: Scalar>(&self, a: &Mat3<S>, i: usize, k: usize) -> S {
+    pub(crate) fn quadratic<S: Scalar>(&self, a: &Mat3<S>, i: usize, k: usize) -> S {
         match self.free {
             3 => a[(i, k)],
             _ => along(&(a * self.axes[k].map(S::from)), &self.axes[i]),

@@ -25,7 +25,7 @@ use crate::math::{Scalar, Vec3};
 
 /// Bodies, joints, loads and gravity of a scene.
 #[derive(Clone, Debug)]
-pub struct Model<S> {
+pub(crate) struct Model<S> {
     /// Gravitational acceleration in ground axes (m/s²).
     pub gravity: Vec3<S>,
     /// Bodies in the order of the problem file.
@@ -38,7 +38,7 @@ pub struct Model<S> {
 
 impl<S: Scalar> Model<S> {
     /// Whether nothing but springs and gravity does work, so that energy is conserved.
-    pub fn conserves_energy(&self) -> bool {
+    pub(crate) fn conserves_energy(&self) -> bool {
         let conserves = |load: &Load<S>| match &load.kind {
             LoadKind::Spring { damping, .. } | LoadKind::TorsionSpring { damping, .. } => {
                 damping.re() == 0.0
@@ -54,7 +54,7 @@ impl<S: Scalar> Model<S> {
     }
 
     /// The model with every parameter replaced by `f` of it, visited in one fixed order.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Model<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Model<T> {
         Model {
             gravity: self.gravity.map(&mut *f),
             bodies: self.bodies.iter().map(|body| body.map(f)).collect(),

@@ -10,7 +10,7 @@ const ROUNDING: f64 = 1e-12;
 /// A rigid body. Its reference point is the centre of mass; its axes are the body's axes in the
 /// problem file.
 #[derive(Clone, Debug)]
-pub struct RigidBody<S> {
+pub(crate) struct RigidBody<S> {
     /// Name in the problem file.
     pub name: String,
     /// Mass (kg).
@@ -31,7 +31,7 @@ pub struct RigidBody<S> {
 
 impl<S: Scalar> RigidBody<S> {
     /// The body with every parameter replaced by `f` of it.
-    pub fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> RigidBody<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> RigidBody<T> {
         RigidBody {
             name: self.name.clone(),
             mass: f(self.mass),
@@ -48,7 +48,7 @@ impl<S: Scalar> RigidBody<S> {
 impl RigidBody<f64> {
     /// Whether mass and inertia are those of some solid: a positive mass, and
     /// [`is_inertia_of_solid`].
-    pub fn is_solid(&self) -> bool {
+    pub(crate) fn is_solid(&self) -> bool {
         self.mass > 0.0 && is_inertia_of_solid(&self.inertia)
     }
 }

@@ -31,7 +31,7 @@ use crate::math::scalar::Dual;
 
 /// How values between the instants of a table follow from those at them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Interpolation {
+pub(crate) enum Interpolation {
     /// Straight lines.
     Linear,
     /// Without overshoot.

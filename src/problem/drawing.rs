@@ -15,7 +15,7 @@ const CORNERS: usize = 32;
 
 /// The outline of a body, from its centre of mass in body axes (m).
 #[derive(Clone, Debug, PartialEq)]
-pub enum Outline {
+pub(crate) enum Outline {
     /// The silhouette is the convex hull of these points in the plane of the view.
     Hull(Vec<Vec3<f64>>),
     /// The silhouette is a circle of this radius about the centre of mass.
@@ -26,7 +26,7 @@ pub enum Outline {
 
 /// A barrier across the direction of flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BarrierLine {
+pub(crate) struct BarrierLine {
     /// Place along the direction of flight (m).
     pub distance: f64,
     /// Height of the top above the origin (m).
@@ -35,7 +35,7 @@ pub struct BarrierLine {
 
 /// How the motion of a design is drawn.
 #[derive(Clone, Debug)]
-pub struct Drawing {
+pub(crate) struct Drawing {
     /// Ground axis that points to the right.
     pub right: Vec3<f64>,
     /// Ground axis that points up.

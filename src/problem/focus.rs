@@ -16,7 +16,7 @@ impl Problem {
     /// The problem of the functions `asked` and of the bodies that these or the event can see. Its
     /// functions are numbered anew; objective and constraints that are not asked for are dropped. `None`
     /// if nothing can be left out, nothing is asked for, or nothing shall be left out.
-    pub fn focused(&self, asked: &[usize]) -> Option<Self> {
+    pub(crate) fn focused(&self, asked: &[usize]) -> Option<Self> {
         if asked.is_empty() || self.lowering.is_none() || self.focus.is_some() {
             return None;
         }
@@ -60,7 +60,7 @@ impl Problem {
     }
 
     /// The problem of the objective and the constraints alone, as [`Problem::focused`].
-    pub fn for_optimisation(&self) -> Option<Self> {
+    pub(crate) fn for_optimisation(&self) -> Option<Self> {
         let objective = self.objective?.function;
         let constraints = self.constraints.iter().map(|own| own.function);
         let asked: Vec<usize> = constraints.chain([objective]).collect();
@@ -68,7 +68,7 @@ impl Problem {
     }
 
     /// The problem with all bodies again, if some were left out; its functions are those asked for.
-    pub fn whole(&self) -> Option<Self> {
+    pub(crate) fn whole(&self) -> Option<Self> {
         let focus = self.focus.as_ref()?;
         let bodies = self.order.len();
         if focus.seen.bodies.len() == bodies {

@@ -55,7 +55,7 @@ use std::path::Path;
 
 /// Which way an objective goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sense {
+pub(crate) enum Sense {
     /// As small as can be.
     Minimise,
     /// As large as can be.
@@ -64,7 +64,7 @@ pub enum Sense {
 
 /// The function that is optimised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Objective {
+pub(crate) struct Objective {
     /// Index of the function.
     pub function: usize,
     /// Which way.
@@ -220,7 +220,7 @@ impl Problem {
     }
 
     /// Makes `x`, moved inside the bounds, the start.
-    pub fn restart(&mut self, x: &[f64]) {
+    pub(crate) fn restart(&mut self, x: &[f64]) {
         for (variable, &x) in self.variables.iter_mut().zip(x) {
             variable.start = x.clamp(variable.lower, variable.upper);
         }
@@ -230,7 +230,7 @@ impl Problem {
     ///
     /// # Panics
     /// If there is no such function.
-    pub fn function_unit(&self, index: usize) -> String {
+    pub(crate) fn function_unit(&self, index: usize) -> String {
         self.scene(&self.start()).functions[index].unit()
     }
 
@@ -238,12 +238,12 @@ impl Problem {
     /// of its numbers.
     ///
     /// What its lowering leaves out is left out of the model, where the design admits it.
-    pub fn scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
+    pub(crate) fn scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
         self.lowered_scene(x).0
     }
 
     /// As [`Problem::scene`], and whether the design admits all that the lowering leaves out.
-    pub fn lowered_scene<S: Scalar>(&self, x: &[S]) -> (Scene<S>, bool) {
+    pub(crate) fn lowered_scene<S: Scalar>(&self, x: &[S]) -> (Scene<S>, bool) {
         let mut scene = self.unlowered_scene(x);
         let all = self.lower(&mut scene);
         (scene, all)
@@ -251,14 +251,14 @@ impl Problem {
 
     /// Leaves out of a scene what its lowering does; false if its design does not admit all of that,
     /// and the scene stays as it is.
-    pub fn lower<S: Scalar>(&self, scene: &mut Scene<S>) -> bool {
+    pub(crate) fn lower<S: Scalar>(&self, scene: &mut Scene<S>) -> bool {
         let lowering = self.lowering.as_ref();
         lowering.is_none_or(|lowering| lowering.apply(scene))
     }
 
     /// The scene at the design `x` with nothing left out but what follows from other joints, and what
     /// cannot be seen by the functions that a [focused](Problem::focused) problem asks for.
-    pub fn unlowered_scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
+    pub(crate) fn unlowered_scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
         let mut scene = scene::scene(&self.written, &self.order, x);
         for (joint, left_out) in scene.model.joints.iter_mut().zip(&self.left_out) {
             joint.left_out.clone_from(left_out);
@@ -279,17 +279,17 @@ impl Problem {
 
     /// Velocity [m/s] and angular velocity [rad/s] in ground axes that the file gives each body as its
     /// own; `None` if it gives it none.
-    pub fn own_velocities(&self, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
+    pub(crate) fn own_velocities(&self, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
         scene::own_velocities(&self.written, x)
     }
 
     /// The objective that the file states.
-    pub fn stated_objective(&self) -> Option<Objective> {
+    pub(crate) fn stated_objective(&self) -> Option<Objective> {
         self.objective.filter(|_| self.nearest_to.is_none())
     }
 
     /// How the motion of the design `x` is drawn.
-    pub fn drawing(&self, x: &[f64]) -> Drawing {
+    pub(crate) fn drawing(&self, x: &[f64]) -> Drawing {
         drawing::drawing(&self.written, &self.order, x)
     }
 }

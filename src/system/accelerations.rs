@@ -58,7 +58,7 @@ enum Solver<S> {
 /// What the factors depend on besides the state: a solver with the same memory finds the same numbers, to
 /// the last bit.
 #[derive(Clone, Debug, Default)]
-pub struct Memory {
+pub(crate) struct Memory {
     left_to_sparse: Option<Untreelike>,
     pivots: Option<Arc<Pivots>>,
 }

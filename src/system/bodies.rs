@@ -16,7 +16,7 @@ use crate::model::{Model, RigidBody};
 
 /// Position, velocity and, where it is asked for, acceleration of a body.
 #[derive(Clone, Copy, Debug)]
-pub struct Motion<S> {
+pub(crate) struct Motion<S> {
     /// Centre of mass r, ground axes (m).
     pub position: Vec3<S>,
     /// Euler parameters p.
@@ -39,7 +39,7 @@ pub struct Motion<S> {
 
 impl<S: Scalar> Motion<S> {
     /// The ground: at rest in the origin.
-    pub fn ground() -> Self {
+    pub(crate) fn ground() -> Self {
         let (zero, one) = (S::zero(), S::one());
         Self {
             position: Vec3::zeros(),
@@ -55,7 +55,7 @@ impl<S: Scalar> Motion<S> {
     }
 
     /// Motion of `body` in the state (q, v).
-    pub fn of(numbering: &Numbering, body: usize, q: &[S], v: &[S]) -> Self {
+    pub(crate) fn of(numbering: &Numbering, body: usize, q: &[S], v: &[S]) -> Self {
         let q = &q[numbering.position(body)..];
         let orientation = [q[3], q[4], q[5], q[6]];
         let (velocity, omega) = velocities_of(&v[numbering.velocity(body)..]);
@@ -73,25 +73,25 @@ impl<S: Scalar> Motion<S> {
     }
 
     /// The same motion with the accelerations that six coordinates give.
-    pub fn accelerated(mut self, a: &[S]) -> Self {
+    pub(crate) fn accelerated(mut self, a: &[S]) -> Self {
         (self.acceleration, self.alpha) = velocities_of(a);
         self
     }
 
     /// The same motion with the virtual velocities that six coordinates give.
-    pub fn virtually(mut self, w: &[S]) -> Self {
+    pub(crate) fn virtually(mut self, w: &[S]) -> Self {
         (self.virtual_velocity, self.virtual_omega) = velocities_of(w);
         self
     }
 
     /// All bodies in the state (q, v).
-    pub fn all(numbering: &Numbering, q: &[S], v: &[S], out: &mut Vec<Self>) {
+    pub(crate) fn all(numbering: &Numbering, q: &[S], v: &[S], out: &mut Vec<Self>) {
         out.clear();
         out.extend((0..numbering.bodies()).map(|body| Self::of(numbering, body, q, v)));
     }
 
     /// All bodies in the state (q, v), the Euler parameters in `q` brought to unit length.
-    pub fn all_normalised(numbering: &Numbering, q: &[S], v: &[S], out: &mut Vec<Self>) {
+    pub(crate) fn all_normalised(numbering: &Numbering, q: &[S], v: &[S], out: &mut Vec<Self>) {
         out.clear();
         out.extend((0..numbering.bodies()).map(|body| {
             let (position, p) = positions_of(&q[numbering.position(body)..]);
@@ -112,12 +112,12 @@ impl<S: Scalar> Motion<S> {
     }
 
     /// Position of the point `s` (from the centre of mass, body axes) (m).
-    pub fn point(&self, s: &Vec3<S>) -> Vec3<S> {
+    pub(crate) fn point(&self, s: &Vec3<S>) -> Vec3<S> {
         self.position + self.rotation * s
     }
 
     /// Velocity of the point `s` (m/s).
-    pub fn point_velocity(&self, s: &Vec3<S>) -> Vec3<S> {
+    pub(crate) fn point_velocity(&self, s: &Vec3<S>) -> Vec3<S> {
         self.velocity + self.rotation * self.omega.cross(s)
     }
 }

@@ -151,7 +151,7 @@ pub(crate) fn accelerations<S: Scalar>(
 
 /// One row of G: derivative of the rate in the velocities of both bodies.
 #[derive(Clone, Copy, Debug)]
-pub struct RowGradient<S> {
+pub(crate) struct RowGradient<S> {
     /// By ṙ_A; that by ṙ_B is its negative, since no row changes when both bodies move together.
     pub force: Vec3<S>,
     /// By ω_A (body axes of A).

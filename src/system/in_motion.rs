@@ -6,7 +6,7 @@ use crate::model::Model;
 
 /// A model in motion at an instant.
 #[derive(Clone, Copy)]
-pub struct InMotion<'a, S> {
+pub(crate) struct InMotion<'a, S> {
     /// The model.
     pub model: &'a Model<S>,
     /// The numbering of its states.
@@ -19,7 +19,7 @@ pub struct InMotion<'a, S> {
 
 impl<'a, S> InMotion<'a, S> {
     /// Where the bodies of `model` are at `time`.
-    pub fn new(
+    pub(crate) fn new(
         model: &'a Model<S>,
         numbering: &'a Numbering,
         motions: &'a [Motion<S>],

@@ -28,7 +28,7 @@ use crate::model::Model;
 
 /// Consistent state at t = 0.
 #[derive(Clone, Debug)]
-pub struct InitialState<S> {
+pub(crate) struct InitialState<S> {
     /// Positions q.
     pub q: Vec<S>,
     /// Velocities v.

@@ -20,7 +20,7 @@ pub(crate) const WORN: f64 = 2.0;
 
 /// What the weights of rows are found in, used again.
 #[derive(Clone, Debug)]
-pub struct Weighing<S> {
+pub(crate) struct Weighing<S> {
     gradients: Vec<RowGradient<S>>,
     sizes: Vec<f64>,
     rhs: Vec<S>,
@@ -38,14 +38,14 @@ impl<S> Default for Weighing<S> {
 
 /// Rows that are not imposed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct LeftOut {
+pub(crate) struct LeftOut {
     /// One entry a row; none if all are imposed.
     rows: Vec<bool>,
 }
 
 impl LeftOut {
     /// Those that the joints of a model name.
-    pub fn of<S>(model: &Model<S>, numbering: &Numbering) -> Self {
+    pub(crate) fn of<S>(model: &Model<S>, numbering: &Numbering) -> Self {
         if model.joints.iter().all(|joint| joint.left_out.is_empty()) {
             return Self::default();
         }
@@ -63,7 +63,7 @@ impl LeftOut {
     }
 
     /// Those with these numbers among `count` rows; `None` if there are not as many rows.
-    pub fn from_rows(numbers: &[usize], count: usize) -> Option<Self> {
+    pub(crate) fn from_rows(numbers: &[usize], count: usize) -> Option<Self> {
         let mut rows = vec![false; count];
         for &i in numbers {
             *rows.get_mut(i)? = true;
@@ -72,40 +72,40 @@ impl LeftOut {
     }
 
     /// Number of rows, imposed or not; 0 if all are imposed in every choice.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.rows.len()
     }
 
     /// Whether this is another choice of as many rows of as many.
-    pub fn fits(&self, other: &Self) -> bool {
+    pub(crate) fn fits(&self, other: &Self) -> bool {
         self.count() == other.count() && self.numbers().count() == other.numbers().count()
     }
 
     /// Whether all rows are imposed in every choice.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 
     /// Whether row i is left out.
-    pub fn contains(&self, row: usize) -> bool {
+    pub(crate) fn contains(&self, row: usize) -> bool {
         self.rows.get(row) == Some(&true)
     }
 
     /// Their numbers.
-    pub fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
         let rows = self.rows.iter().enumerate();
         rows.filter(|(_, out)| **out).map(|(i, _)| i)
     }
 
     /// Sets the entries of rows that are left out to zero.
-    pub fn clear<T: Scalar>(&self, values: &mut [T]) {
+    pub(crate) fn clear<T: Scalar>(&self, values: &mut [T]) {
         for i in self.numbers() {
             values[i] = T::zero();
         }
     }
 
     /// Sets their gradients to zero.
-    pub fn clear_gradients<S: Scalar>(&self, gradients: &mut [RowGradient<S>]) {
+    pub(crate) fn clear_gradients<S: Scalar>(&self, gradients: &mut [RowGradient<S>]) {
         for i in self.numbers() {
             let row = &mut gradients[i];
             row.force.fill(S::zero());
@@ -123,7 +123,7 @@ impl LeftOut {
     ///
     /// with the gradient g_i of the row that is left out, and x = 0 as it follows from the others.
     /// `solve` solves that system in place where the bodies are.
-    pub fn exchanged<S: Scalar>(
+    pub(crate) fn exchanged<S: Scalar>(
         &self,
         at: &InMotion<S>,
         worn: f64,

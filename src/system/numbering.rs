@@ -12,7 +12,7 @@ const VELOCITIES: usize = 6;
 
 /// Offsets of bodies and joints in the state vectors and among the unknowns.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Numbering {
+pub(crate) struct Numbering {
     mobility: Vec<Mobility>,
     unknown: Vec<usize>,
     constraint: Vec<usize>,
@@ -20,7 +20,7 @@ pub struct Numbering {
 
 impl Numbering {
     /// Numbers the bodies and joints of `model` in its order.
-    pub fn new<S>(model: &Model<S>) -> Self {
+    pub(crate) fn new<S>(model: &Model<S>) -> Self {
         let offsets = |sizes: &mut dyn Iterator<Item = usize>| {
             let mut all = vec![0];
             for size in sizes {
@@ -37,88 +37,88 @@ impl Numbering {
     }
 
     /// Number of bodies.
-    pub fn bodies(&self) -> usize {
+    pub(crate) fn bodies(&self) -> usize {
         self.mobility.len()
     }
 
     /// Number of joints.
-    pub fn joints(&self) -> usize {
+    pub(crate) fn joints(&self) -> usize {
         self.constraint.len() - 1
     }
 
     /// Length of q: seven a rigid body (r, p).
-    pub fn positions(&self) -> usize {
+    pub(crate) fn positions(&self) -> usize {
         POSITIONS * self.bodies()
     }
 
     /// Length of v: six a rigid body (ṙ, ω).
-    pub fn velocities(&self) -> usize {
+    pub(crate) fn velocities(&self) -> usize {
         VELOCITIES * self.bodies()
     }
 
     /// Number of unknowns u in v = B u.
-    pub fn unknowns(&self) -> usize {
+    pub(crate) fn unknowns(&self) -> usize {
         self.unknown[self.bodies()]
     }
 
     /// Whether some body has fewer unknowns than velocities.
-    pub fn is_reduced(&self) -> bool {
+    pub(crate) fn is_reduced(&self) -> bool {
         self.unknowns() < self.velocities()
     }
 
     /// Whether some body cannot turn, or not move at all, so that it stays as it is placed.
-    pub fn keeps_placed(&self) -> bool {
+    pub(crate) fn keeps_placed(&self) -> bool {
         !self.mobility.iter().all(Mobility::has_rotation)
     }
 
     /// Number of constraint rows.
-    pub fn constraints(&self) -> usize {
+    pub(crate) fn constraints(&self) -> usize {
         self.constraint[self.joints()]
     }
 
     /// Start of a body's positions in q.
-    pub fn position(&self, body: usize) -> usize {
+    pub(crate) fn position(&self, body: usize) -> usize {
         POSITIONS * body
     }
 
     /// Start of a body's velocities in v.
-    pub fn velocity(&self, body: usize) -> usize {
+    pub(crate) fn velocity(&self, body: usize) -> usize {
         VELOCITIES * body
     }
 
     /// Start of a body's unknowns in u.
-    pub fn unknown(&self, body: usize) -> usize {
+    pub(crate) fn unknown(&self, body: usize) -> usize {
         self.unknown[body]
     }
 
     /// Number of a body's unknowns.
-    pub fn unknowns_of(&self, body: usize) -> usize {
+    pub(crate) fn unknowns_of(&self, body: usize) -> usize {
         self.unknown[body + 1] - self.unknown[body]
     }
 
     /// Which velocities a body can have.
-    pub fn mobility(&self, body: usize) -> &Mobility {
+    pub(crate) fn mobility(&self, body: usize) -> &Mobility {
         &self.mobility[body]
     }
 
     /// The body that a component of v belongs to.
-    pub fn body_of_velocity(&self, component: usize) -> usize {
+    pub(crate) fn body_of_velocity(&self, component: usize) -> usize {
         component / VELOCITIES
     }
 
     /// The component of v that stands for an unknown in messages: one of the same body.
-    pub fn velocity_of_unknown(&self, unknown: usize) -> usize {
+    pub(crate) fn velocity_of_unknown(&self, unknown: usize) -> usize {
         let body = self.unknown.partition_point(|&start| start <= unknown) - 1;
         self.velocity(body) + unknown - self.unknown[body]
     }
 
     /// A joint's rows among the constraints.
-    pub fn rows(&self, joint: usize) -> Range<usize> {
+    pub(crate) fn rows(&self, joint: usize) -> Range<usize> {
         self.constraint[joint]..self.constraint[joint + 1]
     }
 
     /// The joint that a constraint row belongs to.
-    pub fn joint_of_row(&self, row: usize) -> usize {
+    pub(crate) fn joint_of_row(&self, row: usize) -> usize {
         self.constraint.partition_point(|&start| start <= row) - 1
     }
 }

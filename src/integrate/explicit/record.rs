@@ -7,7 +7,7 @@ use crate::system::Numbering;
 
 /// State at the end of a step, with its accelerations; V is a vector or a slice.
 #[derive(Clone, Copy, Debug)]
-pub struct Node<V> {
+pub(crate) struct Node<V> {
     /// Positions.
     pub q: V,
     /// Velocities.
@@ -25,7 +25,7 @@ pub(crate) type StepView<'a, S> = StepData<&'a [S]>;
 
 impl<V> Node<V> {
     /// Lengths of its vectors.
-    pub fn lengths(numbering: &Numbering) -> [usize; 4] {
+    pub(crate) fn lengths(numbering: &Numbering) -> [usize; 4] {
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         [nq, nv, nv, numbering.constraints()]
     }
@@ -33,7 +33,7 @@ impl<V> Node<V> {
 
 impl<S> Node<Vec<S>> {
     /// A view of it.
-    pub fn view(&self) -> Node<&[S]> {
+    pub(crate) fn view(&self) -> Node<&[S]> {
         Node {
             q: &self.q,
             v: &self.v,
@@ -46,7 +46,7 @@ impl<S> Node<Vec<S>> {
 /// Everything that a step computed; stage i stands in row i of `q`, `v`, `qdot`, `a`, `lambda`. V is
 /// a vector or a slice.
 #[derive(Clone, Copy, Debug)]
-pub struct StepData<V> {
+pub(crate) struct StepData<V> {
     /// Positions of the stages; their Euler parameters are not of unit length.
     pub q: V,
     /// Velocities of the stages.
@@ -73,7 +73,7 @@ pub struct StepData<V> {
 
 impl<V> StepData<V> {
     /// Lengths of its vectors for so many stages.
-    pub fn lengths(numbering: &Numbering, stages: usize) -> [usize; 10] {
+    pub(crate) fn lengths(numbering: &Numbering, stages: usize) -> [usize; 10] {
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         let nc = numbering.constraints();
         let rows = [nq, nv, nq, nv, nc].map(|n| stages * n);
@@ -82,7 +82,7 @@ impl<V> StepData<V> {
     }
 
     /// The step with these vectors.
-    pub fn of_parts(parts: [V; 10], dense: bool) -> Self {
+    pub(crate) fn of_parts(parts: [V; 10], dense: bool) -> Self {
         let [q, v, qdot, a, lambda, q_raw, v_raw, s, delta, sigma] = parts;
         Self {
             q,
@@ -100,7 +100,7 @@ impl<V> StepData<V> {
     }
 
     /// Its vectors.
-    pub fn parts(self) -> [V; 10] {
+    pub(crate) fn parts(self) -> [V; 10] {
         [
             self.q,
             self.v,
@@ -124,7 +124,7 @@ impl<S: SolveScalar> StepData<Vec<S>> {
     }
 
     /// A view of it.
-    pub fn view(&self) -> StepData<&[S]> {
+    pub(crate) fn view(&self) -> StepData<&[S]> {
         StepData {
             q: &self.q,
             v: &self.v,

@@ -16,7 +16,7 @@ pub(crate) type Tape<S> = replay::Tape<Block<S>>;
 
 /// The nodes of steps in a row, and their stages.
 #[derive(Clone, Debug)]
-pub struct Block<S> {
+pub(crate) struct Block<S> {
     first: usize,
     nodes: Rows<S, 4>,
     steps: Rows<S, 10>,
@@ -26,7 +26,7 @@ pub struct Block<S> {
 
 impl<S: Scalar> Tape<S> {
     /// The tape of a motion that no gradient is asked for of.
-    pub fn none(numbering: &Numbering) -> Self {
+    pub(crate) fn none(numbering: &Numbering) -> Self {
         let block = Block::new(numbering, Samples::StepEnds, false);
         let room = block.room();
         Self::new(block, (0, room), None)
@@ -36,7 +36,7 @@ impl<S: Scalar> Tape<S> {
 impl<S: Scalar> Block<S> {
     /// No step yet. It has room for the stages of the dense output only where samples may stand inside
     /// steps, as the end of the motion does where steps may `leap` over it.
-    pub fn new(numbering: &Numbering, samples: Samples, leap: bool) -> Self {
+    pub(crate) fn new(numbering: &Numbering, samples: Samples, leap: bool) -> Self {
         let stages = match samples {
             Samples::StepEnds | Samples::Uniform(..=1) if !leap => STAGES,
             Samples::StepEnds | Samples::Uniform(_) | Samples::Quadrature(_) => ALL,
@@ -50,7 +50,7 @@ impl<S: Scalar> Block<S> {
     }
 
     /// Room that a step and a checkpoint take.
-    pub fn room(&self) -> Room {
+    pub(crate) fn room(&self) -> Room {
         let node = self.nodes.width();
         Room {
             step: (node + self.steps.width() + 1) * size_of::<S>(),
@@ -59,7 +59,7 @@ impl<S: Scalar> Block<S> {
     }
 
     /// Adds a step between two nodes.
-    pub fn push(&mut self, [from, to]: [Node<&[S]>; 2], step: StepData<&[S]>) {
+    pub(crate) fn push(&mut self, [from, to]: [Node<&[S]>; 2], step: StepData<&[S]>) {
         if self.dense.is_empty() {
             self.nodes.push([from.q, from.v, from.a, from.lambda]);
         }
@@ -71,13 +71,13 @@ impl<S: Scalar> Block<S> {
     }
 
     /// The node after step n of the run.
-    pub fn node(&self, n: usize) -> Node<&[S]> {
+    pub(crate) fn node(&self, n: usize) -> Node<&[S]> {
         let [q, v, a, lambda] = self.nodes.get(n - self.first);
         Node { q, v, a, lambda }
     }
 
     /// The stages of step n of the run.
-    pub fn step(&self, n: usize) -> StepData<&[S]> {
+    pub(crate) fn step(&self, n: usize) -> StepData<&[S]> {
         let at = n - self.first - 1;
         StepData::of_parts(self.steps.get(at), self.dense[at])
     }
@@ -120,7 +120,7 @@ impl<S: Scalar> replay::Block for Block<S> {
 
 impl Block<Complex64> {
     /// The real part.
-    pub fn real(&self) -> Block<f64> {
+    pub(crate) fn real(&self) -> Block<f64> {
         Block {
             first: self.first,
             nodes: self.nodes.real(),

@@ -34,7 +34,7 @@ const PARTS: usize = 2;
 
 /// Unknowns and rates at one instant.
 #[derive(Clone, Copy, Debug)]
-pub struct Instant<'a, S> {
+pub(crate) struct Instant<'a, S> {
     /// Positions.
     pub q: &'a [S],
     /// Velocities.

@@ -24,7 +24,7 @@ use ggl::Instant;
 
 /// State at a stage with its multipliers, rates and its increments since the start of the step.
 #[derive(Clone, Debug)]
-pub struct Stage<S> {
+pub(crate) struct Stage<S> {
     /// Positions.
     pub q: Vec<S>,
     /// Velocities.
@@ -48,7 +48,7 @@ pub struct Stage<S> {
 
 impl<S: Scalar> Stage<S> {
     /// All zero.
-    pub fn zero(numbering: &Numbering) -> Self {
+    pub(crate) fn zero(numbering: &Numbering) -> Self {
         let zeros = |n: usize| vec![S::zero(); n];
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         let nc = numbering.constraints();
@@ -66,7 +66,7 @@ impl<S: Scalar> Stage<S> {
     }
 
     /// The instant that the equations are evaluated at.
-    pub fn instant(&self) -> Instant<'_, S> {
+    pub(crate) fn instant(&self) -> Instant<'_, S> {
         Instant {
             q: &self.q,
             v: &self.v,
@@ -80,7 +80,7 @@ impl<S: Scalar> Stage<S> {
 
     /// Moves by a scaled update (δy, h δv, h² δλ / m, h δμ) of a step of size h, the dynamics divided
     /// by the mass m; the rates stay.
-    pub fn advance(&mut self, numbering: &Numbering, update: &[S], (h, mass): (S, f64)) {
+    pub(crate) fn advance(&mut self, numbering: &Numbering, update: &[S], (h, mass): (S, f64)) {
         let (nv, nc) = (numbering.velocities(), numbering.constraints());
         bodies::advance(numbering, &mut self.q, &mut self.dq, &update[..nv]);
         for i in 0..nv {
@@ -138,7 +138,7 @@ impl<S: Scalar> Stage<S> {
     }
 
     /// Becomes equal to another stage of the same system.
-    pub fn set(&mut self, other: &Self) {
+    pub(crate) fn set(&mut self, other: &Self) {
         self.set_parts(other.parts());
     }
 
@@ -157,7 +157,7 @@ impl<S: Scalar> Stage<S> {
     }
 
     /// The real part.
-    pub fn real(&self) -> Stage<f64> {
+    pub(crate) fn real(&self) -> Stage<f64> {
         let part = |all: &[S]| all.iter().map(|x| x.re()).collect();
         Stage {
             q: part(&self.q),

@@ -10,7 +10,7 @@ pub(super) const RECENT: usize = 3;
 
 /// What is behind the step to come.
 #[derive(Clone, Debug)]
-pub struct Past<S> {
+pub(crate) struct Past<S> {
     /// The end of the last step.
     pub(super) from: Stage<S>,
     /// Size and stages of the last step, if it was one of Radau IIA.
@@ -25,7 +25,7 @@ pub struct Past<S> {
 
 impl<S: SolveScalar> Past<S> {
     /// Before the first step, which starts at `from`; a step has at most `stages` stages.
-    pub fn new(numbering: &Numbering, from: Stage<S>, stages: usize) -> Self {
+    pub(crate) fn new(numbering: &Numbering, from: Stage<S>, stages: usize) -> Self {
         let zero = Stage::zero(numbering);
         Self {
             from,
@@ -39,7 +39,7 @@ impl<S: SolveScalar> Past<S> {
 
     /// Moves past a step of size h, of which `count` of the `stages` were used; others take their
     /// place.
-    pub fn advance(&mut self, h: S, stages: &mut Vec<Stage<S>>, count: usize) {
+    pub(crate) fn advance(&mut self, h: S, stages: &mut Vec<Stage<S>>, count: usize) {
         self.from.set(&stages[count - 1]);
         self.recent.rotate_right(1);
         self.recent[0].set(&self.from);
@@ -50,7 +50,7 @@ impl<S: SolveScalar> Past<S> {
 
     /// Where Newton's method starts in a step of size h of Radau IIA: the stages' polynomial of the
     /// last step, extrapolated; in the first step a Taylor polynomial.
-    pub fn predict_stages(
+    pub(crate) fn predict_stages(
         &mut self,
         numbering: &Numbering,
         scheme: &Scheme,
@@ -77,7 +77,7 @@ impl<S: SolveScalar> Past<S> {
     }
 
     /// A Taylor polynomial over the time `h`, multipliers held.
-    pub fn taylor(&mut self, numbering: &Numbering, h: S, out: &mut Stage<S>) {
+    pub(crate) fn taylor(&mut self, numbering: &Numbering, h: S, out: &mut Stage<S>) {
         let from = &self.from;
         out.set(from);
         out.dq.fill(S::zero());
@@ -94,7 +94,7 @@ impl<S: SolveScalar> Past<S> {
 
     /// Where Newton's method starts for a formula of equal steps: cubic extrapolation of q and v and
     /// quadratic of λ and μ once three increments are known, before that a Taylor polynomial.
-    pub fn predict(&mut self, numbering: &Numbering, h: S, out: &mut Stage<S>) {
+    pub(crate) fn predict(&mut self, numbering: &Numbering, h: S, out: &mut Stage<S>) {
         if self.known < RECENT {
             return self.taylor(numbering, h, out);
         }

@@ -16,7 +16,7 @@ const STARTING_STAGES: usize = 3;
 
 /// Coefficients of a method.
 #[derive(Clone, Debug)]
-pub struct Scheme {
+pub(crate) struct Scheme {
     /// Nodes c_i; the last is 1.
     pub nodes: Vec<f64>,
     /// D = A⁻¹, row by row.
@@ -29,7 +29,7 @@ pub struct Scheme {
 
 /// An eigenvalue of D with its vectors, lᵀ r = 1.
 #[derive(Clone, Debug)]
-pub struct Mode {
+pub(crate) struct Mode {
     /// Eigenvalue.
     pub value: Complex64,
     /// Right eigenvector r.
@@ -40,14 +40,14 @@ pub struct Mode {
 
 impl Mode {
     /// Whether the eigenvalue is real.
-    pub fn is_real(&self) -> bool {
+    pub(crate) fn is_real(&self) -> bool {
         self.value.im == 0.0
     }
 }
 
 impl Scheme {
     /// The method that makes the steps, or those that a formula of several steps begins with.
-    pub fn of(method: Method) -> Self {
+    pub(crate) fn of(method: Method) -> Self {
         match method {
             Method::Radau { stages } => Self::new(stages),
             Method::Dop853 | Method::Bdf { .. } | Method::GeneralisedAlpha { .. } => {
@@ -60,7 +60,7 @@ impl Scheme {
     ///
     /// # Panics
     /// For another number of stages.
-    pub fn new(stages: usize) -> Self {
+    pub(crate) fn new(stages: usize) -> Self {
         let root = 6.0_f64.sqrt();
         let (nodes, a, values) = match stages {
             2 => (
@@ -109,13 +109,13 @@ impl Scheme {
     }
 
     /// Number of stages.
-    pub fn stages(&self) -> usize {
+    pub(crate) fn stages(&self) -> usize {
         self.nodes.len()
     }
 
     /// Weights of Z_i in y(θ) − y_n, the polynomial through the start and the stages, and their
     /// derivatives by θ; zero beyond the stages.
-    pub fn dense_weights(&self, theta: f64) -> ([f64; MOST], [f64; MOST]) {
+    pub(crate) fn dense_weights(&self, theta: f64) -> ([f64; MOST], [f64; MOST]) {
         let (mut values, mut slopes) = ([0.0; MOST], [0.0; MOST]);
         for (i, &node) in self.nodes.iter().enumerate() {
             // 1 at the node and 0 at the others, times what is 1 at the node and 0 at the start.
@@ -127,7 +127,7 @@ impl Scheme {
     }
 
     /// Weights of the stages themselves in their polynomial, which has no value at the start.
-    pub fn stage_weights(&self, theta: f64) -> [f64; MOST] {
+    pub(crate) fn stage_weights(&self, theta: f64) -> [f64; MOST] {
         let mut weights = [0.0; MOST];
         for (i, weight) in weights.iter_mut().enumerate().take(self.stages()) {
             *weight = lagrange(&self.nodes, i, theta).0;

@@ -18,7 +18,7 @@ use crate::system::{LeftOut, Numbering, bodies};
 
 /// What Newton's methods keep from step to step.
 #[derive(Clone, Debug)]
-pub struct Memory<S> {
+pub(crate) struct Memory<S> {
     one: Option<newton::Memory<S>>,
     coupled: Option<stage_newton::Memory>,
     left_out: LeftOut,

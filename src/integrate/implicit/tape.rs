@@ -18,7 +18,7 @@ pub(crate) type Tape<S> = replay::Tape<Block<S>>;
 /// The stages of steps in a row, one for a formula, all for Radau IIA, and the state that the first one
 /// starts from. The last stage stands at the step's end.
 #[derive(Clone, Debug)]
-pub struct Block<S> {
+pub(crate) struct Block<S> {
     first: usize,
     start: Stage<S>,
     stages: Rows<S, 9>,
@@ -30,7 +30,7 @@ pub struct Block<S> {
 
 impl<S: Scalar> Block<S> {
     /// No step yet of a run that starts with `start`; a step has at most `most` stages.
-    pub fn new(numbering: &Numbering, start: Stage<S>, most: usize) -> Self {
+    pub(crate) fn new(numbering: &Numbering, start: Stage<S>, most: usize) -> Self {
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         let nc = numbering.constraints();
         Self {
@@ -43,7 +43,7 @@ impl<S: Scalar> Block<S> {
     }
 
     /// Room that a step and a checkpoint of a method take.
-    pub fn room(&self, method: Method) -> Room {
+    pub(crate) fn room(&self, method: Method) -> Room {
         let [nq, nv, ..] = self.stages.lengths();
         let (width, number) = (self.stages.width(), size_of::<S>());
         let stages = match method {
@@ -60,7 +60,7 @@ impl<S: Scalar> Block<S> {
     }
 
     /// Adds a step that starts from `from`.
-    pub fn push(&mut self, from: &Stage<S>, stages: &[Stage<S>]) {
+    pub(crate) fn push(&mut self, from: &Stage<S>, stages: &[Stage<S>]) {
         if self.ends.is_empty() {
             self.start.set(from);
         }
@@ -77,7 +77,7 @@ impl<S: Scalar> Block<S> {
     }
 
     /// Puts the stages of step k of the run in front of `out`, and returns how many there are.
-    pub fn read(&self, k: usize, out: &mut [Stage<S>]) -> usize {
+    pub(crate) fn read(&self, k: usize, out: &mut [Stage<S>]) -> usize {
         let at = k - self.first - 1;
         let all = self.before(at)..self.ends[at];
         for (stage, i) in out.iter_mut().zip(all.clone()) {
@@ -87,7 +87,7 @@ impl<S: Scalar> Block<S> {
     }
 
     /// Puts the end of step k of the run, which may be the start of the first step here, into `out`.
-    pub fn read_end(&self, k: usize, out: &mut Stage<S>) {
+    pub(crate) fn read_end(&self, k: usize, out: &mut Stage<S>) {
         match self.before(k - self.first) {
             0 => out.set(&self.start),
             end => out.set_parts(self.stages.get(end - 1)),
@@ -134,7 +134,7 @@ impl<S: Scalar> replay::Block for Block<S> {
 
 impl Block<Complex64> {
     /// The real part.
-    pub fn real(&self) -> Block<f64> {
+    pub(crate) fn real(&self) -> Block<f64> {
         Block {
             first: self.first,
             start: self.start.real(),
