@@ -3,8 +3,8 @@
 mod compensated;
 mod explicit;
 mod implicit;
-mod room;
 mod sensitivity;
+mod workspace;
 
 use crate::functions::Scene;
 use crate::integrate::{IntegrationFailure, Tape, Trajectory, WorkCounts};

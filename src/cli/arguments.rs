@@ -27,12 +27,12 @@ pub(crate) struct Arguments {
     pub job: Option<Job>,
     /// Where it starts and what it does besides.
     #[command(flatten)]
-    pub course: Course,
+    pub course: RunOptions,
 }
 
 /// Where an optimisation starts and what it does besides.
 #[derive(Args, Debug)]
-pub(crate) struct Course {
+pub(crate) struct RunOptions {
     /// Goes on with the run of this directory that was killed, interrupted or at a limit: its
     /// evaluations are not repeated. Settings of the optimiser may differ.
     #[arg(long, value_name = "DIR")]

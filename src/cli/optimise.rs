@@ -1,6 +1,6 @@
 //! `optimize PROBLEM`: the default job.
 
-use super::arguments::{Course, Job};
+use super::arguments::{Job, RunOptions};
 use super::progress::show;
 use super::records::{Records, Start, changed, refuse_without_run};
 use super::starts::several;
@@ -31,7 +31,7 @@ const STATE: &str = "state.json";
 const OPTIMA: &str = "optima.csv";
 
 /// Optimises a problem and writes its results.
-pub(crate) fn optimise(job: &Job, course: &Course) -> Result<u8, Failure> {
+pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     let problem = read(job)?;
     complete(&problem, job)?;
     let begin = |problem: Problem| -> Result<_, Failure> {
@@ -248,8 +248,8 @@ fn second_order(
     let fault = Mutex::new(None);
     let has_failed = || fault.lock().is_ok_and(|error| error.is_some());
     let ended = || stopped() || has_failed();
-    let journal = opened.journal(&fault, true);
-    let found = driver::second_order(problem, &done.outcome, &done.integration, journal, &ended);
+    let known = opened.known_evaluations(&fault, true);
+    let found = driver::second_order(problem, &done.outcome, &done.integration, known, &ended);
     if let Ok(Some(error)) = fault.into_inner() {
         return Err(error.into());
     }
@@ -363,9 +363,9 @@ fn one(
             ControlFlow::Continue(())
         }
     };
-    let journal = opened.journal(&fault, quiet);
+    let known = opened.known_evaluations(&fault, quiet);
     let state = state.map(|warm| &warm.state);
-    let done = driver::optimise(problem, file, state, journal, &mut progress);
+    let done = driver::optimise(problem, file, state, known, &mut progress);
     let lost = unwritable
         .into_inner()
         .or(fault.into_inner().ok().flatten());

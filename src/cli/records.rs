@@ -2,7 +2,7 @@
 
 use super::{Failure, shown, tell};
 use crate::driver::integration::FIRST_DESIGN;
-use crate::driver::{Journal, journal};
+use crate::driver::{KnownEvaluations, known_evaluations};
 use crate::problem::Problem;
 use crate::report::ReportError;
 use crate::report::evaluations::{Earlier, EvaluationLog, EvaluationRecord, Found, StepsInUse};
@@ -91,7 +91,7 @@ impl<'a> Records<'a> {
         start: Start,
         problem: &Problem,
     ) -> Result<Opened, ReportError> {
-        let head = journal::head(problem);
+        let head = known_evaluations::head(problem);
         let file = start.file();
         let earlier = match from {
             Some(from) => Earlier::read(&from.join(&file), &head)?,
@@ -111,11 +111,15 @@ impl<'a> Records<'a> {
 }
 
 impl Opened {
-    /// The journal of the record; the first fault in writing is left in `fault`. Choices of steps are
+    /// The known evaluations of the record; the first fault in writing is left in `fault`. Choices of steps are
     /// told unless `quiet`.
-    pub(crate) fn journal(self, fault: &Mutex<Option<ReportError>>, quiet: bool) -> Journal<'_> {
+    pub(crate) fn known_evaluations(
+        self,
+        fault: &Mutex<Option<ReportError>>,
+        quiet: bool,
+    ) -> KnownEvaluations<'_> {
         let mut log = self.log;
-        Journal::new(self.earlier, move |evaluation| {
+        KnownEvaluations::new(self.earlier, move |evaluation| {
             // That equal steps are taken, and by which method, goes without saying until it changes.
             let told = |steps: &StepsInUse| !steps.ends.is_empty() || steps.reason != FIRST_DESIGN;
             if let (false, Found::Steps(steps)) = (quiet, &evaluation.found)

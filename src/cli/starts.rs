@@ -3,7 +3,7 @@
 use super::records::{Records, Start, changed};
 use super::{Failure, INTERRUPTED, print, tell};
 use crate::driver::multi_start::{self, LocalOptimum, Run};
-use crate::driver::{self, Journal};
+use crate::driver::{self, KnownEvaluations};
 use crate::problem::Problem;
 use crate::report::{FoundOptimum, ReportError, optima_csv};
 use std::sync::Mutex;
@@ -22,7 +22,7 @@ pub(crate) fn several(
     let fault: Mutex<Option<ReportError>> = Mutex::new(None);
     let told = AtomicBool::new(quiet);
     let known = AtomicUsize::new(0);
-    let open = |k: usize, problem: &Problem| -> Option<Journal<'_>> {
+    let open = |k: usize, problem: &Problem| -> Option<KnownEvaluations<'_>> {
         match records.open(Start::OneOf(k), problem) {
             Ok(opened) => {
                 known.fetch_add(opened.known, Ordering::Relaxed);
@@ -30,7 +30,7 @@ pub(crate) fn several(
                 if !opened.changes.is_empty() && !told.swap(true, Ordering::Relaxed) {
                     tell(&changed(&opened.changes));
                 }
-                Some(opened.journal(&fault, true))
+                Some(opened.known_evaluations(&fault, true))
             }
             Err(error) => {
                 if let Ok(mut first) = fault.lock() {

@@ -2,7 +2,7 @@
 
 use super::arguments::{Job, Measurement};
 use super::{DONE, Failure, draw, print, read, refine, shown, tell};
-use crate::driver::work_precision::{Plan, work_precision};
+use crate::driver::work_precision::{Campaign, work_precision};
 use crate::problem::Problem;
 use crate::report::positions::positions_from_csv;
 use crate::report::{PrecisionRow, plots, prepare_directory, read_text, write_all};
@@ -71,7 +71,7 @@ fn without_event(problem: &Problem) -> Option<String> {
     ))
 }
 
-fn plan(asked: &Measurement, problem: &Problem) -> Result<Plan, Failure> {
+fn plan(asked: &Measurement, problem: &Problem) -> Result<Campaign, Failure> {
     let function = match &asked.function {
         Some(name) => {
             let Some(index) = problem.function_names.iter().position(|own| own == name) else {
@@ -99,7 +99,7 @@ fn plan(asked: &Measurement, problem: &Problem) -> Result<Plan, Failure> {
         }
         None => None,
     };
-    Ok(Plan {
+    Ok(Campaign {
         seconds: asked.seconds,
         runs: asked.runs as usize,
         function,

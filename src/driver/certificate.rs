@@ -259,7 +259,7 @@ fn not_finite(problem: &Problem, at: &Evaluated, gradient: &[Derivative]) -> Str
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::driver::{Journal, optimise};
+    use crate::driver::{KnownEvaluations, optimise};
     use std::ops::ControlFlow;
 
     #[test]
@@ -298,7 +298,13 @@ mod tests {
         let problem = Problem::parse(text, "swing.json", &[]);
         let problem = problem.unwrap_or_else(|faults| panic!("{faults}"));
         let mut progress = |_: &_| ControlFlow::Continue(());
-        let done = optimise(&problem, "", None, Journal::default(), &mut progress);
+        let done = optimise(
+            &problem,
+            "",
+            None,
+            KnownEvaluations::default(),
+            &mut progress,
+        );
         let done = done.expect("has an objective");
         let found = certify(&problem, &done, 1e-12);
         assert!(found.passed && found.faults().is_empty(), "{found:?}");

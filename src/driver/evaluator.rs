@@ -1,10 +1,10 @@
 //! A problem as a nonlinear program for the optimiser.
 
 use super::evaluate::Evaluated;
-use super::foreseen::Foreseen;
 use super::integration::Integration;
-use super::journal::{Account, Journal, bits};
+use super::known_evaluations::{EvaluationContext, KnownEvaluations, bits};
 use super::not_finite;
+use super::speculation::SpeculativeCache;
 use crate::integrate::IntegrationFailure;
 use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
 use crate::problem::{Problem, Sense};
@@ -38,9 +38,9 @@ pub(crate) struct Evaluator<'a> {
     pub integration: Integration,
     /// Number of designs that did not admit the lowering of the others.
     pub unlowered: usize,
-    journal: Journal<'a>,
-    foreseen: Foreseen,
-    /// The journal's choice of steps that `integration` uses, and the recorded evaluation whose
+    log: KnownEvaluations<'a>,
+    foreseen: SpeculativeCache,
+    /// The log's choice of steps that `integration` uses, and the recorded evaluation whose
     /// event it knows.
     choice: Option<usize>,
     latest: Option<usize>,
@@ -50,7 +50,7 @@ pub(crate) struct Evaluator<'a> {
 
 impl<'a> Evaluator<'a> {
     /// The program that `problem` states, or `None` if it has no objective.
-    pub(crate) fn new(problem: &'a Problem, journal: Journal<'a>) -> Option<Self> {
+    pub(crate) fn new(problem: &'a Problem, log: KnownEvaluations<'a>) -> Option<Self> {
         let objective = problem.objective?;
         let scene = problem.scene(&problem.start());
         let sign = match objective.sense {
@@ -65,8 +65,8 @@ impl<'a> Evaluator<'a> {
             last: None,
             integration: Integration::new(problem, &scene, Some(&asked), true),
             unlowered: 0,
-            journal,
-            foreseen: Foreseen::default(),
+            log,
+            foreseen: SpeculativeCache::default(),
             choice: None,
             latest: None,
             judgements: Judgements::default(),
@@ -83,21 +83,21 @@ impl<'a> Evaluator<'a> {
         asked(self.problem, self.objective)
     }
 
-    /// Work of all simulations and gradients so far, including those that the journal knew.
+    /// Work of all simulations and gradients so far, including those that the log knew.
     pub(crate) fn counts(&self) -> Work {
-        self.journal.work()
+        self.log.work()
     }
 
-    /// Adopts the steps and the event of the journal.
+    /// Adopts the steps and the event of the log.
     fn follow(&mut self) {
-        let choice = self.journal.choice();
+        let choice = self.log.choice();
         if choice != self.choice {
             self.choice = choice;
-            if let Some(kept) = self.journal.steps() {
+            if let Some(kept) = self.log.steps() {
                 self.integration.restore(kept);
             }
         }
-        if let Some((place, event)) = self.journal.latest()
+        if let Some((place, event)) = self.log.latest()
             && self.latest != Some(place)
         {
             self.latest = Some(place);
@@ -115,11 +115,11 @@ impl<'a> Evaluator<'a> {
         self.foreseen.differentiate(problem, integration, wanted);
     }
 
-    /// The designs of `points` that the journal does not know.
+    /// The designs of `points` that the log does not know.
     fn unknown(&self, points: &[Vec<f64>], of_gradients: bool) -> Vec<Vec<f64>> {
         let designs = points.iter().map(|x| unscaled(self.problem, x));
         designs
-            .filter(|x| !self.journal.knows(of_gradients, x))
+            .filter(|x| !self.log.knows(of_gradients, x))
             .collect()
     }
 
@@ -138,8 +138,8 @@ fn asked(problem: &Problem, objective: usize) -> Vec<usize> {
 
 /// The simulated design `x`: the last one, or a new one.
 fn at<'e>(
-    (last, foreseen): (&'e mut Option<Evaluated>, &mut Foreseen),
-    (integration, account): (&mut Integration, &mut Account),
+    (last, foreseen): (&'e mut Option<Evaluated>, &mut SpeculativeCache),
+    (integration, account): (&mut Integration, &mut EvaluationContext),
     problem: &Problem,
     x: &[f64],
 ) -> Result<&'e Evaluated, IntegrationFailure> {
@@ -217,7 +217,7 @@ impl Nlp for Evaluator<'_> {
         let integration = &mut self.integration;
         let made = (&mut self.last, &mut self.foreseen);
         let (before, mut known) = (integration.unlowered, true);
-        let found = self.journal.values(&x, |account| {
+        let found = self.log.values(&x, |account| {
             known = false;
             let steps = (&mut *integration, account);
             let at = at(made, steps, problem, &x).map_err(|failure| failure.to_string())?;
@@ -262,7 +262,7 @@ impl Nlp for Evaluator<'_> {
         let functions = self.functions();
         let (last, foreseen) = (&mut self.last, &mut self.foreseen);
         let integration = &mut self.integration;
-        let found = self.journal.gradients(&x, |account| {
+        let found = self.log.gradients(&x, |account| {
             if let Some((gradients, [run, own])) = foreseen.take_gradients(integration, &x) {
                 if !account.repeated {
                     account.work += run;

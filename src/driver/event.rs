@@ -10,7 +10,7 @@
 //!
 //! with all partial derivatives by the adjoint of one run.
 
-use crate::functions::{Scene, Until};
+use crate::functions::{Scene, TerminalEvent};
 use crate::integrate::{IntegrationFailure, Settings, Trajectory, WorkCounts, simulate};
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
@@ -45,7 +45,7 @@ pub(crate) enum Admit {
 /// # Errors
 /// [`IntegrationFailure::NotReached`].
 pub(crate) fn first(
-    until: &Until<f64>,
+    until: &TerminalEvent<f64>,
     run: &Trajectory<f64>,
     gaps: &[f64],
 ) -> Result<f64, IntegrationFailure> {

@@ -7,11 +7,11 @@ use crate::integrate::{IntegrationFailure, Method, Trajectory};
 use crate::model::{Mobility, Model};
 use crate::problem::Problem;
 use crate::report::{Explanation, FunctionUse, IntegrationUse, SystemSize};
-use crate::system::accelerations::{Accelerations, Untreelike};
+use crate::system::accelerations::{Accelerations, FallbackReason};
 use crate::system::{Numbering, placement};
 
 /// The motion of a problem's start, or a stretch of it.
-struct Motion {
+struct MotionExplanation {
     at: Evaluated,
     reason: String,
     /// Its part of the whole if it is a stretch; steps and samples are those of the whole.
@@ -20,7 +20,7 @@ struct Motion {
     samples: usize,
 }
 
-impl Motion {
+impl MotionExplanation {
     /// Simulates the start, or a first stretch that takes little time.
     fn of(problem: &Problem, which: &[usize]) -> Result<Self, IntegrationFailure> {
         let x = problem.start();
@@ -147,7 +147,7 @@ fn explain_seen(problem: &Problem) -> Explanation {
     let scene = problem.scene(&x);
     let (left_out, kept) = lowering(problem, &written, &scene.model);
     let which: Vec<usize> = (0..scene.functions.len()).collect();
-    let motion = Motion::of(problem, &which);
+    let motion = MotionExplanation::of(problem, &which);
     let found = match &motion {
         Ok(motion) => motion.derivatives(problem, &which),
         Err(failure) => Some(Err(failure.clone())),
@@ -254,7 +254,7 @@ fn lowering(
     }
     for (i, body) in lowered.bodies.iter().enumerate() {
         let name = name(&i);
-        if lowering.unturned.contains(i) {
+        if lowering.non_rotating.contains(i) {
             left_out.push(format!("the rotation of body {name}: its joints hold it"));
         } else if body.mobility == Mobility::point() {
             left_out.push(format!(
@@ -294,10 +294,10 @@ pub(crate) fn merged_errs(problem: &Problem, at: &Evaluated) -> Option<&'static 
 }
 
 /// Why the tree elimination does not apply.
-fn told(model: &Model<f64>, why: Untreelike) -> String {
+fn told(model: &Model<f64>, why: FallbackReason) -> String {
     match why {
-        Untreelike::Loops => "loops of joints reach far and overlap".into(),
-        Untreelike::Body(body) => {
+        FallbackReason::Loops => "loops of joints reach far and overlap".into(),
+        FallbackReason::Body(body) => {
             let body = &model.bodies[body];
             let principal = body.inertia.symmetric_eigenvalues();
             let name = &body.name;
@@ -308,7 +308,7 @@ fn told(model: &Model<f64>, why: Untreelike) -> String {
                 ),
             }
         }
-        Untreelike::Joint(joint) => format!(
+        FallbackReason::Joint(joint) => format!(
             "the inertias that joint \"{}\" holds differ by five digits",
             model.joints[joint].name
         ),
@@ -319,7 +319,7 @@ fn told(model: &Model<f64>, why: Untreelike) -> String {
 fn size(model: &Model<f64>, (q, v): (Vec<f64>, Vec<f64>)) -> SystemSize {
     let numbering = Numbering::new(model);
     let mut field = Accelerations::new(model, &numbering);
-    field.stand(&q, &v, 0.0);
+    field.set_state(&q, &v, 0.0);
     let elimination = field.factorise().ok().map(|()| field.elimination());
     let sparse = field.left_to_sparse().map(|why| told(model, why));
     let named = |bodies: Vec<usize>| {

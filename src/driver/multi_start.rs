@@ -1,7 +1,7 @@
 //! Several optimisations of one problem from spread starts, and the distinct optima they find.
 
 use super::evaluator::unscaled;
-use super::journal::Journal;
+use super::known_evaluations::KnownEvaluations;
 use super::optimise::{Solved, solve};
 use crate::optimiser::Options;
 use crate::problem::{Problem, Sense, Variable};
@@ -70,7 +70,7 @@ pub(crate) fn started_at(problem: &Problem, start: &[f64]) -> Problem {
 }
 
 /// Optimises from every start, in parallel. Runs are in the order of the starts. `stopped` is
-/// called before every run and after every iteration. `open` gives the journal of a start, by its
+/// called before every run and after every iteration. `open` gives the log of a start, by its
 /// number and problem, or `None` if there can be none; the start is then left out. The time limit
 /// of the problem is that of all runs together. Starts that have not begun by then are left out,
 /// except the first.
@@ -78,7 +78,7 @@ pub(crate) fn multi_start<'j>(
     problem: &Problem,
     starts: &[Vec<f64>],
     stopped: &(dyn Fn() -> bool + Sync),
-    open: &'j (dyn Fn(usize, &Problem) -> Option<Journal<'j>> + Sync),
+    open: &'j (dyn Fn(usize, &Problem) -> Option<KnownEvaluations<'j>> + Sync),
 ) -> Vec<Run> {
     let begun = Instant::now();
     let run = |(start, design): (usize, &Vec<f64>)| {
@@ -92,7 +92,7 @@ pub(crate) fn multi_start<'j>(
                 return None;
             }
         }
-        let journal = open(start, &problem)?;
+        let log = open(start, &problem)?;
         let mut progress = |_: &_| {
             if stopped() {
                 ControlFlow::Break(())
@@ -100,7 +100,7 @@ pub(crate) fn multi_start<'j>(
                 ControlFlow::Continue(())
             }
         };
-        let solved = solve(&problem, None, journal, &mut progress)?;
+        let solved = solve(&problem, None, log, &mut progress)?;
         Some(Run {
             start,
             problem,

@@ -4,7 +4,7 @@
 use super::chaos;
 use super::evaluator::{Evaluator, Judgements, unscaled};
 use super::integration::Integration;
-use super::journal::{Journal, bits};
+use super::known_evaluations::{KnownEvaluations, bits};
 use super::record::record;
 use super::simulate::{Simulation, simulate, simulate_with};
 use crate::optimiser::{self, Observer, Options, Outcome, Phase, Row, SavedState, Status};
@@ -43,7 +43,7 @@ pub(crate) struct Optimisation {
     pub end: Option<Simulation>,
 }
 
-/// Optimises `problem`, from its start or from the state of another run. `journal` has the known
+/// Optimises `problem`, from its start or from the state of another run. `log` has the known
 /// evaluations. `progress` gets the history after every iteration and may stop the run.
 ///
 /// Returns `None` if the problem has no objective or no variables.
@@ -51,20 +51,20 @@ pub(crate) fn optimise<'a>(
     problem: &'a Problem,
     file: &str,
     from: Option<&SavedState>,
-    journal: Journal<'a>,
+    log: KnownEvaluations<'a>,
     progress: &mut dyn FnMut(&History) -> ControlFlow<()>,
 ) -> Option<Optimisation> {
-    Some(solve(problem, from, journal, progress)?.complete(problem, file))
+    Some(solve(problem, from, log, progress)?.complete(problem, file))
 }
 
 /// As [`optimise`], without the simulations of its ends.
 pub(crate) fn solve<'a>(
     problem: &'a Problem,
     from: Option<&SavedState>,
-    journal: Journal<'a>,
+    log: KnownEvaluations<'a>,
     progress: &mut dyn FnMut(&History) -> ControlFlow<()>,
 ) -> Option<Solved> {
-    let mut program = Evaluator::new(problem, journal)?;
+    let mut program = Evaluator::new(problem, log)?;
     if problem.variables.is_empty() {
         return None;
     }

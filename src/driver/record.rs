@@ -11,9 +11,8 @@ use crate::problem::{Problem, Sense};
 use crate::report::evaluations::Work;
 use crate::report::optimum as report;
 use crate::report::optimum::{
-    Activity, Aggregate, ConstraintValue, Counts, DesignValue, Kkt, KktResiduals, Lies,
+    Activity, Aggregate, BoundSide, ConstraintValue, Counts, DesignValue, Kkt, KktResiduals, Lies,
     Multipliers, Objective, Optimum, ProblemRecord, RowScaling, Scaling, Sense as RecordedSense,
-    Side,
 };
 use indexmap::IndexMap;
 
@@ -266,9 +265,9 @@ fn constraints(
     let active = |name: &str| {
         let found = outcome.active_constraints.iter().find(|a| a.name == name);
         found.map_or(Activity::Inactive, |a| match a.side {
-            optimiser::Side::Lower => Activity::Lower,
-            optimiser::Side::Upper => Activity::Upper,
-            optimiser::Side::Equal => Activity::Equality,
+            optimiser::BoundSide::Lower => Activity::Lower,
+            optimiser::BoundSide::Upper => Activity::Upper,
+            optimiser::BoundSide::Equal => Activity::Equality,
         })
     };
     let values = outcome
@@ -319,10 +318,10 @@ fn scaling_record(problem: &Problem, outcome: &Outcome) -> Scaling {
     }
 }
 
-fn active_bounds(outcome: &Outcome) -> IndexMap<String, Side> {
+fn active_bounds(outcome: &Outcome) -> IndexMap<String, BoundSide> {
     let side = |a: &optimiser::ActiveBound| match a.side {
-        optimiser::Side::Upper => Side::Upper,
-        optimiser::Side::Lower | optimiser::Side::Equal => Side::Lower,
+        optimiser::BoundSide::Upper => BoundSide::Upper,
+        optimiser::BoundSide::Lower | optimiser::BoundSide::Equal => BoundSide::Lower,
     };
     outcome
         .active_bounds

@@ -9,8 +9,8 @@
 
 use super::evaluator::Evaluator;
 use super::integration::Integration;
-use super::journal::Journal;
-use crate::optimiser::{EvaluationFailure, Nlp, Outcome, Side};
+use super::known_evaluations::KnownEvaluations;
+use crate::optimiser::{BoundSide, EvaluationFailure, Nlp, Outcome};
 use crate::problem::Problem;
 use crate::report::optimum::{Curvature, SecondOrder};
 use nalgebra::{DMatrix, DVector};
@@ -55,7 +55,7 @@ struct Active {
 /// twice the length and from the asymmetry. Near a bound the differences are centred inside it, by
 /// a distance of their length; the estimate includes this.
 ///
-/// Gradients that `journal` knows are not evaluated again. The others use the steps of
+/// Gradients that `log` knows are not evaluated again. The others use the steps of
 /// `integration`.
 ///
 /// # Errors
@@ -64,10 +64,10 @@ pub(crate) fn second_order(
     problem: &Problem,
     outcome: &Outcome,
     integration: &Integration,
-    journal: Journal<'_>,
+    log: KnownEvaluations<'_>,
     stopped: &dyn Fn() -> bool,
 ) -> Result<Option<SecondOrder>, EvaluationFailure> {
-    let Some(mut program) = Evaluator::new(problem, journal) else {
+    let Some(mut program) = Evaluator::new(problem, log) else {
         return Ok(None);
     };
     program.integration = integration.clone();
@@ -173,7 +173,7 @@ fn active(
     for i in 0..n {
         let name = &problem.variables[i].name;
         let bound = outcome.active_bounds.iter().find(|a| a.name == *name);
-        if bound.is_some_and(|a| a.side == Side::Equal || a.multiplier > force) {
+        if bound.is_some_and(|a| a.side == BoundSide::Equal || a.multiplier > force) {
             continue;
         }
         let near = |distance: f64| distance <= 2.0 * STEP;
@@ -207,9 +207,9 @@ fn active(
         let inner = row.select_rows(&free);
         let held = bound.multiplier * row.amax() > force;
         match bound.side {
-            side if side == Side::Equal || held => strict.push(inner.transpose()),
+            side if side == BoundSide::Equal || held => strict.push(inner.transpose()),
             side => {
-                let sign = if side == Side::Lower { 1.0 } else { -1.0 };
+                let sign = if side == BoundSide::Lower { 1.0 } else { -1.0 };
                 let length = inner.norm().max(f64::MIN_POSITIVE);
                 weak.push(Weak {
                     name: constraint.name.clone(),

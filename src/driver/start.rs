@@ -7,7 +7,7 @@ use crate::problem::Problem;
 use crate::system::initial::{self, InitialState};
 use crate::system::kkt::SaddlePoint;
 use crate::system::placement::{guess, length_scale};
-use crate::system::{InMotion, Motion, Numbering, joints, redundancy};
+use crate::system::{BodyMotion, InMotion, Numbering, joints, redundancy};
 
 /// Change of a position or velocity, relative to the largest one, that is told.
 const TOLD: f64 = 1e-6;
@@ -117,7 +117,7 @@ fn freedoms(model: &Model<f64>) -> usize {
 fn consistent(model: &Model<f64>, numbering: &Numbering) -> bool {
     let (q, v) = guess(model);
     let mut motions = Vec::new();
-    Motion::all(numbering, &q, &v, &mut motions);
+    BodyMotion::all(numbering, &q, &v, &mut motions);
     let mut rows = vec![0.0; numbering.constraints()];
     let largest = |rows: &[f64]| rows.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let at = InMotion::new(model, numbering, &motions, 0.0);

@@ -1,10 +1,10 @@
 //! The free flight of a projectile: range and height over a barrier, with their derivatives.
 
-use super::instant::{Gate, Projectile, Side};
+use super::instant::{Gate, GateSide, Projectile};
 use crate::math::scalar::length;
 use crate::math::{Scalar, Vec3};
-use crate::system::Motion;
-use crate::system::marker::{self, Jet, MarkerCotangent};
+use crate::system::BodyMotion;
+use crate::system::marker::{self, MarkerCotangent, MarkerKinematics};
 
 /// State of a projectile in its plane of flight, and the gravity that it flies in.
 #[derive(Clone, Copy, Debug)]
@@ -23,10 +23,14 @@ pub(crate) struct Flight<S> {
 
 impl<S: Scalar> Flight<S> {
     /// The flight that starts from the present motion of the projectile's body.
-    pub(crate) fn new(projectile: &Projectile<S>, motion: &Motion<S>, gravity: &Vec3<S>) -> Self {
+    pub(crate) fn new(
+        projectile: &Projectile<S>,
+        motion: &BodyMotion<S>,
+        gravity: &Vec3<S>,
+    ) -> Self {
         let g = length(gravity);
         let up = gravity * (S::from(-1.0) / g);
-        let jet = Jet::point(motion, &projectile.point);
+        let jet = MarkerKinematics::point(motion, &projectile.point);
         Self {
             x: projectile.direction.dot(&jet.x),
             y: up.dot(&jet.x),
@@ -173,18 +177,18 @@ pub(crate) struct FlightCotangent {
 /// Pulls the cotangent of a flight back: the transposed derivative of [`Flight::new`].
 pub(crate) fn pull_back(
     projectile: &Projectile<f64>,
-    motion: &Motion<f64>,
+    motion: &BodyMotion<f64>,
     gravity: &Vec3<f64>,
     [x, y, vx, vy, g]: [f64; 5],
 ) -> FlightCotangent {
     let size = gravity.norm();
     let up = gravity / -size;
-    let jet = Jet::point(motion, &projectile.point);
+    let jet = MarkerKinematics::point(motion, &projectile.point);
     let direction = &projectile.direction;
     let position = direction * x + up * y;
     let velocity = direction * vx + up * vy;
     let by_up = jet.x * y + jet.rate * vy;
-    let cot = Jet {
+    let cot = MarkerKinematics {
         x: position,
         rate: velocity,
         acceleration: Vec3::zeros(),
@@ -218,16 +222,16 @@ impl<P: Scalar> Gate<P> {
         // 1 − σ(z) = σ(−z), without cancellation.
         let mut closed = *self;
         closed.open = match self.open {
-            Side::Above => Side::Below,
-            Side::Below => Side::Above,
+            GateSide::Above => GateSide::Below,
+            GateSide::Below => GateSide::Above,
         };
         open * closed.openness(rotation) * self.sign() / self.width
     }
 
     fn sign(&self) -> f64 {
         match self.open {
-            Side::Above => 1.0,
-            Side::Below => -1.0,
+            GateSide::Above => 1.0,
+            GateSide::Below => -1.0,
         }
     }
 }
@@ -390,7 +394,7 @@ mod tests {
             axis: Vec3::z(),
             placed: None,
         };
-        for open in [Side::Above, Side::Below] {
+        for open in [GateSide::Above, GateSide::Below] {
             let gate = Gate {
                 rotation,
                 limit: -3.6,

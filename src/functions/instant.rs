@@ -18,7 +18,7 @@ pub(crate) struct Projectile<S> {
 
 /// On which side of its limit a gate is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Side {
+pub(crate) enum GateSide {
     /// Open while the rotation is above the limit.
     Above,
     /// Open while the rotation is below the limit.
@@ -36,7 +36,7 @@ pub(crate) struct Gate<S> {
     /// Width w of the transition (rad).
     pub width: f64,
     /// Where it is open.
-    pub open: Side,
+    pub open: GateSide,
 }
 
 /// Which energy.

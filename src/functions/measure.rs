@@ -7,8 +7,8 @@ use crate::integrate::Trajectory;
 use crate::math::{Scalar, Vec3};
 use crate::model::Model;
 use crate::system::bodies::add6;
-use crate::system::marker::{self, Jet};
-use crate::system::{Motion, Numbering, loads};
+use crate::system::marker::{self, MarkerKinematics};
+use crate::system::{BodyMotion, Numbering, loads};
 
 /// Speed below which a point is at rest (m/s), where the derivative of its speed is taken as zero.
 const REST: f64 = 1e-25;
@@ -41,15 +41,15 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
     }
 
     /// Motion of a body.
-    pub(crate) fn motion(&self, body: usize) -> Motion<S> {
+    pub(crate) fn motion(&self, body: usize) -> BodyMotion<S> {
         let a = &self.a[self.numbering.velocity(body)..];
-        Motion::of(self.numbering, body, self.q, self.v).accelerated(a)
+        BodyMotion::of(self.numbering, body, self.q, self.v).accelerated(a)
     }
 
     /// Motions of all bodies.
-    fn motions(&self) -> Vec<Motion<S>> {
+    fn motions(&self) -> Vec<BodyMotion<S>> {
         let mut motions = Vec::with_capacity(self.numbering.bodies());
-        Motion::all(self.numbering, self.q, self.v, &mut motions);
+        BodyMotion::all(self.numbering, self.q, self.v, &mut motions);
         motions
     }
 
@@ -118,7 +118,7 @@ impl<S: Scalar> Instant<S> {
                 body,
                 point,
                 direction,
-            } => direction.dot(&Jet::point(&at.motion(*body), point).acceleration),
+            } => direction.dot(&MarkerKinematics::point(&at.motion(*body), point).acceleration),
             Instant::Speed { body, point } => {
                 let velocity = at.motion(*body).point_velocity(point);
                 let square = velocity.dot(&velocity);
@@ -185,7 +185,7 @@ impl Instant<f64> {
                     ..
                 },
             ) => {
-                let jet = Jet::point(&at.motion(*body), point);
+                let jet = MarkerKinematics::point(&at.motion(*body), point);
                 *by_direction += jet.x * weight;
                 *by_point += pull_point(at, *body, point, [direction * weight, ZERO, ZERO], out);
             }
@@ -201,7 +201,7 @@ impl Instant<f64> {
                     ..
                 },
             ) => {
-                let jet = Jet::point(&at.motion(*body), point);
+                let jet = MarkerKinematics::point(&at.motion(*body), point);
                 *by_direction += jet.rate * weight;
                 *by_point += pull_point(at, *body, point, [ZERO, direction * weight, ZERO], out);
             }
@@ -217,7 +217,7 @@ impl Instant<f64> {
                     ..
                 },
             ) => {
-                let jet = Jet::point(&at.motion(*body), point);
+                let jet = MarkerKinematics::point(&at.motion(*body), point);
                 *by_direction += jet.acceleration * weight;
                 *by_point += pull_point(at, *body, point, [ZERO, ZERO, direction * weight], out);
             }
@@ -287,7 +287,7 @@ fn pull_point(
     let by = marker::pull_back(
         &motion,
         point,
-        &Jet {
+        &MarkerKinematics {
             x,
             rate,
             acceleration,

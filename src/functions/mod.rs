@@ -12,6 +12,6 @@ pub(crate) mod scene;
 pub(crate) mod turning;
 
 pub(crate) use function::{Bound, Function, Reduction, Release};
-pub(crate) use instant::{EnergyPart, Gate, Instant, Projectile, Side};
-pub(crate) use scene::{Scene, Until};
+pub(crate) use instant::{EnergyPart, Gate, GateSide, Instant, Projectile};
+pub(crate) use scene::{Scene, TerminalEvent};
 pub(crate) use turning::Rotation;

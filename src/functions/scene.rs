@@ -16,7 +16,7 @@ pub(crate) struct Scene<S> {
     /// Simulated time T (s); with an event, the longest that it is waited for until T is known.
     pub duration: S,
     /// The event that ends the run, if one does.
-    pub until: Option<Until<S>>,
+    pub until: Option<TerminalEvent<S>>,
     /// Functions of interest, in the order of the problem file.
     pub functions: Vec<Function<S>>,
     /// Why the starts of joints cannot be as they are given; the bodies are then as they are placed, and
@@ -27,14 +27,14 @@ pub(crate) struct Scene<S> {
 /// An event: an instant quantity g reaches a value c for the first time. It makes the duration a
 /// function of the design, g(T) = c.
 #[derive(Clone, Debug)]
-pub(crate) struct Until<S> {
+pub(crate) struct TerminalEvent<S> {
     /// g at the end of the run.
     pub measure: Function<S>,
     /// c.
     pub value: S,
 }
 
-impl<S: Scalar> Until<S> {
+impl<S: Scalar> TerminalEvent<S> {
     /// The event that `instant` reaches `value`.
     pub(crate) fn new(instant: Instant<S>, value: S) -> Self {
         let reduction = Reduction::Final;
@@ -49,15 +49,15 @@ impl<S: Scalar> Until<S> {
         self.measure.evaluate(model, run).value - self.value
     }
 
-    fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Until<T> {
-        Until {
+    fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> TerminalEvent<T> {
+        TerminalEvent {
             measure: self.measure.map(f),
             value: f(self.value),
         }
     }
 }
 
-impl Until<f64> {
+impl TerminalEvent<f64> {
     /// What is waited for, for messages.
     pub(crate) fn describe(&self) -> String {
         match &self.measure {

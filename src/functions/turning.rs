@@ -14,7 +14,7 @@ use crate::integrate::Trajectory;
 use crate::math::rotation::{self, Quat, compose, conjugate};
 use crate::math::{Scalar, Vec3};
 use crate::system::bodies::{add6, positions_of};
-use crate::system::{Motion, Numbering};
+use crate::system::{BodyMotion, Numbering};
 use std::f64::consts::{PI, TAU};
 
 /// Which rotation is measured.
@@ -69,7 +69,7 @@ impl<S: Scalar> Rotation<S> {
         let real = self.map(&mut |x| x.re());
         let motion = |body| {
             let p = orientation(numbering, q, body).map(|x| x.re());
-            let omega = Motion::of(numbering, body, q, v).omega.map(|x| x.re());
+            let omega = BodyMotion::of(numbering, body, q, v).omega.map(|x| x.re());
             (p, rotation::rates(&p, &omega))
         };
         let (p, rate) = motion(self.body);

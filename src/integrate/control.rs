@@ -57,7 +57,7 @@ fn approach(d: f64, width: f64, rest: f64, (at, more): (f64, f64)) -> Option<f64
 /// Gives the width of one step after the other, in fractions of the duration.
 #[derive(Debug)]
 pub(crate) struct Controller {
-    plan: Plan,
+    plan: StepPlan,
     /// Exponent 1/m of the controller.
     exponent: f64,
     estimates: bool,
@@ -90,7 +90,7 @@ pub(crate) struct Controller {
 }
 
 #[derive(Clone, Debug)]
-enum Plan {
+enum StepPlan {
     /// Steps that are given, and the number of the next one.
     Given { grid: Grid, next: usize },
     /// Chosen by the error: tolerance and width of the next step.
@@ -112,17 +112,17 @@ impl Controller {
         let least = SMALLEST * swing.min(1.0);
         let widest = widest.max(10.0 * least);
         let plan = match spacing {
-            Spacing::Steps(steps) => Plan::Given {
+            Spacing::Steps(steps) => StepPlan::Given {
                 grid: Grid::uniform(*steps),
                 next: 1,
             },
-            Spacing::Frozen(grid) => Plan::Given {
+            Spacing::Frozen(grid) => StepPlan::Given {
                 grid: grid.clone(),
                 next: 1,
             },
             Spacing::Tolerance(tolerance) => {
                 let width = swing * tolerance.powf(1.0 / order as f64);
-                Plan::Chosen {
+                StepPlan::Chosen {
                     tolerance: *tolerance,
                     width: width.clamp(least, 0.1),
                 }
@@ -156,16 +156,16 @@ impl Controller {
     /// The grid of the run, which grows from 0.
     pub(crate) fn growing(&self) -> Grid {
         match &self.plan {
-            Plan::Given { grid, .. } => grid.to_grow(),
-            Plan::Chosen { .. } => Grid::growing(),
+            StepPlan::Given { grid, .. } => grid.to_grow(),
+            StepPlan::Chosen { .. } => Grid::growing(),
         }
     }
 
     /// Number of steps, where they are given.
     pub(crate) fn steps(&self) -> Option<usize> {
         match &self.plan {
-            Plan::Given { grid, .. } => Some(grid.steps()),
-            Plan::Chosen { .. } => None,
+            StepPlan::Given { grid, .. } => Some(grid.steps()),
+            StepPlan::Chosen { .. } => None,
         }
     }
 
@@ -184,8 +184,8 @@ impl Controller {
             return None;
         }
         match &mut self.plan {
-            Plan::Given { grid, next } => (*next <= grid.steps()).then(|| grid.width(*next)),
-            Plan::Chosen { width, .. } => {
+            StepPlan::Given { grid, next } => (*next <= grid.steps()).then(|| grid.width(*next)),
+            StepPlan::Chosen { width, .. } => {
                 let rest = 1.0 - reached;
                 if rest <= 0.0 {
                     return None;
@@ -238,20 +238,20 @@ impl Controller {
     /// leaps over a singular position.
     pub(crate) fn end(&self, reached: f64, width: f64) -> f64 {
         match &self.plan {
-            Plan::Given { grid, next } => grid.ends()[*next],
-            Plan::Chosen { .. } if width >= 1.0 - reached && !self.beyond => 1.0,
-            Plan::Chosen { .. } => reached + width,
+            StepPlan::Given { grid, next } => grid.ends()[*next],
+            StepPlan::Chosen { .. } if width >= 1.0 - reached && !self.beyond => 1.0,
+            StepPlan::Chosen { .. } => reached + width,
         }
     }
 
     /// Whether a step whose error relative to the scale is `error` is accepted.
     pub(crate) fn judge(&mut self, error: f64) -> bool {
         match &mut self.plan {
-            Plan::Given { .. } => {
+            StepPlan::Given { .. } => {
                 self.latest = error;
                 true
             }
-            Plan::Chosen { tolerance, width } => {
+            StepPlan::Chosen { tolerance, width } => {
                 let noise = (NOISE * self.magnified.powi(3)).min(MOST_NOISE);
                 let relative = error / tolerance.max(noise);
                 self.latest = error;
@@ -290,8 +290,8 @@ impl Controller {
         self.rejected = false;
         self.headway.accept();
         match &mut self.plan {
-            Plan::Given { next, .. } => *next += 1,
-            Plan::Chosen { width, .. } => {
+            StepPlan::Given { next, .. } => *next += 1,
+            StepPlan::Chosen { width, .. } => {
                 // A step that was cut short says little of the next one.
                 let wanted = self.uncut.take().unwrap_or(0.0);
                 *width = (*width * self.factor).max(wanted * self.factor.min(1.0));
@@ -303,8 +303,8 @@ impl Controller {
     /// or, near a `singular` position, which it may leap over, one of another size first.
     pub(crate) fn give_up(&mut self, singular: bool) -> bool {
         match &mut self.plan {
-            Plan::Given { .. } => true,
-            Plan::Chosen { width, .. } => {
+            StepPlan::Given { .. } => true,
+            StepPlan::Chosen { width, .. } => {
                 let (from, tried) = self.leap.get_or_insert((*width, 0));
                 match LEAPS.get(*tried).filter(|_| singular) {
                     Some(leap) => *width = *from * leap,
@@ -325,7 +325,7 @@ impl Controller {
 
     /// Whether a step may be given up for another that keeps away from a singular position.
     pub(crate) fn may_keep_away(&self) -> bool {
-        let chosen = matches!(self.plan, Plan::Chosen { .. });
+        let chosen = matches!(self.plan, StepPlan::Chosen { .. });
         chosen && self.leap.is_none_or(|(_, tried)| tried < KEPT_AWAY)
     }
 
@@ -333,8 +333,8 @@ impl Controller {
     /// fraction `at` of the duration.
     pub(crate) fn give_up_near(&mut self, at: f64) -> bool {
         match &mut self.plan {
-            Plan::Given { .. } => true,
-            Plan::Chosen { width, .. } => {
+            StepPlan::Given { .. } => true,
+            StepPlan::Chosen { width, .. } => {
                 *width = self.uncut.take().unwrap_or(*width);
                 let (_, tried) = self.leap.get_or_insert((*width, 0));
                 *tried += 1;
@@ -359,8 +359,8 @@ impl Controller {
     /// Error that steps may have: the tolerance, or what those that are given had so far.
     pub(crate) fn allowed(&self) -> f64 {
         match &self.plan {
-            Plan::Given { .. } => self.largest.max(self.latest),
-            Plan::Chosen { tolerance, .. } => *tolerance,
+            StepPlan::Given { .. } => self.largest.max(self.latest),
+            StepPlan::Chosen { tolerance, .. } => *tolerance,
         }
     }
 

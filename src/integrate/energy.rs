@@ -16,7 +16,7 @@ use super::settings::{Settings, Spacing};
 use crate::math::Scalar;
 use crate::model::Model;
 use crate::model::load::LoadKind;
-use crate::system::{Motion, loads};
+use crate::system::{BodyMotion, loads};
 
 /// Part of the energy that no run by a tolerance may lose, however small its error.
 const PART: f64 = 1e-3;
@@ -106,7 +106,12 @@ impl Ledger {
     }
 
     /// Enters the energies at `time`.
-    pub(crate) fn enter<S: Scalar>(&mut self, model: &Model<S>, motions: &[Motion<S>], time: f64) {
+    pub(crate) fn enter<S: Scalar>(
+        &mut self,
+        model: &Model<S>,
+        motions: &[BodyMotion<S>],
+        time: f64,
+    ) {
         let (mut kinetic, mut potential) = (0.0, Vec::with_capacity(motions.len() + 1));
         for (body, motion) in model.bodies.iter().zip(motions) {
             let (mass, v, omega) = (body.mass, &motion.velocity, &motion.omega);

@@ -183,7 +183,7 @@ impl Grid {
 
 /// A sample between or at the ends of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Place {
+pub(crate) enum SamplePlace {
     /// The end of step k (the start for k = 0).
     Node(usize),
     /// Inside step `step` ≥ 1 at the fraction θ of it.
@@ -195,23 +195,23 @@ pub(crate) enum Place {
     },
 }
 
-impl Place {
+impl SamplePlace {
     /// The step that the sample belongs to: the one that it stands in or at the end of; 0 for the
     /// start.
     pub(crate) fn step(&self) -> usize {
         match *self {
-            Place::Node(step) | Place::Inside { step, .. } => step,
+            SamplePlace::Node(step) | SamplePlace::Inside { step, .. } => step,
         }
     }
 }
 
 /// Where the fraction `at` in (τ_{k−1}, τ_k] stands in step k of the grid.
-pub(crate) fn place(grid: &Grid, k: usize, at: f64) -> Place {
+pub(crate) fn place(grid: &Grid, k: usize, at: f64) -> SamplePlace {
     let (start, end) = (grid.ends[k - 1], grid.ends[k]);
     if is_same(end, at) {
-        Place::Node(k)
+        SamplePlace::Node(k)
     } else {
-        Place::Inside {
+        SamplePlace::Inside {
             step: k,
             theta: (at - start) / (end - start),
         }

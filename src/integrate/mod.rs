@@ -36,7 +36,7 @@ pub(crate) use work::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::kkt::SaddlePoint;
-use crate::system::{Motion, Numbering, assembly, initial, redundancy};
+use crate::system::{BodyMotion, Numbering, assembly, initial, redundancy};
 use control::Controller;
 use explicit::stiffness::Watch;
 use headway::Stop;
@@ -132,7 +132,7 @@ fn close<S: SolveScalar>(
 /// the end of step `step`, where and when the bodies are as `at` says.
 fn watch<S: SolveScalar>(
     model: &Model<S>,
-    at: (&[Motion<S>], S),
+    at: (&[BodyMotion<S>], S),
     step: usize,
 ) -> Result<(), IntegrationFailure> {
     if let Some(joint) = assembly::turned(model, at) {

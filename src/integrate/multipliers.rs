@@ -37,7 +37,7 @@ impl<'a> Multipliers<'a> {
             return run.lambda[k * nc..(k + 1) * nc].to_vec();
         };
         let (mut a, mut lambda) = (run.a(k).to_vec(), vec![0.0; nc]);
-        field.stand(run.q(k), run.v(k), run.time(k));
+        field.set_state(run.q(k), run.v(k), run.time(k));
         // Rows are chosen by their weights here, each at most once.
         for _ in 0..=nc {
             if field.factorise().is_err() {
@@ -48,7 +48,7 @@ impl<'a> Multipliers<'a> {
                 break;
             };
             field.leave_out(&rows);
-            field.stand(run.q(k), run.v(k), run.time(k));
+            field.set_state(run.q(k), run.v(k), run.time(k));
         }
         field.accelerations(&mut a, &mut lambda);
         lambda

@@ -1,7 +1,7 @@
 //! What a run keeps for its adjoint, and the steps that are made again where it did not keep them.
 
 use super::IntegrationFailure;
-use super::schedule::{Room, Schedule};
+use super::schedule::{MemoryOfBlock, Schedule};
 use super::settings::MEMORY;
 use std::borrow::Cow;
 use std::fmt::Debug;
@@ -74,13 +74,17 @@ pub(crate) struct Tape<B: Block> {
     /// Bytes that it may take, and whether they were too few for the steps that were chosen so far.
     memory: usize,
     full: bool,
-    room: Room,
+    room: MemoryOfBlock,
 }
 
 impl<B: Block> Tape<B> {
     /// A tape that takes `memory` bytes; `steps` is how many there will be, if that is known. Without any
     /// memory nothing is kept: a gradient that is asked for all the same makes the motion again.
-    pub(crate) fn new(mut block: B, (memory, room): (usize, Room), steps: Option<usize>) -> Self {
+    pub(crate) fn new(
+        mut block: B,
+        (memory, room): (usize, MemoryOfBlock),
+        steps: Option<usize>,
+    ) -> Self {
         let known = steps.filter(|_| memory > 0);
         let schedule = known.map(|steps| Schedule::new(steps, memory, room));
         let mut due = Vec::new();

@@ -15,7 +15,7 @@
 
 /// Room that the parts of a tape take (bytes).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Room {
+pub(crate) struct MemoryOfBlock {
     /// A step that is kept.
     pub step: usize,
     /// A checkpoint.
@@ -41,7 +41,7 @@ const MOST_TIMES: usize = 20;
 
 /// The least memory that a run of `steps` steps keeps for a gradient (bytes): two steps, and as many
 /// checkpoints as let every step be made again twenty times at most.
-pub(crate) fn least(steps: usize, room: Room) -> usize {
+pub(crate) fn least(steps: usize, room: MemoryOfBlock) -> usize {
     let mut checkpoints = 1;
     while repetitions(steps, checkpoints) > MOST_TIMES {
         checkpoints += 1;
@@ -53,7 +53,7 @@ impl Schedule {
     /// The schedule of a run of `steps` steps that makes the fewest steps again in `memory` bytes, or in the
     /// [`least`] if they would be made again too often. Without memory it keeps the start, and one step at
     /// a time.
-    pub(crate) fn new(steps: usize, memory: usize, room: Room) -> Self {
+    pub(crate) fn new(steps: usize, memory: usize, room: MemoryOfBlock) -> Self {
         let own = Self::within(steps, memory, room);
         match memory > 0 && own.recomputed() > steps.saturating_mul(MOST_TIMES) {
             true => Self::within(steps, least(steps, room), room),
@@ -61,7 +61,7 @@ impl Schedule {
         }
     }
 
-    fn within(steps: usize, memory: usize, room: Room) -> Self {
+    fn within(steps: usize, memory: usize, room: MemoryOfBlock) -> Self {
         let whole = Self {
             steps,
             head: 0,
@@ -192,7 +192,7 @@ impl Schedule {
     }
 
     /// What it keeps at most (bytes).
-    pub(crate) fn bytes(&self, room: Room) -> usize {
+    pub(crate) fn bytes(&self, room: MemoryOfBlock) -> usize {
         if self.keeps_all() {
             return self.steps * room.step;
         }
@@ -320,7 +320,7 @@ mod tests {
 
     #[test]
     fn a_schedule_makes_as_many_steps_again_as_it_says() {
-        let room = Room {
+        let room = MemoryOfBlock {
             step: 1000,
             checkpoint: 70,
         };
@@ -369,7 +369,7 @@ mod tests {
     #[test]
     fn the_least_memory_bounds_the_work() {
         for (step, checkpoint) in [(1000, 70), (8000, 500), (300, 900)] {
-            let room = Room { step, checkpoint };
+            let room = MemoryOfBlock { step, checkpoint };
             for steps in [2, 30, 1000, 40_000, 3_000_000] {
                 let own = Schedule::new(steps, 1, room);
                 assert!(own.bytes(room) <= super::least(steps, room), "{own:?}");
@@ -381,7 +381,7 @@ mod tests {
 
     #[test]
     fn a_thousandth_of_the_memory_costs_one_run_more() {
-        let room = Room {
+        let room = MemoryOfBlock {
             step: 8000,
             checkpoint: 500,
         };

@@ -1,9 +1,9 @@
 //! What loads and drives that depend on time say of the steps.
 
 use crate::math::Scalar;
-use crate::model::course::Course;
 use crate::model::table::breaks;
-use crate::model::{Model, MotionCourse};
+use crate::model::time_function::TimeFunction;
+use crate::model::{Model, PrescribedMotion};
 
 /// Part of a period of the fastest harmonic load that a step may take.
 const PART_OF_PERIOD: f64 = 0.25;
@@ -15,12 +15,12 @@ pub(crate) fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64
     let mut widest = 1.0_f64;
     for course in model.loads.iter().filter_map(|load| load.kind.course()) {
         match course {
-            Course::Constant(_) => {}
-            Course::Harmonic { frequency, .. } => {
+            TimeFunction::Constant(_) => {}
+            TimeFunction::Harmonic { frequency, .. } => {
                 let period = 1.0 / frequency.re().abs();
                 widest = widest.min(PART_OF_PERIOD * period / duration);
             }
-            Course::Table {
+            TimeFunction::Table {
                 times,
                 interpolation,
                 ..
@@ -29,12 +29,12 @@ pub(crate) fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64
     }
     for drive in model.joints.iter().flat_map(|joint| &joint.drives) {
         match &drive.course {
-            MotionCourse::Polynomial(_) => {}
-            MotionCourse::Harmonic { frequency, .. } => {
+            PrescribedMotion::Polynomial(_) => {}
+            PrescribedMotion::Harmonic { frequency, .. } => {
                 let period = 1.0 / frequency.re().abs();
                 widest = widest.min(PART_OF_PERIOD * period / duration);
             }
-            MotionCourse::Table {
+            PrescribedMotion::Table {
                 times,
                 interpolation,
                 ..

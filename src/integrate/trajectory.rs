@@ -1,6 +1,6 @@
 //! What a run leaves behind.
 
-use super::grid::{Grid, Place};
+use super::grid::{Grid, SamplePlace};
 use super::quadrature::Samples;
 use super::quadrature::{Due, Step};
 use super::rows::real;
@@ -26,7 +26,7 @@ pub(crate) struct Trajectory<S: Scalar> {
     /// Sampled instants as fractions of T, from 0 to 1.
     pub instants: Vec<f64>,
     /// Where the sampled instants stand among the steps.
-    pub places: Vec<Place>,
+    pub places: Vec<SamplePlace>,
     /// Weights of the sampled instants in sums over the motion, which add up to one.
     pub weights: Vec<f64>,
     /// Whether the sampled instants with weights are the nodes of the cells of the steps.
@@ -76,7 +76,7 @@ impl<S: Scalar> Trajectory<S> {
             duration,
             grid: Grid::growing(),
             instants: vec![0.0],
-            places: vec![Place::Node(0)],
+            places: vec![SamplePlace::Node(0)],
             weights: vec![0.0],
             shown: vec![true],
             has_cells: false,
@@ -109,7 +109,7 @@ impl<S: Scalar> Trajectory<S> {
     }
 
     /// Adds an instant.
-    pub(crate) fn push(&mut self, due: Due, place: Place, [q, v, a, lambda]: [&[S]; 4]) {
+    pub(crate) fn push(&mut self, due: Due, place: SamplePlace, [q, v, a, lambda]: [&[S]; 4]) {
         self.instants.push(due.at);
         self.weights.push(due.weight);
         self.shown.push(due.shown);

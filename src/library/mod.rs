@@ -5,7 +5,7 @@
 //! Bindings to other languages are made of these alone.
 
 use crate::driver::integration::Integration;
-use crate::driver::{self, Evaluated, Journal, Simulation};
+use crate::driver::{self, Evaluated, KnownEvaluations, Simulation};
 use crate::integrate::IntegrationFailure;
 use crate::problem::Problem;
 use crate::report::optimum::Optimum as Record;
@@ -209,7 +209,7 @@ pub fn optimise(
             optimality: row.optimality,
         }),
     };
-    let found = driver::optimise(problem, "", None, Journal::default(), &mut seen)?;
+    let found = driver::optimise(problem, "", None, KnownEvaluations::default(), &mut seen)?;
     Some(Optimum {
         record: found.optimum,
     })

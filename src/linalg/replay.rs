@@ -6,7 +6,7 @@
 //! Palamadai Natarajan 2010). A pivot that has become too small ends the replay.
 
 use super::pattern::{Pattern, SparseMatrix};
-use super::scaling::{Scaling, size};
+use super::scaling::{Equilibration, size};
 use crate::math::Scalar;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -70,7 +70,7 @@ pub(super) struct Replay<S> {
     pivot_rows: Vec<usize>,
     /// Rows of the matrix's entries in pivot order, entry by entry.
     entry_rows: Vec<u32>,
-    scaling: Scaling,
+    scaling: Equilibration,
     lower: Triangle<S>,
     upper: Triangle<S>,
     /// Reciprocals of the pivots.
@@ -91,7 +91,7 @@ impl<S: Scalar> Replay<S> {
             columns: columns.to_vec(),
             pivot_rows: vec![0; n],
             entry_rows: vec![0; pattern.entries()],
-            scaling: Scaling::new(pattern),
+            scaling: Equilibration::new(pattern),
             lower: Triangle::new(),
             upper: Triangle::new(),
             inverse_pivots: vec![S::zero(); n],
@@ -103,7 +103,12 @@ impl<S: Scalar> Replay<S> {
     }
 
     /// Plans the elimination with pivot j in row `pivot_rows[j]` of a matrix that is scaled like this.
-    pub(crate) fn plan(&mut self, pattern: &Pattern, scaling: &Scaling, pivot_rows: &[usize]) {
+    pub(crate) fn plan(
+        &mut self,
+        pattern: &Pattern,
+        scaling: &Equilibration,
+        pivot_rows: &[usize],
+    ) {
         self.scaling.set(scaling);
         self.pivot_rows.copy_from_slice(pivot_rows);
         for (j, &row) in pivot_rows.iter().enumerate() {
@@ -149,7 +154,7 @@ impl<S: Scalar> Replay<S> {
     }
 
     /// The rows of the pivots and the scaling in use.
-    pub(crate) fn planned(&self) -> (&[usize], &Scaling) {
+    pub(crate) fn planned(&self) -> (&[usize], &Equilibration) {
         (&self.pivot_rows, &self.scaling)
     }
 

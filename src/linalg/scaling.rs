@@ -12,7 +12,7 @@ const MODERATE: f64 = 8.0;
 /// Loan 2013, section 3.5.2), and scaling itself makes no round-off. Largest entries from 2⁻⁸ to 2⁸
 /// are left as they are, others are brought between 1/2 and 1.
 #[derive(Clone, Debug)]
-pub(super) struct Scaling {
+pub(super) struct Equilibration {
     /// R.
     pub rows: Vec<f64>,
     /// C.
@@ -21,7 +21,7 @@ pub(super) struct Scaling {
     pub entries: Vec<f64>,
 }
 
-impl Scaling {
+impl Equilibration {
     /// No scaling yet.
     pub(crate) fn new(pattern: &Pattern) -> Self {
         Self {

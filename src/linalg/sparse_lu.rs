@@ -3,7 +3,7 @@
 
 use super::pattern::{Pattern, SparseMatrix};
 use super::replay::Replay;
-use super::scaling::Scaling;
+use super::scaling::Equilibration;
 use crate::math::Scalar;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::lu::{LuSymbolicParams, SymbolicLu, factorize_symbolic_lu, simplicial};
@@ -46,12 +46,12 @@ pub(crate) struct SparseLu<S> {
 #[derive(Clone, Debug)]
 pub(crate) struct Pivots {
     rows: Vec<usize>,
-    scaling: Scaling,
+    scaling: Equilibration,
 }
 
 /// The search for pivots, with what it needs again each time.
 struct Pivoting<S> {
-    scaling: Scaling,
+    scaling: Equilibration,
     scaled: Vec<S>,
     factors: simplicial::SimplicialLu<usize, S>,
     rows: Vec<usize>,
@@ -64,7 +64,7 @@ impl<S: SolveScalar> Pivoting<S> {
         let n = pattern.order();
         let scratch = simplicial::factorize_simplicial_numeric_lu_scratch::<usize, S>(n, n);
         Self {
-            scaling: Scaling::new(pattern),
+            scaling: Equilibration::new(pattern),
             scaled: vec![S::zero(); pattern.entries()],
             factors: simplicial::SimplicialLu::new(),
             rows: vec![0; n],

@@ -8,7 +8,7 @@ pub(super) const ROUND_OFF: f64 = 1e-13;
 
 /// What stands against a reduction.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Obstacle {
+pub(crate) struct ViolatedCondition {
     /// What it is, with the name of the part of the scene.
     pub what: String,
     /// By how much (or, if a variable is at fault, by how much for a typical change of it); zero if
@@ -22,7 +22,7 @@ pub(crate) struct Obstacle {
     pub elsewhere: bool,
 }
 
-impl Obstacle {
+impl ViolatedCondition {
     /// One that has no size.
     pub(super) fn plain(what: impl Into<String>) -> Self {
         Self {
@@ -35,7 +35,7 @@ impl Obstacle {
     }
 }
 
-impl std::fmt::Display for Obstacle {
+impl std::fmt::Display for ViolatedCondition {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         write!(f, "{}", self.what)?;
         if self.size > 0.0 {
@@ -53,16 +53,16 @@ impl std::fmt::Display for Obstacle {
 }
 
 /// Whether something may be left out, or all that stands against it.
-pub(crate) type Verdict = Result<(), Vec<Obstacle>>;
+pub(crate) type Verdict = Result<(), Vec<ViolatedCondition>>;
 
 /// Collects the quantities that do not vanish.
-pub(super) struct Examiner {
+pub(super) struct ConditionChecker {
     /// The typical change that an infinitesimal part is multiplied by.
     change: f64,
-    found: Vec<Obstacle>,
+    found: Vec<ViolatedCondition>,
 }
 
-impl Examiner {
+impl ConditionChecker {
     pub(crate) fn new(change: f64) -> Self {
         Self {
             change,
@@ -80,7 +80,7 @@ impl Examiner {
 
     /// Tells an obstacle that has no size.
     pub(crate) fn tell(&mut self, what: String) {
-        self.add(Obstacle::plain(what));
+        self.add(ViolatedCondition::plain(what));
     }
 
     /// Asks that `value` vanishes beside `scale`; `what` tells it with its unit if it does not.
@@ -93,7 +93,7 @@ impl Examiner {
         self.vanishes(&[value], scale, what);
     }
 
-    /// As [`Examiner::zero`], of a vector.
+    /// As [`ConditionChecker::zero`], of a vector.
     pub(crate) fn vanishes<S: Scalar>(
         &mut self,
         vector: &[S],
@@ -119,16 +119,16 @@ impl Examiner {
                 "rad" => size.min(1.0).asin(),
                 _ => size,
             };
-            self.add(Obstacle {
+            self.add(ViolatedCondition {
                 size,
                 unit,
-                ..Obstacle::plain(what)
+                ..ViolatedCondition::plain(what)
             });
         }
     }
 
     /// Adds an obstacle, or makes one of several of one name as large as the largest.
-    fn add(&mut self, obstacle: Obstacle) {
+    fn add(&mut self, obstacle: ViolatedCondition) {
         match self.found.iter_mut().find(|own| own.what == obstacle.what) {
             Some(own) => own.size = own.size.max(obstacle.size),
             None => self.found.push(obstacle),
@@ -221,7 +221,7 @@ impl Designs {
         for (name, change, scene) in &self.derived {
             let found = dual(scene, *change).err().unwrap_or_default();
             let new = found.into_iter().filter(|own| !start.contains(&own.what));
-            all.extend(new.map(|own| Obstacle {
+            all.extend(new.map(|own| ViolatedCondition {
                 variable: Some(name.clone()),
                 ..own
             }));
@@ -229,7 +229,7 @@ impl Designs {
         for scene in &self.others {
             for own in real(scene).err().unwrap_or_default() {
                 if all.iter().all(|known| known.what != own.what) {
-                    all.push(Obstacle {
+                    all.push(ViolatedCondition {
                         elsewhere: true,
                         ..own
                     });

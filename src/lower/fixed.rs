@@ -2,11 +2,11 @@
 //! what joins them to ground has no rows. A variable may place them elsewhere.
 
 use super::Kept;
-use super::examine::{Designs, Examiner, Verdict};
+use super::examine::{ConditionChecker, Designs, Verdict};
 use crate::math::Scalar;
 use crate::model::{Joint, JointKind, Mobility, Model};
 use crate::system::placement::{guess, length_scale};
-use crate::system::{Motion, Numbering, constraint, side};
+use crate::system::{BodyMotion, Numbering, constraint, side};
 
 /// Bodies that nothing can move.
 #[derive(Clone, Debug, Default)]
@@ -103,15 +103,15 @@ impl Fixed {
 
     /// Examines whether what joins the bodies is closed, and stays so.
     pub(super) fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Verdict {
-        let mut examiner = Examiner::new(change);
+        let mut examiner = ConditionChecker::new(change);
         if self.is_empty() {
             return Ok(());
         }
         let length = length_scale(model);
         let (q, v) = guess(model);
         let mut motions = Vec::new();
-        Motion::all_normalised(&Numbering::new(model), &q, &v, &mut motions);
-        let ground = Motion::ground();
+        BodyMotion::all_normalised(&Numbering::new(model), &q, &v, &mut motions);
+        let ground = BodyMotion::ground();
         for joint in model.joints.iter().filter(|joint| self.holds_joint(joint)) {
             if is_void(joint) {
                 continue;

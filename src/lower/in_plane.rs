@@ -1,16 +1,16 @@
 //! Whether a model moves in a plane: the conditions of [`super::planar`], one after the other.
 
-use super::examine::{Examiner, Verdict};
+use super::characteristic_length::{Reach, largest};
+use super::examine::{ConditionChecker, Verdict};
 use super::fixed::is_void;
 use super::planar::{Plane, Turned, points, used};
-use super::reach::{Reach, largest};
 use crate::math::scalar::{along, lift3};
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, Freedom, LoadKind, Model};
+use crate::model::{Axes, DegreeOfFreedom, LoadKind, Model};
 
 /// The largest angular velocity of a body, or velocity over its reach (rad/s), or what a `change` of the
 /// variable makes of it: a body that hardly moves has round-off of those that do.
-fn fastest<S: Scalar>(model: &Model<S>, reach: &Reach, change: f64) -> f64 {
+fn fastest<S: Scalar>(model: &Model<S>, characteristic_length: &Reach, change: f64) -> f64 {
     let size = |v: &Vec3<S>| {
         v.iter().fold(0.0_f64, |m, x| {
             m.max(x.re().abs()).max(x.infinitesimal().abs() * change)
@@ -18,7 +18,7 @@ fn fastest<S: Scalar>(model: &Model<S>, reach: &Reach, change: f64) -> f64 {
     };
     let bodies = model.bodies.iter().enumerate();
     bodies.fold(0.0, |most, (i, body)| {
-        let swing = size(&body.velocity) / reach.of([Some(i), None]);
+        let swing = size(&body.velocity) / characteristic_length.of([Some(i), None]);
         most.max(size(&body.angular_velocity)).max(swing)
     })
 }
@@ -31,13 +31,18 @@ impl Plane {
     /// What leaves it.
     pub(crate) fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Verdict {
         let turned = Turned::new(model, &self.normal);
-        let mut examiner = Examiner::new(change);
-        let reach = Reach::new(model);
-        self.joints(model, &turned, &reach, &mut examiner);
-        let rate = fastest(model, &reach, change);
-        self.bodies(model, &turned, (&reach, rate), &mut examiner);
-        self.loads(model, &turned, &reach, &mut examiner);
-        self.upright(model, &reach, &mut examiner);
+        let mut examiner = ConditionChecker::new(change);
+        let characteristic_length = Reach::new(model);
+        self.joints(model, &turned, &characteristic_length, &mut examiner);
+        let rate = fastest(model, &characteristic_length, change);
+        self.bodies(
+            model,
+            &turned,
+            (&characteristic_length, rate),
+            &mut examiner,
+        );
+        self.loads(model, &turned, &characteristic_length, &mut examiner);
+        self.upright(model, &characteristic_length, &mut examiner);
         examiner.verdict()
     }
 
@@ -45,8 +50,8 @@ impl Plane {
         &self,
         model: &Model<S>,
         turned: &Turned<S>,
-        (reach, rate): (&Reach, f64),
-        examiner: &mut Examiner,
+        (characteristic_length, rate): (&Reach, f64),
+        examiner: &mut ConditionChecker,
     ) {
         let gravity = largest(&model.gravity);
         examiner.zero(along(&model.gravity, &self.normal), gravity, || {
@@ -60,7 +65,7 @@ impl Plane {
             examiner.vanishes((turned.normals[i] - own).as_slice(), 1.0, what);
             let above = along(&body.position, &self.normal) - *height;
             let what = || (format!("body \"{name}\" is moved across the plane"), "m");
-            examiner.zero(above, reach.of([Some(i), None]), what);
+            examiner.zero(above, characteristic_length.of([Some(i), None]), what);
             let scale = body
                 .inertia
                 .iter()
@@ -82,7 +87,8 @@ impl Plane {
                     "m/s",
                 )
             };
-            let speed = largest(&body.velocity).max(rate * reach.of([Some(i), None]));
+            let speed =
+                largest(&body.velocity).max(rate * characteristic_length.of([Some(i), None]));
             examiner.zero(along(&body.velocity, &self.normal), speed, what);
             let omega = &body.angular_velocity;
             let what = || {
@@ -101,8 +107,8 @@ impl Plane {
         &self,
         model: &Model<S>,
         turned: &Turned<S>,
-        reach: &Reach,
-        examiner: &mut Examiner,
+        characteristic_length: &Reach,
+        examiner: &mut ConditionChecker,
     ) {
         for (j, joint) in model.joints.iter().enumerate() {
             if is_void(joint) {
@@ -112,7 +118,7 @@ impl Plane {
             let name = &joint.name;
             let frames = self.frames(joint, j);
             let bodies = [Some(joint.body_a), joint.body_b];
-            let length = reach.of(bodies);
+            let length = characteristic_length.of(bodies);
             for (side, used) in used(joint).into_iter().enumerate() {
                 let normal = turned.normal(bodies[side]);
                 for axis in (0..3).filter(|&axis| used[axis]) {
@@ -143,10 +149,10 @@ impl Plane {
                 let part = normal.dot(e);
                 let what = || (format!("joint \"{name}\" is driven out of the plane"), "");
                 match drive.freedom {
-                    Freedom::Turn => {
+                    DegreeOfFreedom::Rotation => {
                         examiner.vanishes((e - normal * part).as_slice(), 1.0, what);
                     }
-                    Freedom::Slide => examiner.zero(part, 1.0, what),
+                    DegreeOfFreedom::Translation => examiner.zero(part, 1.0, what),
                 }
             }
             if self.identical(joint, turned, j) != own.identical {
@@ -177,8 +183,8 @@ impl Plane {
         &self,
         model: &Model<S>,
         turned: &Turned<S>,
-        reach: &Reach,
-        examiner: &mut Examiner,
+        characteristic_length: &Reach,
+        examiner: &mut ConditionChecker,
     ) {
         for (load, heights) in model.loads.iter().zip(&self.loads) {
             let name = &load.name;
@@ -192,7 +198,7 @@ impl Plane {
                         "m",
                     )
                 };
-                let length = reach.of([body, None]) + largest(&point);
+                let length = characteristic_length.of([body, None]) + largest(&point);
                 longest = longest.max(length);
                 examiner.zero(above - heights[k], length, what);
                 ends[k] = Some(above + body.map_or(0.0, |body| self.bodies[body].1));
@@ -231,12 +237,12 @@ impl Plane {
                 LoadKind::TorsionSpring { joint, .. }
                 | LoadKind::Damping {
                     joint,
-                    freedom: Freedom::Turn,
+                    freedom: DegreeOfFreedom::Rotation,
                     ..
                 }
                 | LoadKind::Friction {
                     joint,
-                    freedom: Freedom::Turn,
+                    freedom: DegreeOfFreedom::Rotation,
                     ..
                 } => {
                     let joint = &model.joints[*joint];
@@ -247,11 +253,11 @@ impl Plane {
                 LoadKind::Spring { .. }
                 | LoadKind::BallDamping { .. }
                 | LoadKind::Damping {
-                    freedom: Freedom::Slide,
+                    freedom: DegreeOfFreedom::Translation,
                     ..
                 }
                 | LoadKind::Friction {
-                    freedom: Freedom::Slide,
+                    freedom: DegreeOfFreedom::Translation,
                     ..
                 } => {}
             }
@@ -260,7 +266,12 @@ impl Plane {
 
     /// Bodies that nothing holds upright have what acts on them from outside their group as high as
     /// their centres of mass.
-    fn upright<S: Scalar>(&self, model: &Model<S>, reach: &Reach, examiner: &mut Examiner) {
+    fn upright<S: Scalar>(
+        &self,
+        model: &Model<S>,
+        characteristic_length: &Reach,
+        examiner: &mut ConditionChecker,
+    ) {
         let group = |body: Option<usize>| body.and_then(|body| self.groups[body]);
         let mut level = vec![None; model.bodies.len()];
         for (i, body) in model.bodies.iter().enumerate() {
@@ -274,13 +285,17 @@ impl Plane {
                     "m",
                 )
             };
-            examiner.zero(height - first, reach.of([Some(i), None]), what);
+            examiner.zero(
+                height - first,
+                characteristic_length.of([Some(i), None]),
+                what,
+            );
         }
         let mut acts =
             |body: Option<usize>, height: f64, what: &dyn Fn() -> (String, &'static str)| {
                 if let (Some(own), Some(body)) = (group(body), body) {
                     let off = self.bodies[body].1 + height - level[own].unwrap_or(0.0);
-                    examiner.zero(off, reach.of([Some(body), None]), what);
+                    examiner.zero(off, characteristic_length.of([Some(body), None]), what);
                 }
             };
         for (joint, own) in model.joints.iter().zip(&self.joints) {

@@ -5,24 +5,24 @@
 //! the start, at both bounds and at designs between them, and by dual numbers in its derivative by
 //! every variable. The same examination, in values, is repeated wherever a scene is made.
 
+mod characteristic_length;
 mod examine;
 pub(crate) mod fixed;
 mod in_plane;
 mod merge;
+pub(crate) mod non_rotating;
 mod normal;
+mod out_of_plane;
 pub(crate) mod planar;
 mod point;
-mod reach;
-mod tilt;
 pub(crate) mod unseen;
-pub(crate) mod unturned;
 pub(crate) mod welded;
 
-pub(crate) use examine::{Obstacle, Range};
+pub(crate) use examine::{Range, ViolatedCondition};
 pub(crate) use fixed::Fixed;
+pub(crate) use non_rotating::NonRotating;
 pub(crate) use planar::Plane;
 pub(crate) use unseen::Seen;
-pub(crate) use unturned::Unturned;
 pub(crate) use welded::Welded;
 
 use crate::functions::Scene;
@@ -30,8 +30,8 @@ use crate::integrate::Trajectory;
 use crate::math::{Dual, Scalar};
 use crate::model::{ConstraintRow, Mobility, Model};
 use crate::system::redundancy;
+use characteristic_length::Reach;
 use examine::Designs;
-use reach::Reach;
 
 /// A reduction that is not made.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,7 @@ pub(crate) struct Kept {
     /// What could have been left out.
     pub reduction: String,
     /// What stands against it.
-    pub obstacles: Vec<Obstacle>,
+    pub obstacles: Vec<ViolatedCondition>,
 }
 
 /// Obstacles of one reduction that are told.
@@ -48,7 +48,7 @@ const TOLD: usize = 5;
 impl std::fmt::Display for Kept {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let told = self.obstacles.iter().take(TOLD);
-        let told: Vec<String> = told.map(Obstacle::to_string).collect();
+        let told: Vec<String> = told.map(ViolatedCondition::to_string).collect();
         write!(f, "{}: {}", self.reduction, told.join("; "))?;
         match self.obstacles.len() - told.len() {
             0 => Ok(()),
@@ -67,7 +67,7 @@ pub(crate) struct Lowering {
     /// Bodies whose rotation nothing turns or looks at.
     pub points: Vec<usize>,
     /// Bodies whose rotation ground holds.
-    pub unturned: Unturned,
+    pub non_rotating: NonRotating,
     /// Bodies that nothing can move.
     pub fixed: Fixed,
     /// Reductions that are not made, but for the plane.
@@ -90,19 +90,19 @@ impl Lowering {
         }
         let (fixed, of_fixed) = Fixed::find(&designs);
         let plane = Plane::find(&designs);
-        let (unturned, of_unturned) = Unturned::find(&designs, &fixed);
+        let (non_rotating, of_unturned) = NonRotating::find(&designs, &fixed);
         let mut points = Vec::new();
         // A body in the plane has three unknowns already.
         if plane.is_err() {
             let model = &designs.start.model;
-            let reach = Reach::new(model);
+            let characteristic_length = Reach::new(model);
             for (index, body) in model.bodies.iter().enumerate() {
-                let held = fixed.holds_end(Some(index)) || unturned.contains(index);
+                let held = fixed.holds_end(Some(index)) || non_rotating.contains(index);
                 if held || body.mobility == Mobility::fixed() {
                     continue;
                 }
                 // What the start says is enough.
-                let start = point::holds(&designs.start, &reach, index, 0.0);
+                let start = point::holds(&designs.start, &characteristic_length, index, 0.0);
                 let verdict = start.and_then(|()| {
                     designs.ask(
                         |scene| point::holds(scene, &Reach::new(&scene.model), index, 0.0),
@@ -125,12 +125,12 @@ impl Lowering {
             welded,
             plane,
             points,
-            unturned,
+            non_rotating,
             fixed,
             kept,
             left_out: Vec::new(),
         };
-        if !(found.welded.is_empty() && found.unturned.is_empty() && found.fixed.is_empty()) {
+        if !(found.welded.is_empty() && found.non_rotating.is_empty() && found.fixed.is_empty()) {
             let mut lowered = designs.start;
             found.leave_out(&mut lowered);
             redundancy::leave_out(&mut lowered.model);
@@ -176,12 +176,12 @@ impl Lowering {
     /// Whether all but the merging of welded bodies, which has been done, may be.
     fn admits<S: Scalar>(&self, scene: &Scene<S>) -> bool {
         let model = &scene.model;
-        let reach = Reach::new(model);
-        let point = |&body: &usize| point::holds(scene, &reach, body, 0.0).is_ok();
+        let characteristic_length = Reach::new(model);
+        let point = |&body: &usize| point::holds(scene, &characteristic_length, body, 0.0).is_ok();
         let plane = self.plane.as_ref();
         plane.map_or(true, |plane| plane.holds(model, 0.0).is_ok())
             && self.points.iter().all(point)
-            && self.unturned.holds(model, 0.0).is_ok()
+            && self.non_rotating.holds(model, 0.0).is_ok()
             && self.fixed.holds(model, 0.0).is_ok()
     }
 
@@ -193,7 +193,7 @@ impl Lowering {
         for &body in &self.points {
             model.bodies[body].mobility = Mobility::point();
         }
-        self.unturned.apply(model);
+        self.non_rotating.apply(model);
         self.fixed.apply(model);
         for (joint, left_out) in model.joints.iter_mut().zip(&self.left_out) {
             joint.left_out.clone_from(left_out);

@@ -17,10 +17,10 @@
 //! ```
 
 use super::Kept;
-use super::examine::{Designs, Obstacle};
+use super::examine::{Designs, ViolatedCondition};
 use super::fixed::is_void;
 use super::normal::{candidates, clean};
-use super::tilt;
+use super::out_of_plane;
 use crate::math::scalar::lift3;
 use crate::math::{Mat3, Scalar, Vec3, rotation};
 use crate::model::{ConstraintRow, Joint, JointFrame, JointKind};
@@ -136,7 +136,7 @@ impl Plane {
             },
             None => Kept {
                 reduction: "motion out of a plane".into(),
-                obstacles: vec![Obstacle::plain(
+                obstacles: vec![ViolatedCondition::plain(
                     "gravity, lever arms and velocities lie in no common plane",
                 )],
             },
@@ -195,8 +195,8 @@ impl Plane {
         for (j, joint) in model.joints.iter().enumerate() {
             plane.joints[j].identical = plane.identical(joint, &turned, j);
         }
-        let upright = |j: usize| tilt::holds_upright(&plane.joints[j].identical);
-        plane.groups = tilt::groups(model.bodies.len(), &model.joints, upright);
+        let upright = |j: usize| out_of_plane::holds_upright(&plane.joints[j].identical);
+        plane.groups = out_of_plane::groups(model.bodies.len(), &model.joints, upright);
         plane
     }
 

@@ -5,8 +5,8 @@
 //! reads where a point beside the centre is, or how the body is turned, since a design may still
 //! turn its start.
 
-use super::examine::{Examiner, Verdict};
-use super::reach::Reach;
+use super::characteristic_length::Reach;
+use super::examine::{ConditionChecker, Verdict};
 use crate::functions::{Function, Gate, Instant, Release, Rotation, Scene};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, JointKind, LoadKind};
@@ -22,13 +22,13 @@ const CENTRED: f64 = 1e-2;
 /// What turns it, or looks at its rotation.
 pub(super) fn holds<S: Scalar>(
     scene: &Scene<S>,
-    reach: &Reach,
+    characteristic_length: &Reach,
     index: usize,
     change: f64,
 ) -> Verdict {
     let model = &scene.model;
-    let mut examiner = Examiner::new(change);
-    let length = CENTRED * reach.of([Some(index), None]);
+    let mut examiner = ConditionChecker::new(change);
+    let length = CENTRED * characteristic_length.of([Some(index), None]);
     // A lever arm, or `None` for what turns the body whatever its arm.
     let mut vanishes = |arm: Option<&Vec3<S>>, what: &dyn Fn() -> String| match arm {
         Some(arm) => examiner.vanishes(arm.as_slice(), length, || (what(), "m")),

@@ -5,14 +5,14 @@
 //! where the joints of all that hangs together with them are closed, and move as they allow, as the
 //! bodies are placed, at every design.
 
-use super::examine::{Designs, Examiner, Obstacle, Verdict};
+use super::examine::{ConditionChecker, Designs, Verdict, ViolatedCondition};
 use super::merge::{self, Cluster};
 use super::{Kept, fixed};
 use crate::functions::Scene;
 use crate::integrate::Trajectory;
 use crate::math::{Scalar, Vec3};
-use crate::model::{Joint, JointKind, LoadKind, Model, MotionCourse};
-use crate::system::{Motion, Numbering, constraint, placement, side};
+use crate::model::{Joint, JointKind, LoadKind, Model, PrescribedMotion};
+use crate::system::{BodyMotion, Numbering, constraint, placement, side};
 
 /// Bodies that are merged.
 #[derive(Clone, Debug, Default)]
@@ -31,7 +31,7 @@ pub(crate) struct Welded {
 struct Candidate {
     joint: usize,
     bodies: [usize; 2],
-    obstacles: Vec<Obstacle>,
+    obstacles: Vec<ViolatedCondition>,
 }
 
 impl Welded {
@@ -72,7 +72,7 @@ impl Welded {
             own.map(|(j, _)| j).collect()
         };
         let mut found = Self::default();
-        let mut examined: Vec<(usize, Vec<Obstacle>)> = Vec::new();
+        let mut examined: Vec<(usize, Vec<ViolatedCondition>)> = Vec::new();
         for candidate in &mut candidates {
             let group = together.of(candidate.bodies[0]);
             let known = examined.iter().position(|(own, _)| *own == group);
@@ -130,7 +130,9 @@ impl Welded {
             for (j, joint) in model.joints.iter().enumerate() {
                 if links([Some(joint.body_a), joint.body_b]) && !vanishing(candidates, j) {
                     let name = &joint.name;
-                    obstacles.push(Obstacle::plain(format!("joint \"{name}\" joins them too")));
+                    obstacles.push(ViolatedCondition::plain(format!(
+                        "joint \"{name}\" joins them too"
+                    )));
                 }
             }
             for load in &model.loads {
@@ -138,7 +140,9 @@ impl Welded {
                     && links([Some(body_a), body_b])
                 {
                     let name = &load.name;
-                    obstacles.push(Obstacle::plain(format!("load \"{name}\" joins them too")));
+                    obstacles.push(ViolatedCondition::plain(format!(
+                        "load \"{name}\" joins them too"
+                    )));
                 }
             }
             if let (Some(first), Some(second)) = (host[a], host[b]) {
@@ -202,7 +206,7 @@ impl Welded {
 }
 
 /// Loads that act by way of a joint, which would be gone.
-fn loads_on(model: &Model<f64>, joint: usize) -> Vec<Obstacle> {
+fn loads_on(model: &Model<f64>, joint: usize) -> Vec<ViolatedCondition> {
     let acts = |kind: &LoadKind<f64>| match kind {
         LoadKind::TorsionSpring { joint: own, .. }
         | LoadKind::Damping { joint: own, .. }
@@ -211,7 +215,8 @@ fn loads_on(model: &Model<f64>, joint: usize) -> Vec<Obstacle> {
         LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Spring { .. } => false,
     };
     let loads = model.loads.iter().filter(|load| acts(&load.kind));
-    let told = loads.map(|load| Obstacle::plain(format!("load \"{}\" acts on it", load.name)));
+    let told =
+        loads.map(|load| ViolatedCondition::plain(format!("load \"{}\" acts on it", load.name)));
     told.collect()
 }
 
@@ -223,18 +228,21 @@ fn loads_on(model: &Model<f64>, joint: usize) -> Vec<Obstacle> {
 fn closed<S: Scalar>(scene: &Scene<S>, joints: &[usize], change: f64) -> Verdict {
     let model = &scene.model;
     let duration = scene.duration.re().abs();
-    let mut examiner = Examiner::new(change);
+    let mut examiner = ConditionChecker::new(change);
     let (q, v) = placement::guess(model);
     let mut motions = Vec::new();
-    Motion::all_normalised(&Numbering::new(model), &q, &v, &mut motions);
-    let ground = Motion::ground();
+    BodyMotion::all_normalised(&Numbering::new(model), &q, &v, &mut motions);
+    let ground = BodyMotion::ground();
     let size = |x: &Vec3<S>| x.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
     for &j in joints {
         let joint = &model.joints[j];
         let name = &joint.name;
         let (a, b) = side::sides(joint, &motions, &ground, S::zero());
-        let reach = [&a, &b].map(|side| size(&side.motion.position) + size(&side.frame.point));
-        let reach = reach[0].max(reach[1]).max(joint.frame_a.length.re().abs());
+        let characteristic_length =
+            [&a, &b].map(|side| size(&side.motion.position) + size(&side.frame.point));
+        let characteristic_length = characteristic_length[0]
+            .max(characteristic_length[1])
+            .max(joint.frame_a.length.re().abs());
         let speed = [&a, &b].map(|side| {
             size(&side.motion.velocity) + size(&side.motion.omega) * size(&side.frame.point)
         });
@@ -246,7 +254,7 @@ fn closed<S: Scalar>(scene: &Scene<S>, joints: &[usize], change: f64) -> Verdict
                 (format!("joint \"{name}\" {what}"), "")
             };
             let (length, rate) = match row.has_force() {
-                true => (reach, speed + spin * reach),
+                true => (characteristic_length, speed + spin * characteristic_length),
                 false => (1.0, spin),
             };
             let rate = rate.max(drives_reach(joint)).max(length / duration);
@@ -265,19 +273,19 @@ fn closed<S: Scalar>(scene: &Scene<S>, joints: &[usize], change: f64) -> Verdict
 /// (m/s or rad/s); other courses say theirs without.
 fn drives_reach<S: Scalar>(joint: &Joint<S>) -> f64 {
     let rates = joint.drives.iter().map(|drive| match &drive.course {
-        MotionCourse::Harmonic {
+        PrescribedMotion::Harmonic {
             amplitude,
             frequency,
             ..
         } => std::f64::consts::TAU * (amplitude.re() * frequency.re()).abs(),
-        MotionCourse::Polynomial(_) | MotionCourse::Table { .. } => 0.0,
+        PrescribedMotion::Polynomial(_) | PrescribedMotion::Table { .. } => 0.0,
     });
     rates.fold(0.0, f64::max)
 }
 
 /// Examines whether the bodies of each pair are turned alike.
 fn alike<S: Scalar>(model: &Model<S>, pairs: &[[usize; 2]], change: f64) -> Verdict {
-    let mut examiner = Examiner::new(change);
+    let mut examiner = ConditionChecker::new(change);
     for pair in pairs {
         let [a, b] = pair.map(|body| &model.bodies[body]);
         let between: [S; 4] = std::array::from_fn(|k| a.orientation[k] - b.orientation[k]);

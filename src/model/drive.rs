@@ -17,32 +17,32 @@
 //! table        interpolation between (t_i, m_i), see [`super::table`]; held beyond the ends
 //! ```
 
-use super::table::{Interpolation, Place, around, by_points, interval, motion, polynomial};
+use super::table::{Bracket, Interpolation, around, by_points, interval, motion, polynomial};
 use crate::math::Scalar;
 use crate::math::scalar::Dual;
 use std::f64::consts::TAU;
 
 /// A motion that a joint allows along or about its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Freedom {
+pub(crate) enum DegreeOfFreedom {
     /// Turning about the axis: the rate is φ̇ = e · (ω_A − ω_B).
-    Turn,
+    Rotation,
     /// Sliding along the axis: the rate is that of e · (P_A − P_B).
-    Slide,
+    Translation,
 }
 
 /// The prescribed motion of a joint along or about its axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Drive<S> {
     /// Which motion.
-    pub freedom: Freedom,
+    pub freedom: DegreeOfFreedom,
     /// Angle (rad) or displacement (m) in time.
-    pub course: MotionCourse<S>,
+    pub course: PrescribedMotion<S>,
 }
 
 /// An angle or displacement as a function of time.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum MotionCourse<S> {
+pub(crate) enum PrescribedMotion<S> {
     /// Coefficients of 1, t, t², …; at least one.
     Polynomial(Vec<S>),
     /// A sine of time about a mean.
@@ -77,18 +77,18 @@ impl<S: Scalar> Drive<S> {
     }
 }
 
-impl<S: Scalar> MotionCourse<S> {
+impl<S: Scalar> PrescribedMotion<S> {
     /// The course with every parameter replaced by `f` of it.
-    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> MotionCourse<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> PrescribedMotion<T> {
         let mut list = |list: &[S]| list.iter().map(|&x| f(x)).collect::<Vec<T>>();
         match self {
-            Self::Polynomial(coefficients) => MotionCourse::Polynomial(list(coefficients)),
+            Self::Polynomial(coefficients) => PrescribedMotion::Polynomial(list(coefficients)),
             Self::Harmonic {
                 mean,
                 amplitude,
                 frequency,
                 phase,
-            } => MotionCourse::Harmonic {
+            } => PrescribedMotion::Harmonic {
                 mean: f(*mean),
                 amplitude: f(*amplitude),
                 frequency: f(*frequency),
@@ -98,7 +98,7 @@ impl<S: Scalar> MotionCourse<S> {
                 times,
                 values,
                 interpolation,
-            } => MotionCourse::Table {
+            } => PrescribedMotion::Table {
                 times: list(times),
                 values: list(values),
                 interpolation: *interpolation,
@@ -121,9 +121,9 @@ impl<S: Scalar> MotionCourse<S> {
                 values,
                 interpolation,
             } => match interval(times, time.re()) {
-                Place::Before => held(values[0]),
-                Place::After => held(values[values.len() - 1]),
-                Place::Inside(k) => {
+                Bracket::Before => held(values[0]),
+                Bracket::After => held(values[values.len() - 1]),
+                Bracket::Inside(k) => {
                     let (times, values) = (around(times, k), around(values, k));
                     motion(*interpolation, &times, &values, time)
                 }
@@ -132,7 +132,7 @@ impl<S: Scalar> MotionCourse<S> {
     }
 }
 
-impl MotionCourse<f64> {
+impl PrescribedMotion<f64> {
     /// Adds the derivatives of w0 m + w1 ṁ + w2 m̈ by the parameters, at `time`, to those in `own`
     /// (of the same kind); returns that by time.
     pub(crate) fn pull_back(&self, time: f64, weights: [f64; 3], own: &mut Self) -> f64 {
@@ -183,9 +183,9 @@ impl MotionCourse<f64> {
                     ..
                 },
             ) => match interval(times, time) {
-                Place::Before => by_values[0] += w0,
-                Place::After => *by_values.last_mut().expect("a table has values") += w0,
-                Place::Inside(k) => {
+                Bracket::Before => by_values[0] += w0,
+                Bracket::After => *by_values.last_mut().expect("a table has values") += w0,
+                Bracket::Inside(k) => {
                     let lists = (&times[..], &values[..]);
                     by_points(k, lists, (by_times, by_values), |t, m| {
                         along(motion(*interpolation, t, m, now))
@@ -222,8 +222,8 @@ mod tests {
     use crate::math::scalar::{COMPLEX_STEP, Complex64};
     use crate::model::table::breaks;
 
-    fn table(interpolation: Interpolation) -> MotionCourse<f64> {
-        MotionCourse::Table {
+    fn table(interpolation: Interpolation) -> PrescribedMotion<f64> {
+        PrescribedMotion::Table {
             times: vec![0.0, 0.5, 0.8, 1.5, 2.0],
             values: vec![1.0, 2.0, 5.0, 5.5, 4.0],
             interpolation,
@@ -236,11 +236,11 @@ mod tests {
         Interpolation::Spline,
     ];
 
-    fn courses() -> [MotionCourse<f64>; 5] {
+    fn courses() -> [PrescribedMotion<f64>; 5] {
         let [linear, monotone, spline] = ALL.map(table);
         [
-            MotionCourse::Polynomial(vec![0.3, -1.2, 0.7, 0.25]),
-            MotionCourse::Harmonic {
+            PrescribedMotion::Polynomial(vec![0.3, -1.2, 0.7, 0.25]),
+            PrescribedMotion::Harmonic {
                 mean: 0.2,
                 amplitude: 1.3,
                 frequency: 0.8,
@@ -271,7 +271,7 @@ mod tests {
     fn a_table_meets_its_points_with_continuous_curvature() {
         for interpolation in ALL {
             let course = table(interpolation);
-            let MotionCourse::Table { times, values, .. } = &course else {
+            let PrescribedMotion::Table { times, values, .. } = &course else {
                 unreachable!("a table")
             };
             for (&t, &m) in times.iter().zip(values) {
@@ -315,7 +315,7 @@ mod tests {
             }
             for interpolation in [Interpolation::Linear, Interpolation::Monotone] {
                 let (times, values) = (times.clone(), values.clone());
-                let course = MotionCourse::Table {
+                let course = PrescribedMotion::Table {
                     times: times.clone(),
                     values: values.clone(),
                     interpolation,
@@ -344,7 +344,7 @@ mod tests {
         let times: Vec<f64> = (0..=20).map(|i| 0.05 * f64::from(i)).collect();
         let values: Vec<f64> = times.iter().map(|t| (1.5 * t).sin()).collect();
         let interpolation = Interpolation::Monotone;
-        let course = MotionCourse::Table {
+        let course = PrescribedMotion::Table {
             times,
             values,
             interpolation,

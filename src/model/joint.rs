@@ -14,15 +14,15 @@
 //! A drive prescribes what a joint would leave free by one more row, see [`super::drive`]. The
 //! equations, Jacobians and pull-backs of the rows are in `system::constraint`.
 
-use super::drive::{Drive, Freedom};
+use super::drive::{DegreeOfFreedom, Drive};
 use crate::math::{Scalar, Vec3};
 
-impl Freedom {
+impl DegreeOfFreedom {
     /// The row that holds this motion where a drive has it.
     pub(crate) fn driven_row(self) -> ConstraintRow {
         match self {
-            Freedom::Turn => Perpendicular { a: 0, b: 1 },
-            Freedom::Slide => Sliding { a: 2 },
+            DegreeOfFreedom::Rotation => Perpendicular { a: 0, b: 1 },
+            DegreeOfFreedom::Translation => Sliding { a: 2 },
         }
     }
 }
@@ -174,11 +174,11 @@ impl JointKind {
     }
 
     /// What the joint allows along or about its axis, turning first.
-    pub(crate) fn freedoms(self) -> &'static [Freedom] {
+    pub(crate) fn freedoms(self) -> &'static [DegreeOfFreedom] {
         match self {
-            JointKind::Revolute | JointKind::Planar => &[Freedom::Turn],
-            JointKind::Prismatic => &[Freedom::Slide],
-            JointKind::Cylindrical => &[Freedom::Turn, Freedom::Slide],
+            JointKind::Revolute | JointKind::Planar => &[DegreeOfFreedom::Rotation],
+            JointKind::Prismatic => &[DegreeOfFreedom::Translation],
+            JointKind::Cylindrical => &[DegreeOfFreedom::Rotation, DegreeOfFreedom::Translation],
             JointKind::Spherical | JointKind::Universal | JointKind::Rod | JointKind::Weld => &[],
         }
     }
@@ -283,7 +283,7 @@ impl<S> Joint<S> {
 
     /// Frame axes that both bodies share once the joint is closed.
     pub(crate) fn common_axes(&self) -> &'static [usize] {
-        let turned = |drive: &Drive<S>| drive.freedom == Freedom::Turn;
+        let turned = |drive: &Drive<S>| drive.freedom == DegreeOfFreedom::Rotation;
         match self.drives.iter().any(turned) {
             true => &[0, 1, 2],
             false => self.kind.common_axes(),

@@ -1,6 +1,6 @@
 //! Loads: forces and torques on bodies, springs, dampers and friction.
 //!
-//! With m(t) a [`Course`], d = P_A − P_B the distance of two points, l = √(dᵀd), e the axis of a
+//! With m(t) a [`TimeFunction`], d = P_A − P_B the distance of two points, l = √(dᵀd), e the axis of a
 //! joint, φ the angle of its body A relative to body B about e, s = e · d its displacement, and
 //! w a width, each load acts on body A by
 //!
@@ -17,8 +17,8 @@
 //! and by the opposite on body B, so that momentum is exchanged and never made. Forces and their
 //! derivatives are in `system::loads`.
 
-use super::course::Course;
-use super::drive::Freedom;
+use super::drive::DegreeOfFreedom;
+use super::time_function::TimeFunction;
 use crate::math::{Scalar, Vec3};
 
 /// A named load.
@@ -53,7 +53,7 @@ pub(crate) enum LoadKind<S> {
         /// What the direction is fixed in.
         axes: Axes,
         /// m(t) (N).
-        magnitude: Course<S>,
+        magnitude: TimeFunction<S>,
     },
     /// A torque on a body.
     Torque {
@@ -64,7 +64,7 @@ pub(crate) enum LoadKind<S> {
         /// What the direction is fixed in.
         axes: Axes,
         /// m(t) (N m).
-        magnitude: Course<S>,
+        magnitude: TimeFunction<S>,
     },
     /// A spring with a damper between points of two bodies. The points must stay apart.
     Spring {
@@ -103,7 +103,7 @@ pub(crate) enum LoadKind<S> {
         /// The joint.
         joint: usize,
         /// Which motion is damped.
-        freedom: Freedom,
+        freedom: DegreeOfFreedom,
         /// c (N m s/rad or N s/m).
         coefficient: S,
     },
@@ -120,7 +120,7 @@ pub(crate) enum LoadKind<S> {
         /// The joint.
         joint: usize,
         /// Which motion is opposed.
-        freedom: Freedom,
+        freedom: DegreeOfFreedom,
         /// Size μ of the torque or force (N m or N).
         size: S,
         /// Rate w at which tanh 1 of it acts (rad/s or m/s).
@@ -140,7 +140,7 @@ impl<S: Scalar> Load<S> {
 
 impl<S: Scalar> LoadKind<S> {
     /// How the load changes in time, if it does.
-    pub(crate) fn course(&self) -> Option<&Course<S>> {
+    pub(crate) fn course(&self) -> Option<&TimeFunction<S>> {
         match self {
             LoadKind::Force { magnitude, .. } | LoadKind::Torque { magnitude, .. } => {
                 Some(magnitude)

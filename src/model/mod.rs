@@ -5,21 +5,21 @@
 //! steps or dual numbers. A model of zeros in `f64` also serves as the cotangent of a model:
 //! every parameter's place then holds the derivative of a function with respect to it.
 
-pub(crate) mod course;
 pub(crate) mod drive;
 pub(crate) mod joint;
 pub(crate) mod load;
 pub(crate) mod mobility;
 pub(crate) mod rigid_body;
 pub(crate) mod table;
+pub(crate) mod time_function;
 
-pub(crate) use course::Course;
-pub(crate) use drive::{Drive, Freedom, MotionCourse};
+pub(crate) use drive::{DegreeOfFreedom, Drive, PrescribedMotion};
 pub(crate) use joint::{ConstraintRow, Joint, JointFrame, JointKind};
 pub(crate) use load::{Axes, Load, LoadKind};
 pub(crate) use mobility::Mobility;
 pub(crate) use rigid_body::RigidBody;
 pub(crate) use table::Interpolation;
+pub(crate) use time_function::TimeFunction;
 
 use crate::math::{Scalar, Vec3};
 

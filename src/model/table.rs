@@ -62,23 +62,23 @@ pub(crate) fn breaks<S: Scalar>(
 }
 
 /// Where a time lies in a table.
-pub(super) enum Place {
+pub(super) enum Bracket {
     Before,
     /// Between the instants k and k + 1.
     Inside(usize),
     After,
 }
 
-pub(super) fn interval<S: Scalar>(times: &[S], time: f64) -> Place {
+pub(super) fn interval<S: Scalar>(times: &[S], time: f64) -> Bracket {
     match times.partition_point(|t| t.re() <= time) {
-        0 => Place::Before,
-        after if after == times.len() => Place::After,
-        after => Place::Inside(after - 1),
+        0 => Bracket::Before,
+        after if after == times.len() => Bracket::After,
+        after => Bracket::Inside(after - 1),
     }
 }
 
 /// The points k − 1 … k + 2, as far as there are any: their instants or their values.
-pub(super) type Around<S> = [Option<S>; 4];
+pub(super) type Neighbours<S> = [Option<S>; 4];
 
 fn stencil(k: usize, count: usize) -> [Option<usize>; 4] {
     let there = |i: Option<usize>| i.filter(|&i| i < count);
@@ -86,7 +86,7 @@ fn stencil(k: usize, count: usize) -> [Option<usize>; 4] {
 }
 
 /// The numbers of a list around the interval k.
-pub(super) fn around<S: Scalar>(list: &[S], k: usize) -> Around<S> {
+pub(super) fn around<S: Scalar>(list: &[S], k: usize) -> Neighbours<S> {
     stencil(k, list.len()).map(|i| i.map(|i| list[i]))
 }
 
@@ -96,11 +96,11 @@ pub(super) fn by_points(
     k: usize,
     (times, values): (&[f64], &[f64]),
     (by_times, by_values): (&mut [f64], &mut [f64]),
-    slope: impl Fn(&Around<Dual>, &Around<Dual>) -> f64,
+    slope: impl Fn(&Neighbours<Dual>, &Neighbours<Dual>) -> f64,
 ) {
     let lift = |list: &[f64]| around(list, k).map(|x| x.map(Dual::from));
     let (t, m) = (lift(times), lift(values));
-    let moved = |list: &Around<Dual>, j: usize| {
+    let moved = |list: &Neighbours<Dual>, j: usize| {
         let mut list = *list;
         list[j] = list[j].map(|x| Dual::new(x.re, 1.0));
         list
@@ -123,7 +123,7 @@ struct Interval<S> {
 }
 
 impl<S: Scalar> Interval<S> {
-    fn of(times: &Around<S>, values: &Around<S>) -> Self {
+    fn of(times: &Neighbours<S>, values: &Neighbours<S>) -> Self {
         let point = |i: usize| times[i].zip(values[i]);
         let (Some(start), Some(end)) = (point(1), point(2)) else {
             unreachable!("the two points around a time are in the table");
@@ -151,8 +151,8 @@ impl<S: Scalar> Interval<S> {
 /// A magnitude at `time`.
 pub(super) fn magnitude<S: Scalar>(
     interpolation: Interpolation,
-    times: &Around<S>,
-    values: &Around<S>,
+    times: &Neighbours<S>,
+    values: &Neighbours<S>,
     time: S,
 ) -> S {
     let at = Interval::of(times, values);
@@ -169,8 +169,8 @@ pub(super) fn magnitude<S: Scalar>(
 /// A motion and its first to third derivative at `time`.
 pub(super) fn motion<S: Scalar>(
     interpolation: Interpolation,
-    times: &Around<S>,
-    values: &Around<S>,
+    times: &Neighbours<S>,
+    values: &Neighbours<S>,
     time: S,
 ) -> [S; 4] {
     let at = Interval::of(times, values);

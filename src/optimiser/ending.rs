@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use super::nlp::Nlp;
 use super::outcome::{Counts, Kkt, Outcome, Status};
-use super::program::{Point, Program, Slopes, Trouble};
+use super::program::{Derivatives, EarlyExit, Point, Program};
 use super::quasi_newton::QuasiNewton;
 use super::scaling::Units;
 use super::state::{SavedState, Scaling};
@@ -19,10 +19,10 @@ use super::verdict::{
 const NEARBY: f64 = 1e-6;
 
 /// The final iterate of a method.
-pub(super) struct Finish {
+pub(super) struct FinalIterate {
     pub status: Status,
     pub point: Point,
-    pub slopes: Slopes,
+    pub slopes: Derivatives,
     pub multipliers: ScaledMultipliers,
     pub scaled: f64,
     /// Whether the conditions hold in the units of the user and no descent was found nearby.
@@ -34,14 +34,14 @@ pub(super) struct Finish {
     pub radius: f64,
 }
 
-impl Finish {
+impl FinalIterate {
     /// Sets the program to the units of this iterate.
     pub(crate) fn restore_units(&self, program: &mut Program<'_>) {
         program.set_units(&self.units);
     }
 
     /// Whether `other` is feasible and its objective is lower by more than the tolerance.
-    pub(crate) fn is_worse_than(&self, other: &Finish, program: &Program<'_>) -> bool {
+    pub(crate) fn is_worse_than(&self, other: &FinalIterate, program: &Program<'_>) -> bool {
         let (mine, theirs) = (self.objective(), other.objective());
         mine - theirs > program.options.tolerance * theirs.abs().max(program.unit_of_objective())
     }
@@ -56,12 +56,12 @@ impl Finish {
         self,
         program: &Program<'_>,
         point: Point,
-        slopes: Slopes,
-    ) -> Finish {
+        slopes: Derivatives,
+    ) -> FinalIterate {
         let (violation, j) = program.worst_violation(&point.c);
         let y = DVector::zeros(point.c.len());
         let multipliers = ScaledMultipliers::polished(program, &point, &slopes, &y);
-        Finish {
+        FinalIterate {
             status: Status::Infeasible {
                 constraint: program.constraint_name(j),
                 violation,
@@ -87,7 +87,7 @@ impl Finish {
     /// The same, with a new status if a method stalled: [`Status::Converged`] if the conditions
     /// hold in the units of the user, [`Status::AtPrecision`] if rounding caused the stall. In
     /// neither case may the Lagrangian fall nearby.
-    pub(crate) fn with_stall_named(mut self, program: &mut Program<'_>) -> Finish {
+    pub(crate) fn with_stall_named(mut self, program: &mut Program<'_>) -> FinalIterate {
         if self.status != Status::Stalled || self.is_solved(program) {
             return self;
         }
@@ -143,7 +143,7 @@ impl Finish {
 
 /// Replaces the final iterate of a run that did not converge by a better point of the run. If that
 /// is better by more than the tolerance, the run had not reached the precision of the objective.
-pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
+pub(super) fn best_of(program: &mut Program<'_>, finish: FinalIterate) -> FinalIterate {
     let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. })
         || finish.status == Status::Stalled && finish.is_solved(program);
     let at_precision = finish.status == Status::AtPrecision;
@@ -180,7 +180,7 @@ pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
     } else {
         finish.status.clone()
     };
-    Finish {
+    FinalIterate {
         status,
         point,
         slopes,
@@ -191,7 +191,11 @@ pub(super) fn best_of(program: &mut Program<'_>, finish: Finish) -> Finish {
 }
 
 /// The outcome if all variables are fixed.
-pub(super) fn without_freedom(program: &Program<'_>, point: Point, slopes: Slopes) -> Finish {
+pub(super) fn without_freedom(
+    program: &Program<'_>,
+    point: Point,
+    slopes: Derivatives,
+) -> FinalIterate {
     let (violation, j) = program.worst_violation(&point.c);
     let feasible = program.is_feasible(&point.c);
     let status = if feasible {
@@ -202,18 +206,18 @@ pub(super) fn without_freedom(program: &Program<'_>, point: Point, slopes: Slope
             violation,
         }
     };
-    Finish {
+    FinalIterate {
         status,
         ..unfinished(program, point, slopes)
     }
 }
 
 /// The outcome if the observer stops the run at the start.
-pub(super) fn unfinished(program: &Program<'_>, point: Point, slopes: Slopes) -> Finish {
+pub(super) fn unfinished(program: &Program<'_>, point: Point, slopes: Derivatives) -> FinalIterate {
     let y = DVector::zeros(point.c.len());
     let multipliers = ScaledMultipliers::from_rows(program, &point, &slopes, y);
     let options = program.options;
-    Finish {
+    FinalIterate {
         status: Status::Interrupted,
         b: QuasiNewton::new(point.x.len(), options.dense_limit, options.memory),
         scaled: scaled_residual(program, &point, &slopes, &multipliers),
@@ -229,7 +233,7 @@ pub(super) fn unfinished(program: &Program<'_>, point: Point, slopes: Slopes) ->
 
 pub(super) fn status_of(
     program: &Program<'_>,
-    result: Result<Ending, Trouble>,
+    result: Result<Ending, EarlyExit>,
     at: &Point,
 ) -> Status {
     match result {
@@ -242,13 +246,13 @@ pub(super) fn status_of(
                 violation,
             }
         }
-        Ok(Ending::Stalled | Ending::Misscaled) | Err(Trouble::Failed(_)) => Status::Stalled,
-        Err(Trouble::Halt(status)) => status,
+        Ok(Ending::Stalled | Ending::Misscaled) | Err(EarlyExit::Failed(_)) => Status::Stalled,
+        Err(EarlyExit::Halt(status)) => status,
     }
 }
 
 /// State at the last point, which may differ from the best.
-pub(super) fn state_of(program: &Program<'_>, finish: &Finish) -> SavedState {
+pub(super) fn state_of(program: &Program<'_>, finish: &FinalIterate) -> SavedState {
     SavedState {
         x: program.to_user(&finish.point.x),
         objective: finish.point.f / program.scaling.objective,
@@ -263,10 +267,10 @@ pub(super) fn state_of(program: &Program<'_>, finish: &Finish) -> SavedState {
     }
 }
 
-pub(super) fn outcome(program: &Program<'_>, finish: Finish, state: SavedState) -> Outcome {
+pub(super) fn outcome(program: &Program<'_>, finish: FinalIterate, state: SavedState) -> Outcome {
     let kkt = finish.kkt(program);
     let solved = finish.is_solved(program);
-    let Finish {
+    let FinalIterate {
         mut status,
         point,
         slopes,

@@ -8,7 +8,7 @@ use super::filter::Filter;
 use super::iterate::{Iterate, Layout};
 use super::line_search::{Accepted, LineSearch, infeasibility};
 use super::observer::Phase;
-use super::program::{Point, Program, Progress, Slopes, Trouble};
+use super::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use super::quasi_newton::QuasiNewton;
 use super::steering::{Goal, TrustRegion};
 use super::trust_region::Ending;
@@ -53,7 +53,7 @@ impl InteriorPoint {
     pub(crate) fn new(
         program: &Program<'_>,
         point: Point,
-        slopes: Slopes,
+        slopes: Derivatives,
         push: f64,
     ) -> InteriorPoint {
         let mut layout = Layout::new(program);
@@ -99,7 +99,7 @@ impl InteriorPoint {
     }
 
     /// Continues with multipliers of an earlier run.
-    pub(crate) fn adopt(&mut self, multipliers: &ScaledMultipliers, b: QuasiNewton, mu: f64) {
+    pub(crate) fn warm_start(&mut self, multipliers: &ScaledMultipliers, b: QuasiNewton, mu: f64) {
         let n = self.layout.n;
         self.barrier.mu = mu;
         if b.order() == n {
@@ -135,11 +135,11 @@ impl InteriorPoint {
     }
 
     /// Iterates until the run ends.
-    pub(crate) fn run(&mut self, program: &mut Program<'_>) -> Result<Ending, Trouble> {
+    pub(crate) fn run(&mut self, program: &mut Program<'_>) -> Result<Ending, EarlyExit> {
         let mut failures = 0;
         let mut lost = 0;
         loop {
-            self.wake(program);
+            self.activate_bounds(program);
             match self.verdict(program) {
                 Verdict::Solved => return Ok(Ending::Reached),
                 Verdict::SolvedInScaledUnits if self.better_scale(program).is_some() => {
@@ -200,7 +200,7 @@ impl InteriorPoint {
     }
 
     /// Adds barriers for the idle variables on which something depends at this point.
-    fn wake(&mut self, program: &Program<'_>) {
+    fn activate_bounds(&mut self, program: &Program<'_>) {
         let slopes = &self.at.slopes;
         let (idle, woken): (Vec<usize>, Vec<usize>) =
             self.idle.iter().partition(|&&k| slopes.is_idle(k));
@@ -269,7 +269,7 @@ impl InteriorPoint {
         accepted: Accepted,
         dual: f64,
         regularisation: f64,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), EarlyExit> {
         let Accepted {
             point,
             slopes,
@@ -348,7 +348,7 @@ impl InteriorPoint {
         &mut self,
         program: &mut Program<'_>,
         failures: usize,
-    ) -> Result<Option<Ending>, Trouble> {
+    ) -> Result<Option<Ending>, EarlyExit> {
         let theta = self.theta();
         let small = 1e-2 * program.options.tolerance.min(program.least_allowed());
         if theta <= small || failures > 3 {
@@ -370,7 +370,7 @@ impl InteriorPoint {
         program: &mut Program<'_>,
         theta: f64,
         gain: f64,
-    ) -> Result<Option<Ending>, Trouble> {
+    ) -> Result<Option<Ending>, EarlyExit> {
         let phi = self.layout.barrier_function(
             self.at.point.f,
             &self.at.point.x,

@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::program::{Point, Program, Slopes};
+use super::program::{Derivatives, Point, Program};
 
 /// Rows, slacks and bounds of the barrier problem.
 ///
@@ -21,7 +21,7 @@ pub(super) struct Layout {
 #[derive(Clone, Debug)]
 pub(super) struct Iterate {
     pub point: Point,
-    pub slopes: Slopes,
+    pub slopes: Derivatives,
     /// Slacks, of the length of [`Layout::slack_rows`].
     pub s: DVector<f64>,
     /// Multipliers of the rows.

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::elastic_qp::ElasticQp;
 use super::observer::Phase;
-use super::program::{Point, Program, Progress, Slopes, Trouble};
+use super::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use super::qp::{Hessian, QpData};
 use super::quasi_newton::Spectrum;
 
@@ -55,8 +55,8 @@ impl Sides {
 pub(super) fn least_violation(
     program: &mut Program<'_>,
     mut point: Point,
-    mut slopes: Slopes,
-) -> (Point, Slopes) {
+    mut slopes: Derivatives,
+) -> (Point, Derivatives) {
     let sides = Sides::of(program);
     let mut radius = point.x.amax().max(1.0);
     for _ in 0..STEPS {
@@ -91,8 +91,8 @@ pub(super) fn least_violation(
                     false
                 }
             }
-            Err(Trouble::Failed(_)) => false,
-            Err(Trouble::Halt(_)) => break,
+            Err(EarlyExit::Failed(_)) => false,
+            Err(EarlyExit::Halt(_)) => break,
         };
         if !accepted {
             radius = 0.25 * size.min(radius);
@@ -119,7 +119,7 @@ fn step(
     program: &mut Program<'_>,
     sides: &Sides,
     point: &Point,
-    slopes: &Slopes,
+    slopes: &Derivatives,
     worst: f64,
     radius: f64,
 ) -> Option<(DVector<f64>, f64)> {

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::direction::{Direction, NewtonSystem};
 use super::filter::{Filter, MARGIN};
 use super::iterate::{Iterate, Layout};
-use super::program::{Point, Program, Slopes, Trouble};
+use super::program::{Derivatives, EarlyExit, Point, Program};
 use super::quasi_newton::QuasiNewton;
 
 /// Part of the longest step below which the search ends.
@@ -48,7 +48,7 @@ pub(super) fn infeasibility(r: &DVector<f64>, c: &DVector<f64>) -> f64 {
 /// A point that the search accepted.
 pub(super) struct Accepted {
     pub point: Point,
-    pub slopes: Slopes,
+    pub slopes: Derivatives,
     pub s: DVector<f64>,
     pub alpha: f64,
     /// The direction of the accepted step.
@@ -71,7 +71,7 @@ pub(super) struct LineSearch<'s> {
 }
 
 enum Trial {
-    Accepted(Box<(Point, Slopes, DVector<f64>)>),
+    Accepted(Box<(Point, Derivatives, DVector<f64>)>),
     Refused {
         theta: f64,
         phi: f64,
@@ -96,7 +96,7 @@ impl LineSearch<'_> {
         b: &mut QuasiNewton,
         filter: &mut Filter,
         direction: Direction,
-    ) -> Result<Option<Accepted>, Trouble> {
+    ) -> Result<Option<Accepted>, EarlyExit> {
         let r = self.layout.residual(&self.at.point.c, &self.at.s);
         let here = Measure {
             theta: infeasibility(&r, &self.at.point.c),
@@ -197,7 +197,7 @@ impl LineSearch<'_> {
         point: Point,
         direction: &Direction,
         alpha: f64,
-    ) -> Result<Option<(Point, Slopes, DVector<f64>)>, Trouble> {
+    ) -> Result<Option<(Point, Derivatives, DVector<f64>)>, EarlyExit> {
         let before = self.at.residuals(self.layout, self.mu);
         let s = &self.at.s + &direction.s * alpha;
         let rise = self.layout.barrier_function(point.f, &point.x, &s, self.mu) - here.phi;
@@ -206,7 +206,7 @@ impl LineSearch<'_> {
         }
         let slopes = match program.gradients(&point.x) {
             Ok(slopes) => slopes,
-            Err(Trouble::Failed(_)) => return Ok(None),
+            Err(EarlyExit::Failed(_)) => return Ok(None),
             Err(halt) => return Err(halt),
         };
         let dual = direction.dual_limit(self.at, self.tau);
@@ -265,12 +265,12 @@ impl LineSearch<'_> {
         direction: &Direction,
         alpha: f64,
         alpha_test: f64,
-    ) -> Result<Trial, Trouble> {
+    ) -> Result<Trial, EarlyExit> {
         let x = &self.at.point.x + &direction.x * alpha;
         let s = &self.at.s + &direction.s * alpha;
         let point = match program.evaluate(&x) {
             Ok(point) => point,
-            Err(Trouble::Failed(_)) => return Ok(Trial::Undefined),
+            Err(EarlyExit::Failed(_)) => return Ok(Trial::Undefined),
             Err(halt) => return Err(halt),
         };
         let r = self.layout.residual(&point.c, &s);
@@ -289,7 +289,7 @@ impl LineSearch<'_> {
         }
         match program.gradients(&x) {
             Ok(slopes) => Ok(Trial::Accepted(Box::new((point, slopes, s)))),
-            Err(Trouble::Failed(_)) => Ok(Trial::Undefined),
+            Err(EarlyExit::Failed(_)) => Ok(Trial::Undefined),
             Err(halt) => Err(halt),
         }
     }
@@ -313,7 +313,7 @@ impl LineSearch<'_> {
         filter: &mut Filter,
         here: &Measure,
         direction: Direction,
-        (point, slopes, s): (Point, Slopes, DVector<f64>),
+        (point, slopes, s): (Point, Derivatives, DVector<f64>),
         alpha: f64,
         trials: usize,
     ) -> Accepted {
@@ -339,7 +339,7 @@ impl LineSearch<'_> {
         here: &Measure,
         (alpha_test, mut last, mut c): (f64, f64, DVector<f64>),
         trials: &mut usize,
-    ) -> Result<Option<Accepted>, Trouble> {
+    ) -> Result<Option<Accepted>, EarlyExit> {
         let mut r = self.layout.residual(&self.at.point.c, &self.at.s);
         let mut alpha = alpha_test;
         for _ in 0..CORRECTIONS {

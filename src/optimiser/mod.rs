@@ -33,7 +33,7 @@ mod well_posed;
 pub use nlp::{Evaluation, EvaluationFailure, Gradients, Nlp};
 pub use observer::{Observer, Phase, Row, Silent};
 pub use options::{Barrier, Method, Options};
-pub use outcome::{ActiveBound, Counts, FailedDesign, Kkt, Outcome, Side, Status};
+pub use outcome::{ActiveBound, BoundSide, Counts, FailedDesign, Kkt, Outcome, Status};
 pub use quasi_newton::QuasiNewton;
 pub use solve::{resume, solve};
 pub use state::{Multipliers, SavedState, Scaling};

@@ -104,7 +104,7 @@ pub struct ActiveBound {
     /// Name of the variable or constraint.
     pub name: String,
     /// Which bound.
-    pub side: Side,
+    pub side: BoundSide,
     /// Multiplier, never negative, in the units of the user.
     pub multiplier: f64,
 }
@@ -112,7 +112,7 @@ pub struct ActiveBound {
 /// Side of a pair of bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Side {
+pub enum BoundSide {
     /// Lower bound.
     Lower,
     /// Upper bound.

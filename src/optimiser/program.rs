@@ -31,7 +31,7 @@ pub(super) struct Point {
 
 /// Derivatives of the scaled functions.
 #[derive(Clone, Debug)]
-pub(super) struct Slopes {
+pub(super) struct Derivatives {
     pub g: DVector<f64>,
     pub a: DMatrix<f64>,
     /// Derivatives in the fixed variables, in the user's units of these.
@@ -39,7 +39,7 @@ pub(super) struct Slopes {
     pub fixed_a: DMatrix<f64>,
 }
 
-impl Slopes {
+impl Derivatives {
     /// Whether neither objective nor rows depend on variable `k` here.
     pub(crate) fn is_idle(&self, k: usize) -> bool {
         self.g[k] == 0.0 && self.a.column(k).iter().all(|v| *v == 0.0)
@@ -48,7 +48,7 @@ impl Slopes {
 
 /// Why an evaluation gave no value.
 #[derive(Clone, Debug)]
-pub(super) enum Trouble {
+pub(super) enum EarlyExit {
     /// The functions are undefined here. Another point may do.
     Failed(EvaluationFailure),
     /// The run must end.
@@ -223,7 +223,7 @@ impl<'a> Program<'a> {
     }
 
     /// Values of the scaled functions at `x`.
-    pub(crate) fn evaluate(&mut self, x: &DVector<f64>) -> Result<Point, Trouble> {
+    pub(crate) fn evaluate(&mut self, x: &DVector<f64>) -> Result<Point, EarlyExit> {
         self.check_limits()?;
         let full = self.to_user(x);
         let clock = Instant::now();
@@ -260,7 +260,7 @@ impl<'a> Program<'a> {
     }
 
     /// Derivatives of the scaled functions at `x`.
-    pub(crate) fn gradients(&mut self, x: &DVector<f64>) -> Result<Slopes, Trouble> {
+    pub(crate) fn gradients(&mut self, x: &DVector<f64>) -> Result<Derivatives, EarlyExit> {
         let full = self.to_user(x);
         let clock = Instant::now();
         let mut result = self.nlp.gradients(&full);
@@ -300,7 +300,7 @@ impl<'a> Program<'a> {
         }
         let fixed = &self.fixed;
         let fixed_g = fixed.iter().map(|&i| objective[i] * scaling.objective);
-        let slopes = Slopes {
+        let slopes = Derivatives {
             fixed_g: DVector::from_iterator(fixed.len(), fixed_g),
             fixed_a: DMatrix::from_fn(rows.len(), fixed.len(), |r, k| {
                 jacobian[(rows[r], fixed[k])] * scaling.constraints[rows[r]]
@@ -315,7 +315,7 @@ impl<'a> Program<'a> {
         Ok(slopes)
     }
 
-    fn record(&mut self, x: Vec<f64>, failure: EvaluationFailure) -> Trouble {
+    fn record(&mut self, x: Vec<f64>, failure: EvaluationFailure) -> EarlyExit {
         self.counts.failures += 1;
         if self.failed.len() < FAILED_DESIGNS_KEPT {
             self.failed.push(FailedDesign {
@@ -323,15 +323,15 @@ impl<'a> Program<'a> {
                 what: failure.to_string(),
             });
         }
-        Trouble::Failed(failure)
+        EarlyExit::Failed(failure)
     }
 
-    fn check_limits(&self) -> Result<(), Trouble> {
+    fn check_limits(&self) -> Result<(), EarlyExit> {
         if self.counts.evaluations >= self.allowed.evaluations {
-            return Err(Trouble::Halt(Status::EvaluationLimit));
+            return Err(EarlyExit::Halt(Status::EvaluationLimit));
         }
         match self.options.max_seconds {
-            Some(limit) if self.seconds() >= limit => Err(Trouble::Halt(Status::TimeLimit)),
+            Some(limit) if self.seconds() >= limit => Err(EarlyExit::Halt(Status::TimeLimit)),
             _ => Ok(()),
         }
     }
@@ -342,7 +342,7 @@ impl<'a> Program<'a> {
     }
 
     /// Allows the running method the part `share` of all iterations and evaluations.
-    pub(crate) fn allow(&mut self, share: f64) {
+    pub(crate) fn set_budget(&mut self, share: f64) {
         let part = |all: usize| (share * all as f64).ceil() as usize;
         self.allowed = Allowed {
             iterations: part(self.options.max_iterations),
@@ -412,7 +412,7 @@ impl<'a> Program<'a> {
     }
 
     /// Tells the observer of an iteration.
-    pub(crate) fn report(&mut self, point: &Point, progress: &Progress) -> Result<(), Trouble> {
+    pub(crate) fn report(&mut self, point: &Point, progress: &Progress) -> Result<(), EarlyExit> {
         self.keep_best(point);
         let f = point.f / self.scaling.objective;
         self.first.get_or_insert_with(|| (point.x.clone(), f));
@@ -436,15 +436,15 @@ impl<'a> Program<'a> {
         };
         match self.observer.iteration(&row) {
             ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(Trouble::Halt(Status::Interrupted)),
+            ControlFlow::Break(()) => Err(EarlyExit::Halt(Status::Interrupted)),
         }
     }
 
     /// Counts an iteration and checks the limits before it.
-    pub(crate) fn next_iteration(&mut self) -> Result<(), Trouble> {
+    pub(crate) fn next_iteration(&mut self) -> Result<(), EarlyExit> {
         self.check_limits()?;
         if self.counts.iterations >= self.allowed.iterations {
-            return Err(Trouble::Halt(Status::IterationLimit));
+            return Err(EarlyExit::Halt(Status::IterationLimit));
         }
         self.counts.iterations += 1;
         Ok(())

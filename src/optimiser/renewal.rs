@@ -1,8 +1,8 @@
 //! Restart of a stalled method, in units that suit the point where it stalled.
 
-use super::ending::Finish;
+use super::ending::FinalIterate;
 use super::outcome::Status;
-use super::program::{Point, Program, Slopes, Trouble};
+use super::program::{Derivatives, EarlyExit, Point, Program};
 
 /// Largest number of restarts.
 const RENEWALS: usize = 6;
@@ -12,9 +12,9 @@ const RENEWALS: usize = 6;
 /// improves. Only after a restart without improvement may the end be [`Status::AtPrecision`].
 pub(super) fn renewed(
     program: &mut Program<'_>,
-    mut finish: Finish,
-    run: impl Fn(&mut Program<'_>, (Point, Slopes)) -> Finish,
-) -> Finish {
+    mut finish: FinalIterate,
+    run: impl Fn(&mut Program<'_>, (Point, Derivatives)) -> FinalIterate,
+) -> FinalIterate {
     let norms = program.gradient_norms.clone();
     for _ in 0..RENEWALS {
         if finish.status != Status::Stalled || finish.is_solved(program) {
@@ -31,7 +31,7 @@ pub(super) fn renewed(
             Ok(first) => run(program, first),
             Err(trouble) => {
                 finish.restore_units(program);
-                if let Trouble::Halt(status) = trouble {
+                if let EarlyExit::Halt(status) = trouble {
                     finish.status = status;
                 }
                 return finish;

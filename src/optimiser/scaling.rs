@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use nalgebra::DVector;
 
-use super::program::{Point, Program, Slopes, Trouble};
+use super::program::{Derivatives, EarlyExit, Point, Program};
 use super::state::Scaling;
 
 /// An objective whose gradient at the start is below `FLAT` is multiplied until the gradient is
@@ -37,7 +37,7 @@ pub(super) struct Units {
 impl Program<'_> {
     /// Sets the scale factors of the functions from the derivatives `slopes`, and converts point
     /// and slopes.
-    pub(crate) fn scale(&mut self, point: &mut Point, slopes: &mut Slopes) {
+    pub(crate) fn scale(&mut self, point: &mut Point, slopes: &mut Derivatives) {
         let limit = self.options.scaling_gradient;
         let mut units = self.units();
         let norm = slopes.g.amax() / self.scaling.objective;
@@ -64,7 +64,7 @@ impl Program<'_> {
         &mut self,
         saved: &Scaling,
         point: &mut Point,
-        slopes: &mut Slopes,
+        slopes: &mut Derivatives,
     ) {
         // So many entries that later points cannot lower it.
         self.gradient_norms = vec![saved.typical_gradient; LARGEST_LEFT_OUT + 1];
@@ -147,7 +147,7 @@ impl Program<'_> {
     }
 
     /// Converts program, point and slopes to `units`.
-    fn change_units(&mut self, units: &Units, point: &mut Point, slopes: &mut Slopes) {
+    fn change_units(&mut self, units: &Units, point: &mut Point, slopes: &mut Derivatives) {
         let objective = units.objective / self.scaling.objective;
         let length = units.length / self.length;
         point.x /= length;
@@ -166,7 +166,7 @@ impl Program<'_> {
     /// New units at a point where a method stalled. The size of the point becomes the unit of the
     /// variables if it is far from one. Functions are scaled by their derivatives there; earlier
     /// derivatives are forgotten. Returns the point and its derivatives in these units.
-    pub(crate) fn renew(&mut self, mut point: Point) -> Result<(Point, Slopes), Trouble> {
+    pub(crate) fn renew(&mut self, mut point: Point) -> Result<(Point, Derivatives), EarlyExit> {
         let size = point.x.amax();
         if size > 0.0 && !NEAR_ONE.contains(&size) {
             let mut units = self.units();
@@ -181,7 +181,7 @@ impl Program<'_> {
     }
 
     /// Records gradients and zero rows and columns for the scaling report, before scaling.
-    pub(crate) fn survey(&mut self, slopes: &Slopes) {
+    pub(crate) fn record_scale(&mut self, slopes: &Derivatives) {
         let unit = |k: usize| self.scaling.variables[self.free[k]];
         let in_user_units = |v: f64, k: usize| (v / unit(k)).abs();
         let n = self.free.len();

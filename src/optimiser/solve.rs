@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::ending::{
-    Finish, best_of, outcome, state_of, status_of, unfinished, untried, without_freedom,
+    FinalIterate, best_of, outcome, state_of, status_of, unfinished, untried, without_freedom,
     without_values,
 };
 use super::interior_point::InteriorPoint;
@@ -12,9 +12,9 @@ use super::nlp::Nlp;
 use super::observer::{Observer, Phase};
 use super::options::{Method, Options};
 use super::outcome::{Outcome, Status};
-use super::program::{Point, Program, Progress, Slopes, Trouble};
+use super::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use super::renewal::renewed;
-use super::start::{Around, first_point, look_around};
+use super::start::{Neighbourhood, first_point, look_around};
 use super::state::SavedState;
 use super::steering::{Goal, TrustRegion};
 use super::trust_region::Ending;
@@ -116,8 +116,8 @@ fn run(
     };
     let (mut point, mut slopes) = match first_point(&mut program, push) {
         Ok(first) => first,
-        Err(Trouble::Halt(status)) => return without_values(&program, status),
-        Err(Trouble::Failed(failure)) => {
+        Err(EarlyExit::Halt(status)) => return without_values(&program, status),
+        Err(EarlyExit::Failed(failure)) => {
             return without_values(
                 &program,
                 Status::UndefinedStart {
@@ -126,7 +126,7 @@ fn run(
             );
         }
     };
-    program.survey(&slopes);
+    program.record_scale(&slopes);
     let saved = saved.filter(|s| s.is_of(point.f));
     match saved {
         Some(saved) => program.adopt_scaling(&saved.scaling, &mut point, &mut slopes),
@@ -170,10 +170,10 @@ fn run(
 fn attempt(
     program: &mut Program<'_>,
     method: Method,
-    first: (Point, Slopes),
+    first: (Point, Derivatives),
     saved: Option<&SavedState>,
     push: f64,
-) -> Finish {
+) -> FinalIterate {
     let run = |program: &mut Program<'_>, (point, slopes), saved| match method {
         Method::TrustRegion => trust_region(program, point, slopes, saved),
         Method::InteriorPoint | Method::Auto => interior_point(program, point, slopes, saved, push),
@@ -190,8 +190,8 @@ fn attempt(
                 Err(trouble) => {
                     finish.restore_units(program);
                     finish.status = match trouble {
-                        Trouble::Halt(status) => status,
-                        Trouble::Failed(_) => Status::Stalled,
+                        EarlyExit::Halt(status) => status,
+                        EarlyExit::Failed(_) => Status::Stalled,
                     };
                     finish
                 }
@@ -199,12 +199,12 @@ fn attempt(
             continue;
         }
         match look_around(program, &finish.point) {
-            Ok(Around::Less(first)) => finish = run(program, *first, None),
-            Ok(Around::Flat) => {
+            Ok(Neighbourhood::Less(first)) => finish = run(program, *first, None),
+            Ok(Neighbourhood::Flat) => {
                 finish.status = Status::Stalled;
                 break;
             }
-            Ok(Around::More) | Err(Trouble::Failed(_)) => {
+            Ok(Neighbourhood::More) | Err(EarlyExit::Failed(_)) => {
                 let (point, slopes) =
                     least_violation(program, finish.point.clone(), finish.slopes.clone());
                 if !program.is_feasible(&point.c) {
@@ -213,7 +213,7 @@ fn attempt(
                 }
                 finish = run(program, (point, slopes), None);
             }
-            Err(Trouble::Halt(status)) => {
+            Err(EarlyExit::Halt(status)) => {
                 finish.status = status;
                 break;
             }
@@ -229,14 +229,14 @@ fn attempt(
 /// the best point so far, then from the start.
 fn auto(
     program: &mut Program<'_>,
-    first: (Point, Slopes),
+    first: (Point, Derivatives),
     saved: Option<&SavedState>,
     push: f64,
-) -> Finish {
-    program.allow(FIRST_SHARE);
+) -> FinalIterate {
+    program.set_budget(FIRST_SHARE);
     let (start, units) = (first.clone(), program.units());
     let mut kept = attempt(program, Method::InteriorPoint, first, saved, push);
-    program.allow(1.0);
+    program.set_budget(1.0);
     for (from_best, share) in [(true, SECOND_SHARE), (false, 1.0)] {
         let hopeless = matches!(
             kept.status,
@@ -261,7 +261,7 @@ fn auto(
                 Err(_) => continue,
             },
         };
-        program.allow(share);
+        program.set_budget(share);
         let next = attempt(program, Method::TrustRegion, place, None, push);
         // A verdict is preferred to none. Without a verdict the better point is kept.
         let undecided = matches!(
@@ -284,14 +284,14 @@ fn auto(
 fn interior_point(
     program: &mut Program<'_>,
     point: Point,
-    slopes: Slopes,
+    slopes: Derivatives,
     saved: Option<&SavedState>,
     push: f64,
-) -> Finish {
+) -> FinalIterate {
     let mut method = InteriorPoint::new(program, point, slopes, push);
     if let Some(saved) = saved {
         let multipliers = scaled_multipliers(program, &saved.multipliers);
-        method.adopt(&multipliers, saved.quasi_newton.clone(), saved.barrier);
+        method.warm_start(&multipliers, saved.quasi_newton.clone(), saved.barrier);
     }
     let finish = finish_interior_point(program, method);
     renewed(program, finish, |program, (point, slopes)| {
@@ -300,7 +300,7 @@ fn interior_point(
     })
 }
 
-fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -> Finish {
+fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -> FinalIterate {
     let mut result = method.run(program);
     while let Ok(Ending::Misscaled | Ending::Stalled) = result
         && let Some(factor) = method.better_scale(program)
@@ -319,7 +319,7 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
             }
         };
         method = InteriorPoint::new(program, point, slopes, RESUMED_PUSH);
-        method.adopt(&z, b, mu.min(program.options.initial_barrier));
+        method.warm_start(&z, b, mu.min(program.options.initial_barrier));
         result = method.run(program);
     }
     let status = status_of(program, result, &method.at.point);
@@ -346,7 +346,7 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
             (multipliers, scaled) = (fitted, residual);
         }
     }
-    Finish {
+    FinalIterate {
         status,
         multipliers,
         scaled,
@@ -363,9 +363,9 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
 fn trust_region(
     program: &mut Program<'_>,
     point: Point,
-    slopes: Slopes,
+    slopes: Derivatives,
     saved: Option<&SavedState>,
-) -> Finish {
+) -> FinalIterate {
     let mut method = TrustRegion::new(program, point, slopes, Goal::Optimum);
     if let Some(saved) = saved {
         method.y = scaled_multipliers(program, &saved.multipliers).y;
@@ -381,7 +381,7 @@ fn trust_region(
     })
 }
 
-fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> Finish {
+fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> FinalIterate {
     let mut result = optimise(program, &mut method);
     for _ in 0..FEASIBILITY_PHASES {
         let stuck = matches!(result, Ok(Ending::Stalled | Ending::Infeasible));
@@ -399,7 +399,7 @@ fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> Fi
         result = optimise(program, &mut method);
     }
     let status = status_of(program, result, &method.point);
-    Finish {
+    FinalIterate {
         status,
         multipliers: method.multipliers(program),
         scaled: method.optimality(program),
@@ -414,7 +414,7 @@ fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> Fi
 }
 
 /// Runs the trust region, and again in better units if those of the start do not suit its end.
-fn optimise(program: &mut Program<'_>, method: &mut TrustRegion) -> Result<Ending, Trouble> {
+fn optimise(program: &mut Program<'_>, method: &mut TrustRegion) -> Result<Ending, EarlyExit> {
     loop {
         let ending = method.run(program, |_, _| false)?;
         if !matches!(ending, Ending::Misscaled | Ending::Stalled) {

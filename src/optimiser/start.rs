@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::iterate::margin;
 use super::nlp::EvaluationFailure;
 use super::options::Method;
-use super::program::{Point, Program, Slopes, Trouble};
+use super::program::{Derivatives, EarlyExit, Point, Program};
 
 /// Number of starts tried if the functions are undefined.
 const START_TRIALS: usize = 12;
@@ -24,7 +24,7 @@ const UNCHANGED: f64 = 1e-12;
 pub(super) fn first_point(
     program: &mut Program<'_>,
     push: f64,
-) -> Result<(Point, Slopes), Trouble> {
+) -> Result<(Point, Derivatives), EarlyExit> {
     let start = program.start();
     let mut first_failure: Option<EvaluationFailure> = None;
     for trial in 0..START_TRIALS {
@@ -34,7 +34,7 @@ pub(super) fn first_point(
             .and_then(|p| program.gradients(&x).map(|s| (p, s)));
         match tried {
             Ok(found) => return Ok(found),
-            Err(Trouble::Failed(failure)) => {
+            Err(EarlyExit::Failed(failure)) => {
                 first_failure.get_or_insert(failure);
             }
             Err(halt) => return Err(halt),
@@ -44,14 +44,14 @@ pub(super) fn first_point(
         what: "the start".into(),
         reason: "no trial".into(),
     };
-    Err(Trouble::Failed(first_failure.unwrap_or(missing)))
+    Err(EarlyExit::Failed(first_failure.unwrap_or(missing)))
 }
 
 /// The violation around a point at which its derivatives show no descent.
-pub(super) enum Around {
+pub(super) enum Neighbourhood {
     /// It is clearly less at this point. The first point was a maximum, a saddle or one of several
     /// minima.
-    Less(Box<(Point, Slopes)>),
+    Less(Box<(Point, Derivatives)>),
     /// It is constant. Derivatives give no direction.
     Flat,
     /// It rises.
@@ -60,7 +60,10 @@ pub(super) enum Around {
 
 /// Tries points around `at`, near and far. At a maximum, at a saddle and on a plateau of the
 /// violation its derivatives vanish too.
-pub(super) fn look_around(program: &mut Program<'_>, at: &Point) -> Result<Around, Trouble> {
+pub(super) fn look_around(
+    program: &mut Program<'_>,
+    at: &Point,
+) -> Result<Neighbourhood, EarlyExit> {
     let now = program.total_violation(&at.c);
     let mut largest = 0.0_f64;
     for trial in 1..=ESCAPE_TRIALS {
@@ -73,20 +76,20 @@ pub(super) fn look_around(program: &mut Program<'_>, at: &Point) -> Result<Aroun
         );
         let point = match program.evaluate(&x) {
             Ok(point) => point,
-            Err(Trouble::Failed(_)) => continue,
+            Err(EarlyExit::Failed(_)) => continue,
             Err(halt) => return Err(halt),
         };
         let change = program.total_violation(&point.c) - now;
         if change < -LESS * now {
             let slopes = program.gradients(&x)?;
-            return Ok(Around::Less(Box::new((point, slopes))));
+            return Ok(Neighbourhood::Less(Box::new((point, slopes))));
         }
         largest = largest.max(change.abs());
     }
     Ok(if largest <= UNCHANGED * now {
-        Around::Flat
+        Neighbourhood::Flat
     } else {
-        Around::More
+        Neighbourhood::More
     })
 }
 

@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::elastic_qp::ElasticQp;
-use super::program::{Point, Program, Slopes};
+use super::program::{Derivatives, Point, Program};
 use super::qp::{Hessian, QpData, QpStep};
 use super::quasi_newton::{QuasiNewton, Spectrum};
 
@@ -27,7 +27,7 @@ pub(super) enum Goal {
 /// State of the iteration.
 pub(super) struct TrustRegion {
     pub point: Point,
-    pub slopes: Slopes,
+    pub slopes: Derivatives,
     /// Multipliers of the rows from the last subproblem.
     pub y: DVector<f64>,
     pub b: QuasiNewton,

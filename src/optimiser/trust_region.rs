@@ -8,7 +8,7 @@ use nalgebra::DVector;
 
 use super::elastic_qp::ElasticQp;
 use super::observer::Phase;
-use super::program::{Point, Program, Progress, Slopes, Trouble};
+use super::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use super::quasi_newton::QuasiNewton;
 use super::steering::{Goal, IRREDUCIBLE, Model, TrustRegion};
 use super::verdict::{ScaledMultipliers, Verdict, judge, scaled_residual};
@@ -50,7 +50,7 @@ impl TrustRegion {
     pub(crate) fn new(
         program: &Program<'_>,
         point: Point,
-        slopes: Slopes,
+        slopes: Derivatives,
         goal: Goal,
     ) -> TrustRegion {
         let (n, m) = (point.x.len(), point.c.len());
@@ -73,7 +73,7 @@ impl TrustRegion {
     }
 
     /// Continues with the objective multiplied by `factor` and with its slopes.
-    pub(crate) fn rescale(&mut self, factor: f64, slopes: Slopes) {
+    pub(crate) fn rescale(&mut self, factor: f64, slopes: Derivatives) {
         self.point.f *= factor;
         self.slopes = slopes;
         self.b = self.b.times(factor);
@@ -95,7 +95,7 @@ impl TrustRegion {
         &mut self,
         program: &mut Program<'_>,
         mut reached: impl FnMut(&Program<'_>, &Point) -> bool,
-    ) -> Result<Ending, Trouble> {
+    ) -> Result<Ending, EarlyExit> {
         let tiny = 1e-13;
         let mut rejected = 0;
         let mut lost = 0;
@@ -261,13 +261,13 @@ impl TrustRegion {
         program: &mut Program<'_>,
         model: &Model,
         learn: bool,
-    ) -> Result<(f64, usize), Trouble> {
+    ) -> Result<(f64, usize), EarlyExit> {
         let here = self.merit(program, &self.point);
         let rounding = 10.0 * f64::EPSILON * here.abs();
         let x = self.inside(program, &model.step.d);
         let trial = match program.evaluate(&x) {
             Ok(trial) => trial,
-            Err(Trouble::Failed(_)) => return Ok((f64::NEG_INFINITY, 1)),
+            Err(EarlyExit::Failed(_)) => return Ok((f64::NEG_INFINITY, 1)),
             Err(halt) => return Err(halt),
         };
         let ratio = |at: f64| (here - at + rounding) / (model.predicted + rounding);
@@ -290,7 +290,7 @@ impl TrustRegion {
         let x = self.inside(program, &corrected.d);
         let second = match program.evaluate(&x) {
             Ok(second) => second,
-            Err(Trouble::Failed(_)) => return Ok((first, 2)),
+            Err(EarlyExit::Failed(_)) => return Ok((first, 2)),
             Err(halt) => return Err(halt),
         };
         let gain = ratio(self.merit(program, &second));
@@ -309,28 +309,28 @@ impl TrustRegion {
     }
 
     /// Adds the curvature between the point and a refused point to the matrix.
-    fn learn(&mut self, program: &mut Program<'_>, trial: &Point) -> Result<(), Trouble> {
+    fn learn(&mut self, program: &mut Program<'_>, trial: &Point) -> Result<(), EarlyExit> {
         let slopes = match program.gradients(&trial.x) {
             Ok(slopes) => slopes,
-            Err(Trouble::Failed(_)) => return Ok(()),
+            Err(EarlyExit::Failed(_)) => return Ok(()),
             Err(halt) => return Err(halt),
         };
         let weight = self.weight();
-        let force = |s: &Slopes| &s.g * weight + s.a.tr_mul(&self.y);
+        let force = |s: &Derivatives| &s.g * weight + s.a.tr_mul(&self.y);
         let change = force(&slopes) - force(&self.slopes);
         self.b.update(&trial.x - &self.point.x, change);
         Ok(())
     }
 
     /// Moves to `trial` unless its gradients fail.
-    fn accept(&mut self, program: &mut Program<'_>, trial: Point) -> Result<bool, Trouble> {
+    fn accept(&mut self, program: &mut Program<'_>, trial: Point) -> Result<bool, EarlyExit> {
         let slopes = match program.gradients(&trial.x) {
             Ok(slopes) => slopes,
-            Err(Trouble::Failed(_)) => return Ok(false),
+            Err(EarlyExit::Failed(_)) => return Ok(false),
             Err(halt) => return Err(halt),
         };
         let weight = self.weight();
-        let force = |s: &Slopes| &s.g * weight + s.a.tr_mul(&self.y);
+        let force = |s: &Derivatives| &s.g * weight + s.a.tr_mul(&self.y);
         let change = force(&slopes) - force(&self.slopes);
         let s = &trial.x - &self.point.x;
         self.b.update(s, change);

@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::outcome::{ActiveBound, Kkt, Side};
-use super::program::{Point, Program, Slopes};
+use super::outcome::{ActiveBound, BoundSide, Kkt};
+use super::program::{Derivatives, Point, Program};
 use super::quasi_newton::QuasiNewton;
 use super::state::Multipliers;
 
@@ -21,7 +21,7 @@ impl ScaledMultipliers {
     pub(crate) fn from_rows(
         program: &Program<'_>,
         point: &Point,
-        slopes: &Slopes,
+        slopes: &Derivatives,
         y: DVector<f64>,
     ) -> Self {
         let force = &slopes.g + slopes.a.tr_mul(&y);
@@ -49,7 +49,7 @@ impl ScaledMultipliers {
     pub(crate) fn polished(
         program: &Program<'_>,
         point: &Point,
-        slopes: &Slopes,
+        slopes: &Derivatives,
         y: &DVector<f64>,
     ) -> Self {
         let mut given = Self::from_rows(program, point, slopes, y.clone());
@@ -100,7 +100,7 @@ impl ScaledMultipliers {
 fn least_squares(
     program: &Program<'_>,
     point: &Point,
-    slopes: &Slopes,
+    slopes: &Derivatives,
     y: &DVector<f64>,
 ) -> Option<DVector<f64>> {
     let distance = |k: usize| {
@@ -137,12 +137,12 @@ const UNIT: f64 = 0.1;
 
 /// Size of forces, in the units of the user: that of the gradient or, if it vanishes, of the
 /// gradients at other points of the run.
-pub(super) fn unit_of_forces(program: &Program<'_>, slopes: &Slopes) -> f64 {
+pub(super) fn unit_of_forces(program: &Program<'_>, slopes: &Derivatives) -> f64 {
     gradient_norm(program, slopes).max(UNIT * program.typical_gradient())
 }
 
 /// Norm ‖∇f‖∞ in the units of the user.
-pub(super) fn gradient_norm(program: &Program<'_>, slopes: &Slopes) -> f64 {
+pub(super) fn gradient_norm(program: &Program<'_>, slopes: &Derivatives) -> f64 {
     let gradient = program.free.iter().zip(slopes.g.iter());
     gradient
         .map(|(&i, g)| (g / program.unit_of_force(i)).abs())
@@ -153,7 +153,7 @@ pub(super) fn gradient_norm(program: &Program<'_>, slopes: &Slopes) -> f64 {
 pub(super) fn kkt(
     program: &Program<'_>,
     point: &Point,
-    slopes: &Slopes,
+    slopes: &Derivatives,
     z: &ScaledMultipliers,
     scaled: f64,
 ) -> Kkt {
@@ -199,7 +199,7 @@ pub(super) fn kkt(
 pub(super) fn scaled_residual(
     program: &Program<'_>,
     point: &Point,
-    slopes: &Slopes,
+    slopes: &Derivatives,
     z: &ScaledMultipliers,
 ) -> f64 {
     let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
@@ -257,7 +257,7 @@ pub(super) enum Verdict {
 pub(super) fn judge(
     program: &Program<'_>,
     point: &Point,
-    slopes: &Slopes,
+    slopes: &Derivatives,
     z: &ScaledMultipliers,
     scaled: f64,
 ) -> Verdict {
@@ -293,7 +293,7 @@ pub(super) fn is_solved_in_scaled_units(program: &Program<'_>, point: &Point, kk
 pub(super) fn is_solved_in_user_units(
     program: &Program<'_>,
     point: &Point,
-    slopes: &Slopes,
+    slopes: &Derivatives,
     kkt: &Kkt,
 ) -> bool {
     let tolerance = program.options.tolerance;
@@ -309,7 +309,7 @@ pub(super) fn is_solved_in_user_units(
 pub(super) fn is_at_precision(
     program: &Program<'_>,
     point: &Point,
-    slopes: &Slopes,
+    slopes: &Derivatives,
     z: &ScaledMultipliers,
     b: &mut QuasiNewton,
 ) -> bool {
@@ -328,7 +328,7 @@ pub(super) fn is_at_precision(
 pub(super) fn is_solved_at_end(
     program: &Program<'_>,
     point: &Point,
-    slopes: &Slopes,
+    slopes: &Derivatives,
     z: &ScaledMultipliers,
     scaled: f64,
 ) -> bool {
@@ -340,7 +340,7 @@ pub(super) fn is_solved_at_end(
 /// Multipliers in the units of the user. Those of fixed variables balance the force on them.
 pub(super) fn user_multipliers(
     program: &Program<'_>,
-    slopes: &Slopes,
+    slopes: &Derivatives,
     z: &ScaledMultipliers,
 ) -> Multipliers {
     let unit_f = program.scaling.objective;
@@ -387,7 +387,7 @@ pub(super) fn scaled_multipliers(program: &Program<'_>, user: &Multipliers) -> S
 }
 
 /// Norms ‖∇c_j‖∞ of all rows, in the units of the user, no less than 1e-300.
-pub(super) fn steepness(program: &Program<'_>, slopes: &Slopes) -> Vec<f64> {
+pub(super) fn steepness(program: &Program<'_>, slopes: &Derivatives) -> Vec<f64> {
     let mut all = vec![1e-300; program.scaling.constraints.len()];
     for (k, &j) in program.rows.iter().enumerate() {
         for (column, &i) in program.free.iter().enumerate() {
@@ -420,11 +420,11 @@ pub(super) fn active(
                 && (z > 0.0 || distance <= 1e-9 * near)
         };
         let (side, multiplier) = if l == u {
-            (Side::Equal, zl.max(zu))
+            (BoundSide::Equal, zl.max(zu))
         } else if close(values[i] - l, l, zl) {
-            (Side::Lower, zl)
+            (BoundSide::Lower, zl)
         } else if close(u - values[i], u, zu) {
-            (Side::Upper, zu)
+            (BoundSide::Upper, zu)
         } else {
             continue;
         };

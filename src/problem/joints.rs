@@ -3,13 +3,13 @@
 use super::placement::{Assembly, GROUND, split_location};
 use super::quantity::Quantity;
 use super::schema::Document;
-use super::schema::drives::{Course as Written, Drive as WrittenDrive};
+use super::schema::drives::{Drive as WrittenDrive, TimeFunction as Written};
 use super::schema::joints::{Joint as WrittenJoint, JointPlace};
 use super::schema::loads::Interpolation;
 use super::schema::mechanics::Shape;
 use crate::math::scalar::{length, unit};
 use crate::math::{Scalar, Vec3};
-use crate::model::{Drive, Freedom, Joint, JointFrame, JointKind, MotionCourse};
+use crate::model::{DegreeOfFreedom, Drive, Joint, JointFrame, JointKind, PrescribedMotion};
 
 /// The joints of a checked document, in its order, with their drives.
 pub(crate) fn joints<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Joint<S>> {
@@ -128,11 +128,11 @@ fn drives<S: Scalar>(document: &Document, assembly: &Assembly<S>, name: &str) ->
     let of = |drive: &&WrittenDrive| drive.joint == name;
     let parts = |drive: &WrittenDrive| {
         let turn = drive.turn.as_ref().map(|turn| Drive {
-            freedom: Freedom::Turn,
+            freedom: DegreeOfFreedom::Rotation,
             course: course(assembly, turn.parts()),
         });
         let slide = drive.slide.as_ref().map(|slide| Drive {
-            freedom: Freedom::Slide,
+            freedom: DegreeOfFreedom::Translation,
             course: course(assembly, slide.parts()),
         });
         turn.into_iter().chain(slide)
@@ -145,20 +145,20 @@ fn drives<S: Scalar>(document: &Document, assembly: &Assembly<S>, name: &str) ->
         .collect()
 }
 
-fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> MotionCourse<S> {
+fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> PrescribedMotion<S> {
     let get = |quantity: &Quantity| assembly.quantity(quantity);
     match written {
-        Written::Rate(rate) => MotionCourse::Polynomial(vec![S::zero(), get(rate)]),
+        Written::Rate(rate) => PrescribedMotion::Polynomial(vec![S::zero(), get(rate)]),
         Written::Polynomial(coefficients) => {
-            MotionCourse::Polynomial(coefficients.iter().map(get).collect())
+            PrescribedMotion::Polynomial(coefficients.iter().map(get).collect())
         }
-        Written::Harmonic([mean, amplitude, frequency, phase]) => MotionCourse::Harmonic {
+        Written::Harmonic([mean, amplitude, frequency, phase]) => PrescribedMotion::Harmonic {
             mean: get(mean),
             amplitude: get(amplitude),
             frequency: get(frequency),
             phase: get(phase),
         },
-        Written::Table(times, values, interpolation) => MotionCourse::Table {
+        Written::Table(times, values, interpolation) => PrescribedMotion::Table {
             interpolation: Interpolation::of(interpolation),
             times: times.iter().map(|&t| t.into()).collect(),
             values: values.iter().map(get).collect(),

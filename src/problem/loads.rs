@@ -4,11 +4,11 @@ use super::placement::{Assembly, GROUND};
 use super::schema::Document;
 use super::schema::joints::Joint;
 use super::schema::loads::{
-    Axes as WrittenAxes, Course as Written, Interpolation, Load as WrittenLoad, Motion,
+    Axes as WrittenAxes, Interpolation, Load as WrittenLoad, Motion, TimeFunction as Written,
 };
 use crate::math::scalar::unit;
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, Course, Freedom, Load, LoadKind};
+use crate::model::{Axes, DegreeOfFreedom, Load, LoadKind, TimeFunction};
 
 /// The loads of a checked document, in its order.
 pub(crate) fn loads<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Load<S>> {
@@ -111,16 +111,16 @@ fn axes(written: WrittenAxes) -> Axes {
     }
 }
 
-fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> Course<S> {
+fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S> {
     let get = |quantity: &super::quantity::Quantity| assembly.quantity(quantity);
     match written {
-        Written::Constant(value) => Course::Constant(get(value)),
-        Written::Harmonic([amplitude, frequency, phase]) => Course::Harmonic {
+        Written::Constant(value) => TimeFunction::Constant(get(value)),
+        Written::Harmonic([amplitude, frequency, phase]) => TimeFunction::Harmonic {
             amplitude: get(amplitude),
             frequency: get(frequency),
             phase: get(phase),
         },
-        Written::Table(times, values, interpolation) => Course::Table {
+        Written::Table(times, values, interpolation) => TimeFunction::Table {
             interpolation: Interpolation::of(interpolation),
             times: times.iter().map(|&t| t.into()).collect(),
             values: values.iter().map(get).collect(),
@@ -138,7 +138,7 @@ fn joint<'a>(document: &'a Document, name: &str) -> (usize, &'a Joint) {
 
 /// The motion of a joint along or about its axis that a load acts on: the one named, else the first;
 /// `None` if it has none.
-fn freedom(joint: &Joint, motion: Option<Motion>) -> Option<Freedom> {
+fn freedom(joint: &Joint, motion: Option<Motion>) -> Option<DegreeOfFreedom> {
     match motion {
         Some(motion) => Some(named(motion)),
         None => joint.kind().freedoms().first().copied(),
@@ -146,9 +146,9 @@ fn freedom(joint: &Joint, motion: Option<Motion>) -> Option<Freedom> {
 }
 
 /// The motion that a name in the file stands for.
-pub(crate) fn named(motion: Motion) -> Freedom {
+pub(crate) fn named(motion: Motion) -> DegreeOfFreedom {
     match motion {
-        Motion::Turn => Freedom::Turn,
-        Motion::Slide => Freedom::Slide,
+        Motion::Turn => DegreeOfFreedom::Rotation,
+        Motion::Slide => DegreeOfFreedom::Translation,
     }
 }

@@ -9,8 +9,8 @@ use super::schema::mechanics::{Body, Point, Shape};
 use super::start_rates;
 use super::starts::Starts;
 use crate::functions::{
-    Bound, EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Rotation, Scene,
-    Side, Until,
+    Bound, EnergyPart, Function, Gate, GateSide, Instant, Projectile, Reduction, Release, Rotation,
+    Scene, TerminalEvent,
 };
 use crate::math::rotation::{compose, conjugate, matrix};
 use crate::math::scalar::{lift3, unit};
@@ -49,7 +49,7 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
             .simulation
             .until
             .as_ref()
-            .map(|until| Until::new(builder.instant(&until.measure), until.reaches.get(x))),
+            .map(|until| TerminalEvent::new(builder.instant(&until.measure), until.reaches.get(x))),
         functions: document
             .functions
             .values()
@@ -332,10 +332,10 @@ impl<S: Scalar> Builder<'_, S> {
 
     fn gate(&self, gate: &written::Gate) -> Gate<S> {
         let (limit, open) = match (gate.above, gate.below) {
-            (Some(limit), _) => (limit, Side::Above),
+            (Some(limit), _) => (limit, GateSide::Above),
             (None, limit) => (
                 limit.expect("a gate has a limit, which is checked when a problem is read"),
-                Side::Below,
+                GateSide::Below,
             ),
         };
         let rotation = match (&gate.joint, gate.axis) {

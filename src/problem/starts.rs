@@ -20,7 +20,9 @@ use super::schema::joints::{Ends, Joint as WrittenJoint, JointPlace};
 use super::schema::mechanics::Shape;
 use crate::math::rotation::{Quat, compose, conjugate, from_axis_angle, matrix};
 use crate::math::{Mat3, Scalar, Vec3};
-use crate::model::{Drive, Freedom, Joint, JointFrame, Mobility, Model, MotionCourse, RigidBody};
+use crate::model::{
+    DegreeOfFreedom, Drive, Joint, JointFrame, Mobility, Model, PrescribedMotion, RigidBody,
+};
 use crate::system::bodies::positions_of;
 use crate::system::failure::AssemblyFailure;
 use crate::system::nearest::nearest;
@@ -30,13 +32,14 @@ use crate::system::redundancy;
 const STEPS: usize = 16;
 
 /// Both motions of a joint.
-pub(super) const FREEDOMS: [Freedom; 2] = [Freedom::Turn, Freedom::Slide];
+pub(super) const FREEDOMS: [DegreeOfFreedom; 2] =
+    [DegreeOfFreedom::Rotation, DegreeOfFreedom::Translation];
 
 /// What a file says of the start of a joint's motion.
 #[derive(Clone, Debug)]
 struct Given<S> {
     joint: usize,
-    freedom: Freedom,
+    freedom: DegreeOfFreedom,
     /// Angle (rad) or displacement (m), and its rate.
     values: [Option<S>; 2],
 }
@@ -100,7 +103,7 @@ impl<S: Scalar> Starts<S> {
         &self,
         model: &Model<S>,
         joint: usize,
-        freedom: Freedom,
+        freedom: DegreeOfFreedom,
         asked: Asked,
     ) -> Option<S> {
         let written = self.written(joint, freedom, asked);
@@ -111,7 +114,7 @@ impl<S: Scalar> Starts<S> {
         })
     }
 
-    fn written(&self, joint: usize, freedom: Freedom, asked: Asked) -> Option<S> {
+    fn written(&self, joint: usize, freedom: DegreeOfFreedom, asked: Asked) -> Option<S> {
         let mut given = self.given.iter();
         let given = given.find(|given| given.joint == joint && given.freedom == freedom)?;
         given.values[asked as usize]
@@ -122,7 +125,7 @@ impl<S: Scalar> Starts<S> {
         &'a self,
         joints: &'a [usize],
         asked: Asked,
-    ) -> impl Iterator<Item = (usize, Freedom, S)> + 'a {
+    ) -> impl Iterator<Item = (usize, DegreeOfFreedom, S)> + 'a {
         let here = move |given: &Given<S>| {
             let joint = joints.iter().position(|&joint| joint == given.joint)?;
             Some((joint, given.freedom, given.values[asked as usize]?))
@@ -312,7 +315,7 @@ impl<S: Scalar> Starts<S> {
             };
             part.joints[joint].drives.push(Drive {
                 freedom,
-                course: MotionCourse::Polynomial(coefficients),
+                course: PrescribedMotion::Polynomial(coefficients),
             });
         }
     }
@@ -334,11 +337,11 @@ impl<S: Scalar> Starts<S> {
         };
         let more =
             |model: &Model<f64>| redundancy::redundant_rows(model).is_some_and(|n| n > before);
-        let mut held = |(joint, freedom): (usize, Freedom)| {
+        let mut held = |(joint, freedom): (usize, DegreeOfFreedom)| {
             let at = place(&model, joint, freedom);
             model.joints[joint].drives.push(Drive {
                 freedom,
-                course: MotionCourse::Polynomial(vec![at]),
+                course: PrescribedMotion::Polynomial(vec![at]),
             });
             more(&model).then(|| model.joints[joint].name.clone())
         };
@@ -444,10 +447,10 @@ fn frames<S: Scalar>(model: &Model<S>, joint: usize) -> [JointFrame<S>; 2] {
 }
 
 /// The angle or displacement of a joint where the bodies of the model are.
-fn place<S: Scalar>(model: &Model<S>, joint: usize, freedom: Freedom) -> S {
+fn place<S: Scalar>(model: &Model<S>, joint: usize, freedom: DegreeOfFreedom) -> S {
     let [a, b] = frames(model, joint);
     match freedom {
-        Freedom::Turn => (a.axes[0].dot(&b.axes[1])).atan2(a.axes[0].dot(&b.axes[0])),
-        Freedom::Slide => b.axes[2].dot(&(a.point - b.point)),
+        DegreeOfFreedom::Rotation => (a.axes[0].dot(&b.axes[1])).atan2(a.axes[0].dot(&b.axes[0])),
+        DegreeOfFreedom::Translation => b.axes[2].dot(&(a.point - b.point)),
     }
 }

@@ -140,7 +140,7 @@ pub(crate) fn compare(new: &Optimum, baseline: &Optimum, tolerances: &Tolerances
         ));
     }
     for (name, (a, b)) in pairs(&new.active_bounds, &baseline.active_bounds) {
-        let word = |side: Option<&super::optimum::Side>| match side {
+        let word = |side: Option<&super::optimum::BoundSide>| match side {
             Some(side) => format!("{side:?}").to_lowercase(),
             None => "inactive".to_owned(),
         };

@@ -28,7 +28,7 @@ pub(crate) struct Optimum {
     /// Lagrange multipliers of constraints and bounds.
     pub multipliers: Multipliers,
     /// Design variables that stand on a bound, and on which.
-    pub active_bounds: IndexMap<String, Side>,
+    pub active_bounds: IndexMap<String, BoundSide>,
     /// Residuals of the optimality conditions.
     pub kkt: Kkt,
     /// How the optimiser scaled the problem.
@@ -66,7 +66,7 @@ pub(crate) enum Sense {
 /// A side of an interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Side {
+pub(crate) enum BoundSide {
     /// The lower bound.
     Lower,
     /// The upper bound.

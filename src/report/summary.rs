@@ -3,7 +3,7 @@
 use super::certificate;
 use super::number::{grouped, significant};
 use super::optimum::{
-    Activity, Aggregate, Curvature, KktResiduals, Optimum, SecondOrder, Sense, Side,
+    Activity, Aggregate, BoundSide, Curvature, KktResiduals, Optimum, SecondOrder, Sense,
 };
 use super::table;
 
@@ -150,8 +150,8 @@ fn design(optimum: &Optimum) -> String {
                 variable.unit.clone().unwrap_or_default(),
                 interval(variable.lower, variable.upper),
                 match optimum.active_bounds.get(name) {
-                    Some(Side::Lower) => "at its lower bound".to_owned(),
-                    Some(Side::Upper) => "at its upper bound".to_owned(),
+                    Some(BoundSide::Lower) => "at its lower bound".to_owned(),
+                    Some(BoundSide::Upper) => "at its upper bound".to_owned(),
                     None => String::new(),
                 },
             ]

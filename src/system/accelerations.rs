@@ -6,12 +6,12 @@
 //!
 //! and the projections that use the same matrix [M Gᵀ; G 0].
 
-use super::bodies::{self, Motion, all_force_balances, velocities_of};
+use super::bodies::{self, BodyMotion, all_force_balances, velocities_of};
 use super::constraint::RowGradient;
 use super::in_motion::InMotion;
 use super::initial::mass;
 use super::joints::{self, JointCotangent, RowCotangents};
-use super::kkt::{Elimination, SaddlePoint};
+use super::kkt::{EliminationSummary, SaddlePoint};
 use super::left_out::{LeftOut, Weighing};
 use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
@@ -29,7 +29,7 @@ pub(crate) struct Accelerations<'a, S> {
     /// Its numbering.
     pub numbering: &'a Numbering,
     /// Motions of the bodies where the solver stands.
-    pub motions: Vec<Motion<S>>,
+    pub motions: Vec<BodyMotion<S>>,
     gradients: Vec<RowGradient<S>>,
     /// Rows that are not imposed.
     left_out: LeftOut,
@@ -37,11 +37,11 @@ pub(crate) struct Accelerations<'a, S> {
     /// The joints, if the scene is planar.
     planar: Option<PlanarJoints<S>>,
     /// Motions with accelerations and virtual velocities, for the pull-back.
-    moving: Vec<Motion<S>>,
+    moving: Vec<BodyMotion<S>>,
     /// Time where the solver stands (s).
     time: S,
     solver: Solver<S>,
-    left_to_sparse: Option<Untreelike>,
+    left_to_sparse: Option<FallbackReason>,
     rhs: Vec<S>,
     /// Factorisations so far.
     pub factorisations: usize,
@@ -59,13 +59,13 @@ enum Solver<S> {
 /// the last bit.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
-    left_to_sparse: Option<Untreelike>,
+    left_to_sparse: Option<FallbackReason>,
     pivots: Option<Arc<Pivots>>,
 }
 
 /// Why the tree of joints does not serve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Untreelike {
+pub(crate) enum FallbackReason {
     /// Loops of joints reach so far and overlap so much that sparse LU costs less.
     Loops,
     /// A body, with what hangs from it, has a motion without inertia, or one whose inertia loses five
@@ -80,7 +80,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     pub(crate) fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
         let (solver, left_to_sparse) = match Tree::plan(model, numbering) {
             Some(tree) => (Solver::Tree(Box::new(tree)), None),
-            None => (Self::sparse(model, numbering), Some(Untreelike::Loops)),
+            None => (Self::sparse(model, numbering), Some(FallbackReason::Loops)),
         };
         Self {
             model,
@@ -178,12 +178,12 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
 
     /// Moves to the state (q, v) at `time` without factorising; the Euler parameters in `q` need not
     /// be of unit length.
-    pub(crate) fn stand(&mut self, q: &[S], v: &[S], time: S) {
+    pub(crate) fn set_state(&mut self, q: &[S], v: &[S], time: S) {
         self.time = time;
-        Motion::all_normalised(self.numbering, q, v, &mut self.motions);
+        BodyMotion::all_normalised(self.numbering, q, v, &mut self.motions);
         match &mut self.planar {
             Some(planar) => {
-                planar.stand(&self.motions);
+                planar.set_state(&self.motions);
                 planar.gradients(&mut self.gradients);
             }
             None => {
@@ -225,8 +225,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             };
             let row = at.column.checked_sub(self.numbering.velocities());
             self.left_to_sparse = Some(match row {
-                Some(row) => Untreelike::Joint(self.numbering.joint_of_row(row)),
-                None => Untreelike::Body(self.numbering.body_of_velocity(at.column)),
+                Some(row) => FallbackReason::Joint(self.numbering.joint_of_row(row)),
+                None => FallbackReason::Body(self.numbering.body_of_velocity(at.column)),
             });
             // A body without inertia of its own may still be held by its joints, and the rows of a loop
             // by a choice of pivots.
@@ -260,7 +260,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// How the matrix that was factorised last is eliminated.
-    pub(crate) fn elimination(&mut self) -> Elimination {
+    pub(crate) fn elimination(&mut self) -> EliminationSummary {
         match &mut self.solver {
             Solver::Tree(tree) => tree.elimination(self.numbering),
             Solver::Sparse(saddle, _) => saddle.elimination(),
@@ -268,7 +268,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// Why that is left to sparse LU, if it is.
-    pub(crate) fn left_to_sparse(&self) -> Option<Untreelike> {
+    pub(crate) fn left_to_sparse(&self) -> Option<FallbackReason> {
         self.left_to_sparse
     }
 

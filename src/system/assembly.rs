@@ -8,7 +8,7 @@
 //!
 //! It does not depend on units, and bodies that are welded count as one would.
 
-use super::bodies::{self, Motion, positions_of};
+use super::bodies::{self, BodyMotion, positions_of};
 use super::failure::AssemblyFailure;
 use super::in_motion::InMotion;
 use super::joints;
@@ -54,7 +54,7 @@ pub(super) fn assemble<S: SolveScalar>(
     let mut best = Vec::new();
     let mut least = f64::INFINITY;
     for iteration in 0..ITERATIONS {
-        Motion::all(numbering, &q, v_guess, &mut motions);
+        BodyMotion::all(numbering, &q, v_guess, &mut motions);
         let at = InMotion::new(model, numbering, &motions, S::zero());
         joints::values(&at, &mut phi);
         saddle.left_out().clear(&mut phi);
@@ -194,7 +194,7 @@ fn open<S: Scalar>(
 /// Refuses positions at which rows that are left out do not follow from those that are imposed.
 fn check_left_out<S: Scalar>(
     model: &Model<S>,
-    motions: &[Motion<S>],
+    motions: &[BodyMotion<S>],
     scale: f64,
     iterations: usize,
 ) -> Result<(), AssemblyFailure> {
@@ -212,7 +212,10 @@ fn check_left_out<S: Scalar>(
 }
 
 /// Refuses the spurious root of the orientation rows in which one frame is turned by 180°.
-fn check_turned<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> Result<(), AssemblyFailure> {
+fn check_turned<S: Scalar>(
+    model: &Model<S>,
+    motions: &[BodyMotion<S>],
+) -> Result<(), AssemblyFailure> {
     let at = (motions, S::zero());
     match model.joints.iter().find(|joint| is_turned(joint, at)) {
         None => Ok(()),
@@ -226,14 +229,14 @@ fn check_turned<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> Result<()
 /// and when the bodies are as `at` says. Steps of half a turn lead there.
 pub(crate) fn turned<'a, S: Scalar>(
     model: &'a Model<S>,
-    at: (&[Motion<S>], S),
+    at: (&[BodyMotion<S>], S),
 ) -> Option<&'a Joint<S>> {
     let driven = model.joints.iter().filter(|joint| !joint.drives.is_empty());
     driven.into_iter().find(|joint| is_turned(joint, at))
 }
 
-fn is_turned<S: Scalar>(joint: &Joint<S>, (motions, time): (&[Motion<S>], S)) -> bool {
-    let ground = Motion::ground();
+fn is_turned<S: Scalar>(joint: &Joint<S>, (motions, time): (&[BodyMotion<S>], S)) -> bool {
+    let ground = BodyMotion::ground();
     let (a, b) = sides(joint, motions, &ground, time);
     let opposite = |&axis: &usize| a.axis(axis).dot(&b.axis(axis)).re() < 0.0;
     joint.common_axes().iter().any(opposite)

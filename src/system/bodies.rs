@@ -16,7 +16,7 @@ use crate::model::{Model, RigidBody};
 
 /// Position, velocity and, where it is asked for, acceleration of a body.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion<S> {
+pub(crate) struct BodyMotion<S> {
     /// Centre of mass r, ground axes (m).
     pub position: Vec3<S>,
     /// Euler parameters p.
@@ -27,17 +27,17 @@ pub(crate) struct Motion<S> {
     pub velocity: Vec3<S>,
     /// Angular velocity ω, body axes (rad/s).
     pub omega: Vec3<S>,
-    /// Acceleration r̈, ground axes (m/s²); zero unless set by [`Motion::accelerated`].
+    /// Acceleration r̈, ground axes (m/s²); zero unless set by [`BodyMotion::accelerated`].
     pub acceleration: Vec3<S>,
     /// Angular acceleration ω̇, body axes (rad/s²); zero unless set likewise.
     pub alpha: Vec3<S>,
-    /// Virtual velocity, ground axes; zero unless set by [`Motion::virtually`].
+    /// Virtual velocity, ground axes; zero unless set by [`BodyMotion::virtually`].
     pub virtual_velocity: Vec3<S>,
     /// Virtual angular velocity, body axes; zero unless set likewise.
     pub virtual_omega: Vec3<S>,
 }
 
-impl<S: Scalar> Motion<S> {
+impl<S: Scalar> BodyMotion<S> {
     /// The ground: at rest in the origin.
     pub(crate) fn ground() -> Self {
         let (zero, one) = (S::zero(), S::one());
@@ -371,7 +371,7 @@ pub(crate) fn mass_product<S: Scalar>(
 pub(crate) fn all_force_balances<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
-    motions: &[Motion<S>],
+    motions: &[BodyMotion<S>],
     accelerations: &[S],
     out: &mut [S],
 ) {

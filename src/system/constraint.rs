@@ -14,30 +14,30 @@
 //! A drive moves the markers on body B (see [`super::side`]): the rate is then G v + Φ_t. The
 //! acceleration term of the index-1 equations is γ = −bias, the bias being Φ̈ at v̇ = 0.
 
-use super::marker::{self, Jet};
-use super::side::{FrameMotion, Side};
+use super::marker::{self, MarkerKinematics};
+use super::side::{FrameMotion, JointSide};
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, JointFrame};
 use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
 /// The markers that the rows of a joint are made of, each in motion once.
 struct Markers<S> {
-    distance: Jet<S>,
-    axes_a: [Jet<S>; 3],
-    axes_b: [Jet<S>; 3],
+    distance: MarkerKinematics<S>,
+    axes_a: [MarkerKinematics<S>; 3],
+    axes_b: [MarkerKinematics<S>; 3],
 }
 
 impl<S: Scalar> Markers<S> {
-    fn of(rows: impl Iterator<Item = ConstraintRow>, a: &Side<S>, b: &Side<S>) -> Self {
+    fn of(rows: impl Iterator<Item = ConstraintRow>, a: &JointSide<S>, b: &JointSide<S>) -> Self {
         let used = MarkersUsed::by(rows);
-        let axis = |side: &Side<S>, used: bool, i: usize| match used {
+        let axis = |side: &JointSide<S>, used: bool, i: usize| match used {
             true => side.axis_jet(i),
-            false => Jet::zero(),
+            false => MarkerKinematics::zero(),
         };
         Self {
             distance: match used.points {
                 true => a.point_jet().minus(&b.point_jet()),
-                false => Jet::zero(),
+                false => MarkerKinematics::zero(),
             },
             axes_a: std::array::from_fn(|i| axis(a, used.axes_a[i], i)),
             axes_b: std::array::from_fn(|i| axis(b, used.axes_b[i], i)),
@@ -46,10 +46,14 @@ impl<S: Scalar> Markers<S> {
 
     /// The vectors u, w whose product, times `scale`, the derivatives of a row are those of;
     /// `length` is that of the rod.
-    fn factors(&self, row: ConstraintRow, length: S) -> (Jet<S>, Jet<S>, S) {
+    fn factors(
+        &self,
+        row: ConstraintRow,
+        length: S,
+    ) -> (MarkerKinematics<S>, MarkerKinematics<S>, S) {
         let one = S::one();
         match row {
-            Coincident(k) => (Jet::fixed(unit(k)), self.distance, one),
+            Coincident(k) => (MarkerKinematics::fixed(unit(k)), self.distance, one),
             Perpendicular { a, b } => (self.axes_a[a], self.axes_b[b], one),
             Sliding { a } => (self.axes_a[a], self.distance, one),
             Distance => (self.distance, self.distance, S::from(0.5) / length),
@@ -95,7 +99,7 @@ fn unit<S: Scalar>(k: usize) -> Vec3<S> {
 }
 
 /// Value Φ of a row.
-pub(crate) fn value<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
+pub(crate) fn value<S: Scalar>(row: ConstraintRow, a: &JointSide<S>, b: &JointSide<S>) -> S {
     match row {
         Coincident(k) => a.point()[k] - b.point()[k],
         Perpendicular { a: i, b: j } => a.axis(i).dot(&b.axis(j)),
@@ -108,7 +112,7 @@ pub(crate) fn value<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> 
 }
 
 /// Rate G v + Φ_t of a row.
-pub(crate) fn rate<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S {
+pub(crate) fn rate<S: Scalar>(row: ConstraintRow, a: &JointSide<S>, b: &JointSide<S>) -> S {
     let mut out = [S::zero()];
     rates(std::iter::once(row), a, b, &mut out);
     out[0]
@@ -117,8 +121,8 @@ pub(crate) fn rate<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> S
 /// Rates G v + Φ_t of the rows of a joint.
 pub(crate) fn rates<S: Scalar>(
     rows: impl Iterator<Item = ConstraintRow> + Clone,
-    a: &Side<S>,
-    b: &Side<S>,
+    a: &JointSide<S>,
+    b: &JointSide<S>,
     out: &mut [S],
 ) {
     let markers = Markers::of(rows.clone(), a, b);
@@ -132,8 +136,8 @@ pub(crate) fn rates<S: Scalar>(
 /// acceleration bias if these are zero.
 pub(crate) fn accelerations<S: Scalar>(
     rows: impl Iterator<Item = ConstraintRow> + Clone,
-    a: &Side<S>,
-    b: &Side<S>,
+    a: &JointSide<S>,
+    b: &JointSide<S>,
     out: &mut [S],
 ) {
     let markers = Markers::of(rows.clone(), a, b);
@@ -161,7 +165,11 @@ pub(crate) struct RowGradient<S> {
 }
 
 /// Gradient of a row.
-pub(crate) fn gradient<S: Scalar>(row: ConstraintRow, a: &Side<S>, b: &Side<S>) -> RowGradient<S> {
+pub(crate) fn gradient<S: Scalar>(
+    row: ConstraintRow,
+    a: &JointSide<S>,
+    b: &JointSide<S>,
+) -> RowGradient<S> {
     let (ra, rb) = (&a.motion.rotation, &b.motion.rotation);
     let (sa, sb) = (&a.frame.point, &b.frame.point);
     match row {
@@ -240,7 +248,7 @@ impl<S: Scalar> SideCotangent<S> {
     }
 
     /// All cotangents of `side` zero.
-    fn of(side: &Side<S>) -> Self {
+    fn of(side: &JointSide<S>) -> Self {
         let moving = side.moving.as_ref();
         Self {
             moving: moving.map(|_| FrameMotion::zero()),
@@ -255,18 +263,18 @@ impl<S: Scalar> SideCotangent<S> {
 pub(crate) fn pull_back<S: Scalar>(
     rows: impl Iterator<Item = ConstraintRow> + Clone,
     cot: impl Fn(usize) -> RowCotangent<S>,
-    a: &Side<S>,
-    b: &Side<S>,
+    a: &JointSide<S>,
+    b: &JointSide<S>,
 ) -> (SideCotangent<S>, SideCotangent<S>) {
     let markers = Markers::of(rows.clone(), a, b);
-    let mut by_distance = Jet::zero();
-    let mut by_axes_a = [Jet::zero(); 3];
-    let mut by_axes_b = [Jet::zero(); 3];
+    let mut by_distance = MarkerKinematics::zero();
+    let mut by_axes_a = [MarkerKinematics::zero(); 3];
+    let mut by_axes_b = [MarkerKinematics::zero(); 3];
     let mut by_length = S::zero();
     for (i, row) in rows.clone().enumerate() {
         let cot = cot(i);
         // Φ = u·w and its time derivatives are symmetric in the two factors.
-        let by = |other: &Jet<S>| Jet {
+        let by = |other: &MarkerKinematics<S>| MarkerKinematics {
             x: other.x * cot.value
                 + other.rate * cot.rate
                 + other.acceleration * cot.acceleration
@@ -308,7 +316,7 @@ pub(crate) fn pull_back<S: Scalar>(
     out_a.frame.length = by_length;
     if used.points {
         pull_point(a, &by_distance, &mut out_a);
-        pull_point(b, &Jet::zero().minus(&by_distance), &mut out_b);
+        pull_point(b, &MarkerKinematics::zero().minus(&by_distance), &mut out_b);
     }
     for i in 0..3 {
         if used.axes_a[i] {
@@ -334,7 +342,12 @@ pub(crate) struct RowCotangent<S> {
     pub virtual_rate: S,
 }
 
-fn pull_axis<S: Scalar>(side: &Side<S>, i: usize, cot: &Jet<S>, out: &mut SideCotangent<S>) {
+fn pull_axis<S: Scalar>(
+    side: &JointSide<S>,
+    i: usize,
+    cot: &MarkerKinematics<S>,
+    out: &mut SideCotangent<S>,
+) {
     let local = side.moving.as_ref().map(|moving| moving.axis(i));
     let by = marker::pull_back_moving(side.motion, &side.frame.axes[i], local.as_ref(), cot);
     out.theta += by.theta;
@@ -346,7 +359,11 @@ fn pull_axis<S: Scalar>(side: &Side<S>, i: usize, cot: &Jet<S>, out: &mut SideCo
     }
 }
 
-fn pull_point<S: Scalar>(side: &Side<S>, cot: &Jet<S>, out: &mut SideCotangent<S>) {
+fn pull_point<S: Scalar>(
+    side: &JointSide<S>,
+    cot: &MarkerKinematics<S>,
+    out: &mut SideCotangent<S>,
+) {
     let local = side.moving.as_ref().map(|moving| moving.point());
     let by = marker::pull_back_moving(side.motion, &side.frame.point, local.as_ref(), cot);
     out.theta += by.theta;

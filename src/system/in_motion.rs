@@ -1,6 +1,6 @@
 //! A model, the numbering of its states, and where its bodies are at a time.
 
-use super::bodies::Motion;
+use super::bodies::BodyMotion;
 use super::numbering::Numbering;
 use crate::model::Model;
 
@@ -12,7 +12,7 @@ pub(crate) struct InMotion<'a, S> {
     /// The numbering of its states.
     pub numbering: &'a Numbering,
     /// The motions of its bodies.
-    pub motions: &'a [Motion<S>],
+    pub motions: &'a [BodyMotion<S>],
     /// The time (s).
     pub time: S,
 }
@@ -22,7 +22,7 @@ impl<'a, S> InMotion<'a, S> {
     pub(crate) fn new(
         model: &'a Model<S>,
         numbering: &'a Numbering,
-        motions: &'a [Motion<S>],
+        motions: &'a [BodyMotion<S>],
         time: S,
     ) -> Self {
         Self {

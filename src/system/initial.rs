@@ -12,7 +12,7 @@
 //! projection is what an impulse of the joints does to the given velocities.
 
 use super::assembly::{assemble, displacement_metric, finite, second_moment, turned_by};
-use super::bodies::{self, Motion, all_force_balances, positions_of, velocities_of};
+use super::bodies::{self, BodyMotion, all_force_balances, positions_of, velocities_of};
 use super::failure::AssemblyFailure;
 use super::in_motion::InMotion;
 use super::joints::{self, JointCotangent, RowCotangents};
@@ -68,7 +68,7 @@ pub(crate) fn solve<S: SolveScalar>(
     let mut v = v_guess.clone();
     reduce::project(numbering, &mut v);
     let held: Vec<S> = v_guess.iter().zip(&v).map(|(&g, &v)| g - v).collect();
-    Motion::all(numbering, &q, &v, &mut motions);
+    BodyMotion::all(numbering, &q, &v, &mut motions);
     let at = InMotion::new(model, numbering, &motions, S::zero());
     let zeros = vec![S::zero(); nc];
     let singular = |_| super::rank::explain(model, &q);
@@ -86,7 +86,7 @@ pub(crate) fn solve<S: SolveScalar>(
         *v += change;
     }
 
-    Motion::all(numbering, &q, &v, &mut motions);
+    BodyMotion::all(numbering, &q, &v, &mut motions);
     let at = InMotion::new(model, numbering, &motions, S::zero());
     let mut balance = vec![S::zero(); nv];
     all_force_balances(
@@ -134,7 +134,7 @@ fn choose_left_out<S: SolveScalar>(
     }
     let mut left_out = saddle.left_out().clone();
     let (mut motions, mut weighing) = (Vec::new(), Weighing::default());
-    Motion::all(numbering, q, v, &mut motions);
+    BodyMotion::all(numbering, q, v, &mut motions);
     let zeros = vec![S::zero(); numbering.constraints()];
     let at = InMotion::new(model, numbering, &motions, S::zero());
     for _ in 0..numbering.constraints() {
@@ -179,7 +179,7 @@ pub(crate) fn pull_back(
     saddle.leave_out(&state.left_out);
     let singular = |_| super::rank::explain(model, &state.q);
     let mut motions = Vec::new();
-    Motion::all(numbering, &state.q, &state.v, &mut motions);
+    BodyMotion::all(numbering, &state.q, &state.v, &mut motions);
     let at = InMotion::new(model, numbering, &motions, 0.0);
     let zeros = vec![0.0; nc];
     let mut v_bar = v_bar.to_vec();
@@ -193,7 +193,7 @@ pub(crate) fn pull_back(
         (psi, chi)
     };
     // The start is at t = 0 whatever the design, so derivatives by time are of no use.
-    let pull = |motions: &[Motion<f64>],
+    let pull = |motions: &[BodyMotion<f64>],
                 cotangents: &RowCotangents,
                 y: &mut [f64],
                 cot: &mut Model<f64>| {
@@ -207,8 +207,9 @@ pub(crate) fn pull_back(
     };
     // Pulls λᵀ G(q) w, which is linear in w, back to positions and joint frames.
     let pull_rate = |w: &[f64], lambda: &[f64], y: &mut [f64], cot: &mut Model<f64>| {
-        let at = |(i, motion): (usize, &Motion<f64>)| motion.virtually(&w[numbering.velocity(i)..]);
-        let moving: Vec<Motion<f64>> = motions.iter().enumerate().map(at).collect();
+        let at =
+            |(i, motion): (usize, &BodyMotion<f64>)| motion.virtually(&w[numbering.velocity(i)..]);
+        let moving: Vec<BodyMotion<f64>> = motions.iter().enumerate().map(at).collect();
         let cotangents = RowCotangents {
             virtual_rate: Some(lambda),
             ..Default::default()
@@ -295,7 +296,7 @@ pub(crate) fn pull_back(
         ..Default::default()
     };
     pull(&motions, &cotangents, &mut y_bar, cot);
-    reduce::keep_placed(numbering, &mut y_bar);
+    reduce::constrain_cotangent(numbering, &mut y_bar);
 
     for (i, body) in cot.bodies.iter_mut().enumerate() {
         let o = numbering.velocity(i);

@@ -1,11 +1,11 @@
 //! The joints of a model in motion: constraint vectors, reactions and pull-backs over all rows.
 
-use super::bodies::{Motion, add6, velocities_of};
+use super::bodies::{BodyMotion, add6, velocities_of};
 use super::constraint::{self, RowCotangent, RowGradient, SideCotangent, gradient};
 use super::in_motion::InMotion;
 use super::numbering::Numbering;
 use super::reaction::{self, ReactionJacobian};
-use super::side::{Side, pull_driven_frame, sides};
+use super::side::{JointSide, pull_driven_frame, sides};
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Joint, Model};
 use std::ops::Range;
@@ -16,9 +16,9 @@ pub(crate) const ROWS: usize = 6;
 /// Calls `visit(row numbers, joint, side a, side b)` for every joint.
 fn for_each_joint<S: Scalar>(
     at: &InMotion<S>,
-    mut visit: impl FnMut(Range<usize>, &Joint<S>, &Side<S>, &Side<S>),
+    mut visit: impl FnMut(Range<usize>, &Joint<S>, &JointSide<S>, &JointSide<S>),
 ) {
-    let ground = Motion::ground();
+    let ground = BodyMotion::ground();
     for (j, joint) in at.model.joints.iter().enumerate() {
         let (a, b) = sides(joint, at.motions, &ground, at.time);
         visit(at.numbering.rows(j), joint, &a, &b);
@@ -28,10 +28,10 @@ fn for_each_joint<S: Scalar>(
 /// Calls `visit(joint number, row, side a, side b)` for every row.
 pub(crate) fn for_each_row<S: Scalar>(
     model: &Model<S>,
-    (motions, time): (&[Motion<S>], S),
-    mut visit: impl FnMut(usize, ConstraintRow, &Side<S>, &Side<S>),
+    (motions, time): (&[BodyMotion<S>], S),
+    mut visit: impl FnMut(usize, ConstraintRow, &JointSide<S>, &JointSide<S>),
 ) {
-    let ground = Motion::ground();
+    let ground = BodyMotion::ground();
     for (j, joint) in model.joints.iter().enumerate() {
         let (a, b) = sides(joint, motions, &ground, time);
         for row in joint.rows() {
@@ -80,8 +80,8 @@ pub(crate) fn rates<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
 /// Adds the rates Φ_t that the drives make to `out`.
 pub(crate) fn add_driven_rates<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
     let (model, numbering) = (at.model, at.numbering);
-    let ground = Motion::ground();
-    let held = |motion: &Motion<S>| Motion {
+    let ground = BodyMotion::ground();
+    let held = |motion: &BodyMotion<S>| BodyMotion {
         velocity: Vec3::zeros(),
         omega: Vec3::zeros(),
         ..*motion
@@ -155,10 +155,10 @@ pub(crate) fn add_reactions<S: Scalar>(
 /// Derivative of G(q)ᵀ λ of one joint in the tangent positions of its two bodies.
 pub(crate) fn reaction_jacobian<S: Scalar>(
     joint: &Joint<S>,
-    (motions, time): (&[Motion<S>], S),
+    (motions, time): (&[BodyMotion<S>], S),
     lambda: &[S],
 ) -> ReactionJacobian<S> {
-    let ground = Motion::ground();
+    let ground = BodyMotion::ground();
     let (a, b) = sides(joint, motions, &ground, time);
     let mut out = ReactionJacobian::zero();
     for (row, &l) in joint.rows().zip(lambda) {
@@ -170,8 +170,8 @@ pub(crate) fn reaction_jacobian<S: Scalar>(
 /// Derivative of the rate of one row in the tangent positions of its two bodies.
 pub(crate) fn rate_by_position<S: Scalar>(
     row: ConstraintRow,
-    a: &Side<S>,
-    b: &Side<S>,
+    a: &JointSide<S>,
+    b: &JointSide<S>,
 ) -> (SideCotangent<S>, SideCotangent<S>) {
     let unit = RowCotangent {
         value: S::zero(),
@@ -226,7 +226,7 @@ pub(crate) fn pull_back(
     out: &mut JointCotangent,
 ) -> f64 {
     let (model, numbering, time) = (at.model, at.numbering, at.time);
-    let ground = Motion::ground();
+    let ground = BodyMotion::ground();
     let mut by_time = 0.0;
     for (j, joint) in model.joints.iter().enumerate() {
         let (a, b) = sides(joint, at.motions, &ground, time);

@@ -1,7 +1,7 @@
 //! The saddle-point systems [B Gᵀ; G 0] of projections and accelerations, and their
 //! derivatives' transposes.
 
-use super::bodies::Motion;
+use super::bodies::BodyMotion;
 use super::constraint::RowGradient;
 use super::in_motion::InMotion;
 use super::joints;
@@ -126,7 +126,7 @@ pub(crate) struct BodyBlocks<S> {
 
 /// How a matrix of the index-1 equations is eliminated, and what that takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Elimination {
+pub(crate) struct EliminationSummary {
     /// Order of the matrix: unknowns of the bodies, and rows.
     pub order: usize,
     /// Bodies in the order of elimination, each with the joint that it hangs from; `None` if a sparse
@@ -156,7 +156,7 @@ pub(crate) struct SaddlePoint<S> {
 impl<S: SolveScalar> SaddlePoint<S> {
     /// Plans the matrix for a model.
     pub(crate) fn new(model: &Model<S>, numbering: &Numbering) -> Self {
-        let motions = vec![Motion::ground(); numbering.bodies()];
+        let motions = vec![BodyMotion::ground(); numbering.bodies()];
         let mut gradients = Vec::new();
         let at = InMotion::new(model, numbering, &motions, S::zero());
         joints::gradients(&at, &mut gradients);
@@ -234,10 +234,10 @@ impl<S: SolveScalar> SaddlePoint<S> {
     ///
     /// # Panics
     /// If it was not factorised.
-    pub(crate) fn elimination(&mut self) -> Elimination {
+    pub(crate) fn elimination(&mut self) -> EliminationSummary {
         let (factor_entries, operations) = self.factors.cost();
         let pattern = &self.matrix.pattern;
-        Elimination {
+        EliminationSummary {
             order: pattern.order(),
             bodies: None,
             closing: Vec::new(),

@@ -7,12 +7,12 @@
 //!
 //! ė and ë are zero unless the marker moves on its body.
 
-use super::bodies::Motion;
+use super::bodies::BodyMotion;
 use crate::math::{Scalar, Vec3};
 
 /// Value, velocity, acceleration and virtual velocity of a marker, in ground axes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Jet<S> {
+pub(crate) struct MarkerKinematics<S> {
     /// Value.
     pub x: Vec3<S>,
     /// First derivative in time.
@@ -25,14 +25,14 @@ pub(crate) struct Jet<S> {
 
 /// Motion of a marker's vector on its body, in the body's axes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Local<S> {
+pub(crate) struct RelativeMotion<S> {
     /// ė.
     pub rate: Vec3<S>,
     /// ë.
     pub acceleration: Vec3<S>,
 }
 
-impl<S: Scalar> Jet<S> {
+impl<S: Scalar> MarkerKinematics<S> {
     /// A jet that does not move from zero.
     pub(crate) fn zero() -> Self {
         Self::fixed(Vec3::zeros())
@@ -49,19 +49,19 @@ impl<S: Scalar> Jet<S> {
     }
 
     /// The point at `s` from the centre of mass, in body axes.
-    pub(crate) fn point(motion: &Motion<S>, s: &Vec3<S>) -> Self {
+    pub(crate) fn point(motion: &BodyMotion<S>, s: &Vec3<S>) -> Self {
         Self::moving_point(motion, s, None)
     }
 
     /// The direction with components `e` in body axes, which may move on the body.
     pub(crate) fn moving_direction(
-        motion: &Motion<S>,
+        motion: &BodyMotion<S>,
         e: &Vec3<S>,
-        local: Option<&Local<S>>,
+        local: Option<&RelativeMotion<S>>,
     ) -> Self {
         let (r, w) = (&motion.rotation, &motion.omega);
         let (rate, acceleration) = derivatives(motion, e, local);
-        Jet {
+        MarkerKinematics {
             x: r * e,
             rate: r * rate,
             acceleration: r * (w.cross(&rate) + acceleration),
@@ -70,7 +70,11 @@ impl<S: Scalar> Jet<S> {
     }
 
     /// The point at `s` from the centre of mass, in body axes, which may move on the body.
-    pub(crate) fn moving_point(motion: &Motion<S>, s: &Vec3<S>, local: Option<&Local<S>>) -> Self {
+    pub(crate) fn moving_point(
+        motion: &BodyMotion<S>,
+        s: &Vec3<S>,
+        local: Option<&RelativeMotion<S>>,
+    ) -> Self {
         let mut jet = Self::moving_direction(motion, s, local);
         jet.x += motion.position;
         jet.rate += motion.velocity;
@@ -81,7 +85,7 @@ impl<S: Scalar> Jet<S> {
 
     /// The difference of two jets.
     pub(crate) fn minus(&self, other: &Self) -> Self {
-        Jet {
+        MarkerKinematics {
             x: self.x - other.x,
             rate: self.rate - other.rate,
             acceleration: self.acceleration - other.acceleration,
@@ -91,7 +95,7 @@ impl<S: Scalar> Jet<S> {
 
     /// The jet times a number.
     pub(crate) fn scaled(&self, scale: S) -> Self {
-        Jet {
+        MarkerKinematics {
             x: self.x * scale,
             rate: self.rate * scale,
             acceleration: self.acceleration * scale,
@@ -111,9 +115,9 @@ impl<S: Scalar> Jet<S> {
 /// In body axes: ω × e + ė, and what ω × (that) lacks of the second derivative,
 /// α × e + ω × ė + ë.
 fn derivatives<S: Scalar>(
-    motion: &Motion<S>,
+    motion: &BodyMotion<S>,
     e: &Vec3<S>,
-    local: Option<&Local<S>>,
+    local: Option<&RelativeMotion<S>>,
 ) -> (Vec3<S>, Vec3<S>) {
     let (mut rate, mut acceleration) = (motion.omega.cross(e), motion.alpha.cross(e));
     if let Some(local) = local {
@@ -136,25 +140,25 @@ pub(crate) struct MarkerCotangent<S> {
     /// By the marker's vector in body axes.
     pub vector: Vec3<S>,
     /// By the motion of that vector on the body.
-    pub local: Local<S>,
+    pub local: RelativeMotion<S>,
 }
 
-/// Pulls the cotangent of a jet back: the transposed derivative of [`Jet::moving_direction`], the virtual
+/// Pulls the cotangent of a jet back: the transposed derivative of [`MarkerKinematics::moving_direction`], the virtual
 /// velocities held.
 pub(crate) fn pull_back<S: Scalar>(
-    motion: &Motion<S>,
+    motion: &BodyMotion<S>,
     e: &Vec3<S>,
-    cot: &Jet<S>,
+    cot: &MarkerKinematics<S>,
 ) -> MarkerCotangent<S> {
     pull_back_moving(motion, e, None, cot)
 }
 
 /// As [`pull_back`] for a marker that moves on its body.
 pub(crate) fn pull_back_moving<S: Scalar>(
-    motion: &Motion<S>,
+    motion: &BodyMotion<S>,
     e: &Vec3<S>,
-    local: Option<&Local<S>>,
-    cot: &Jet<S>,
+    local: Option<&RelativeMotion<S>>,
+    cot: &MarkerKinematics<S>,
 ) -> MarkerCotangent<S> {
     let (r, w) = (&motion.rotation, &motion.omega);
     let (x, rate) = (r.tr_mul(&cot.x), r.tr_mul(&cot.rate));
@@ -177,7 +181,7 @@ pub(crate) fn pull_back_moving<S: Scalar>(
             + by_first.cross(w)
             + second.cross(&motion.alpha)
             + virtually.cross(&motion.virtual_omega),
-        local: Local {
+        local: RelativeMotion {
             rate: by_first + second.cross(w),
             acceleration: second,
         },

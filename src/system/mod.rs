@@ -32,7 +32,7 @@ pub(crate) mod redundancy;
 pub(crate) mod side;
 pub(crate) mod tree;
 
-pub(crate) use bodies::Motion;
+pub(crate) use bodies::BodyMotion;
 pub(crate) use in_motion::InMotion;
 pub(crate) use left_out::LeftOut;
 pub(crate) use numbering::Numbering;

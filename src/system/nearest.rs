@@ -12,7 +12,7 @@
 //! the scalar.
 
 use super::assembly::{add_displacement, displacement_metric};
-use super::bodies::{self, Motion};
+use super::bodies::{self, BodyMotion};
 use super::failure::AssemblyFailure;
 use super::in_motion::InMotion;
 use super::initial::{self, InitialState};
@@ -82,9 +82,9 @@ impl<S: Scalar> FirstOrder<'_, S> {
         rank::explain(self.real, &self.state.q)
     }
 
-    fn motions(&self) -> Vec<Motion<f64>> {
+    fn motions(&self) -> Vec<BodyMotion<f64>> {
         let mut motions = Vec::new();
-        Motion::all(self.numbering, &self.state.q, &self.state.v, &mut motions);
+        BodyMotion::all(self.numbering, &self.state.q, &self.state.v, &mut motions);
         motions
     }
 
@@ -100,7 +100,7 @@ impl<S: Scalar> FirstOrder<'_, S> {
         let (model, numbering) = (self.model, self.numbering);
         let still = vec![S::zero(); numbering.velocities()];
         let (mut motions, mut gradients) = (Vec::new(), Vec::new());
-        Motion::all(numbering, q, &still, &mut motions);
+        BodyMotion::all(numbering, q, &still, &mut motions);
         let at = InMotion::new(model, numbering, &motions, S::zero());
         joints::gradients(&at, &mut gradients);
         let mut residual = still;
@@ -126,7 +126,7 @@ impl<S: Scalar> FirstOrder<'_, S> {
     fn velocities(&mut self, q: &[S], v: &mut [S]) -> Result<(), AssemblyFailure> {
         let (model, numbering) = (self.model, self.numbering);
         let (mut motions, mut gradients) = (Vec::new(), Vec::new());
-        Motion::all(numbering, q, v, &mut motions);
+        BodyMotion::all(numbering, q, v, &mut motions);
         let at = InMotion::new(model, numbering, &motions, S::zero());
         joints::gradients(&at, &mut gradients);
         let (_, given) = guess(model);

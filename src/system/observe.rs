@@ -1,6 +1,6 @@
 //! Conserved quantities, constraint drift and joint reactions of a state.
 
-use super::bodies::{Motion, add6};
+use super::bodies::{BodyMotion, add6};
 use super::constraint::gradient;
 use super::in_motion::InMotion;
 use super::joints;
@@ -49,7 +49,7 @@ pub(crate) fn observe(
     time: f64,
 ) -> Observation {
     let mut motions = Vec::new();
-    Motion::all(numbering, q, v, &mut motions);
+    BodyMotion::all(numbering, q, v, &mut motions);
     let mut seen = Observation {
         kinetic: 0.0,
         potential: 0.0,
@@ -96,12 +96,12 @@ pub(crate) fn reactions(
 ) -> Vec<Reaction> {
     let at_rest = vec![0.0; numbering.velocities()];
     let mut motions = Vec::new();
-    Motion::all(numbering, q, &at_rest, &mut motions);
+    BodyMotion::all(numbering, q, &at_rest, &mut motions);
     let lambda = match model.joints.iter().all(|joint| joint.left_out.is_empty()) {
         true => lambda.to_vec(),
         false => smallest_multipliers(&InMotion::new(model, numbering, &motions, time), lambda),
     };
-    let ground = Motion::ground();
+    let ground = BodyMotion::ground();
     let reaction = |(j, joint): (usize, &crate::model::Joint<f64>)| {
         let (a, b) = sides(joint, &motions, &ground, time);
         let mut total = [0.0; 6];

@@ -11,7 +11,7 @@
 //! Rates and second derivatives of the rows do not depend on what is across the plane. Their values do,
 //! by what the frames have of it, and stay with [`super::joints`].
 
-use super::bodies::Motion;
+use super::bodies::BodyMotion;
 use super::constraint::RowGradient;
 use super::numbering::Numbering;
 use crate::math::scalar::along;
@@ -81,7 +81,7 @@ pub(super) struct PlanarMotion<S> {
 
 /// Value, velocity, acceleration and virtual velocity of a marker.
 #[derive(Clone, Copy)]
-pub(super) struct Jet<S> {
+pub(super) struct MarkerKinematics<S> {
     pub(super) x: Vec2<S>,
     pub(super) rate: Vec2<S>,
     pub(super) acceleration: Vec2<S>,
@@ -133,9 +133,9 @@ impl<S: Scalar> PlanarMotion<S> {
     }
 
     /// A direction of the body in motion.
-    pub(super) fn direction(&self, s: &Vec2<S>) -> Jet<S> {
+    pub(super) fn direction(&self, s: &Vec2<S>) -> MarkerKinematics<S> {
         let (x, across) = self.turned(s);
-        Jet {
+        MarkerKinematics {
             x,
             rate: across * self.omega,
             acceleration: across * self.alpha - x * (self.omega * self.omega),
@@ -144,7 +144,7 @@ impl<S: Scalar> PlanarMotion<S> {
     }
 
     /// A point of the body in motion.
-    fn point(&self, s: &Vec2<S>) -> Jet<S> {
+    fn point(&self, s: &Vec2<S>) -> MarkerKinematics<S> {
         let mut jet = self.direction(s);
         jet.x += self.position;
         jet.rate += self.velocity;
@@ -154,7 +154,7 @@ impl<S: Scalar> PlanarMotion<S> {
     }
 }
 
-impl<S: Scalar> Jet<S> {
+impl<S: Scalar> MarkerKinematics<S> {
     pub(super) fn zero() -> Self {
         Self {
             x: Vec2::zeros(),
@@ -226,7 +226,7 @@ impl<S: Scalar> PlanarJoints<S> {
 
     /// Moves to where the bodies are, with their velocities; accelerations and virtual velocities are
     /// zero.
-    pub(crate) fn stand(&mut self, motions: &[Motion<S>]) {
+    pub(crate) fn set_state(&mut self, motions: &[BodyMotion<S>]) {
         let [t1, t2] = &self.along;
         let plane = |x: &Vec3<S>| Vec2::new(along(x, t1), along(x, t2));
         for ((at, motion), body) in self.motions.iter_mut().zip(motions).zip(&self.planes) {
@@ -344,18 +344,23 @@ impl<S: Scalar> PlanarJoints<S> {
     }
 
     /// The distance of a joint's points in motion, if a row looks at it.
-    pub(super) fn distance(&self, joint: &PlanarJoint<S>) -> Jet<S> {
+    pub(super) fn distance(&self, joint: &PlanarJoint<S>) -> MarkerKinematics<S> {
         match joint.points {
             true => {
                 let a = self.motions[joint.body_a].point(&joint.a.point);
                 a.minus(&self.motions[joint.body_b].point(&joint.b.point))
             }
-            false => Jet::zero(),
+            false => MarkerKinematics::zero(),
         }
     }
 
     /// Axis `a` of the frame on body A and axis `b` of that on body B, in motion.
-    pub(super) fn axes(&self, joint: &PlanarJoint<S>, a: usize, b: usize) -> (Jet<S>, Jet<S>) {
+    pub(super) fn axes(
+        &self,
+        joint: &PlanarJoint<S>,
+        a: usize,
+        b: usize,
+    ) -> (MarkerKinematics<S>, MarkerKinematics<S>) {
         (
             self.motions[joint.body_a].direction(&joint.a.axes[a]),
             self.motions[joint.body_b].direction(&joint.b.axes[b]),

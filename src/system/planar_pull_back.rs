@@ -5,12 +5,14 @@ use super::bodies::add6;
 use super::constraint::RowCotangent;
 use super::joints::{JointCotangent, RowCotangents};
 use super::numbering::Numbering;
-use super::planar::{Jet, PlanarFrame, PlanarJoint, PlanarJoints, PlanarMotion, Vec2, spatial};
+use super::planar::{
+    MarkerKinematics, PlanarFrame, PlanarJoint, PlanarJoints, PlanarMotion, Vec2, spatial,
+};
 use crate::model::{ConstraintRow, JointFrame};
 
 /// The cotangent that one factor of a row's product leaves on the other, without that of the value.
-fn on_factor(cot: &RowCotangent<f64>, factor: &Jet<f64>) -> Jet<f64> {
-    Jet {
+fn on_factor(cot: &RowCotangent<f64>, factor: &MarkerKinematics<f64>) -> MarkerKinematics<f64> {
+    MarkerKinematics {
         x: factor.rate * cot.rate
             + factor.acceleration * cot.acceleration
             + factor.virtual_rate * cot.virtual_rate,
@@ -45,7 +47,12 @@ impl SideCotangent {
     }
 
     /// Pulls the cotangent of a direction in motion back; returns that of its components in the body.
-    fn direction(&mut self, at: &PlanarMotion<f64>, s: &Vec2<f64>, cot: &Jet<f64>) -> Vec2<f64> {
+    fn direction(
+        &mut self,
+        at: &PlanarMotion<f64>,
+        s: &Vec2<f64>,
+        cot: &MarkerKinematics<f64>,
+    ) -> Vec2<f64> {
         let (x, across) = at.turned(s);
         // ρ and ρ' with all that they make.
         let by_x = cot.x - cot.acceleration * (at.omega * at.omega);
@@ -61,13 +68,24 @@ impl SideCotangent {
     }
 
     /// Pulls the cotangent of axis i back.
-    fn axis(&mut self, at: &PlanarMotion<f64>, frame: &PlanarFrame<f64>, i: usize, cot: &Jet<f64>) {
+    fn axis(
+        &mut self,
+        at: &PlanarMotion<f64>,
+        frame: &PlanarFrame<f64>,
+        i: usize,
+        cot: &MarkerKinematics<f64>,
+    ) {
         let by = self.direction(at, &frame.axes[i], cot);
         self.frame.axes[i] += by;
     }
 
     /// Pulls the cotangent of the point back.
-    fn point(&mut self, at: &PlanarMotion<f64>, frame: &PlanarFrame<f64>, cot: &Jet<f64>) {
+    fn point(
+        &mut self,
+        at: &PlanarMotion<f64>,
+        frame: &PlanarFrame<f64>,
+        cot: &MarkerKinematics<f64>,
+    ) {
         let by = self.direction(at, &frame.point, cot);
         self.frame.point += by;
         self.position += cot.x;
@@ -117,7 +135,7 @@ impl PlanarJoints<f64> {
         let (at_a, at_b) = (&self.motions[joint.body_a], &self.motions[joint.body_b]);
         let (mut by_a, mut by_b) = (SideCotangent::zero(), SideCotangent::zero());
         let d = self.distance(joint);
-        let mut by_distance = Jet::zero();
+        let mut by_distance = MarkerKinematics::zero();
         let mut by_length = 0.0;
         for (i, &row) in joint.rows.iter().enumerate() {
             let cot = cot(i);
@@ -167,7 +185,7 @@ impl PlanarJoints<f64> {
     }
 }
 
-impl Jet<f64> {
+impl MarkerKinematics<f64> {
     fn add(&mut self, other: &Self) {
         self.x += other.x;
         self.rate += other.rate;

@@ -1,7 +1,7 @@
 //! How the reactions Gᵀλ of the rows turn with the bodies, for the iteration matrices of implicit
 //! methods.
 
-use super::side::Side;
+use super::side::JointSide;
 use crate::math::scalar::skew;
 use crate::math::{Mat3, Scalar};
 use crate::model::ConstraintRow;
@@ -54,8 +54,8 @@ impl<S: Scalar> ReactionJacobian<S> {
 pub(crate) fn add_reaction_jacobian<S: Scalar>(
     row: ConstraintRow,
     lambda: S,
-    a: &Side<S>,
-    b: &Side<S>,
+    a: &JointSide<S>,
+    b: &JointSide<S>,
     out: &mut ReactionJacobian<S>,
 ) {
     let (ra, rb) = (&a.motion.rotation, &b.motion.rotation);

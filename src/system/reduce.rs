@@ -72,7 +72,7 @@ pub(crate) fn project<S: Scalar>(numbering: &Numbering, x: &mut [S]) {
 
 /// Leaves of tangent positions those that stay as the bodies are placed: all of a body that cannot
 /// move, and the rotation of one that cannot turn.
-pub(crate) fn keep_placed(numbering: &Numbering, y: &mut [f64]) {
+pub(crate) fn constrain_cotangent(numbering: &Numbering, y: &mut [f64]) {
     for body in 0..numbering.bodies() {
         let at = numbering.velocity(body);
         let mobility = numbering.mobility(body);

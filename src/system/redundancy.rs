@@ -8,7 +8,7 @@
 //! of G: the first in the order of the joints whose part across the rows kept so far is not small
 //! against the largest such part.
 
-use super::bodies::{self, Motion};
+use super::bodies::{self, BodyMotion};
 use super::constraint;
 use super::in_motion::InMotion;
 use super::joints;
@@ -175,14 +175,14 @@ impl<'a> Rows<'a> {
         }
     }
 
-    fn motions(&self, q: &[f64]) -> Vec<Motion<f64>> {
+    fn motions(&self, q: &[f64]) -> Vec<BodyMotion<f64>> {
         let at_rest = vec![0.0; self.numbering.velocities()];
         let mut motions = Vec::new();
-        Motion::all(&self.numbering, q, &at_rest, &mut motions);
+        BodyMotion::all(&self.numbering, q, &at_rest, &mut motions);
         motions
     }
 
-    fn at<'b>(&'b self, motions: &'b [Motion<f64>]) -> InMotion<'b, f64> {
+    fn at<'b>(&'b self, motions: &'b [BodyMotion<f64>]) -> InMotion<'b, f64> {
         InMotion::new(self.model, &self.numbering, motions, 0.0)
     }
 
@@ -338,7 +338,7 @@ pub(crate) struct Widest {
 }
 
 /// The row that is open most; `None` if no row is left out, so that all are imposed.
-pub(crate) fn widest<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Widest> {
+pub(crate) fn widest<S: Scalar>(model: &Model<S>, at: (&[BodyMotion<S>], S)) -> Option<Widest> {
     if model.joints.iter().all(|joint| joint.left_out.is_empty()) {
         return None;
     }
@@ -354,7 +354,7 @@ pub(crate) fn widest<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Opti
 
 /// The row that is open by more than [`OPENED`] of the model's length scale where the bodies are, if
 /// one is.
-pub(crate) fn opened<S: Scalar>(model: &Model<S>, at: (&[Motion<S>], S)) -> Option<Widest> {
+pub(crate) fn opened<S: Scalar>(model: &Model<S>, at: (&[BodyMotion<S>], S)) -> Option<Widest> {
     widest(model, at).filter(|widest| {
         let limit = OPENED * length_scale(model);
         widest.gap.is_nan() || widest.gap > limit

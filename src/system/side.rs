@@ -7,16 +7,16 @@
 //! ė1 = φ̇ e2,   ë1 = φ̈ e2 − φ̇² e1,   ė2 = −φ̇ e1,   ë2 = −φ̈ e1 − φ̇² e2,   ṡ = σ̇ e3,   s̈ = σ̈ e3
 //! ```
 
-use super::bodies::Motion;
-use super::marker::{Jet, Local};
+use super::bodies::BodyMotion;
+use super::marker::{MarkerKinematics, RelativeMotion};
 use crate::math::{Scalar, Vec3};
-use crate::model::{Freedom, Joint, JointFrame};
+use crate::model::{DegreeOfFreedom, Joint, JointFrame};
 
 /// One side of a joint.
 #[derive(Clone, Debug)]
-pub(crate) struct Side<'a, S> {
+pub(crate) struct JointSide<'a, S> {
     /// Motion of the body (ground at rest if there is none).
-    pub motion: &'a Motion<S>,
+    pub motion: &'a BodyMotion<S>,
     /// The joint's frame on the body at this time.
     pub frame: JointFrame<S>,
     /// How the frame moves on the body, if it does.
@@ -42,25 +42,25 @@ impl<S: Scalar> FrameMotion<S> {
     }
 
     /// The motion of axis i.
-    pub(crate) fn axis(&self, i: usize) -> Local<S> {
-        Local {
+    pub(crate) fn axis(&self, i: usize) -> RelativeMotion<S> {
+        RelativeMotion {
             rate: self.rate.axes[i],
             acceleration: self.acceleration.axes[i],
         }
     }
 
     /// The motion of the point.
-    pub(crate) fn point(&self) -> Local<S> {
-        Local {
+    pub(crate) fn point(&self) -> RelativeMotion<S> {
+        RelativeMotion {
             rate: self.rate.point,
             acceleration: self.acceleration.point,
         }
     }
 }
 
-impl<'a, S: Scalar> Side<'a, S> {
+impl<'a, S: Scalar> JointSide<'a, S> {
     /// A side whose frame does not move.
-    pub(crate) fn fixed(motion: &'a Motion<S>, frame: JointFrame<S>) -> Self {
+    pub(crate) fn fixed(motion: &'a BodyMotion<S>, frame: JointFrame<S>) -> Self {
         Self {
             motion,
             frame,
@@ -79,33 +79,33 @@ impl<'a, S: Scalar> Side<'a, S> {
     }
 
     /// Axis i in motion.
-    pub(crate) fn axis_jet(&self, i: usize) -> Jet<S> {
+    pub(crate) fn axis_jet(&self, i: usize) -> MarkerKinematics<S> {
         let local = self.moving.as_ref().map(|moving| moving.axis(i));
-        Jet::moving_direction(self.motion, &self.frame.axes[i], local.as_ref())
+        MarkerKinematics::moving_direction(self.motion, &self.frame.axes[i], local.as_ref())
     }
 
     /// The point in motion.
-    pub(crate) fn point_jet(&self) -> Jet<S> {
+    pub(crate) fn point_jet(&self) -> MarkerKinematics<S> {
         let local = self.moving.as_ref().map(|moving| moving.point());
-        Jet::moving_point(self.motion, &self.frame.point, local.as_ref())
+        MarkerKinematics::moving_point(self.motion, &self.frame.point, local.as_ref())
     }
 }
 
 /// Both sides of a joint at `time` (s); `ground` is the motion of a missing body B.
 pub(crate) fn sides<'a, S: Scalar>(
     joint: &Joint<S>,
-    motions: &'a [Motion<S>],
-    ground: &'a Motion<S>,
+    motions: &'a [BodyMotion<S>],
+    ground: &'a BodyMotion<S>,
     time: S,
-) -> (Side<'a, S>, Side<'a, S>) {
+) -> (JointSide<'a, S>, JointSide<'a, S>) {
     let motion_b = joint.body_b.map_or(ground, |body| &motions[body]);
-    let mut b = Side::fixed(motion_b, joint.frame_b);
+    let mut b = JointSide::fixed(motion_b, joint.frame_b);
     if !joint.drives.is_empty() {
         let (frame, moving) = driven_frame(joint, time);
         b.frame = frame;
         b.moving = Some(moving);
     }
-    (Side::fixed(&motions[joint.body_a], joint.frame_a), b)
+    (JointSide::fixed(&motions[joint.body_a], joint.frame_a), b)
 }
 
 /// The courses of the joint's drives at `time`: (turn, slide), zero where there is none.
@@ -115,8 +115,8 @@ fn courses<S: Scalar>(joint: &Joint<S>, time: S) -> ([S; 4], [S; 4]) {
     for drive in &joint.drives {
         let at = drive.course.derivatives(time);
         match drive.freedom {
-            Freedom::Turn => turn = at,
-            Freedom::Slide => slide = at,
+            DegreeOfFreedom::Rotation => turn = at,
+            DegreeOfFreedom::Translation => slide = at,
         }
     }
     (turn, slide)
@@ -184,8 +184,8 @@ pub(crate) fn pull_driven_frame(
     let mut by_time = 0.0;
     for (drive, own) in joint.drives.iter().zip(&mut own.drives) {
         let weights = match drive.freedom {
-            Freedom::Turn => weights_turn,
-            Freedom::Slide => weights_slide,
+            DegreeOfFreedom::Rotation => weights_turn,
+            DegreeOfFreedom::Translation => weights_slide,
         };
         by_time += drive.course.pull_back(time, weights, &mut own.course);
     }

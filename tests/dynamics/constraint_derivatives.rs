@@ -7,12 +7,12 @@
 
 use crate::tests::reference;
 
-use flexbody::integrate::implicit::ggl::{Equations, Instant};
+use flexbody::integrate::implicit::ggl::{Equations, StepState};
 use flexbody::linalg::{Pattern, SparseMatrix};
 use flexbody::math::{Complex64, Mat3, rotation};
 use flexbody::model::Model;
 use flexbody::system::InMotion;
-use flexbody::system::bodies::{self, Motion, rates, velocity_of_rates};
+use flexbody::system::bodies::{self, BodyMotion, rates, velocity_of_rates};
 use flexbody::system::initial;
 use flexbody::system::joints::{self, JointCotangent, RowCotangents, rate_by_position};
 use flexbody::system::kkt::SaddlePoint;
@@ -114,7 +114,7 @@ fn reaction_jacobians() {
 fn rates_by_positions() {
     for case in cases() {
         let (model, v) = (case.lifted(), lift(&case.v));
-        let (motions, ground) = (case.motions(&case.q, &case.v), Motion::ground());
+        let (motions, ground) = (case.motions(&case.q, &case.v), BodyMotion::ground());
         let joint = &case.model.joints[0];
         let (a, b) = sides(joint, &motions, &ground, TIME);
         for (i, row) in joint.rows().enumerate() {
@@ -253,7 +253,7 @@ fn residual(
 ) -> Vec<f64> {
     let mut equations = Equations::new(model, &case.numbering);
     let mut out = vec![Complex64::from(0.0); equations.order()];
-    let at = Instant {
+    let at = StepState {
         q: &x.q,
         v: &x.v,
         lambda: &x.lambda,
@@ -276,7 +276,7 @@ fn iteration_matrix_of_the_stabilised_equations() {
         let (lambda, mu) = (case.numbers.list(rows), case.numbers.list(rows));
         let (qdot, vdot) = (case.numbers.list(14), case.numbers.list(12));
         let mut equations = Equations::new(&case.model, &case.numbering);
-        let at = Instant {
+        let at = StepState {
             q: &case.q,
             v: &case.v,
             lambda: &lambda,
@@ -323,7 +323,7 @@ fn pull_back_of_the_stabilised_equations() {
         let (qdot, vdot) = (case.numbers.list(14), case.numbers.list(12));
         let psi = case.numbers.list(24 + 2 * rows);
         let mut equations = Equations::new(&case.model, &case.numbering);
-        let at = Instant {
+        let at = StepState {
             q: &case.q,
             v: &case.v,
             lambda: &lambda,

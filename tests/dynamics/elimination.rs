@@ -7,7 +7,7 @@ use flexbody::problem::Problem;
 use flexbody::system::accelerations::Accelerations;
 use flexbody::system::initial::mass;
 use flexbody::system::kkt::SaddlePoint;
-use flexbody::system::{InMotion, Motion, Numbering};
+use flexbody::system::{BodyMotion, InMotion, Numbering};
 use std::path::Path;
 
 /// Problems, and how many joints of each close loops.
@@ -47,7 +47,7 @@ fn differences<S: SolveScalar>(name: &str, model: &Model<S>, closing: usize) -> 
     }
     let v = vec![S::zero(); numbering.velocities()];
     let mut field = Accelerations::new(model, &numbering);
-    field.stand(&q, &v, S::zero());
+    field.set_state(&q, &v, S::zero());
     field.factorise().expect("regular");
     let how = field.elimination();
     let moving = model
@@ -61,7 +61,7 @@ fn differences<S: SolveScalar>(name: &str, model: &Model<S>, closing: usize) -> 
     );
     assert_eq!(how.closing.len(), closing, "{name}");
     let mut saddle = SaddlePoint::new(model, &numbering);
-    Motion::all(&numbering, &q, &v, &mut motions);
+    BodyMotion::all(&numbering, &q, &v, &mut motions);
     let zeros = vec![S::zero(); numbering.constraints()];
     let at = InMotion::new(model, &numbering, &motions, S::zero());
     saddle.factorise(&at, &zeros, mass(model)).expect("regular");

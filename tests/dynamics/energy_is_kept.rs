@@ -10,9 +10,9 @@ use flexbody::integrate::{
 };
 use flexbody::math::{Complex64, Vec3};
 use flexbody::model::{
-    Axes, Course, Drive, Freedom, JointKind, Load, LoadKind, Model, MotionCourse,
+    Axes, DegreeOfFreedom, Drive, JointKind, Load, LoadKind, Model, PrescribedMotion, TimeFunction,
 };
-use flexbody::system::Motion;
+use flexbody::system::BodyMotion;
 
 /// A tree of one to four bodies on random joints, with and without gravity, springs of stiffness 1 to 1e5
 /// between points and about hinges, in lengths of `unit` (m).
@@ -175,7 +175,7 @@ fn judge(
         }
         let mut v = run.v(k).to_vec();
         spoil(k, &mut v);
-        Motion::all(&run.numbering, run.q(k), &v, &mut motions);
+        BodyMotion::all(&run.numbering, run.q(k), &v, &mut motions);
         ledger.enter(model, &motions, run.time(k));
     }
     ledger.close(run.grid.steps(), run.step_error)
@@ -271,11 +271,11 @@ fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance()
 
         let mut driven = model.clone();
         driven.joints[0].drives.push(Drive {
-            freedom: Freedom::Turn,
-            course: MotionCourse::Polynomial(vec![0.0, 1.0]),
+            freedom: DegreeOfFreedom::Rotation,
+            course: PrescribedMotion::Polynomial(vec![0.0, 1.0]),
         });
         assert!(Ledger::open(&driven, &by, &scale).is_none());
-        let (joint, freedom) = (0, Freedom::Turn);
+        let (joint, freedom) = (0, DegreeOfFreedom::Rotation);
         let spring = |damping: f64| LoadKind::Spring {
             body_a: 0,
             body_b: None,
@@ -312,7 +312,7 @@ fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance()
                     point: Vec3::zeros(),
                     direction: Vec3::x(),
                     axes: Axes::Ground,
-                    magnitude: Course::Constant(1.0),
+                    magnitude: TimeFunction::Constant(1.0),
                 },
                 false,
             ),

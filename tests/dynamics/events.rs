@@ -2,7 +2,7 @@
 //! complex step by several methods.
 
 use flexbody::driver::integration::Integration;
-use flexbody::driver::{Evaluated, Journal, Optimisation, check, optimise, simulate};
+use flexbody::driver::{Evaluated, KnownEvaluations, Optimisation, check, optimise, simulate};
 use flexbody::integrate::IntegrationFailure;
 use flexbody::problem::Problem;
 use flexbody::report::{Optimum, summary};
@@ -168,7 +168,13 @@ fn gradients_are_those_of_the_complex_step() {
 fn optimised(file: &Value) -> (Problem, Optimisation) {
     let problem = problem(file);
     let mut progress = |_: &_| ControlFlow::Continue(());
-    let done = optimise(&problem, "", None, Journal::default(), &mut progress);
+    let done = optimise(
+        &problem,
+        "",
+        None,
+        KnownEvaluations::default(),
+        &mut progress,
+    );
     (problem, done.expect("has an objective"))
 }
 
@@ -348,7 +354,7 @@ fn a_problem_of_constraints_alone_is_made_feasible() {
 }
 
 fn solved(problem: &Problem) -> Optimisation {
-    optimise(problem, "", None, Journal::default(), &mut |_| {
+    optimise(problem, "", None, KnownEvaluations::default(), &mut |_| {
         ControlFlow::Continue(())
     })
     .expect("constraints and variables")

@@ -4,8 +4,8 @@ use crate::tests::reference;
 
 use flexbody::adjoint::gradients;
 use flexbody::functions::{
-    Bound, EnergyPart, Function, Gate, Instant, Projectile, Reduction, Release, Rotation, Scene,
-    Side,
+    Bound, EnergyPart, Function, Gate, GateSide, Instant, Projectile, Reduction, Release, Rotation,
+    Scene,
 };
 use flexbody::integrate::{Method, Samples, Settings, Spacing, Start, Trajectory, simulate};
 use flexbody::math::{Complex64, Vec3, scalar::COMPLEX_STEP};
@@ -30,14 +30,14 @@ fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
         rotation: turned(gate_body, None, Vec3::z(), None),
         limit: 0.4,
         width: 0.3,
-        open: Side::Above,
+        open: GateSide::Above,
     };
     let other = (gate_body != body).then_some(body);
     let seen_from = Gate {
         rotation: turned(gate_body, other, Vec3::z(), Some([0.9, 0.1, -0.2, 0.3])),
         limit: 0.1,
         width: 0.8,
-        open: Side::Below,
+        open: GateSide::Below,
     };
     let reduced = |instant, reduction| Function::Reduced { instant, reduction };
     vec![

@@ -11,7 +11,7 @@ use flexbody::integrate::{Method, Settings, simulate};
 use flexbody::math::{Mat3, Vec3, rotation};
 use flexbody::model::{JointFrame, JointKind, Model, RigidBody};
 use flexbody::system::InMotion;
-use flexbody::system::bodies::{Motion, all_force_balances, mass_product};
+use flexbody::system::bodies::{BodyMotion, all_force_balances, mass_product};
 use flexbody::system::failure::AssemblyFailure;
 use flexbody::system::initial::{self, InitialState};
 use flexbody::system::kkt::SaddlePoint;
@@ -98,7 +98,7 @@ fn a_displaced_guess_is_assembled_to_the_nearest_state() {
         let closed = |q: &[f64]| {
             let mut phi = vec![0.0; numbering.constraints()];
             let mut motions = Vec::new();
-            Motion::all(&numbering, q, &[0.0; 12], &mut motions);
+            BodyMotion::all(&numbering, q, &[0.0; 12], &mut motions);
             joints::values(&InMotion::new(&model, &numbering, &motions, 0.0), &mut phi);
             largest(&phi)
         };
@@ -154,7 +154,7 @@ fn velocities_are_projected() {
         let rates = |v: &[f64]| {
             let mut rows = vec![0.0; numbering.constraints()];
             let mut motions = Vec::new();
-            Motion::all(&numbering, &start.q, v, &mut motions);
+            BodyMotion::all(&numbering, &start.q, v, &mut motions);
             joints::rates(&InMotion::new(&model, &numbering, &motions, 0.0), &mut rows);
             largest(&rows)
         };
@@ -187,7 +187,7 @@ fn accelerations_obey_constraints_and_equations_of_motion() {
         let numbering = Numbering::new(&model);
         let start = solve(&model).expect("is consistent");
         let (mut motions, mut gradients) = (Vec::new(), Vec::new());
-        Motion::all(&numbering, &start.q, &start.v, &mut motions);
+        BodyMotion::all(&numbering, &start.q, &start.v, &mut motions);
         joints::gradients(
             &InMotion::new(&model, &numbering, &motions, 0.0),
             &mut gradients,

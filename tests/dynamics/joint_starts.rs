@@ -12,7 +12,7 @@ use flexbody::problem::Problem;
 use flexbody::system::InMotion;
 use flexbody::system::initial;
 use flexbody::system::kkt::SaddlePoint;
-use flexbody::system::{Motion, Numbering, joints};
+use flexbody::system::{BodyMotion, Numbering, joints};
 use serde_json::{Value, json};
 
 pub(super) fn problem(file: &Value) -> Problem {
@@ -56,7 +56,7 @@ pub(super) fn started(problem: &Problem, x: &[f64]) -> (Vec<(String, State)>, Mo
     let mut saddle = SaddlePoint::new(&model, &numbering);
     let start = initial::solve(&model, &numbering, &mut saddle).expect("starts");
     let mut motions = Vec::new();
-    Motion::all(&numbering, &start.q, &start.v, &mut motions);
+    BodyMotion::all(&numbering, &start.q, &start.v, &mut motions);
     let mut rows = vec![0.0; numbering.constraints()];
     let largest = |rows: &[f64]| rows.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let at = InMotion::new(&model, &numbering, &motions, 0.0);
@@ -64,7 +64,7 @@ pub(super) fn started(problem: &Problem, x: &[f64]) -> (Vec<(String, State)>, Mo
     assert!(largest(&rows) <= 1e-12, "{:e}", largest(&rows));
     joints::rates(&at, &mut rows);
     assert!(largest(&rows) <= 1e-12, "{:e}", largest(&rows));
-    let state = |(body, motion): (&RigidBody<f64>, &Motion<f64>)| {
+    let state = |(body, motion): (&RigidBody<f64>, &BodyMotion<f64>)| {
         let state = State {
             r: motion.position,
             turn: motion.rotation,

@@ -9,7 +9,7 @@ use flexbody::integrate::IntegrationFailure;
 use flexbody::math::rotation::{from_axis_angle, matrix};
 use flexbody::math::scalar::COMPLEX_STEP;
 use flexbody::math::{Complex64, Dual, Scalar, Vec3};
-use flexbody::model::{Drive, Freedom, Model, MotionCourse};
+use flexbody::model::{DegreeOfFreedom, Drive, Model, PrescribedMotion};
 use flexbody::problem::Problem;
 use flexbody::system::Numbering;
 use flexbody::system::initial;
@@ -360,9 +360,9 @@ fn a_loop_of_five_freedoms_starts_the_same_however_it_is_written() {
     let pattern = problem(&five_freedoms(&PLAIN));
     let (exact, model) = started(&pattern, &[]);
     let given = [
-        (Freedom::Turn, "hinge", [0.5, 1.2]),
-        (Freedom::Slide, "slide", [0.15, -0.4]),
-        (Freedom::Turn, "hanger", [0.0, 0.9]),
+        (DegreeOfFreedom::Rotation, "hinge", [0.5, 1.2]),
+        (DegreeOfFreedom::Translation, "slide", [0.15, -0.4]),
+        (DegreeOfFreedom::Rotation, "hanger", [0.0, 0.9]),
     ];
     for (freedom, joint, values) in given {
         let found = measured(&model, joint, freedom);
@@ -411,7 +411,7 @@ fn a_loop_of_five_freedoms_starts_the_same_however_it_is_written() {
 }
 
 /// Angle or displacement of a joint and its rate where a model is placed, from its frames.
-fn measured(model: &Model<f64>, name: &str, freedom: Freedom) -> [f64; 2] {
+fn measured(model: &Model<f64>, name: &str, freedom: DegreeOfFreedom) -> [f64; 2] {
     let joint = model.joints.iter().find(|joint| joint.name == name);
     let joint = joint.expect("a joint of this name");
     let a = &model.bodies[joint.body_a];
@@ -436,11 +436,11 @@ fn measured(model: &Model<f64>, name: &str, freedom: Freedom) -> [f64; 2] {
     }
     let (point, axes, velocity, omega) = other;
     match freedom {
-        Freedom::Turn => [
+        DegreeOfFreedom::Rotation => [
             axes_a[0].dot(&axes[1]).atan2(axes_a[0].dot(&axes[0])),
             axes[2].dot(&(omega_a - omega)),
         ],
-        Freedom::Slide => [
+        DegreeOfFreedom::Translation => [
             axes[2].dot(&(a.position + arm_a - point)),
             axes[2].dot(&(a.velocity + omega_a.cross(&arm_a) - velocity)),
         ],
@@ -472,7 +472,7 @@ fn every_hinge_of_a_bricard_loop_can_start() {
             let problem = problem(&file);
             let x = problem.start();
             let (_, model) = started(&problem, &x);
-            let found = measured(&model, &name, Freedom::Turn);
+            let found = measured(&model, &name, DegreeOfFreedom::Rotation);
             assert!((found[0] - angle).abs() <= 1e-12 && (found[1] - rate).abs() <= 1e-12);
             for i in 0..x.len() {
                 let step = |j: usize| Complex64::new(x[j], if i == j { COMPLEX_STEP } else { 0.0 });
@@ -487,8 +487,8 @@ fn every_hinge_of_a_bricard_loop_can_start() {
                     body.angular_velocity = body.angular_velocity.map(|x| x.re.into());
                 }
                 driven.joints[joint].drives.push(Drive {
-                    freedom: Freedom::Turn,
-                    course: MotionCourse::Polynomial(vec![step(0), step(1)]),
+                    freedom: DegreeOfFreedom::Rotation,
+                    course: PrescribedMotion::Polynomial(vec![step(0), step(1)]),
                 });
                 let numbering = Numbering::new(&driven);
                 let mut saddle = SaddlePoint::new(&driven, &numbering);
@@ -539,7 +539,7 @@ fn what_a_loop_cannot_have_is_refused() {
     each["joints"]["pivot"]["revolute"]["start"] = json!({"turn": {"rate": 3}});
     let (found, model) = started(&problem(&each), &[]);
     assert!((angle(&named(&found, "crank")) - 0.9).abs() <= 1e-12);
-    assert!((measured(&model, "pivot", Freedom::Turn)[1] - 3.0).abs() <= 1e-12);
+    assert!((measured(&model, "pivot", DegreeOfFreedom::Rotation)[1] - 3.0).abs() <= 1e-12);
 
     // The rocker swings by less than half a turn.
     let mut far = four_bar(0.7, "pivot", json!({"turn": {"angle": 2.5}}));

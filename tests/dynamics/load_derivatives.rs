@@ -7,12 +7,12 @@
 
 use crate::tests::reference;
 
-use flexbody::integrate::implicit::ggl::{Equations, Instant};
+use flexbody::integrate::implicit::ggl::{Equations, StepState};
 use flexbody::linalg::{Emit, SparseMatrix};
 use flexbody::math::scalar::COMPLEX_STEP;
 use flexbody::math::{Complex64, Scalar};
 use flexbody::model::Interpolation;
-use flexbody::model::{Axes, Course, Freedom, JointKind, Load, LoadKind, Model};
+use flexbody::model::{Axes, DegreeOfFreedom, JointKind, Load, LoadKind, Model, TimeFunction};
 use flexbody::system::InMotion;
 use flexbody::system::initial;
 use flexbody::system::kkt::SaddlePoint;
@@ -25,16 +25,16 @@ use reference::models::Numbers;
 /// An instant within the second interval of the tables.
 const TIME: f64 = 0.37;
 
-fn table() -> Course<f64> {
-    Course::Table {
+fn table() -> TimeFunction<f64> {
+    TimeFunction::Table {
         times: vec![0.0, 0.2, 0.5, 0.9],
         values: vec![1.0, 2.0, 4.0, 4.5],
         interpolation: Interpolation::Monotone,
     }
 }
 
-fn harmonic() -> Course<f64> {
-    Course::Harmonic {
+fn harmonic() -> TimeFunction<f64> {
+    TimeFunction::Harmonic {
         amplitude: 3.0,
         frequency: 0.8,
         phase: 0.3,
@@ -46,7 +46,7 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
     use JointKind::{Prismatic, Revolute, Spherical};
     let mut all = Vec::new();
     for axes in [Axes::Ground, Axes::Body] {
-        for magnitude in [Course::Constant(2.0), harmonic(), table()] {
+        for magnitude in [TimeFunction::Constant(2.0), harmonic(), table()] {
             let (point, direction) = (numbers.vector(), numbers.vector());
             let force = LoadKind::Force {
                 body: 1,
@@ -84,7 +84,10 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
         };
         all.extend([(Spherical, spring), (Revolute, torsion)]);
     }
-    for (kind, freedom) in [(Revolute, Freedom::Turn), (Prismatic, Freedom::Slide)] {
+    for (kind, freedom) in [
+        (Revolute, DegreeOfFreedom::Rotation),
+        (Prismatic, DegreeOfFreedom::Translation),
+    ] {
         let damping = LoadKind::Damping {
             joint: 0,
             freedom,
@@ -263,7 +266,7 @@ fn equations_of_a_step() {
         let rows = case.numbering.constraints();
         let n = 24 + 2 * rows;
         let zeros = vec![0.0; 24];
-        let at = Instant {
+        let at = StepState {
             q: &case.q,
             v: &case.v,
             lambda: &zeros[..rows],
@@ -279,7 +282,7 @@ fn equations_of_a_step() {
         let residual = |model: &Model<Complex64>, q: &[_], v: &[_], vdot: &[_], time, h: f64| {
             let mut equations = Equations::new(model, &case.numbering);
             let mut out = lift(&vec![0.0; n]);
-            let at = Instant {
+            let at = StepState {
                 q,
                 v,
                 lambda: &still[..rows],

@@ -10,7 +10,7 @@ use flexbody::system::InMotion;
 use flexbody::system::constraint::RowGradient;
 use flexbody::system::joints::{self, JointCotangent, RowCotangents};
 use flexbody::system::planar::PlanarJoints;
-use flexbody::system::{Motion, Numbering, reduce};
+use flexbody::system::{BodyMotion, Numbering, reduce};
 use reference::cases::{Case, case, lift, parameters, step};
 use reference::models::{KINDS, axes_along};
 
@@ -43,7 +43,7 @@ fn cases() -> Vec<(Case, Vec<f64>, Vec<f64>)> {
 }
 
 /// Motions with accelerations and virtual velocities.
-fn moving<S: Scalar>(case: &Case, q: &[S], v: &[S], a: &[S], w: &[S]) -> Vec<Motion<S>> {
+fn moving<S: Scalar>(case: &Case, q: &[S], v: &[S], a: &[S], w: &[S]) -> Vec<BodyMotion<S>> {
     let mut motions = case.motions(q, v);
     for (i, motion) in motions.iter_mut().enumerate() {
         let o = case.numbering.velocity(i);
@@ -80,7 +80,7 @@ fn both<S: Scalar>(
     let at = InMotion::new(model, numbering, &motions, S::zero());
     let (mut spatial, mut own) = (Vec::new(), Vec::new());
     joints::gradients(&at, &mut spatial);
-    planar.stand(&motions);
+    planar.set_state(&motions);
     planar.set_moving(numbering, Some(a), None);
     planar.gradients(&mut own);
     let mut second = vec![S::zero(); numbering.constraints()];
@@ -142,7 +142,7 @@ fn pull_backs_are_those_in_space() {
         let cot: [Vec<f64>; 3] = std::array::from_fn(|_| case.numbers.list(rows));
         let motions = moving(&case, &case.q, &case.v, &a, &w);
         let mut planar = PlanarJoints::of(model).expect("a planar model");
-        planar.stand(&motions);
+        planar.set_state(&motions);
         planar.set_velocities(numbering, &case.v);
         planar.set_moving(numbering, Some(&a), Some(&w));
         for kept in 0..4 {

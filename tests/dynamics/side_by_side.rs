@@ -1,6 +1,6 @@
 //! Simulations that are made side by side change no number of a run.
 
-use flexbody::driver::{Journal, optimise, second_order};
+use flexbody::driver::{KnownEvaluations, optimise, second_order};
 use flexbody::problem::Problem;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -12,13 +12,23 @@ fn run(file: &str, threads: usize, curvature: bool) -> (usize, String) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads").install(|| {
         let mut go_on = |_: &_| ControlFlow::Continue(());
-        let found = optimise(&problem, file, None, Journal::default(), &mut go_on);
+        let found = optimise(
+            &problem,
+            file,
+            None,
+            KnownEvaluations::default(),
+            &mut go_on,
+        );
         let found = found.expect("an objective");
         let second = curvature.then(|| {
             let (outcome, integration) = (&found.outcome, &found.integration);
-            second_order(&problem, outcome, integration, Journal::default(), &|| {
-                false
-            })
+            second_order(
+                &problem,
+                outcome,
+                integration,
+                KnownEvaluations::default(),
+                &|| false,
+            )
         });
         let optimum = &found.optimum;
         let told = format!(

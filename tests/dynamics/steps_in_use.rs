@@ -4,7 +4,7 @@
 use flexbody::driver::evaluate::Evaluated;
 use flexbody::driver::evaluator::Evaluator;
 use flexbody::driver::integration::Integration;
-use flexbody::driver::{Journal, simulate};
+use flexbody::driver::{KnownEvaluations, simulate};
 use flexbody::integrate::{IntegrationFailure, Method, Spacing};
 use flexbody::optimiser::Nlp;
 use flexbody::problem::{Override, Problem};
@@ -94,8 +94,8 @@ fn a_fast_vibration_is_not_given_up() {
 #[test]
 fn a_simulation_over_its_limit_is_a_failed_evaluation() {
     let problem = load("trebuchet", &["/simulation/seconds=1e-9"]);
-    let journal = Journal::new(Vec::new(), |_| ());
-    let mut program = Evaluator::new(&problem, journal).expect("an objective");
+    let log = KnownEvaluations::new(Vec::new(), |_| ());
+    let mut program = Evaluator::new(&problem, log).expect("an objective");
     let start = program.start();
     let failure = program.evaluate(&start).expect_err("takes longer");
     assert!(
@@ -273,8 +273,8 @@ fn a_method_that_took_over_stays_in_a_resumed_run() {
     let problem = Problem::parse(SAG, "sag.json", &[]).expect("no faults");
     let run = |earlier: &[EvaluationRecord]| {
         let mut records = earlier.to_vec();
-        let journal = Journal::new(earlier.to_vec(), |record| records.push(record));
-        let mut program = Evaluator::new(&problem, journal).expect("has an objective");
+        let log = KnownEvaluations::new(earlier.to_vec(), |record| records.push(record));
+        let mut program = Evaluator::new(&problem, log).expect("has an objective");
         let mut found = Vec::new();
         for stiffness in [100.0, 2e6, 150.0] {
             let values = program.evaluate(&[stiffness]).expect("runs");

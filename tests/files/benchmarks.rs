@@ -4,7 +4,7 @@
 //! three coordinates to 1e-11 (Radau).
 
 use flexbody::driver::start::notes;
-use flexbody::driver::{Journal, Simulation, optimise, simulate};
+use flexbody::driver::{KnownEvaluations, Simulation, optimise, simulate};
 use flexbody::math::{Mat3, Vec3, rotation};
 use flexbody::problem::{Override, Problem};
 use serde_json::{Value, json};
@@ -176,7 +176,8 @@ fn balanced_slider_crank() {
         let changes = [0, 1].map(|i| format!("{}={}", paths[i], start[i]));
         let problem = load("balanced_slider_crank", &changes);
         let go_on = &mut |_: &_| ControlFlow::Continue(());
-        let done = optimise(&problem, "", None, Journal::default(), go_on).expect("an objective");
+        let done =
+            optimise(&problem, "", None, KnownEvaluations::default(), go_on).expect("an objective");
         let design = &done.history.rows.last().expect("iterations").design;
         agree("balance", design, &[-0.075, -0.15], 1e-6);
     }

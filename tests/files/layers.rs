@@ -143,7 +143,7 @@ fn offences(table: &[String], folder: &str, file: &str, imports: &[Import]) -> V
     };
     let tell = |import: &Import| {
         format!(
-            "{file}:{}: {folder} imports {}, which does not stand above it",
+            "{file}:{}: {folder} imports {}, which does not set_state above it",
             import.line, import.folder
         )
     };
@@ -228,9 +228,9 @@ fn an_import_from_below_is_told_with_file_and_line() {
     assert_eq!(
         wrong,
         [
-            "src/system/joints.rs:4: system imports driver, which does not stand above it",
-            "src/system/joints.rs:7: system imports report, which does not stand above it",
-            "src/system/joints.rs:8: system imports cli, which does not stand above it",
+            "src/system/joints.rs:4: system imports driver, which does not set_state above it",
+            "src/system/joints.rs:7: system imports report, which does not set_state above it",
+            "src/system/joints.rs:8: system imports cli, which does not set_state above it",
         ]
     );
     let independent = [import(1, "math"), import(2, "optimiser")];
@@ -242,6 +242,6 @@ fn an_import_from_below_is_told_with_file_and_line() {
     );
     assert_eq!(
         wrong,
-        ["src/optimiser/solve.rs:1: optimiser imports math, which does not stand above it"]
+        ["src/optimiser/solve.rs:1: optimiser imports math, which does not set_state above it"]
     );
 }

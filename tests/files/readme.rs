@@ -1,6 +1,6 @@
 //! The example of README.md runs and has the answer that is given there; what documents name is there.
 
-use flexbody::driver::{Journal, optimise};
+use flexbody::driver::{KnownEvaluations, optimise};
 use flexbody::problem::Problem;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -11,9 +11,13 @@ fn the_example_of_the_readme_finds_the_radius_of_gyration() {
     let (_, example) = readme.split_once("```json\n").expect("an example");
     let (example, _) = example.split_once("```").expect("its end");
     let problem = Problem::parse(example, "README.md", &[]).expect("no faults");
-    let done = optimise(&problem, "README.md", None, Journal::default(), &mut |_| {
-        ControlFlow::Continue(())
-    })
+    let done = optimise(
+        &problem,
+        "README.md",
+        None,
+        KnownEvaluations::default(),
+        &mut |_| ControlFlow::Continue(()),
+    )
     .expect("has an objective");
     assert!(done.outcome.converged());
     let pin = done.optimum.design["pin"].value;

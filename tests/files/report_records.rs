@@ -1,6 +1,6 @@
 //! Records survive the disk exactly, and differences between them are told.
 
-use flexbody::driver::{Journal, optimise};
+use flexbody::driver::{KnownEvaluations, optimise};
 use flexbody::problem::Problem;
 use flexbody::report::compare::Comparison;
 use flexbody::report::history::Column;
@@ -98,7 +98,7 @@ fn optimum() -> Optimum {
             lower_bounds: Default::default(),
             upper_bounds: [("counterweight".to_owned(), 0.9)].into(),
         },
-        active_bounds: [("counterweight".to_owned(), Side::Upper)].into(),
+        active_bounds: [("counterweight".to_owned(), BoundSide::Upper)].into(),
         kkt: Kkt {
             scaled: residuals,
             unscaled: residuals,
@@ -345,7 +345,13 @@ fn multipliers_are_sensitivities_with_their_signs() {
         let problem = Problem::parse(&text, "ball.json", &[]);
         let problem = problem.unwrap_or_else(|faults| panic!("{faults}"));
         let mut progress = |_: &_| ControlFlow::Continue(());
-        let done = optimise(&problem, "", None, Journal::default(), &mut progress);
+        let done = optimise(
+            &problem,
+            "",
+            None,
+            KnownEvaluations::default(),
+            &mut progress,
+        );
         done.expect("has an objective").optimum
     };
     let limits = |function: &str, side: &str, bound: f64| {
@@ -396,10 +402,10 @@ fn multipliers_are_sensitivities_with_their_signs() {
     }
     // With a constraint far away: objective, bounds of v, start, side, multiplier, d objective / d bound.
     let cases = [
-        (maximise, "x", (-4.0, 4.0), Side::Upper, 1.0),
-        (minimise, "x", (-4.0, 4.0), Side::Lower, 1.0),
-        (minimise, "E", (2.0, 4.0), Side::Lower, 4.0),
-        (minimise, "E", (-4.0, -2.0), Side::Upper, 4.0),
+        (maximise, "x", (-4.0, 4.0), BoundSide::Upper, 1.0),
+        (minimise, "x", (-4.0, 4.0), BoundSide::Lower, 1.0),
+        (minimise, "E", (2.0, 4.0), BoundSide::Lower, 4.0),
+        (minimise, "E", (-4.0, -2.0), BoundSide::Upper, 4.0),
     ];
     for (sense, objective, bounds, side, expected) in cases {
         let objective = format!("{sense}\"{objective}\"");
@@ -411,8 +417,8 @@ fn multipliers_are_sensitivities_with_their_signs() {
             optimum.multipliers.upper_bounds["v"],
         );
         let (force, other) = match side {
-            Side::Lower => (lower, upper),
-            Side::Upper => (upper, lower),
+            BoundSide::Lower => (lower, upper),
+            BoundSide::Upper => (upper, lower),
         };
         assert!(
             (force - expected).abs() < 1e-4 * expected,

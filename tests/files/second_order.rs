@@ -1,7 +1,7 @@
 //! The curvature at an optimum, against differences of the function and with bounds that hold by no force.
 
 use flexbody::driver::evaluate::Evaluated;
-use flexbody::driver::{Journal, Optimisation, optimise, second_order};
+use flexbody::driver::{KnownEvaluations, Optimisation, optimise, second_order};
 use flexbody::problem::Problem;
 use flexbody::report::optimum::{Curvature, SecondOrder};
 use std::ops::ControlFlow;
@@ -11,7 +11,13 @@ const SWING: &str = include_str!("../data/swing.json");
 
 fn solved(problem: &Problem) -> Optimisation {
     let mut progress = |_: &_| ControlFlow::Continue(());
-    let done = optimise(problem, "", None, Journal::default(), &mut progress);
+    let done = optimise(
+        problem,
+        "",
+        None,
+        KnownEvaluations::default(),
+        &mut progress,
+    );
     let done = done.expect("has an objective");
     assert!(done.outcome.converged());
     done
@@ -19,9 +25,15 @@ fn solved(problem: &Problem) -> Optimisation {
 
 fn curvature(problem: &Problem, done: &Optimisation) -> SecondOrder {
     let (outcome, integration) = (&done.outcome, &done.integration);
-    second_order(problem, outcome, integration, Journal::default(), &|| false)
-        .expect("runs")
-        .expect("is not stopped")
+    second_order(
+        problem,
+        outcome,
+        integration,
+        KnownEvaluations::default(),
+        &|| false,
+    )
+    .expect("runs")
+    .expect("is not stopped")
 }
 
 #[test]

@@ -6,10 +6,10 @@
 //! of the variables' ranges.
 
 use flexbody::driver::evaluate::Evaluated;
-use flexbody::driver::{Journal, Optimisation, optimise};
+use flexbody::driver::{KnownEvaluations, Optimisation, optimise};
 use flexbody::math::Vec3;
 use flexbody::problem::{Override, Problem};
-use flexbody::report::optimum::{Activity, Side};
+use flexbody::report::optimum::{Activity, BoundSide};
 use nalgebra::Rotation3;
 use serde_json::{Value, json};
 use std::f64::consts::PI;
@@ -35,7 +35,7 @@ fn problem(file: &str, start: &[f64]) -> Problem {
 }
 
 fn solve(problem: &Problem) -> Optimisation {
-    optimise(problem, "", None, Journal::default(), &mut |_| {
+    optimise(problem, "", None, KnownEvaluations::default(), &mut |_| {
         ControlFlow::Continue(())
     })
     .expect("an objective and variables")
@@ -50,7 +50,7 @@ fn assert_optimal(problem: &Problem, done: &Optimisation, per_metre: f64, design
     for residual in [kkt.stationarity, kkt.feasibility, kkt.complementarity] {
         assert!(residual <= 1e-6, "{kkt:?}");
     }
-    let active: Vec<(&str, Side)> = optimum
+    let active: Vec<(&str, BoundSide)> = optimum
         .active_bounds
         .iter()
         .map(|(name, side)| (name.as_str(), *side))
@@ -65,10 +65,10 @@ fn assert_optimal(problem: &Problem, done: &Optimisation, per_metre: f64, design
         );
     }
     let expected = [
-        ("counterweight mass", Side::Upper),
-        ("link mass", Side::Upper),
-        ("arm mass", Side::Lower),
-        ("stone mass", Side::Lower),
+        ("counterweight mass", BoundSide::Upper),
+        ("link mass", BoundSide::Upper),
+        ("arm mass", BoundSide::Lower),
+        ("stone mass", BoundSide::Lower),
     ];
     assert_eq!(active, expected);
     for (name, constraint) in &optimum.constraints {
@@ -257,7 +257,7 @@ fn a_scene_turned_as_a_whole_has_the_same_functions() {
     let of = |turn: Vec3<f64>, watched| turned(turn, watched, 1e-12);
     let still = of(Vec3::zeros(), Watched::FromAxes);
     for watched in [Watched::FromPlacement, Watched::Joint] {
-        let unturned = of(Vec3::zeros(), watched);
+        let non_rotating = of(Vec3::zeros(), watched);
         let scenes = TURNS.map(|turn| of(turn.into(), watched));
         for x in [
             still.start(),
@@ -269,7 +269,7 @@ fn a_scene_turned_as_a_whole_has_the_same_functions() {
                 let (gradients, _) = at.gradients(problem, &[0, 1]).expect("regular");
                 ([0, 1].map(|f| at.function(f).value), gradients)
             };
-            let (values, gradients) = find(&unturned);
+            let (values, gradients) = find(&non_rotating);
             if watched == Watched::FromPlacement {
                 // Counted from the placement or from the axes of ground, where nothing is turned.
                 let (own, _) = find(&still);
@@ -291,9 +291,9 @@ fn a_scene_turned_as_a_whole_has_the_same_functions() {
 
 #[test]
 fn a_scene_turned_as_a_whole_has_the_same_optimum() {
-    let [unturned, about] = [Vec3::zeros(), TURNS[0].into()].map(|turn| {
+    let [non_rotating, about] = [Vec3::zeros(), TURNS[0].into()].map(|turn| {
         let problem = turned(turn, Watched::FromPlacement, 1e-9);
         solve(&problem).optimum.objective.value
     });
-    assert_near("optimum", about, unturned, 1e-8);
+    assert_near("optimum", about, non_rotating, 1e-8);
 }

@@ -5,7 +5,7 @@ use crate::problems;
 use crate::problems::residuals;
 use crate::problems::scaled;
 
-use flexbody::optimiser::{Kkt, Method, Options, Outcome, Side, Silent, Status, solve};
+use flexbody::optimiser::{BoundSide, Kkt, Method, Options, Outcome, Silent, Status, solve};
 use problems::hock_schittkowski;
 use problems::problem::{INF, Problem};
 use residuals::Residuals;
@@ -294,7 +294,7 @@ fn multipliers_of_fixed_variables_are_sensitivities() {
         assert!((found - slope).abs() <= 1e-5, "{method:?}: {found} {slope}");
         let active = here.active_bounds.iter().find(|a| a.name == "x[1]");
         let active = active.expect("it is fixed");
-        assert_eq!(active.side, Side::Equal);
+        assert_eq!(active.side, BoundSide::Equal);
         assert!((active.multiplier - slope.abs()).abs() <= 1e-5);
     }
 }

@@ -4,8 +4,8 @@ use super::models::{KINDS, Numbers, axes_along, joint};
 use flexbody::math::scalar::COMPLEX_STEP;
 use flexbody::math::{Complex64, Scalar};
 use flexbody::model::Interpolation;
-use flexbody::model::{Drive, Freedom, JointKind, Model, MotionCourse};
-use flexbody::system::bodies::{Motion, rates};
+use flexbody::model::{DegreeOfFreedom, Drive, JointKind, Model, PrescribedMotion};
+use flexbody::system::bodies::{BodyMotion, rates};
 use flexbody::system::{InMotion, Numbering, joints, placement};
 
 /// A model in a state, and random numbers for what the derivatives are multiplied with.
@@ -65,21 +65,21 @@ pub fn case(kind: JointKind, body_b: Option<usize>, seed: u64) -> Case {
 /// The case with its joint driven along and about its axis, by courses of all kinds.
 fn driven(mut case: Case) -> Case {
     let joint = &mut case.model.joints[0];
-    let course = |freedom: Freedom| match (joint.kind, freedom) {
-        (JointKind::Planar, _) => MotionCourse::Table {
+    let course = |freedom: DegreeOfFreedom| match (joint.kind, freedom) {
+        (JointKind::Planar, _) => PrescribedMotion::Table {
             times: vec![0.0, 0.1, 0.25, 0.4, 0.6],
             values: vec![0.1, 0.2, -0.3, 0.4, 0.2],
             interpolation: Interpolation::Spline,
         },
-        (_, Freedom::Slide) => MotionCourse::Harmonic {
+        (_, DegreeOfFreedom::Translation) => PrescribedMotion::Harmonic {
             mean: 0.1,
             amplitude: 0.4,
             frequency: 0.7,
             phase: 0.2,
         },
-        (_, Freedom::Turn) => MotionCourse::Polynomial(vec![0.2, 1.3, -0.7, 0.4]),
+        (_, DegreeOfFreedom::Rotation) => PrescribedMotion::Polynomial(vec![0.2, 1.3, -0.7, 0.4]),
     };
-    let drive = |&freedom: &Freedom| Drive {
+    let drive = |&freedom: &DegreeOfFreedom| Drive {
         freedom,
         course: course(freedom),
     };
@@ -122,9 +122,9 @@ impl Case {
         self.q.iter().zip(&dq).map(step).collect()
     }
 
-    pub fn motions<S: Scalar>(&self, q: &[S], v: &[S]) -> Vec<Motion<S>> {
+    pub fn motions<S: Scalar>(&self, q: &[S], v: &[S]) -> Vec<BodyMotion<S>> {
         let mut motions = Vec::new();
-        Motion::all(&self.numbering, q, v, &mut motions);
+        BodyMotion::all(&self.numbering, q, v, &mut motions);
         motions
     }
 

@@ -77,13 +77,13 @@ pub(super) fn gradients(
             let (nq, nv, nc) = (from.q.len(), from.v.len(), from.lambda.len());
             let (q, v) = (row(data.q, nq, i), row(data.v, nv, i));
             let fraction = begin + run.grid.width(n) * C[i];
-            field.stand(q, v, run.duration * begin + h * C[i]);
+            field.set_state(q, v, run.duration * begin + h * C[i]);
             field.factorise()?;
             let found = (row(data.a, nv, i), row(data.lambda, nc, i));
             for sweep in sweeps.iter_mut().filter(|sweep| sweep.touched[i]) {
                 let (q, v) = sweep.stage(i, field, (q, v, fraction), found);
                 sweep.spread(A[i], (&q, &v), h);
-                sweep.room.back([q, v]);
+                sweep.workspace.back([q, v]);
             }
             Ok(())
         };
@@ -92,7 +92,7 @@ pub(super) fn gradients(
                 stage(i, &mut field, &mut sweeps).map_err(singular)?;
             }
         }
-        field.stand(to.q, to.v, run.duration * end);
+        field.set_state(to.q, to.v, run.duration * end);
         field.factorise().map_err(singular)?;
         for sweep in sweeps.iter_mut().filter(|sweep| sweep.begun) {
             sweep.node(&mut field, to, end);

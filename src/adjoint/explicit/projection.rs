@@ -31,18 +31,18 @@ pub(super) fn pull_back(
         by_duration,
         ..
     } = &mut sweep.of;
-    let room = &mut sweep.room;
+    let workspace = &mut sweep.workspace;
     let cot = &mut cot.model;
-    let mut y = room.zeros(nv);
+    let mut y = workspace.zeros(nv);
     bodies::tangent_of_cotangent(numbering, to.q, &q.value, &mut y);
 
     // M δ + Gᵀσ = 0, G (v~ + δ) + Φ_t = 0: the cotangent loses its part Gᵀχ, which is as small as the
     // step.
-    let mut psi = room.copy(&v.value);
+    let mut psi = workspace.copy(&v.value);
     psi.resize(nv + to.lambda.len(), 0.0);
     field.solve(&mut psi);
     psi.iter_mut().for_each(|x| *x = -*x);
-    let mut reaction = room.zeros(nv);
+    let mut reaction = workspace.zeros(nv);
     field.add_reactions(&psi[nv..], &mut reaction);
     v.add(1.0, &reaction);
     for (i, body) in cot.bodies.iter_mut().enumerate() {
@@ -52,19 +52,19 @@ pub(super) fn pull_back(
         body.mass += psi_r.dot(&d_r);
         body.inertia += psi_theta * d_theta.transpose();
     }
-    let mut more = room.zeros(nv);
+    let mut more = workspace.zeros(nv);
     let mut by_time = field.pull_rate(&psi[..nv], data.sigma, &mut more, cot);
     by_time += field.pull_rates(&psi[nv..], &mut more, cot);
     y.iter_mut().zip(&more).for_each(|(y, &m)| *y += m);
 
     // M T⁺ (q − q~) + Gᵀs = 0, Φ(q, t) = 0: its matrix differs from the factorised one by terms X of
     // the size of the correction, which iterative refinement takes in.
-    room.back([psi, reaction]);
+    workspace.back([psi, reaction]);
     let mut psi = y;
     psi.resize(nv + to.lambda.len(), 0.0);
     field.solve(&mut psi);
-    let first = room.copy(&psi);
-    let (mut rest, mut change) = (room.zeros(nv), room.zeros(psi.len()));
+    let first = workspace.copy(&psi);
+    let (mut rest, mut change) = (workspace.zeros(nv), workspace.zeros(psi.len()));
     let mut before = f64::INFINITY;
     for _ in 0..REFINEMENTS {
         rest.fill(0.0);
@@ -89,12 +89,12 @@ pub(super) fn pull_back(
     more.iter_mut().zip(&rest).for_each(|(m, &x)| *m -= x);
     psi.iter_mut().for_each(|x| *x = -*x);
     field.add_reactions(&psi[nv..], &mut more);
-    let mut unused = room.zeros(nv);
+    let mut unused = workspace.zeros(nv);
     by_time += field.pull_rate(&psi[..nv], data.s, &mut unused, cot);
     by_time += field.pull_constraints(&psi[nv..], &mut unused, cot);
     *by_duration += fraction * by_time;
-    room.back([rest, change, first, unused]);
-    let mut change = room.zeros(nq);
+    workspace.back([rest, change, first, unused]);
+    let mut change = workspace.zeros(nq);
     bodies::rates_cotangent(numbering, to.q, &more, &mut change);
     for i in 0..numbering.bodies() {
         let (o, u) = (numbering.position(i), numbering.velocity(i));
@@ -112,7 +112,7 @@ pub(super) fn pull_back(
         }
     }
     q.add(1.0, &change);
-    room.back([psi, more, change]);
+    workspace.back([psi, more, change]);
 }
 
 /// Adds Xᵀψ: the derivative of the position projection's equations in the projected positions, without

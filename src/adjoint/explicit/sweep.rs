@@ -1,13 +1,13 @@
 //! One function on its way back through the stages of a step.
 
 use super::row;
-use crate::adjoint::room::Room;
 use crate::adjoint::sensitivity::{Sensitivity, add_scaled, dot};
+use crate::adjoint::workspace::Workspace;
 use crate::functions::Scene;
 use crate::integrate::Trajectory;
 use crate::integrate::explicit::tableau::{ALL, B, END, dense_weights};
 use crate::integrate::explicit::{NodeView, StepView, add_rows};
-use crate::integrate::grid::Place;
+use crate::integrate::grid::SamplePlace;
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
 use crate::system::bodies;
@@ -30,7 +30,7 @@ pub(super) struct Sweep<'a> {
     /// What the step adds to the cotangents on the way to the node before it.
     before: (Vec<f64>, Vec<f64>),
     /// Vectors that are not in use.
-    pub room: Room,
+    pub workspace: Workspace,
 }
 
 impl<'a> Sweep<'a> {
@@ -44,7 +44,7 @@ impl<'a> Sweep<'a> {
             qdot: vec![0.0; ALL * nq],
             a: vec![0.0; ALL * nv],
             before: (vec![0.0; nq], vec![0.0; nv]),
-            room: Room::default(),
+            workspace: Workspace::default(),
         }
     }
 
@@ -64,9 +64,9 @@ impl<'a> Sweep<'a> {
         let numbering = &run.numbering;
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         let [y, v, a] = &self.of.sample;
-        let mut q = self.room.zeros(nq);
+        let mut q = self.workspace.zeros(nq);
         match (run.places[k], inside) {
-            (Place::Inside { step, theta }, Some((data, from))) => {
+            (SamplePlace::Inside { step, theta }, Some((data, from))) => {
                 let width = run.grid.width(step);
                 let h = run.duration * width;
                 // A function looks at few bodies: what lies between the first and the last.
@@ -81,12 +81,12 @@ impl<'a> Sweep<'a> {
                 );
                 let (in_q, in_v) = (from_q..to_q, from_v..to_v);
                 let (w, rate) = dense_weights(theta);
-                let mut raw = self.room.zeros(nq);
+                let mut raw = self.workspace.zeros(nq);
                 raw[in_q.clone()].copy_from_slice(&from.q[in_q.clone()]);
                 let at = (nq, in_q.start);
                 add_rows(&mut raw[in_q.clone()], h, &w, data.qdot, at);
                 bodies::add_unit_cotangent(numbering, &raw, y, &mut q);
-                self.room.back([raw]);
+                self.workspace.back([raw]);
                 let (q, v, a) = (&q[in_q.clone()], &v[in_v.clone()], &a[in_v.clone()]);
                 let accelerated = a.iter().any(|&x| x != 0.0);
                 for ((i, w), (_, rate)) in w.into_iter().zip(rate) {
@@ -112,7 +112,7 @@ impl<'a> Sweep<'a> {
                 add_scaled(&mut self.node.1, 1.0, a);
             }
         }
-        self.room.back([q]);
+        self.workspace.back([q]);
     }
 
     /// Pulls the cotangents of the derivatives at stage i back to its state (returned), where `field`
@@ -127,14 +127,18 @@ impl<'a> Sweep<'a> {
         let numbering = field.numbering;
         let (nq, nv) = (q.len(), v.len());
         let (qdot_bar, a_bar) = (row(&self.qdot, nq, i), row(&self.a, nv, i));
-        let room = &mut self.room;
-        let (mut q_bar, mut v_bar, mut y) = (room.zeros(nq), room.zeros(nv), room.zeros(nv));
+        let workspace = &mut self.workspace;
+        let (mut q_bar, mut v_bar, mut y) = (
+            workspace.zeros(nq),
+            workspace.zeros(nv),
+            workspace.zeros(nv),
+        );
         bodies::pull_rates(numbering, (q, v), qdot_bar, (&mut q_bar, &mut v_bar));
         let cot = &mut self.of.cot.model;
         let by_time = field.pull_back(found, a_bar, (&mut y, &mut v_bar), cot);
         self.of.by_duration += fraction * by_time;
         bodies::add_unit_cotangent(numbering, q, &y, &mut q_bar);
-        self.room.back([y]);
+        self.workspace.back([y]);
         (q_bar, v_bar)
     }
 
@@ -169,8 +173,12 @@ impl<'a> Sweep<'a> {
         }
         self.node_rates(field.numbering, to);
         if self.node.1.iter().any(|&x| x != 0.0) {
-            let room = &mut self.room;
-            let (mut q, mut v, mut y) = (room.zeros(nq), room.zeros(nv), room.zeros(nv));
+            let workspace = &mut self.workspace;
+            let (mut q, mut v, mut y) = (
+                workspace.zeros(nq),
+                workspace.zeros(nv),
+                workspace.zeros(nv),
+            );
             let found = (to.a, to.lambda);
             let cot = &mut self.of.cot.model;
             let by_time = field.pull_back(found, &self.node.1, (&mut y, &mut v), cot);
@@ -178,26 +186,29 @@ impl<'a> Sweep<'a> {
             bodies::add_unit_cotangent(field.numbering, to.q, &y, &mut q);
             self.of.q.add(1.0, &q);
             self.of.v.add(1.0, &v);
-            self.room.back([q, v, y]);
+            self.workspace.back([q, v, y]);
         }
     }
 
     /// Pulls the cotangent of q̇ at the node back to its state.
     pub(crate) fn node_rates(&mut self, numbering: &Numbering, to: NodeView<f64>) {
-        let (mut q, mut v) = (self.room.zeros(to.q.len()), self.room.zeros(to.v.len()));
+        let (mut q, mut v) = (
+            self.workspace.zeros(to.q.len()),
+            self.workspace.zeros(to.v.len()),
+        );
         let bars = (&mut q[..], &mut v[..]);
         bodies::pull_rates(numbering, (to.q, to.v), &self.node.0, bars);
         self.of.q.add(1.0, &q);
         self.of.v.add(1.0, &v);
-        self.room.back([q, v]);
+        self.workspace.back([q, v]);
     }
 
     /// Hands the cotangents of the unprojected end on to the stages and to the node before.
     pub(crate) fn end(&mut self, h: f64) {
-        let q = self.room.copy(&self.of.q.value);
-        let v = self.room.copy(&self.of.v.value);
+        let q = self.workspace.copy(&self.of.q.value);
+        let v = self.workspace.copy(&self.of.v.value);
         self.hand_on(B, (&q, &v), h);
-        self.room.back([q, v]);
+        self.workspace.back([q, v]);
     }
 
     /// Moves to the node before a step of a run of this duration. Whatever the derivatives k_i of the

@@ -13,7 +13,7 @@ use crate::system::LeftOut;
 use crate::system::{Numbering, bodies};
 
 /// The iteration matrix, which every step fills again, and vectors that every function does.
-pub(super) struct Plan<'a> {
+pub(super) struct BackwardStage<'a> {
     model: &'a Model<f64>,
     numbering: &'a Numbering,
     equations: Equations<'a, f64>,
@@ -28,7 +28,7 @@ pub(super) struct Plan<'a> {
     change: Vec<f64>,
 }
 
-impl<'a> Plan<'a> {
+impl<'a> BackwardStage<'a> {
     pub(crate) fn new(model: &'a Model<f64>, numbering: &'a Numbering) -> Self {
         let mut equations = Equations::new(model, numbering);
         let split = SplitMatrix::new(&mut equations, &Stage::zero(numbering));
@@ -109,7 +109,7 @@ impl<'a> Plan<'a> {
             equations.scale_rows(h, psi);
             counts.solves += REFINED_SOLVES;
             let cot = &mut sweep.of.cot.model;
-            let by_time = equations.pull_back_held(&at, psi, cot, &mut change[..nv]);
+            let by_time = equations.pull_back_projected(&at, psi, cot, &mut change[..nv]);
             sweep.of.by_duration += end * by_time;
 
             let own = &mut self.own;

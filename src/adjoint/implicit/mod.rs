@@ -75,7 +75,7 @@ pub(super) fn gradients(
         }
         let found = match Formula::of_step(run.method, k) {
             Some(formula) => one
-                .get_or_insert_with(|| formula::Plan::new(model, numbering))
+                .get_or_insert_with(|| formula::BackwardStage::new(model, numbering))
                 .leaving_out(run.grid.left_out(k))
                 .step(
                     &formula,
@@ -85,7 +85,7 @@ pub(super) fn gradients(
                     &mut counts,
                 ),
             None => coupled
-                .get_or_insert_with(|| radau::Plan::new(model, numbering, &scheme))
+                .get_or_insert_with(|| radau::BackwardStage::new(model, numbering, &scheme))
                 .leaving_out(run.grid.left_out(k))
                 .step(step, (h, width, end), &mut sweeps, &mut counts),
         };

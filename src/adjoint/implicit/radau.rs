@@ -13,7 +13,7 @@ use crate::system::LeftOut;
 use crate::system::{Numbering, bodies};
 
 /// The coupled matrix, which every step fills again, and vectors that every function does.
-pub(super) struct Plan<'a> {
+pub(super) struct BackwardStage<'a> {
     model: &'a Model<f64>,
     numbering: &'a Numbering,
     scheme: &'a Scheme,
@@ -77,7 +77,7 @@ impl Blocks {
     }
 }
 
-impl<'a> Plan<'a> {
+impl<'a> BackwardStage<'a> {
     pub(crate) fn new(model: &'a Model<f64>, numbering: &'a Numbering, scheme: &'a Scheme) -> Self {
         let mut equations = Equations::new(model, numbering);
         let zero = Stage::zero(numbering);
@@ -177,7 +177,7 @@ impl<'a> Plan<'a> {
                 equations.scale_rows(h, part);
                 let cot = &mut sweep.of.cot.model;
                 let held = &mut change[..nv];
-                let by_time = equations.pull_back_held(&stage.instant(), part, cot, held);
+                let by_time = equations.pull_back_projected(&stage.instant(), part, cot, held);
                 sweep.of.by_duration += (end - width * (1.0 - scheme.nodes[i])) * by_time;
                 let own = &mut self.own;
                 rates_of(model, numbering, &stage.q, part, own);

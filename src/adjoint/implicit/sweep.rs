@@ -2,7 +2,7 @@
 
 use crate::adjoint::sensitivity::{Sensitivity, add_scaled, dot};
 use crate::functions::Scene;
-use crate::integrate::grid::Place;
+use crate::integrate::grid::SamplePlace;
 use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::formula::memory_size;
 use crate::integrate::implicit::predict::dense;
@@ -68,7 +68,7 @@ impl<'a> Sweep<'a> {
         let q = &mut self.q;
         q.fill(0.0);
         match run.places[k] {
-            Place::Inside { theta, .. } => {
+            SamplePlace::Inside { theta, .. } => {
                 let h = run.duration * width;
                 dense(scheme, from, stages, h, theta, &mut self.at);
                 bodies::add_unit_cotangent(numbering, &self.at.q, y, q);
@@ -82,7 +82,7 @@ impl<'a> Sweep<'a> {
                 add_scaled(&mut self.before.0, 1.0, q);
                 add_scaled(&mut self.before.1, 1.0, v);
             }
-            Place::Node(_) => {
+            SamplePlace::Node(_) => {
                 bodies::rates_cotangent(numbering, run.q(k), y, q);
                 self.of.q.add(1.0, q);
                 self.of.v.add(1.0, v);

@@ -2,7 +2,7 @@
 
 use super::case::{Case, Judge};
 use crate::driver::check::{CheckedDerivative, check};
-use crate::driver::{Journal, Simulation, error, optimise, simulate};
+use crate::driver::{KnownEvaluations, Simulation, error, optimise, simulate};
 use crate::integrate::{Method, Spacing};
 use crate::optimiser::Status;
 use crate::problem::{Override, Problem};
@@ -216,7 +216,13 @@ fn optimisation(
     (optimum, size): (f64, f64),
 ) {
     let go_on = &mut |_: &_| ControlFlow::Continue(());
-    let Some(done) = optimise(problem, case.scene.name, None, Journal::default(), go_on) else {
+    let Some(done) = optimise(
+        problem,
+        case.scene.name,
+        None,
+        KnownEvaluations::default(),
+        go_on,
+    ) else {
         let message = "nothing to optimise".into();
         row.outcome = StabilityOutcome::Refused { message };
         return;

@@ -23,7 +23,7 @@ use exact::Reference;
 
 /// What is measured, and how thoroughly.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Plan {
+pub(crate) struct Campaign {
     /// CPU time that the runs of one method with equal steps, or with chosen ones, may take (s).
     pub seconds: f64,
     /// Runs of which the fastest counts.
@@ -69,11 +69,11 @@ pub(crate) fn methods() -> Vec<Method> {
 pub(crate) fn work_precision(
     problem: &Problem,
     x: &[f64],
-    plan: &Plan,
+    plan: &Campaign,
     seen: &mut dyn FnMut(&PrecisionRow),
 ) -> Result<WorkPrecision, IntegrationFailure> {
     let function = plan.function.filter(|_| !problem.variables.is_empty());
-    let plan = Plan {
+    let plan = Campaign {
         function,
         ..plan.clone()
     };
@@ -147,7 +147,7 @@ fn fewest(problem: &Problem, usual: usize) -> usize {
 
 /// A measurement under way.
 struct Measurement<'a> {
-    plan: &'a Plan,
+    plan: &'a Campaign,
     bench: &'a Bench<'a>,
     reference: &'a Reference,
     length: f64,

@@ -1,6 +1,6 @@
 //! What the runs of a work-precision measurement are compared with.
 
-use super::Plan;
+use super::Campaign;
 use super::bench::Bench;
 use super::exact::{Reference, distance, gradient_error, positions};
 use crate::integrate::choice::{NON_STIFF, STIFF};
@@ -31,7 +31,7 @@ struct Candidate {
 /// If no run reaches the end.
 pub(crate) fn reference(
     bench: &Bench,
-    plan: &Plan,
+    plan: &Campaign,
     stiff: bool,
 ) -> Result<Reference, IntegrationFailure> {
     let implicit = |tolerances: &[f64]| {

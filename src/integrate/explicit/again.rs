@@ -5,7 +5,7 @@ use super::march::failed;
 use super::record::Node;
 use super::step::StepFailure;
 use super::tape::Block;
-use crate::integrate::grid::Place;
+use crate::integrate::grid::SamplePlace;
 use crate::integrate::replay::March;
 use crate::integrate::{IntegrationFailure, Trajectory};
 use crate::model::Model;
@@ -44,7 +44,7 @@ impl<'a> Again<'a> {
         let first = places.partition_point(|place| place.step() < k);
         let own = places[first..].iter().take_while(|place| place.step() == k);
         own.into_iter()
-            .any(|place| matches!(place, Place::Inside { .. }))
+            .any(|place| matches!(place, SamplePlace::Inside { .. }))
     }
 
     fn make(&mut self, k: usize, dense: bool) -> Result<(), StepFailure> {

@@ -8,7 +8,7 @@ use super::tape::{Block, Tape};
 use crate::integrate::control::Controller;
 use crate::integrate::energy::Ledger;
 use crate::integrate::failure::IntegrationFailure;
-use crate::integrate::grid::{Place, place};
+use crate::integrate::grid::{SamplePlace, place};
 use crate::integrate::quadrature;
 use crate::integrate::quadrature::Samples;
 use crate::integrate::scale::Scale;
@@ -20,7 +20,7 @@ use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::model::Model;
 use crate::system::initial::InitialState;
 use crate::system::left_out::WORN;
-use crate::system::{Motion, Numbering};
+use crate::system::{BodyMotion, Numbering};
 
 /// Correction of the velocities, relative to their scale, that is none of the step's error.
 const LOST: f64 = 0.01;
@@ -86,7 +86,7 @@ pub(crate) fn march<S: SolveScalar>(
     reserve(&mut run, settings);
     if stepper.field.closes_loops() {
         let before = stepper.field.memory();
-        stepper.field.stand(&from.q, &from.v, duration * 0.0);
+        stepper.field.set_state(&from.q, &from.v, duration * 0.0);
         if stepper.field.factorise().is_ok() {
             let steady = steadiness.of(&mut stepper.field, &scale);
             steadiness.see(0.0, steady);
@@ -97,7 +97,7 @@ pub(crate) fn march<S: SolveScalar>(
     let mut ledger = Ledger::open(model, settings, &scale);
     let mut motions = Vec::new();
     if let Some(ledger) = &mut ledger {
-        Motion::all(numbering, &from.q, &from.v, &mut motions);
+        BodyMotion::all(numbering, &from.q, &from.v, &mut motions);
         ledger.enter(model, &motions, 0.0);
     }
     while let Some(width) = controller.next(run.grid.reached()) {
@@ -146,7 +146,7 @@ pub(crate) fn march<S: SolveScalar>(
                     if open > error * if given { OPEN_GIVEN } else { OPEN } || open.is_nan() {
                         return Err(StepFailure::Open);
                     }
-                    stepper.field.stand(&to.q, &to.v, duration * end);
+                    stepper.field.set_state(&to.q, &to.v, duration * end);
                 }
                 Ok(Some(steady))
             });
@@ -225,7 +225,7 @@ pub(crate) fn march<S: SolveScalar>(
     }
     close(&mut run, &controller)?;
     if let Some(ledger) = &mut ledger {
-        Motion::all(numbering, &from.q, &from.v, &mut motions);
+        BodyMotion::all(numbering, &from.q, &from.v, &mut motions);
         ledger.enter(model, &motions, run.time_reached());
         ledger.close(run.grid.steps(), run.step_error)?;
     }
@@ -281,8 +281,8 @@ fn sample<S: SolveScalar>(
     for due in quadrature::due(settings.samples, next, step) {
         let place = place(&run.grid, k, due.at);
         match place {
-            Place::Node(_) => run.push(due, place, [to.q, to.v, to.a, &[]]),
-            Place::Inside { theta, .. } => {
+            SamplePlace::Node(_) => run.push(due, place, [to.q, to.v, to.a, &[]]),
+            SamplePlace::Inside { theta, .. } => {
                 if !stepper.data.dense {
                     let start = run.duration * run.grid.ends()[k - 1];
                     stepper.dense_stages((from, to), (start, h))?;

@@ -144,7 +144,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         at_v.copy_from_slice(node.v);
         add_rows(at_q, h, A[i], &data.qdot, (nq, 0));
         add_rows(at_v, h, A[i], &data.a, (nv, 0));
-        self.field.stand(at_q, at_v, start + h * C[i]);
+        self.field.set_state(at_q, at_v, start + h * C[i]);
         self.field.factorise()?;
         bodies::rates(self.field.numbering, at_q, at_v, &mut data.qdot[q]);
         let (a, lambda) = (&mut data.a[v], &mut data.lambda[c]);
@@ -184,7 +184,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         let (mut before, mut contraction) = (f64::INFINITY, 1e-2);
         let mut settled = 0;
         for iteration in 0..ITERATIONS {
-            field.stand(q, &data.v_raw, end);
+            field.set_state(q, &data.v_raw, end);
             // The infinitesimal part converges with the real one, some iterations behind it.
             if settled > if S::INFINITESIMAL { 4 } else { 0 } {
                 return Ok(());
@@ -225,7 +225,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             before = size;
         }
         if settled > 0 {
-            field.stand(q, &data.v_raw, end);
+            field.set_state(q, &data.v_raw, end);
             return Ok(());
         }
         Err(StepFailure::Projection)
@@ -244,7 +244,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         let (q, v, a) = &mut self.scratch;
         self.data.view().dense(node, h, theta, [q, v, a]);
         bodies::bring_to_unit(self.field.numbering, q);
-        self.field.stand(q, v, time);
+        self.field.set_state(q, v, time);
         let (_, rows) = self.residual.split_at_mut(v.len());
         let field = &self.field;
         let largest = |rows: &[S], [length, angle]: [f64; 2]| {

@@ -5,7 +5,7 @@ use super::tableau::{ALL, STAGES};
 use crate::integrate::quadrature::Samples;
 use crate::integrate::replay;
 use crate::integrate::rows::Rows;
-use crate::integrate::schedule::Room;
+use crate::integrate::schedule::MemoryOfBlock;
 use crate::math::{Complex64, Scalar};
 use crate::system::Numbering;
 use crate::system::accelerations::Memory;
@@ -50,9 +50,9 @@ impl<S: Scalar> Block<S> {
     }
 
     /// Room that a step and a checkpoint take.
-    pub(crate) fn room(&self) -> Room {
+    pub(crate) fn room(&self) -> MemoryOfBlock {
         let node = self.nodes.width();
-        Room {
+        MemoryOfBlock {
             step: (node + self.steps.width() + 1) * size_of::<S>(),
             checkpoint: (node + 16) * size_of::<S>(),
         }

@@ -9,7 +9,7 @@ use crate::integrate::work::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
-use crate::system::{InMotion, LeftOut, Motion, Numbering, bodies, joints};
+use crate::system::{BodyMotion, InMotion, LeftOut, Numbering, bodies, joints};
 
 /// Round-off in an estimated error, relative to that in the stages, and the most that is taken for it.
 const MORE_NOISE: f64 = 30.0;
@@ -26,7 +26,7 @@ pub(super) struct Estimate<'a> {
     from: Stage<f64>,
     stages: Vec<Stage<f64>>,
     middle: Stage<f64>,
-    motions: Vec<Motion<f64>>,
+    motions: Vec<BodyMotion<f64>>,
     rows: Vec<f64>,
 }
 
@@ -80,7 +80,7 @@ impl<'a> Estimate<'a> {
             ..
         } = &mut self.from;
         bodies::rates(numbering, q, v, qdot);
-        self.field.stand(q, v, *time);
+        self.field.set_state(q, v, *time);
         if self.field.factorise().is_err() {
             return f64::NAN;
         }
@@ -108,7 +108,7 @@ impl<'a> Estimate<'a> {
         let middle = &mut self.middle;
         dense(self.scheme, &self.from, &self.stages, h, 0.5, middle);
         bodies::bring_to_unit(numbering, &mut middle.q);
-        Motion::all(numbering, &middle.q, &middle.v, &mut self.motions);
+        BodyMotion::all(numbering, &middle.q, &middle.v, &mut self.motions);
         let time = self.from.time + 0.5 * h;
         let at = InMotion::new(model, numbering, &self.motions, time);
         let largest = |rows: &[f64]| rows.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

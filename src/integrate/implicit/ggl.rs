@@ -15,7 +15,9 @@
 use crate::linalg::{Emit, Pattern};
 use crate::math::{Mat3, Scalar};
 use crate::model::Model;
-use crate::system::bodies::{self, Motion, all_force_balances, velocities_of, velocity_of_rates};
+use crate::system::bodies::{
+    self, BodyMotion, all_force_balances, velocities_of, velocity_of_rates,
+};
 use crate::system::constraint::RowGradient;
 use crate::system::emit_bodies::{Rates, emit_force_balance, emit_kinematics};
 use crate::system::in_motion::InMotion;
@@ -34,7 +36,7 @@ const PARTS: usize = 2;
 
 /// Unknowns and rates at one instant.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Instant<'a, S> {
+pub(crate) struct StepState<'a, S> {
     /// Positions.
     pub q: &'a [S],
     /// Velocities.
@@ -55,13 +57,13 @@ pub(crate) struct Instant<'a, S> {
 pub(crate) struct Equations<'a, S> {
     model: &'a Model<S>,
     numbering: &'a Numbering,
-    motions: Vec<Motion<S>>,
+    motions: Vec<BodyMotion<S>>,
     gradients: Vec<RowGradient<S>>,
     /// Rows that are not imposed: λ_i = 0 and μ_i = 0 stand in their places.
     left_out: LeftOut,
     loads: Vec<S>,
     /// Motions with virtual velocities, for pull-backs.
-    moving: Vec<Motion<S>>,
+    moving: Vec<BodyMotion<S>>,
     /// Tangent positions that stay as bodies are placed, for pull-backs.
     placed: Vec<S>,
     /// Mass that the dynamics are divided by and the multipliers λ counted in (kg).
@@ -143,15 +145,15 @@ impl<'a, S: Scalar> Equations<'a, S> {
         [0, nv, 2 * nv, 2 * nv + nc]
     }
 
-    fn visit(&mut self, at: &Instant<S>) {
-        Motion::all(self.numbering, at.q, at.v, &mut self.motions);
+    fn visit(&mut self, at: &StepState<S>) {
+        BodyMotion::all(self.numbering, at.q, at.v, &mut self.motions);
         let here = InMotion::new(self.model, self.numbering, &self.motions, at.time);
         joints::gradients(&here, &mut self.gradients);
         self.left_out.clear_gradients(&mut self.gradients);
     }
 
     /// Residual in the scaling of step h.
-    pub(crate) fn residual(&mut self, at: &Instant<S>, h: S, out: &mut [S]) {
+    pub(crate) fn residual(&mut self, at: &StepState<S>, h: S, out: &mut [S]) {
         self.visit(at);
         let (model, numbering) = (self.model, self.numbering);
         let [_, f2, f3, f4] = self.starts();
@@ -187,7 +189,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
     }
 
     /// Records the pattern of the iteration matrix, which is in the unknowns of the bodies.
-    pub(crate) fn pattern(&mut self, at: &Instant<S>) -> Pattern {
+    pub(crate) fn pattern(&mut self, at: &StepState<S>) -> Pattern {
         self.visit(at);
         let this = &*self;
         this.record(|emit| this.emit(at, S::one(), S::one(), emit))
@@ -208,12 +210,12 @@ impl<'a, S: Scalar> Equations<'a, S> {
     }
 
     /// Emits the scaled iteration matrix for ∂q̇/∂q = ∂v̇/∂v = c, in velocity numbering.
-    pub(crate) fn jacobian(&mut self, at: &Instant<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
+    pub(crate) fn jacobian(&mut self, at: &StepState<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
         self.visit(at);
         self.emit(at, h, c, emit);
     }
 
-    fn emit(&self, at: &Instant<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
+    fn emit(&self, at: &StepState<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
         let (model, numbering, motions) = (self.model, self.numbering, &self.motions);
         let [y, v, lambda, mu] = self.starts();
         let (f1, f2, f3, f4) = (y, v, lambda, mu);
@@ -240,7 +242,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         let places = [(f3, lambda), (f4, mu)];
         emit_left_out(numbering, &self.left_out, &places, emit);
         // F4 by y.
-        let ground = Motion::ground();
+        let ground = BodyMotion::ground();
         for (j, joint) in model.joints.iter().enumerate() {
             let (a, b) = sides(joint, motions, &ground, at.time);
             for (i, row) in numbering.rows(j).zip(joint.rows()) {
@@ -354,16 +356,16 @@ impl Equations<'_, f64> {
     /// Pulls the adjoint ψ (unscaled, of F1 … F4) back to the parameters of `cot`; returns the
     /// derivative of ψᵀF in time.
     #[cfg(test)]
-    pub fn pull_back(&mut self, at: &Instant<f64>, psi: &[f64], cot: &mut Model<f64>) -> f64 {
-        self.pull_back_held(at, psi, cot, &mut [])
+    pub fn pull_back(&mut self, at: &StepState<f64>, psi: &[f64], cot: &mut Model<f64>) -> f64 {
+        self.pull_back_projected(at, psi, cot, &mut [])
     }
 
     /// As [`Equations::pull_back`], and adds the part of F_yᵀψ that the mobilities do not admit, by
     /// positions that stay as the bodies are placed, to the tangent positions `held`, unless these are
     /// none.
-    pub(crate) fn pull_back_held(
+    pub(crate) fn pull_back_projected(
         &mut self,
-        at: &Instant<f64>,
+        at: &StepState<f64>,
         psi: &[f64],
         cot: &mut Model<f64>,
         held: &mut [f64],
@@ -402,7 +404,7 @@ impl Equations<'_, f64> {
         };
         let here = InMotion::new(model, numbering, &self.motions, at.time);
         loads::pull_back(&here, &self.loads, &mut out);
-        let mut pull = |motions: &[Motion<f64>], cotangents: &RowCotangents| {
+        let mut pull = |motions: &[BodyMotion<f64>], cotangents: &RowCotangents| {
             let mut out = JointCotangent {
                 y: wanted.then_some(&mut y[..]),
                 v: None,
@@ -414,7 +416,7 @@ impl Equations<'_, f64> {
         // λᵀ G ψ_2 beside Φ and G v, and μᵀ G ψ_1 unless the motion needs no μ.
         let (motions, moving) = (&self.motions, &mut self.moving);
         let mut virtually = |psi: &[f64], cotangents: &RowCotangents| {
-            let at = |(i, motion): (usize, &Motion<f64>)| {
+            let at = |(i, motion): (usize, &BodyMotion<f64>)| {
                 motion.virtually(&psi[numbering.velocity(i)..])
             };
             moving.clear();
@@ -436,7 +438,7 @@ impl Equations<'_, f64> {
             virtually(psi1, &cotangents);
         }
         if wanted {
-            reduce::keep_placed(numbering, y);
+            reduce::constrain_cotangent(numbering, y);
             held.iter_mut().zip(&*y).for_each(|(held, y)| *held += y);
         }
         by_time

@@ -8,7 +8,7 @@ use super::tape::{Block, Tape};
 use crate::integrate::control::Controller;
 use crate::integrate::energy::Ledger;
 use crate::integrate::failure::IntegrationFailure;
-use crate::integrate::grid::{Grid, Place, place};
+use crate::integrate::grid::{Grid, SamplePlace, place};
 use crate::integrate::quadrature;
 use crate::integrate::quadrature::Samples;
 use crate::integrate::scale::Scale;
@@ -21,7 +21,7 @@ use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::initial::InitialState;
 use crate::system::left_out::WORN;
-use crate::system::{Motion, Numbering, bodies};
+use crate::system::{BodyMotion, Numbering, bodies};
 
 /// Integrates from a consistent start.
 ///
@@ -150,7 +150,7 @@ fn march_until<S: SolveScalar>(
         None => Ledger::open(model, settings, &scale),
     };
     if let Some(ledger) = &mut ledger {
-        Motion::all(numbering, &past.from.q, &past.from.v, &mut motions);
+        BodyMotion::all(numbering, &past.from.q, &past.from.v, &mut motions);
         ledger.enter(model, &motions, 0.0);
     }
     while let Some(width) = controller.next(run.grid.reached()) {
@@ -179,7 +179,7 @@ fn march_until<S: SolveScalar>(
         }
         if loops {
             let last = &solver.stages[count - 1];
-            field.stand(&last.q, &last.v, last.time);
+            field.set_state(&last.q, &last.v, last.time);
             let steady = match field.factorise() {
                 Ok(()) => steadiness.of(&mut field, &scale),
                 Err(_) => 0.0,
@@ -199,7 +199,7 @@ fn march_until<S: SolveScalar>(
         let last = &stages[count - 1];
         let due = ledger.as_mut().filter(|_| Ledger::is_due(k));
         if watched || due.is_some() {
-            Motion::all(numbering, &last.q, &last.v, &mut motions);
+            BodyMotion::all(numbering, &last.q, &last.v, &mut motions);
         }
         if watched {
             watch(model, (&motions, last.time), k)?;
@@ -238,7 +238,7 @@ fn march_until<S: SolveScalar>(
     }
     close(&mut run, &controller)?;
     if let Some(ledger) = &mut ledger {
-        Motion::all(numbering, &past.from.q, &past.from.v, &mut motions);
+        BodyMotion::all(numbering, &past.from.q, &past.from.v, &mut motions);
         ledger.enter(model, &motions, run.time_reached());
         ledger.close(run.grid.steps(), run.step_error)?;
     }
@@ -291,8 +291,10 @@ fn sample<S: SolveScalar>(
     for due in quadrature::due(samples, next, step) {
         let place = place(&run.grid, k, due.at);
         match place {
-            Place::Node(_) => run.push(due, place, [&last.q, &last.v, &last.vdot, &last.lambda]),
-            Place::Inside { theta, .. } => {
+            SamplePlace::Node(_) => {
+                run.push(due, place, [&last.q, &last.v, &last.vdot, &last.lambda])
+            }
+            SamplePlace::Inside { theta, .. } => {
                 dense(scheme, from, stages, h, theta, inside);
                 bodies::bring_to_unit(&run.numbering, &mut inside.q);
                 let Stage {

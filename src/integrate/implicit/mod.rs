@@ -20,7 +20,7 @@ pub(crate) use tape::Tape;
 
 use crate::math::Scalar;
 use crate::system::{Numbering, bodies, reduce};
-use ggl::Instant;
+use ggl::StepState;
 
 /// State at a stage with its multipliers, rates and its increments since the start of the step.
 #[derive(Clone, Debug)]
@@ -66,8 +66,8 @@ impl<S: Scalar> Stage<S> {
     }
 
     /// The instant that the equations are evaluated at.
-    pub(crate) fn instant(&self) -> Instant<'_, S> {
-        Instant {
+    pub(crate) fn instant(&self) -> StepState<'_, S> {
+        StepState {
             q: &self.q,
             v: &self.v,
             lambda: &self.lambda,

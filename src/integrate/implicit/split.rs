@@ -1,7 +1,7 @@
 //! The iteration matrix as a sum: what depends on the state, and the constant derivative in the rates.
 
 use super::Stage;
-use super::ggl::{Equations, Instant};
+use super::ggl::{Equations, StepState};
 use crate::linalg::SparseMatrix;
 use crate::math::Scalar;
 
@@ -32,7 +32,7 @@ impl SplitMatrix {
     }
 
     /// Assembles H at an instant in a step of size h.
-    pub(crate) fn assemble(&mut self, equations: &mut Equations<f64>, at: &Instant<f64>, h: f64) {
+    pub(crate) fn assemble(&mut self, equations: &mut Equations<f64>, at: &StepState<f64>, h: f64) {
         self.held
             .assemble(|emit| equations.jacobian(at, h, 0.0, emit));
     }

@@ -6,7 +6,7 @@ use super::predict::{Past, RECENT};
 use super::solver::Memory;
 use crate::integrate::replay;
 use crate::integrate::rows::Rows;
-use crate::integrate::schedule::Room;
+use crate::integrate::schedule::MemoryOfBlock;
 use crate::integrate::settings::Method;
 use crate::math::{Complex64, Scalar};
 use crate::system::Numbering;
@@ -43,7 +43,7 @@ impl<S: Scalar> Block<S> {
     }
 
     /// Room that a step and a checkpoint of a method take.
-    pub(crate) fn room(&self, method: Method) -> Room {
+    pub(crate) fn room(&self, method: Method) -> MemoryOfBlock {
         let [nq, nv, ..] = self.stages.lengths();
         let (width, number) = (self.stages.width(), size_of::<S>());
         let stages = match method {
@@ -53,7 +53,7 @@ impl<S: Scalar> Block<S> {
         // A checkpoint holds the state, the stages of the last step, the ends of the latest ones and the
         // stage that the factors are made at.
         let states = 2 + self.most + RECENT;
-        Room {
+        MemoryOfBlock {
             step: (stages * width + 1) * number,
             checkpoint: (states * width + memory_size(method) * (nq + nv) + 32) * number,
         }

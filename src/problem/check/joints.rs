@@ -1,11 +1,11 @@
 //! Joints and drives.
 
 use super::Checker;
-use crate::model::{Freedom, JointKind};
+use crate::model::{DegreeOfFreedom, JointKind};
 use crate::problem::finding::Finding;
 use crate::problem::joints::holds_points;
 use crate::problem::pointer::join;
-use crate::problem::schema::drives::Course;
+use crate::problem::schema::drives::TimeFunction;
 use crate::problem::schema::joints::{Axis, Ends, Joint, JointPlace, JointStart, PointPair};
 use crate::problem::schema::mechanics::Shape;
 
@@ -57,8 +57,12 @@ impl Checker<'_> {
             self.fault(Finding::new(pointer, "a start without motion", expected).of_key());
         }
         let motions = [
-            (Freedom::Turn, "turn", "\"angle\" or \"rate\""),
-            (Freedom::Slide, "slide", "\"displacement\" or \"rate\""),
+            (DegreeOfFreedom::Rotation, "turn", "\"angle\" or \"rate\""),
+            (
+                DegreeOfFreedom::Translation,
+                "slide",
+                "\"displacement\" or \"rate\"",
+            ),
         ];
         for (freedom, key, wanted) in motions {
             let Some(given) = start.of(freedom) else {
@@ -67,8 +71,8 @@ impl Checker<'_> {
             let pointer = join(pointer, key);
             let drive = self.document.drives.iter().find(|(_, drive)| {
                 let driven = match freedom {
-                    Freedom::Turn => drive.turn.is_some(),
-                    Freedom::Slide => drive.slide.is_some(),
+                    DegreeOfFreedom::Rotation => drive.turn.is_some(),
+                    DegreeOfFreedom::Translation => drive.slide.is_some(),
                 };
                 drive.joint == name && driven
             });
@@ -117,11 +121,11 @@ impl Checker<'_> {
                 self.fault(Finding::new(&pointer, "a drive without motion", expected).of_key());
             }
             if let Some(turn) = &drive.turn {
-                self.driven(&pointer, &drive.joint, Freedom::Turn);
+                self.driven(&pointer, &drive.joint, DegreeOfFreedom::Rotation);
                 self.motion(&join(&pointer, "turn"), turn.parts());
             }
             if let Some(slide) = &drive.slide {
-                self.driven(&pointer, &drive.joint, Freedom::Slide);
+                self.driven(&pointer, &drive.joint, DegreeOfFreedom::Translation);
                 self.motion(&join(&pointer, "slide"), slide.parts());
             }
             let earlier = document
@@ -143,7 +147,7 @@ impl Checker<'_> {
     }
 
     /// Checks that a drive's joint has the freedom that it prescribes.
-    fn driven(&mut self, pointer: &str, joint: &str, freedom: Freedom) {
+    fn driven(&mut self, pointer: &str, joint: &str, freedom: DegreeOfFreedom) {
         let kinds = [
             JointKind::Revolute,
             JointKind::Planar,
@@ -157,9 +161,9 @@ impl Checker<'_> {
         self.loaded_joint(pointer, joint, &kinds);
     }
 
-    fn motion(&mut self, pointer: &str, course: Course) {
+    fn motion(&mut self, pointer: &str, course: TimeFunction) {
         match course {
-            Course::Polynomial([]) => {
+            TimeFunction::Polynomial([]) => {
                 let finding = Finding::new(
                     join(pointer, "polynomial"),
                     "no coefficient",
@@ -167,8 +171,8 @@ impl Checker<'_> {
                 );
                 self.fault(finding);
             }
-            Course::Table(times, values, _) => self.table(pointer, times, values),
-            Course::Rate(_) | Course::Polynomial(_) | Course::Harmonic(_) => {}
+            TimeFunction::Table(times, values, _) => self.table(pointer, times, values),
+            TimeFunction::Rate(_) | TimeFunction::Polynomial(_) | TimeFunction::Harmonic(_) => {}
         }
     }
 }

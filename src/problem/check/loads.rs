@@ -8,7 +8,7 @@ use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join};
 use crate::problem::quantity::Quantity;
 use crate::problem::schema::joints::Ends;
-use crate::problem::schema::loads::{Course, Load, Motion};
+use crate::problem::schema::loads::{Load, Motion, TimeFunction};
 
 impl Checker<'_> {
     pub(super) fn loads(&mut self) {
@@ -111,8 +111,8 @@ impl Checker<'_> {
         }
     }
 
-    fn course(&mut self, pointer: &str, course: Course) {
-        if let Course::Table(times, values, _) = course {
+    fn course(&mut self, pointer: &str, course: TimeFunction) {
+        if let TimeFunction::Table(times, values, _) = course {
             self.table(pointer, times, values);
         }
     }

@@ -19,9 +19,9 @@ pub(crate) struct Drive {
 }
 
 /// A motion in its unit.
-macro_rules! courses {
+macro_rules! time_functions {
     ($course:ident, $what:literal, $unit:literal, $rate:literal, $powers:literal) => {
-        #[doc = concat!("Course of ", $what, " in time.")]
+        #[doc = concat!("Function of time: ", $what, ".")]
         #[derive(Clone, Debug, Deserialize, JsonSchema)]
         #[serde(rename_all = "snake_case", deny_unknown_fields)]
         pub(crate) enum $course {
@@ -65,32 +65,32 @@ macro_rules! courses {
 
         impl $course {
             /// The course, whatever its unit.
-            pub(crate) fn parts(&self) -> Course<'_> {
+            pub(crate) fn parts(&self) -> TimeFunction<'_> {
                 match self {
-                    Self::Rate(rate) => Course::Rate(rate),
-                    Self::Polynomial(coefficients) => Course::Polynomial(coefficients),
+                    Self::Rate(rate) => TimeFunction::Rate(rate),
+                    Self::Polynomial(coefficients) => TimeFunction::Polynomial(coefficients),
                     Self::Harmonic {
                         amplitude,
                         frequency,
                         phase,
                         mean,
-                    } => Course::Harmonic([mean, amplitude, frequency, phase]),
+                    } => TimeFunction::Harmonic([mean, amplitude, frequency, phase]),
                     Self::Table {
                         times,
                         values,
                         interpolation,
-                    } => Course::Table(times, values, *interpolation),
+                    } => TimeFunction::Table(times, values, *interpolation),
                 }
             }
         }
     };
 }
 
-courses!(Turning, "an angle", "rad", "rad/s", "rad, rad/s, rad/s², …");
-courses!(Sliding, "a displacement", "m", "m/s", "m, m/s, m/s², …");
+time_functions!(Turning, "an angle", "rad", "rad/s", "rad, rad/s, rad/s², …");
+time_functions!(Sliding, "a displacement", "m", "m/s", "m, m/s, m/s², …");
 
 /// A course in time, whatever its unit.
-pub(crate) enum Course<'a> {
+pub(crate) enum TimeFunction<'a> {
     /// Constant rate.
     Rate(&'a Quantity),
     /// Coefficients.

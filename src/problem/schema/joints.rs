@@ -1,7 +1,7 @@
 //! Joints as they are written in a file.
 
 use super::mechanics::Point;
-use crate::model::Freedom;
+use crate::model::DegreeOfFreedom;
 use crate::problem::quantity::{Quantity, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -91,10 +91,10 @@ pub(crate) struct SlideStart {
 
 impl JointStart {
     /// What the start says of a motion: its place and its rate. `None` if it does not name it.
-    pub(crate) fn of(&self, freedom: Freedom) -> Option<[Option<Quantity>; 2]> {
+    pub(crate) fn of(&self, freedom: DegreeOfFreedom) -> Option<[Option<Quantity>; 2]> {
         match freedom {
-            Freedom::Turn => self.turn.as_ref().map(|turn| [turn.angle, turn.rate]),
-            Freedom::Slide => {
+            DegreeOfFreedom::Rotation => self.turn.as_ref().map(|turn| [turn.angle, turn.rate]),
+            DegreeOfFreedom::Translation => {
                 let slide = self.slide.as_ref();
                 slide.map(|slide| [slide.displacement, slide.rate])
             }

@@ -44,7 +44,7 @@ pub(crate) struct Force {
     #[serde(default)]
     pub axes: Axes,
     /// Its magnitude: a number, or a course in time.
-    pub magnitude: ForceCourse,
+    pub magnitude: ForceInTime,
 }
 
 /// A torque on a body.
@@ -60,7 +60,7 @@ pub(crate) struct Torque {
     #[serde(default)]
     pub axes: Axes,
     /// Its magnitude: a number, or a course in time.
-    pub magnitude: TorqueCourse,
+    pub magnitude: TorqueInTime,
 }
 
 /// The axes that a direction is fixed in.
@@ -98,7 +98,7 @@ impl Interpolation {
 }
 
 /// A magnitude in its unit, and how it may vary with time.
-macro_rules! courses {
+macro_rules! time_functions {
     ($course:ident, $varying:ident, $what:literal, $unit:literal) => {
         #[doc = concat!("Magnitude of a ", $what, ".")]
         #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -111,7 +111,7 @@ macro_rules! courses {
             Varying($varying),
         }
 
-        #[doc = concat!("Course of a ", $what, " in time.")]
+        #[doc = concat!("Function of time: a ", $what, ".")]
         #[derive(Clone, Debug, Deserialize, JsonSchema)]
         #[serde(rename_all = "snake_case", deny_unknown_fields)]
         pub(crate) enum $varying {
@@ -146,30 +146,30 @@ macro_rules! courses {
 
         impl $course {
             /// Its course, whatever its unit.
-            pub(crate) fn parts(&self) -> Course<'_> {
+            pub(crate) fn parts(&self) -> TimeFunction<'_> {
                 match self {
-                    $course::Constant(value) => Course::Constant(value),
+                    $course::Constant(value) => TimeFunction::Constant(value),
                     $course::Varying($varying::Harmonic {
                         amplitude,
                         frequency,
                         phase,
-                    }) => Course::Harmonic([amplitude, frequency, phase]),
+                    }) => TimeFunction::Harmonic([amplitude, frequency, phase]),
                     $course::Varying($varying::Table {
                         times,
                         values,
                         interpolation,
-                    }) => Course::Table(times, values, *interpolation),
+                    }) => TimeFunction::Table(times, values, *interpolation),
                 }
             }
         }
     };
 }
 
-courses!(ForceCourse, VaryingForce, "force", "N");
-courses!(TorqueCourse, VaryingTorque, "torque", "N m");
+time_functions!(ForceInTime, VaryingForce, "force", "N");
+time_functions!(TorqueInTime, VaryingTorque, "torque", "N m");
 
 /// A course in time, whatever its unit.
-pub(crate) enum Course<'a> {
+pub(crate) enum TimeFunction<'a> {
     /// The same at all times.
     Constant(&'a Quantity),
     /// Amplitude, frequency and phase.

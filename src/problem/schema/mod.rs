@@ -85,7 +85,7 @@ pub(crate) struct Simulation {
     #[schemars(extend("unit" = "s", "exclusiveMinimum" = 0))]
     pub duration: Quantity,
     /// Event that ends the run: a quantity reaches a value for the first time. Default none.
-    pub until: Option<Until>,
+    pub until: Option<TerminalEvent>,
     /// Number of time steps of equal size, instead of a tolerance.
     #[schemars(extend(
         "minimum" = 1,
@@ -122,7 +122,7 @@ pub(crate) struct Simulation {
 /// An event that ends the run.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Until {
+pub(crate) struct TerminalEvent {
     /// The quantity.
     pub measure: Instant,
     /// The value that it reaches.

@@ -9,34 +9,34 @@ mod parameters;
 mod power;
 mod pull;
 
-use super::bodies::{Motion, add6, velocities_of};
+use super::bodies::{BodyMotion, add6, velocities_of};
 use super::in_motion::InMotion;
 use super::numbering::Numbering;
 use super::placement::guess;
-use super::side::Side;
+use super::side::JointSide;
 use crate::linalg::Emit;
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, Freedom, JointFrame, LoadKind, Model};
+use crate::model::{Axes, DegreeOfFreedom, JointFrame, LoadKind, Model};
 use parameters::give_to_parameters;
 use pull::{Pulled, pull};
 
 /// Both bodies of a load, and where it acts on them.
 pub(super) struct Acting<'a, S> {
     bodies: [Option<usize>; 2],
-    a: Side<'a, S>,
-    b: Side<'a, S>,
+    a: JointSide<'a, S>,
+    b: JointSide<'a, S>,
 }
 
 /// Calls `visit(number of the load, its kind, its bodies)` for every load.
 fn for_each_load<S: Scalar>(
     model: &Model<S>,
-    motions: &[Motion<S>],
+    motions: &[BodyMotion<S>],
     mut visit: impl FnMut(usize, &LoadKind<S>, &Acting<S>),
 ) {
     if model.loads.is_empty() {
         return;
     }
-    let (ground, nowhere) = (Motion::ground(), JointFrame::zero());
+    let (ground, nowhere) = (BodyMotion::ground(), JointFrame::zero());
     let at = |point: &Vec3<S>| JointFrame {
         point: *point,
         ..nowhere
@@ -44,8 +44,8 @@ fn for_each_load<S: Scalar>(
     let acting = |(body_a, frame_a): (usize, JointFrame<S>),
                   (body_b, frame_b): (Option<usize>, JointFrame<S>)| Acting {
         bodies: [Some(body_a), body_b],
-        a: Side::fixed(&motions[body_a], frame_a),
-        b: Side::fixed(body_b.map_or(&ground, |body| &motions[body]), frame_b),
+        a: JointSide::fixed(&motions[body_a], frame_a),
+        b: JointSide::fixed(body_b.map_or(&ground, |body| &motions[body]), frame_b),
     };
     for (i, load) in model.loads.iter().enumerate() {
         let acting = match &load.kind {
@@ -114,8 +114,8 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
         LoadKind::TorsionSpring { damping, .. } => of(ANGULAR, ANGULAR, damped(damping, ANGULAR)),
         LoadKind::BallDamping { .. } => of(ANGULAR, ANGULAR, ANGULAR),
         LoadKind::Damping { freedom, .. } | LoadKind::Friction { freedom, .. } => match freedom {
-            Freedom::Turn => of(ANGULAR, ANGULAR, ANGULAR),
-            Freedom::Slide => of(BOTH, BOTH, BOTH),
+            DegreeOfFreedom::Rotation => of(ANGULAR, ANGULAR, ANGULAR),
+            DegreeOfFreedom::Translation => of(BOTH, BOTH, BOTH),
         },
     }
 }
@@ -227,7 +227,7 @@ fn give_to_states(
 pub(crate) fn without_length(model: &Model<f64>) -> Option<&str> {
     let (q, v) = guess(model);
     let mut motions = Vec::new();
-    Motion::all(&Numbering::new(model), &q, &v, &mut motions);
+    BodyMotion::all(&Numbering::new(model), &q, &v, &mut motions);
     let mut found = None;
     for_each_load(model, &motions, |i, kind, at| {
         if let LoadKind::Spring { .. } = kind
@@ -240,7 +240,7 @@ pub(crate) fn without_length(model: &Model<f64>) -> Option<&str> {
 }
 
 /// Potential energy of the springs, Σ ½ k x² + ¼ k3 x⁴ (J).
-pub(crate) fn potential<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> S {
+pub(crate) fn potential<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> S {
     let mut sum = S::zero();
     for_each_load(model, motions, |_, kind, at| {
         sum += power::potential(kind, at);
@@ -252,7 +252,7 @@ pub(crate) fn potential<S: Scalar>(model: &Model<S>, motions: &[Motion<S>]) -> S
 pub(crate) fn pull_potential(
     model: &Model<f64>,
     numbering: &Numbering,
-    motions: &[Motion<f64>],
+    motions: &[BodyMotion<f64>],
     weight: f64,
     y: &mut [f64],
     cot: &mut Model<f64>,

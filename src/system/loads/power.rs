@@ -3,9 +3,9 @@
 use super::Acting;
 use crate::math::scalar::length;
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, ConstraintRow, Freedom, LoadKind};
+use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
 use crate::system::constraint;
-use crate::system::marker::Jet;
+use crate::system::marker::MarkerKinematics;
 
 /// The row whose rate is that of a slider's displacement along its axis.
 pub(super) const SLIDE: ConstraintRow = ConstraintRow::Sliding { a: 2 };
@@ -125,12 +125,12 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
 /// Forces of the size `law(rate)` along or about the axis of a joint.
 fn along<S: Scalar>(
     at: &Acting<S>,
-    freedom: Freedom,
+    freedom: DegreeOfFreedom,
     law: impl Fn(S) -> S,
 ) -> [(Vec3<S>, Vec3<S>); 2] {
     match freedom {
-        Freedom::Turn => about_axis(at, law(turn_rate(at))),
-        Freedom::Slide => {
+        DegreeOfFreedom::Rotation => about_axis(at, law(turn_rate(at))),
+        DegreeOfFreedom::Translation => {
             let size = law(constraint::rate(SLIDE, &at.a, &at.b));
             let g = constraint::gradient(SLIDE, &at.a, &at.b);
             [
@@ -163,19 +163,19 @@ pub(super) fn angle<S: Scalar>(at: &Acting<S>, rest: S) -> S {
 }
 
 /// A spring's length, its rate and its direction from B to A.
-pub(super) struct Stretch<S> {
+pub(super) struct SpringLength<S> {
     pub length: S,
     pub rate: S,
     pub direction: Vec3<S>,
 }
 
-pub(super) fn stretch<S: Scalar>(at: &Acting<S>) -> Stretch<S> {
-    let a = Jet::point(at.a.motion, &at.a.frame.point);
-    let b = Jet::point(at.b.motion, &at.b.frame.point);
+pub(super) fn stretch<S: Scalar>(at: &Acting<S>) -> SpringLength<S> {
+    let a = MarkerKinematics::point(at.a.motion, &at.a.frame.point);
+    let b = MarkerKinematics::point(at.b.motion, &at.b.frame.point);
     let d = a.x - b.x;
     let length = length(&d);
     let direction = d / length;
-    Stretch {
+    SpringLength {
         length,
         rate: direction.dot(&(a.rate - b.rate)),
         direction,

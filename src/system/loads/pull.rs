@@ -1,13 +1,13 @@
 //! The transposed derivative of the power ψᵀf of each kind of load.
 
 use super::Acting;
-use super::power::{SLIDE, Stretch, angle, stretch, tanh, turn_rate};
+use super::power::{SLIDE, SpringLength, angle, stretch, tanh, turn_rate};
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, Freedom, LoadKind};
-use crate::system::bodies::Motion;
+use crate::model::{Axes, DegreeOfFreedom, LoadKind};
+use crate::system::bodies::BodyMotion;
 use crate::system::constraint::{self, RowCotangent, SideCotangent};
-use crate::system::marker::{self, Jet};
-use crate::system::side::Side;
+use crate::system::marker::{self, MarkerKinematics};
+use crate::system::side::JointSide;
 
 /// Derivatives of a load's power (or energy).
 pub(super) struct Pulled<S> {
@@ -37,8 +37,8 @@ impl<S: Scalar> Pulled<S> {
 type Virtual<S> = [(Vec3<S>, Vec3<S>); 2];
 
 /// The load's bodies where they are, moving with ψ.
-fn moving<S: Scalar>(at: &Acting<S>, psi: &Virtual<S>) -> [Motion<S>; 2] {
-    let with = |motion: &Motion<S>, (velocity, omega): (Vec3<S>, Vec3<S>)| Motion {
+fn moving<S: Scalar>(at: &Acting<S>, psi: &Virtual<S>) -> [BodyMotion<S>; 2] {
+    let with = |motion: &BodyMotion<S>, (velocity, omega): (Vec3<S>, Vec3<S>)| BodyMotion {
         velocity,
         omega,
         ..*motion
@@ -57,8 +57,8 @@ pub(super) fn pull<S: Scalar>(
     let motions = moving(at, psi);
     let virtually = Acting {
         bodies: at.bodies,
-        a: Side::fixed(&motions[0], at.a.frame),
-        b: Side::fixed(&motions[1], at.b.frame),
+        a: JointSide::fixed(&motions[0], at.a.frame),
+        b: JointSide::fixed(&motions[1], at.b.frame),
     };
     match kind {
         LoadKind::Force {
@@ -71,7 +71,7 @@ pub(super) fn pull<S: Scalar>(
             let m = magnitude.value(time);
             let by = match axes {
                 Axes::Ground => {
-                    let rate = Jet::point(&motions[0], point).rate;
+                    let rate = MarkerKinematics::point(&motions[0], point).rate;
                     pull_point(&virtually.a, [Vec3::zeros(), direction * m], &mut out.a);
                     rate
                 }
@@ -244,9 +244,9 @@ fn hold_virtual<S: Scalar>(out: &mut Pulled<S>) {
 }
 
 /// Pulls the cotangents of a point's position and velocity back.
-fn pull_point<S: Scalar>(side: &Side<S>, [x, rate]: [Vec3<S>; 2], out: &mut SideCotangent<S>) {
+fn pull_point<S: Scalar>(side: &JointSide<S>, [x, rate]: [Vec3<S>; 2], out: &mut SideCotangent<S>) {
     let acceleration = Vec3::zeros();
-    let cot = Jet {
+    let cot = MarkerKinematics {
         x,
         rate,
         acceleration,
@@ -261,18 +261,22 @@ fn pull_point<S: Scalar>(side: &Side<S>, [x, rate]: [Vec3<S>; 2], out: &mut Side
 }
 
 /// Pulls the cotangent of an axis back.
-fn pull_axis<S: Scalar>(side: &Side<S>, axis: usize, x: Vec3<S>, out: &mut SideCotangent<S>) {
-    let by = marker::pull_back(side.motion, &side.frame.axes[axis], &Jet::fixed(x));
+fn pull_axis<S: Scalar>(side: &JointSide<S>, axis: usize, x: Vec3<S>, out: &mut SideCotangent<S>) {
+    let by = marker::pull_back(
+        side.motion,
+        &side.frame.axes[axis],
+        &MarkerKinematics::fixed(x),
+    );
     out.theta += by.theta;
     out.frame.axes[axis] += by.vector;
 }
 
 /// Pulls the cotangents of a spring's length and its rate back.
 fn pull_rate<S: Scalar>(at: &Acting<S>, (by_length, by_rate): (S, S), out: &mut Pulled<S>) {
-    let Stretch {
+    let SpringLength {
         length, direction, ..
     } = stretch(at);
-    let speed = |side: &Side<S>| side.point_jet().rate;
+    let speed = |side: &JointSide<S>| side.point_jet().rate;
     let apart = speed(&at.a) - speed(&at.b);
     // The direction turns with the part of a displacement across it.
     let across = apart - direction * direction.dot(&apart);
@@ -312,12 +316,12 @@ fn pull_angle<S: Scalar>(at: &Acting<S>, cot: S, out: &mut Pulled<S>) {
 fn pull_along<S: Scalar>(
     at: &Acting<S>,
     virtually: &Acting<S>,
-    freedom: Freedom,
+    freedom: DegreeOfFreedom,
     law: impl Fn(S) -> (S, S),
     out: &mut Pulled<S>,
 ) -> (S, S) {
     match freedom {
-        Freedom::Turn => {
+        DegreeOfFreedom::Rotation => {
             let (rate, virtual_rate) = (turn_rate(at), turn_rate(virtually));
             let (size, by_rate) = law(rate);
             pull_turn(virtually, size, out);
@@ -325,7 +329,7 @@ fn pull_along<S: Scalar>(
             pull_turn(at, by_rate * virtual_rate, out);
             (rate, virtual_rate)
         }
-        Freedom::Slide => {
+        DegreeOfFreedom::Translation => {
             let rate = constraint::rate(SLIDE, &at.a, &at.b);
             let virtual_rate = constraint::rate(SLIDE, &virtually.a, &virtually.b);
             let (size, by_rate) = law(rate);

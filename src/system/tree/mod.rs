@@ -76,7 +76,7 @@ impl<S: Scalar> Tree<S> {
     /// How the matrix is eliminated. Operations are those of blocks of the sizes at hand: a
     /// decomposition of order k takes k³/3, a solution 2 k², a product of all rows what its
     /// factors say.
-    pub(crate) fn elimination(&self, numbering: &Numbering) -> kkt::Elimination {
+    pub(crate) fn elimination(&self, numbering: &Numbering) -> kkt::EliminationSummary {
         let (links, closing, more) = match self {
             Tree::Small(elimination) => elimination.parts(numbering),
             Tree::Large(elimination) => elimination.parts(numbering),
@@ -90,7 +90,7 @@ impl<S: Scalar> Tree<S> {
             let p = parent.map_or(0, |parent| numbering.unknowns_of(parent));
             m.pow(3) / 3 + n * 2 * m * m + n * n * m + n.pow(3) / 3 + n * n * p + n * p * p
         };
-        kkt::Elimination {
+        kkt::EliminationSummary {
             order: numbering.unknowns() + numbering.constraints(),
             bodies: Some(links.iter().map(|link| link.body).collect()),
             closing,

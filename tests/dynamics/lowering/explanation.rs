@@ -118,8 +118,8 @@ fn designs_that_ran_as_written_are_told() {
     };
     let run = |problem: &Problem| {
         let go_on = &mut |_: &_| std::ops::ControlFlow::Continue(());
-        let journal = driver::Journal::default();
-        let done = driver::optimise(problem, "", None, journal, go_on).expect("an objective");
+        let log = driver::KnownEvaluations::default();
+        let done = driver::optimise(problem, "", None, log, go_on).expect("an objective");
         done.optimum.warnings
     };
     let told = |warnings: &[String]| warnings.iter().any(|own| own.contains("ran as written"));

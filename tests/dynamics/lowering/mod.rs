@@ -10,7 +10,7 @@ mod welds;
 
 use flexbody::driver::Evaluated;
 use flexbody::integrate::{MEMORY, Method, Samples, Settings, Spacing, simulate};
-use flexbody::lower::Obstacle;
+use flexbody::lower::ViolatedCondition;
 use flexbody::problem::{Override, Problem};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -58,7 +58,7 @@ fn is_planar(problem: &Problem) -> bool {
     lowering.plane.is_ok()
 }
 
-fn obstacle(problem: &Problem) -> Obstacle {
+fn obstacle(problem: &Problem) -> ViolatedCondition {
     let lowering = problem.lowering.as_ref().expect("a lowered problem");
     let kept = lowering
         .plane

@@ -2,7 +2,7 @@
 
 use super::*;
 use flexbody::driver::integration::Integration;
-use flexbody::driver::{self, Journal};
+use flexbody::driver::{self, KnownEvaluations};
 use serde_json::{Map, json};
 use std::ops::ControlFlow;
 
@@ -174,9 +174,9 @@ fn an_optimisation_sees_one_of_two_machines() {
     let focused = both.for_optimisation().expect("a machine that is not seen");
     assert_eq!(focused.function_names, one.function_names);
     let [a, b] = [&focused, &one].map(|problem| {
-        let journal = Journal::new(Vec::new(), |_| ());
+        let log = KnownEvaluations::new(Vec::new(), |_| ());
         let mut progress = |_: &flexbody::report::History| ControlFlow::Continue(());
-        driver::optimise(problem, "test.json", None, journal, &mut progress).expect("an objective")
+        driver::optimise(problem, "test.json", None, log, &mut progress).expect("an objective")
     });
     assert_eq!(a.optimum.counts, b.optimum.counts);
     let design = |of: &driver::Optimisation| -> Vec<f64> {

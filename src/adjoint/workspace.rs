@@ -3,9 +3,9 @@
 
 /// Vectors that are not in use.
 #[derive(Default)]
-pub(super) struct Room(Vec<Vec<f64>>);
+pub(super) struct Workspace(Vec<Vec<f64>>);
 
-impl Room {
+impl Workspace {
     /// A vector of n zeros.
     pub(crate) fn zeros(&mut self, n: usize) -> Vec<f64> {
         let mut x = self.0.pop().unwrap_or_default();

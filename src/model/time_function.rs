@@ -6,14 +6,14 @@
 //! table      m(t) = interpolation between (t_i, m_i), see [`super::table`]; held beyond the ends
 //! ```
 
-use super::table::{Interpolation, Place, around, by_points, interval, magnitude};
+use super::table::{Bracket, Interpolation, around, by_points, interval, magnitude};
 use crate::math::Scalar;
 use crate::math::scalar::Dual;
 use std::f64::consts::TAU;
 
 /// A magnitude as a function of time.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Course<S> {
+pub(crate) enum TimeFunction<S> {
     /// The same at all times (N or N m).
     Constant(S),
     /// A sine of time.
@@ -36,25 +36,25 @@ pub(crate) enum Course<S> {
     },
 }
 
-impl<S: Scalar> Course<S> {
+impl<S: Scalar> TimeFunction<S> {
     /// The course with every parameter replaced by `f` of it.
-    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Course<T> {
+    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> TimeFunction<T> {
         match self {
-            Course::Constant(value) => Course::Constant(f(*value)),
-            Course::Harmonic {
+            TimeFunction::Constant(value) => TimeFunction::Constant(f(*value)),
+            TimeFunction::Harmonic {
                 amplitude,
                 frequency,
                 phase,
-            } => Course::Harmonic {
+            } => TimeFunction::Harmonic {
                 amplitude: f(*amplitude),
                 frequency: f(*frequency),
                 phase: f(*phase),
             },
-            Course::Table {
+            TimeFunction::Table {
                 times,
                 values,
                 interpolation,
-            } => Course::Table {
+            } => TimeFunction::Table {
                 times: times.iter().map(|&x| f(x)).collect(),
                 values: values.iter().map(|&x| f(x)).collect(),
                 interpolation: *interpolation,
@@ -65,20 +65,20 @@ impl<S: Scalar> Course<S> {
     /// Value at `time` (s).
     pub(crate) fn value(&self, time: S) -> S {
         match self {
-            Course::Constant(value) => *value,
-            Course::Harmonic {
+            TimeFunction::Constant(value) => *value,
+            TimeFunction::Harmonic {
                 amplitude,
                 frequency,
                 phase,
             } => harmonic([*amplitude, *frequency, *phase], time),
-            Course::Table {
+            TimeFunction::Table {
                 times,
                 values,
                 interpolation,
             } => match interval(times, time.re()) {
-                Place::Before => values[0],
-                Place::After => values[values.len() - 1],
-                Place::Inside(k) => {
+                Bracket::Before => values[0],
+                Bracket::After => values[values.len() - 1],
+                Bracket::Inside(k) => {
                     let (times, values) = (around(times, k), around(values, k));
                     magnitude(*interpolation, &times, &values, time)
                 }
@@ -87,25 +87,25 @@ impl<S: Scalar> Course<S> {
     }
 }
 
-impl Course<f64> {
-    /// Adds `weight` times the derivatives of [`Course::value`] to those in the parameters, `own`
+impl TimeFunction<f64> {
+    /// Adds `weight` times the derivatives of [`TimeFunction::value`] to those in the parameters, `own`
     /// (of the same kind), and in the time.
     pub(crate) fn pull_back(
         &self,
         time: f64,
         weight: f64,
-        own: &mut Course<f64>,
+        own: &mut TimeFunction<f64>,
         time_bar: &mut f64,
     ) {
         match (self, own) {
-            (Course::Constant(_), Course::Constant(own)) => *own += weight,
+            (TimeFunction::Constant(_), TimeFunction::Constant(own)) => *own += weight,
             (
-                Course::Harmonic {
+                TimeFunction::Harmonic {
                     amplitude,
                     frequency,
                     phase,
                 },
-                Course::Harmonic {
+                TimeFunction::Harmonic {
                     amplitude: by_amplitude,
                     frequency: by_frequency,
                     phase: by_phase,
@@ -118,20 +118,20 @@ impl Course<f64> {
                 *time_bar += weight * amplitude * cosine * TAU * frequency;
             }
             (
-                Course::Table {
+                TimeFunction::Table {
                     times,
                     values,
                     interpolation,
                 },
-                Course::Table {
+                TimeFunction::Table {
                     times: by_times,
                     values: by_values,
                     ..
                 },
             ) => match interval(times, time) {
-                Place::Before => by_values[0] += weight,
-                Place::After => *by_values.last_mut().expect("a table has values") += weight,
-                Place::Inside(k) => {
+                Bracket::Before => by_values[0] += weight,
+                Bracket::After => *by_values.last_mut().expect("a table has values") += weight,
+                Bracket::Inside(k) => {
                     let lists = (&times[..], &values[..]);
                     by_points(k, lists, (by_times, by_values), |t, m| {
                         weight * magnitude(*interpolation, t, m, time.into()).du
@@ -156,8 +156,8 @@ mod tests {
     use super::*;
     use crate::math::scalar::{COMPLEX_STEP, Complex64};
 
-    fn table(interpolation: Interpolation) -> Course<f64> {
-        Course::Table {
+    fn table(interpolation: Interpolation) -> TimeFunction<f64> {
+        TimeFunction::Table {
             times: vec![0.0, 0.5, 0.8, 1.5, 2.0, 2.5],
             values: vec![1.0, 2.0, 5.0, 5.5, 4.0, 4.0],
             interpolation,
@@ -174,7 +174,7 @@ mod tests {
     fn a_table_meets_its_points_and_stays_between_them() {
         for interpolation in ALL {
             let course = table(interpolation);
-            let Course::Table { times, values, .. } = &course else {
+            let TimeFunction::Table { times, values, .. } = &course else {
                 unreachable!()
             };
             for (t, m) in times.iter().zip(values) {
@@ -206,13 +206,19 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_the_complex_step() {
-        let harmonic = Course::Harmonic {
+        let harmonic = TimeFunction::Harmonic {
             amplitude: 3.0,
             frequency: 0.7,
             phase: 0.4,
         };
         let [linear, monotone, spline] = ALL.map(table);
-        for course in [Course::Constant(2.0), harmonic, linear, monotone, spline] {
+        for course in [
+            TimeFunction::Constant(2.0),
+            harmonic,
+            linear,
+            monotone,
+            spline,
+        ] {
             for t in [-1.0, 0.2, 0.6, 1.0, 1.7, 2.2, 3.0] {
                 let mut own = course.map(&mut |_| 0.0);
                 let mut by_time = 0.0;

@@ -19,7 +19,7 @@ const SETTINGS: [&str; 5] = ["$schema", "name", "description", "optimiser", "plo
 /// iterations, multipliers and quasi-Newton matrices without a simulation, and then continues. No
 /// design is evaluated twice.
 #[derive(Default)]
-pub(crate) struct Journal<'a> {
+pub(crate) struct KnownEvaluations<'a> {
     /// Keyed by whether they are gradients, and by the exact bits of the design.
     known: HashMap<(bool, Vec<u64>), Known>,
     /// How many evaluations there are.
@@ -50,7 +50,7 @@ struct Known {
 
 /// Additional data of an evaluation.
 #[derive(Default)]
-pub(crate) struct Account {
+pub(crate) struct EvaluationContext {
     /// Before: time of the event at this design with the steps in use, if known (s).
     pub settled: Option<f64>,
     /// Before: whether another process simulated this design just before it ended. The extra
@@ -71,13 +71,13 @@ struct Choice {
     refreshes: usize,
 }
 
-impl<'a> Journal<'a> {
-    /// A journal that knows `earlier` and passes new evaluations to `record`.
+impl<'a> KnownEvaluations<'a> {
+    /// A log that knows `earlier` and passes new evaluations to `record`.
     pub(crate) fn new(
         earlier: Vec<EvaluationRecord>,
         record: impl FnMut(EvaluationRecord) + 'a,
     ) -> Self {
-        let mut journal = Self {
+        let mut log = Self {
             record: Some(Box::new(record)),
             ..Self::default()
         };
@@ -89,22 +89,22 @@ impl<'a> Journal<'a> {
         } in earlier
         {
             match found {
-                Found::Steps(steps) => journal.choose(steps),
+                Found::Steps(steps) => log.choose(steps),
                 found => {
                     let of_gradients = matches!(found, Found::Gradients(_) | Found::NoGradients(_));
                     let known = Known {
                         found,
-                        place: journal.count,
-                        steps: journal.choices.len().checked_sub(1),
+                        place: log.count,
+                        steps: log.choices.len().checked_sub(1),
                         event,
                         work,
                     };
-                    journal.count += 1;
-                    journal.known.insert((of_gradients, bits(&design)), known);
+                    log.count += 1;
+                    log.known.insert((of_gradients, bits(&design)), known);
                 }
             }
         }
-        journal
+        log
     }
 
     /// Index of the choice of steps in use, from 0, if there is one.
@@ -159,7 +159,7 @@ impl<'a> Journal<'a> {
     pub(crate) fn values(
         &mut self,
         design: &[f64],
-        evaluate: impl FnOnce(&mut Account) -> Result<Vec<f64>, String>,
+        evaluate: impl FnOnce(&mut EvaluationContext) -> Result<Vec<f64>, String>,
     ) -> Result<Vec<f64>, String> {
         match self.recall(false, design) {
             Some(Found::Values(values)) => return Ok(values),
@@ -170,9 +170,9 @@ impl<'a> Journal<'a> {
             Some(x) => Err(format!("a value is {x}")),
             None => Ok(values),
         };
-        let mut account = Account {
+        let mut account = EvaluationContext {
             repeated: self.simulated == bits(design),
-            ..Account::default()
+            ..EvaluationContext::default()
         };
         let found = evaluate(&mut account).and_then(finite);
         let recorded = match &found {
@@ -187,7 +187,7 @@ impl<'a> Journal<'a> {
     pub(crate) fn gradients(
         &mut self,
         design: &[f64],
-        evaluate: impl FnOnce(&mut Account) -> Result<Vec<Vec<f64>>, String>,
+        evaluate: impl FnOnce(&mut EvaluationContext) -> Result<Vec<Vec<f64>>, String>,
     ) -> Result<Vec<Vec<f64>>, String> {
         match self.recall(true, design) {
             Some(Found::Gradients(gradients)) => return Ok(gradients),
@@ -199,10 +199,10 @@ impl<'a> Journal<'a> {
                 Some(x) => Err(format!("a derivative is {x}")),
                 None => Ok(gradients),
             };
-        let mut account = Account {
+        let mut account = EvaluationContext {
             settled: self.settled(design),
             repeated: self.simulated == bits(design),
-            ..Account::default()
+            ..EvaluationContext::default()
         };
         let found = evaluate(&mut account).and_then(finite);
         let recorded = match &found {
@@ -233,7 +233,13 @@ impl<'a> Journal<'a> {
         Some(known.found.clone())
     }
 
-    fn learn(&mut self, of_gradients: bool, design: &[f64], found: Found, account: Account) {
+    fn learn(
+        &mut self,
+        of_gradients: bool,
+        design: &[f64],
+        found: Found,
+        account: EvaluationContext,
+    ) {
         self.refreshed(design, account.refresh);
         let (event, place) = (account.event, self.count);
         let work = Work::from(account.work);
@@ -377,25 +383,25 @@ mod tests {
         let (coarse, fine) = ([0.0, 1.0], [0.0, 0.5, 1.0]);
         let earlier = vec![steps(&coarse), value(1.0), steps(&fine), value(2.0)];
         let mut written = Vec::new();
-        let mut journal = Journal::new(earlier.clone(), |record| written.push(record));
-        let never = |_: &mut Account| -> Result<Vec<f64>, String> { panic!("is known") };
-        assert!(journal.steps().is_none());
-        assert_eq!(journal.values(&[1.0], never), Ok(vec![1.0]));
-        let in_use = |journal: &Journal<'_>| {
-            let kept = journal.steps().expect("chosen");
+        let mut log = KnownEvaluations::new(earlier.clone(), |record| written.push(record));
+        let never = |_: &mut EvaluationContext| -> Result<Vec<f64>, String> { panic!("is known") };
+        assert!(log.steps().is_none());
+        assert_eq!(log.values(&[1.0], never), Ok(vec![1.0]));
+        let in_use = |log: &KnownEvaluations<'_>| {
+            let kept = log.steps().expect("chosen");
             (kept.grid.expect("ends").ends().to_vec(), kept.refreshes)
         };
-        assert_eq!(in_use(&journal), (coarse.to_vec(), 0));
+        assert_eq!(in_use(&log), (coarse.to_vec(), 0));
         for x in [3.0, 4.0] {
-            assert_eq!(journal.values(&[x], |_| Ok(vec![x])), Ok(vec![x]));
+            assert_eq!(log.values(&[x], |_| Ok(vec![x])), Ok(vec![x]));
             // No design is evaluated twice.
-            assert_eq!(journal.values(&[x], never), Ok(vec![x]));
+            assert_eq!(log.values(&[x], never), Ok(vec![x]));
         }
-        assert_eq!(in_use(&journal), (coarse.to_vec(), 0));
+        assert_eq!(in_use(&log), (coarse.to_vec(), 0));
         // Evaluations of before do not bring older steps back, later ones bring none.
-        assert_eq!(journal.values(&[2.0], never), Ok(vec![2.0]));
-        assert_eq!(in_use(&journal), (coarse.to_vec(), 0));
-        drop(journal);
+        assert_eq!(log.values(&[2.0], never), Ok(vec![2.0]));
+        assert_eq!(in_use(&log), (coarse.to_vec(), 0));
+        drop(log);
         let mut again = steps(&coarse);
         again.design = vec![3.0];
         if let Found::Steps(steps) = &mut again.found {
@@ -404,10 +410,10 @@ mod tests {
         assert_eq!(written, [again, value(3.0), value(4.0)]);
         // Read back, the record says the same of all evaluations.
         let all = [earlier, written].concat();
-        let mut journal = Journal::new(all, |_| {});
+        let mut log = KnownEvaluations::new(all, |_| {});
         for (x, ends, refreshes) in [(1.0, &coarse[..], 0), (2.0, &fine, 1), (4.0, &coarse, 0)] {
-            assert_eq!(journal.values(&[x], never), Ok(vec![x]));
-            assert_eq!(in_use(&journal), (ends.to_vec(), refreshes));
+            assert_eq!(log.values(&[x], never), Ok(vec![x]));
+            assert_eq!(in_use(&log), (ends.to_vec(), refreshes));
         }
     }
 
@@ -425,27 +431,27 @@ mod tests {
         };
         let mut written = Vec::new();
         let earlier = vec![known(1.0, 0.1), known(2.0, 0.2), known(3.0, 0.3)];
-        let mut journal = Journal::new(earlier, |record| written.push(record));
-        let never = |_: &mut Account| -> Result<Vec<f64>, String> { panic!("is known") };
+        let mut log = KnownEvaluations::new(earlier, |record| written.push(record));
+        let never = |_: &mut EvaluationContext| -> Result<Vec<f64>, String> { panic!("is known") };
         for (x, latest) in [(2.0, (1, Some(0.2))), (1.0, (1, Some(0.2)))] {
             for _ in 0..2 {
-                assert_eq!(journal.values(&[x], never), Ok(vec![x]));
-                assert_eq!(journal.latest(), Some(latest));
+                assert_eq!(log.values(&[x], never), Ok(vec![x]));
+                assert_eq!(log.latest(), Some(latest));
             }
         }
-        assert_eq!(journal.work().steps, 20);
+        assert_eq!(log.work().steps, 20);
         // Where the values are known, the event is where they were found.
-        let gradients = |account: &mut Account| {
+        let gradients = |account: &mut EvaluationContext| {
             assert_eq!(account.settled, Some(0.1));
             account.event = Some(0.1);
             account.work.steps = 5;
             Ok(vec![vec![1.0]])
         };
-        assert_eq!(journal.gradients(&[1.0], gradients), Ok(vec![vec![1.0]]));
-        assert_eq!(journal.values(&[3.0], never), Ok(vec![3.0]));
-        assert_eq!(journal.latest(), Some((3, Some(0.1))));
-        assert_eq!(journal.work().steps, 35);
-        drop(journal);
+        assert_eq!(log.gradients(&[1.0], gradients), Ok(vec![vec![1.0]]));
+        assert_eq!(log.values(&[3.0], never), Ok(vec![3.0]));
+        assert_eq!(log.latest(), Some((3, Some(0.1))));
+        assert_eq!(log.work().steps, 35);
+        drop(log);
         assert_eq!(written.len(), 1);
         assert_eq!((written[0].event, written[0].work.steps), (Some(0.1), 5));
     }

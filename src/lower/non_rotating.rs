@@ -4,15 +4,15 @@
 //! Their rotation is that of the placement, as long as it closes these rows.
 
 use super::Kept;
-use super::examine::{Designs, Examiner, Verdict};
+use super::examine::{ConditionChecker, Designs, Verdict};
 use super::fixed::{Fixed, is_void};
 use crate::math::Scalar;
-use crate::model::{ConstraintRow, Freedom, Joint, Model};
-use crate::system::{Motion, Numbering, constraint, placement, side};
+use crate::model::{ConstraintRow, DegreeOfFreedom, Joint, Model};
+use crate::system::{BodyMotion, Numbering, constraint, placement, side};
 
 /// Bodies that cannot turn, though they move.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Unturned {
+pub(crate) struct NonRotating {
     /// By body, whether it is one; empty if none is.
     bodies: Vec<bool>,
     /// By body, whether it is one or cannot move at all.
@@ -25,11 +25,14 @@ fn holds_rotation(row: &ConstraintRow) -> bool {
 
 /// Whether a joint holds the rotation of its bodies against each other.
 fn holds_both<S>(joint: &Joint<S>) -> bool {
-    let turns = joint.drives.iter().any(|own| own.freedom == Freedom::Turn);
+    let turns = joint
+        .drives
+        .iter()
+        .any(|own| own.freedom == DegreeOfFreedom::Rotation);
     !turns && joint.all_rows().filter(holds_rotation).count() == 3
 }
 
-impl Unturned {
+impl NonRotating {
     /// Bodies whose rotation ground holds.
     pub(super) fn find(designs: &Designs, fixed: &Fixed) -> (Self, Option<Kept>) {
         let model = &designs.start.model;
@@ -106,17 +109,17 @@ impl Unturned {
 
     /// Examines whether the rows that hold the bodies' rotation are closed where these are placed.
     pub(super) fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Verdict {
-        let mut examiner = Examiner::new(change);
+        let mut examiner = ConditionChecker::new(change);
         if self.is_empty() {
             return Ok(());
         }
         let (q, v) = placement::guess(model);
         let mut motions = Vec::new();
-        Motion::all_normalised(&Numbering::new(model), &q, &v, &mut motions);
-        let ground = Motion::ground();
+        BodyMotion::all_normalised(&Numbering::new(model), &q, &v, &mut motions);
+        let ground = BodyMotion::ground();
         for joint in model.joints.iter().filter(|joint| self.holds_joint(joint)) {
             let name = &joint.name;
-            let turns = |own: &crate::model::Drive<S>| own.freedom == Freedom::Turn;
+            let turns = |own: &crate::model::Drive<S>| own.freedom == DegreeOfFreedom::Rotation;
             if joint.drives.iter().any(turns) {
                 examiner.tell(format!("joint \"{name}\" is driven to turn"));
             }

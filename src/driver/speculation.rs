@@ -5,7 +5,7 @@
 
 use super::evaluate::Evaluated;
 use super::integration::Integration;
-use super::journal::bits;
+use super::known_evaluations::bits;
 use crate::integrate::{IntegrationFailure, WorkCounts};
 use crate::problem::Problem;
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ pub(super) type Derived = (Vec<Vec<f64>>, [WorkCounts; 2]);
 
 /// Cached evaluations, keyed by the exact bits of the design.
 #[derive(Default)]
-pub(super) struct Foreseen {
+pub(super) struct SpeculativeCache {
     /// How often the steps had been chosen at that time.
     refreshes: usize,
     simulated: HashMap<Vec<u64>, Result<Evaluated, IntegrationFailure>>,
@@ -46,7 +46,7 @@ fn simulated(
     }
 }
 
-impl Foreseen {
+impl SpeculativeCache {
     /// Simulates the first of `designs`, as many as there are processors.
     pub(crate) fn simulate(
         &mut self,
