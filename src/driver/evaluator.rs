@@ -39,7 +39,7 @@ pub(crate) struct Evaluator<'a> {
     /// Number of designs that did not admit the lowering of the others.
     pub unlowered: usize,
     log: KnownEvaluations<'a>,
-    foreseen: SpeculativeCache,
+    speculative: SpeculativeCache,
     /// The log's choice of steps that `integration` uses, and the recorded evaluation whose
     /// event it knows.
     choice: Option<usize>,
@@ -66,7 +66,7 @@ impl<'a> Evaluator<'a> {
             integration: Integration::new(problem, &scene, Some(&asked), true),
             unlowered: 0,
             log,
-            foreseen: SpeculativeCache::default(),
+            speculative: SpeculativeCache::default(),
             choice: None,
             latest: None,
             judgements: Judgements::default(),
@@ -112,7 +112,7 @@ impl<'a> Evaluator<'a> {
         let designs = self.unknown(points, true);
         let wanted = (&designs[..], &functions[..]);
         let (problem, integration) = (self.problem, &self.integration);
-        self.foreseen.differentiate(problem, integration, wanted);
+        self.speculative.differentiate(problem, integration, wanted);
     }
 
     /// The designs of `points` that the log does not know.
@@ -138,7 +138,7 @@ fn asked(problem: &Problem, objective: usize) -> Vec<usize> {
 
 /// The simulated design `x`: the last one, or a new one.
 fn at<'e>(
-    (last, foreseen): (&'e mut Option<Evaluated>, &mut SpeculativeCache),
+    (last, speculative): (&'e mut Option<Evaluated>, &mut SpeculativeCache),
     (integration, account): (&mut Integration, &mut EvaluationContext),
     problem: &Problem,
     x: &[f64],
@@ -147,7 +147,7 @@ fn at<'e>(
         Some(known) => Ok(known),
         None => {
             integration.settled = account.settled;
-            let found = match foreseen.take(integration, x) {
+            let found = match speculative.take(integration, x) {
                 Some(found) => found.map(|evaluated| (evaluated, None)),
                 None => Evaluated::with(integration, problem, x),
             };
@@ -215,7 +215,7 @@ impl Nlp for Evaluator<'_> {
         let functions = self.functions();
         let problem = self.problem;
         let integration = &mut self.integration;
-        let made = (&mut self.last, &mut self.foreseen);
+        let made = (&mut self.last, &mut self.speculative);
         let (before, mut known) = (integration.unlowered, true);
         let found = self.log.values(&x, |account| {
             known = false;
@@ -253,24 +253,24 @@ impl Nlp for Evaluator<'_> {
     fn foresee(&mut self, points: &[Vec<f64>]) {
         let designs = self.unknown(points, false);
         let (problem, integration) = (self.problem, &self.integration);
-        self.foreseen.simulate(problem, integration, &designs);
+        self.speculative.simulate(problem, integration, &designs);
     }
 
     fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
         let problem = self.problem;
         let x = unscaled(problem, x);
         let functions = self.functions();
-        let (last, foreseen) = (&mut self.last, &mut self.foreseen);
+        let (last, speculative) = (&mut self.last, &mut self.speculative);
         let integration = &mut self.integration;
         let found = self.log.gradients(&x, |account| {
-            if let Some((gradients, [run, own])) = foreseen.take_gradients(integration, &x) {
+            if let Some((gradients, [run, own])) = speculative.take_gradients(integration, &x) {
                 if !account.repeated {
                     account.work += run;
                 }
                 account.work += own;
                 return Ok(gradients);
             }
-            let (made, steps) = ((last, foreseen), (integration, &mut *account));
+            let (made, steps) = ((last, speculative), (integration, &mut *account));
             let at = at(made, steps, problem, &x).map_err(|failure| failure.to_string())?;
             let found = at.gradients(problem, &functions);
             let (gradients, work) = found.map_err(|failure| failure.to_string())?;

@@ -65,7 +65,7 @@ impl MotionExplanation {
     fn used(&self, problem: &Problem) -> IntegrationUse {
         let run = &self.at.run;
         let [samples_bytes, tape_bytes] = run.bytes();
-        let (schedule, foreseen) = run.foreseen(self.steps);
+        let (schedule, foreseen) = run.checkpoint_plan(self.steps);
         let each = samples_bytes as f64 / (run.last() + 1) as f64;
         IntegrationUse {
             method: run.method.name(),

@@ -4,7 +4,7 @@ use super::integration::{KeptSteps, Refresh};
 use crate::integrate::{Grid, Method, WorkCounts};
 use crate::problem::Problem;
 use crate::report::evaluations::{EvaluationRecord, Found, Head, RowsLeftOut, StepsInUse, Work};
-use crate::system::LeftOut;
+use crate::system::RedundantRows;
 use serde_json::{Map, Value};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
@@ -312,7 +312,7 @@ impl<'a> KnownEvaluations<'a> {
 
 /// The redundant rows that are left out, by step.
 fn rows_left_out(grid: &Grid) -> Vec<RowsLeftOut> {
-    let one = |(from, rows): &(usize, LeftOut)| RowsLeftOut {
+    let one = |(from, rows): &(usize, RedundantRows)| RowsLeftOut {
         from: *from,
         rows: rows.numbers().collect(),
         of: rows.count(),

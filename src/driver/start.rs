@@ -23,7 +23,7 @@ pub(crate) fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
     let numbering = Numbering::new(&model);
     let mut notes = Vec::new();
     tell(&mut notes, replaced(problem, &model, x));
-    let locked = freedoms(&problem.scene(x).model) == 0 && !model.bodies.is_empty();
+    let locked = degrees_of_freedom(&problem.scene(x).model) == 0 && !model.bodies.is_empty();
     let driven = model.joints.iter().any(|joint| !joint.drives.is_empty());
     let stuck = locked && !driven;
     if !stuck && consistent(&model, &numbering) {
@@ -104,7 +104,7 @@ fn tell(notes: &mut Vec<String>, all: Vec<String>) {
 }
 
 /// Unknown velocities less the conditions on them that are independent at most positions.
-fn freedoms(model: &Model<f64>) -> usize {
+fn degrees_of_freedom(model: &Model<f64>) -> usize {
     let imposed: usize = model
         .joints
         .iter()

@@ -1,7 +1,7 @@
 //! Where steps end and where the motion is sampled, in fractions of the duration.
 
 use super::quadrature::{Step, is_same};
-use crate::system::LeftOut;
+use crate::system::RedundantRows;
 
 /// Ends of the steps as fractions τ_0 = 0 < τ_1 < … < τ_N of the duration T, so that t_k = τ_k T
 /// moves with the duration and with nothing else. τ_N is 1; it is larger where the motion ends too close
@@ -15,7 +15,7 @@ pub(crate) struct Grid {
     /// none are given.
     cells: Vec<u32>,
     /// Constraint rows that are left out from a step on.
-    left_out: Vec<(usize, LeftOut)>,
+    left_out: Vec<(usize, RedundantRows)>,
 }
 
 impl Grid {
@@ -88,23 +88,23 @@ impl Grid {
 
     /// Constraint rows that are left out in step k = 1 … N; `None` if that was not recorded, or if no row
     /// ever is.
-    pub(crate) fn left_out(&self, k: usize) -> Option<&LeftOut> {
+    pub(crate) fn left_out(&self, k: usize) -> Option<&RedundantRows> {
         let from = self.left_out.iter().rev().find(|(from, _)| *from <= k);
         from.map(|(_, rows)| rows)
     }
 
     /// All changes of the rows that are left out: the step from which on, and the rows.
-    pub(crate) fn choices(&self) -> &[(usize, LeftOut)] {
+    pub(crate) fn choices(&self) -> &[(usize, RedundantRows)] {
         &self.left_out
     }
 
     /// Records what is left out from the step after the last one on, if that is a change.
-    pub(crate) fn leave_out(&mut self, rows: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, rows: &RedundantRows) {
         self.leave_out_from(self.steps() + 1, rows);
     }
 
     /// Records what is left out from step k on, in rising order, if that is a change.
-    pub(crate) fn leave_out_from(&mut self, k: usize, rows: &LeftOut) {
+    pub(crate) fn leave_out_from(&mut self, k: usize, rows: &RedundantRows) {
         let known = self.left_out.last().map(|(_, rows)| rows);
         if !rows.is_empty() && known != Some(rows) {
             self.left_out.push((k, rows.clone()));

@@ -4,7 +4,7 @@ use super::trajectory::Trajectory;
 use crate::model::Model;
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
-use crate::system::left_out::WORN;
+use crate::system::redundant_rows::EXCHANGE_WEIGHT;
 
 /// Multipliers λ of a model along a run: as the method marched them or, if it did not or the run left
 /// rows of the model out, from the index-1 equations of the states.
@@ -44,7 +44,7 @@ impl<'a> Multipliers<'a> {
                 lambda.fill(f64::NAN);
                 return lambda;
             }
-            let Some(rows) = field.exchanged(WORN) else {
+            let Some(rows) = field.exchanged(EXCHANGE_WEIGHT) else {
                 break;
             };
             field.leave_out(&rows);

@@ -141,11 +141,12 @@ impl<B: Block> Tape<B> {
 
     /// How a run of so many steps is kept.
     pub(crate) fn schedule(&self, steps: usize) -> Schedule {
-        self.schedule.unwrap_or_else(|| self.foreseen(steps).0)
+        self.schedule
+            .unwrap_or_else(|| self.checkpoint_plan(steps).0)
     }
 
     /// How a run of so many steps would be kept, and what that takes (bytes).
-    pub(crate) fn foreseen(&self, steps: usize) -> (Schedule, usize) {
+    pub(crate) fn checkpoint_plan(&self, steps: usize) -> (Schedule, usize) {
         let memory = match self.memory {
             0 => MEMORY,
             memory => memory,

@@ -3,7 +3,7 @@
 use super::grid::Grid;
 use super::limits::Limits;
 use super::quadrature::{ADDED, Samples};
-use crate::system::LeftOut;
+use crate::system::RedundantRows;
 
 /// The integration method.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,7 +111,7 @@ pub(crate) enum Spacing {
 
 impl Spacing {
     /// The constraint rows that an earlier run left out, where it left out as many of as many as now.
-    pub(super) fn left_out(&self, now: &LeftOut) -> &[(usize, LeftOut)] {
+    pub(super) fn left_out(&self, now: &RedundantRows) -> &[(usize, RedundantRows)] {
         match self {
             Spacing::Frozen(grid) if grid.choices().iter().all(|(_, rows)| rows.fits(now)) => {
                 grid.choices()

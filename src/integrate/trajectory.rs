@@ -154,10 +154,10 @@ impl<S: Scalar> Trajectory<S> {
 
     /// How a run of so many steps would be kept for gradients in the same memory, and what that takes
     /// (bytes).
-    pub(crate) fn foreseen(&self, steps: usize) -> (Schedule, usize) {
+    pub(crate) fn checkpoint_plan(&self, steps: usize) -> (Schedule, usize) {
         match &self.tape {
-            Tape::Explicit(tape) => tape.foreseen(steps),
-            Tape::Implicit(tape) => tape.foreseen(steps),
+            Tape::Explicit(tape) => tape.checkpoint_plan(steps),
+            Tape::Implicit(tape) => tape.checkpoint_plan(steps),
         }
     }
 

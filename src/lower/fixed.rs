@@ -36,7 +36,7 @@ pub(super) fn welded_to_ground<S>(model: &Model<S>) -> Vec<bool> {
 
 /// Whether nothing of a joint is left.
 pub(super) fn is_void<S>(joint: &Joint<S>) -> bool {
-    joint.identical.len() == joint.all_rows().count()
+    joint.trivial_rows.len() == joint.all_rows().count()
 }
 
 impl Fixed {
@@ -95,8 +95,8 @@ impl Fixed {
         }
         for joint in &mut model.joints {
             if self.holds_joint(joint) {
-                joint.identical = joint.all_rows().collect();
-                joint.left_out.clear();
+                joint.trivial_rows = joint.all_rows().collect();
+                joint.redundant.clear();
             }
         }
     }

@@ -148,14 +148,14 @@ impl Plane {
                 let e = &frames[0].axes[2];
                 let part = normal.dot(e);
                 let what = || (format!("joint \"{name}\" is driven out of the plane"), "");
-                match drive.freedom {
+                match drive.dof {
                     DegreeOfFreedom::Rotation => {
                         examiner.vanishes((e - normal * part).as_slice(), 1.0, what);
                     }
                     DegreeOfFreedom::Translation => examiner.zero(part, 1.0, what),
                 }
             }
-            if self.identical(joint, turned, j) != own.identical {
+            if self.trivial_rows(joint, turned, j) != own.trivial_rows {
                 examiner.tell(format!("joint \"{name}\" is turned"));
             }
             let mut heights = [S::zero(); 2];
@@ -237,12 +237,12 @@ impl Plane {
                 LoadKind::TorsionSpring { joint, .. }
                 | LoadKind::Damping {
                     joint,
-                    freedom: DegreeOfFreedom::Rotation,
+                    dof: DegreeOfFreedom::Rotation,
                     ..
                 }
                 | LoadKind::Friction {
                     joint,
-                    freedom: DegreeOfFreedom::Rotation,
+                    dof: DegreeOfFreedom::Rotation,
                     ..
                 } => {
                     let joint = &model.joints[*joint];
@@ -253,11 +253,11 @@ impl Plane {
                 LoadKind::Spring { .. }
                 | LoadKind::BallDamping { .. }
                 | LoadKind::Damping {
-                    freedom: DegreeOfFreedom::Translation,
+                    dof: DegreeOfFreedom::Translation,
                     ..
                 }
                 | LoadKind::Friction {
-                    freedom: DegreeOfFreedom::Translation,
+                    dof: DegreeOfFreedom::Translation,
                     ..
                 } => {}
             }

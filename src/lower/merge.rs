@@ -147,8 +147,8 @@ fn leave_without_rows<S: Scalar>(joint: &mut Joint<S>, on_host: &[Option<Pose<S>
     joint.body_b = None;
     joint.frame_a = JointFrame::zero();
     joint.frame_b = JointFrame::zero();
-    joint.left_out.clear();
-    joint.identical = joint.all_rows().collect();
+    joint.redundant.clear();
+    joint.trivial_rows = joint.all_rows().collect();
 }
 
 fn move_joint<S: Scalar>(joint: &mut Joint<S>, on_host: &[Option<Pose<S>>]) {

@@ -42,7 +42,7 @@ pub(crate) struct Kept {
     pub obstacles: Vec<ViolatedCondition>,
 }
 
-/// Obstacles of one reduction that are told.
+/// Violated conditions of one reduction that are reported.
 const TOLD: usize = 5;
 
 impl std::fmt::Display for Kept {
@@ -73,7 +73,7 @@ pub(crate) struct Lowering {
     /// Reductions that are not made, but for the plane.
     kept: Vec<Kept>,
     /// Rows that follow from others once these are made, by joint.
-    left_out: Vec<Vec<ConstraintRow>>,
+    redundant: Vec<Vec<ConstraintRow>>,
 }
 
 impl Lowering {
@@ -90,7 +90,7 @@ impl Lowering {
         }
         let (fixed, of_fixed) = Fixed::find(&designs);
         let plane = Plane::find(&designs);
-        let (non_rotating, of_unturned) = NonRotating::find(&designs, &fixed);
+        let (non_rotating, of_non_rotating) = NonRotating::find(&designs, &fixed);
         let mut points = Vec::new();
         // A body in the plane has three unknowns already.
         if plane.is_err() {
@@ -120,7 +120,7 @@ impl Lowering {
                 }
             }
         }
-        kept.extend(of_fixed.into_iter().chain(of_unturned));
+        kept.extend(of_fixed.into_iter().chain(of_non_rotating));
         let mut found = Self {
             welded,
             plane,
@@ -128,14 +128,14 @@ impl Lowering {
             non_rotating,
             fixed,
             kept,
-            left_out: Vec::new(),
+            redundant: Vec::new(),
         };
         if !(found.welded.is_empty() && found.non_rotating.is_empty() && found.fixed.is_empty()) {
             let mut lowered = designs.start;
             found.leave_out(&mut lowered);
             redundancy::leave_out(&mut lowered.model);
             let joints = lowered.model.joints.into_iter();
-            found.left_out = joints.map(|joint| joint.left_out).collect();
+            found.redundant = joints.map(|joint| joint.redundant).collect();
         }
         found
     }
@@ -195,8 +195,8 @@ impl Lowering {
         }
         self.non_rotating.apply(model);
         self.fixed.apply(model);
-        for (joint, left_out) in model.joints.iter_mut().zip(&self.left_out) {
-            joint.left_out.clone_from(left_out);
+        for (joint, redundant) in model.joints.iter_mut().zip(&self.redundant) {
+            joint.redundant.clone_from(redundant);
         }
     }
 

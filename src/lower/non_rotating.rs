@@ -28,7 +28,7 @@ fn holds_both<S>(joint: &Joint<S>) -> bool {
     let turns = joint
         .drives
         .iter()
-        .any(|own| own.freedom == DegreeOfFreedom::Rotation);
+        .any(|own| own.dof == DegreeOfFreedom::Rotation);
     !turns && joint.all_rows().filter(holds_rotation).count() == 3
 }
 
@@ -99,10 +99,11 @@ impl NonRotating {
         for joint in &mut model.joints {
             if self.holds_joint(joint) {
                 let rows = joint.all_rows();
-                let gone = rows.filter(|row| holds_rotation(row) || joint.identical.contains(row));
-                joint.identical = gone.collect();
+                let gone =
+                    rows.filter(|row| holds_rotation(row) || joint.trivial_rows.contains(row));
+                joint.trivial_rows = gone.collect();
                 let held = |row: &ConstraintRow| !holds_rotation(row);
-                joint.left_out.retain(held);
+                joint.redundant.retain(held);
             }
         }
     }
@@ -119,7 +120,7 @@ impl NonRotating {
         let ground = BodyMotion::ground();
         for joint in model.joints.iter().filter(|joint| self.holds_joint(joint)) {
             let name = &joint.name;
-            let turns = |own: &crate::model::Drive<S>| own.freedom == DegreeOfFreedom::Rotation;
+            let turns = |own: &crate::model::Drive<S>| own.dof == DegreeOfFreedom::Rotation;
             if joint.drives.iter().any(turns) {
                 examiner.tell(format!("joint \"{name}\" is driven to turn"));
             }

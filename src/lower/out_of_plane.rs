@@ -7,8 +7,8 @@
 use crate::model::{ConstraintRow, Joint};
 
 /// Whether the rows that hold identically in the plane keep the joint's bodies parallel.
-pub(super) fn holds_upright(identical: &[ConstraintRow]) -> bool {
-    let angles = identical
+pub(super) fn holds_upright(trivial_rows: &[ConstraintRow]) -> bool {
+    let angles = trivial_rows
         .iter()
         .filter(|row| matches!(row, ConstraintRow::Perpendicular { .. }));
     angles.count() >= 2

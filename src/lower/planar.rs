@@ -48,9 +48,9 @@ pub(crate) struct Plane {
 #[derive(Clone, Debug)]
 pub(super) struct Joined {
     /// Rows that hold identically.
-    pub identical: Vec<ConstraintRow>,
+    pub trivial_rows: Vec<ConstraintRow>,
     /// Rows that follow from others in the plane.
-    left_out: Vec<ConstraintRow>,
+    redundant: Vec<ConstraintRow>,
     /// Axes of the frames by those that are written, if these have to be turned to the normal.
     turn: Option<Mat3<f64>>,
     /// Heights of its points above the centres of mass (above the origin on ground).
@@ -170,8 +170,8 @@ impl Plane {
         let joints = model.joints.iter().map(|joint| {
             let turn = turn_to(joint, turned.normal(Some(joint.body_a)));
             Joined {
-                identical: Vec::new(),
-                left_out: Vec::new(),
+                trivial_rows: Vec::new(),
+                redundant: Vec::new(),
                 turn,
                 heights: [
                     height(Some(joint.body_a), &joint.frame_a.point),
@@ -193,9 +193,9 @@ impl Plane {
             groups: Vec::new(),
         };
         for (j, joint) in model.joints.iter().enumerate() {
-            plane.joints[j].identical = plane.identical(joint, &turned, j);
+            plane.joints[j].trivial_rows = plane.trivial_rows(joint, &turned, j);
         }
-        let upright = |j: usize| out_of_plane::holds_upright(&plane.joints[j].identical);
+        let upright = |j: usize| out_of_plane::holds_upright(&plane.joints[j].trivial_rows);
         plane.groups = out_of_plane::groups(model.bodies.len(), &model.joints, upright);
         plane
     }
@@ -206,20 +206,20 @@ impl Plane {
         self.apply(&mut lowered);
         redundancy::leave_out(&mut lowered);
         for (own, joint) in self.joints.iter_mut().zip(lowered.joints) {
-            own.left_out = joint.left_out;
+            own.redundant = joint.redundant;
         }
         self
     }
 
     /// Rows of joint j that hold identically, if the joint fits the plane.
-    pub(super) fn identical<S: Scalar>(
+    pub(super) fn trivial_rows<S: Scalar>(
         &self,
         joint: &Joint<S>,
         turned: &Turned<S>,
         j: usize,
     ) -> Vec<ConstraintRow> {
         if is_void(joint) {
-            return joint.identical.clone();
+            return joint.trivial_rows.clone();
         }
         let frames = self.frames(joint, j);
         let bodies = [Some(joint.body_a), joint.body_b];
@@ -228,13 +228,13 @@ impl Plane {
             normal.dot(&frames[side].axes[axis]).re().abs() > 0.5
         };
         let largest = Coincident(self.normal.iamax());
-        let identical = |row: &ConstraintRow| match *row {
+        let trivial_rows = |row: &ConstraintRow| match *row {
             Coincident(_) => *row == largest,
             Perpendicular { a, b } => across(0, a) != across(1, b),
             Sliding { a } => across(0, a),
             Distance => false,
         };
-        joint.all_rows().filter(identical).collect()
+        joint.all_rows().filter(trivial_rows).collect()
     }
 
     pub(super) fn frames<S: Scalar>(&self, joint: &Joint<S>, j: usize) -> [JointFrame<S>; 2] {
@@ -255,8 +255,8 @@ impl Plane {
         for (j, own) in self.joints.iter().enumerate() {
             let joint = &mut model.joints[j];
             [joint.frame_a, joint.frame_b] = self.frames(joint, j);
-            joint.identical.clone_from(&own.identical);
-            joint.left_out.clone_from(&own.left_out);
+            joint.trivial_rows.clone_from(&own.trivial_rows);
+            joint.redundant.clone_from(&own.redundant);
         }
     }
 }

@@ -35,7 +35,7 @@ pub(crate) enum DegreeOfFreedom {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Drive<S> {
     /// Which motion.
-    pub freedom: DegreeOfFreedom,
+    pub dof: DegreeOfFreedom,
     /// Angle (rad) or displacement (m) in time.
     pub course: PrescribedMotion<S>,
 }
@@ -71,7 +71,7 @@ impl<S: Scalar> Drive<S> {
     /// The drive with every parameter replaced by `f` of it.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Drive<T> {
         Drive {
-            freedom: self.freedom,
+            dof: self.dof,
             course: self.course.map(f),
         }
     }

@@ -174,7 +174,7 @@ impl JointKind {
     }
 
     /// What the joint allows along or about its axis, turning first.
-    pub(crate) fn freedoms(self) -> &'static [DegreeOfFreedom] {
+    pub(crate) fn degrees_of_freedom(self) -> &'static [DegreeOfFreedom] {
         match self {
             JointKind::Revolute | JointKind::Planar => &[DegreeOfFreedom::Rotation],
             JointKind::Prismatic => &[DegreeOfFreedom::Translation],
@@ -256,34 +256,34 @@ pub(crate) struct Joint<S> {
     /// Prescribed motions, one a freedom at most.
     pub drives: Vec<Drive<S>>,
     /// Rows of [`Joint::all_rows`] that are not imposed at the start, as they follow from those of other
-    /// joints; a run may exchange them for others (see `system::left_out`).
-    pub left_out: Vec<ConstraintRow>,
+    /// joints; a run may exchange them for others (see `system::redundant_rows`).
+    pub redundant: Vec<ConstraintRow>,
     /// Rows that hold identically in all motions that the bodies' mobility admits, and are not
     /// imposed.
-    pub identical: Vec<ConstraintRow>,
+    pub trivial_rows: Vec<ConstraintRow>,
 }
 
 impl<S> Joint<S> {
     /// The rows of the kind and of the drives.
     pub(crate) fn all_rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
-        let driven = self.drives.iter().map(|drive| drive.freedom.driven_row());
+        let driven = self.drives.iter().map(|drive| drive.dof.driven_row());
         self.kind.rows().iter().copied().chain(driven)
     }
 
     /// The rows that do not hold identically.
     pub(crate) fn rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
-        let counts = |row: &ConstraintRow| !self.identical.contains(row);
+        let counts = |row: &ConstraintRow| !self.trivial_rows.contains(row);
         self.all_rows().filter(counts)
     }
 
     /// Those of [`Joint::rows`] that are imposed at the start.
     pub(crate) fn imposed(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
-        self.rows().filter(|row| !self.left_out.contains(row))
+        self.rows().filter(|row| !self.redundant.contains(row))
     }
 
     /// Frame axes that both bodies share once the joint is closed.
     pub(crate) fn common_axes(&self) -> &'static [usize] {
-        let turned = |drive: &Drive<S>| drive.freedom == DegreeOfFreedom::Rotation;
+        let turned = |drive: &Drive<S>| drive.dof == DegreeOfFreedom::Rotation;
         match self.drives.iter().any(turned) {
             true => &[0, 1, 2],
             false => self.kind.common_axes(),
@@ -308,8 +308,8 @@ impl<S: Scalar> Joint<S> {
             frame_a,
             frame_b,
             drives: self.drives.iter().map(|drive| drive.map(f)).collect(),
-            left_out: self.left_out.clone(),
-            identical: self.identical.clone(),
+            redundant: self.redundant.clone(),
+            trivial_rows: self.trivial_rows.clone(),
         }
     }
 }

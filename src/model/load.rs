@@ -103,7 +103,7 @@ pub(crate) enum LoadKind<S> {
         /// The joint.
         joint: usize,
         /// Which motion is damped.
-        freedom: DegreeOfFreedom,
+        dof: DegreeOfFreedom,
         /// c (N m s/rad or N s/m).
         coefficient: S,
     },
@@ -120,7 +120,7 @@ pub(crate) enum LoadKind<S> {
         /// The joint.
         joint: usize,
         /// Which motion is opposed.
-        freedom: DegreeOfFreedom,
+        dof: DegreeOfFreedom,
         /// Size μ of the torque or force (N m or N).
         size: S,
         /// Rate w at which tanh 1 of it acts (rad/s or m/s).
@@ -212,11 +212,11 @@ impl<S: Scalar> LoadKind<S> {
             },
             LoadKind::Damping {
                 joint,
-                freedom,
+                dof,
                 coefficient,
             } => LoadKind::Damping {
                 joint: *joint,
-                freedom: *freedom,
+                dof: *dof,
                 coefficient: f(*coefficient),
             },
             LoadKind::BallDamping { joint, coefficient } => LoadKind::BallDamping {
@@ -225,12 +225,12 @@ impl<S: Scalar> LoadKind<S> {
             },
             LoadKind::Friction {
                 joint,
-                freedom,
+                dof,
                 size,
                 width,
             } => LoadKind::Friction {
                 joint: *joint,
-                freedom: *freedom,
+                dof: *dof,
                 size: f(*size),
                 width: f(*width),
             },

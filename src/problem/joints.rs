@@ -100,8 +100,8 @@ fn joint<S: Scalar>(
         frame_a,
         frame_b,
         drives: Vec::new(),
-        left_out: Vec::new(),
-        identical: Vec::new(),
+        redundant: Vec::new(),
+        trivial_rows: Vec::new(),
     }
 }
 
@@ -128,11 +128,11 @@ fn drives<S: Scalar>(document: &Document, assembly: &Assembly<S>, name: &str) ->
     let of = |drive: &&WrittenDrive| drive.joint == name;
     let parts = |drive: &WrittenDrive| {
         let turn = drive.turn.as_ref().map(|turn| Drive {
-            freedom: DegreeOfFreedom::Rotation,
+            dof: DegreeOfFreedom::Rotation,
             course: course(assembly, turn.parts()),
         });
         let slide = drive.slide.as_ref().map(|slide| Drive {
-            freedom: DegreeOfFreedom::Translation,
+            dof: DegreeOfFreedom::Translation,
             course: course(assembly, slide.parts()),
         });
         turn.into_iter().chain(slide)

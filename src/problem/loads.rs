@@ -82,10 +82,10 @@ fn kind<S: Scalar>(
         WrittenLoad::Damping(damping) => {
             let (joint, written) = joint(document, &damping.joint);
             let coefficient = get(&damping.coefficient);
-            match freedom(written, damping.motion) {
-                Some(freedom) => LoadKind::Damping {
+            match dof(written, damping.motion) {
+                Some(dof) => LoadKind::Damping {
                     joint,
-                    freedom,
+                    dof,
                     coefficient,
                 },
                 None => LoadKind::BallDamping { joint, coefficient },
@@ -95,7 +95,7 @@ fn kind<S: Scalar>(
             let (joint, written) = joint(document, &friction.joint);
             LoadKind::Friction {
                 joint,
-                freedom: freedom(written, friction.motion)
+                dof: dof(written, friction.motion)
                     .expect("joints with friction are checked when a problem is read"),
                 size: get(&friction.size),
                 width: get(&friction.width),
@@ -138,10 +138,10 @@ fn joint<'a>(document: &'a Document, name: &str) -> (usize, &'a Joint) {
 
 /// The motion of a joint along or about its axis that a load acts on: the one named, else the first;
 /// `None` if it has none.
-fn freedom(joint: &Joint, motion: Option<Motion>) -> Option<DegreeOfFreedom> {
+fn dof(joint: &Joint, motion: Option<Motion>) -> Option<DegreeOfFreedom> {
     match motion {
         Some(motion) => Some(named(motion)),
-        None => joint.kind().freedoms().first().copied(),
+        None => joint.kind().degrees_of_freedom().first().copied(),
     }
 }
 

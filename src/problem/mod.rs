@@ -261,7 +261,7 @@ impl Problem {
     pub(crate) fn unlowered_scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
         let mut scene = scene::scene(&self.written, &self.order, x);
         for (joint, left_out) in scene.model.joints.iter_mut().zip(&self.left_out) {
-            joint.left_out.clone_from(left_out);
+            joint.redundant.clone_from(left_out);
         }
         if let Some(start) = &self.nearest_to {
             let terms = x.iter().zip(start).zip(&self.variables);

@@ -128,7 +128,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
             problem.left_out = model
                 .joints
                 .into_iter()
-                .map(|joint| joint.left_out)
+                .map(|joint| joint.redundant)
                 .collect();
             let finding = too_many(&problem)
                 .or_else(|| unstarted(&problem))

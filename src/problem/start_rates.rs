@@ -14,7 +14,7 @@
 //! joints do not admit are projected last, all together, with the rates as further rows.
 
 use super::blocks::Block;
-use super::starts::{Asked, FREEDOMS, Hinge, Starts, hinge, put};
+use super::starts::{Asked, DOFS, Hinge, Starts, hinge, put};
 use crate::math::rotation::matrix;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Model, RigidBody};
@@ -143,7 +143,7 @@ fn lacking<S: Scalar>(
     beyond: usize,
     near: Option<usize>,
 ) -> Option<Twist<S>> {
-    let [spin, speed] = FREEDOMS.map(|freedom| starts.value(model, joint, freedom, Asked::Rate));
+    let [spin, speed] = DOFS.map(|dof| starts.value(model, joint, dof, Asked::Rate));
     if spin.is_none() && speed.is_none() {
         return None;
     }
@@ -167,7 +167,7 @@ fn of_loops<S: Scalar>(
     block: &Block,
 ) -> Result<Vec<Option<Twist<S>>>, AssemblyFailure> {
     let rate = |&joint: &usize| {
-        let mut rates = FREEDOMS.map(|freedom| starts.value(model, joint, freedom, Asked::Rate));
+        let mut rates = DOFS.map(|dof| starts.value(model, joint, dof, Asked::Rate));
         rates.iter_mut().any(|rate| rate.is_some())
     };
     if !block.joints.iter().any(rate) {

@@ -32,14 +32,14 @@ use crate::system::redundancy;
 const STEPS: usize = 16;
 
 /// Both motions of a joint.
-pub(super) const FREEDOMS: [DegreeOfFreedom; 2] =
+pub(super) const DOFS: [DegreeOfFreedom; 2] =
     [DegreeOfFreedom::Rotation, DegreeOfFreedom::Translation];
 
 /// What a file says of the start of a joint's motion.
 #[derive(Clone, Debug)]
 struct Given<S> {
     joint: usize,
-    freedom: DegreeOfFreedom,
+    dof: DegreeOfFreedom,
     /// Angle (rad) or displacement (m), and its rate.
     values: [Option<S>; 2],
 }
@@ -70,12 +70,12 @@ impl<S: Scalar> Starts<S> {
     ) -> Option<Self> {
         let mut given = Vec::new();
         for (joint, written) in document.joints.values().enumerate() {
-            for freedom in FREEDOMS {
-                let values = written.start().and_then(|start| start.of(freedom));
+            for dof in DOFS {
+                let values = written.start().and_then(|start| start.of(dof));
                 let get = |value: Option<Quantity>| value.map(|value| assembly.quantity(&value));
                 given.extend(values.map(|values| Given {
                     joint,
-                    freedom,
+                    dof,
                     values: values.map(get),
                 }));
             }
@@ -103,20 +103,20 @@ impl<S: Scalar> Starts<S> {
         &self,
         model: &Model<S>,
         joint: usize,
-        freedom: DegreeOfFreedom,
+        dof: DegreeOfFreedom,
         asked: Asked,
     ) -> Option<S> {
-        let written = self.written(joint, freedom, asked);
+        let written = self.written(joint, dof, asked);
         written.or_else(|| {
             let mut drives = model.joints[joint].drives.iter();
-            let drive = drives.find(|drive| drive.freedom == freedom)?;
+            let drive = drives.find(|drive| drive.dof == dof)?;
             Some(drive.course.derivatives(S::zero())[asked as usize])
         })
     }
 
-    fn written(&self, joint: usize, freedom: DegreeOfFreedom, asked: Asked) -> Option<S> {
+    fn written(&self, joint: usize, dof: DegreeOfFreedom, asked: Asked) -> Option<S> {
         let mut given = self.given.iter();
-        let given = given.find(|given| given.joint == joint && given.freedom == freedom)?;
+        let given = given.find(|given| given.joint == joint && given.dof == dof)?;
         given.values[asked as usize]
     }
 
@@ -128,7 +128,7 @@ impl<S: Scalar> Starts<S> {
     ) -> impl Iterator<Item = (usize, DegreeOfFreedom, S)> + 'a {
         let here = move |given: &Given<S>| {
             let joint = joints.iter().position(|&joint| joint == given.joint)?;
-            Some((joint, given.freedom, given.values[asked as usize]?))
+            Some((joint, given.dof, given.values[asked as usize]?))
         };
         self.given.iter().filter_map(here)
     }
@@ -214,8 +214,7 @@ impl<S: Scalar> Starts<S> {
 
     /// How a joint in no loop moves the body beyond it.
     fn turned(&self, model: &Model<S>, joint: usize, beyond: usize) -> Option<Move<S>> {
-        let [angle, shift] =
-            FREEDOMS.map(|freedom| self.value(model, joint, freedom, Asked::Place));
+        let [angle, shift] = DOFS.map(|dof| self.value(model, joint, dof, Asked::Place));
         if angle.is_none() && shift.is_none() {
             return None;
         }
@@ -308,13 +307,13 @@ impl<S: Scalar> Starts<S> {
     /// Lets drives hold what the file gives of the joints of a part: a fraction of their places, or
     /// their rates where they are.
     pub(super) fn drive(&self, part: &mut Model<S>, joints: &[usize], asked: Asked, fraction: f64) {
-        for (joint, freedom, value) in self.given(joints, asked) {
+        for (joint, dof, value) in self.given(joints, asked) {
             let coefficients = match asked {
                 Asked::Place => vec![value * fraction],
-                Asked::Rate => vec![place(part, joint, freedom), value],
+                Asked::Rate => vec![place(part, joint, dof), value],
             };
             part.joints[joint].drives.push(Drive {
-                freedom,
+                dof,
                 course: PrescribedMotion::Polynomial(coefficients),
             });
         }
@@ -337,17 +336,17 @@ impl<S: Scalar> Starts<S> {
         };
         let more =
             |model: &Model<f64>| redundancy::redundant_rows(model).is_some_and(|n| n > before);
-        let mut held = |(joint, freedom): (usize, DegreeOfFreedom)| {
-            let at = place(&model, joint, freedom);
+        let mut held = |(joint, dof): (usize, DegreeOfFreedom)| {
+            let at = place(&model, joint, dof);
             model.joints[joint].drives.push(Drive {
-                freedom,
+                dof,
                 course: PrescribedMotion::Polynomial(vec![at]),
             });
             more(&model).then(|| model.joints[joint].name.clone())
         };
         let given = self.given(joints, asked);
         match given
-            .map(|(joint, freedom, _)| (joint, freedom))
+            .map(|(joint, dof, _)| (joint, dof))
             .find_map(&mut held)
         {
             Some(joint) => Err(AssemblyFailure::Determined { joint }),
@@ -447,9 +446,9 @@ fn frames<S: Scalar>(model: &Model<S>, joint: usize) -> [JointFrame<S>; 2] {
 }
 
 /// The angle or displacement of a joint where the bodies of the model are.
-fn place<S: Scalar>(model: &Model<S>, joint: usize, freedom: DegreeOfFreedom) -> S {
+fn place<S: Scalar>(model: &Model<S>, joint: usize, dof: DegreeOfFreedom) -> S {
     let [a, b] = frames(model, joint);
-    match freedom {
+    match dof {
         DegreeOfFreedom::Rotation => (a.axes[0].dot(&b.axes[1])).atan2(a.axes[0].dot(&b.axes[0])),
         DegreeOfFreedom::Translation => b.axes[2].dot(&(a.point - b.point)),
     }

@@ -40,7 +40,7 @@ pub enum StaticFailure {
     UnknownSet(#[from] UnknownSet),
     /// Part of the structure can move without strain.
     #[error(
-        "the structure is a mechanism: {freedom} of node {node} at ({:.4}, {:.4}, {:.4}) m moves \
+        "the structure is a mechanism: {dof} of node {node} at ({:.4}, {:.4}, {:.4}) m moves \
          without resistance; support it, or join it to what is supported",
         place[0], place[1], place[2]
     )]
@@ -50,12 +50,12 @@ pub enum StaticFailure {
         /// Where it stands \[m\].
         place: [f64; 3],
         /// Which of its unknowns moves most.
-        freedom: &'static str,
+        dof: &'static str,
     },
     /// The structure does not carry the whole load.
     #[error(
         "the structure carries {factor:.4} of the load and no more: at {kind} its tangent stiffness ceases \
-         to be positive definite, and {freedom} of node {node} at ({:.4}, {:.4}, {:.4}) m gives way; make \
+         to be positive definite, and {dof} of node {node} at ({:.4}, {:.4}, {:.4}) m gives way; make \
          the load smaller, or the structure stiffer",
         place[0], place[1], place[2]
     )]
@@ -69,7 +69,7 @@ pub enum StaticFailure {
         /// Where it stands \[m\].
         place: [f64; 3],
         /// Which of its unknowns moves most.
-        freedom: &'static str,
+        dof: &'static str,
     },
     /// The iteration comes to no end though the tangent is definite.
     #[error(
@@ -243,11 +243,11 @@ pub(crate) fn mechanism(
     structure: &Structure<f64>,
     failure: &NotPositiveDefinite,
 ) -> StaticFailure {
-    let (node, freedom) = most_moved(assembly, &failure.direction);
+    let (node, dof) = most_moved(assembly, &failure.direction);
     StaticFailure::Mechanism {
         node,
         place: structure.nodes[node].into(),
-        freedom,
+        dof,
     }
 }
 

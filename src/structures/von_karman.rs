@@ -226,8 +226,7 @@ impl StaticProblem {
             }
         }
         let moves = displaced.iter().any(|&x| x != 0.0);
-        let (node, freedom) =
-            most_moved(&self.assembly, if moves { &displaced } else { &direction });
+        let (node, dof) = most_moved(&self.assembly, if moves { &displaced } else { &direction });
         StaticFailure::Critical {
             kind: if dot(&direction, load).abs() > DOES_WORK * size {
                 Critical::LimitPoint
@@ -237,7 +236,7 @@ impl StaticProblem {
             factor,
             node,
             place: structure.nodes[node].into(),
-            freedom,
+            dof,
         }
     }
 

@@ -12,11 +12,11 @@ use super::in_motion::InMotion;
 use super::initial::mass;
 use super::joints::{self, JointCotangent, RowCotangents};
 use super::kkt::{EliminationSummary, SaddlePoint};
-use super::left_out::{LeftOut, Weighing};
 use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
 use super::planar::PlanarJoints;
 use super::reduce;
+use super::redundant_rows::{RedundantRows, RowWeights};
 use super::tree::Tree;
 use crate::linalg::{Pivots, SingularMatrix, SolveScalar};
 use crate::model::Model;
@@ -32,8 +32,8 @@ pub(crate) struct Accelerations<'a, S> {
     pub motions: Vec<BodyMotion<S>>,
     gradients: Vec<RowGradient<S>>,
     /// Rows that are not imposed.
-    left_out: LeftOut,
-    weighing: Weighing<S>,
+    left_out: RedundantRows,
+    weighing: RowWeights<S>,
     /// The joints, if the scene is planar.
     planar: Option<PlanarJoints<S>>,
     /// Motions with accelerations and virtual velocities, for the pull-back.
@@ -87,8 +87,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             numbering,
             motions: Vec::new(),
             gradients: Vec::new(),
-            left_out: LeftOut::of(model, numbering),
-            weighing: Weighing::default(),
+            left_out: RedundantRows::of(model, numbering),
+            weighing: RowWeights::default(),
             planar: PlanarJoints::of(model),
             moving: Vec::new(),
             time: S::zero(),
@@ -145,12 +145,12 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// Rows that are not imposed.
-    pub(crate) fn left_out(&self) -> &LeftOut {
+    pub(crate) fn left_out(&self) -> &RedundantRows {
         &self.left_out
     }
 
     /// Leaves other rows out from where the solver stands next.
-    pub(crate) fn leave_out(&mut self, left_out: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, left_out: &RedundantRows) {
         if self.left_out != *left_out {
             self.left_out.clone_from(left_out);
             if let Solver::Sparse(saddle, _) = &mut self.solver {
@@ -159,9 +159,9 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         }
     }
 
-    /// What should be left out from here on, where that is another choice (see [`LeftOut::exchanged`]),
+    /// What should be left out from here on, where that is another choice (see [`RedundantRows::exchanged`]),
     /// with the matrix factorised where the solver stands.
-    pub(crate) fn exchanged(&mut self, worn: f64) -> Option<LeftOut> {
+    pub(crate) fn exchanged(&mut self, worn: f64) -> Option<RedundantRows> {
         if self.left_out.is_empty() {
             return None;
         }

@@ -17,11 +17,11 @@ use super::failure::AssemblyFailure;
 use super::in_motion::InMotion;
 use super::joints::{self, JointCotangent, RowCotangents};
 use super::kkt::{BodyBlocks, SaddlePoint};
-use super::left_out::{LeftOut, WORN, Weighing};
 use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
 use super::placement::guess;
 use super::reduce;
+use super::redundant_rows::{EXCHANGE_WEIGHT, RedundantRows, RowWeights};
 use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::math::{Mat3, Scalar, rotation};
 use crate::model::Model;
@@ -42,7 +42,7 @@ pub(crate) struct InitialState<S> {
     /// Multipliers σ of the velocity projection.
     pub sigma: Vec<S>,
     /// Rows that are not imposed on velocities and accelerations.
-    pub left_out: LeftOut,
+    pub left_out: RedundantRows,
     /// Newton iterations of the assembly.
     pub iterations: usize,
 }
@@ -59,7 +59,7 @@ pub(crate) fn solve<S: SolveScalar>(
     let (nv, nc) = (numbering.velocities(), numbering.constraints());
     let (q_guess, v_guess) = guess(model);
     let mut motions = Vec::new();
-    saddle.leave_out(&LeftOut::of(model, numbering));
+    saddle.leave_out(&RedundantRows::of(model, numbering));
     let (q, s, iterations) = assemble(model, numbering, saddle, &q_guess, &v_guess)?;
     choose_left_out(model, numbering, saddle, (&q, &v_guess));
 
@@ -133,7 +133,7 @@ fn choose_left_out<S: SolveScalar>(
         return;
     }
     let mut left_out = saddle.left_out().clone();
-    let (mut motions, mut weighing) = (Vec::new(), Weighing::default());
+    let (mut motions, mut weighing) = (Vec::new(), RowWeights::default());
     BodyMotion::all(numbering, q, v, &mut motions);
     let zeros = vec![S::zero(); numbering.constraints()];
     let at = InMotion::new(model, numbering, &motions, S::zero());
@@ -143,7 +143,7 @@ fn choose_left_out<S: SolveScalar>(
             return;
         }
         let solve = |rhs: &mut [S]| saddle.solve(rhs);
-        match left_out.exchanged(&at, WORN, &mut weighing, solve) {
+        match left_out.exchanged(&at, EXCHANGE_WEIGHT, &mut weighing, solve) {
             Some(other) => left_out = other,
             None => return,
         }
@@ -285,7 +285,7 @@ pub(crate) fn pull_back(
     }
 
     // The assembly leaves out what the joints name.
-    saddle.leave_out(&LeftOut::of(model, numbering));
+    saddle.leave_out(&RedundantRows::of(model, numbering));
     let metric = displacement_metric(model, numbering, &state.q);
     saddle.factorise(&at, &state.s, metric).map_err(singular)?;
     let (psi, chi) = transposed(saddle, &y_bar);

@@ -5,9 +5,9 @@ use super::bodies::BodyMotion;
 use super::constraint::RowGradient;
 use super::in_motion::InMotion;
 use super::joints;
-use super::left_out::LeftOut;
 use super::numbering::Numbering;
 use super::reduce::{emit_reduced, through, unreduced};
+use super::redundant_rows::RedundantRows;
 use crate::linalg::{Emit, Pattern, Pivots, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::{Mat3, Scalar};
 use crate::model::Model;
@@ -148,7 +148,7 @@ pub(crate) struct SaddlePoint<S> {
     factors: SparseLu<S>,
     gradients: Vec<RowGradient<S>>,
     /// Rows that are not imposed.
-    left_out: LeftOut,
+    left_out: RedundantRows,
     /// Number of factorisations so far.
     pub factorisations: usize,
 }
@@ -161,7 +161,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
         let at = InMotion::new(model, numbering, &motions, S::zero());
         joints::gradients(&at, &mut gradients);
         let zeros = vec![S::zero(); numbering.constraints()];
-        let left_out = LeftOut::of(model, numbering);
+        let left_out = RedundantRows::of(model, numbering);
         let order = numbering.unknowns() + numbering.constraints();
         let block = |_| BodyBlocks {
             linear: S::one(),
@@ -185,12 +185,12 @@ impl<S: SolveScalar> SaddlePoint<S> {
     }
 
     /// Rows that are not imposed.
-    pub(crate) fn left_out(&self) -> &LeftOut {
+    pub(crate) fn left_out(&self) -> &RedundantRows {
         &self.left_out
     }
 
     /// Leaves other rows out from the next factorisation on.
-    pub(crate) fn leave_out(&mut self, left_out: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, left_out: &RedundantRows) {
         self.left_out.clone_from(left_out);
     }
 
@@ -265,7 +265,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
 
 fn emit_saddle_point<S: Scalar>(
     here: &InMotion<S>,
-    (gradients, left_out): (&[RowGradient<S>], &LeftOut),
+    (gradients, left_out): (&[RowGradient<S>], &RedundantRows),
     multipliers: &[S],
     block: impl Fn(usize) -> BodyBlocks<S>,
     emit: &mut dyn Emit<S>,
@@ -288,7 +288,7 @@ fn emit_saddle_point<S: Scalar>(
 /// so that the pattern serves every choice, if there is one.
 pub(crate) fn emit_left_out<S: Scalar>(
     numbering: &Numbering,
-    left_out: &LeftOut,
+    left_out: &RedundantRows,
     places: &[(usize, usize)],
     emit: &mut dyn Emit<S>,
 ) {

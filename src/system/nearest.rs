@@ -18,9 +18,9 @@ use super::in_motion::InMotion;
 use super::initial::{self, InitialState};
 use super::joints;
 use super::kkt::SaddlePoint;
-use super::left_out::LeftOut;
 use super::numbering::Numbering;
 use super::placement::guess;
+use super::redundant_rows::RedundantRows;
 use super::{rank, redundancy};
 use crate::math::Scalar;
 use crate::model::Model;
@@ -113,7 +113,8 @@ impl<S: Scalar> FirstOrder<'_, S> {
 
         let here = self.motions();
         let metric = displacement_metric(self.real, numbering, &self.state.q);
-        self.saddle.leave_out(&LeftOut::of(self.real, numbering));
+        self.saddle
+            .leave_out(&RedundantRows::of(self.real, numbering));
         let at = InMotion::new(self.real, numbering, &here, 0.0);
         let found = (self.saddle).factorise(&at, &self.state.s, metric);
         found.map_err(|_| self.singular())?;

@@ -97,7 +97,7 @@ pub(crate) fn reactions(
     let at_rest = vec![0.0; numbering.velocities()];
     let mut motions = Vec::new();
     BodyMotion::all(numbering, q, &at_rest, &mut motions);
-    let lambda = match model.joints.iter().all(|joint| joint.left_out.is_empty()) {
+    let lambda = match model.joints.iter().all(|joint| joint.redundant.is_empty()) {
         true => lambda.to_vec(),
         false => smallest_multipliers(&InMotion::new(model, numbering, &motions, time), lambda),
     };

@@ -81,7 +81,7 @@ pub(super) struct PlanarMotion<S> {
 
 /// Value, velocity, acceleration and virtual velocity of a marker.
 #[derive(Clone, Copy)]
-pub(super) struct MarkerKinematics<S> {
+pub(super) struct PlanarMarker<S> {
     pub(super) x: Vec2<S>,
     pub(super) rate: Vec2<S>,
     pub(super) acceleration: Vec2<S>,
@@ -133,9 +133,9 @@ impl<S: Scalar> PlanarMotion<S> {
     }
 
     /// A direction of the body in motion.
-    pub(super) fn direction(&self, s: &Vec2<S>) -> MarkerKinematics<S> {
+    pub(super) fn direction(&self, s: &Vec2<S>) -> PlanarMarker<S> {
         let (x, across) = self.turned(s);
-        MarkerKinematics {
+        PlanarMarker {
             x,
             rate: across * self.omega,
             acceleration: across * self.alpha - x * (self.omega * self.omega),
@@ -144,7 +144,7 @@ impl<S: Scalar> PlanarMotion<S> {
     }
 
     /// A point of the body in motion.
-    fn point(&self, s: &Vec2<S>) -> MarkerKinematics<S> {
+    fn point(&self, s: &Vec2<S>) -> PlanarMarker<S> {
         let mut jet = self.direction(s);
         jet.x += self.position;
         jet.rate += self.velocity;
@@ -154,7 +154,7 @@ impl<S: Scalar> PlanarMotion<S> {
     }
 }
 
-impl<S: Scalar> MarkerKinematics<S> {
+impl<S: Scalar> PlanarMarker<S> {
     pub(super) fn zero() -> Self {
         Self {
             x: Vec2::zeros(),
@@ -344,13 +344,13 @@ impl<S: Scalar> PlanarJoints<S> {
     }
 
     /// The distance of a joint's points in motion, if a row looks at it.
-    pub(super) fn distance(&self, joint: &PlanarJoint<S>) -> MarkerKinematics<S> {
+    pub(super) fn distance(&self, joint: &PlanarJoint<S>) -> PlanarMarker<S> {
         match joint.points {
             true => {
                 let a = self.motions[joint.body_a].point(&joint.a.point);
                 a.minus(&self.motions[joint.body_b].point(&joint.b.point))
             }
-            false => MarkerKinematics::zero(),
+            false => PlanarMarker::zero(),
         }
     }
 
@@ -360,7 +360,7 @@ impl<S: Scalar> PlanarJoints<S> {
         joint: &PlanarJoint<S>,
         a: usize,
         b: usize,
-    ) -> (MarkerKinematics<S>, MarkerKinematics<S>) {
+    ) -> (PlanarMarker<S>, PlanarMarker<S>) {
         (
             self.motions[joint.body_a].direction(&joint.a.axes[a]),
             self.motions[joint.body_b].direction(&joint.b.axes[b]),

@@ -6,13 +6,13 @@ use super::constraint::RowCotangent;
 use super::joints::{JointCotangent, RowCotangents};
 use super::numbering::Numbering;
 use super::planar::{
-    MarkerKinematics, PlanarFrame, PlanarJoint, PlanarJoints, PlanarMotion, Vec2, spatial,
+    PlanarFrame, PlanarJoint, PlanarJoints, PlanarMarker, PlanarMotion, Vec2, spatial,
 };
 use crate::model::{ConstraintRow, JointFrame};
 
 /// The cotangent that one factor of a row's product leaves on the other, without that of the value.
-fn on_factor(cot: &RowCotangent<f64>, factor: &MarkerKinematics<f64>) -> MarkerKinematics<f64> {
-    MarkerKinematics {
+fn on_factor(cot: &RowCotangent<f64>, factor: &PlanarMarker<f64>) -> PlanarMarker<f64> {
+    PlanarMarker {
         x: factor.rate * cot.rate
             + factor.acceleration * cot.acceleration
             + factor.virtual_rate * cot.virtual_rate,
@@ -51,7 +51,7 @@ impl SideCotangent {
         &mut self,
         at: &PlanarMotion<f64>,
         s: &Vec2<f64>,
-        cot: &MarkerKinematics<f64>,
+        cot: &PlanarMarker<f64>,
     ) -> Vec2<f64> {
         let (x, across) = at.turned(s);
         // ρ and ρ' with all that they make.
@@ -73,19 +73,14 @@ impl SideCotangent {
         at: &PlanarMotion<f64>,
         frame: &PlanarFrame<f64>,
         i: usize,
-        cot: &MarkerKinematics<f64>,
+        cot: &PlanarMarker<f64>,
     ) {
         let by = self.direction(at, &frame.axes[i], cot);
         self.frame.axes[i] += by;
     }
 
     /// Pulls the cotangent of the point back.
-    fn point(
-        &mut self,
-        at: &PlanarMotion<f64>,
-        frame: &PlanarFrame<f64>,
-        cot: &MarkerKinematics<f64>,
-    ) {
+    fn point(&mut self, at: &PlanarMotion<f64>, frame: &PlanarFrame<f64>, cot: &PlanarMarker<f64>) {
         let by = self.direction(at, &frame.point, cot);
         self.frame.point += by;
         self.position += cot.x;
@@ -135,7 +130,7 @@ impl PlanarJoints<f64> {
         let (at_a, at_b) = (&self.motions[joint.body_a], &self.motions[joint.body_b]);
         let (mut by_a, mut by_b) = (SideCotangent::zero(), SideCotangent::zero());
         let d = self.distance(joint);
-        let mut by_distance = MarkerKinematics::zero();
+        let mut by_distance = PlanarMarker::zero();
         let mut by_length = 0.0;
         for (i, &row) in joint.rows.iter().enumerate() {
             let cot = cot(i);
@@ -185,7 +180,7 @@ impl PlanarJoints<f64> {
     }
 }
 
-impl MarkerKinematics<f64> {
+impl PlanarMarker<f64> {
     fn add(&mut self, other: &Self) {
         self.x += other.x;
         self.rate += other.rate;

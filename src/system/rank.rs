@@ -55,7 +55,7 @@ pub(crate) fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
         names.join(", ")
     };
     // What is redundant beside this placement as well has been left out already, or not yet.
-    let left_out = real.joints.iter().map(|joint| joint.left_out.len()).sum();
+    let left_out = real.joints.iter().map(|joint| joint.redundant.len()).sum();
     if redundancy::redundant_rows(&real) == Some(left_out) {
         return AssemblyFailure::SingularPosition { joints };
     }

@@ -87,7 +87,7 @@ pub(crate) fn constrain_cotangent(numbering: &Numbering, y: &mut [f64]) {
 /// Takes what the mobilities do not admit out of the increments (dq, dv) from a state (q0, v0) to
 /// (q, v). The reduced equations do not see such round-off, so that it would grow from step to step
 /// by extrapolation.
-pub(crate) fn hold<S: Scalar>(
+pub(crate) fn project_increments<S: Scalar>(
     numbering: &Numbering,
     (q0, v0): (&[S], &[S]),
     (q, dq): (&mut [S], &mut [S]),

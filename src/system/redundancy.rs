@@ -12,10 +12,10 @@ use super::bodies::{self, BodyMotion};
 use super::constraint;
 use super::in_motion::InMotion;
 use super::joints;
-use super::left_out::LeftOut;
 use super::numbering::Numbering;
 use super::placement::{guess, length_scale};
 use super::reduce;
+use super::redundant_rows::RedundantRows;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Model};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -64,7 +64,7 @@ impl std::fmt::Display for Redundancy {
 /// closed are left as they are; assembly tells which.
 pub(crate) fn leave_out(model: &mut Model<f64>) -> Vec<Redundancy> {
     for joint in &mut model.joints {
-        joint.left_out.clear();
+        joint.redundant.clear();
     }
     let joints = in_loops(model);
     if joints.is_empty() {
@@ -79,12 +79,12 @@ pub(crate) fn leave_out(model: &mut Model<f64>) -> Vec<Redundancy> {
         let joint = &mut model.joints[j];
         let rows: Vec<ConstraintRow> = joint.rows().collect();
         let out = rows.iter().zip(&mut kept).filter(|(_, kept)| !kept);
-        joint.left_out = out.map(|(row, _)| *row).collect();
+        joint.redundant = out.map(|(row, _)| *row).collect();
         let rows = joint.all_rows().count();
-        if !joint.left_out.is_empty() {
+        if !joint.redundant.is_empty() {
             found.push(Redundancy {
                 joint: joint.name.clone(),
-                left_out: joint.left_out.len(),
+                left_out: joint.redundant.len(),
                 rows,
             });
         }
@@ -97,7 +97,7 @@ pub(crate) fn leave_out(model: &mut Model<f64>) -> Vec<Redundancy> {
 pub(crate) fn redundant_rows(model: &Model<f64>) -> Option<usize> {
     let mut model = model.clone();
     for joint in &mut model.joints {
-        joint.left_out.clear();
+        joint.redundant.clear();
     }
     let kept = independent_rows(&model, &in_loops(&model))?;
     Some(kept.into_iter().filter(|kept| !kept).count())
@@ -108,7 +108,7 @@ pub(crate) fn redundant_rows(model: &Model<f64>) -> Option<usize> {
 pub(crate) fn unit_rows(model: &Model<f64>, q: &[f64]) -> (DMatrix<f64>, Vec<usize>) {
     let joints: Vec<usize> = (0..model.joints.len()).collect();
     let rows = Rows::new(model, &joints);
-    let left_out = LeftOut::of(model, &rows.numbering);
+    let left_out = RedundantRows::of(model, &rows.numbering);
     let imposed: Vec<usize> = rows.numbers().filter(|&i| !left_out.contains(i)).collect();
     let of = imposed.iter().map(|&i| rows.numbering.joint_of_row(i));
     let of = of.collect();
@@ -339,7 +339,7 @@ pub(crate) struct Widest {
 
 /// The row that is open most; `None` if no row is left out, so that all are imposed.
 pub(crate) fn widest<S: Scalar>(model: &Model<S>, at: (&[BodyMotion<S>], S)) -> Option<Widest> {
-    if model.joints.iter().all(|joint| joint.left_out.is_empty()) {
+    if model.joints.iter().all(|joint| joint.redundant.is_empty()) {
         return None;
     }
     let mut widest: Option<Widest> = None;

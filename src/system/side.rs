@@ -114,7 +114,7 @@ fn courses<S: Scalar>(joint: &Joint<S>, time: S) -> ([S; 4], [S; 4]) {
     let (mut turn, mut slide) = (zero, zero);
     for drive in &joint.drives {
         let at = drive.course.derivatives(time);
-        match drive.freedom {
+        match drive.dof {
             DegreeOfFreedom::Rotation => turn = at,
             DegreeOfFreedom::Translation => slide = at,
         }
@@ -183,7 +183,7 @@ pub(crate) fn pull_driven_frame(
     });
     let mut by_time = 0.0;
     for (drive, own) in joint.drives.iter().zip(&mut own.drives) {
-        let weights = match drive.freedom {
+        let weights = match drive.dof {
             DegreeOfFreedom::Rotation => weights_turn,
             DegreeOfFreedom::Translation => weights_slide,
         };

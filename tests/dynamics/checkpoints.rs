@@ -105,7 +105,7 @@ fn found(
 /// Bytes that all steps of a run of these settings take.
 fn whole(scene: (&Scene<f64>, f64), settings: &Settings) -> usize {
     let run = found(scene, settings, (MEMORY, 1)).2;
-    run.foreseen(run.grid.steps()).1
+    run.checkpoint_plan(run.grid.steps()).1
 }
 
 #[test]

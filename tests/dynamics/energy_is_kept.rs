@@ -271,11 +271,11 @@ fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance()
 
         let mut driven = model.clone();
         driven.joints[0].drives.push(Drive {
-            freedom: DegreeOfFreedom::Rotation,
+            dof: DegreeOfFreedom::Rotation,
             course: PrescribedMotion::Polynomial(vec![0.0, 1.0]),
         });
         assert!(Ledger::open(&driven, &by, &scale).is_none());
-        let (joint, freedom) = (0, DegreeOfFreedom::Rotation);
+        let (joint, dof) = (0, DegreeOfFreedom::Rotation);
         let spring = |damping: f64| LoadKind::Spring {
             body_a: 0,
             body_b: None,
@@ -292,7 +292,7 @@ fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance()
             (
                 LoadKind::Damping {
                     joint,
-                    freedom,
+                    dof,
                     coefficient: 0.1,
                 },
                 false,
@@ -300,7 +300,7 @@ fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance()
             (
                 LoadKind::Friction {
                     joint,
-                    freedom,
+                    dof,
                     size: 0.1,
                     width: 1.0,
                 },

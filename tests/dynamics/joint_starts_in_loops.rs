@@ -364,8 +364,8 @@ fn a_loop_of_five_freedoms_starts_the_same_however_it_is_written() {
         (DegreeOfFreedom::Translation, "slide", [0.15, -0.4]),
         (DegreeOfFreedom::Rotation, "hanger", [0.0, 0.9]),
     ];
-    for (freedom, joint, values) in given {
-        let found = measured(&model, joint, freedom);
+    for (dof, joint, values) in given {
+        let found = measured(&model, joint, dof);
         for (found, value) in found.iter().zip(values) {
             assert!((found - value).abs() <= 1e-12, "{joint}: {found} {value}");
         }
@@ -411,7 +411,7 @@ fn a_loop_of_five_freedoms_starts_the_same_however_it_is_written() {
 }
 
 /// Angle or displacement of a joint and its rate where a model is placed, from its frames.
-fn measured(model: &Model<f64>, name: &str, freedom: DegreeOfFreedom) -> [f64; 2] {
+fn measured(model: &Model<f64>, name: &str, dof: DegreeOfFreedom) -> [f64; 2] {
     let joint = model.joints.iter().find(|joint| joint.name == name);
     let joint = joint.expect("a joint of this name");
     let a = &model.bodies[joint.body_a];
@@ -435,7 +435,7 @@ fn measured(model: &Model<f64>, name: &str, freedom: DegreeOfFreedom) -> [f64; 2
         other = (point, axes, b.velocity + omega.cross(&to_a), omega);
     }
     let (point, axes, velocity, omega) = other;
-    match freedom {
+    match dof {
         DegreeOfFreedom::Rotation => [
             axes_a[0].dot(&axes[1]).atan2(axes_a[0].dot(&axes[0])),
             axes[2].dot(&(omega_a - omega)),
@@ -487,7 +487,7 @@ fn every_hinge_of_a_bricard_loop_can_start() {
                     body.angular_velocity = body.angular_velocity.map(|x| x.re.into());
                 }
                 driven.joints[joint].drives.push(Drive {
-                    freedom: DegreeOfFreedom::Rotation,
+                    dof: DegreeOfFreedom::Rotation,
                     course: PrescribedMotion::Polynomial(vec![step(0), step(1)]),
                 });
                 let numbering = Numbering::new(&driven);

@@ -84,18 +84,18 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
         };
         all.extend([(Spherical, spring), (Revolute, torsion)]);
     }
-    for (kind, freedom) in [
+    for (kind, dof) in [
         (Revolute, DegreeOfFreedom::Rotation),
         (Prismatic, DegreeOfFreedom::Translation),
     ] {
         let damping = LoadKind::Damping {
             joint: 0,
-            freedom,
+            dof,
             coefficient: 0.6,
         };
         let friction = LoadKind::Friction {
             joint: 0,
-            freedom,
+            dof,
             size: 1.4,
             width: 0.9,
         };

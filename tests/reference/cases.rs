@@ -29,7 +29,7 @@ pub fn cases() -> Vec<Case> {
         for body_b in [Some(0), None] {
             for seed in [3, 4] {
                 all.push(case(kind, body_b, seed));
-                if !kind.freedoms().is_empty() {
+                if !kind.degrees_of_freedom().is_empty() {
                     all.push(driven(case(kind, body_b, seed + 10)));
                 }
             }
@@ -65,7 +65,7 @@ pub fn case(kind: JointKind, body_b: Option<usize>, seed: u64) -> Case {
 /// The case with its joint driven along and about its axis, by courses of all kinds.
 fn driven(mut case: Case) -> Case {
     let joint = &mut case.model.joints[0];
-    let course = |freedom: DegreeOfFreedom| match (joint.kind, freedom) {
+    let course = |dof: DegreeOfFreedom| match (joint.kind, dof) {
         (JointKind::Planar, _) => PrescribedMotion::Table {
             times: vec![0.0, 0.1, 0.25, 0.4, 0.6],
             values: vec![0.1, 0.2, -0.3, 0.4, 0.2],
@@ -79,11 +79,11 @@ fn driven(mut case: Case) -> Case {
         },
         (_, DegreeOfFreedom::Rotation) => PrescribedMotion::Polynomial(vec![0.2, 1.3, -0.7, 0.4]),
     };
-    let drive = |&freedom: &DegreeOfFreedom| Drive {
-        freedom,
-        course: course(freedom),
+    let drive = |&dof: &DegreeOfFreedom| Drive {
+        dof,
+        course: course(dof),
     };
-    let drives = joint.kind.freedoms().iter().map(drive).collect();
+    let drives = joint.kind.degrees_of_freedom().iter().map(drive).collect();
     joint.drives = drives;
     case.name += " driven";
     case.numbering = Numbering::new(&case.model);

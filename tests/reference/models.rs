@@ -93,8 +93,8 @@ pub fn joint(
     }
     Joint {
         drives: Vec::new(),
-        left_out: Vec::new(),
-        identical: Vec::new(),
+        redundant: Vec::new(),
+        trivial_rows: Vec::new(),
         name: name.into(),
         kind,
         body_a,

@@ -179,10 +179,10 @@ fn a_plate_that_is_not_held_is_a_mechanism_with_a_place() {
     let held = Support::of("all", [true, true, false], [false; 3]);
     let mut problem = StaticProblem::new(&structure, &[held], NodeUnknowns::Natural).expect("sets");
     let failure = problem.factorise(&structure);
-    let Err(StaticFailure::Mechanism { freedom, .. }) = failure else {
+    let Err(StaticFailure::Mechanism { dof, .. }) = failure else {
         panic!("{failure:?}");
     };
-    assert_eq!(freedom, "displacement z");
+    assert_eq!(dof, "displacement z");
     let failure = StaticProblem::new(&structure, &[Support::clamp("left")], NodeUnknowns::Six);
     let message = failure.err().map(|failure| failure.to_string());
     assert_eq!(

@@ -199,15 +199,12 @@ fn a_shallow_arch_snaps_or_swings_where_it_should() {
             .err();
         println!("{failure:?}");
         let Some(StaticFailure::Critical {
-            kind,
-            factor,
-            freedom,
-            ..
+            kind, factor, dof, ..
         }) = failure
         else {
             panic!("{failure:?}");
         };
-        assert_eq!((kind, freedom), (kind_expected, "displacement z"));
+        assert_eq!((kind, dof), (kind_expected, "displacement z"));
         assert!((2.0 * factor - 1.0).abs() < 0.01, "{factor}");
         // Below it the deflection is that of the formula.
         let below = 0.8 * limit;
@@ -246,7 +243,7 @@ fn a_compressed_strip_buckles_at_a_bifurcation() {
         let Some(StaticFailure::Critical {
             kind,
             factor: reached,
-            freedom,
+            dof,
             node,
             ..
         }) = failure
@@ -254,7 +251,7 @@ fn a_compressed_strip_buckles_at_a_bifurcation() {
             panic!("{failure:?}");
         };
         println!("{}", failure.expect("told"));
-        assert_eq!((kind, freedom), (Critical::Bifurcation, "displacement z"));
+        assert_eq!((kind, dof), (Critical::Bifurcation, "displacement z"));
         assert!((reached * factor - 1.0).abs() < 2e-3, "{reached}");
         let place = structure.nodes[node].x;
         assert!(

@@ -23,7 +23,7 @@ use crate::functions::Scene;
 use crate::integrate::explicit::march::failed;
 use crate::integrate::explicit::step::StepFailure;
 use crate::integrate::explicit::tableau::{A, ALL, C, END, STAGES};
-use crate::integrate::explicit::{Again, NodeView, Tape};
+use crate::integrate::explicit::{NodeView, Replayer, Tape};
 use crate::integrate::replay::Replay;
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
 use crate::system::accelerations::Accelerations;
@@ -42,7 +42,7 @@ pub(super) fn gradients(
     let mut sweeps: Vec<Sweep> = which.iter().map(new).collect();
     let mut field = Accelerations::new(model, numbering);
     let mut scratch = scene.zero_cotangent().model;
-    let mut replay = Replay::new(tape, run.grid.steps(), || Again::new(model, run));
+    let mut replay = Replay::new(tape, run.grid.steps(), || Replayer::new(model, run));
     let mut sample = run.last();
     let mut counts = WorkCounts::default();
     for n in (1..=run.grid.steps()).rev() {

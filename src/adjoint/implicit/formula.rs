@@ -9,7 +9,7 @@ use crate::integrate::implicit::ggl::Equations;
 use crate::integrate::implicit::split::SplitMatrix;
 use crate::linalg::{REFINED_SOLVES, SparseLu, SparseMatrix};
 use crate::model::Model;
-use crate::system::LeftOut;
+use crate::system::RedundantRows;
 use crate::system::{Numbering, bodies};
 
 /// The iteration matrix, which every step fills again, and vectors that every function does.
@@ -50,7 +50,7 @@ impl<'a> BackwardStage<'a> {
     }
 
     /// The plan with these rows left out, if any are.
-    pub(crate) fn leaving_out(&mut self, rows: Option<&LeftOut>) -> &mut Self {
+    pub(crate) fn leaving_out(&mut self, rows: Option<&RedundantRows>) -> &mut Self {
         if let Some(rows) = rows {
             self.equations.leave_out(rows);
         }

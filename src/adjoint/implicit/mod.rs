@@ -31,7 +31,7 @@ use crate::functions::Scene;
 use crate::integrate::implicit::formula::{Formula, remembers_start};
 use crate::integrate::implicit::radau::Scheme;
 use crate::integrate::implicit::solver::starting_stage;
-use crate::integrate::implicit::{Again, Stage, Tape};
+use crate::integrate::implicit::{Replayer, Stage, Tape};
 use crate::integrate::replay::Replay;
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
 use crate::system::kkt::SaddlePoint;
@@ -55,7 +55,9 @@ pub(super) fn gradients(
     let mut one = None;
     let mut coupled = None;
     let mut counts = WorkCounts::default();
-    let mut replay = Replay::new(tape, run.grid.steps(), || Again::new(model, run, &scheme));
+    let mut replay = Replay::new(tape, run.grid.steps(), || {
+        Replayer::new(model, run, &scheme)
+    });
     let start = starting_stage(numbering, &run.initial);
     let mut sample = run.last();
     let mut from = Stage::zero(numbering);

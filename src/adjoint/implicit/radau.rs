@@ -9,7 +9,7 @@ use crate::integrate::implicit::radau::Scheme;
 use crate::integrate::implicit::split::SplitMatrix;
 use crate::linalg::{Emit, Pattern, REFINED_SOLVES, SparseLu, SparseMatrix};
 use crate::model::Model;
-use crate::system::LeftOut;
+use crate::system::RedundantRows;
 use crate::system::{Numbering, bodies};
 
 /// The coupled matrix, which every step fills again, and vectors that every function does.
@@ -102,7 +102,7 @@ impl<'a> BackwardStage<'a> {
     }
 
     /// The plan with these rows left out, if any are.
-    pub(crate) fn leaving_out(&mut self, rows: Option<&LeftOut>) -> &mut Self {
+    pub(crate) fn leaving_out(&mut self, rows: Option<&RedundantRows>) -> &mut Self {
         if let Some(rows) = rows {
             self.equations.leave_out(rows);
         }

@@ -19,7 +19,7 @@ use crate::integrate::{close, watch};
 use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::model::Model;
 use crate::system::initial::InitialState;
-use crate::system::left_out::WORN;
+use crate::system::redundant_rows::EXCHANGE_WEIGHT;
 use crate::system::{BodyMotion, Numbering};
 
 /// Correction of the velocities, relative to their scale, that is none of the step's error.
@@ -134,7 +134,7 @@ pub(crate) fn march<S: SolveScalar>(
                 }
                 // By the matrix at the end of the step, before those inside it.
                 if choices.is_empty() {
-                    exchanged = stepper.field.exchanged(WORN);
+                    exchanged = stepper.field.exchanged(EXCHANGE_WEIGHT);
                 }
                 let begin = run.grid.reached();
                 let cells = run.grid.cells(run.grid.steps() + 1);

@@ -8,15 +8,15 @@
 //!
 //! (Hairer & Wanner 1996, *Solving Ordinary Differential Equations II*, section VII.2.)
 
-pub(crate) mod again;
 pub(crate) mod march;
 pub(crate) mod record;
+pub(crate) mod replayer;
 pub(crate) mod step;
 pub(crate) mod stiffness;
 pub(crate) mod tableau;
 pub(crate) mod tape;
 
-pub(crate) use again::Again;
 pub(crate) use record::{NodeView, StepView, add_rows};
+pub(crate) use replayer::Replayer;
 pub(crate) use step::Stepper;
 pub(crate) use tape::Tape;

@@ -9,7 +9,7 @@ use crate::integrate::work::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
-use crate::system::{BodyMotion, InMotion, LeftOut, Numbering, bodies, joints};
+use crate::system::{BodyMotion, InMotion, Numbering, RedundantRows, bodies, joints};
 
 /// Round-off in an estimated error, relative to that in the stages, and the most that is taken for it.
 const MORE_NOISE: f64 = 30.0;
@@ -47,7 +47,7 @@ impl<'a> Estimate<'a> {
     }
 
     /// Leaves other rows out.
-    pub(crate) fn leave_out(&mut self, left_out: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, left_out: &RedundantRows) {
         self.field.leave_out(left_out);
     }
 

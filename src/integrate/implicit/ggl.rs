@@ -25,9 +25,9 @@ use crate::system::joints::{self, JointCotangent, RowCotangents};
 use crate::system::kkt::{
     emit_gradients, emit_left_out, emit_reaction_jacobian, emit_transposed_gradients,
 };
-use crate::system::left_out::LeftOut;
 use crate::system::loads::{self, LoadCotangent, LoadEntries};
 use crate::system::reduce;
+use crate::system::redundant_rows::RedundantRows;
 use crate::system::side::sides;
 use crate::system::{Numbering, joints::rate_by_position};
 
@@ -60,7 +60,7 @@ pub(crate) struct Equations<'a, S> {
     motions: Vec<BodyMotion<S>>,
     gradients: Vec<RowGradient<S>>,
     /// Rows that are not imposed: λ_i = 0 and μ_i = 0 stand in their places.
-    left_out: LeftOut,
+    left_out: RedundantRows,
     loads: Vec<S>,
     /// Motions with virtual velocities, for pull-backs.
     moving: Vec<BodyMotion<S>>,
@@ -87,7 +87,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
             numbering,
             motions: Vec::new(),
             gradients: Vec::new(),
-            left_out: LeftOut::of(model, numbering),
+            left_out: RedundantRows::of(model, numbering),
             loads: vec![S::zero(); numbering.velocities()],
             moving: Vec::new(),
             placed: Vec::new(),
@@ -96,7 +96,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
     }
 
     /// Leaves other rows out; whether that is a change.
-    pub(crate) fn leave_out(&mut self, left_out: &LeftOut) -> bool {
+    pub(crate) fn leave_out(&mut self, left_out: &RedundantRows) -> bool {
         let changes = self.left_out != *left_out;
         if changes {
             self.left_out.clone_from(left_out);

@@ -20,7 +20,7 @@ use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::initial::InitialState;
-use crate::system::left_out::WORN;
+use crate::system::redundant_rows::EXCHANGE_WEIGHT;
 use crate::system::{BodyMotion, Numbering, bodies};
 
 /// Integrates from a consistent start.
@@ -133,7 +133,7 @@ fn march_until<S: SolveScalar>(
     let mut next = 1;
     let mut motions = Vec::new();
     let watched =
-        (model.joints.iter()).any(|joint| !joint.left_out.is_empty() || !joint.drives.is_empty());
+        (model.joints.iter()).any(|joint| !joint.redundant.is_empty() || !joint.drives.is_empty());
     let choices = settings.spacing.left_out(&run.initial.left_out);
     let left_out = choices
         .first()
@@ -216,7 +216,7 @@ fn march_until<S: SolveScalar>(
         solver.remember(count, k);
         // Rows are exchanged between steps, so that every step has smooth equations.
         let exchanged = match choices.is_empty() && loops {
-            true => field.exchanged(WORN),
+            true => field.exchanged(EXCHANGE_WEIGHT),
             false => None,
         };
         let known = choices.iter().find(|(from, _)| *from == k + 1);

@@ -1,7 +1,6 @@
 //! Implicit methods on the GGL-stabilised equations: Radau IIA, and one-stage formulas with a
 //! memory (BDF, generalised-α).
 
-pub(crate) mod again;
 mod estimate;
 pub(crate) mod formula;
 pub(crate) mod ggl;
@@ -9,13 +8,14 @@ pub(crate) mod march;
 pub(crate) mod newton;
 pub(crate) mod predict;
 pub(crate) mod radau;
+pub(crate) mod replayer;
 mod scales;
 pub(crate) mod solver;
 pub(crate) mod split;
 pub(crate) mod stage_newton;
 pub(crate) mod tape;
 
-pub(crate) use again::Again;
+pub(crate) use replayer::Replayer;
 pub(crate) use tape::Tape;
 
 use crate::math::Scalar;
@@ -95,10 +95,10 @@ impl<S: Scalar> Stage<S> {
     }
 
     /// Keeps a predicted stage of a step from `from` in what the bodies' mobilities admit.
-    fn hold(&mut self, numbering: &Numbering, from: &Self) {
+    fn project_increments(&mut self, numbering: &Numbering, from: &Self) {
         let before = (&from.q[..], &from.v[..]);
         let positions = (&mut self.q[..], &mut self.dq[..]);
-        reduce::hold(numbering, before, positions, (&mut self.v, &mut self.dv));
+        reduce::project_increments(numbering, before, positions, (&mut self.v, &mut self.dv));
     }
 
     /// Its vectors, the time as the last.

@@ -9,7 +9,7 @@ use crate::integrate::work::WorkCounts;
 use crate::linalg::{Pivots, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::Scalar;
 use crate::model::Model;
-use crate::system::{LeftOut, Numbering};
+use crate::system::{Numbering, RedundantRows};
 use std::sync::Arc;
 
 /// Error left in a step, relative to the largest increments of position, rotation, velocity and
@@ -149,7 +149,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
     }
 
     /// Leaves other rows out.
-    pub(crate) fn leave_out(&mut self, left_out: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, left_out: &RedundantRows) {
         if self.equations.leave_out(left_out) {
             self.factored = None;
         }

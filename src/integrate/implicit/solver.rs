@@ -14,14 +14,14 @@ use crate::integrate::work::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::initial::InitialState;
-use crate::system::{LeftOut, Numbering, bodies};
+use crate::system::{Numbering, RedundantRows, bodies};
 
 /// What Newton's methods keep from step to step.
 #[derive(Clone, Debug)]
 pub(crate) struct Memory<S> {
     one: Option<newton::Memory<S>>,
     coupled: Option<stage_newton::Memory>,
-    left_out: LeftOut,
+    left_out: RedundantRows,
 }
 
 /// The start as a stage, with its rates q̇ = T(q) v and v̇.
@@ -51,7 +51,7 @@ pub(super) struct Solver<'a, S> {
     coupled: Option<StageNewton<'a, S>>,
     estimate: Option<Estimate<'a>>,
     /// Rows that are not imposed.
-    left_out: LeftOut,
+    left_out: RedundantRows,
     /// Memory of a formula, of q and of v.
     pub memory: [Vec<Vec<S>>; 2],
     history: History<S>,
@@ -78,7 +78,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
             one: None,
             coupled: None,
             estimate: estimates.then(|| Estimate::new(real, numbering, scheme)),
-            left_out: LeftOut::default(),
+            left_out: RedundantRows::default(),
             memory: lengths.map(|n| vec![vec![S::zero(); n]; memory_size(method)]),
             history: History::new(numbering),
             stages: vec![Stage::zero(numbering); scheme.stages()],
@@ -121,7 +121,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
     }
 
     /// Leaves other rows out of the steps to come.
-    pub(crate) fn leave_out(&mut self, rows: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, rows: &RedundantRows) {
         self.left_out.clone_from(rows);
         if let Some(newton) = &mut self.one {
             newton.leave_out(rows);
@@ -154,7 +154,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         let Some(formula) = Formula::of_step(self.method, at.0) else {
             past.predict_stages(numbering, self.scheme, h, stages);
             for (stage, &c) in stages.iter_mut().zip(&self.scheme.nodes) {
-                stage.hold(numbering, &past.from);
+                stage.project_increments(numbering, &past.from);
                 stage.time = start + h * c;
             }
             let (scheme, estimates) = (self.scheme, self.estimate.is_some());
@@ -177,7 +177,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         }
         let stage = &mut stages[0];
         past.predict(numbering, h, stage);
-        stage.hold(numbering, &past.from);
+        stage.project_increments(numbering, &past.from);
         stage.time = start + h;
         self.history.set(&formula, &self.memory, h);
         let history = &self.history;
@@ -188,7 +188,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         newton.solve(stage, history, h, at, counts).or_else(|_| {
             // An extrapolation over steps that are large for the motion may lead astray.
             past.taylor(numbering, h, stage);
-            stage.hold(numbering, &past.from);
+            stage.project_increments(numbering, &past.from);
             stage.time = start + h;
             newton.forget();
             newton.solve(stage, history, h, at, counts)

@@ -11,7 +11,7 @@ use crate::integrate::work::WorkCounts;
 use crate::linalg::{Pivots, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::{Complex64, Scalar};
 use crate::model::Model;
-use crate::system::{LeftOut, Numbering, bodies};
+use crate::system::{Numbering, RedundantRows, bodies};
 use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
@@ -153,7 +153,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     }
 
     /// Leaves other rows out.
-    pub(crate) fn leave_out(&mut self, left_out: &LeftOut) {
+    pub(crate) fn leave_out(&mut self, left_out: &RedundantRows) {
         if self.equations.leave_out(left_out) {
             self.real.leave_out(left_out);
             self.factored = None;

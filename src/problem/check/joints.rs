@@ -64,19 +64,19 @@ impl Checker<'_> {
                 "\"displacement\" or \"rate\"",
             ),
         ];
-        for (freedom, key, wanted) in motions {
-            let Some(given) = start.of(freedom) else {
+        for (dof, key, wanted) in motions {
+            let Some(given) = start.of(dof) else {
                 continue;
             };
             let pointer = join(pointer, key);
             let drive = self.document.drives.iter().find(|(_, drive)| {
-                let driven = match freedom {
+                let driven = match dof {
                     DegreeOfFreedom::Rotation => drive.turn.is_some(),
                     DegreeOfFreedom::Translation => drive.slide.is_some(),
                 };
                 drive.joint == name && driven
             });
-            if !joint.kind().freedoms().contains(&freedom) {
+            if !joint.kind().degrees_of_freedom().contains(&dof) {
                 let found = format!("\"{key}\" of a joint that is {}", joint.kind().name());
                 let expected = "a motion about or along its axis that the joint allows";
                 self.fault(Finding::new(pointer, found, expected).of_key());
@@ -147,7 +147,7 @@ impl Checker<'_> {
     }
 
     /// Checks that a drive's joint has the freedom that it prescribes.
-    fn driven(&mut self, pointer: &str, joint: &str, freedom: DegreeOfFreedom) {
+    fn driven(&mut self, pointer: &str, joint: &str, dof: DegreeOfFreedom) {
         let kinds = [
             JointKind::Revolute,
             JointKind::Planar,
@@ -156,7 +156,7 @@ impl Checker<'_> {
         ];
         let kinds: Vec<JointKind> = kinds
             .into_iter()
-            .filter(|kind| kind.freedoms().contains(&freedom))
+            .filter(|kind| kind.degrees_of_freedom().contains(&dof))
             .collect();
         self.loaded_joint(pointer, joint, &kinds);
     }

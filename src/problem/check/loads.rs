@@ -103,7 +103,7 @@ impl Checker<'_> {
         let (Some(joint), Some(motion)) = (self.document.joints.get(joint), motion) else {
             return;
         };
-        if !joint.kind().freedoms().contains(&named(motion)) {
+        if !joint.kind().degrees_of_freedom().contains(&named(motion)) {
             let found = format!("{motion:?}").to_lowercase();
             let found = format!("\"{found}\" of a joint that is {}", joint.kind().name());
             let expected = "a motion about or along its axis that the joint allows";

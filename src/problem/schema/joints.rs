@@ -91,8 +91,8 @@ pub(crate) struct SlideStart {
 
 impl JointStart {
     /// What the start says of a motion: its place and its rate. `None` if it does not name it.
-    pub(crate) fn of(&self, freedom: DegreeOfFreedom) -> Option<[Option<Quantity>; 2]> {
-        match freedom {
+    pub(crate) fn of(&self, dof: DegreeOfFreedom) -> Option<[Option<Quantity>; 2]> {
+        match dof {
             DegreeOfFreedom::Rotation => self.turn.as_ref().map(|turn| [turn.angle, turn.rate]),
             DegreeOfFreedom::Translation => {
                 let slide = self.slide.as_ref();

@@ -8,7 +8,7 @@ mod log;
 pub(crate) use log::{Earlier, EvaluationLog};
 
 use crate::integrate::{Grid, Method, WorkCounts};
-use crate::system::LeftOut;
+use crate::system::RedundantRows;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -215,7 +215,7 @@ impl StepsInUse {
     pub(crate) fn grid(&self) -> Option<Grid> {
         let mut grid = Grid::from_ends(self.ends.clone())?.with_cells(self.cells.clone());
         for RowsLeftOut { from, rows, of } in &self.left_out {
-            grid.leave_out_from(*from, &LeftOut::from_rows(rows, *of)?);
+            grid.leave_out_from(*from, &RedundantRows::from_rows(rows, *of)?);
         }
         Some(grid)
     }

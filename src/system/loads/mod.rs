@@ -113,7 +113,7 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
         LoadKind::Spring { damping, .. } => of(BOTH, BOTH, damped(damping, BOTH)),
         LoadKind::TorsionSpring { damping, .. } => of(ANGULAR, ANGULAR, damped(damping, ANGULAR)),
         LoadKind::BallDamping { .. } => of(ANGULAR, ANGULAR, ANGULAR),
-        LoadKind::Damping { freedom, .. } | LoadKind::Friction { freedom, .. } => match freedom {
+        LoadKind::Damping { dof, .. } | LoadKind::Friction { dof, .. } => match dof {
             DegreeOfFreedom::Rotation => of(ANGULAR, ANGULAR, ANGULAR),
             DegreeOfFreedom::Translation => of(BOTH, BOTH, BOTH),
         },

@@ -72,16 +72,11 @@ pub(super) fn forces<S: Scalar>(
             about_axis(at, -torque)
         }
         LoadKind::Damping {
-            freedom,
-            coefficient,
-            ..
-        } => along(at, *freedom, |rate| -(*coefficient * rate)),
+            dof, coefficient, ..
+        } => along(at, *dof, |rate| -(*coefficient * rate)),
         LoadKind::Friction {
-            freedom,
-            size,
-            width,
-            ..
-        } => along(at, *freedom, |rate| -(*size * tanh(rate / *width))),
+            dof, size, width, ..
+        } => along(at, *dof, |rate| -(*size * tanh(rate / *width))),
         LoadKind::BallDamping { coefficient, .. } => {
             let relative = ra * at.a.motion.omega - rb * at.b.motion.omega;
             let torque = relative * *coefficient;
@@ -125,10 +120,10 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
 /// Forces of the size `law(rate)` along or about the axis of a joint.
 fn along<S: Scalar>(
     at: &Acting<S>,
-    freedom: DegreeOfFreedom,
+    dof: DegreeOfFreedom,
     law: impl Fn(S) -> S,
 ) -> [(Vec3<S>, Vec3<S>); 2] {
-    match freedom {
+    match dof {
         DegreeOfFreedom::Rotation => about_axis(at, law(turn_rate(at))),
         DegreeOfFreedom::Translation => {
             let size = law(constraint::rate(SLIDE, &at.a, &at.b));

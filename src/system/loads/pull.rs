@@ -148,30 +148,22 @@ pub(super) fn pull<S: Scalar>(
             out.scalars[2] = -(rate * virtual_rate);
         }
         LoadKind::Damping {
-            freedom,
+            dof,
             coefficient: c,
             ..
         } => {
-            let (rate, virtual_rate) = pull_along(
-                at,
-                &virtually,
-                *freedom,
-                |rate| (-(*c * rate), -*c),
-                &mut out,
-            );
+            let (rate, virtual_rate) =
+                pull_along(at, &virtually, *dof, |rate| (-(*c * rate), -*c), &mut out);
             out.scalars[0] = -(rate * virtual_rate);
         }
         LoadKind::Friction {
-            freedom,
-            size,
-            width,
-            ..
+            dof, size, width, ..
         } => {
             let law = |rate: S| {
                 let t = tanh(rate / *width);
                 (-(*size * t), -(*size * (S::one() - t * t) / *width))
             };
-            let (rate, virtual_rate) = pull_along(at, &virtually, *freedom, law, &mut out);
+            let (rate, virtual_rate) = pull_along(at, &virtually, *dof, law, &mut out);
             let by_rate = law(rate).1;
             out.scalars[0] = -(tanh(rate / *width) * virtual_rate);
             out.scalars[1] = -(by_rate * virtual_rate * rate / *width);
@@ -316,11 +308,11 @@ fn pull_angle<S: Scalar>(at: &Acting<S>, cot: S, out: &mut Pulled<S>) {
 fn pull_along<S: Scalar>(
     at: &Acting<S>,
     virtually: &Acting<S>,
-    freedom: DegreeOfFreedom,
+    dof: DegreeOfFreedom,
     law: impl Fn(S) -> (S, S),
     out: &mut Pulled<S>,
 ) -> (S, S) {
-    match freedom {
+    match dof {
         DegreeOfFreedom::Rotation => {
             let (rate, virtual_rate) = (turn_rate(at), turn_rate(virtually));
             let (size, by_rate) = law(rate);

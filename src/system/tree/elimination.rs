@@ -8,8 +8,8 @@ use crate::linalg::SingularMatrix;
 use crate::math::Scalar;
 use crate::model::Model;
 use crate::system::constraint::RowGradient;
-use crate::system::left_out::LeftOut;
 use crate::system::numbering::Numbering;
+use crate::system::redundant_rows::RedundantRows;
 
 /// Elimination in blocks of up to order N.
 #[derive(Clone)]
@@ -67,7 +67,7 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
         &mut self,
         model: &Model<S>,
         numbering: &Numbering,
-        (gradients, left_out): (&[RowGradient<S>], &LeftOut),
+        (gradients, left_out): (&[RowGradient<S>], &RedundantRows),
     ) -> Result<(), SingularMatrix> {
         for (link, factors) in self.links.iter().zip(&mut self.factors) {
             let mobility = numbering.mobility(link.body);

@@ -24,8 +24,8 @@ use crate::linalg::SingularMatrix;
 use crate::math::Scalar;
 use crate::model::Model;
 use crate::system::constraint::RowGradient;
-use crate::system::left_out::LeftOut;
 use crate::system::numbering::Numbering;
+use crate::system::redundant_rows::RedundantRows;
 use std::ops::Range;
 
 /// Most blocks of work of the loops for each link: where loops reach far and overlap, fill in the
@@ -193,7 +193,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
     pub(crate) fn factorise(
         &mut self,
         numbering: &Numbering,
-        (gradients, left_out): (&[RowGradient<S>], &LeftOut),
+        (gradients, left_out): (&[RowGradient<S>], &RedundantRows),
         (links, factors): (&[Link], &[Factors<S, N>]),
     ) -> Result<(), SingularMatrix> {
         for closing in &self.closing {
@@ -253,7 +253,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
     }
 
     /// L T⁻¹ Lᵀ, with the unit matrix in the rows that are left out.
-    fn assemble(&mut self, numbering: &Numbering, left_out: &LeftOut) {
+    fn assemble(&mut self, numbering: &Numbering, left_out: &RedundantRows) {
         self.matrix.clear();
         let out = |c: &Closing, i: usize| left_out.contains(numbering.rows(c.joint).start + i);
         for closing in &self.closing {

@@ -29,8 +29,8 @@ mod loops;
 
 use super::constraint::RowGradient;
 use super::kkt;
-use super::left_out::LeftOut;
 use super::numbering::Numbering;
+use super::redundant_rows::RedundantRows;
 use crate::linalg::SingularMatrix;
 use crate::math::Scalar;
 use crate::model::Model;
@@ -109,7 +109,7 @@ impl<S: Scalar> Tree<S> {
         &mut self,
         model: &Model<S>,
         numbering: &Numbering,
-        rows: (&[RowGradient<S>], &LeftOut),
+        rows: (&[RowGradient<S>], &RedundantRows),
     ) -> Result<(), SingularMatrix> {
         match self {
             Tree::Small(elimination) => elimination.factorise(model, numbering, rows),

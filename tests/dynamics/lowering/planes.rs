@@ -109,7 +109,7 @@ fn turned(model: &Model<f64>, r: &Mat3<f64>, p: &[f64; 4]) -> Model<f64> {
             joint.frame_b.point = r * joint.frame_b.point;
             joint.frame_b.axes = joint.frame_b.axes.map(|axis| r * axis);
         }
-        joint.left_out.clear();
+        joint.redundant.clear();
     }
     for load in &mut model.loads {
         match &mut load.kind {

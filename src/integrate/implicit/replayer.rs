@@ -11,7 +11,7 @@ use crate::integrate::{IntegrationFailure, Trajectory};
 use crate::model::Model;
 
 /// Makes the steps of a run again.
-pub(crate) struct Again<'a> {
+pub(crate) struct Replayer<'a> {
     run: &'a Trajectory<f64>,
     solver: Solver<'a, f64>,
     past: Past<f64>,
@@ -19,7 +19,7 @@ pub(crate) struct Again<'a> {
     pub counts: WorkCounts,
 }
 
-impl<'a> Again<'a> {
+impl<'a> Replayer<'a> {
     /// At the start of `run`, which is one of `model`.
     pub(crate) fn new(model: &'a Model<f64>, run: &'a Trajectory<f64>, scheme: &'a Scheme) -> Self {
         let numbering = &run.numbering;
@@ -34,7 +34,7 @@ impl<'a> Again<'a> {
     }
 }
 
-impl March for Again<'_> {
+impl March for Replayer<'_> {
     type Block = Block<f64>;
 
     fn state(&self) -> State<f64> {

@@ -16,17 +16,17 @@ use crate::model::Model;
 
 /// Weight of an imposed row, relative to that of a row that is left out, at which the two are
 /// exchanged between steps.
-pub(crate) const WORN: f64 = 2.0;
+pub(crate) const EXCHANGE_WEIGHT: f64 = 2.0;
 
 /// What the weights of rows are found in, used again.
 #[derive(Clone, Debug)]
-pub(crate) struct Weighing<S> {
+pub(crate) struct RowWeights<S> {
     gradients: Vec<RowGradient<S>>,
     sizes: Vec<f64>,
     rhs: Vec<S>,
 }
 
-impl<S> Default for Weighing<S> {
+impl<S> Default for RowWeights<S> {
     fn default() -> Self {
         Self {
             gradients: Vec::new(),
@@ -38,21 +38,21 @@ impl<S> Default for Weighing<S> {
 
 /// Rows that are not imposed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct LeftOut {
+pub(crate) struct RedundantRows {
     /// One entry a row; none if all are imposed.
     rows: Vec<bool>,
 }
 
-impl LeftOut {
+impl RedundantRows {
     /// Those that the joints of a model name.
     pub(crate) fn of<S>(model: &Model<S>, numbering: &Numbering) -> Self {
-        if model.joints.iter().all(|joint| joint.left_out.is_empty()) {
+        if model.joints.iter().all(|joint| joint.redundant.is_empty()) {
             return Self::default();
         }
         let mut rows = vec![false; numbering.constraints()];
         for (j, joint) in model.joints.iter().enumerate() {
             for (i, row) in numbering.rows(j).zip(joint.rows()) {
-                rows[i] = joint.left_out.contains(&row);
+                rows[i] = joint.redundant.contains(&row);
             }
         }
         // What holds identically is no row.
@@ -127,13 +127,13 @@ impl LeftOut {
         &self,
         at: &InMotion<S>,
         worn: f64,
-        weighing: &mut Weighing<S>,
+        weighing: &mut RowWeights<S>,
         mut solve: impl FnMut(&mut [S]),
     ) -> Option<Self> {
         if !self.rows.contains(&true) {
             return None;
         }
-        let Weighing {
+        let RowWeights {
             gradients,
             sizes,
             rhs,

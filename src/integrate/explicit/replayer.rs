@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::system::accelerations::Memory;
 
 /// Makes the steps of a run again.
-pub(crate) struct Again<'a> {
+pub(crate) struct Replayer<'a> {
     run: &'a Trajectory<f64>,
     /// The steps.
     pub stepper: Stepper<'a, f64>,
@@ -20,7 +20,7 @@ pub(crate) struct Again<'a> {
     to: Node<Vec<f64>>,
 }
 
-impl<'a> Again<'a> {
+impl<'a> Replayer<'a> {
     /// At the start of `run`, which is one of `model`.
     pub(crate) fn new(model: &'a Model<f64>, run: &'a Trajectory<f64>) -> Self {
         let start = &run.initial;
@@ -63,7 +63,7 @@ impl<'a> Again<'a> {
     }
 }
 
-impl March for Again<'_> {
+impl March for Replayer<'_> {
     type Block = Block<f64>;
 
     fn state(&self) -> Node<Vec<f64>> {
