@@ -306,9 +306,9 @@ fn a_variable_may_move_what_is_welded_to_ground() {
                 "energy": {"final": {"energy": "total"}}
             },
             "variables": {
-                "place": {"path": "/bodies/set_state/place/at/0", "lower": 0, "upper": 2},
-                "turn": {"path": "/bodies/set_state/place/turn/angle", "lower": -1, "upper": 1},
-                "height": {"path": "/bodies/set_state/points/top/1", "lower": 0.5, "upper": 1.5}
+                "place": {"path": "/bodies/stand/place/at/0", "lower": 0, "upper": 2},
+                "turn": {"path": "/bodies/stand/place/turn/angle", "lower": -1, "upper": 1},
+                "height": {"path": "/bodies/stand/points/top/1", "lower": 0.5, "upper": 1.5}
             }
         }));
         assert_eq!(is_planar(&problem), planar);
