@@ -1,13 +1,13 @@
-//! How far the parts of a scene reach: what their distances are judged against.
+//! Characteristic lengths of the parts of a model: the scales of distances.
 
 use crate::math::{Scalar, Vec3};
 use crate::model::Model;
 use crate::system::placement::length_scale;
 
-/// Lengths beside which a distance is round-off.
+/// Characteristic lengths \[m\]. A distance is round-off if it is small relative to them.
 pub(super) struct Reach {
-    /// By body: its distance from the origin and the lever arms of its joints, and those of the
-    /// bodies at their other ends.
+    /// By body: the largest of its distance from the origin, the lever arms of its joints, and
+    /// those of the bodies that these joints connect it with.
     bodies: Vec<f64>,
     whole: f64,
 }
@@ -34,7 +34,7 @@ impl Reach {
         }
     }
 
-    /// That of some bodies; of the whole scene where they have none.
+    /// Characteristic length of the given bodies \[m\]; that of the whole model if theirs is zero.
     pub(crate) fn of(&self, bodies: [Option<usize>; 2]) -> f64 {
         let own = bodies.into_iter().flatten().map(|body| self.bodies[body]);
         let longest = own.fold(0.0, f64::max);
@@ -42,7 +42,7 @@ impl Reach {
     }
 }
 
-/// Largest component.
+/// Absolute value of the largest component.
 pub(super) fn largest<S: Scalar>(v: &Vec3<S>) -> f64 {
     v.iter().fold(0.0, |m, x| m.max(x.re().abs()))
 }

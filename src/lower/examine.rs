@@ -1,29 +1,29 @@
-//! Whether quantities that have to vanish do, and those that do not.
+//! Conditions of reductions: quantities that must vanish at every design.
 
 use crate::functions::Scene;
 use crate::math::{Dual, Scalar};
 
-/// Size, relative to its scale, up to which a quantity is round-off.
+/// A quantity is round-off up to this fraction of its scale.
 pub(super) const ROUND_OFF: f64 = 1e-13;
 
-/// What stands against a reduction.
+/// A condition that the model violates.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ViolatedCondition {
-    /// What it is, with the name of the part of the scene.
+    /// Description, with the name of the part of the scene.
     pub what: String,
-    /// By how much (or, if a variable is at fault, by how much for a typical change of it); zero if
-    /// it has no size.
+    /// Amount of the violation; zero if it has none. If a variable causes it: the amount for a
+    /// typical change of this variable.
     pub size: f64,
     /// Unit of the size.
     pub unit: &'static str,
-    /// The design variable that makes it so, if only some designs do.
+    /// The design variable that causes the violation, if only some designs violate the condition.
     pub variable: Option<String>,
-    /// Whether it is so at a design between the bounds, and not at the start.
+    /// Whether the condition is violated at another design, and not at the start.
     pub elsewhere: bool,
 }
 
 impl ViolatedCondition {
-    /// One that has no size.
+    /// A violation without an amount.
     pub(super) fn plain(what: impl Into<String>) -> Self {
         Self {
             what: what.into(),
@@ -52,12 +52,12 @@ impl std::fmt::Display for ViolatedCondition {
     }
 }
 
-/// Whether something may be left out, or all that stands against it.
+/// `Ok` if a reduction may be made, or all violated conditions.
 pub(crate) type Verdict = Result<(), Vec<ViolatedCondition>>;
 
-/// Collects the quantities that do not vanish.
+/// Collects the violated conditions.
 pub(super) struct ConditionChecker {
-    /// The typical change that an infinitesimal part is multiplied by.
+    /// Typical change of the variable. It multiplies infinitesimal parts.
     change: f64,
     found: Vec<ViolatedCondition>,
 }
@@ -70,7 +70,7 @@ impl ConditionChecker {
         }
     }
 
-    /// What was found.
+    /// `Ok` if no condition is violated.
     pub(crate) fn verdict(self) -> Verdict {
         match self.found.is_empty() {
             true => Ok(()),
@@ -78,12 +78,13 @@ impl ConditionChecker {
         }
     }
 
-    /// Tells an obstacle that has no size.
+    /// Adds a violation without an amount.
     pub(crate) fn tell(&mut self, what: String) {
         self.add(ViolatedCondition::plain(what));
     }
 
-    /// Asks that `value` vanishes beside `scale`; `what` tells it with its unit if it does not.
+    /// Requires that `value` vanishes relative to `scale`; `what` gives the description and the
+    /// unit.
     pub(crate) fn zero<S: Scalar>(
         &mut self,
         value: S,
@@ -93,7 +94,7 @@ impl ConditionChecker {
         self.vanishes(&[value], scale, what);
     }
 
-    /// As [`ConditionChecker::zero`], of a vector.
+    /// The same for the norm of a vector.
     pub(crate) fn vanishes<S: Scalar>(
         &mut self,
         vector: &[S],
@@ -111,10 +112,10 @@ impl ConditionChecker {
         } else {
             derived.max(value)
         };
-        // A value that is not a number does not vanish.
+        // NaN does not vanish.
         if size.is_nan() || size > ROUND_OFF * scale {
             let (what, unit) = what();
-            // Angles are asked for by their sine.
+            // Angles are given by their sine.
             let size = match unit {
                 "rad" => size.min(1.0).asin(),
                 _ => size,
@@ -127,7 +128,7 @@ impl ConditionChecker {
         }
     }
 
-    /// Adds an obstacle, or makes one of several of one name as large as the largest.
+    /// Adds a violation. Of several with one description only the largest is kept.
     fn add(&mut self, obstacle: ViolatedCondition) {
         match self.found.iter_mut().find(|own| own.what == obstacle.what) {
             Some(own) => own.size = own.size.max(obstacle.size),
@@ -136,30 +137,30 @@ impl ConditionChecker {
     }
 }
 
-/// A design variable, as far as it matters here.
+/// A design variable: its range.
 #[derive(Clone, Debug)]
 pub(crate) struct Range {
     /// Name.
     pub name: String,
-    /// Where the design starts.
+    /// Value at the start.
     pub start: f64,
-    /// Bounds, infinite if there are none.
+    /// Bounds; infinite where there are none.
     pub bounds: [f64; 2],
     /// A typical change.
     pub scale: f64,
 }
 
-/// Designs between the bounds at which a reduction is examined.
+/// Number of designs between the bounds at which a reduction is examined.
 const BETWEEN: usize = 4;
 
-/// The scenes that a reduction is examined in.
+/// The scenes in which a reduction is examined.
 #[derive(Clone)]
 pub(super) struct Designs {
-    /// That of the start.
+    /// The scene at the start.
     pub start: Scene<f64>,
-    /// Those of other designs.
+    /// The scenes at other designs.
     others: Vec<Scene<f64>>,
-    /// Those of the derivatives by the variables, with their names and typical changes.
+    /// By variable: its name, its typical change, and the scene with its derivatives.
     derived: Vec<(String, f64, Scene<Dual>)>,
 }
 
@@ -177,7 +178,8 @@ impl Designs {
             start.map(|(j, &x)| Dual::new(x, part(j))).collect()
         };
         let derived = variables.iter().enumerate().map(|(i, variable)| {
-            // How finely the optimiser scales it says nothing of what it can break.
+            // The scale of the optimiser may be small; it does not bound the effect of the
+            // variable.
             let change = variable.scale.max(variable.start.abs()).max(1.0);
             (variable.name.clone(), change, dual(&seed(i)))
         });
@@ -188,7 +190,7 @@ impl Designs {
         }
     }
 
-    /// One scene, whatever the design.
+    /// A single scene, without design variables.
     #[cfg(test)]
     pub fn single(start: Scene<f64>) -> Self {
         Self {
@@ -209,8 +211,8 @@ impl Designs {
         self.derived.iter_mut().for_each(|(.., scene)| dual(scene));
     }
 
-    /// Asks a question of the start, of the derivatives by the variables and of the other designs,
-    /// the latter for what is not known by then.
+    /// Examines conditions at the start and in the derivatives by the variables. If these are
+    /// satisfied, examines them at the other designs too.
     pub(crate) fn ask(
         &self,
         real: impl Fn(&Scene<f64>) -> Verdict,
@@ -243,7 +245,7 @@ impl Designs {
     }
 }
 
-/// Both corners of the bounds, and designs spread between them in a fixed way.
+/// Both corners of the bounds, and a fixed set of designs spread between them.
 fn designs(variables: &[Range]) -> Vec<Vec<f64>> {
     if variables.is_empty() {
         return Vec::new();
@@ -266,7 +268,7 @@ fn designs(variables: &[Range]) -> Vec<Vec<f64>> {
     };
     let mut all = vec![at(&|_| 0.0), at(&|_| 1.0)];
     for k in 1..=BETWEEN {
-        // Fractional parts of multiples of an irrational number.
+        // Fractional parts of multiples of the golden ratio.
         all.push(at(&|i| {
             (0.618_033_988_749_895 * (k + 7 * i + 1) as f64).fract()
         }));

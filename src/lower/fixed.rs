@@ -1,5 +1,5 @@
-//! Bodies that nothing can move: welded to ground, or to a body that is. They have no unknowns, and
-//! what joins them to ground has no rows. A variable may place them elsewhere.
+//! Fixed bodies: welded to ground, directly or through other fixed bodies. They have no unknowns,
+//! and joints between them and ground have no rows. A design variable may change their position.
 
 use super::Kept;
 use super::examine::{ConditionChecker, Designs, Verdict};
@@ -8,14 +8,14 @@ use crate::model::{Joint, JointKind, Mobility, Model};
 use crate::system::placement::{guess, length_scale};
 use crate::system::{BodyMotion, Numbering, constraint, side};
 
-/// Bodies that nothing can move.
+/// Bodies that cannot move.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Fixed {
-    /// By body, whether it is one; empty if none is.
+    /// By body: whether it is fixed. Empty if none is.
     held: Vec<bool>,
 }
 
-/// Which bodies welds hold to ground.
+/// By body: whether welds hold it to ground.
 pub(super) fn welded_to_ground<S>(model: &Model<S>) -> Vec<bool> {
     let mut held = vec![false; model.bodies.len()];
     loop {
@@ -34,17 +34,17 @@ pub(super) fn welded_to_ground<S>(model: &Model<S>) -> Vec<bool> {
     }
 }
 
-/// Whether nothing of a joint is left.
+/// Whether a joint has no rows left.
 pub(super) fn is_void<S>(joint: &Joint<S>) -> bool {
     joint.trivial_rows.len() == joint.all_rows().count()
 }
 
 impl Fixed {
-    /// Bodies that welds hold to ground; none if these are all there is.
+    /// Finds the fixed bodies. There are none if no body would move.
     pub(super) fn find(designs: &Designs) -> (Self, Option<Kept>) {
         let model = &designs.start.model;
         let held = welded_to_ground(model);
-        // Bodies that are carried by others are not among what is held.
+        // Merged bodies follow their host and are not fixed.
         let free = |body: usize| !held[body] && model.bodies[body].mobility != Mobility::fixed();
         let some_move = (0..held.len()).any(free);
         if !held.contains(&true) || !some_move {
@@ -67,12 +67,12 @@ impl Fixed {
         }
     }
 
-    /// Whether there are none.
+    /// Whether no body is fixed.
     pub(crate) fn is_empty(&self) -> bool {
         self.held.is_empty()
     }
 
-    /// Whether body `index` is one.
+    /// Whether body `index` is fixed.
     pub(crate) fn contains(&self, index: usize) -> bool {
         self.held.get(index) == Some(&true)
     }
@@ -87,7 +87,7 @@ impl Fixed {
         self.holds_end(Some(joint.body_a)) && self.holds_end(joint.body_b)
     }
 
-    /// Leaves out of a model what they do not need.
+    /// Removes the unknowns of fixed bodies and the rows between them.
     pub(super) fn apply<S: Scalar>(&self, model: &mut Model<S>) {
         let bodies = model.bodies.iter_mut().zip(&self.held);
         for (body, _) in bodies.filter(|(_, held)| **held) {
@@ -101,7 +101,7 @@ impl Fixed {
         }
     }
 
-    /// Examines whether what joins the bodies is closed, and stays so.
+    /// Examines whether the joints between fixed bodies are closed, and remain closed.
     pub(super) fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Verdict {
         let mut examiner = ConditionChecker::new(change);
         if self.is_empty() {

@@ -1,4 +1,4 @@
-//! Whether a model moves in a plane: the conditions of [`super::planar`], one after the other.
+//! The conditions of [`super::planar`]: whether a model moves in a plane.
 
 use super::characteristic_length::{Reach, largest};
 use super::examine::{ConditionChecker, Verdict};
@@ -8,8 +8,8 @@ use crate::math::scalar::{along, lift3};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, DegreeOfFreedom, LoadKind, Model};
 
-/// The largest angular velocity of a body, or velocity over its reach (rad/s), or what a `change` of the
-/// variable makes of it: a body that hardly moves has round-off of those that do.
+/// The largest angular velocity of the bodies \[rad/s\], by value or by a `change` of the variable.
+/// Speeds count by their ratio to the body's length. The round-off of a slow body scales with it.
 fn fastest<S: Scalar>(model: &Model<S>, characteristic_length: &Reach, change: f64) -> f64 {
     let size = |v: &Vec3<S>| {
         v.iter().fold(0.0_f64, |m, x| {
@@ -24,11 +24,11 @@ fn fastest<S: Scalar>(model: &Model<S>, characteristic_length: &Reach, change: f
 }
 
 impl Plane {
-    /// Examines whether `model` moves in this plane, and by how much its derivative leaves it for a
-    /// `change` of the variable.
+    /// Examines whether `model` moves in this plane. A derivative is examined for a `change` of the
+    /// variable.
     ///
     /// # Errors
-    /// What leaves it.
+    /// The violated conditions.
     pub(crate) fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Verdict {
         let turned = Turned::new(model, &self.normal);
         let mut examiner = ConditionChecker::new(change);
@@ -264,7 +264,7 @@ impl Plane {
         }
     }
 
-    /// Bodies that nothing holds upright have what acts on them from outside their group as high as
+    /// Bodies that no joint holds upright: external forces on their group must act at the height of
     /// their centres of mass.
     fn upright<S: Scalar>(
         &self,

@@ -1,16 +1,16 @@
-//! Bodies that are welded to each other, made one.
+//! Merges bodies that are welded to each other.
 //!
-//! With the pose of each body i of a cluster on its host h, R_i = R_h Q_i and r_i = c + R_h s_i, where
-//! c is the common centre of mass,
+//! Member i of a cluster has a constant pose on its host h, R_i = R_h Q_i and r_i = c + R_h s_i.
+//! Here c is the common centre of mass. Mass, centre of mass and inertia of the host become
 //!
 //! ```text
 //! m = Σ m_i,     c = Σ m_i r_i / m,     J = Σ Q_i J_i Q_iᵀ + m_i (sᵀs − s sᵀ)
 //! ```
 //!
-//! are mass, centre of mass and inertia of the host, in its own axes. Joints, loads and functions find
-//! their frames, points and directions on the host by the same poses, which are functions of the
-//! design. A body that is carried stays in the model as a copy of its host without mass or unknowns,
-//! so that bodies keep their numbers; its motion is made from its host's once there is one.
+//! in the axes of the host. The same poses map frames, points and directions of joints, loads and
+//! functions to the host. The poses depend on the design. The other members stay in the model as
+//! copies of the host without mass and unknowns, so the numbers of the bodies do not change. Their
+//! motion follows from that of the host after a run.
 
 use crate::functions::Scene;
 use crate::integrate::explicit;
@@ -23,19 +23,19 @@ use crate::system::Numbering;
 /// Bodies that move as one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Cluster {
-    /// The body whose states are kept.
+    /// The body whose unknowns are kept.
     pub host: usize,
-    /// All of them, the host included.
+    /// All members, including the host.
     pub members: Vec<usize>,
 }
 
-/// Where a body is on its host.
+/// Constant pose of a body on its host.
 #[derive(Clone, Copy, Debug)]
 struct Pose<S> {
     host: usize,
-    /// s: its centre of mass from the common one, axes of the host.
+    /// s \[m\]: from the common centre of mass to the body's, axes of the host.
     centre: Vec3<S>,
-    /// Q: from its axes to the host's, as a matrix and as Euler parameters.
+    /// Q: rotation from the axes of the body to those of the host; matrix and Euler parameters.
     turn: Mat3<S>,
     parameters: Quat<S>,
 }
@@ -46,7 +46,7 @@ impl<S: Scalar> Pose<S> {
     }
 }
 
-/// The common centre of mass of a cluster where its bodies are placed, and their poses on the host.
+/// The common centre of mass of a cluster as placed, and the poses of its members on the host.
 fn poses<S: Scalar>(model: &Model<S>, cluster: &Cluster) -> (Vec3<S>, Vec<(usize, Pose<S>)>) {
     let (mut mass, mut moment) = (S::zero(), Vec3::zeros());
     for &i in &cluster.members {
@@ -81,7 +81,7 @@ fn poses<S: Scalar>(model: &Model<S>, cluster: &Cluster) -> (Vec3<S>, Vec<(usize
     (centre, cluster.members.iter().map(pose).collect())
 }
 
-/// Makes each cluster one body, and leaves the joints `welds` without rows.
+/// Merges each cluster into one body. The joints `welds` keep no rows.
 pub(super) fn merge<S: Scalar>(scene: &mut Scene<S>, clusters: &[Cluster], welds: &[usize]) {
     let model = &mut scene.model;
     let mut on_host: Vec<Option<Pose<S>>> = vec![None; model.bodies.len()];
@@ -138,11 +138,11 @@ pub(super) fn merge<S: Scalar>(scene: &mut Scene<S>, clusters: &[Cluster], welds
     }
 }
 
-/// Makes of a weld a joint to ground that has no rows. The host has it for nothing.
+/// Turns a weld into a joint between a merged body and ground, without rows.
 fn leave_without_rows<S: Scalar>(joint: &mut Joint<S>, on_host: &[Option<Pose<S>>]) {
     let carried = |body: &usize| on_host[*body].is_some_and(|pose| pose.host != *body);
     let ends = [Some(joint.body_a), joint.body_b];
-    // Of two bodies that are welded one is not the host.
+    // At least one of two welded bodies is not the host.
     joint.body_a = (ends.into_iter().flatten().find(carried)).unwrap_or(joint.body_a);
     joint.body_b = None;
     joint.frame_a = JointFrame::zero();
@@ -216,7 +216,7 @@ fn move_load<S: Scalar>(kind: &mut LoadKind<S>, on_host: &[Option<Pose<S>>]) {
     }
 }
 
-/// The motion of all bodies of `written`, whose clusters were merged before `run` was made.
+/// The motion of all bodies of `written` from `run`, the motion of the model with merged clusters.
 pub(super) fn expand(
     written: &Model<f64>,
     clusters: &[Cluster],
@@ -281,7 +281,7 @@ pub(super) fn expand(
     }
 }
 
-/// Bodies whose rotation the functions of a scene watch.
+/// Bodies whose rotation a function of the scene observes.
 pub(super) fn watched<S: Scalar>(scene: &Scene<S>) -> Vec<usize> {
     let mut all = Vec::new();
     let mut functions = scene.functions.clone();

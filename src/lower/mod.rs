@@ -1,9 +1,9 @@
-//! The smallest system that moves as a scene does: what is left out of it before anything is
-//! integrated, and why nothing more is.
+//! Reductions: the smaller system that moves as a scene does. It is found before any integration.
 //!
-//! A reduction is made only if it changes nothing but round-off, at every design: it is examined at
-//! the start, at both bounds and at designs between them, and by dual numbers in its derivative by
-//! every variable. The same examination, in values, is repeated wherever a scene is made.
+//! A reduction is made only if it changes nothing but round-off at every design. Its conditions are
+//! examined in values at the start, at both corners of the bounds and at designs between them, and
+//! in their derivatives by every variable (dual numbers). The values are examined again in every
+//! scene.
 
 mod characteristic_length;
 mod examine;
@@ -36,13 +36,13 @@ use examine::Designs;
 /// A reduction that is not made.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Kept {
-    /// What could have been left out.
+    /// The reduction.
     pub reduction: String,
-    /// What stands against it.
+    /// The conditions that the model violates.
     pub obstacles: Vec<ViolatedCondition>,
 }
 
-/// Violated conditions of one reduction that are reported.
+/// Largest number of violated conditions of one reduction that are reported.
 const TOLD: usize = 5;
 
 impl std::fmt::Display for Kept {
@@ -57,27 +57,27 @@ impl std::fmt::Display for Kept {
     }
 }
 
-/// What is left out of the scenes of a problem.
+/// The reductions of the scenes of a problem.
 #[derive(Clone, Debug)]
 pub(crate) struct Lowering {
-    /// Bodies that are welded to each other.
+    /// Bodies that are welded to each other. They are merged.
     pub welded: Welded,
-    /// The plane that all motion stays in, or what leaves every plane.
+    /// The plane of the motion, or the conditions that it violates.
     pub plane: Result<Plane, Kept>,
-    /// Bodies whose rotation nothing turns or looks at.
+    /// Bodies whose rotation is neither loaded nor observed.
     pub points: Vec<usize>,
-    /// Bodies whose rotation ground holds.
+    /// Moving bodies whose rotation ground holds.
     pub non_rotating: NonRotating,
-    /// Bodies that nothing can move.
+    /// Bodies that cannot move.
     pub fixed: Fixed,
-    /// Reductions that are not made, but for the plane.
+    /// Reductions that are not made, except for the plane.
     kept: Vec<Kept>,
-    /// Rows that follow from others once these are made, by joint.
+    /// By joint: rows that are redundant after the reductions.
     redundant: Vec<Vec<ConstraintRow>>,
 }
 
 impl Lowering {
-    /// Finds what can be left out of the scenes that `real` and `dual` make of a design.
+    /// Finds the reductions of the scenes that `real` and `dual` make of a design.
     pub(crate) fn find(
         real: &dyn Fn(&[f64]) -> Scene<f64>,
         dual: &dyn Fn(&[Dual]) -> Scene<Dual>,
@@ -92,7 +92,7 @@ impl Lowering {
         let plane = Plane::find(&designs);
         let (non_rotating, of_non_rotating) = NonRotating::find(&designs, &fixed);
         let mut points = Vec::new();
-        // A body in the plane has three unknowns already.
+        // A planar body has three unknowns already.
         if plane.is_err() {
             let model = &designs.start.model;
             let characteristic_length = Reach::new(model);
@@ -101,7 +101,7 @@ impl Lowering {
                 if held || body.mobility == Mobility::fixed() {
                     continue;
                 }
-                // What the start says is enough.
+                // If the start violates the conditions, other designs need no examination.
                 let start = point::holds(&designs.start, &characteristic_length, index, 0.0);
                 let verdict = start.and_then(|()| {
                     designs.ask(
@@ -140,7 +140,7 @@ impl Lowering {
         found
     }
 
-    /// Every reduction that is not made, with what stands against it.
+    /// The reductions that are not made, with their violated conditions.
     pub(crate) fn kept(&self) -> Vec<&Kept> {
         self.plane
             .as_ref()
@@ -150,8 +150,8 @@ impl Lowering {
             .collect()
     }
 
-    /// Leaves out of `scene` what can be; false if its design does not admit all of it, and it stays as
-    /// it is.
+    /// Applies the reductions to `scene` and returns true. If its design violates a condition, it
+    /// returns false and leaves `scene` as it is.
     pub(crate) fn apply<S: Scalar>(&self, scene: &mut Scene<S>) -> bool {
         if self.welded.is_empty() {
             let admitted = self.admits(scene);
@@ -173,7 +173,8 @@ impl Lowering {
         admitted
     }
 
-    /// Whether all but the merging of welded bodies, which has been done, may be.
+    /// Whether `scene`, whose welded bodies are merged, satisfies the conditions of all other
+    /// reductions.
     fn admits<S: Scalar>(&self, scene: &Scene<S>) -> bool {
         let model = &scene.model;
         let characteristic_length = Reach::new(model);
@@ -200,8 +201,8 @@ impl Lowering {
         }
     }
 
-    /// The motion of all bodies of `written`, the model that a lowered scene was made of, from the run
-    /// of that; `None` if that is it.
+    /// The motion of all bodies of `written` from `run`, the motion of its reduced model; `None` if
+    /// no bodies were merged.
     pub(crate) fn expand(
         &self,
         written: &Model<f64>,

@@ -1,7 +1,7 @@
-//! Bodies that cannot turn: what slides along an axis of ground, or of another such body. They have
-//! three unknowns, two in the plane, and the rows that hold their rotation are gone.
+//! Non-rotating bodies: they slide along an axis of ground or of another such body. They have three
+//! unknowns (two in the plane) and no rows for their rotation.
 //!
-//! Their rotation is that of the placement, as long as it closes these rows.
+//! Their rotation is that of the placement, provided that it satisfies these rows.
 
 use super::Kept;
 use super::examine::{ConditionChecker, Designs, Verdict};
@@ -10,12 +10,12 @@ use crate::math::Scalar;
 use crate::model::{ConstraintRow, DegreeOfFreedom, Joint, Model};
 use crate::system::{BodyMotion, Numbering, constraint, placement, side};
 
-/// Bodies that cannot turn, though they move.
+/// Bodies that move but cannot rotate.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NonRotating {
-    /// By body, whether it is one; empty if none is.
+    /// By body: whether it moves and cannot rotate. Empty if none does.
     bodies: Vec<bool>,
-    /// By body, whether it is one or cannot move at all.
+    /// By body: whether it cannot rotate; fixed bodies included.
     still: Vec<bool>,
 }
 
@@ -23,7 +23,7 @@ fn holds_rotation(row: &ConstraintRow) -> bool {
     matches!(row, ConstraintRow::Perpendicular { .. })
 }
 
-/// Whether a joint holds the rotation of its bodies against each other.
+/// Whether a joint prevents any relative rotation of its bodies.
 fn holds_both<S>(joint: &Joint<S>) -> bool {
     let turns = joint
         .drives
@@ -33,7 +33,7 @@ fn holds_both<S>(joint: &Joint<S>) -> bool {
 }
 
 impl NonRotating {
-    /// Bodies whose rotation ground holds.
+    /// Finds the bodies whose rotation ground holds.
     pub(super) fn find(designs: &Designs, fixed: &Fixed) -> (Self, Option<Kept>) {
         let model = &designs.start.model;
         let count = model.bodies.len();
@@ -74,23 +74,23 @@ impl NonRotating {
         }
     }
 
-    /// Whether there are none.
+    /// Whether there are no non-rotating bodies.
     pub(crate) fn is_empty(&self) -> bool {
         self.bodies.is_empty()
     }
 
-    /// Whether body `index` is one.
+    /// Whether body `index` is non-rotating.
     pub(crate) fn contains(&self, index: usize) -> bool {
         self.bodies.get(index) == Some(&true)
     }
 
-    /// Whether ground holds the rotation of both ends of a joint.
+    /// Whether neither end of a joint can rotate.
     fn holds_joint<S>(&self, joint: &Joint<S>) -> bool {
         let still = |body: usize| self.still.get(body) == Some(&true);
         still(joint.body_a) && joint.body_b.is_none_or(still) && !is_void(joint)
     }
 
-    /// Leaves out of a model what they do not need.
+    /// Removes the rotations of these bodies and the rows that hold them.
     pub(super) fn apply<S: Scalar>(&self, model: &mut Model<S>) {
         let bodies = model.bodies.iter_mut().zip(&self.bodies);
         for (body, _) in bodies.filter(|(_, own)| **own) {
@@ -108,7 +108,7 @@ impl NonRotating {
         }
     }
 
-    /// Examines whether the rows that hold the bodies' rotation are closed where these are placed.
+    /// Examines whether the placement satisfies the rows for the rotation of these bodies.
     pub(super) fn holds<S: Scalar>(&self, model: &Model<S>, change: f64) -> Verdict {
         let mut examiner = ConditionChecker::new(change);
         if self.is_empty() {

@@ -1,12 +1,12 @@
-//! The normal of the plane that a scene may move in.
+//! The normal of the plane in which a scene may move.
 
 use super::examine::ROUND_OFF;
 use crate::math::{Vec3, rotation};
 use crate::model::{Joint, JointKind, LoadKind, Model};
 
-/// Vectors whose angle is smaller are taken to be parallel when a normal is made of two.
+/// Unit vectors are parallel if the norm of their cross product is smaller.
 const PARALLEL: f64 = 1e-6;
-/// Axes of joints that are tried.
+/// Largest number of joint axes that are tried.
 const MOST: usize = 6;
 
 /// Unit vector with round-off components set to zero.
@@ -16,14 +16,14 @@ pub(super) fn clean(v: Vec3<f64>) -> Vec3<f64> {
         .normalize()
 }
 
-/// The axis e3 of a joint in ground axes, where its bodies are placed.
+/// Axis e3 of a joint, ground axes, as placed.
 fn axis(model: &Model<f64>, joint: &Joint<f64>) -> Vec3<f64> {
     rotation::matrix(&model.bodies[joint.body_a].orientation) * joint.frame_a.axes[2]
 }
 
-/// The same direction whatever its sign.
+/// Chooses one of v and −v: the same for both.
 fn unsigned(v: Vec3<f64>) -> Vec3<f64> {
-    // The first of the components that are about as large as the largest.
+    // The first component that is about as large as the largest decides.
     let largest = v.amax();
     let first = v.iter().find(|x| x.abs() > 0.9 * largest);
     if first.is_some_and(|x| *x < 0.0) {
@@ -33,9 +33,9 @@ fn unsigned(v: Vec3<f64>) -> Vec3<f64> {
     }
 }
 
-/// Normals to try, the likeliest first: the axes that joints turn about, those that most agree on
-/// first, then that of the vectors that have to lie in the plane. None if these span the space. They
-/// do not depend on the order of the joints nor on the signs of their axes.
+/// Normals to try, the likeliest first: first the rotation axes of joints, the most frequent first,
+/// then the normal of the vectors that must lie in the plane. Empty if these span the space. The
+/// result does not depend on the order of the joints or on the signs of their axes.
 pub(super) fn candidates(model: &Model<f64>) -> Vec<Vec3<f64>> {
     let turns = |joint: &&Joint<f64>| match joint.kind {
         JointKind::Revolute | JointKind::Planar | JointKind::Cylindrical => true,
@@ -69,7 +69,7 @@ pub(super) fn candidates(model: &Model<f64>) -> Vec<Vec3<f64>> {
     all
 }
 
-/// The normal of the vectors that have to lie in the plane; `None` if these span the space.
+/// The normal of the vectors that must lie in the plane; `None` if these span the space.
 fn spanned(model: &Model<f64>) -> Option<Vec3<f64>> {
     let (across, inside) = vectors(model);
     if let Some(first) = across.first() {
@@ -82,14 +82,14 @@ fn spanned(model: &Model<f64>) -> Option<Vec3<f64>> {
     let largest = normals.max_by(|a, b| a.norm().total_cmp(&b.norm()));
     match largest {
         Some(normal) if normal.norm() > PARALLEL => Some(clean(normal)),
-        // All on one line: a ground axis across it.
+        // All are parallel: a ground axis across them.
         _ => [Vec3::z(), Vec3::x(), Vec3::y()]
             .into_iter()
             .find(|axis| axis.dot(first).abs() <= ROUND_OFF),
     }
 }
 
-/// Unit vectors that have to be along the normal, and those that have to lie in the plane.
+/// Unit vectors that must be along the normal, and those that must lie in the plane.
 fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
     let (mut across, mut inside) = (Vec::new(), vec![model.gravity]);
     let turn = |body: usize| rotation::matrix(&model.bodies[body].orientation);

@@ -1,12 +1,12 @@
-//! Groups of bodies that can tilt out of a plane only together.
+//! Groups of bodies that rotate out of a plane only together.
 //!
-//! Forces in the plane that act above or beside a centre of mass tilt a body unless a joint holds
-//! it upright. Joints whose axes are held parallel do, so what they join tilts as one, or, joined
-//! to ground, not at all.
+//! Forces in the plane rotate a body out of it if they act at another height than its centre of
+//! mass. A joint that holds two axes parallel prevents this relative rotation. Bodies that such
+//! joints connect rotate out of the plane as one; if they are connected to ground, they do not.
 
 use crate::model::{ConstraintRow, Joint};
 
-/// Whether the rows that hold identically in the plane keep the joint's bodies parallel.
+/// Whether the trivially satisfied rows of a joint keep its bodies parallel.
 pub(super) fn holds_upright(trivial_rows: &[ConstraintRow]) -> bool {
     let angles = trivial_rows
         .iter()
@@ -14,7 +14,7 @@ pub(super) fn holds_upright(trivial_rows: &[ConstraintRow]) -> bool {
     angles.count() >= 2
 }
 
-/// Group of each body; `None` for those that ground holds upright.
+/// Group of each of `bodies` bodies; `None` for those that ground holds upright.
 pub(super) fn groups<S>(
     bodies: usize,
     joints: &[Joint<S>],

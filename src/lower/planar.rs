@@ -1,12 +1,13 @@
-//! Scenes that move in a plane: three unknowns a body, and no rows across the plane.
+//! Planar scenes: three unknowns per body, and no rows across the plane.
 //!
-//! With n the normal, a scene is planar if every axis that a joint's rows use is along or across n,
-//! the points that a joint brings together are equally high above the plane, n is a principal axis
-//! of every inertia, gravity, forces and velocities lie in the plane and torques and angular
-//! velocities are along n, and if nothing tilts: bodies that no joint holds upright have the points
-//! where forces act as high as their centres of mass.
+//! Let n be the normal. A scene is planar if
+//! - every axis that a joint's rows use is along or across n, and the points of a joint have one
+//!   height;
+//! - n is a principal axis of every inertia;
+//! - gravity, forces and velocities lie in the plane, torques and angular velocities are along n;
+//! - forces on bodies that no joint holds upright act at the height of the centre of mass.
 //!
-//! The rows of a joint, by whether the axes they use are along n (N) or across it (P):
+//! Rows of a joint by the axes that they use, along n (N) or across it (P):
 //!
 //! ```text
 //! Coincident k         left out for the k of the largest |n_k|: d · n = 0 identically
@@ -28,32 +29,34 @@ use crate::model::{LoadKind, Mobility, Model, RigidBody};
 use crate::system::redundancy;
 use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
-/// A plane, and where the parts of a scene stand in it.
+/// A plane, and the heights of the parts of a scene in it.
 #[derive(Clone, Debug)]
 pub(crate) struct Plane {
-    /// Its unit normal, ground axes.
+    /// Unit normal, ground axes.
     pub normal: Vec3<f64>,
-    /// Two orthonormal directions in it.
+    /// Two orthonormal directions in the plane.
     along: [Vec3<f64>; 2],
-    /// The normal in the axes of each body, and the height of its centre of mass.
+    /// By body: the normal in its axes, and the height of its centre of mass \[m\].
     pub(super) bodies: Vec<(Vec3<f64>, f64)>,
     pub(super) joints: Vec<Joined>,
-    /// Heights of the points of each load above the centres of mass (above the origin on ground).
+    /// By load: heights of its points above the centres of mass (on ground: above the origin)
+    /// \[m\].
     pub(super) loads: Vec<[f64; 2]>,
-    /// Bodies that tilt as one; `None` if they do not.
+    /// By body: group that rotates out of the plane as one; `None` if ground holds the body
+    /// upright.
     pub(super) groups: Vec<Option<usize>>,
 }
 
 /// A joint in the plane.
 #[derive(Clone, Debug)]
 pub(super) struct Joined {
-    /// Rows that hold identically.
+    /// Trivially satisfied rows.
     pub trivial_rows: Vec<ConstraintRow>,
-    /// Rows that follow from others in the plane.
+    /// Redundant rows.
     redundant: Vec<ConstraintRow>,
-    /// Axes of the frames by those that are written, if these have to be turned to the normal.
+    /// Rotation of the frames' axes, if they are turned to the normal.
     turn: Option<Mat3<f64>>,
-    /// Heights of its points above the centres of mass (above the origin on ground).
+    /// Heights of its points above the centres of mass (on ground: above the origin) \[m\].
     pub heights: [f64; 2],
 }
 
@@ -90,7 +93,7 @@ fn turned<S: Scalar>(frame: &JointFrame<S>, c: &Mat3<f64>) -> JointFrame<S> {
     }
 }
 
-/// Axes that the rows of a joint use, on side A and on side B.
+/// Axes that the rows of a joint use: [side][axis], sides A and B.
 pub(super) fn used<S>(joint: &Joint<S>) -> [[bool; 3]; 2] {
     let mut used = [[false; 3]; 2];
     for row in joint.all_rows() {
@@ -107,15 +110,15 @@ pub(super) fn used<S>(joint: &Joint<S>) -> [[bool; 3]; 2] {
 }
 
 impl Plane {
-    /// Its normal for messages.
+    /// The normal as text for messages.
     pub(crate) fn name(&self) -> String {
         vector(&self.normal)
     }
 
-    /// The plane that all `designs` move in.
+    /// Finds the plane in which all `designs` move.
     ///
     /// # Errors
-    /// What leaves it: the plane that most joints turn in, if there is none.
+    /// The violated conditions of the likeliest plane.
     pub(super) fn find(designs: &Designs) -> Result<Self, Kept> {
         let mut first = None;
         for normal in candidates(&designs.start.model) {
@@ -143,10 +146,10 @@ impl Plane {
         })
     }
 
-    /// The plane that `model` moves in, whatever the design.
+    /// The plane in which `model` moves.
     ///
     /// # Errors
-    /// What leaves that which most joints turn in.
+    /// The violated conditions of the likeliest plane.
     #[cfg(test)]
     pub fn of(model: &Model<f64>) -> Result<Self, Kept> {
         let scene = crate::functions::Scene {
@@ -159,7 +162,7 @@ impl Plane {
         Self::find(&Designs::single(scene))
     }
 
-    /// The plane with this normal, and where the parts of `model` stand in it.
+    /// The plane with this normal, and the heights of the parts of `model`.
     fn across(model: &Model<f64>, normal: Vec3<f64>) -> Self {
         let turned = Turned::new(model, &normal);
         let farthest = normal.iamin();
@@ -200,7 +203,7 @@ impl Plane {
         plane
     }
 
-    /// The plane with those rows left out that follow from others in it.
+    /// The plane, with the redundant rows of the reduced model.
     fn without_redundancy(mut self, model: &Model<f64>) -> Self {
         let mut lowered = model.clone();
         self.apply(&mut lowered);
@@ -211,7 +214,7 @@ impl Plane {
         self
     }
 
-    /// Rows of joint j that hold identically, if the joint fits the plane.
+    /// Trivially satisfied rows of joint j; `None` if the joint does not fit the plane.
     pub(super) fn trivial_rows<S: Scalar>(
         &self,
         joint: &Joint<S>,
@@ -245,7 +248,7 @@ impl Plane {
         }
     }
 
-    /// Leaves out of a model that the plane holds for what is across it.
+    /// Reduces a model that satisfies the conditions of this plane.
     pub(crate) fn apply<S: Scalar>(&self, model: &mut Model<S>) {
         let moving = |(body, _): &(&mut RigidBody<S>, _)| body.mobility != Mobility::fixed();
         let bodies = model.bodies.iter_mut().zip(&self.bodies);
@@ -261,8 +264,9 @@ impl Plane {
     }
 }
 
-/// Axes of a joint's frames that are along or across the normal, where those that its rows use are
-/// not, and may be turned: about e3 if that lies in the plane, anyhow in a weld.
+/// Rotation that turns the axes of a joint's frames along or across the normal; `None` if they are
+/// so, or may not be turned. A joint with e3 in the plane may be turned about e3, a weld about any
+/// axis.
 fn turn_to(joint: &Joint<f64>, normal: &Vec3<f64>) -> Option<Mat3<f64>> {
     const ALIGNED: f64 = 4.0 * f64::EPSILON;
     let [e1, e2, e3] = &joint.frame_a.axes;
@@ -290,7 +294,7 @@ fn turn_to(joint: &Joint<f64>, normal: &Vec3<f64>) -> Option<Mat3<f64>> {
     ]))
 }
 
-/// Points of a load on its bodies.
+/// Points of a load, each with its body.
 pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, Vec3<S>)>; 2] {
     match kind {
         LoadKind::Force { body, point, .. } => [Some((Some(*body), *point)), None],
@@ -309,9 +313,9 @@ pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, V
     }
 }
 
-/// A vector for messages.
+/// A vector as text for messages.
 fn vector(v: &Vec3<f64>) -> String {
-    // Zero has no sign.
+    // Adding zero removes the sign of −0.
     let [x, y, z] = [v.x + 0.0, v.y + 0.0, v.z + 0.0];
     format!("({x:.6}, {y:.6}, {z:.6})")
 }

@@ -1,9 +1,8 @@
-//! Bodies whose rotation nothing turns and nothing looks at: three unknowns instead of six.
+//! Bodies whose rotation is neither loaded nor observed: three unknowns instead of six.
 //!
-//! A body that hangs at its centre of mass, by spherical joints, springs or forces, and starts
-//! without spin keeps its orientation, M = 0 and ω = 0. Its rotation can be left out if no function
-//! reads where a point beside the centre is, or how the body is turned, since a design may still
-//! turn its start.
+//! If spherical joints, springs and forces act only at the centre of mass, and the body starts
+//! without spin, then M = 0 and ω = 0: it keeps its orientation. Its rotation is left out if no
+//! function observes it or a point away from the centre, since a design may turn its start.
 
 use super::characteristic_length::Reach;
 use super::examine::{ConditionChecker, Verdict};
@@ -11,15 +10,15 @@ use crate::functions::{Function, Gate, Instant, Release, Rotation, Scene};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, JointKind, LoadKind};
 
-/// Distance from the centre of mass, relative to the length scale and to what is round-off
-/// elsewhere, that still counts as none: a lever arm turns a small body fast.
+/// Largest lever arm that counts as zero, relative to the characteristic length and [`ROUND_OFF`].
+/// It is small because a lever arm turns a small body fast.
 const CENTRED: f64 = 1e-2;
 
-/// Examines whether body `index` of `scene` may be taken as a point, in values and for a `change`
-/// of the variable that an infinitesimal part is the derivative by.
+/// Examines whether body `index` of `scene` is a point, in values and for a `change` of the
+/// variable of the infinitesimal part.
 ///
 /// # Errors
-/// What turns it, or looks at its rotation.
+/// The loads on its rotation, and the functions that observe it.
 pub(super) fn holds<S: Scalar>(
     scene: &Scene<S>,
     characteristic_length: &Reach,
@@ -29,7 +28,7 @@ pub(super) fn holds<S: Scalar>(
     let model = &scene.model;
     let mut examiner = ConditionChecker::new(change);
     let length = CENTRED * characteristic_length.of([Some(index), None]);
-    // A lever arm, or `None` for what turns the body whatever its arm.
+    // `None` if the rotation is loaded whatever the lever arm.
     let mut vanishes = |arm: Option<&Vec3<S>>, what: &dyn Fn() -> String| match arm {
         Some(arm) => examiner.vanishes(arm.as_slice(), length, || (what(), "m")),
         None => examiner.tell(what()),
@@ -111,7 +110,7 @@ pub(super) fn holds<S: Scalar>(
     examiner.verdict()
 }
 
-/// Bodies that a function looks at, with the point of them, or none if it looks at the rotation.
+/// Bodies that a function observes, each with the point; `None` if it observes the rotation.
 fn looks_at<S: Scalar>(function: &Function<S>) -> Vec<(usize, Option<Vec3<S>>)> {
     let turned = |rotation: &Rotation<S>| {
         let bodies = [Some(rotation.body), rotation.relative_to];
@@ -129,7 +128,7 @@ fn looks_at<S: Scalar>(function: &Function<S>) -> Vec<(usize, Option<Vec3<S>>)> 
             | Instant::Acceleration { body, point, .. }
             | Instant::Speed { body, point }
             | Instant::SpeedSquared { body, point } => vec![(*body, Some(*point))],
-            // The energy reads angular velocities, which are zero, and heights of centres.
+            // The energy depends on angular velocities, which are zero, and on heights of centres.
             Instant::Energy(_) => Vec::new(),
             Instant::Rotation(rotation) => turned(rotation).collect(),
             Instant::Range { projectile, gate } => {

@@ -1,9 +1,9 @@
-//! Parts of a scene that no function asked for can see.
+//! Parts of a scene on which no requested function depends.
 //!
-//! Bodies hang together by joints and by springs between them; ground joins nothing. The motion of a
-//! part has no effect on the others. So the scene without the parts that neither a function asked for
-//! nor the event looks at has the same functions. Chosen steps follow the error of what is left, so
-//! functions of steps that follow a tolerance change by their discretisation error.
+//! Bodies form parts through joints and springs; ground does not connect them. A part does not
+//! affect the motion of the others. Without the parts that neither a requested function nor the
+//! event observes, the functions are the same. Adaptive steps follow the error of the remaining
+//! parts, so there the functions change by their discretisation error.
 
 use super::welded::Groups;
 use crate::functions::{Function, Instant, Scene};
@@ -13,17 +13,17 @@ use crate::math::Scalar;
 use crate::model::{Load, LoadKind, Model};
 use crate::system::{Numbering, placement};
 
-/// What is kept of a scene, by index, ascending.
+/// The parts of a scene that are kept: ascending indices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Seen {
     /// Bodies.
     pub bodies: Vec<usize>,
-    /// Functions: those asked for.
+    /// Requested functions.
     pub functions: Vec<usize>,
 }
 
 impl Seen {
-    /// What the functions `asked` and the event of `scene` can see.
+    /// The parts on which the functions `asked` and the event of `scene` depend.
     pub(crate) fn find<S: Scalar>(scene: &Scene<S>, asked: &[usize]) -> Self {
         let model = &scene.model;
         let mut parts = Groups::new(model.bodies.len());
@@ -52,7 +52,7 @@ impl Seen {
             }
             (function.clone()).for_each_place(&mut |body, _| seen[*body] = true);
         }
-        // The duration is a function of no body; a scene has one at least.
+        // The duration depends on no body, but a scene needs one.
         if !seen.contains(&true) {
             seen.fill(true);
         }
@@ -68,7 +68,7 @@ impl Seen {
         }
     }
 
-    /// Everything of a scene with so many bodies, but functions that are not asked for.
+    /// All of `bodies` bodies, with the requested functions.
     pub(crate) fn all_bodies(&self, bodies: usize) -> Self {
         Self {
             bodies: (0..bodies).collect(),
@@ -86,7 +86,7 @@ impl Seen {
         self.bodies.binary_search(&body).is_ok()
     }
 
-    /// Leaves the rest out of `scene`. The bodies that are kept are numbered anew.
+    /// Removes the other parts from `scene` and renumbers the bodies.
     pub(crate) fn apply<S: Scalar>(&self, scene: &mut Scene<S>) {
         let mut functions = std::mem::take(&mut scene.functions).into_iter().map(Some);
         let mut functions: Vec<Option<Function<S>>> = functions.by_ref().collect();
@@ -108,7 +108,7 @@ impl Seen {
         leave_out(&mut scene.model, &number);
     }
 
-    /// The motion of all bodies of the model `written` where those that are left out rest.
+    /// The motion of all bodies of `written`; those that were removed are at rest.
     pub(crate) fn at_rest(&self, written: &Model<f64>, run: &Trajectory<f64>) -> Trajectory<f64> {
         let numbering = Numbering::new(written);
         let (placed, _) = placement::guess(written);
@@ -165,7 +165,7 @@ fn ends<S>(load: &Load<S>, model: &Model<S>) -> [Option<usize>; 2] {
     }
 }
 
-/// Leaves out bodies without a new number, and the joints and loads on them.
+/// Removes the bodies without a new number, and their joints and loads.
 fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) {
     let kept = |ends: [Option<usize>; 2]| ends.into_iter().flatten().all(|b| number[b].is_some());
     let loads: Vec<bool> = (model.loads.iter())

@@ -1,9 +1,9 @@
-//! Bodies that are welded to each other and move: which of them become one.
+//! Moving bodies that are welded to each other: which of them are merged.
 //!
-//! The start of a scene is the state nearest to its placement that closes the joints, and nearest is
-//! another matter for one body than for several. So bodies are merged where nothing has to be closed:
-//! where the joints of all that hangs together with them are closed, and move as they allow, as the
-//! bodies are placed, at every design.
+//! A start is the state nearest to the placement that satisfies the constraints. The nearest state
+//! of one merged body is not that of several bodies. So bodies are merged only if nothing has to be
+//! corrected: at every design, the placement and its velocities satisfy all joints of the connected
+//! bodies.
 
 use super::examine::{ConditionChecker, Designs, Verdict, ViolatedCondition};
 use super::merge::{self, Cluster};
@@ -21,13 +21,13 @@ pub(crate) struct Welded {
     pub clusters: Vec<Cluster>,
     /// The welds that vanish.
     pub welds: Vec<usize>,
-    /// Joints of all that hangs together with them.
+    /// Joints of all bodies that are connected with them; all must be closed.
     closed: Vec<usize>,
-    /// Bodies of one cluster whose rotation functions watch.
+    /// Pairs of bodies of one cluster whose rotations functions observe.
     alike: Vec<[usize; 2]>,
 }
 
-/// A weld of two bodies that move, and what stands against merging them.
+/// A weld of two moving bodies, and the violated conditions of merging them.
 struct Candidate {
     joint: usize,
     bodies: [usize; 2],
@@ -35,7 +35,7 @@ struct Candidate {
 }
 
 impl Welded {
-    /// Finds the bodies to merge, and the welds that stay with what stands against them.
+    /// Finds the bodies to merge, and the welds that stay with their violated conditions.
     pub(super) fn find(designs: &Designs) -> (Self, Vec<Kept>) {
         let model = &designs.start.model;
         let held = fixed::welded_to_ground(model);
@@ -57,7 +57,7 @@ impl Welded {
         if candidates.is_empty() {
             return Default::default();
         }
-        // What hangs together, ground not counted.
+        // Connected bodies; ground does not connect.
         let mut together = Groups::new(model.bodies.len());
         for [a, b] in model.joints.iter().filter_map(between) {
             together.join(a, b);
@@ -101,7 +101,7 @@ impl Welded {
         (found, kept.collect())
     }
 
-    /// Joins the bodies of those welds that nothing stands against.
+    /// Merges the bodies of welds without violated conditions.
     fn join(&mut self, designs: &Designs, candidates: &mut [Candidate]) {
         let model = &designs.start.model;
         let watched = merge::watched(&designs.start);
@@ -183,12 +183,12 @@ impl Welded {
         }
     }
 
-    /// Whether there are none.
+    /// Whether no bodies are merged.
     pub(crate) fn is_empty(&self) -> bool {
         self.clusters.is_empty()
     }
 
-    /// Examines whether the bodies may be merged.
+    /// Examines the conditions of merging the bodies.
     pub(super) fn holds<S: Scalar>(&self, scene: &Scene<S>, change: f64) -> Verdict {
         closed(scene, &self.closed, change)?;
         alike(&scene.model, &self.alike, change)
@@ -199,13 +199,13 @@ impl Welded {
         merge::merge(scene, &self.clusters, &self.welds);
     }
 
-    /// The motion of all bodies of `written`, from that of the merged ones.
+    /// The motion of all bodies of `written` from `run`, the motion of the merged bodies.
     pub(super) fn expand(&self, written: &Model<f64>, run: &Trajectory<f64>) -> Trajectory<f64> {
         merge::expand(written, &self.clusters, run)
     }
 }
 
-/// Loads that act by way of a joint, which would be gone.
+/// Loads that act through a joint. They prevent its removal.
 fn loads_on(model: &Model<f64>, joint: usize) -> Vec<ViolatedCondition> {
     let acts = |kind: &LoadKind<f64>| match kind {
         LoadKind::TorsionSpring { joint: own, .. }
@@ -220,11 +220,10 @@ fn loads_on(model: &Model<f64>, joint: usize) -> Vec<ViolatedCondition> {
     told.collect()
 }
 
-/// Examines whether `joints` are closed where the bodies are placed, and the velocities there are
-/// such as they allow.
+/// Examines whether the placement and its velocities satisfy `joints`.
 ///
-/// A velocity is round-off beside those placed, beside what drives reach, or if it moves nothing further
-/// than round-off in the time that is simulated.
+/// A violation of a velocity is round-off relative to the placed velocities, to the largest rate of
+/// drives, or to a characteristic length divided by the duration.
 fn closed<S: Scalar>(scene: &Scene<S>, joints: &[usize], change: f64) -> Verdict {
     let model = &scene.model;
     let duration = scene.duration.re().abs();
@@ -269,8 +268,8 @@ fn closed<S: Scalar>(scene: &Scene<S>, joints: &[usize], change: f64) -> Verdict
     examiner.verdict()
 }
 
-/// The largest rate of the harmonic drives of a joint, whose rate at the start has the round-off of that
-/// (m/s or rad/s); other courses say theirs without.
+/// Largest rate of the harmonic drives of a joint \[m/s or rad/s\]: the scale of the round-off of
+/// their rate at the start. Other prescribed motions have no such round-off.
 fn drives_reach<S: Scalar>(joint: &Joint<S>) -> f64 {
     let rates = joint.drives.iter().map(|drive| match &drive.course {
         PrescribedMotion::Harmonic {
@@ -283,7 +282,7 @@ fn drives_reach<S: Scalar>(joint: &Joint<S>) -> f64 {
     rates.fold(0.0, f64::max)
 }
 
-/// Examines whether the bodies of each pair are turned alike.
+/// Examines whether the bodies of each pair have the same rotation.
 fn alike<S: Scalar>(model: &Model<S>, pairs: &[[usize; 2]], change: f64) -> Verdict {
     let mut examiner = ConditionChecker::new(change);
     for pair in pairs {
@@ -309,7 +308,7 @@ impl Groups {
         Self((0..count).collect())
     }
 
-    /// The number that stands for the group of i.
+    /// Representative of the group of i.
     pub(crate) fn of(&mut self, mut i: usize) -> usize {
         while self.0[i] != i {
             self.0[i] = self.0[self.0[i]];
