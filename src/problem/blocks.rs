@@ -1,13 +1,13 @@
-//! How the joints of a scene hang together: seen from ground, a tree of blocks. A block is a joint that
-//! lies in no loop, or all joints whose loops share joints (a biconnected component of the graph of
-//! bodies and joints). The body of a block that is nearest to ground is its root.
+//! The blocks of the graph of bodies and joints. A block is a joint that lies in no loop, or all
+//! joints whose loops share joints (a biconnected component). The root of a block is its body
+//! nearest to ground. The blocks form a tree whose root is ground.
 //!
-//! Bodies that no joints lead to from ground hang from the first of them.
+//! If no joints lead from ground to some bodies, the first of these takes the place of ground.
 
 /// A joint that lies in no loop, or a network of loops.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Block {
-    /// The body nearest to ground; `None` is ground itself.
+    /// The body nearest to ground; `None` for ground itself.
     pub root: Option<usize>,
     /// The other bodies.
     pub bodies: Vec<usize>,
@@ -15,23 +15,23 @@ pub(crate) struct Block {
     pub joints: Vec<usize>,
 }
 
-/// The blocks of a scene.
+/// The blocks of a scene, and its groups of connected bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Blocks {
-    /// From ground outwards: the root of each is ground, or first of its kind, or in an earlier one.
+    /// From ground outwards: a block comes after the block that holds its root.
     pub list: Vec<Block>,
-    /// For every body the first of those that are joined with it other than by ground.
+    /// By body: the first of the bodies that joints connect with it, ground not counted.
     pub group: Vec<usize>,
 }
 
 impl Blocks {
-    /// The blocks of joints that have the given `ends`, ground being `None`, of `bodies` bodies.
+    /// The blocks of `bodies` bodies and of joints with the given `ends`; `None` is ground.
     pub(crate) fn new(bodies: usize, ends: &[(usize, Option<usize>)]) -> Self {
         let tree = Tree::new(bodies, ends);
         let mut same: Vec<usize> = (0..ends.len()).collect();
         for (joint, &(a, b)) in ends.iter().enumerate() {
             let mut sides = [a, b.unwrap_or(bodies)];
-            // The joints of the loop that this one closes.
+            // The joints of the loop that this joint closes.
             while sides[0] != sides[1] {
                 let deeper = usize::from(tree.depth[sides[0]] < tree.depth[sides[1]]);
                 let Some((hung, parent)) = tree.parent[sides[deeper]] else {
@@ -43,7 +43,7 @@ impl Blocks {
         }
         let mut list: Vec<Block> = Vec::new();
         let mut number = vec![None; ends.len()];
-        // A block is met first at its root.
+        // The first joint of a block in this order is at its root.
         for &body in &tree.order {
             let Some((joint, parent)) = tree.parent[body] else {
                 continue;
@@ -74,12 +74,12 @@ impl Blocks {
     }
 }
 
-/// A tree of the shortest ways from ground, which has the number past the last body.
+/// A tree of shortest paths from ground. Ground has the number after the last body.
 struct Tree {
-    /// The joint that a body hangs from, and what it hangs on.
+    /// By body: the joint towards ground, and the node on its other side.
     parent: Vec<Option<(usize, usize)>>,
     depth: Vec<usize>,
-    /// Bodies and ground in the order in which they were met.
+    /// Bodies and ground in the order of the search.
     order: Vec<usize>,
 }
 
@@ -118,7 +118,7 @@ impl Tree {
     }
 }
 
-/// The first of those that are the same as `i`.
+/// Representative of the set of `i`.
 fn find(same: &mut [usize], mut i: usize) -> usize {
     while same[i] != i {
         same[i] = same[same[i]];
@@ -138,8 +138,8 @@ mod tests {
 
     #[test]
     fn loops_that_share_joints_are_one_block_and_others_are_not() {
-        // A four-bar linkage 0 1 2; a pendulum 3 on its coupler 1; two loops 4 5 and 6 7 8 that share
-        // no joint, the second on a body of the first.
+        // A four-bar linkage 0 1 2; a pendulum 3 on its coupler 1; two loops 4 5 and 6 7 8 that
+        // share no joint, the second on a body of the first.
         let ends = [
             (3, Some(1)),
             (0, None),

@@ -1,22 +1,23 @@
-//! How large a problem file may be: what is larger is refused before memory is spent on it.
+//! Limits on the size of a problem file. They are checked before memory is allocated for its
+//! content.
 
 use super::finding::{Finding, Part};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Largest file (bytes).
+/// Largest file \[bytes\].
 pub(crate) const LARGEST: usize = 256 << 20;
-/// Most entries of a list or an object, and of all of them.
+/// Largest number of entries of one list or object, and of all together.
 const MOST_ENTRIES: usize = 1_000_000;
 const MOST_VALUES: usize = 8_000_000;
-/// Most brackets inside each other, which the parser admits.
+/// Largest depth of nested brackets that the parser accepts.
 const DEEPEST: usize = 127;
 
-/// Reads a file, but no more than one byte beyond the largest size.
+/// Reads a file up to one byte beyond the largest size.
 ///
 /// # Errors
-/// If it cannot be read.
+/// The file cannot be read.
 pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let most = LARGEST as u64 + 1;
@@ -24,8 +25,8 @@ pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// What is too large in a text, if anything: found in one pass, without memory for what is read. What is
-/// no JSON is left to the parser.
+/// The first limit that a text exceeds, if any. It is found in one pass, without memory for the
+/// content. The parser reports text that is not JSON.
 pub(super) fn exceeded(text: &str) -> Option<Finding> {
     let fault = |at: usize, found: String, expected: String| Finding {
         part: Part::Bytes(at..at + 1),
@@ -39,7 +40,7 @@ pub(super) fn exceeded(text: &str) -> Option<Finding> {
         });
     }
     let bytes = text.as_bytes();
-    // Entries so far of each list and object that is open.
+    // Number of entries so far of each open list and object.
     let mut open: Vec<usize> = Vec::new();
     let (mut values, mut at) = (0, 0);
     while let Some(&byte) = bytes.get(at) {

@@ -1,4 +1,4 @@
-//! What a plot of the motion needs to know: outlines of the bodies, the view, ground and barrier.
+//! Data of a plot of the motion: outlines of the bodies, the view, ground and barrier.
 
 use super::placement::{Assembly, split_location};
 use super::quantity::vector;
@@ -8,12 +8,12 @@ use super::schema::{Document, View};
 use crate::math::Vec3;
 use std::f64::consts::TAU;
 
-/// Instants of the time lapse where the file gives no number.
+/// Default number of instants of the time lapse.
 const SNAPSHOTS: usize = 12;
-/// Corners of the polygon that stands for a circle.
+/// Number of corners of the polygon that approximates a circle.
 const CORNERS: usize = 32;
 
-/// The outline of a body, from its centre of mass in body axes (m).
+/// The outline of a body: points from its centre of mass, body axes \[m\].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Outline {
     /// The silhouette is the convex hull of these points in the plane of the view.
@@ -27,9 +27,9 @@ pub(crate) enum Outline {
 /// A barrier across the direction of flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BarrierLine {
-    /// Place along the direction of flight (m).
+    /// Position along the direction of flight \[m\].
     pub distance: f64,
-    /// Height of the top above the origin (m).
+    /// Height of the top above the origin \[m\].
     pub top: f64,
 }
 
@@ -44,9 +44,9 @@ pub(crate) struct Drawing {
     pub snapshots: usize,
     /// Outlines in the order of the bodies.
     pub outlines: Vec<Outline>,
-    /// Points whose paths are drawn: the body, and the point from its centre of mass in body axes.
+    /// Points whose paths are drawn: body, and point from its centre of mass in body axes \[m\].
     pub traces: Vec<(usize, Vec3<f64>)>,
-    /// Height of the ground that a range is measured to (m).
+    /// Height of the ground on which a range is measured \[m\].
     pub ground: Option<f64>,
     /// The barrier of a clearance.
     pub barrier: Option<BarrierLine>,
@@ -95,13 +95,13 @@ pub(crate) fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawin
             .map(|(body, pose)| outline(body, pose.centre, x))
             .collect(),
         traces: traces.collect(),
-        // Heights are seen only where gravity points down in the view.
+        // Heights appear only if gravity points down in the view.
         ground: ground.filter(|_| falls),
         barrier: barrier.filter(|_| falls),
     }
 }
 
-/// The axes to the right and up of a view.
+/// The axes of a view that point right and up.
 fn axes(view: View) -> (Vec3<f64>, Vec3<f64>) {
     let (ex, ey, ez) = (Vec3::x(), Vec3::y(), Vec3::z());
     match view {
@@ -114,7 +114,7 @@ fn axes(view: View) -> (Vec3<f64>, Vec3<f64>) {
     }
 }
 
-/// The outline of a body whose centre of mass is at `centre` in its axes.
+/// The outline of a body whose centre of mass is at `centre` \[m\] in its axes.
 fn outline(body: &Body, centre: Vec3<f64>, x: &[f64]) -> Outline {
     let circle = |radius: f64| {
         (0..CORNERS).map(move |k| {

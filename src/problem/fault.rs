@@ -1,4 +1,4 @@
-//! Faults of a problem file: what is wrong, where, and what was meant.
+//! Faults of a problem file: what is wrong, where it is, and what was expected.
 
 use super::finding::{Finding, Part};
 use super::overrides::Override;
@@ -7,30 +7,30 @@ use super::text::{shortened, visible};
 use std::fmt;
 use std::ops::Range;
 
-/// Longest piece of a source line that is shown [characters].
+/// Longest excerpt of a source line [characters].
 const EXCERPT: usize = 96;
-/// Longest words of a message, and longest key of a pointer, that are shown whole [characters].
+/// Longest text of a message, and longest key of a pointer, that are not shortened [characters].
 const LONGEST_WORDS: usize = 800;
 const LONGEST_KEY: usize = 60;
 
 /// One fault of a problem file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// JSON Pointer to what is at fault; empty for the whole document.
+    /// JSON Pointer to the faulty entry; empty for the whole document.
     pub path: String,
-    /// Line in the file from 1; 0 if the fault is not at a place in the file.
+    /// Line in the file from 1; 0 if the fault has no place in the file.
     pub line: usize,
-    /// Column in characters from 1; 0 likewise.
+    /// Column in characters from 1; 0 if the fault has no place in the file.
     pub column: usize,
-    /// What stands there.
+    /// What was found.
     pub found: String,
-    /// What should stand there.
+    /// What was expected.
     pub expected: String,
     /// Advice, such as the nearest valid name.
     pub hint: Option<String>,
-    /// Where it was read: the file, or the override.
+    /// Origin: the file, or the override.
     origin: String,
-    /// The source line, cut to length, and the characters in it before and under the marks.
+    /// Excerpt of the source line, and its numbers of characters before and under the marks.
     excerpt: Option<(String, usize, usize)>,
 }
 
@@ -42,7 +42,7 @@ pub struct Faults {
 }
 
 impl Faults {
-    /// One fault of a file that cannot be read as text.
+    /// A single fault: the file cannot be read as text.
     pub(super) fn unreadable(file: &str, found: &str, expected: &str) -> Self {
         let finding = Finding {
             part: Part::File,
@@ -51,7 +51,7 @@ impl Faults {
         Self::locate(vec![finding], file, &Source::default(), &[])
     }
 
-    /// Looks up where the findings are, and sorts them by place.
+    /// Looks up the places of the findings in the source, and sorts them.
     pub(super) fn locate(
         findings: Vec<Finding>,
         file: &str,
@@ -91,7 +91,7 @@ fn locate(finding: Finding, file: &str, source: &Source, overrides: &[Override])
     }
 }
 
-/// Words of a message, which may hold words of the file.
+/// Text of a message, which may contain text of the file.
 fn readable(text: &str) -> String {
     shortened(&visible(text), LONGEST_WORDS).into_owned()
 }
@@ -102,7 +102,7 @@ fn readable_pointer(pointer: &str) -> String {
     visible(&keys.collect::<Vec<_>>().join("/"))
 }
 
-/// The piece of a source line around a fault, and where its marks go.
+/// The excerpt of a source line around a fault, and the place of its marks.
 fn excerpt(
     source: &Source,
     line: usize,
@@ -112,7 +112,7 @@ fn excerpt(
     let text: Vec<char> = source.line(line).chars().collect();
     let before = (column - 1).min(text.len());
     let marked = source.slice(bytes);
-    // An object or a list is marked by its bracket, all else as far as the line goes.
+    // Only the bracket of an object or list is marked, other values up to the end of the line.
     let width = match marked.chars().next() {
         Some('{' | '[') | None => 1,
         _ => marked.chars().count(),
@@ -136,7 +136,7 @@ fn excerpt(
     }
     shown.extend(text[start..end].iter().map(|&c| match c {
         '\t' => ' ',
-        // One character for one, so that the marks stand where they should.
+        // Each character is replaced by one character, so the marks keep their place.
         c if visible(c.encode_utf8(&mut [0; 4])).len() > c.len_utf8() => '\u{fffd}',
         c => c,
     }));

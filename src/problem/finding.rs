@@ -1,4 +1,4 @@
-//! What is wrong with an entry of a document, before its place in the file is looked up.
+//! Findings: faults of a document without their place in the file.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ pub(super) enum Part {
     File,
 }
 
-/// A fault before its place in the file is looked up.
+/// A fault without its place in the file.
 #[derive(Clone, Debug)]
 pub(super) struct Finding {
     pub pointer: String,

@@ -1,21 +1,21 @@
-//! A problem without the parts of its scene that the functions asked for cannot see.
+//! A problem without the parts of its scene on which no requested function depends.
 
 use super::{Constraint, Objective, Problem, read};
 use crate::lower::{Lowering, Seen};
 
-/// What is left of a problem's scenes.
+/// The parts of a problem's scenes that are kept.
 #[derive(Clone, Debug)]
 pub(crate) struct Focus {
-    /// Bodies and functions that are kept.
+    /// Kept bodies and functions.
     pub seen: Seen,
-    /// What is left out of the whole scenes before they are integrated.
+    /// Reductions of the whole scenes.
     whole: Option<Lowering>,
 }
 
 impl Problem {
-    /// The problem of the functions `asked` and of the bodies that these or the event can see. Its
-    /// functions are numbered anew; objective and constraints that are not asked for are dropped. `None`
-    /// if nothing can be left out, nothing is asked for, or nothing shall be left out.
+    /// The problem reduced to the functions `asked` and to the bodies on which these or the event
+    /// depend. Its functions are renumbered; other functions, also objective and constraints, are
+    /// dropped. `None` if nothing is requested, or nothing can or may be removed.
     pub(crate) fn focused(&self, asked: &[usize]) -> Option<Self> {
         if asked.is_empty() || self.lowering.is_none() || self.focus.is_some() {
             return None;
@@ -59,7 +59,7 @@ impl Problem {
         Some(focused)
     }
 
-    /// The problem of the objective and the constraints alone, as [`Problem::focused`].
+    /// The problem reduced to objective and constraints; see [`Problem::focused`].
     pub(crate) fn for_optimisation(&self) -> Option<Self> {
         let objective = self.objective?.function;
         let constraints = self.constraints.iter().map(|own| own.function);
@@ -67,7 +67,7 @@ impl Problem {
         self.focused(&asked)
     }
 
-    /// The problem with all bodies again, if some were left out; its functions are those asked for.
+    /// The problem with all bodies, if some were removed; it keeps its functions.
     pub(crate) fn whole(&self) -> Option<Self> {
         let focus = self.focus.as_ref()?;
         let bodies = self.order.len();

@@ -1,4 +1,4 @@
-//! From the joints and drives of a file to those of a model.
+//! Makes the joints and drives of a model from those of a file.
 
 use super::placement::{Assembly, GROUND, split_location};
 use super::quantity::Quantity;
@@ -11,7 +11,7 @@ use crate::math::scalar::{length, unit};
 use crate::math::{Scalar, Vec3};
 use crate::model::{DegreeOfFreedom, Drive, Joint, JointFrame, JointKind, PrescribedMotion};
 
-/// The joints of a checked document, in its order, with their drives.
+/// The joints of a checked document with their drives, in its order.
 pub(crate) fn joints<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Joint<S>> {
     let one = |(name, written): (&String, &WrittenJoint)| Joint {
         drives: drives(document, assembly, name),
@@ -20,8 +20,8 @@ pub(crate) fn joints<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> 
     document.joints.iter().map(one).collect()
 }
 
-/// An orthonormal right-handed triad whose third axis is along `axis`; the first is along the
-/// ground axis that is farthest from it, as far as that is perpendicular.
+/// A right-handed orthonormal triad whose third axis is along `axis`. The first is the projection
+/// of the ground axis that is farthest from it.
 fn triad<S: Scalar>(axis: Vec3<S>) -> [Vec3<S>; 3] {
     let e3 = unit(axis);
     let farthest = (0..3)
@@ -32,14 +32,14 @@ fn triad<S: Scalar>(axis: Vec3<S>) -> [Vec3<S>; 3] {
     triad_with(e3, e1)
 }
 
-/// The triad with the unit vector `e3` and the first axis along `e1` as far as that is
-/// perpendicular.
+/// The right-handed triad with the unit vector `e3` and the first axis along the projection of
+/// `e1`.
 fn triad_with<S: Scalar>(e3: Vec3<S>, e1: Vec3<S>) -> [Vec3<S>; 3] {
     let e1 = unit(e1 - e3 * e3.dot(&e1));
     [e1, e3.cross(&e1), e3]
 }
 
-/// A joint without its drives; ground is always body B.
+/// A joint without its drives. Ground is always body B.
 fn joint<S: Scalar>(
     document: &Document,
     assembly: &Assembly<S>,
@@ -54,7 +54,7 @@ fn joint<S: Scalar>(
     let triad = match (axis, cross) {
         (None, _) => triad(Vec3::z()),
         (Some(axis), None) => triad(axis),
-        // e3 is fixed in body A and e1 in body B.
+        // e3 is fixed in body A, e1 in body B.
         (Some(axis), Some(cross)) => {
             let (e3, e1) = if a == 0 { (axis, cross) } else { (cross, axis) };
             triad_with(unit(e3), e1)
@@ -105,7 +105,7 @@ fn joint<S: Scalar>(
     }
 }
 
-/// Where a joint is on a body, from the origin of its axes.
+/// Position of a joint on a body, from the origin of the body's axes \[m\].
 pub(super) fn at<S: Scalar>(
     assembly: &Assembly<S>,
     place: &JointPlace,
@@ -166,7 +166,7 @@ fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> PrescribedMoti
     }
 }
 
-/// What a joint of this kind cannot do to a point mass: hold it beside itself, or turn it.
+/// Whether a joint of this kind may act on a point mass: it needs no extent and no rotation.
 pub(crate) fn holds_points(kind: JointKind) -> bool {
     matches!(kind, JointKind::Spherical | JointKind::Rod)
 }

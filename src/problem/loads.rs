@@ -1,4 +1,4 @@
-//! From the loads of a file to those of a model.
+//! Makes the loads of a model from those of a file.
 
 use super::placement::{Assembly, GROUND};
 use super::schema::Document;
@@ -136,8 +136,8 @@ fn joint<'a>(document: &'a Document, name: &str) -> (usize, &'a Joint) {
     (index, joint)
 }
 
-/// The motion of a joint along or about its axis that a load acts on: the one named, else the first;
-/// `None` if it has none.
+/// The degree of freedom of a joint on which a load acts: the named one, or the first; `None` if
+/// the joint has none.
 fn dof(joint: &Joint, motion: Option<Motion>) -> Option<DegreeOfFreedom> {
     match motion {
         Some(motion) => Some(named(motion)),
@@ -145,7 +145,7 @@ fn dof(joint: &Joint, motion: Option<Motion>) -> Option<DegreeOfFreedom> {
     }
 }
 
-/// The motion that a name in the file stands for.
+/// The degree of freedom of a name in the file.
 pub(crate) fn named(motion: Motion) -> DegreeOfFreedom {
     match motion {
         Motion::Turn => DegreeOfFreedom::Rotation,

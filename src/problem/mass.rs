@@ -7,15 +7,15 @@ use std::f64::consts::PI;
 
 /// Mass, centre of mass and inertia of a body.
 pub(crate) struct MassProperties<S> {
-    /// Mass (kg).
+    /// Mass \[kg\].
     pub mass: S,
-    /// Centre of mass from the origin of the body's axes (m).
+    /// Centre of mass from the origin of the body's axes \[m\].
     pub centre: Vec3<S>,
-    /// Inertia about the centre of mass in body axes (kg m²).
+    /// Inertia about the centre of mass, body axes \[kg m²\].
     pub inertia: Mat3<S>,
 }
 
-/// Mass properties at the design `x`. What a checked file cannot lack counts as zero here.
+/// Mass properties at the design `x`. Missing entries of a checked file are zero.
 pub(crate) fn mass_properties<S: Scalar>(body: &Body, x: &[S]) -> MassProperties<S> {
     let number = |quantity: &Option<Quantity>| quantity.map_or(S::zero(), |q| q.get(x));
     let mass = match (&body.shape, &body.density) {
@@ -36,14 +36,14 @@ pub(crate) fn mass_properties<S: Scalar>(body: &Body, x: &[S]) -> MassProperties
     }
 }
 
-/// The symmetric inertia matrix.
+/// The symmetric inertia matrix \[kg m²\].
 fn matrix<S: Scalar>(inertia: &Inertia, x: &[S]) -> Mat3<S> {
     let [xx, yy, zz] = [inertia.xx, inertia.yy, inertia.zz].map(|q| q.get(x));
     let [xy, xz, yz] = [inertia.xy, inertia.xz, inertia.yz].map(|q| q.get(x));
     Mat3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }
 
-/// Volume of a shape (m³).
+/// Volume of a shape \[m³\].
 pub(crate) fn volume<S: Scalar>(shape: &Shape, x: &[S]) -> S {
     match shape {
         Shape::Box { size } => size[0].get(x) * size[1].get(x) * size[2].get(x),
@@ -59,8 +59,8 @@ pub(crate) fn volume<S: Scalar>(shape: &Shape, x: &[S]) -> S {
     }
 }
 
-/// Principal moments of inertia per mass of a homogeneous shape about its centre (m²); any that are
-/// regular for a point, as nothing turns it.
+/// Principal moments of inertia per mass of a homogeneous shape about its centre \[m²\]. Those of a
+/// point are arbitrary positive values, because a point does not rotate.
 fn gyration<S: Scalar>(shape: &Shape, x: &[S]) -> Vec3<S> {
     let about = |r: S, l: S| (r * r * 0.5, (r * r * 3.0 + l * l) / 12.0);
     match shape {

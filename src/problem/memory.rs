@@ -1,9 +1,9 @@
-//! How much memory there is.
+//! The available memory.
 
 use std::path::Path;
 
-/// Memory that this process can still take (bytes): what the machine has, and what the control groups
-/// of the process leave it. `None` if the machine does not say.
+/// Memory that this process can still allocate \[bytes\]: limited by the machine and by the control
+/// groups of the process. `None` if it is unknown.
 pub(crate) fn available() -> Option<usize> {
     let machine = std::fs::read_to_string("/proc/meminfo").ok();
     let machine = machine.and_then(|text| of_machine(&text));
@@ -12,7 +12,7 @@ pub(crate) fn available() -> Option<usize> {
     machine.into_iter().chain(groups).min()
 }
 
-/// `MemAvailable` of /proc/meminfo (bytes).
+/// `MemAvailable` of /proc/meminfo \[bytes\].
 fn of_machine(text: &str) -> Option<usize> {
     let line = text
         .lines()
@@ -21,7 +21,7 @@ fn of_machine(text: &str) -> Option<usize> {
     kilobytes.parse::<usize>().ok()?.checked_mul(1024)
 }
 
-/// What a control group and those above it leave (bytes); `line` is one of /proc/self/cgroup.
+/// Memory left by a control group and those above it \[bytes\]; `line` is one of /proc/self/cgroup.
 fn of_group(line: &str) -> Option<usize> {
     let mut parts = line.splitn(3, ':').skip(1);
     let (controllers, path) = (parts.next()?, parts.next()?);

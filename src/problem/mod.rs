@@ -1,7 +1,7 @@
 //! The problem file: reading, faults, schema, and the map from a design to a scene.
 //!
-//! A file is read in steps, each of which reports all that it finds: JSON syntax; the shape of the
-//! document against its schema; what names, numbers and design variables mean together. Only a
+//! A file is read in steps: JSON syntax; the structure of the document by its schema; the meaning
+//! of names, numbers and design variables. Each step reports all faults that it finds. Only a
 //! document without a fault becomes a [`Problem`].
 
 mod blocks;
@@ -53,12 +53,12 @@ use crate::system::redundancy::Redundancy;
 use schema::Document;
 use std::path::Path;
 
-/// Which way an objective goes.
+/// Direction of the optimisation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sense {
-    /// As small as can be.
+    /// The smallest value is sought.
     Minimise,
-    /// As large as can be.
+    /// The largest value is sought.
     Maximise,
 }
 
@@ -67,7 +67,7 @@ pub(crate) enum Sense {
 pub(crate) struct Objective {
     /// Index of the function.
     pub function: usize,
-    /// Which way.
+    /// Direction.
     pub sense: Sense,
 }
 
@@ -84,12 +84,12 @@ pub(crate) struct Constraint {
     pub upper: f64,
 }
 
-/// Settings of the optimiser that a file may give.
+/// Settings of the optimiser in a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct OptimiserSettings {
     /// Algorithm.
     pub method: Option<Method>,
-    /// Scaled residual of the optimality conditions at which it stops.
+    /// The optimiser stops at this scaled residual of the optimality conditions.
     pub tolerance: Option<f64>,
     /// Largest violation of a constraint, in its own unit.
     pub constraint_tolerance: Option<f64>,
@@ -97,28 +97,29 @@ pub(crate) struct OptimiserSettings {
     pub iterations: Option<usize>,
     /// Largest number of simulations.
     pub evaluations: Option<usize>,
-    /// Longest wall time of the run (s).
+    /// Longest wall time of the run \[s\].
     pub seconds: Option<f64>,
-    /// Minimised objective below which the problem is called unbounded.
+    /// The problem is unbounded if the minimised objective falls below this value.
     pub unbounded_below: Option<f64>,
 }
 
-/// How a scene is integrated, as far as the file says.
+/// Settings of the integration in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Simulation {
-    /// The method; `None` if the scene chooses.
+    /// The method; `None` if it is chosen for the scene.
     pub method: Option<integrate::Method>,
     /// Steps or tolerance.
     pub spacing: Spacing,
-    /// Number of equal intervals at whose ends the motion is sampled, if the file says so.
+    /// Number of equal intervals at whose ends the motion is sampled, if the file gives it.
     pub samples: Option<usize>,
-    /// What a simulation may take, and who is told how far it is.
+    /// Limits of a simulation, and the observer of its progress.
     pub limits: integrate::Limits,
-    /// Memory that what is kept for gradients may take (bytes); `None` for a part of what there is.
+    /// Memory for the data that gradients need \[bytes\]; `None` for a share of the available
+    /// memory.
     pub memory: Option<usize>,
 }
 
-/// A problem: a scene that depends on a design, what is asked of it, and how it is solved.
+/// A problem: a scene that depends on a design, its functions, and the settings of the solution.
 ///
 /// ```
 /// use flexbody::Problem;
@@ -141,40 +142,38 @@ pub struct Problem {
     pub(crate) simulation: Simulation,
     /// Design variables in the order of the file.
     pub(crate) variables: Vec<Variable>,
-    /// The function that is optimised, if any. A file with constraints and variables and without
-    /// objective asks for the feasible design nearest to its own: then it is the last function,
-    /// Σ ((x − x0)/scale)².
+    /// The function that is optimised, if any. Without an objective, a file with constraints and
+    /// variables requests the feasible design nearest to its own: the objective is then the last
+    /// function, Σ ((x − x0)/scale)².
     pub(crate) objective: Option<Objective>,
-    /// x0, where the file has no objective.
+    /// x0, if the file has no objective.
     nearest_to: Option<Vec<f64>>,
     /// Constraints in the order of the file.
     pub(crate) constraints: Vec<Constraint>,
-    /// Names of the functions in the order of the file, which is that of [`Scene::functions`].
+    /// Names of the functions in the order of the file and of [`Scene::functions`].
     pub(crate) function_names: Vec<String>,
     /// Settings of the optimiser.
     pub(crate) optimiser: OptimiserSettings,
-    /// The document with its overrides applied; a problem is made from it again by
-    /// [`Problem::parse`].
+    /// The document with its overrides applied. [`Problem::parse`] makes the same problem from it.
     pub(crate) document: serde_json::Value,
-    /// SHA-256 of the document without white space, in hexadecimal.
+    /// SHA-256 of the document without white space, hexadecimal.
     pub(crate) hash: String,
     /// The document with its numbers bound to the design variables.
     written: Document,
     /// Order in which the bodies are placed.
     order: Vec<usize>,
-    /// Joints whose rows follow in part from other joints at the start design. Those rows are left
-    /// out at every design.
+    /// Joints with redundant rows at the start design. These rows are left out at every design.
     pub(crate) redundant: Vec<Redundancy>,
-    /// The rows that are left out, by joint.
+    /// By joint: the rows that are left out.
     left_out: Vec<Vec<ConstraintRow>>,
-    /// What is left out of its scenes before they are integrated; `None` if nothing shall be.
+    /// Reductions of its scenes; `None` if none shall be made.
     pub(crate) lowering: Option<Lowering>,
-    /// The functions that are asked for and the bodies that they can see; `None` is all.
+    /// The requested functions and the bodies on which they depend; `None` for all.
     pub(crate) focus: Option<Focus>,
 }
 
 impl Problem {
-    /// Reads a problem file, with `overrides` in place of what it says.
+    /// Reads a problem file and applies `overrides`.
     ///
     /// # Errors
     /// All faults that are found, each with its place.
@@ -182,7 +181,7 @@ impl Problem {
         read::load(path, overrides)
     }
 
-    /// Reads a problem from its text; `file` is what faults call it.
+    /// Reads a problem from its text; `file` is its name in faults.
     ///
     /// # Errors
     /// All faults that are found, each with its place.
@@ -205,13 +204,13 @@ impl Problem {
         &self.function_names
     }
 
-    /// Bounds the memory \[bytes\] of what is kept of a motion for its gradients. The other steps are made
-    /// again from checkpoints.
+    /// Limits the memory for the data of a motion that its gradients need \[bytes\]. Other steps
+    /// are repeated from checkpoints.
     pub fn limit_memory(&mut self, bytes: usize) {
         self.simulation.memory = Some(bytes);
     }
 
-    /// The design that the file describes.
+    /// The design in the file.
     pub fn start(&self) -> Vec<f64> {
         self.variables
             .iter()
@@ -219,7 +218,7 @@ impl Problem {
             .collect()
     }
 
-    /// Makes `x`, moved inside the bounds, the start.
+    /// Makes `x` the start, after it is moved inside the bounds.
     pub(crate) fn restart(&mut self, x: &[f64]) {
         for (variable, &x) in self.variables.iter_mut().zip(x) {
             variable.start = x.clamp(variable.lower, variable.upper);
@@ -234,30 +233,28 @@ impl Problem {
         self.scene(&self.start()).functions[index].unit()
     }
 
-    /// The scene at the design `x`, analytic in `x`; one component per variable, each in the unit
-    /// of its numbers.
-    ///
-    /// What its lowering leaves out is left out of the model, where the design admits it.
+    /// The reduced scene at the design `x`, analytic in `x`. `x` has one component per variable, in
+    /// the unit of its numbers. The scene is not reduced if the design violates a condition.
     pub(crate) fn scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
         self.lowered_scene(x).0
     }
 
-    /// As [`Problem::scene`], and whether the design admits all that the lowering leaves out.
+    /// [`Problem::scene`], and whether the scene is reduced.
     pub(crate) fn lowered_scene<S: Scalar>(&self, x: &[S]) -> (Scene<S>, bool) {
         let mut scene = self.unlowered_scene(x);
         let all = self.lower(&mut scene);
         (scene, all)
     }
 
-    /// Leaves out of a scene what its lowering does; false if its design does not admit all of that,
-    /// and the scene stays as it is.
+    /// Applies the reductions to a scene and returns true. If its design violates a condition,
+    /// returns false and leaves the scene as it is.
     pub(crate) fn lower<S: Scalar>(&self, scene: &mut Scene<S>) -> bool {
         let lowering = self.lowering.as_ref();
         lowering.is_none_or(|lowering| lowering.apply(scene))
     }
 
-    /// The scene at the design `x` with nothing left out but what follows from other joints, and what
-    /// cannot be seen by the functions that a [focused](Problem::focused) problem asks for.
+    /// The scene at the design `x` without reductions. Redundant rows are left out, and the parts
+    /// on which no function of a [focused](Problem::focused) problem depends.
     pub(crate) fn unlowered_scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
         let mut scene = scene::scene(&self.written, &self.order, x);
         for (joint, left_out) in scene.model.joints.iter_mut().zip(&self.left_out) {
@@ -277,18 +274,18 @@ impl Problem {
         scene
     }
 
-    /// Velocity [m/s] and angular velocity [rad/s] in ground axes that the file gives each body as its
-    /// own; `None` if it gives it none.
+    /// By body: velocity [m/s] and angular velocity [rad/s] in ground axes, if the file gives them
+    /// for this body.
     pub(crate) fn own_velocities(&self, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
         scene::own_velocities(&self.written, x)
     }
 
-    /// The objective that the file states.
+    /// The objective, if the file states it.
     pub(crate) fn stated_objective(&self) -> Option<Objective> {
         self.objective.filter(|_| self.nearest_to.is_none())
     }
 
-    /// How the motion of the design `x` is drawn.
+    /// The data of a plot of the motion at the design `x`.
     pub(crate) fn drawing(&self, x: &[f64]) -> Drawing {
         drawing::drawing(&self.written, &self.order, x)
     }

@@ -1,20 +1,20 @@
-//! One-off changes of a document: `--set PATH=VALUE`.
+//! Changes of a document by `--set PATH=VALUE`.
 
 use super::finding::Finding;
 use super::pointer::{advice, all, is_below, join, nearest, nearest_pointer};
 use serde_json::Value;
 use std::fmt;
 
-/// A value that takes the place of one in the file.
+/// A value that replaces one in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Override {
     /// JSON Pointer to the value.
     pub path: String,
-    /// What to put there.
+    /// The new value.
     pub value: Value,
 }
 
-/// Why a text is not an override.
+/// The reason why a text is not an override.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum OverrideError {
     /// There is no equals sign.
@@ -26,10 +26,10 @@ pub enum OverrideError {
 }
 
 impl Override {
-    /// Reads `PATH=VALUE`: a JSON Pointer, and JSON (text that is not JSON stands for itself).
+    /// Reads `PATH=VALUE`: a JSON Pointer, and JSON. Text that is not JSON is taken as a string.
     ///
     /// # Errors
-    /// No equals sign, or a path that does not begin with a slash.
+    /// The text has no equals sign, or its path does not begin with a slash.
     pub fn parse(text: &str) -> Result<Self, OverrideError> {
         let (path, value) = text
             .split_once('=')
@@ -48,13 +48,13 @@ impl Override {
         is_below(pointer, &self.path)
     }
 
-    /// Puts the value in its place.
+    /// Replaces the value in `document`.
     pub(super) fn apply(&self, document: &mut Value) -> Result<(), Finding> {
         if let Some(place) = document.pointer_mut(&self.path) {
             *place = self.value.clone();
             return Ok(());
         }
-        // A key with a default may be missing; whether it is a key at all, the schema says.
+        // A key with a default may be missing. The schema decides whether the key exists.
         if let Some((above, key)) = self.path.rsplit_once('/')
             && let Some(Value::Object(object)) = document.pointer_mut(above)
         {
@@ -72,7 +72,7 @@ impl Override {
     }
 }
 
-/// Advice after a path that does not exist: the nearest one, or what there is where it ends.
+/// Advice about a path that does not exist: the nearest path, or the keys at its last valid part.
 pub(super) fn nearest_path(path: &str, document: &Value) -> Option<String> {
     let paths = all(document);
     if let Some(near) = nearest_pointer(path, paths.iter().map(String::as_str)) {

@@ -1,4 +1,4 @@
-//! Where the bodies are at the start, and points and axes seen from them.
+//! Poses of the bodies at the start, and points and axes relative to them.
 
 use super::mass::mass_properties;
 use super::quantity::{Quantity, Vector, vector};
@@ -8,22 +8,22 @@ use super::schema::mechanics::{Location, Point};
 use crate::math::rotation::{Quat, compose, from_axis_angle, matrix};
 use crate::math::{Mat3, Scalar, Vec3};
 
-/// What a body cannot lack once its file is checked.
+/// Message of a failed look-up. A checked file has all names.
 const CHECKED: &str = "names are checked when a problem is read";
 
 /// The name of the body that does not move.
 pub(crate) const GROUND: &str = "ground";
 
-/// Where a body is.
+/// Pose of a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pose<S> {
-    /// Origin of the body's axes in ground axes (m).
+    /// Origin of the body's axes, ground axes \[m\].
     pub origin: Vec3<S>,
-    /// Centre of mass from the origin, in body axes (m).
+    /// Centre of mass from the origin, body axes \[m\].
     pub centre: Vec3<S>,
-    /// Euler parameters, body axes to ground.
+    /// Euler parameters, from body axes to ground.
     pub orientation: Quat<S>,
-    /// Rotation matrix, body axes to ground.
+    /// Rotation matrix, from body axes to ground.
     pub rotation: Mat3<S>,
 }
 
@@ -38,13 +38,13 @@ impl<S: Scalar> Pose<S> {
         }
     }
 
-    /// Centre of mass in ground axes (m).
+    /// Centre of mass in ground axes \[m\].
     pub(crate) fn position(&self) -> Vec3<S> {
         self.origin + self.rotation * self.centre
     }
 }
 
-/// Splits `"body.point"` into the body and the point; the origin of its axes if there is no dot.
+/// Splits `"body.point"` into body and point. Without a dot there is no point.
 pub(crate) fn split_location(text: &str) -> (&str, Option<&str>) {
     match text.split_once('.') {
         Some((body, point)) => (body, Some(point)),
@@ -52,7 +52,7 @@ pub(crate) fn split_location(text: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// The bodies that a body is placed by.
+/// The bodies relative to which a body is placed.
 pub(crate) fn placed_by<'a>(document: &'a Document, body: &str) -> impl Iterator<Item = &'a str> {
     let place = document.bodies.get(body).map(|body| &body.place);
     let at = place.and_then(|place| match &place.at {
@@ -63,12 +63,12 @@ pub(crate) fn placed_by<'a>(document: &'a Document, body: &str) -> impl Iterator
     at.into_iter().chain(turn).filter(|name| *name != GROUND)
 }
 
-/// The bodies in an order in which each is placed after those that it is placed by.
+/// An order of the bodies in which each comes after those relative to which it is placed.
 ///
 /// # Errors
-/// The names along a cycle, its first one again at the end.
+/// The names along a cycle; the last is the first again.
 pub(crate) fn placement_order(document: &Document) -> Result<Vec<usize>, Vec<String>> {
-    /// Visits `name` after all that it is placed by; `path` holds those that wait for it.
+    /// Visits `name` after the bodies that it depends on; `path` holds the unfinished names.
     fn visit(
         document: &Document,
         name: &str,
@@ -100,7 +100,7 @@ pub(crate) fn placement_order(document: &Document) -> Result<Vec<usize>, Vec<Str
     Ok(order)
 }
 
-/// All bodies of a checked document where they are at the start of the design `x`.
+/// All bodies of a checked document at the start of the design `x`.
 pub(crate) struct Assembly<'a, S> {
     document: &'a Document,
     x: &'a [S],
@@ -122,15 +122,15 @@ impl<'a, S: Scalar> Assembly<'a, S> {
         assembly
     }
 
-    /// Where body `index` goes, once those that it is placed by are there.
+    /// Pose of body `index`, after the bodies relative to which it is placed.
     fn place(&self, index: usize) -> Pose<S> {
         let (name, body) = self.document.bodies.get_index(index).expect(CHECKED);
         let place = &body.place;
         let mut orientation = self
             .pose(place.relative_to.as_deref().unwrap_or(GROUND))
             .orientation;
-        // Each rotation is about the fixed axes of what the turn starts from, so the list is
-        // composed first and that body's orientation comes last.
+        // Each rotation is about fixed axes, so a later one multiplies from the left. The body
+        // from which the turn starts comes last.
         let mut turn = Pose::ground().orientation;
         for one in place.turn.iter().flat_map(|turns| turns.list()) {
             let axis = vector(&one.axis, self.x);
@@ -166,13 +166,13 @@ impl<'a, S: Scalar> Assembly<'a, S> {
             .map_or(Pose::ground(), |index| self.poses[index])
     }
 
-    /// A named point of a body, from the origin of its axes.
+    /// A named point of a body, from the origin of its axes \[m\].
     fn point(&self, body: &str, point: &str) -> Vec3<S> {
         let points = &self.document.bodies.get(body).expect(CHECKED).points;
         vector(points.get(point).expect(CHECKED), self.x)
     }
 
-    /// A point of a body (or of ground) from the origin of its axes.
+    /// A point of a body or of ground, from the origin of its axes \[m\].
     pub(crate) fn in_body(&self, body: &str, point: &Point) -> Vec3<S> {
         match point {
             Point::Named(name) => self.point(body, name),
@@ -180,27 +180,27 @@ impl<'a, S: Scalar> Assembly<'a, S> {
         }
     }
 
-    /// A named place in ground axes.
+    /// A named point in ground axes \[m\].
     pub(crate) fn named(&self, text: &str) -> Vec3<S> {
         let (body, _) = split_location(text);
         let pose = self.pose(body);
         pose.origin + pose.rotation * self.named_in_body(text)
     }
 
-    /// A named place from the origin of the axes of the body that it belongs to.
+    /// A named point from the origin of the axes of its body \[m\].
     pub(crate) fn named_in_body(&self, text: &str) -> Vec3<S> {
         let (body, point) = split_location(text);
         point.map_or(Vec3::zeros(), |point| self.point(body, point))
     }
 
-    /// A point of a body (or of ground) from the origin of its axes, given by its ground
-    /// coordinates at the start.
+    /// A point given by its ground coordinates at the start, from the origin of the axes of a body
+    /// or of ground \[m\].
     pub(crate) fn at_ground(&self, body: &str, point: &Vector) -> Vec3<S> {
         let pose = self.pose(body);
         pose.rotation.tr_mul(&(self.ground(point) - pose.origin))
     }
 
-    /// An end of a rod or spring on its body (or on ground) from the centre of mass.
+    /// An end of a rod or spring, from the centre of mass of its body (or from the origin) \[m\].
     pub(crate) fn end(&self, between: &[String; 2], at: &Ends, side: usize) -> Vec3<S> {
         let name = &between[side];
         let point = match at {
@@ -210,17 +210,17 @@ impl<'a, S: Scalar> Assembly<'a, S> {
         point - self.pose(name).centre
     }
 
-    /// A number of the file at this design.
+    /// Value of a number of the file at this design.
     pub(crate) fn quantity(&self, quantity: &Quantity) -> S {
         quantity.get(self.x)
     }
 
-    /// A vector of the file at this design.
+    /// Value of a vector of the file at this design.
     pub(crate) fn ground(&self, components: &Vector) -> Vec3<S> {
         vector(components, self.x)
     }
 
-    /// A joint's axis in ground axes, of the length in the file.
+    /// Axis of a joint in ground axes; its length is that in the file.
     pub(crate) fn axis(&self, axis: &Axis) -> Vec3<S> {
         match axis {
             Axis::Ground(axis) => vector(axis, self.x),

@@ -1,4 +1,4 @@
-//! JSON Pointers (RFC 6901) and the nearest of several names.
+//! JSON Pointers (RFC 6901), and the nearest of several names.
 
 use serde_json::Value;
 
@@ -24,7 +24,7 @@ pub(crate) fn is_below(pointer: &str, above: &str) -> bool {
         .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 
-/// Pointers to every value of a document, its root left out.
+/// Pointers to every value of a document except its root.
 pub(crate) fn all(value: &Value) -> Vec<String> {
     fn collect(value: &Value, pointer: &str, list: &mut Vec<String>) {
         if !pointer.is_empty() {
@@ -49,8 +49,8 @@ pub(crate) fn all(value: &Value) -> Vec<String> {
     list
 }
 
-/// How many letters of `wanted` must change to make `name`, cases and separators aside; `None` if
-/// that is more than a third of them.
+/// Edit distance of two names, without case and separators; `None` if it exceeds a third of the
+/// characters of `wanted`.
 fn distance(wanted: &str, name: &str) -> Option<usize> {
     let plain = |name: &str| name.to_lowercase().replace(['_', '-', ' '], "");
     let (wanted, name) = (plain(wanted), plain(name));
@@ -70,8 +70,8 @@ pub(crate) fn nearest<'a>(
         .map(|(_, name)| name)
 }
 
-/// The pointer nearest to `wanted`, if one is near: each key is near its own, or keys between are
-/// left out.
+/// The pointer nearest to `wanted`, if one is near: each key is near its counterpart, or keys in
+/// between are missing.
 pub(crate) fn nearest_pointer<'a>(
     wanted: &str,
     pointers: impl Iterator<Item = &'a str> + Clone,
@@ -98,7 +98,7 @@ pub(crate) fn nearest_pointer<'a>(
         .or_else(|| pointers.clone().find(|pointer| leaves_out(pointer)))
 }
 
-/// Advice after a wrong name: the nearest valid one, else all of them; `what` they are.
+/// Advice about a wrong name: the nearest valid one, or all; `what` is their kind.
 pub(crate) fn advice<'a>(
     wanted: &str,
     what: &str,

@@ -1,4 +1,4 @@
-//! What cannot be asked of point masses: to be held, pulled or turned beside their own place.
+//! Joints and loads that a point mass does not admit: they need extent or rotation.
 
 use super::Problem;
 use super::finding::Finding;
@@ -11,10 +11,10 @@ use super::schema::mechanics::Shape;
 use crate::math::Vec3;
 use crate::system::placement::length_scale;
 
-/// Distance, relative to the length scale, up to which two places are the same.
+/// Two points are the same up to this distance, relative to the length scale.
 const SAME: f64 = 1e-9;
 
-/// The first fault of a joint or load that a point mass cannot bear.
+/// The first joint or load that a point mass does not admit.
 pub(super) fn beside(problem: &Problem) -> Option<Finding> {
     let written = &problem.written;
     let is_point = |name: &str| {

@@ -1,4 +1,4 @@
-//! A document without its structural faults, so that the rest of it can be judged as well.
+//! Removes structural faults from a document, so that the rest can be checked.
 
 use super::finding::Finding;
 use super::pointer::{keys, nearest};
@@ -6,7 +6,7 @@ use super::schema::VERSION;
 use serde_json::{Map, Value, json};
 use std::collections::HashSet;
 
-/// Sections whose entries have names, and stand or fall each by itself.
+/// Sections with named entries that are independent of each other.
 const NAMED: [&str; 7] = [
     "bodies",
     "joints",
@@ -17,7 +17,7 @@ const NAMED: [&str; 7] = [
     "constraints",
 ];
 
-/// What was taken out of a document.
+/// The parts that were removed from a document.
 #[derive(Default)]
 pub(super) struct Damage {
     sections: HashSet<String>,
@@ -25,19 +25,19 @@ pub(super) struct Damage {
 }
 
 impl Damage {
-    /// True if something of a section was there but is at fault.
+    /// Whether a part of a section was removed.
     pub(crate) fn touches(&self, section: &str) -> bool {
         self.sections.contains(section) || self.entries.iter().any(|(own, _)| own == section)
     }
 
-    /// True if an entry of this name was there but is at fault.
+    /// Whether the entry of this name was removed.
     pub(crate) fn holds(&self, section: &str, name: &str) -> bool {
         let entry = (section.to_owned(), name.to_owned());
         self.sections.contains(section) || self.entries.contains(&entry)
     }
 }
 
-/// Takes out of `document` what the `findings` say is at fault, and fills in what is required.
+/// Removes the faulty parts of `findings` from `document` and adds missing required parts.
 pub(super) fn prune(document: &mut Map<String, Value>, findings: &[Finding]) -> Damage {
     let mut damage = Damage::default();
     for finding in findings {

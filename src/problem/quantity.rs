@@ -7,26 +7,26 @@ use serde::de::{Deserializer, Error, MapAccess, Visitor};
 use std::borrow::Cow;
 use std::fmt;
 
-/// A physical number. In a file it is always written as a number; those that the file's design
-/// variables point at are bound to them before the document is deserialised.
+/// A physical number. A file holds a plain number. Numbers of design variables are bound to them
+/// before the document is deserialised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Quantity {
     /// Value in the file.
     pub value: f64,
-    /// Index of the design variable that takes its place, if any.
+    /// Index of the design variable that replaces it, if any.
     pub variable: Option<usize>,
 }
 
-/// Three quantities: components of a vector.
+/// Three quantities: the components of a vector.
 pub(crate) type Vector = [Quantity; 3];
 
-/// Key of the design variable in the bound form of a quantity.
+/// Key of the design variable in the form of a bound quantity.
 const VARIABLE: &str = "variable";
-/// Key of the value in the bound form of a quantity.
+/// Key of the value in the form of a bound quantity.
 const VALUE: &str = "value";
 
 impl Quantity {
-    /// A number that no design changes.
+    /// A number that no design variable changes.
     pub(crate) fn fixed(value: f64) -> Self {
         Self {
             value,
@@ -39,7 +39,7 @@ impl Quantity {
         self.variable.map_or(S::from(self.value), |index| x[index])
     }
 
-    /// The form that [`Quantity`] deserialises from once it is bound to a design variable.
+    /// The form from which a bound [`Quantity`] is deserialised.
     pub(crate) fn bound(variable: usize, value: f64) -> serde_json::Value {
         serde_json::json!({ VARIABLE: variable, VALUE: value })
     }
@@ -50,7 +50,7 @@ pub(crate) fn vector<S: Scalar>(components: &Vector, x: &[S]) -> Vec3<S> {
     Vec3::from(components.map(|component| component.get(x)))
 }
 
-/// Components of a vector as they stand in the file.
+/// Components of a vector in the file.
 pub(crate) fn values(components: &Vector) -> Vec3<f64> {
     Vec3::from(components.map(|component| component.value))
 }

@@ -1,4 +1,4 @@
-//! From the text of a problem file to a problem, or all of its faults.
+//! Reads the text of a problem file: a problem, or all of its faults.
 
 use super::bounds;
 use super::check::check;
@@ -31,13 +31,13 @@ use sha2::{Digest, Sha256};
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Error allowed in a step where the file gives neither steps nor a tolerance.
+/// Default error per step, if the file gives neither steps nor a tolerance.
 const TOLERANCE: f64 = 1e-9;
 
-/// Name of the objective where a feasible design is sought.
+/// Name of the objective if the nearest feasible design is sought.
 const NEAREST: &str = "squared distance from the start";
 
-/// Memory that an optimisation takes for each pair of variables (bytes): some forty matrices.
+/// Memory of an optimisation per pair of variables \[bytes\]: about forty matrices.
 const OF_PAIR: usize = 350;
 
 /// Reads a problem file.
@@ -69,7 +69,7 @@ pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Fault
 
 /// Reads a problem from its text.
 pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result<Problem, Faults> {
-    // A byte order mark is allowed at the head of a text, but not in JSON.
+    // A text may begin with a byte order mark, JSON may not.
     let written = written.strip_prefix('\u{feff}').unwrap_or(written);
     let plain = || Source::plain(written);
     if let Some(finding) = bounds::exceeded(written) {
@@ -149,8 +149,8 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     }
 }
 
-/// The fault of more variables than memory suffices for: what a scene changes by each is looked at, and an
-/// optimisation takes matrices of their number.
+/// The fault of too many variables for the memory. Reductions examine the derivative of a scene by
+/// each variable, and an optimisation needs square matrices of their number.
 fn too_many(problem: &Problem) -> Option<Finding> {
     let count = problem.variables.len();
     let model = problem.unlowered_scene::<f64>(&problem.start()).model;
@@ -168,7 +168,7 @@ fn too_many(problem: &Problem) -> Option<Finding> {
     Some(Finding::new("/variables", found, expected))
 }
 
-/// What can be left out of the scenes of a problem.
+/// The reductions of the scenes of a problem.
 pub(super) fn lowering(problem: &Problem) -> Lowering {
     let variables: Vec<lower::Range> = problem
         .variables
@@ -185,7 +185,7 @@ pub(super) fn lowering(problem: &Problem) -> Lowering {
     Lowering::find(&real, &dual, &variables)
 }
 
-/// The fault of a spring or rod whose ends meet where the bodies are placed: it has no direction.
+/// The fault of a spring or rod of length zero in the placement: it has no direction.
 fn collapsed(problem: &Problem) -> Option<Finding> {
     let model = problem.scene(&problem.start()).model;
     let rod = (model.joints.iter())
@@ -203,10 +203,10 @@ fn collapsed(problem: &Problem) -> Option<Finding> {
     Some(Finding::new(pointer, "ends at the same place", expected))
 }
 
-/// Largest cosine between the axes of a universal joint that counts as none.
+/// Axes of a universal joint are perpendicular up to this cosine.
 const PERPENDICULAR: f64 = 1e-9;
 
-/// The fault of a universal joint whose axes are not perpendicular where the bodies are placed.
+/// The fault of a universal joint whose axes are not perpendicular in the placement.
 fn oblique(problem: &Problem) -> Option<Finding> {
     let start = problem.start();
     let assembly = Assembly::new(&problem.written, &problem.order, &start);
@@ -225,7 +225,7 @@ fn oblique(problem: &Problem) -> Option<Finding> {
     })
 }
 
-/// The fault of a drive of a motion that other joints and drives prescribe already.
+/// The fault of a drive whose motion other joints and drives prescribe already.
 fn driven_twice(problem: &Problem) -> Option<Finding> {
     let model = problem.scene(&problem.start()).model;
     let drives = &problem.written.drives;
@@ -247,7 +247,7 @@ fn driven_twice(problem: &Problem) -> Option<Finding> {
     if with <= without {
         return None;
     }
-    // The last drive without which less is prescribed twice.
+    // The last drive whose removal reduces the number of such motions.
     let superfluous = |(_, joint): &(&String, &str)| undriven(&[*joint]).is_some_and(|n| n < with);
     let mut named = drives
         .iter()
@@ -262,7 +262,7 @@ fn driven_twice(problem: &Problem) -> Option<Finding> {
     ))
 }
 
-/// The fault of joints that cannot start as they are given at the design of the file.
+/// The fault of joints that cannot start as given at the design of the file.
 fn unstarted(problem: &Problem) -> Option<Finding> {
     let failure = problem.unlowered_scene::<f64>(&problem.start()).unstarted?;
     let named = match &failure {
@@ -287,7 +287,7 @@ fn unstarted(problem: &Problem) -> Option<Finding> {
     Some(finding.of_key().hint(Some(hint.to_owned())))
 }
 
-/// The fault of joints that cannot be closed, or not uniquely, at the design of the file.
+/// The fault of joints that have no closed position, or no unique one, at the design of the file.
 fn unassembled(problem: &Problem) -> Option<Finding> {
     let model = problem.scene(&problem.start()).model;
     let numbering = Numbering::new(&model);
@@ -339,7 +339,7 @@ fn cannot_assemble(failure: &AssemblyFailure) -> Finding {
     finding.of_key().hint(Some(hint.to_owned()))
 }
 
-/// The fault of a key that stands twice.
+/// The fault of a key that occurs twice.
 fn twice(duplicate: &Duplicate) -> Finding {
     let Duplicate {
         key, first_line, ..
@@ -352,7 +352,7 @@ fn twice(duplicate: &Duplicate) -> Finding {
     }
 }
 
-/// The structures of a document.
+/// Deserialises a document.
 fn deserialise(document: &Value) -> Result<Document, Finding> {
     serde_path_to_error::deserialize(document).map_err(|error| {
         let pointer: String = error

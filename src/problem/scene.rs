@@ -18,7 +18,7 @@ use crate::math::{Scalar, Vec3};
 use crate::model::{Mobility, Model, RigidBody};
 use crate::system::failure::AssemblyFailure;
 
-/// Gravity where the file gives none (m/s²).
+/// Default gravity \[m/s²\].
 pub(crate) const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
 
 /// The scene of a checked document at the design `x`; bodies are placed in `order`.
@@ -59,7 +59,7 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
     }
 }
 
-/// A body at rest where it is placed.
+/// A body at rest as placed.
 fn body<S: Scalar>(
     document: &Document,
     assembly: &Assembly<S>,
@@ -84,8 +84,8 @@ fn body<S: Scalar>(
     }
 }
 
-/// Moves the bodies to where their joints start, and gives them their velocities. If the joints cannot
-/// start so, the bodies stay where they are placed and have the velocities of the file.
+/// Moves the bodies to the starts of their joints and sets their velocities. If this fails, the
+/// bodies stay as placed and have the velocities of the file.
 fn start<S: Scalar>(
     document: &Document,
     assembly: &Assembly<S>,
@@ -115,8 +115,8 @@ fn start<S: Scalar>(
     found
 }
 
-/// The velocity of the centre of mass at `position` and the angular velocity that a file gives a body,
-/// in ground axes.
+/// Velocity \[m/s\] of the centre of mass at `position`, and angular velocity \[rad/s\], that a
+/// file gives a body; ground axes.
 fn written_velocity<S: Scalar>(
     document: &Document,
     body: &Body,
@@ -143,7 +143,7 @@ fn written_velocity<S: Scalar>(
     }
 }
 
-/// The velocities of their own that a file gives its bodies, as [`written_velocity`].
+/// By body: its own velocities, if the file gives them; see [`written_velocity`].
 pub(crate) fn own_velocities(document: &Document, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
     let own = |body: &Body| {
         body.velocity.as_ref()?;
@@ -152,7 +152,7 @@ pub(crate) fn own_velocities(document: &Document, x: &[f64]) -> Vec<Option<[Vec3
     document.bodies.values().map(own).collect()
 }
 
-/// What functions are made from.
+/// Makes the functions of a scene.
 struct Builder<'a, S> {
     document: &'a Document,
     assembly: &'a Assembly<'a, S>,
@@ -270,15 +270,15 @@ impl<S: Scalar> Builder<'_, S> {
             .expect("a function is of a body, not of ground")
     }
 
-    /// A point from the centre of mass, which is the default.
+    /// A point from the centre of mass \[m\]. The default is the centre of mass.
     fn point(&self, body: &str, point: &Option<Point>) -> Vec3<S> {
         point.as_ref().map_or(Vec3::zeros(), |point| {
             self.assembly.in_body(body, point) - self.assembly.pose(body).centre
         })
     }
 
-    /// The direction is made orthogonal to gravity, so that it stays horizontal when the design
-    /// turns gravity.
+    /// The projectile of a range. Its direction is made orthogonal to gravity, so that it stays
+    /// horizontal if the design turns gravity.
     fn projectile(&self, range: &written::Range) -> Projectile<S> {
         let along = range.direction.map_or(Vec3::x(), |d| vector(&d, self.x));
         let g = self.gravity;
@@ -290,8 +290,8 @@ impl<S: Scalar> Builder<'_, S> {
         }
     }
 
-    /// The rotation of the first body, seen from the second or from ground, about an axis in ground
-    /// axes where they are placed.
+    /// The rotation of the first body relative to the second or to ground, about an axis in ground
+    /// axes as placed.
     fn rotation(
         &self,
         [body, other]: [Option<&str>; 2],
@@ -317,7 +317,7 @@ impl<S: Scalar> Builder<'_, S> {
         }
     }
 
-    /// The angle of a joint, as drives and torsion springs have it.
+    /// The angle of a joint, as in drives and torsion springs.
     fn joint_angle(&self, name: &str) -> Rotation<S> {
         let joint = &self.document.joints[name];
         let [first, second] = joint.between().each_ref().map(|body| Some(body.as_str()));
@@ -356,8 +356,8 @@ impl<S: Scalar> Builder<'_, S> {
     }
 }
 
-/// The range function of this name, and the parameter ρ of its aggregation; none for its final
-/// value. `None` if there is no such function or nothing is let go in it.
+/// The range function of this name, and the parameter ρ of its aggregation (`None` for its final
+/// value). `None` if there is no such function or it releases no projectile.
 pub(crate) fn released<'a>(
     document: &'a Document,
     name: &str,

@@ -1,4 +1,4 @@
-//! The text of a problem file: where each key and value stands.
+//! The text of a problem file, with the places of its keys and values.
 
 use super::pointer::join;
 use std::collections::HashMap;
@@ -9,11 +9,11 @@ use std::ops::Range;
 pub(crate) struct Source {
     text: String,
     spans: HashMap<String, Span>,
-    /// Keys that stand twice in an object.
+    /// Keys that occur twice in an object.
     pub duplicates: Vec<Duplicate>,
 }
 
-/// A key that stands twice in an object.
+/// A key that occurs twice in an object.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Duplicate {
     /// Pointer to the entry.
@@ -22,7 +22,7 @@ pub(crate) struct Duplicate {
     pub key: String,
     /// Bytes of the second key.
     pub bytes: Range<usize>,
-    /// Line of the first.
+    /// Line of the first key.
     pub first_line: usize,
 }
 
@@ -34,7 +34,7 @@ struct Span {
 }
 
 impl Source {
-    /// A text without an index: places by byte only.
+    /// A text without an index: it gives only the places of bytes.
     pub(crate) fn plain(text: &str) -> Self {
         Self {
             text: text.to_owned(),
@@ -65,7 +65,7 @@ impl Source {
         self.text.lines().nth(line.saturating_sub(1)).unwrap_or("")
     }
 
-    /// A piece of the text up to the end of its first line.
+    /// The first line of a part of the text.
     pub(crate) fn slice(&self, bytes: Range<usize>) -> &str {
         let piece = self.text.get(bytes).unwrap_or("");
         piece.lines().next().unwrap_or("")
@@ -94,7 +94,7 @@ impl Source {
     }
 }
 
-/// Walks over a valid text; its depth is limited by the parser that found it valid.
+/// Scans a valid text. The parser that accepted it has limited its depth.
 struct Scanner {
     source: Source,
     at: usize,
@@ -111,7 +111,8 @@ impl Scanner {
         }
     }
 
-    /// Moves over white space and one of the marks `{ } [ ] , :` if it comes next.
+    /// Skips white space, and the next byte if it is this mark: `{ } [ ] , :`. Returns whether it
+    /// is.
     fn take(&mut self, mark: u8) -> bool {
         self.skip_space();
         let found = self.peek() == mark;
@@ -119,7 +120,7 @@ impl Scanner {
         found
     }
 
-    /// Moves over a string and returns its bytes, quotes included.
+    /// Skips a string and returns its bytes, including the quotes.
     fn string(&mut self) -> Range<usize> {
         self.skip_space();
         let start = self.at;

@@ -1,17 +1,19 @@
-//! How fast joints start: velocities of the bodies so that the joints have the rates that the file
-//! gives them.
+//! Initial rates of joints: velocities of the bodies at which the joints have the rates of the
+//! file.
 //!
-//! Blocks of joints are taken from ground outwards (see [`super::blocks`]). A joint in no loop gives the
-//! body beyond it the velocity field of the near body, what the velocities of the file make of their
-//! relative motion, and what its rates lack in that,
+//! The blocks of joints are processed from ground outwards (see [`super::blocks`]). Behind a joint
+//! in no loop, the velocity field of the far body is that of the near body, plus their relative
+//! motion by the velocities of the file, plus the difference between the prescribed rates and the
+//! file's:
 //!
 //! ```text
 //! ω + e (φ̇ − φ̇_file),     ẋ + e × (x − P) (φ̇ − φ̇_file) + e (σ̇ − σ̇_file).
 //! ```
 //!
-//! In loops the velocities relative to the root are those nearest to the file's, in the metric of the
-//! mass, that the joints and rates admit. What lies beyond moves along. Velocities of the file that the
-//! joints do not admit are projected last, all together, with the rates as further rows.
+//! In loops, the velocities relative to the root are those nearest to the file's (in the metric of
+//! the mass) that satisfy joints and rates. Bodies behind a loop move with it. Velocities of the
+//! file that violate the joints are projected last, all together, with the rates as additional
+//! rows.
 
 use super::blocks::Block;
 use super::starts::{Asked, DOFS, Hinge, Starts, hinge, put};
@@ -25,9 +27,9 @@ use crate::system::nearest::nearest;
 /// The velocity field of a rigid body.
 #[derive(Clone, Copy, Debug)]
 struct Twist<S: Scalar> {
-    /// Angular velocity in ground axes (rad/s).
+    /// Angular velocity, ground axes \[rad/s\].
     omega: Vec3<S>,
-    /// Velocity of the field at the ground's origin (m/s).
+    /// Velocity of the field at the origin \[m/s\].
     origin: Vec3<S>,
 }
 
@@ -47,7 +49,7 @@ impl<S: Scalar> Twist<S> {
         }
     }
 
-    /// Velocity of the field at a point.
+    /// Velocity of the field at a point \[m/s\].
     fn at(&self, point: &Vec3<S>) -> Vec3<S> {
         self.origin + self.omega.cross(point)
     }
@@ -66,24 +68,24 @@ impl<S: Scalar> Twist<S> {
         }
     }
 
-    /// Gives a body this velocity.
+    /// Sets the velocities of a body.
     fn give(&self, body: &mut RigidBody<S>) {
         body.velocity = self.at(&body.position);
         body.angular_velocity = matrix(&body.orientation).tr_mul(&self.omega);
     }
 }
 
-/// Gives the bodies of `model` the velocities that the rates of joints make.
+/// Sets the velocities of the bodies of `model` that follow from the rates of its joints.
 ///
 /// # Errors
-/// The joint that cannot start at the rate that it is given.
+/// The joint that cannot start at its rate.
 pub(super) fn set<S: Scalar>(
     starts: &Starts<S>,
     model: &mut Model<S>,
 ) -> Result<(), AssemblyFailure> {
     let groups = starts.groups(model, Asked::Rate);
     let mut closed = model.clone();
-    // Joints that are open are closed as the start of the simulation does it.
+    // Open joints are closed as at the start of a simulation.
     for (bodies, joints) in &groups {
         if !starts.is_consistent(bodies, joints) {
             let mut part = starts.part(&closed, (None, bodies), joints);
@@ -135,7 +137,7 @@ pub(super) fn set<S: Scalar>(
     Ok(())
 }
 
-/// What the rates of a joint in no loop lack in the velocities of the file.
+/// Difference between the rates of a joint in no loop and those that the file's velocities give.
 fn lacking<S: Scalar>(
     starts: &Starts<S>,
     model: &Model<S>,
@@ -159,8 +161,7 @@ fn lacking<S: Scalar>(
     })
 }
 
-/// What the rates of loops change of the velocities of the file, each `None` if none of the joints has
-/// one.
+/// Changes of the file's velocities by the rates in loops, by body; `None` if no joint has a rate.
 fn of_loops<S: Scalar>(
     starts: &Starts<S>,
     model: &Model<S>,

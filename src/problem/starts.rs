@@ -1,16 +1,16 @@
-//! Where joints start: bodies are moved from where they are placed so that the joints have the angles
-//! and displacements that the file gives them.
+//! Initial positions of joints: moves the placed bodies so that the joints have the angles and
+//! displacements of the file.
 //!
-//! Blocks of joints are taken from ground outwards (see [`super::blocks`]). A joint in no loop moves what
-//! lies beyond it as one rigid body,
+//! The blocks of joints are processed from ground outwards (see [`super::blocks`]). A joint in no
+//! loop moves all bodies behind it as one rigid body,
 //!
 //! ```text
-//! x ↦ P + R(e, φ) (x − P) + σ e,     P the joint's point beyond it, e its axis on the near side.
+//! x ↦ P + R(e, φ) (x − P) + σ e,     P its point on the far body, e its axis on the near body.
 //! ```
 //!
-//! The bodies of loops go to the nearest position at which the joints have the given fraction of φ and σ,
-//! in [`STEPS`] steps, each from where the last one ended, with the block's root held. What lies beyond
-//! them moves along. Joints that are open as the bodies are placed are closed last, all together.
+//! Bodies in loops go to the nearest position at which the joints have a fraction of φ and σ. The
+//! fraction grows in [`STEPS`] steps, and the root of the block is held. Bodies behind a loop move
+//! with it. Joints that are open in the placement are closed last, all together.
 
 use super::blocks::{Block, Blocks};
 use super::placement::Assembly;
@@ -28,23 +28,23 @@ use crate::system::failure::AssemblyFailure;
 use crate::system::nearest::nearest;
 use crate::system::redundancy;
 
-/// Steps in which the joints of loops go to their starts.
+/// Number of steps in which the joints of loops go to their starts.
 const STEPS: usize = 16;
 
-/// Both motions of a joint.
+/// Both degrees of freedom of a joint.
 pub(super) const DOFS: [DegreeOfFreedom; 2] =
     [DegreeOfFreedom::Rotation, DegreeOfFreedom::Translation];
 
-/// What a file says of the start of a joint's motion.
+/// The start of one motion of a joint in the file.
 #[derive(Clone, Debug)]
 struct Given<S> {
     joint: usize,
     dof: DegreeOfFreedom,
-    /// Angle (rad) or displacement (m), and its rate.
+    /// Angle \[rad\] or displacement \[m\], and its rate.
     values: [Option<S>; 2],
 }
 
-/// What is asked of a joint: its place or its rate.
+/// What is prescribed of a joint: position or rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Asked {
     Place,
@@ -55,14 +55,14 @@ pub(super) enum Asked {
 pub(crate) struct Starts<S> {
     given: Vec<Given<S>>,
     pub(super) blocks: Blocks,
-    /// Whether the joints are closed wherever the bodies are placed.
+    /// By joint: whether it is closed in every placement.
     closed: Vec<bool>,
-    /// Whether the file gives a body a velocity.
+    /// By body: whether the file gives it a velocity.
     moving: Vec<bool>,
 }
 
 impl<S: Scalar> Starts<S> {
-    /// The starts of a checked document, whose joints are those of `model`; `None` if it gives none.
+    /// The starts of a checked document with the joints of `model`; `None` if it has none.
     pub(crate) fn of(
         document: &Document,
         assembly: &Assembly<S>,
@@ -98,7 +98,7 @@ impl<S: Scalar> Starts<S> {
         })
     }
 
-    /// What the file or a drive says of a joint's motion.
+    /// Value that the file or a drive prescribes for a joint.
     pub(super) fn value(
         &self,
         model: &Model<S>,
@@ -120,7 +120,7 @@ impl<S: Scalar> Starts<S> {
         given.values[asked as usize]
     }
 
-    /// Starts of these joints that the file gives.
+    /// The starts that the file gives these joints.
     fn given<'a>(
         &'a self,
         joints: &'a [usize],
@@ -133,8 +133,8 @@ impl<S: Scalar> Starts<S> {
         self.given.iter().filter_map(here)
     }
 
-    /// The groups of joined bodies, without ground, in which the file gives such a start: their bodies
-    /// and joints.
+    /// Groups of connected bodies in which the file gives such a start: bodies and joints. Ground
+    /// does not connect bodies.
     pub(super) fn groups(&self, model: &Model<S>, asked: Asked) -> Vec<(Vec<usize>, Vec<usize>)> {
         let group = &self.blocks.group;
         let mut firsts: Vec<usize> = (self.given.iter())
@@ -152,7 +152,7 @@ impl<S: Scalar> Starts<S> {
         firsts.into_iter().map(members).collect()
     }
 
-    /// Whether the joints of a group are closed wherever they start, as they form no loop.
+    /// Whether the joints of a group are closed at every start: they form no loop.
     fn is_closed(&self, joints: &[usize]) -> bool {
         let loops = self
             .blocks
@@ -165,15 +165,15 @@ impl<S: Scalar> Starts<S> {
                 .any(|joint| joints.contains(joint))
     }
 
-    /// Whether velocities that follow from rates need no projection.
+    /// Whether velocities from rates need no projection.
     pub(super) fn is_consistent(&self, bodies: &[usize], joints: &[usize]) -> bool {
         self.is_closed(joints) && !bodies.iter().any(|&body| self.moving[body])
     }
 
-    /// Moves the bodies of `model` to where the joints start.
+    /// Moves the bodies of `model` to the starts of their joints.
     ///
     /// # Errors
-    /// The joint that cannot start as it is given.
+    /// The joint that cannot start as given.
     pub(crate) fn place(&self, model: &mut Model<S>) -> Result<(), AssemblyFailure> {
         let groups = self.groups(model, Asked::Place);
         let mut moves: Vec<Option<Move<S>>> = vec![None; model.bodies.len()];
@@ -212,7 +212,7 @@ impl<S: Scalar> Starts<S> {
         Ok(())
     }
 
-    /// How a joint in no loop moves the body beyond it.
+    /// Motion of the body `beyond` a joint in no loop; `None` if the joint has no start.
     fn turned(&self, model: &Model<S>, joint: usize, beyond: usize) -> Option<Move<S>> {
         let [angle, shift] = DOFS.map(|dof| self.value(model, joint, dof, Asked::Place));
         if angle.is_none() && shift.is_none() {
@@ -229,7 +229,7 @@ impl<S: Scalar> Starts<S> {
         })
     }
 
-    /// How the joints of loops move their bodies, each `None` if none of them has a start.
+    /// Motions of the bodies of a loop; `None` if no joint has a start.
     fn closed_loops(
         &self,
         model: &Model<S>,
@@ -267,7 +267,7 @@ impl<S: Scalar> Starts<S> {
         Ok(bodies.map(moved).collect())
     }
 
-    /// A part of the model: the `bodies`, then the body `root`, which is held, and the `joints`.
+    /// A part of the model: the `bodies`, then the fixed body `root`, and the `joints`.
     pub(super) fn part(
         &self,
         model: &Model<S>,
@@ -295,7 +295,7 @@ impl<S: Scalar> Starts<S> {
             held.mobility = Mobility::fixed();
             (held.velocity, held.angular_velocity) = (Vec3::zeros(), Vec3::zeros());
         }
-        // Point masses do not turn.
+        // Point masses do not rotate.
         for body in moving {
             if body.inertia.iter().all(|x| x.re() == 0.0) {
                 body.mobility = Mobility::point();
@@ -304,8 +304,8 @@ impl<S: Scalar> Starts<S> {
         part
     }
 
-    /// Lets drives hold what the file gives of the joints of a part: a fraction of their places, or
-    /// their rates where they are.
+    /// Adds drives that prescribe the starts of a part's joints: a fraction of their positions, or
+    /// their rates at the present position.
     pub(super) fn drive(&self, part: &mut Model<S>, joints: &[usize], asked: Asked, fraction: f64) {
         for (joint, dof, value) in self.given(joints, asked) {
             let coefficients = match asked {
@@ -319,14 +319,14 @@ impl<S: Scalar> Starts<S> {
         }
     }
 
-    /// Refuses a start that the other joints of a part, their drives and earlier starts determine.
+    /// Rejects a start that other joints of a part, their drives and earlier starts determine.
     pub(super) fn check_free(
         &self,
         part: &Model<S>,
         joints: &[usize],
         asked: Asked,
     ) -> Result<(), AssemblyFailure> {
-        // Infinitesimal parts are those of a design that was judged by its values.
+        // With infinitesimal parts: the same design was checked in values.
         if S::INFINITESIMAL {
             return Ok(());
         }
@@ -355,7 +355,7 @@ impl<S: Scalar> Starts<S> {
     }
 }
 
-/// Whether a joint is closed wherever its bodies are placed.
+/// Whether a joint is closed in every placement of its bodies.
 fn closes(document: &Document, joint: &WrittenJoint) -> bool {
     let is_point = |body: &String| {
         let body = document.bodies.get(body);
@@ -371,7 +371,7 @@ fn closes(document: &Document, joint: &WrittenJoint) -> bool {
     }
 }
 
-/// Puts bodies where q says.
+/// Sets the positions of bodies from q.
 pub(super) fn put<S: Scalar>(model: &mut Model<S>, bodies: &[usize], q: &[S]) {
     for (&body, q) in bodies.iter().zip(q.chunks(7)) {
         let body = &mut model.bodies[body];
@@ -379,7 +379,7 @@ pub(super) fn put<S: Scalar>(model: &mut Model<S>, bodies: &[usize], q: &[S]) {
     }
 }
 
-/// How a body is moved: x ↦ R x + shift.
+/// A rigid motion of a body: x ↦ R x + shift.
 #[derive(Clone, Copy, Debug)]
 struct Move<S> {
     turn: Quat<S>,
@@ -388,7 +388,7 @@ struct Move<S> {
 }
 
 impl<S: Scalar> Move<S> {
-    /// This move after another.
+    /// Composition: first `first`, then this motion.
     fn after(&self, first: &Self) -> Self {
         Self {
             turn: compose(&self.turn, &first.turn),
@@ -403,17 +403,17 @@ impl<S: Scalar> Move<S> {
     }
 }
 
-/// A joint in no loop, seen from the body beyond it.
+/// A joint in no loop, relative to the body beyond it.
 pub(super) struct Hinge<S> {
-    /// Its axis on the near side in ground axes.
+    /// Its axis on the near body, ground axes.
     pub axis: Vec3<S>,
-    /// Its point on the body beyond it in ground axes.
+    /// Its point on the body beyond it, ground axes \[m\].
     pub point: Vec3<S>,
-    /// 1 if the body beyond it is body A, whose motion against body B is that of the joint, or else −1.
+    /// 1 if the body beyond it is body A, whose motion relative to B is that of the joint; else −1.
     pub sign: S,
 }
 
-/// A joint in no loop, seen from the body `beyond` it.
+/// The [`Hinge`] of a joint in no loop with the body `beyond` it.
 pub(super) fn hinge<S: Scalar>(model: &Model<S>, joint: usize, beyond: usize) -> Hinge<S> {
     let [a, b] = frames(model, joint);
     let first = model.joints[joint].body_a == beyond;
@@ -425,7 +425,7 @@ pub(super) fn hinge<S: Scalar>(model: &Model<S>, joint: usize, beyond: usize) ->
     }
 }
 
-/// The frames of a joint in ground axes, where the bodies of the model are.
+/// The frames of a joint in ground axes, at the present poses of the bodies.
 fn frames<S: Scalar>(model: &Model<S>, joint: usize) -> [JointFrame<S>; 2] {
     let joint = &model.joints[joint];
     let on = |body: &RigidBody<S>, frame: &JointFrame<S>| {
@@ -445,7 +445,7 @@ fn frames<S: Scalar>(model: &Model<S>, joint: usize) -> [JointFrame<S>; 2] {
     ]
 }
 
-/// The angle or displacement of a joint where the bodies of the model are.
+/// The angle \[rad\] or displacement \[m\] of a joint at the present poses of the bodies.
 fn place<S: Scalar>(model: &Model<S>, joint: usize, dof: DegreeOfFreedom) -> S {
     let [a, b] = frames(model, joint);
     match dof {

@@ -1,27 +1,27 @@
-//! A document against the JSON Schema: every structural fault, and every number with its unit.
+//! Checks a document by the JSON Schema: finds all structural faults, and all numbers with units.
 //!
-//! It knows the part of JSON Schema that the schema of problem files uses, and no more.
+//! It supports only the part of JSON Schema that the schema of problem files uses.
 
 use super::finding::Finding;
 use super::pointer::{advice, join, nearest};
 use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
-/// Largest number that is taken for a physical one: inertias, its fifth power, are finite still.
+/// Largest physical number: inertias, its fifth power, stay finite.
 const LARGEST: f64 = 1e50;
 
-/// What the schema says of a number.
+/// What the schema states about a number.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Number {
     /// Unit, if it has one.
     pub unit: String,
-    /// Why no design variable may point at it; `None` if one may.
+    /// The reason why no design variable may point at it; `None` if one may.
     pub barred: Option<String>,
-    /// Least value, and whether that value itself is excluded.
+    /// Smallest value, and whether that value itself is excluded.
     pub least: Option<(f64, bool)>,
 }
 
-/// What a walk over a document has found.
+/// Result of checking a document.
 #[derive(Default)]
 pub(super) struct Structure {
     /// Structural faults.
@@ -30,7 +30,7 @@ pub(super) struct Structure {
     pub numbers: IndexMap<String, Number>,
 }
 
-/// Walks over a document.
+/// Checks a document.
 pub(super) fn walk(document: &Value, schema: &Value) -> Structure {
     let mut walker = Walker {
         root: schema,
@@ -52,7 +52,7 @@ pub(super) fn describe(value: &Value) -> String {
     }
 }
 
-/// The alternatives of an enum: those that are a text, and those that are a key with a value.
+/// The alternatives of an enum: words, and keys with a value.
 struct Alternatives<'a> {
     words: Vec<&'a str>,
     keys: Vec<(&'a str, &'a Value)>,
@@ -71,7 +71,7 @@ struct Walker<'a> {
 }
 
 impl<'a> Walker<'a> {
-    /// The schema that a reference leads to.
+    /// Resolves a reference.
     fn follow(&self, schema: &'a Value) -> &'a Value {
         match schema["$ref"]
             .as_str()
@@ -140,7 +140,7 @@ impl<'a> Walker<'a> {
         }
         for key in schema["required"].as_array().into_iter().flatten() {
             let key = key.as_str().unwrap_or_default();
-            // A key that is misspelt is there.
+            // A misspelt key is not missing.
             if !object.contains_key(key) && !misspelt.contains(&key) {
                 let wanted = self.wanted(&schema["properties"][key]);
                 let finding = Finding::new(
@@ -238,7 +238,7 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// What a schema asks for, in words.
+    /// Describes what a schema requires.
     fn wanted(&self, schema: &'a Value) -> String {
         let schema = self.follow(schema);
         if let Some(alternatives) = alternatives(schema) {
@@ -288,7 +288,7 @@ impl<'a> Walker<'a> {
     }
 }
 
-/// Limits and unit of a number in words.
+/// Describes limits and unit of a number.
 fn limits(schema: &Value) -> String {
     let mut words = String::new();
     if let Some(above) = schema.get("exclusiveMinimum") {
@@ -305,7 +305,7 @@ fn limits(schema: &Value) -> String {
     }
 }
 
-/// The alternatives of an enum; `None` if the schema is not one.
+/// The alternatives of an enum; `None` if the schema is no enum.
 fn alternatives(schema: &Value) -> Option<Alternatives<'_>> {
     let mut found = Alternatives {
         words: Vec::new(),
@@ -331,7 +331,7 @@ fn alternatives(schema: &Value) -> Option<Alternatives<'_>> {
     Some(found)
 }
 
-/// True if the kind of a value is that of the schema.
+/// Whether a value has the type of the schema.
 fn kind_fits(value: &Value, schema: &Value) -> bool {
     match schema["type"].as_str() {
         Some("object") => value.is_object(),

@@ -1,8 +1,8 @@
-//! Faults of JSON syntax, in words that help.
+//! Messages for faults of JSON syntax.
 
 use super::finding::{Finding, Part};
 
-/// The fault that keeps `text` from being JSON.
+/// The syntax fault of `text`.
 pub(super) fn fault(text: &str, error: &serde_json::Error) -> Finding {
     let whole = |found: &str, expected: &str| Finding {
         part: Part::File,
@@ -28,7 +28,7 @@ pub(super) fn fault(text: &str, error: &serde_json::Error) -> Finding {
     }
 }
 
-/// What was found and expected, from the token at fault and the parser's message.
+/// Found and expected, from the faulty token and the parser's message.
 fn explain(token: &str, message: &str) -> (String, String) {
     let bare = token.trim_start_matches(['-', '+']).to_lowercase();
     let quoted = match token {
@@ -80,7 +80,7 @@ fn explain(token: &str, message: &str) -> (String, String) {
     (message.to_owned(), "JSON".into())
 }
 
-/// The byte that the parser stopped at.
+/// The byte at which the parser stopped.
 fn offset(text: &str, error: &serde_json::Error) -> usize {
     let before = error.line().saturating_sub(1);
     let line: usize = text.split_inclusive('\n').take(before).map(str::len).sum();
@@ -91,12 +91,12 @@ fn offset(text: &str, error: &serde_json::Error) -> usize {
     at
 }
 
-/// True for the characters of words and numbers.
+/// Whether a character belongs to words and numbers.
 fn in_token(c: char) -> bool {
     c.is_alphanumeric() || "+-._".contains(c)
 }
 
-/// The start of the word or number that ends at or holds the byte `at`.
+/// The first byte of the word or number that contains or ends at byte `at`.
 fn token_start(text: &str, at: usize) -> usize {
     let inside = text[at..].chars().next().is_some_and(in_token);
     if !inside {

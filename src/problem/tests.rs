@@ -17,8 +17,8 @@ fn close(a: Vec3<f64>, b: [f64; 3]) -> bool {
     (a - Vec3::from(b)).abs().max() < 1e-12
 }
 
-/// Every parameter of the scene by every variable: dual numbers against the complex step, and
-/// their value against the scene in f64.
+/// Derivatives of all parameters of the scene by every variable: dual numbers against the complex
+/// step. Their values equal those of the scene in f64.
 fn derivatives_agree(problem: &Problem, x: &[f64]) {
     let value = problem.scene(x).parameters();
     for (k, variable) in problem.variables.iter().enumerate() {
@@ -43,7 +43,8 @@ fn derivatives_agree(problem: &Problem, x: &[f64]) {
     }
 }
 
-/// Every parameter of the scene by every variable: dual numbers against central differences.
+/// Derivatives of all parameters of the scene by every variable: dual numbers against central
+/// differences.
 fn derivatives_are_slopes(problem: &Problem, x: &[f64]) {
     for k in 0..x.len() {
         let mut dual: Vec<Dual> = x.iter().map(|&x| Dual::from(x)).collect();
@@ -181,7 +182,8 @@ fn every_joint_is_closed_and_its_frames_are_orthonormal_at_any_design() {
     ] {
         let problem = committed(name);
         let mut x = problem.start();
-        // All but the points of the bodies, which move the bodies and not what is joined to ground.
+        // All variables except points of bodies: these move the bodies but not the ground side of
+        // joints.
         for (x, variable) in x.iter_mut().zip(&problem.variables) {
             *x += 0.1 * (variable.upper - *x);
         }
@@ -322,7 +324,7 @@ const EVERYTHING: &str = r#"{
   }
 }"#;
 
-/// [`EVERYTHING`] with a design variable at every number that can be one.
+/// [`EVERYTHING`] with a design variable at every number that admits one.
 fn everything() -> (serde_json::Value, Problem) {
     let mut document: serde_json::Value = serde_json::from_str(EVERYTHING).expect("JSON");
     let structure = structure::walk(&document, &schema());

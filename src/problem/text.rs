@@ -1,18 +1,18 @@
-//! Names and other words of a user in messages: nothing in them moves a terminal's cursor, breaks a line,
-//! turns the direction of reading, or fills the screen.
+//! Text of a user in messages. It cannot move the cursor of a terminal, break a line, change the
+//! direction of writing, or fill the screen.
 
 use super::finding::{Finding, Part};
 use super::pointer::join;
 use serde_json::Value;
 use std::borrow::Cow;
 
-/// Longest name (characters).
+/// Longest name [characters].
 const LONGEST: usize = 200;
-/// Entries of a file that are prose: they have lines, and are as long as need be.
+/// Entries of a file that are prose. They may have lines and any length.
 const PROSE: [&str; 2] = ["/description", "/$schema"];
 
-/// Whether a character is seen by what it does: controls, ends of lines and paragraphs, and those that
-/// turn the direction of reading. What scripts are written and joined with is not among them.
+/// Whether a character is invisible: controls, line and paragraph separators, and marks of writing
+/// direction. Joiners that scripts need are not among them.
 fn is_unseen(c: char) -> bool {
     c.is_control()
         || matches!(
@@ -32,17 +32,17 @@ fn escaped(text: &str, kept: &[char]) -> String {
     out
 }
 
-/// A text of one line with escapes, as in \u{1b}, in place of what is not seen.
+/// The text on one line, with escapes such as \u{1b} for invisible characters.
 pub(crate) fn visible(text: &str) -> String {
     escaped(text, &[])
 }
 
-/// As [`visible`], of a text that may have lines.
+/// As [`visible`], for a text that may have lines.
 pub(crate) fn visible_lines(text: &str) -> String {
     escaped(text, &['\n', '\t'])
 }
 
-/// The beginning and the end of a text that is longer than `most` characters.
+/// The beginning and the end of a text, if it is longer than `most` characters.
 pub(crate) fn shortened(text: &str, most: usize) -> Cow<'_, str> {
     let count = text.chars().count();
     if count <= most {
@@ -54,8 +54,7 @@ pub(crate) fn shortened(text: &str, most: usize) -> Cow<'_, str> {
     format!("{start}… ({count} characters) …{end}").into()
 }
 
-/// What is wrong with the names and words of a document: characters that are not seen, and names that are
-/// longer than any list of them could show.
+/// Faults of the names and texts of a document: invisible characters, and names that are too long.
 pub(super) fn faults(document: &Value) -> Vec<Finding> {
     let mut findings = Vec::new();
     walk(document, "", &mut findings);

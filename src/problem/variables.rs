@@ -1,4 +1,4 @@
-//! Design variables: the numbers that they point at, their start and their bounds.
+//! Design variables: their numbers in the file, their start and their bounds.
 
 use super::finding::Finding;
 use super::overrides::nearest_path;
@@ -16,19 +16,19 @@ pub struct Variable {
     pub name: String,
     /// JSON Pointers to the numbers that share its value.
     pub paths: Vec<String>,
-    /// The value in the file, where the design starts.
+    /// Value in the file: the start of the design.
     pub start: f64,
     /// Smallest value; −∞ if there is none.
     pub lower: f64,
     /// Largest value; +∞ if there is none.
     pub upper: f64,
-    /// Typical change, for the optimiser alone.
+    /// Typical change. Only the optimiser uses it.
     pub scale: f64,
     /// Unit of the numbers.
     pub unit: String,
 }
 
-/// Puts the bound form of the variables in their places.
+/// Replaces the numbers of the variables by their bound form.
 pub(super) fn bind(document: &mut Value, variables: &[Variable]) {
     for (index, variable) in variables.iter().enumerate() {
         for path in &variable.paths {
@@ -39,7 +39,7 @@ pub(super) fn bind(document: &mut Value, variables: &[Variable]) {
     }
 }
 
-/// The variables of a document, and what is wrong with them.
+/// The variables of a document, and their faults.
 pub(super) fn variables(
     written: &Document,
     document: &Value,
@@ -62,7 +62,7 @@ pub(super) fn variables(
 struct Checker<'a> {
     document: &'a Value,
     structure: &'a Structure,
-    /// The variable that owns each path.
+    /// By path: the variable that owns it.
     owners: HashMap<String, String>,
     findings: Vec<Finding>,
 }
@@ -128,7 +128,7 @@ impl<'a> Checker<'a> {
         });
         let lower = written.lower.unwrap_or(f64::NEG_INFINITY);
         let upper = written.upper.unwrap_or(f64::INFINITY);
-        // Bounds that are far away say nothing of what changes are typical.
+        // Wide bounds do not indicate a typical change.
         let most = WIDE * start.abs().max(1.0);
         let scale = match 0.5 * (upper - lower) {
             half if half.is_finite() => half.min(most),
@@ -146,7 +146,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The number that `path` points at, if a design variable may; `place` is where it is written.
+    /// The number at `path`, if a design variable may own it; `place` is the pointer to the path.
     fn number(&mut self, name: &str, place: &str, path: &str) -> Option<(f64, &'a Number)> {
         let expected = "the path of a physical number";
         let Some(value) = self.document.pointer(path) else {
@@ -184,8 +184,7 @@ impl<'a> Checker<'a> {
         None
     }
 
-    /// True if the path leads into an entry of the file that is at fault anyway: what lies there
-    /// is not judged twice.
+    /// Whether the path leads into an entry that has a fault already. It is not reported twice.
     fn is_damaged(&self, path: &str) -> bool {
         let keys = keys(path);
         let entry: String = keys.iter().take(2).map(|key| join("", key)).collect();
@@ -196,7 +195,7 @@ impl<'a> Checker<'a> {
         })
     }
 
-    /// Advice after a path that does not exist.
+    /// Advice about a path that does not exist.
     fn hint(&self, path: &str) -> Option<String> {
         let numbers = self.structure.numbers.iter();
         let mut open = numbers
@@ -258,7 +257,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// Largest typical change, in starting values (or units, of a start at zero).
+/// Largest typical change relative to the starting value (absolute for a small start).
 const WIDE: f64 = 1e3;
 
 /// A unit in brackets after a number.

@@ -50,7 +50,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks that the start of a joint says something of motions that it allows and no drive has.
+    /// Checks that a start gives values, for motions that the joint allows and no drive prescribes.
     fn start(&mut self, pointer: &str, (name, joint): (&str, &Joint), start: &JointStart) {
         if start.turn.is_none() && start.slide.is_none() {
             let expected = "\"turn\" or \"slide\"";
@@ -91,13 +91,13 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks one point on each of two bodies.
+    /// Checks a pair of points, one on each body.
     pub(super) fn pair(&mut self, at: &str, between: &[String; 2], pair: &PointPair) {
         self.point(&join(at, "a"), &between[0], &pair.a);
         self.point(&join(at, "b"), &between[1], &pair.b);
     }
 
-    /// Checks that a joint of a point mass is one that needs neither extent nor rotation.
+    /// Checks that a joint of a point mass needs neither extent nor rotation.
     fn point_masses(&mut self, pointer: &str, joint: &Joint) {
         for (k, name) in joint.between().iter().enumerate() {
             let body = self.document.bodies.get(name);
@@ -146,7 +146,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks that a drive's joint has the freedom that it prescribes.
+    /// Checks that the joint of a drive has the degree of freedom that it prescribes.
     fn driven(&mut self, pointer: &str, joint: &str, dof: DegreeOfFreedom) {
         let kinds = [
             JointKind::Revolute,

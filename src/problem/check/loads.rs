@@ -77,7 +77,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks the joint of a load or drive, which has to be of one of these kinds.
+    /// Checks that the joint of a load or drive exists and has one of these kinds.
     pub(super) fn loaded_joint(&mut self, pointer: &str, name: &str, kinds: &[JointKind]) {
         let pointer = join(pointer, "joint");
         let wanted = kinds.iter().map(|kind| kind.name()).collect::<Vec<_>>();
@@ -98,7 +98,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks that a joint allows the motion that a load acts on.
+    /// Checks that a joint has the degree of freedom on which a load acts.
     fn joint_motion(&mut self, pointer: &str, joint: &str, motion: Option<Motion>) {
         let (Some(joint), Some(motion)) = (self.document.joints.get(joint), motion) else {
             return;
@@ -117,7 +117,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks the table of a course.
+    /// Checks the table of a time function.
     pub(super) fn table(&mut self, pointer: &str, times: &[f64], values: &[Quantity]) {
         let table = join(pointer, "table");
         if times.len() < 2 || times.len() != values.len() {

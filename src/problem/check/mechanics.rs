@@ -33,7 +33,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks that a body has its mass properties once, and that they are those of some solid.
+    /// Checks that the mass properties of a body are given once, and are those of a solid.
     fn mass(&mut self, pointer: &str, body: &Body) {
         let mut wrong = |key: &str, found: &str, expected: &str| {
             let finding = Finding::new(join(pointer, key), found, expected);
@@ -92,7 +92,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks that an inertia is that of some solid.
+    /// Checks that an inertia is that of a solid.
     fn inertia(&mut self, pointer: &str, body: &Body) {
         let inertia = mass_properties::<f64>(body, &[]).inertia;
         if !is_inertia_of_solid(&inertia) {
@@ -132,7 +132,7 @@ impl Checker<'_> {
     }
 }
 
-/// A number to six digits.
+/// Rounds a number to six digits.
 fn rounded(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
 }

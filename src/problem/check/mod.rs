@@ -1,4 +1,4 @@
-//! What names and numbers of a document mean together: every fault that the schema cannot see.
+//! Checks the meaning of a document: names, numbers, and faults that a schema cannot express.
 
 mod joints;
 mod loads;
@@ -13,7 +13,7 @@ use super::quantity::{Vector, values};
 use super::schema::Document;
 use super::schema::mechanics::{Body, Point};
 
-/// All faults of a document; what is damaged is not judged.
+/// All faults of a document. Damaged parts are not checked.
 pub(super) fn check(document: &Document, damage: &Damage) -> Vec<Finding> {
     let mut checker = Checker {
         document,
@@ -28,7 +28,7 @@ pub(super) fn check(document: &Document, damage: &Damage) -> Vec<Finding> {
     checker.findings
 }
 
-/// A document and what was found in it.
+/// A document and its findings.
 struct Checker<'a> {
     document: &'a Document,
     damage: &'a Damage,
@@ -40,7 +40,7 @@ impl<'a> Checker<'a> {
         self.findings.push(finding);
     }
 
-    /// The body of this name, which stands at `pointer`; a fault if there is none.
+    /// The body of this name, given at `pointer`; a fault if there is none.
     fn body(&mut self, pointer: &str, name: &str) -> Option<&'a Body> {
         let body = self.document.bodies.get(name);
         if body.is_none() && !self.damage.holds("bodies", name) {
@@ -52,7 +52,7 @@ impl<'a> Checker<'a> {
         body
     }
 
-    /// Checks that a body has a point; `whole` is what stands in the file.
+    /// Checks that a body has a point; `whole` is the text in the file.
     fn named_point(&mut self, pointer: &str, body: &Body, name: &str, whole: &str) {
         if body.points.contains_key(name) {
             return;
@@ -68,7 +68,7 @@ impl<'a> Checker<'a> {
         self.fault(Finding::new(pointer, found, "the name of a point of the body").hint(hint));
     }
 
-    /// Checks a point of a body, by name or by coordinates.
+    /// Checks a point of a body, given by name or coordinates.
     fn point(&mut self, pointer: &str, body: &str, point: &Point) {
         if let Point::Named(name) = point {
             if body == GROUND {

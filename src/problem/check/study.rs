@@ -1,4 +1,4 @@
-//! Functions, objective, constraints, and how the problem is solved and drawn.
+//! Functions, objective, constraints, and settings of solution and plot.
 
 use super::Checker;
 use crate::math::Vec3;
@@ -12,7 +12,7 @@ use crate::problem::schema::functions::{Clearance, Component, Function, Gate, In
 use crate::problem::schema::mechanics::Point;
 use crate::problem::schema::{Method, Objective};
 
-/// Largest cosine between gravity and a direction that counts as horizontal.
+/// A direction is horizontal up to this cosine with gravity.
 const HORIZONTAL: f64 = 1e-9;
 
 impl Checker<'_> {
@@ -62,7 +62,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Steps or a tolerance, and a method that can follow it.
+    /// Checks steps, tolerance and method.
     fn simulation(&mut self) {
         let simulation = &self.document.simulation;
         if let Some(until) = &simulation.until {
@@ -91,7 +91,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The name of a problem is that of a directory.
+    /// Checks the problem's name, which becomes the name of a directory.
     fn problem_name(&mut self) {
         let name = &self.document.name;
         let fits = |c: char| c.is_alphanumeric() || "-_ .".contains(c);
@@ -175,7 +175,7 @@ impl Checker<'_> {
         self.loaded_joint(pointer, joint, &[Revolute, Planar, Cylindrical]);
     }
 
-    /// Checks the body that the rotation of another is seen from.
+    /// Checks the body that a rotation is relative to.
     fn seen_from(&mut self, pointer: &str, body: &str, other: Option<&str>) {
         let Some(other) = other.filter(|other| *other != GROUND) else {
             return;
@@ -194,7 +194,7 @@ impl Checker<'_> {
         self.direction(&join(pointer, "direction"), &component.direction);
     }
 
-    /// Checks a body that moves and a point of it.
+    /// Checks a moving body and a point of it.
     pub(super) fn moving(&mut self, pointer: &str, body: &str, point: &Option<Point>) {
         let place = join(pointer, "body");
         if body == GROUND {

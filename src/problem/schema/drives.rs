@@ -1,20 +1,20 @@
-//! Drives as they are written in a file.
+//! Drives in a file.
 
 use super::loads::Interpolation;
 use crate::problem::quantity::Quantity;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// The prescribed motion of a joint about its axis, along it, or both: of its first body against the
-/// second (ground counts as the second), from where the bodies are placed.
+/// Prescribed motion of a joint about its axis, along it, or both. It is the motion of the first
+/// body relative to the second (ground counts as the second), from the placement.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Drive {
     /// Name of a revolute, planar, prismatic or cylindrical joint.
     pub joint: String,
-    /// Angle about the axis in time.
+    /// Angle about the axis as a function of time.
     pub turn: Option<Turning>,
-    /// Displacement along the axis in time.
+    /// Displacement along the axis as a function of time.
     pub slide: Option<Sliding>,
 }
 
@@ -25,7 +25,7 @@ macro_rules! time_functions {
         #[derive(Clone, Debug, Deserialize, JsonSchema)]
         #[serde(rename_all = "snake_case", deny_unknown_fields)]
         pub(crate) enum $course {
-            /// A constant rate, from zero.
+            /// Constant rate, starting at zero.
             Rate(#[schemars(extend("unit" = $rate))] Quantity),
             /// Coefficients c0, c1, c2, … of c0 + c1 t + c2 t² + …
             Polynomial(#[schemars(extend("unit" = $powers))] Vec<Quantity>),
@@ -46,8 +46,8 @@ macro_rules! time_functions {
                 #[schemars(extend("unit" = $unit))]
                 mean: Quantity,
             },
-            /// Interpolation with continuous acceleration, at rest at both ends and held beyond
-            /// them.
+            /// Interpolation with continuous acceleration. It is at rest at both ends and constant
+            /// beyond.
             Table {
                 /// Instants, increasing.
                 #[schemars(extend(
@@ -58,13 +58,13 @@ macro_rules! time_functions {
                 /// Value at each instant.
                 #[schemars(extend("unit" = $unit))]
                 values: Vec<Quantity>,
-                /// What stands between the values, default monotone.
+                /// Interpolation between the values, default monotone.
                 interpolation: Option<Interpolation>,
             },
         }
 
         impl $course {
-            /// The course, whatever its unit.
+            /// The time function without its unit.
             pub(crate) fn parts(&self) -> TimeFunction<'_> {
                 match self {
                     Self::Rate(rate) => TimeFunction::Rate(rate),
@@ -89,7 +89,7 @@ macro_rules! time_functions {
 time_functions!(Turning, "an angle", "rad", "rad/s", "rad, rad/s, rad/s², …");
 time_functions!(Sliding, "a displacement", "m", "m/s", "m, m/s, m/s², …");
 
-/// A course in time, whatever its unit.
+/// A time function without its unit.
 pub(crate) enum TimeFunction<'a> {
     /// Constant rate.
     Rate(&'a Quantity),

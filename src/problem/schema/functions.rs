@@ -1,29 +1,29 @@
-//! Functions of interest as they are written in a file.
+//! Functions of interest in a file.
 
 use super::mechanics::Point;
 use crate::problem::quantity::{Quantity, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A function of interest: an instant quantity reduced over the run, or a clearance.
+/// A function of interest: a quantity at an instant, reduced over the run, or a clearance.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Function {
     /// Kreisselmeier–Steinhauser function, a smooth bound of the maximum over the run.
     Ks(Ks),
-    /// Induced exponential, a smooth mean that leans to the maximum over the run.
+    /// Induced exponential, a smooth mean near the maximum over the run.
     InducedExponential(Aggregate),
     /// Integral over the run.
     Integral(Instant),
     /// Value at the end of the run.
     Final(Instant),
-    /// Height of a flight path above the top of a barrier (m).
+    /// Height of a flight path above the top of a barrier [m].
     Clearance(Clearance),
-    /// Duration of the run; with `until`, the time when the event comes (s).
+    /// Duration of the run; with `until`, the time of the event [s].
     Duration,
 }
 
-/// What is aggregated, how sharply, and on which side of the maximum.
+/// Aggregated quantity, sharpness, and side of the maximum.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Ks {
@@ -34,7 +34,8 @@ pub(crate) struct Ks {
         "design_variable" = "an aggregation parameter says what is asked, not what is built"
     ))]
     pub rho: f64,
-    /// "below" (default): never above the true maximum. "above": never below it, as an upper limit needs.
+    /// "below" (default): never above the true maximum. "above": never below it, as an upper limit
+    /// needs.
     pub bound: Option<Bound>,
     /// The quantity.
     pub of: Instant,
@@ -50,7 +51,7 @@ pub(crate) enum Bound {
     Above,
 }
 
-/// What is aggregated, and how sharply.
+/// Aggregated quantity and sharpness.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Aggregate {
@@ -69,23 +70,23 @@ pub(crate) struct Aggregate {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Instant {
-    /// Component of a point's position (m).
+    /// Component of a point's position [m].
     Position(Component),
-    /// Component of a point's velocity (m/s).
+    /// Component of a point's velocity [m/s].
     Velocity(Component),
-    /// Component of a point's acceleration (m/s²).
+    /// Component of a point's acceleration [m/s²].
     Acceleration(Component),
-    /// Speed of a point (m/s).
+    /// Speed of a point [m/s].
     Speed(Moving),
-    /// Square of the speed of a point, smooth at rest too (m²/s²).
+    /// Square of the speed of a point [m²/s²], which is smooth at rest too.
     SpeedSquared(Moving),
-    /// Energy of the whole scene (J).
+    /// Energy of the whole scene [J].
     Energy(Energy),
-    /// Rotation of a body about an axis, counted on over whole turns (rad).
+    /// Rotation of a body about an axis [rad], counted over whole turns.
     Rotation(Rotation),
-    /// Angle of a joint as drives and torsion springs have it, counted on over whole turns (rad).
+    /// Angle of a joint [rad] as in drives and torsion springs, counted over whole turns.
     Angle(JointAngle),
-    /// Range of a projectile that is let go at this instant (m).
+    /// Range of a projectile that is released at this instant [m].
     Range(Range),
 }
 
@@ -97,7 +98,7 @@ pub(crate) struct Component {
     pub body: String,
     /// Its point, by name or in body axes; default the centre of mass.
     pub point: Option<Point>,
-    /// Direction in ground axes, used as it is given: a unit vector gives a component.
+    /// Direction in ground axes. It is not normalised; a unit vector gives a component.
     #[schemars(extend("unit" = "1"))]
     pub direction: Vector,
 }
@@ -112,7 +113,7 @@ pub(crate) struct Moving {
     pub point: Option<Point>,
 }
 
-/// Which energy.
+/// Kind of energy.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Energy {
@@ -130,24 +131,24 @@ pub(crate) enum Energy {
 pub(crate) struct Rotation {
     /// The body.
     pub body: String,
-    /// Axis in ground axes where the bodies are placed, of any length but zero; it stays fixed in
-    /// the body that the rotation is relative to.
+    /// Axis in ground axes as the bodies are placed, of any length but zero. It is fixed in the
+    /// body that the rotation is relative to.
     #[schemars(extend("unit" = "1"))]
     pub axis: Vector,
-    /// The body that the rotation is seen from, default "ground".
+    /// The body that the rotation is relative to, default "ground".
     pub relative_to: Option<String>,
-    /// Where the rotation is zero, default "axes".
+    /// Zero of the rotation, default "axes".
     pub from: Option<CountedFrom>,
 }
 
-/// Where a rotation is zero.
+/// Zero of a rotation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum CountedFrom {
-    /// Where the axes of the body are parallel to those of the other, or of ground.
+    /// The axes of the body are parallel to those of the other body, or of ground.
     #[default]
     Axes,
-    /// Where the bodies are placed.
+    /// The bodies are as placed.
     Placement,
 }
 
@@ -155,8 +156,8 @@ pub(crate) enum CountedFrom {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct JointAngle {
-    /// Name of a revolute, planar or cylindrical joint. The angle is that of its first body against
-    /// the second (ground counts as the second) about the axis, from where the bodies are placed.
+    /// Name of a revolute, planar or cylindrical joint. The angle is that of its first body
+    /// relative to the second (ground counts as the second) about the axis, from the placement.
     pub joint: String,
 }
 
@@ -174,37 +175,37 @@ pub(crate) struct Range {
     /// Height of the ground where the projectile lands, default 0.
     #[schemars(extend("unit" = "m"))]
     pub ground: Option<Quantity>,
-    /// Gate that keeps later turns of a sling out of the range.
+    /// Gate that excludes later turns of a sling from the range.
     pub gate: Option<Gate>,
 }
 
-/// A smooth gate on a rotation: the range counts only while it is above (or below) a limit. Give
-/// `body` and `axis`, or `joint`; and one of `above` and `below`.
+/// A smooth gate on a rotation: the range counts only while the rotation is above (or below) a
+/// limit. Give `body` and `axis`, or `joint`; and one of `above` and `below`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Gate {
-    /// The body whose rotation is watched.
+    /// The body of the rotation.
     pub body: Option<String>,
-    /// Axis of the rotation in ground axes where the bodies are placed, of any length but zero.
+    /// Axis of the rotation in ground axes as the bodies are placed, of any length but zero.
     #[schemars(extend(
         "unit" = "1",
         "design_variable" = "a gate says what is asked, not what is built"
     ))]
     pub axis: Option<[f64; 3]>,
-    /// The body that the rotation is seen from, default "ground".
+    /// The body that the rotation is relative to, default "ground".
     pub relative_to: Option<String>,
-    /// Where the rotation is zero, default "axes".
+    /// Zero of the rotation, default "axes".
     pub from: Option<CountedFrom>,
-    /// Name of a revolute, planar or cylindrical joint whose angle is watched, instead of a body and
-    /// an axis.
+    /// Name of a revolute, planar or cylindrical joint whose angle is used instead of the rotation
+    /// of a body.
     pub joint: Option<String>,
-    /// Rotation that the gate is open above.
+    /// The gate is open above this rotation.
     #[schemars(extend(
         "unit" = "rad",
         "design_variable" = "a gate says what is asked, not what is built"
     ))]
     pub above: Option<f64>,
-    /// Rotation that the gate is open below.
+    /// The gate is open below this rotation.
     #[schemars(extend(
         "unit" = "rad",
         "design_variable" = "a gate says what is asked, not what is built"
@@ -223,8 +224,8 @@ pub(crate) struct Gate {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Clearance {
-    /// Name of the range function whose release is meant: the final state of a `final` one, the
-    /// weighted mean state of a `ks` or an `induced_exponential` one.
+    /// Name of the range function with the release: the final state of a `final` one, the weighted
+    /// mean state of a `ks` or an `induced_exponential` one.
     pub release: String,
     /// The barrier.
     pub barrier: Barrier,
@@ -234,7 +235,7 @@ pub(crate) struct Clearance {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Barrier {
-    /// Its place along the direction of flight, from the origin.
+    /// Position along the direction of flight, from the origin.
     #[schemars(extend("unit" = "m"))]
     pub distance: Quantity,
     /// Height of its top above the origin.

@@ -1,4 +1,4 @@
-//! Joints as they are written in a file.
+//! Joints in a file.
 
 use super::mechanics::Point;
 use crate::model::DegreeOfFreedom;
@@ -21,12 +21,12 @@ pub(crate) enum Joint {
     Planar(Axial),
     /// The bodies slide along the axis and turn about it.
     Cylindrical(Axial),
-    /// A universal (Cardan) joint: the points coincide, and the bodies turn about an axis of the
-    /// first and a cross axis of the second, which stay perpendicular.
+    /// A universal (Cardan) joint: the points coincide. The bodies turn about an axis of the first
+    /// and a cross axis of the second, which stay perpendicular.
     Universal(Crossed),
     /// A rod without mass: two points keep their distance.
     Rod(Rod),
-    /// The bodies move as one.
+    /// A weld: the bodies move as one.
     Weld(Ball),
 }
 
@@ -36,7 +36,7 @@ pub(crate) enum Joint {
 pub(crate) struct Ball {
     /// The two bodies; one of them may be "ground".
     pub between: [String; 2],
-    /// Where the joint is at the start.
+    /// Position of the joint at the start.
     pub at: JointPlace,
 }
 
@@ -46,51 +46,50 @@ pub(crate) struct Ball {
 pub(crate) struct Axial {
     /// The two bodies; one of them may be "ground".
     pub between: [String; 2],
-    /// Where the joint is at the start.
+    /// Position of the joint at the start.
     pub at: JointPlace,
     /// The joint's axis at the start, of any length but zero.
     pub axis: Axis,
-    /// Where and how fast its motion starts, default as the bodies are placed and move.
+    /// Initial position and rate of its motion, default those of the bodies as placed.
     pub start: Option<JointStart>,
 }
 
-/// Where and how fast the motion of a joint starts.
+/// Initial position and rate of the motion of a joint.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct JointStart {
-    /// Turning about the axis.
+    /// Rotation about the axis.
     pub turn: Option<TurnStart>,
-    /// Sliding along the axis.
+    /// Displacement along the axis.
     pub slide: Option<SlideStart>,
 }
 
-/// The start of a turn.
+/// Initial angle and rate.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TurnStart {
-    /// Angle of the first body against the second from where they are placed, default as they are.
+    /// Angle of the first body relative to the second, from the placement; default 0.
     #[schemars(extend("unit" = "rad"))]
     pub angle: Option<Quantity>,
-    /// Its rate, default what the velocities of the bodies make.
+    /// Its rate, default that of the bodies' velocities.
     #[schemars(extend("unit" = "rad/s"))]
     pub rate: Option<Quantity>,
 }
 
-/// The start of a slide.
+/// Initial displacement and rate.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SlideStart {
-    /// Displacement of the first body against the second from where they are placed, default as they
-    /// are.
+    /// Displacement of the first body relative to the second, from the placement; default 0.
     #[schemars(extend("unit" = "m"))]
     pub displacement: Option<Quantity>,
-    /// Its rate, default what the velocities of the bodies make.
+    /// Its rate, default that of the bodies' velocities.
     #[schemars(extend("unit" = "m/s"))]
     pub rate: Option<Quantity>,
 }
 
 impl JointStart {
-    /// What the start says of a motion: its place and its rate. `None` if it does not name it.
+    /// Position and rate of a degree of freedom; `None` if the start does not name it.
     pub(crate) fn of(&self, dof: DegreeOfFreedom) -> Option<[Option<Quantity>; 2]> {
         match dof {
             DegreeOfFreedom::Rotation => self.turn.as_ref().map(|turn| [turn.angle, turn.rate]),
@@ -108,7 +107,7 @@ impl JointStart {
 pub(crate) struct Crossed {
     /// The two bodies; one of them may be "ground".
     pub between: [String; 2],
-    /// Where the joint is at the start.
+    /// Position of the joint at the start.
     pub at: JointPlace,
     /// Axis of the first body at the start, of any length but zero.
     pub axis: Axis,
@@ -124,7 +123,7 @@ pub(crate) struct Rod {
     pub between: [String; 2],
     /// Its ends.
     pub at: Ends,
-    /// Length; default the distance of its ends where the bodies are placed.
+    /// Length, default the distance of its ends in the placement.
     #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
     pub length: Option<Quantity>,
 }
@@ -133,7 +132,7 @@ pub(crate) struct Rod {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum Ends {
-    // First, as a pair of points could be read from a list as well.
+    // This variant is first because a pair of points could be read from a list, too.
     /// Ground coordinates of both at the start, in the order of the bodies.
     #[schemars(extend("unit" = "m"))]
     Ground([Vector; 2]),
@@ -141,7 +140,7 @@ pub(crate) enum Ends {
     Each(PointPair),
 }
 
-/// Where a joint is at the start.
+/// Position of a joint at the start.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum JointPlace {
@@ -160,7 +159,7 @@ pub(crate) enum JointPlace {
 pub(crate) struct PointPair {
     /// Point of the first body, by name or in its axes (ground coordinates if it is ground).
     pub a: Point,
-    /// Point of the second body, likewise.
+    /// Point of the second body, by name or in its axes (ground coordinates if it is ground).
     pub b: Point,
 }
 
@@ -200,7 +199,7 @@ impl Joint {
         }
     }
 
-    /// Where it is; `None` for a rod, which has two ends.
+    /// Its position; `None` for a rod, which has two ends.
     pub(crate) fn place(&self) -> Option<&JointPlace> {
         match self {
             Joint::Spherical(ball) | Joint::Weld(ball) => Some(&ball.at),
@@ -213,7 +212,7 @@ impl Joint {
         }
     }
 
-    /// Where and how fast its motion starts, as far as the file says.
+    /// Initial position and rate of its motion, if the file gives them.
     pub(crate) fn start(&self) -> Option<&JointStart> {
         match self {
             Joint::Revolute(axial)

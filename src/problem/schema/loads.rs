@@ -1,4 +1,4 @@
-//! Loads as they are written in a file.
+//! Loads in a file.
 
 use super::joints::Ends;
 use super::mechanics::Point;
@@ -15,7 +15,7 @@ pub(crate) enum Load {
     Force(Force),
     /// A torque on a body.
     Torque(Torque),
-    /// A spring with a damper between points of two bodies: tension k x + k3 x³ + c l̇ with
+    /// A spring with a damper between points of two bodies. The tension is k x + k3 x³ + c l̇, with
     /// x = l − l0.
     Spring(Spring),
     /// A spring with a damper about the axis of a revolute or planar joint.
@@ -30,20 +30,20 @@ pub(crate) enum Load {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Force {
-    /// The body that it acts on.
+    /// The body.
     pub body: String,
-    /// The point that it acts at, by name or in body axes; default the centre of mass.
+    /// Point of application, by name or in body axes; default the centre of mass.
     pub point: Option<Point>,
-    /// The point in ground coordinates at the start, instead of `point`.
+    /// Point of application in ground coordinates at the start, instead of `point`.
     #[schemars(extend("unit" = "m"))]
     pub at: Option<Vector>,
-    /// Its direction, of any length but zero.
+    /// Direction, of any length but zero.
     #[schemars(extend("unit" = "1"))]
     pub direction: Vector,
-    /// The axes that the direction is given and fixed in; default those of ground.
+    /// Axes in which the direction is given and fixed, default ground.
     #[serde(default)]
     pub axes: Axes,
-    /// Its magnitude: a number, or a course in time.
+    /// Magnitude: a number, or a function of time.
     pub magnitude: ForceInTime,
 }
 
@@ -51,43 +51,43 @@ pub(crate) struct Force {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Torque {
-    /// The body that it acts on.
+    /// The body.
     pub body: String,
-    /// Its direction, of any length but zero.
+    /// Direction, of any length but zero.
     #[schemars(extend("unit" = "1"))]
     pub direction: Vector,
-    /// The axes that the direction is given and fixed in; default those of ground.
+    /// Axes in which the direction is given and fixed, default ground.
     #[serde(default)]
     pub axes: Axes,
-    /// Its magnitude: a number, or a course in time.
+    /// Magnitude: a number, or a function of time.
     pub magnitude: TorqueInTime,
 }
 
-/// The axes that a direction is fixed in.
+/// Axes in which a direction is fixed.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Axes {
-    /// Those of ground.
+    /// Ground axes.
     #[default]
     Ground,
-    /// Those of the body that it acts on.
+    /// Axes of the loaded body.
     Body,
 }
 
-/// What stands between the values of a table.
+/// Interpolation between the values of a table.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Interpolation {
-    /// Straight lines. Those of a motion are rounded at each end, so that accelerations stay finite.
+    /// Straight lines. Those of a motion are rounded at their ends, so accelerations stay finite.
     Linear,
     /// Smooth without overshoot.
     Monotone,
-    /// As smooth as the values; overshoots where these are not.
+    /// As smooth as the values. It may overshoot.
     Spline,
 }
 
 impl Interpolation {
-    /// That of the model.
+    /// The same interpolation in the model; default monotone.
     pub(crate) fn of(written: Option<Self>) -> model::Interpolation {
         match written {
             Some(Self::Linear) => model::Interpolation::Linear,
@@ -107,7 +107,7 @@ macro_rules! time_functions {
             /// The same at all times.
             #[schemars(extend("unit" = $unit))]
             Constant(Quantity),
-            /// A course in time.
+            /// A function of time.
             Varying($varying),
         }
 
@@ -128,7 +128,7 @@ macro_rules! time_functions {
                 #[schemars(extend("unit" = "rad"))]
                 phase: Quantity,
             },
-            /// Interpolation between values, held beyond both ends.
+            /// Interpolation between values, constant beyond both ends.
             Table {
                 /// Instants, increasing.
                 #[schemars(extend(
@@ -139,13 +139,13 @@ macro_rules! time_functions {
                 /// Value at each instant.
                 #[schemars(extend("unit" = $unit))]
                 values: Vec<Quantity>,
-                /// What stands between the values, default monotone.
+                /// Interpolation between the values, default monotone.
                 interpolation: Option<Interpolation>,
             },
         }
 
         impl $course {
-            /// Its course, whatever its unit.
+            /// The time function without its unit.
             pub(crate) fn parts(&self) -> TimeFunction<'_> {
                 match self {
                     $course::Constant(value) => TimeFunction::Constant(value),
@@ -168,7 +168,7 @@ macro_rules! time_functions {
 time_functions!(ForceInTime, VaryingForce, "force", "N");
 time_functions!(TorqueInTime, VaryingTorque, "torque", "N m");
 
-/// A course in time, whatever its unit.
+/// A time function without its unit.
 pub(crate) enum TimeFunction<'a> {
     /// The same at all times.
     Constant(&'a Quantity),
@@ -191,7 +191,7 @@ pub(crate) struct Spring {
     pub between: [String; 2],
     /// Its ends.
     pub at: Ends,
-    /// Length without force.
+    /// Length at zero force.
     #[schemars(extend("unit" = "m", "minimum" = 0))]
     pub rest_length: Quantity,
     /// Stiffness k.
@@ -213,8 +213,8 @@ pub(crate) struct Spring {
 pub(crate) struct TorsionSpring {
     /// Name of a revolute, planar or cylindrical joint.
     pub joint: String,
-    /// Angle without torque, of the first body against the second (ground counts as the second)
-    /// about the axis, from where the bodies are placed; default 0.
+    /// Angle at zero torque: of the first body relative to the second (ground counts as the second)
+    /// about the axis, from the placement; default 0.
     #[serde(default = "nothing")]
     #[schemars(extend("unit" = "rad"))]
     pub rest_angle: Quantity,
@@ -227,13 +227,13 @@ pub(crate) struct TorsionSpring {
     pub damping: Quantity,
 }
 
-/// A motion of a joint.
+/// A degree of freedom of a joint.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Motion {
-    /// Turning about its axis.
+    /// Rotation about its axis.
     Turn,
-    /// Sliding along its axis.
+    /// Displacement along its axis.
     Slide,
 }
 
@@ -243,9 +243,9 @@ pub(crate) enum Motion {
 pub(crate) struct Damping {
     /// Name of a revolute, prismatic, cylindrical, planar, spherical or universal joint.
     pub joint: String,
-    /// Which motion of a cylindrical joint; default turning.
+    /// Motion of a cylindrical joint, default rotation.
     pub motion: Option<Motion>,
-    /// Force or torque for a unit of rate.
+    /// Force or torque per unit of rate.
     #[schemars(extend("unit" = "N s/m or N m s/rad", "minimum" = 0))]
     pub coefficient: Quantity,
 }
@@ -256,12 +256,12 @@ pub(crate) struct Damping {
 pub(crate) struct Friction {
     /// Name of a revolute, prismatic, cylindrical or planar joint.
     pub joint: String,
-    /// Which motion of a cylindrical joint; default turning.
+    /// Motion of a cylindrical joint, default rotation.
     pub motion: Option<Motion>,
     /// Force or torque at rates well above the width.
     #[schemars(extend("unit" = "N or N m", "minimum" = 0))]
     pub size: Quantity,
-    /// Rate at which 76 % of it acts; smaller is sharper and needs finer steps.
+    /// Rate at which 76 % of it acts. A smaller width is sharper and needs finer steps.
     #[schemars(extend("unit" = "m/s or rad/s", "exclusiveMinimum" = 0))]
     pub width: Quantity,
 }

@@ -1,4 +1,4 @@
-//! Bodies as they are written in a file.
+//! Bodies in a file.
 
 use crate::problem::quantity::{Quantity, Vector};
 use indexmap::IndexMap;
@@ -18,8 +18,7 @@ pub(crate) struct Body {
     /// Mass.
     #[schemars(extend("unit" = "kg", "exclusiveMinimum" = 0))]
     pub mass: Option<Quantity>,
-    /// Centre of mass of a body without a shape, from the origin of the body's axes; default
-    /// there.
+    /// Centre of mass of a body without a shape, from the origin of the body's axes; default 0.
     #[schemars(extend("unit" = "m"))]
     pub centre_of_mass: Option<Vector>,
     /// Inertia of a body without a shape.
@@ -28,10 +27,10 @@ pub(crate) struct Body {
     #[serde(default)]
     #[schemars(extend("unit" = "m"))]
     pub points: IndexMap<String, Vector>,
-    /// Where the body is at the start; by default its axes are the ground's.
+    /// Placement at the start; by default its axes are those of ground.
     #[serde(default)]
     pub place: Place,
-    /// Its own velocity at the start, instead of that of the assembly.
+    /// Its velocity at the start, instead of that of the assembly.
     pub velocity: Option<BodyVelocity>,
 }
 
@@ -70,7 +69,7 @@ pub(crate) enum Shape {
         #[schemars(extend("unit" = "m", "minimum" = 0))]
         radius: Quantity,
     },
-    /// A mass without extent, which does not turn: ball joints and rods hold it at its own place.
+    /// A mass without extent and rotation. Ball joints and rods act at its position.
     Point,
 }
 
@@ -79,7 +78,7 @@ fn nothing() -> Quantity {
     Quantity::fixed(0.0)
 }
 
-/// Entries of the symmetric inertia matrix about the centre of mass in body axes; the entry xy is
+/// Entries of the symmetric inertia matrix about the centre of mass in body axes. The entry xy is
 /// minus the integral of x y over the mass.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -107,19 +106,19 @@ pub(crate) struct Inertia {
     pub yz: Quantity,
 }
 
-/// Where a body is at the start: `put` this point of the body `at` that place, with this `turn`.
+/// Placement of a body: `put` this point of the body `at` that place, with this `turn`.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Place {
     /// Point of this body, by name or in body axes; default the origin of its axes.
     pub put: Option<Point>,
-    /// Where that point goes: `"body.point"`, `"body"` for the origin of its axes, or ground
+    /// Place of that point: `"body.point"`, `"body"` for the origin of its axes, or ground
     /// coordinates; default the origin.
     pub at: Option<Location>,
-    /// Rotation from the ground's axes (or those of `relative_to`) to the body's, or a list of
+    /// Rotation from the axes of ground (or of `relative_to`) to those of the body, or a list of
     /// rotations about the fixed ground axes, applied in order; default none.
     pub turn: Option<Turns>,
-    /// Body whose axes the turn starts from; default ground.
+    /// Body from whose axes the turn starts; default ground.
     pub relative_to: Option<String>,
 }
 
@@ -189,7 +188,7 @@ pub(crate) struct BodyVelocity {
     pub angular: Option<Vector>,
 }
 
-/// Velocity of the whole assembly at the start, moving as one rigid body.
+/// Velocity of the whole assembly at the start. It moves as one rigid body.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AssemblyVelocity {
@@ -199,7 +198,7 @@ pub(crate) struct AssemblyVelocity {
     /// Angular velocity in ground axes, default 0.
     #[schemars(extend("unit" = "rad/s"))]
     pub angular: Option<Vector>,
-    /// Ground point that the rotation is about, default the origin.
+    /// Point of the axis of rotation in ground coordinates, default the origin.
     #[schemars(extend("unit" = "m"))]
     pub about: Option<Vector>,
 }

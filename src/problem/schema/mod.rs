@@ -1,4 +1,4 @@
-//! The problem file as it is written: serde structures, whose documentation is the JSON Schema.
+//! The problem file: serde structures. Their documentation becomes the JSON Schema.
 
 pub(crate) mod drives;
 pub(crate) mod functions;
@@ -16,12 +16,11 @@ use mechanics::{AssemblyVelocity, Body};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// The version of the format that is read.
+/// Version of the format.
 pub(crate) const VERSION: u64 = 1;
 
-/// A multibody scene, what is asked of it and what may be designed. Units are SI, angles are in
-/// radians; the keys of bodies, joints, loads, drives, functions, variables and constraints are their
-/// names.
+/// A multibody scene with its functions and design variables. Units are SI, angles are in radians.
+/// The keys of bodies, joints, loads, drives, functions, variables and constraints are their names.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "flexbody problem")]
@@ -38,7 +37,7 @@ pub(crate) struct Document {
     pub _version: u64,
     /// Name of the problem and of its results.
     pub name: String,
-    /// What the problem is about.
+    /// Description of the problem.
     #[serde(rename = "description")]
     pub _description: Option<String>,
     /// Gravitational acceleration in ground axes, default [0, −9.81, 0].
@@ -57,7 +56,7 @@ pub(crate) struct Document {
     /// Drives by name: prescribed motions of joints.
     #[serde(default)]
     pub drives: IndexMap<String, Drive>,
-    /// How long and how finely the scene is simulated.
+    /// Duration and accuracy of the simulation.
     pub simulation: Simulation,
     /// Functions of interest by name.
     #[serde(default)]
@@ -65,57 +64,57 @@ pub(crate) struct Document {
     /// Design variables by name.
     #[serde(default)]
     pub variables: IndexMap<String, Variable>,
-    /// The function that is made as large or small as can be.
+    /// The function that is minimised or maximised.
     pub objective: Option<Objective>,
     /// Constraints by name.
     #[serde(default)]
     pub constraints: IndexMap<String, Constraint>,
     /// Settings of the optimiser.
     pub optimiser: Option<Optimiser>,
-    /// How the motion is drawn.
+    /// Settings of the plot of the motion.
     #[serde(default)]
     pub plot: Plot,
 }
 
-/// How long and how finely the scene is simulated.
+/// Duration and accuracy of the simulation.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Simulation {
-    /// Simulated time; with `until`, the longest that the event is waited for.
+    /// Simulated time; with `until`, the longest time to wait for the event.
     #[schemars(extend("unit" = "s", "exclusiveMinimum" = 0))]
     pub duration: Quantity,
     /// Event that ends the run: a quantity reaches a value for the first time. Default none.
     pub until: Option<TerminalEvent>,
-    /// Number of time steps of equal size, instead of a tolerance.
+    /// Number of equal time steps, instead of a tolerance.
     #[schemars(extend(
         "minimum" = 1,
         "maximum" = 10_000_000,
         "design_variable" = "a number of steps is a count, not a physical number"
     ))]
     pub steps: Option<usize>,
-    /// Error allowed in a step, relative to the lengths and speeds of the scene; the steps follow
-    /// it. Default 1e-9 where neither this nor the steps are given.
+    /// Tolerance of the error per step, relative to the lengths and speeds of the scene. Default
+    /// 1e-9 if the number of steps is not given.
     #[schemars(extend(
         "minimum" = 1e-14,
         "maximum" = 0.1,
         "design_variable" = "a tolerance is the method's, not a physical number"
     ))]
     pub tolerance: Option<f64>,
-    /// Number of equal intervals at whose ends the motion is sampled, for functions that look at the
-    /// whole motion and for figures. Default: the ends of the steps if these are given, else 1000.
+    /// Number of equal intervals at whose ends the motion is sampled, for functions of the whole
+    /// motion and for figures. Default: the ends of the steps if their number is given, else 1000.
     #[schemars(extend(
         "minimum" = 1,
         "maximum" = 10_000_000,
         "design_variable" = "a number of samples is a count, not a physical number"
     ))]
     pub samples: Option<usize>,
-    /// Longest wall time of one simulation [s]. Default none. The number of steps is limited besides.
+    /// Longest wall time of one simulation [s], default none. The number of steps is limited, too.
     #[schemars(extend(
         "exclusiveMinimum" = 0,
         "design_variable" = "a limit of the run is the computer's, not a physical number"
     ))]
     pub seconds: Option<f64>,
-    /// Integration method. Default: chosen by the scene, dop853 unless it is stiff, else radau.
+    /// Integration method. Default: chosen for the scene, dop853 unless it is stiff, else radau.
     pub method: Option<Method>,
 }
 
@@ -134,12 +133,12 @@ pub(crate) struct TerminalEvent {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Method {
-    /// Explicit Runge-Kutta method of order 8 with projection onto the joints: for scenes that are
+    /// Explicit Runge-Kutta method of order 8 with projection onto the joints, for scenes that are
     /// not stiff.
     Dop853,
-    /// Implicit Runge-Kutta method Radau IIA: for stiff scenes.
+    /// Implicit Runge-Kutta method Radau IIA, for stiff scenes.
     Radau {
-        /// Stages, 2 (order 3) or 3 (order 5).
+        /// Number of stages: 2 (order 3) or 3 (order 5).
         #[schemars(extend(
             "minimum" = 2,
             "maximum" = 3,
@@ -156,7 +155,7 @@ pub(crate) enum Method {
             "design_variable" = "an order is a count, not a physical number"
         ))]
         order: usize,
-        /// How the first steps are made, default radau.
+        /// Method of the first steps, default radau.
         start: Option<Start>,
     },
     /// Generalised-alpha method.
@@ -171,18 +170,18 @@ pub(crate) enum Method {
     },
 }
 
-/// How a formula of several steps begins.
+/// Method of the first steps of a multistep formula.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Start {
-    /// By Radau IIA, which keeps the order.
+    /// Radau IIA, which keeps the order.
     Radau,
-    /// By formulas of rising order, which caps the order of the whole at 2.
+    /// Formulas of rising order, which limit the order to 2.
     RisingOrder,
 }
 
-/// A design variable: one or several physical numbers of this file that share a value. It starts
-/// at the value that stands there.
+/// A design variable: one or several physical numbers of this file that share a value. It starts at
+/// the value in the file.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Variable {
@@ -196,9 +195,8 @@ pub(crate) struct Variable {
     /// Largest value, in the number's own unit; default none.
     #[schemars(extend("design_variable" = "a bound limits the design, it is no part of it"))]
     pub upper: Option<f64>,
-    /// Typical change that the optimiser scales the variable by; default half the distance of the
-    /// bounds, but at most 1000 times the size of the start (or 1, if that is more), else the size of
-    /// the start, else 1.
+    /// Typical change, by which the optimiser scales the variable. Default: half the distance of
+    /// the bounds, but at most 1000 max(|start|, 1); without bounds |start|, or 1 if that is zero.
     #[schemars(extend(
         "exclusiveMinimum" = 0,
         "design_variable" = "a scale is the optimiser's, not a physical number"
@@ -210,13 +208,13 @@ pub(crate) struct Variable {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Objective {
-    /// Name of the function to make as small as can be.
+    /// Name of the function to minimise.
     Minimise(String),
-    /// Name of the function to make as large as can be.
+    /// Name of the function to maximise.
     Maximise(String),
 }
 
-/// Bounds on a function; equal bounds ask for equality.
+/// Bounds on a function. Equal bounds make an equality.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Constraint {
@@ -238,7 +236,7 @@ pub(crate) enum OptimisationMethod {
     InteriorPoint,
     /// Trust-region sequential quadratic programming: fewest simulations for few variables.
     TrustRegion,
-    /// Interior point, and the trust region from its best point where it does not converge.
+    /// Interior point; if it does not converge, trust region from its best point.
     Auto,
 }
 
@@ -248,7 +246,7 @@ pub(crate) enum OptimisationMethod {
 pub(crate) struct Optimiser {
     /// Algorithm, default interior point.
     pub method: Option<OptimisationMethod>,
-    /// Scaled residual of the optimality conditions at which it stops.
+    /// The optimiser stops at this scaled residual of the optimality conditions.
     #[schemars(extend(
         "exclusiveMinimum" = 0,
         "design_variable" = "a tolerance is the optimiser's, not a physical number"
@@ -260,8 +258,8 @@ pub(crate) struct Optimiser {
         "design_variable" = "a number of iterations is a count, not a physical number"
     ))]
     pub iterations: Option<usize>,
-    /// Largest violation of a constraint at an optimum, in its own unit; it must also be below 1e-4 of the
-    /// size of the constraint. Default 1e-6.
+    /// Largest violation of a constraint at an optimum, in its own unit; it must also be below 1e-4
+    /// of the size of the constraint. Default 1e-6.
     #[schemars(extend(
         "exclusiveMinimum" = 0,
         "design_variable" = "a tolerance is the optimiser's, not a physical number"
@@ -279,8 +277,8 @@ pub(crate) struct Optimiser {
         "design_variable" = "a limit of the run is the optimiser's, not a physical number"
     ))]
     pub seconds: Option<f64>,
-    /// Value, below zero, that the minimised objective may not fall below: if it does, the problem is
-    /// called unbounded. An objective that is maximised is judged by its negative. Default -1e20.
+    /// The problem is unbounded if the minimised objective falls below this negative value. A
+    /// maximised objective is compared by its negative. Default -1e20.
     #[schemars(extend(
         "exclusiveMaximum" = 0,
         "design_variable" = "a limit of the run is the optimiser's, not a physical number"
@@ -288,11 +286,11 @@ pub(crate) struct Optimiser {
     pub unbounded_below: Option<f64>,
 }
 
-/// How the motion is drawn.
+/// Settings of the plot of the motion.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Plot {
-    /// Plane that is looked at, first axis to the right, second one up; default xy.
+    /// Plane of the view: first axis to the right, second up; default xy.
     pub view: Option<View>,
     /// Number of instants of the time lapse, default 12.
     #[schemars(extend(
@@ -305,7 +303,7 @@ pub(crate) struct Plot {
     pub trace: Vec<String>,
 }
 
-/// A plane that is looked at: first axis to the right, second one up.
+/// Plane of the view: first axis to the right, second up.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum View {
@@ -324,16 +322,16 @@ pub(crate) enum View {
     Zy,
 }
 
-/// The JSON Schema of a problem file: `unit` is a number's unit, `design_variable` is true where a
-/// design variable may point, or says why it may not.
+/// The JSON Schema of a problem file: `unit` is a number's unit. `design_variable` is true where a
+/// design variable may point, or states why it may not.
 pub(crate) fn schema() -> serde_json::Value {
     let mut schema = schemars::schema_for!(Document).to_value();
     tidy(&mut schema);
     schema
 }
 
-/// Removes `null` (a key that is not wanted is left out) and line breaks in descriptions, and moves
-/// units and limits of arrays and maps to their numbers.
+/// Removes `null` (an unused key is omitted) and line breaks in descriptions, and moves units and
+/// limits of arrays and maps to their numbers.
 fn tidy(schema: &mut serde_json::Value) {
     use serde_json::Value;
     match schema {
@@ -404,7 +402,7 @@ mod tests {
     fn the_schema_describes_every_key_and_says_of_every_number_what_it_is() {
         let mut numbers = 0;
         properties(&schema(), "", &mut |at, property| {
-            // The single key of an alternative is described beside it.
+            // The single key of an alternative is described with the alternative.
             let described = property["description"].is_string();
             assert!(described || at.contains("oneOf"), "{at} has no description");
             let mut number = property;
