@@ -11,16 +11,15 @@ use crate::math::Scalar;
 use crate::math::soft_max::SoftMax;
 use crate::model::Model;
 
-/// A function's value over a run, and what else is worth reporting.
+/// A function's value over a run, with data for reports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Evaluated<S> {
     /// The value.
     pub value: S,
     /// For an aggregate: the largest value over the motion.
     pub maximum: Option<Maximum>,
-    /// For an aggregate over samples at equal intervals: ρ κ h² with κ the curvature at the peak and h
-    /// the distance of the samples; above about one these are too coarse to resolve the peak that ρ
-    /// asks for.
+    /// For an aggregate over equally spaced samples: ρ κ h², with the curvature κ at the peak and
+    /// the distance h of the samples. Above about one the samples do not resolve the peak.
     pub peak_sharpness: f64,
 }
 
@@ -99,7 +98,7 @@ fn reduce<S: Scalar>(
                 _ => soft.induced_exponential(&values),
             };
             let k = soft.peak.clamp(1, run.last().max(2) - 1);
-            // Between nodes of cells distances differ, and their number follows the peak.
+            // Nodes of cells have unequal distances, and their number adapts to the peak.
             let even = quadrature::order(&run.instants) > 2;
             let bend = values.get(k + 1).filter(|_| even).map_or(0.0, |next| {
                 (next.re() - 2.0 * values[k].re() + values[k - 1].re()).abs()
@@ -113,16 +112,17 @@ fn reduce<S: Scalar>(
     }
 }
 
-/// The soft maximum over the maxima of a quantity less its minima, which is never below the largest
-/// value: maxima and minima follow each other, and no minimum is above the maxima beside it. With the
-/// samples and turning points that its weights are those of.
+/// The soft maximum over the maxima of a quantity minus its minima. It is never below the largest
+/// value, because maxima and minima alternate and no minimum exceeds its neighbours. Also the
+/// samples and turning points that its weights belong to.
 fn turning<S: Scalar>(values: &[S], run: &Trajectory<S>, rho: f64) -> (SoftMax<S>, Vec<Point<S>>) {
     let points = peak::points(run, values);
     let heights: Vec<S> = points.iter().map(|point| point.value).collect();
     let rises = |i: usize| heights[i + 1].re() > heights[i].re();
     let last = heights.len() - 1;
     let sign = |rises: bool| if rises { 1.0 } else { -1.0 };
-    // +1 at a maximum, −1 at a minimum, 0 elsewhere; the motion comes from below and goes there.
+    // +1 at a maximum, −1 at a minimum, 0 elsewhere. Before the start and after the end the value
+    // is −∞.
     let count = |i: usize| {
         let before = sign(i == 0 || rises(i - 1));
         let after = sign(i != last && rises(i));
@@ -131,8 +131,8 @@ fn turning<S: Scalar>(values: &[S], run: &Trajectory<S>, rho: f64) -> (SoftMax<S
     (SoftMax::new(&heights, count, rho), points)
 }
 
-/// The largest range at instants at which a gate is more open than closed, as if there were no gate, if
-/// there is one.
+/// The largest range without the gate, at instants at which the gate is more than half open; `None`
+/// without a gate.
 pub(crate) fn ungated_maximum<S: Scalar>(
     function: &Function<S>,
     model: &Model<S>,
@@ -177,7 +177,7 @@ fn turn(turns: &Option<Vec<f64>>, k: usize) -> f64 {
     turns.as_ref().map_or(0.0, |turns| turns[k])
 }
 
-/// Softmax weights and sampled gated ranges of a release at the best instant.
+/// Softmax weights and sampled gated ranges of a release around the best instant.
 struct ReleaseWeights<S> {
     weights: Vec<S>,
     range: Instant<S>,
@@ -216,8 +216,8 @@ fn release_weights<S: Scalar>(
     }
 }
 
-/// The mean flight Σ w_k z_k, summed from its distance to the best flight so that derivatives of
-/// the weights, which add up to zero, do not cancel at the size of z.
+/// The mean flight Σ w_k z_k. It is summed relative to the best flight, so that derivatives of the
+/// weights, whose sum is zero, do not cancel at the size of z.
 fn mean_flight<S: Scalar>(
     projectile: &Projectile<S>,
     release: &ReleaseWeights<S>,
@@ -246,12 +246,12 @@ struct Weighted {
     weights: Vec<f64>,
 }
 
-/// Weight, relative to the largest, of instants that add nothing: their derivatives would have to be
-/// 1/ε times as large as there to show in the last digit.
+/// Weights below this part of the largest are negligible: their derivatives would have to be 1/ε
+/// times as large to change the last digit.
 const NEGLIGIBLE: f64 = f64::EPSILON * f64::EPSILON;
 
-/// The weights with zeros for negligible ones. A soft maximum leaves most instants with such, and
-/// the adjoint need not look at them.
+/// The weights with zeros for negligible ones. Most weights of a soft maximum are negligible, and
+/// the adjoint skips their instants.
 fn without_negligible<S: Scalar>(mut weights: Vec<S>) -> Vec<S> {
     let largest = weights.iter().fold(0.0_f64, |m, w| m.max(w.re().abs()));
     for w in &mut weights {
@@ -262,7 +262,7 @@ fn without_negligible<S: Scalar>(mut weights: Vec<S>) -> Vec<S> {
     weights
 }
 
-/// A function linearised about a run: what it adds to the cotangents of every instant.
+/// A function linearised about a run: its contributions to the cotangents of every instant.
 pub(crate) struct Linearised<'a> {
     function: &'a Function<f64>,
     /// Its derivative in the duration at fixed states.
@@ -363,8 +363,8 @@ impl<'a> Linearised<'a> {
         this
     }
 
-    /// dc = c_z · Σ (w_k dz_k + z_k dw_k) with dw_k = ρ w_k (dR_k − Σ w dR): the mean state moves
-    /// with the states and with the weights.
+    /// dc = c_z · Σ (w_k dz_k + z_k dw_k) with dw_k = ρ w_k (dR_k − Σ w dR): the mean state depends
+    /// on the states and on the weights.
     fn at_best_release(
         &mut self,
         projectile: &Projectile<f64>,
@@ -387,7 +387,7 @@ impl<'a> Linearised<'a> {
         let mut by_range: Vec<f64> = weighted
             .map(|(k, &w)| if w > 0.0 { w * away(k) } else { 0.0 })
             .collect();
-        // Their sum vanishes but for the round-off of the mean, which ρ dR would magnify.
+        // Their sum vanishes except for the round-off of the mean, which ρ dR would magnify.
         let sum: f64 = by_range.iter().sum();
         for (by, w) in by_range.iter_mut().zip(&release.weights) {
             *by = release.rho * (*by - w * sum);
@@ -410,7 +410,7 @@ impl<'a> Linearised<'a> {
             || self.flight.as_ref().is_some_and(|f| f.weights[k] != 0.0)
     }
 
-    /// Adds the derivative in the states of instant k to `out`, and that in the function's own
+    /// Adds the derivative in the states of instant k to `out`, and that in the function's
     /// parameters to `own`.
     pub(crate) fn pull_back(
         &self,
@@ -471,7 +471,7 @@ impl<'a> Linearised<'a> {
         }
     }
 
-    /// Adds the derivative in parameters that no instant depends on.
+    /// Adds the derivative in the parameters that do not belong to an instant.
     pub(crate) fn pull_back_parameters(&self, own: &mut Function<f64>) {
         match own {
             Function::Clearance { distance, top, .. } => {

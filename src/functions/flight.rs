@@ -6,18 +6,18 @@ use crate::math::{Scalar, Vec3};
 use crate::system::BodyMotion;
 use crate::system::marker::{self, MarkerCotangent, MarkerKinematics};
 
-/// State of a projectile in its plane of flight, and the gravity that it flies in.
+/// State of a projectile in its plane of flight, and gravity.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flight<S> {
-    /// Distance along the direction of flight (m).
+    /// Distance along the direction of flight \[m\].
     pub x: S,
-    /// Height above the origin (m).
+    /// Height above the origin \[m\].
     pub y: S,
-    /// Velocity along the direction of flight (m/s).
+    /// Velocity along the direction of flight \[m/s\].
     pub vx: S,
-    /// Velocity upwards (m/s).
+    /// Velocity upwards \[m/s\].
     pub vy: S,
-    /// Gravitational acceleration g > 0 (m/s²).
+    /// Gravitational acceleration g > 0 \[m/s²\].
     pub g: S,
 }
 
@@ -40,34 +40,34 @@ impl<S: Scalar> Flight<S> {
         }
     }
 
-    /// The flight's five numbers.
+    /// The numbers (x, y, v_x, v_y, g).
     pub(crate) fn to_array(self) -> [S; 5] {
         [self.x, self.y, self.vx, self.vy, self.g]
     }
 
-    /// The flight of five numbers in the order of [`Flight::to_array`].
+    /// The flight with these numbers; see [`Flight::to_array`].
     pub(crate) fn from_array([x, y, vx, vy, g]: [S; 5]) -> Self {
         Self { x, y, vx, vy, g }
     }
 
-    /// Range to the ground at height y_g,
-    /// R = x + (v_x/g)(v_y + √s0), s0 = v_y² + 2 g (y − y_g) (m), where the path comes that high.
-    /// Where it does not, R is the distance x + v_x v_y/g of the path's highest point. In between
-    /// `smooth_root` joins the two.
+    /// Range \[m\] on the ground at height y_g, if the path reaches it:
+    /// R = x + (v_x/g)(v_y + √s0), s0 = v_y² + 2 g (y − y_g). Otherwise R is the distance
+    /// x + v_x v_y/g of the path's highest point. `smooth_root` joins both.
     pub(crate) fn range(&self, ground: S) -> S {
         let [s0, scale] = self.reach(ground);
         self.x + self.vx / self.g * (self.vy + smooth_root(s0, scale))
     }
 
-    /// Square of the speed upwards at the ground, s0 = v_y² + 2 g (y − y_g), and the size of its
-    /// terms, √(v_y⁴ + (2 g (y − y_g))² + δ⁴ v_x⁴) (m²/s²). A ground below is always within reach:
-    /// s0 is at least the first two terms there. The third keeps a slide along the ground regular.
+    /// s0 = v_y² + 2 g (y − y_g), the square of the upward speed at the ground, and the size of its
+    /// terms, √(v_y⁴ + (2 g (y − y_g))² + δ⁴ v_x⁴) \[m²/s²\]. If the ground is below, s0 exceeds
+    /// the first two terms, so the path reaches it. The third term keeps a slide along the ground
+    /// regular.
     fn reach(&self, ground: S) -> [S; 2] {
         let rise = self.vy * self.vy;
         let fall = self.g * (self.y - ground) * 2.0;
         let slide = self.vx * self.vx * (SLIDE * SLIDE);
         let square = rise * rise + fall * fall + slide * slide;
-        // At rest on the ground nothing depends on the scale to first order.
+        // At rest on the ground the range does not depend on the scale to first order.
         let scale = if square.re() > 0.0 {
             square.sqrt()
         } else {
@@ -76,22 +76,22 @@ impl<S: Scalar> Flight<S> {
         [rise + fall, scale]
     }
 
-    /// Height of the path above `top` at the distance x_b,
-    /// y + v_y T − ½ g T² − h_b with T = (x_b − x)/v_x (m).
+    /// Height of the path above `top` at the distance x_b \[m\],
+    /// y + v_y T − ½ g T² − h_b with T = (x_b − x)/v_x.
     pub(crate) fn clearance(&self, distance: S, top: S) -> S {
         let t = (distance - self.x) / self.vx;
         self.y + self.vy * t - self.g * t * t * 0.5 - top
     }
 }
 
-/// Part ε of the scale below which the root of s0 is smoothed, and speed v_y/v_x = δ that counts as
-/// none.
+/// Fraction ε of the scale below which the root of s0 is smoothed, and slope v_y/v_x = δ that
+/// counts as zero.
 const GRAZING: f64 = 1e-3;
 const SLIDE: f64 = 1e-6;
 
 /// √s0 for s0 ≥ ε w with w the `scale`, zero for s0 ≤ −ε w, and in between
-/// √(ε w) z³ (11 − 14 z + 5 z²)/2 with z = (1 + s0/(ε w))/2, which joins them with two continuous
-/// derivatives. The root itself has an infinite derivative at zero.
+/// √(ε w) z³ (11 − 14 z + 5 z²)/2 with z = (1 + s0/(ε w))/2. It has two continuous derivatives. The
+/// derivative of the root itself is infinite at zero.
 fn smooth_root<S: Scalar>(s0: S, scale: S) -> S {
     let band = scale * GRAZING;
     if band.re() <= 0.0 || s0.re() <= -band.re() {
@@ -129,7 +129,7 @@ impl Flight<f64> {
         let [by_s0, by_scale] = smooth_root_derivative(s0, scale);
         let speed = vy + smooth_root(s0, scale);
         let height = y - ground;
-        // The scale w by v_x, v_y and by the fall 2 g (y − y_g).
+        // Derivatives of the scale w in v_x, v_y and the fall 2 g (y − y_g).
         let by_term = |term: f64| {
             if by_scale == 0.0 {
                 0.0
@@ -160,17 +160,17 @@ impl Flight<f64> {
     }
 }
 
-/// Where the cotangent of a flight goes.
+/// Derivatives of a flight in its data.
 pub(crate) struct FlightCotangent {
-    /// By the position of the centre of mass.
+    /// In the position of the centre of mass.
     pub position: Vec3<f64>,
-    /// By its velocity.
+    /// In its velocity.
     pub velocity: Vec3<f64>,
-    /// By rotation and angular velocity of the body, and by the point.
+    /// In rotation and angular velocity of the body, and in the point.
     pub marker: MarkerCotangent<f64>,
-    /// By the direction of flight.
+    /// In the direction of flight.
     pub direction: Vec3<f64>,
-    /// By gravity.
+    /// In gravity.
     pub gravity: Vec3<f64>,
 }
 
@@ -204,10 +204,10 @@ pub(crate) fn pull_back(
 }
 
 impl<P: Scalar> Gate<P> {
-    /// Openness σ(±(θ − θ_c)/w) in [0, 1] at the rotation θ.
+    /// Openness σ(±(θ − θ_c)/w), in [0, 1], at the rotation θ.
     pub(crate) fn openness<S: Scalar>(&self, rotation: S) -> S {
         let z = (rotation - self.limit) * (self.sign() / self.width);
-        // Either form is the same function; the exponent stays negative.
+        // Both forms are the same function. The exponent is never positive.
         if z.re() >= 0.0 {
             S::one() / ((-z).exp() + 1.0)
         } else {
@@ -250,8 +250,8 @@ mod tests {
         f(Flight::from_array(z)).im / COMPLEX_STEP
     }
 
-    /// Flights at every scale: the ground far below, level, above within reach, just so, just out
-    /// of reach, far out of reach.
+    /// Flights at every scale: the ground is far below, level, above within reach, just within,
+    /// just out of reach, and far out of reach.
     fn flights() -> Vec<(Flight<f64>, f64)> {
         let mut all = Vec::new();
         for size in [1e-3, 1.0, 1e3] {
@@ -282,13 +282,13 @@ mod tests {
     #[test]
     fn derivatives_of_range_and_clearance_are_exact() {
         for (at, ground) in flights() {
-            // The complex step has to be small beside what is differentiated.
+            // The complex step must be small relative to the scale of s0.
             if at.reach(ground)[1] * GRAZING < 1e-18 {
                 continue;
             }
             let (range, by_ground) = at.range_derivative(ground);
             let (clearance, _) = at.clearance_derivative(60.0);
-            // A number is exact to its part of the largest term that it is the sum of.
+            // The error is relative to the largest term of each sum.
             let speed = at.vx.hypot(at.vy);
             let moved = |i: usize| match i {
                 0 | 1 => 1.0,
@@ -323,7 +323,7 @@ mod tests {
             }
             found += 1;
             let t = (at.vy + s0.sqrt()) / at.g;
-            // s0 is exact to round-off of its terms.
+            // s0 is exact up to the round-off of its terms.
             let size = at.x.abs() + (at.vx / at.g).abs() * (at.vy.abs() + terms / s0.sqrt());
             let away = at.range(ground) - (at.x + at.vx * t);
             assert!(away.abs() <= 4e-16 * size, "{at:?} {ground}");
@@ -337,7 +337,7 @@ mod tests {
             for unit in [1e-3, 1e3] {
                 let scaled = Flight::from_array(at.to_array().map(|z| z * unit));
                 let (range, same) = (at.range(ground), scaled.range(ground * unit) / unit);
-                // Just at the border of what is in reach heights cancel.
+                // At the border of reach the heights cancel.
                 let size = range.abs() + at.x.abs() + (at.vx * at.vy / at.g).abs();
                 assert!((range - same).abs() <= 1e-11 * size, "{at:?} {ground}");
             }

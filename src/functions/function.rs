@@ -3,7 +3,7 @@
 use super::instant::{Gate, Instant, Projectile};
 use crate::math::{Scalar, Vec3};
 
-/// On which side of the maximum over time an aggregate lies.
+/// Side of the maximum over time on which an aggregate lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Bound {
     /// Never above it.
@@ -13,22 +13,21 @@ pub(crate) enum Bound {
     Above,
 }
 
-/// How the values g_k of an instant quantity become one number.
+/// Reduction of the values g_k of an instant quantity to one number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Reduction {
     /// The value at the end of the run.
     Final,
     /// ∫ g dt.
     Integral,
-    /// Kreisselmeier–Steinhauser function. Below the maximum its integral form
-    /// g_m + (1/ρ) ln[(1/T) ∫ exp(ρ (g − g_m)) dt], a smooth lower bound of the maximum that
-    /// does not move when the samples are refined (Kennedy & Hicken 2015, eq. 10); above it
-    /// g_m + (1/ρ) ln[Σ exp(ρ (M_i − g_m)) − Σ exp(ρ (m_j − g_m))] with M_i the maxima and m_j the
-    /// minima of g over time.
+    /// Kreisselmeier–Steinhauser function. Below the maximum: its integral form g_m + (1/ρ)
+    /// ln[(1/T) ∫ exp(ρ (g − g_m)) dt], a smooth lower bound that does not depend on the number of
+    /// samples (Kennedy & Hicken 2015, eq. 10). Above the maximum: g_m + (1/ρ) ln[Σ exp(ρ (M_i −
+    /// g_m)) − Σ exp(ρ (m_j − g_m))] with the maxima M_i and the minima m_j of g over time.
     Ks {
-        /// Aggregation parameter ρ, in 1/unit of g; larger is closer to the maximum.
+        /// Aggregation parameter ρ, in 1/unit of g. A larger one is closer to the maximum.
         rho: f64,
-        /// On which side of the maximum it lies.
+        /// Side of the maximum.
         bound: Bound,
     },
     /// Induced exponential ∫ g e^{ρg} dt / ∫ e^{ρg} dt (Kennedy & Hicken 2015, eq. 16).
@@ -38,7 +37,7 @@ pub(crate) enum Reduction {
     },
 }
 
-/// When a projectile is let go.
+/// Release of a projectile.
 #[derive(Clone, Debug)]
 pub(crate) enum Release<S> {
     /// At the end of the run.
@@ -46,11 +45,11 @@ pub(crate) enum Release<S> {
     /// Around the best instant: the mean state z̄ = Σ w_k z_k with the weights
     /// w_k ∝ τ_k exp(ρ R_k) of the gated range R.
     Best {
-        /// Aggregation parameter ρ (1/m).
+        /// Aggregation parameter ρ \[1/m\].
         rho: f64,
-        /// Ground height and direction that the range is measured with.
+        /// Ground height and direction of the range.
         projectile: Projectile<S>,
-        /// Gate that keeps later turns of the sling out.
+        /// Gate that excludes later turns of the sling.
         gate: Option<Gate<S>>,
     },
 }
@@ -60,26 +59,26 @@ pub(crate) enum Release<S> {
 pub(crate) enum Function<S> {
     /// An instant quantity, reduced over the run.
     Reduced {
-        /// What is measured at each instant.
+        /// Quantity at each instant.
         instant: Instant<S>,
-        /// How it becomes one number.
+        /// Its reduction to one number.
         reduction: Reduction,
     },
     /// Height of the flight path above a barrier's top at the barrier,
-    /// c = y + v_y T_b − ½ g T_b² − h_b, T_b = (x_b − x) / v_x (m).
+    /// c = y + v_y T_b − ½ g T_b² − h_b, T_b = (x_b − x) / v_x \[m\].
     Clearance {
         /// The thrown point and the horizontal direction of flight (its ground is not used).
         projectile: Projectile<S>,
-        /// When it is let go.
+        /// Release of the projectile.
         release: Release<S>,
-        /// Place x_b of the barrier along the direction of flight (m).
+        /// Position x_b of the barrier along the direction of flight \[m\].
         distance: S,
-        /// Height h_b of the barrier's top above the origin (m).
+        /// Height h_b of the barrier's top above the origin \[m\].
         top: S,
     },
-    /// Duration T of the run; with an event, the time when it comes (s).
+    /// Duration T of the run; with an event, its time \[s\].
     Duration,
-    /// A number that the design alone determines, whatever the motion (no unit).
+    /// A number that depends only on the design, without unit.
     OfDesign(S),
 }
 
@@ -98,7 +97,7 @@ impl<S: Scalar> Function<S> {
         }
     }
 
-    /// The function with every parameter replaced by `f` of it.
+    /// The function with `f` applied to every parameter.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Function<T> {
         match self {
             Function::Reduced { instant, reduction } => Function::Reduced {
@@ -132,8 +131,8 @@ impl<S: Scalar> Function<S> {
         }
     }
 
-    /// Calls `visit` with every body that the function looks at and the point of it, or with none
-    /// if it watches how the body is turned.
+    /// Calls `visit` with every body that the function observes and its point; with `None` if it
+    /// observes the rotation of the body.
     pub(crate) fn for_each_place(
         &mut self,
         visit: &mut impl FnMut(&mut usize, Option<&mut Vec3<S>>),

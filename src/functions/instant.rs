@@ -1,22 +1,22 @@
-//! What is measured at an instant.
+//! Quantities at an instant.
 
 use super::turning::Rotation;
 use crate::math::{Scalar, Vec3};
 
-/// A thrown point and how its range is measured. Up is against gravity.
+/// A thrown point and the definition of its range. Up is against gravity.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projectile<S> {
     /// The body that is thrown.
     pub body: usize,
-    /// The point of it that flies, from the centre of mass in body axes (m).
+    /// Its point that flies, from the centre of mass in body axes \[m\].
     pub point: Vec3<S>,
-    /// Horizontal unit vector in which the range is measured, ground axes.
+    /// Horizontal unit vector along which the range is measured, ground axes.
     pub direction: Vec3<S>,
-    /// Height of the ground above the origin (m).
+    /// Height of the ground above the origin \[m\].
     pub ground: S,
 }
 
-/// On which side of its limit a gate is open.
+/// Side of its limit on which a gate is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum GateSide {
     /// Open while the rotation is above the limit.
@@ -25,36 +25,36 @@ pub(crate) enum GateSide {
     Below,
 }
 
-/// A smooth gate σ(±(θ − θ_c) / w) on a rotation θ, counted over whole turns: it keeps the later,
-/// unphysical maxima of a whirling sling out of a range.
+/// A smooth gate σ(±(θ − θ_c) / w) on a rotation θ, counted over whole turns. It excludes the
+/// later, unphysical maxima of a whirling sling from a range.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gate<S> {
-    /// The rotation that is watched.
+    /// The rotation θ.
     pub rotation: Rotation<S>,
-    /// The rotation θ_c at which the gate is half open (rad).
+    /// The rotation θ_c at which the gate is half open \[rad\].
     pub limit: f64,
-    /// Width w of the transition (rad).
+    /// Width w of the transition \[rad\].
     pub width: f64,
-    /// Where it is open.
+    /// Side on which it is open.
     pub open: GateSide,
 }
 
-/// Which energy.
+/// Kind of energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum EnergyPart {
     /// ½ Σ (m ṙᵀṙ + ωᵀJω).
     Kinetic,
-    /// −Σ m gᵀr, from the origin, and the energy of springs.
+    /// −Σ m gᵀr, with r from the origin, plus the energy of springs.
     Potential,
     /// Kinetic plus potential.
     Total,
 }
 
-/// A quantity at an instant. Points are from the centre of mass in body axes (m); directions are
-/// in ground axes and used as they are given (a unit vector gives a component).
+/// A quantity at an instant. Points are from the centre of mass in body axes \[m\]. Directions are
+/// in ground axes and not normalised (a unit vector gives a component).
 #[derive(Clone, Debug)]
 pub(crate) enum Instant<S> {
-    /// Component of a point's position (m).
+    /// Component of a point's position \[m\].
     Position {
         /// The body.
         body: usize,
@@ -63,7 +63,7 @@ pub(crate) enum Instant<S> {
         /// The direction.
         direction: Vec3<S>,
     },
-    /// Component of a point's velocity (m/s).
+    /// Component of a point's velocity \[m/s\].
     Velocity {
         /// The body.
         body: usize,
@@ -72,7 +72,7 @@ pub(crate) enum Instant<S> {
         /// The direction.
         direction: Vec3<S>,
     },
-    /// Component of a point's acceleration (m/s²).
+    /// Component of a point's acceleration \[m/s²\].
     Acceleration {
         /// The body.
         body: usize,
@@ -81,27 +81,28 @@ pub(crate) enum Instant<S> {
         /// The direction.
         direction: Vec3<S>,
     },
-    /// Speed of a point (m/s). Not differentiable at rest, where its derivative is taken as zero.
+    /// Speed of a point \[m/s\]. It is not differentiable at rest; there its derivative is set to
+    /// zero.
     Speed {
         /// The body.
         body: usize,
         /// The point.
         point: Vec3<S>,
     },
-    /// Square of the speed of a point (m²/s²). Differentiable everywhere.
+    /// Square of the speed of a point \[m²/s²\]. Differentiable everywhere.
     SpeedSquared {
         /// The body.
         body: usize,
         /// The point.
         point: Vec3<S>,
     },
-    /// Energy of the whole model (J).
+    /// Energy of the whole model \[J\].
     Energy(EnergyPart),
-    /// Rotation of a body about an axis, continuous in time and in (−2π, 2π] at t = 0 (rad).
+    /// Rotation of a body about an axis, continuous in time and in (−2π, 2π] at t = 0 \[rad\].
     Rotation(Rotation<S>),
-    /// Range of a projectile let go at this instant,
-    /// R = x + (v_x/g)(v_y + √s0), s0 = v_y² + 2 g (y − y_g), smoothed where the ground is out of
-    /// reach (see [`Flight::range`](super::flight::Flight::range)), times the gate if there is one (m).
+    /// Range of a projectile that is released at this instant \[m\], times the gate if there is
+    /// one: R = x + (v_x/g)(v_y + √s0), s0 = v_y² + 2 g (y − y_g). It is smoothed if the ground is
+    /// out of reach (see [`Flight::range`](super::flight::Flight::range)).
     Range {
         /// The projectile.
         projectile: Projectile<S>,
@@ -111,7 +112,7 @@ pub(crate) enum Instant<S> {
 }
 
 impl<S: Scalar> Gate<S> {
-    /// The gate with every parameter replaced by `f` of it.
+    /// The gate with `f` applied to every parameter.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Gate<T> {
         Gate {
             rotation: self.rotation.map(f),
@@ -123,7 +124,7 @@ impl<S: Scalar> Gate<S> {
 }
 
 impl<S: Scalar> Projectile<S> {
-    /// The projectile with every parameter replaced by `f` of it.
+    /// The projectile with `f` applied to every parameter.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Projectile<T> {
         Projectile {
             body: self.body,
@@ -157,7 +158,7 @@ impl<S: Scalar> Instant<S> {
         }
     }
 
-    /// What it is, for messages.
+    /// Name of the quantity for messages.
     pub(crate) fn describe(&self) -> &'static str {
         match self {
             Instant::Position { .. } => "position",
@@ -171,7 +172,7 @@ impl<S: Scalar> Instant<S> {
         }
     }
 
-    /// The quantity with every parameter replaced by `f` of it.
+    /// The quantity with `f` applied to every parameter.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Instant<T> {
         match self {
             Instant::Position {

@@ -10,7 +10,7 @@ use crate::system::bodies::add6;
 use crate::system::marker::{self, MarkerKinematics};
 use crate::system::{BodyMotion, Numbering, loads};
 
-/// Speed below which a point is at rest (m/s), where the derivative of its speed is taken as zero.
+/// A point is at rest below this speed \[m/s\]. There the derivative of its speed is set to zero.
 const REST: f64 = 1e-25;
 
 /// A model at one instant.
@@ -20,11 +20,11 @@ pub(crate) struct Snapshot<'a, S> {
     pub model: &'a Model<S>,
     /// Its numbering.
     pub numbering: &'a Numbering,
-    /// Positions.
+    /// Positions; one entry per position number.
     pub q: &'a [S],
-    /// Velocities.
+    /// Velocities; one entry per velocity number.
     pub v: &'a [S],
-    /// Accelerations.
+    /// Accelerations; one entry per velocity number.
     pub a: &'a [S],
 }
 
@@ -53,7 +53,7 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
         motions
     }
 
-    /// The flight of a projectile let go now.
+    /// The flight of a projectile that is released now.
     pub(crate) fn flight(&self, projectile: &Projectile<S>) -> Flight<S> {
         Flight::new(
             projectile,
@@ -62,12 +62,12 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
         )
     }
 
-    /// A rotation, `turns` (a multiple of 2π) added.
+    /// A rotation plus `turns`, a multiple of 2π \[rad\].
     fn rotation(&self, rotation: &Rotation<S>, turns: f64) -> S {
         rotation.angle(self.numbering, self.q) + turns
     }
 
-    /// How far a gate is open, 1 without one.
+    /// Openness of a gate; 1 without a gate.
     pub(crate) fn openness(&self, gate: &Option<Gate<S>>, turns: f64) -> S {
         gate.as_ref().map_or(S::one(), |gate| {
             gate.openness(self.rotation(&gate.rotation, turns))
@@ -89,7 +89,7 @@ pub(crate) struct SnapshotCotangent<'a> {
 }
 
 impl<S: Scalar> Instant<S> {
-    /// The rotation that has to be counted in whole turns, if any.
+    /// The rotation whose whole turns must be counted, if any.
     pub(crate) fn watched_rotation(&self) -> Option<&Rotation<S>> {
         match self {
             Instant::Rotation(rotation) => Some(rotation),
@@ -100,8 +100,7 @@ impl<S: Scalar> Instant<S> {
         }
     }
 
-    /// Value in a snapshot; `turns` is the multiple of 2π that makes the watched rotation
-    /// continuous.
+    /// Value in a snapshot. `turns` is the multiple of 2π that makes its rotation continuous.
     pub(crate) fn value(&self, at: &Snapshot<S>, turns: f64) -> S {
         match self {
             Instant::Position {
@@ -141,7 +140,7 @@ impl<S: Scalar> Instant<S> {
     }
 }
 
-/// Energy of the model in a snapshot (J).
+/// Energy of the model in a snapshot \[J\].
 pub(crate) fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
     let mut sum = S::zero();
     let motions = at.motions();
@@ -163,7 +162,7 @@ pub(crate) fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
 
 impl Instant<f64> {
     /// Adds `weight` times the derivative of [`Instant::value`] to the cotangents of the snapshot
-    /// and of this quantity's parameters (`own`, of the same kind).
+    /// and of this quantity's parameters (`own`, of the same variant).
     pub(crate) fn pull_back(
         &self,
         at: &Snapshot<f64>,
@@ -274,8 +273,8 @@ impl Instant<f64> {
 
 const ZERO: Vec3<f64> = Vec3::new(0.0, 0.0, 0.0);
 
-/// Pulls cotangents of a point's position, velocity and acceleration back; returns that of the
-/// point.
+/// Pulls cotangents of a point's position, velocity and acceleration back. Returns the cotangent of
+/// the point.
 fn pull_point(
     at: &Snapshot<f64>,
     body: usize,

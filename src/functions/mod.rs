@@ -1,4 +1,4 @@
-//! Functions of interest: what is measured at an instant, and how a run is reduced to a number.
+//! Functions of interest: quantities at an instant, and their reduction over a run to a number.
 
 pub(crate) mod evaluate;
 pub(crate) mod flight;

@@ -1,24 +1,24 @@
-//! Maxima of a quantity between its samples: turning points of the polynomials through them.
+//! Maxima of a quantity between its samples: turning points of interpolating polynomials.
 
 use crate::integrate::Trajectory;
 use crate::integrate::quadrature::ADDED;
 use crate::math::Scalar;
 use std::ops::Range;
 
-/// Samples on either side of an interval that a polynomial goes through, where there are no cells.
+/// Number of samples on either side of an interval that its polynomial uses, without cells.
 const BESIDE: usize = 2;
-/// Bisections of an interval to the last bit.
+/// Number of bisections that reach the last bit.
 const BISECTIONS: usize = 60;
 
-/// A part of the motion and the samples that a polynomial goes through there.
+/// A part of the motion and the samples of its polynomial.
 #[derive(Clone, Debug)]
 struct Stretch {
     samples: Vec<usize>,
-    /// Which of them bound the part.
+    /// Indices of the samples that bound the part.
     part: Range<usize>,
 }
 
-/// The parts of a run, in order: cells, or the intervals between samples.
+/// The parts of a run in order: cells, or the intervals between samples.
 fn stretches<S: Scalar>(run: &Trajectory<S>) -> Vec<Stretch> {
     let nodes: Vec<usize> = (0..=run.last()).filter(|&k| run.weights[k] > 0.0).collect();
     let mut all = Vec::new();
@@ -48,12 +48,12 @@ fn stretches<S: Scalar>(run: &Trajectory<S>) -> Vec<Stretch> {
 
 /// The polynomial through samples of a stretch.
 struct Polynomial {
-    /// Fractions of the duration, and values.
+    /// Pairs (fraction of the duration, value).
     nodes: Vec<(f64, f64)>,
 }
 
 impl Polynomial {
-    /// Weights of the values in the polynomial at `x`.
+    /// Weights of the values in the polynomial at `x`; one per node.
     fn weights(&self, x: f64) -> Vec<f64> {
         let weight = |j: usize| {
             let others = (0..self.nodes.len()).filter(|&i| i != j);
@@ -70,7 +70,7 @@ impl Polynomial {
         weights.zip(&self.nodes).map(|(w, node)| w * node.1).sum()
     }
 
-    /// Derivative at `x`, from differences to the first value.
+    /// Derivative at `x`, computed from differences to the first value.
     fn slope(&self, x: f64) -> f64 {
         let n = self.nodes.len();
         let part = |j: usize| {
@@ -90,7 +90,7 @@ impl Polynomial {
         (1..n).map(part).sum()
     }
 
-    /// Where the derivative vanishes between two fractions between which it changes its sign.
+    /// Zero of the derivative between two fractions at which it has different signs.
     fn turn(&self, mut low: f64, mut high: f64) -> f64 {
         let rises = self.slope(low) > 0.0;
         for _ in 0..BISECTIONS {
@@ -117,12 +117,12 @@ impl Polynomial {
     }
 }
 
-/// A sample or a turning point between samples: a sum over samples.
+/// A sample, or a turning point as a weighted sum of samples.
 #[derive(Clone, Debug)]
 pub(crate) struct Point<S> {
     /// The value.
     pub value: S,
-    /// Samples and their weights in it.
+    /// Pairs (sample, weight).
     pub of: Vec<(usize, f64)>,
 }
 
@@ -134,7 +134,7 @@ impl Stretch {
         }
     }
 
-    /// Turning points inside.
+    /// Turning points inside the part.
     fn turns(&self, polynomial: &Polynomial) -> Vec<f64> {
         let nodes = &polynomial.nodes;
         let slopes: Vec<f64> = (self.part.start..=self.part.end)
@@ -148,8 +148,8 @@ impl Stretch {
     }
 }
 
-/// Samples and turning points of a quantity in order of time, as its polynomials have them. The quantity
-/// rises or falls between any two that follow each other.
+/// Samples and turning points of a quantity in order of time, by its polynomials. Between two
+/// neighbours the quantity rises or falls.
 pub(crate) fn points<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Vec<Point<S>> {
     let sample = |k: usize| Point {
         value: values[k],
@@ -180,19 +180,19 @@ pub(crate) fn points<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Vec<Point<
 pub(crate) struct Maximum {
     /// The value.
     pub value: f64,
-    /// When it is attained (s).
+    /// Its time \[s\].
     pub time: f64,
     /// Estimated error of the polynomial between the samples.
     pub error: f64,
 }
 
-/// The largest value of a quantity over the motion: samples and the polynomials between them, wherever
-/// these may exceed the largest sample.
+/// The largest value of a quantity over the motion: of its samples, and of the polynomials between
+/// them that may exceed the largest sample.
 pub(crate) fn maximum<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Maximum {
     maximum_where(run, values, |_| true)
 }
 
-/// As [`maximum`], of the parts of the motion all samples of which `counts`.
+/// As [`maximum`], over the parts of the motion whose samples all satisfy `counts`.
 pub(crate) fn maximum_where<S: Scalar>(
     run: &Trajectory<S>,
     values: &[S],

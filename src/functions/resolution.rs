@@ -1,4 +1,4 @@
-//! Which cells the steps of a run need for the sums of functions over the motion.
+//! The number of quadrature cells per step that sums over the motion need.
 
 use super::evaluate::sample;
 use super::turning::turns;
@@ -6,35 +6,35 @@ use super::{Function, Instant, Reduction, Release, Scene};
 use crate::integrate::Trajectory;
 use crate::integrate::quadrature::{ADDED, LOBATTO, WEIGHTS};
 
-/// Exponent below which a soft maximum has no weight that shows: e^-72 is ε².
+/// Below this exponent the weight of a soft maximum is negligible: e^-72 is ε².
 const COLD: f64 = -72.0;
-/// Most cells of a step, and by how much their number may grow at once.
+/// Largest number of cells of a step, and largest factor by which it may grow at once.
 const MOST: f64 = 256.0;
 const GROWTH: f64 = 4.0;
-/// Orders of the two rules of a cell.
+/// Orders of the two quadrature rules of a cell.
 const ORDERS: [f64; 2] = [6.0, 10.0];
 
-/// What the cells in use are worth, and what others should be used.
+/// Errors with the cells in use, and the cells that are needed.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Resolution {
     /// Largest estimated error of a sum, relative to the sum of sizes.
     pub error: f64,
-    /// Cells for the steps that keep each sum below the error that is asked for.
+    /// Number of cells of each step that keeps the error of every sum below the goal.
     pub cells: Vec<u32>,
 }
 
-/// What a function sums over the motion.
+/// The integrand of a function over the motion.
 struct Sum {
-    /// Size of what is summed at every sample, relative to the whole.
+    /// Size of the integrand at every sample, relative to the whole.
     sizes: Vec<f64>,
-    /// What is summed, likewise.
+    /// The integrand at every sample, relative to the whole.
     terms: Vec<f64>,
-    /// Whether samples without weight need no cells.
+    /// Whether samples with negligible weight need no cells.
     soft: bool,
 }
 
-/// The cells that the functions `which` need over a run whose samples are nodes of cells, so that each
-/// sum errs by less than `goal` relative to the sum of sizes.
+/// The cells that the functions `which` need over a run whose samples are nodes of cells. The error
+/// of each sum is below `goal` relative to the sum of sizes.
 pub(crate) fn resolution(
     scene: &Scene<f64>,
     which: &[usize],
@@ -49,7 +49,7 @@ pub(crate) fn resolution(
     };
     for &f in which {
         let Some(sum) = sum_of(scene, f, run, &nodes) else {
-            // It follows the motion without a sum.
+            // The maximum over the motion needs a cell in each step, but no sum.
             found
                 .cells
                 .iter_mut()
@@ -73,7 +73,7 @@ pub(crate) fn resolution(
 }
 
 impl Sum {
-    /// Cells that a step with these nodes needs, and the error of the sum over it.
+    /// Number of cells that a step with these nodes needs, and the error of the sum over it.
     fn step(
         &self,
         nodes: std::ops::Range<usize>,
@@ -87,7 +87,7 @@ impl Sum {
             false => 1,
         };
         if cells == 0 {
-            // The whole of what its ends say is uncertain.
+            // Values at the two ends give no estimate: the whole is uncertain.
             let error = 0.5 * width * (sizes[0] + sizes[sizes.len() - 1]);
             return (least, error);
         }
@@ -99,7 +99,7 @@ impl Sum {
             };
             let difference = (rule(terms, &WEIGHTS) - rule(terms, &LOBATTO)).abs();
             let size = rule(sizes, &WEIGHTS);
-            // The difference is the error of the lower rule.
+            // The difference of both rules is the error of the lower one.
             let relative = (difference / size).powf(ORDERS[1] / ORDERS[0]).min(1.0);
             if size > 0.0 {
                 part * size * relative
@@ -113,13 +113,13 @@ impl Sum {
         }
         let more = (error / share).powf(1.0 / ORDERS[1]).clamp(1.0, GROWTH);
         let wanted = (cells as f64 * more).ceil().min(MOST);
-        // Rounding up must not make cells more each time they are looked at.
+        // Rounding up must not increase the number at every call.
         let wanted = if error <= share { cells as f64 } else { wanted };
         (wanted as u32, error)
     }
 }
 
-/// What function f sums over the nodes of a run, or `None` if it follows the motion without a sum.
+/// The integrand of function f at the nodes of a run; `None` if the function is no sum.
 fn sum_of(scene: &Scene<f64>, f: usize, run: &Trajectory<f64>, nodes: &[usize]) -> Option<Sum> {
     let (instant, rho) = match &scene.functions[f] {
         Function::Reduced { instant, reduction } => match *reduction {

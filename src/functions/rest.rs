@@ -1,4 +1,4 @@
-//! Where the speed of a point passes zero: it has a kink there, |v| ~ |t − t0|.
+//! Zeros of the speed of a point. The speed has a kink there, |v| ~ |t − t0|.
 
 use super::function::{Function, Reduction};
 use super::instant::Instant;
@@ -7,12 +7,12 @@ use crate::integrate::Trajectory;
 use crate::math::Vec3;
 use crate::model::Model;
 
-/// Closest approach to rest, relative to the change of velocity between two samples, that these do
-/// not tell from a kink.
+/// Smallest speed, relative to the change of velocity between two samples, that the samples
+/// distinguish from a kink.
 const CLOSE: f64 = 0.05;
 
-/// The time when a speed that `function` reduces over the run first passes zero, where this counts in
-/// its value (s). The start and the end of a run may be at rest: speeds are smooth up to them.
+/// The first time \[s\] at which a speed that `function` reduces over the run vanishes, if this
+/// affects its value. Start and end of a run do not count: the speed is smooth up to them.
 pub(crate) fn passes_rest(
     function: &Function<f64>,
     model: &Model<f64>,
@@ -31,7 +31,7 @@ pub(crate) fn passes_rest(
     };
     let all: Vec<Vec3<f64>> = (0..=run.last()).map(velocity).collect();
     let fastest = all.iter().map(Vec3::norm).fold(0.0, f64::max);
-    // The weight of an instant at rest beside that of the fastest one.
+    // The weight of an instant at rest relative to that of the largest speed.
     let counts = match reduction {
         Reduction::Final => false,
         Reduction::Integral => true,

@@ -1,4 +1,4 @@
-//! A scene: everything that a design determines.
+//! A scene: all that a design determines.
 
 use super::evaluate::sample;
 use super::turning::turns;
@@ -13,14 +13,14 @@ use crate::system::failure::AssemblyFailure;
 pub(crate) struct Scene<S> {
     /// Bodies, joints, gravity.
     pub model: Model<S>,
-    /// Simulated time T (s); with an event, the longest that it is waited for until T is known.
+    /// Simulated time T \[s\]; with an event, the longest time to wait for it until T is known.
     pub duration: S,
-    /// The event that ends the run, if one does.
+    /// The event that ends the run, if any.
     pub until: Option<TerminalEvent<S>>,
     /// Functions of interest, in the order of the problem file.
     pub functions: Vec<Function<S>>,
-    /// Why the starts of joints cannot be as they are given; the bodies are then as they are placed, and
-    /// the scene is not simulated.
+    /// Why the joints cannot start as given. Then the bodies are as placed, and the scene is not
+    /// simulated.
     pub unstarted: Option<AssemblyFailure>,
 }
 
@@ -58,7 +58,7 @@ impl<S: Scalar> TerminalEvent<S> {
 }
 
 impl TerminalEvent<f64> {
-    /// What is waited for, for messages.
+    /// Name of the quantity for messages.
     pub(crate) fn describe(&self) -> String {
         match &self.measure {
             Function::Reduced { instant, .. } => instant.describe().into(),
@@ -80,15 +80,15 @@ impl TerminalEvent<f64> {
 }
 
 impl<S: Scalar> Scene<S> {
-    /// Number of the event's quantity among the functions: one past the last.
+    /// Number of the event's quantity: one past the last function.
     pub(crate) fn event(&self) -> usize {
         self.functions.len()
     }
 
-    /// A function of interest by number, the event's quantity included.
+    /// A function of interest by number; includes the event's quantity.
     ///
     /// # Panics
-    /// If there is none.
+    /// There is no such function.
     pub(crate) fn function(&self, number: usize) -> &Function<S> {
         match &self.until {
             Some(until) if number == self.event() => &until.measure,
@@ -96,10 +96,10 @@ impl<S: Scalar> Scene<S> {
         }
     }
 
-    /// The model, and a function of interest as in [`Scene::function`], to be changed.
+    /// The model and a function, mutable; see [`Scene::function`].
     ///
     /// # Panics
-    /// If there is none.
+    /// There is no such function.
     pub(crate) fn model_and_function(
         &mut self,
         number: usize,
@@ -112,8 +112,8 @@ impl<S: Scalar> Scene<S> {
         (&mut self.model, function)
     }
 
-    /// The scene with every parameter replaced by `f` of it, visited in one fixed order: model,
-    /// duration, event, functions.
+    /// The scene with `f` applied to every parameter, in a fixed order: model, duration, event,
+    /// functions.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Scene<T> {
         Scene {
             model: self.model.map(f),
@@ -138,7 +138,7 @@ impl<S: Scalar> Scene<S> {
         all
     }
 
-    /// The cotangent of this scene: every parameter zero.
+    /// A cotangent of this scene: every parameter is zero.
     pub(crate) fn zero_cotangent(&self) -> Scene<f64> {
         self.map(&mut |_| 0.0)
     }

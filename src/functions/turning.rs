@@ -1,14 +1,14 @@
-//! Rotations of a body about an axis: against ground or another body, counted over whole turns.
+//! Rotation of a body about an axis, relative to ground or another body, counted over whole turns.
 //!
-//! With the Euler parameters p_A of the body, p_B of the one that it is seen from (1 for ground) and
-//! * for the conjugate, the body has turned by
+//! Let p_A and p_B be the Euler parameters of the body and of the other body (1 for ground), and *
+//! the conjugate. The angle is
 //!
 //! ```text
-//! r = p_B* p_A c,     c = p_A0* p_B0 from the placement, c = 1 from where both axes are parallel
+//! r = p_B* p_A c,     c = p_A0* p_B0 from the placement, c = 1 from parallel axes
 //! θ = 2 atan2(eᵀn, r0) + 2π k,     n fixed in B
 //! ```
 //!
-//! The angle of a joint is this one with the joint's axis n and c from the placement.
+//! The angle of a joint is θ with the joint's axis n and c from the placement.
 
 use crate::integrate::Trajectory;
 use crate::math::rotation::{self, Quat, compose, conjugate};
@@ -17,20 +17,20 @@ use crate::system::bodies::{add6, positions_of};
 use crate::system::{BodyMotion, Numbering};
 use std::f64::consts::{PI, TAU};
 
-/// Which rotation is measured.
+/// A rotation of a body about an axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rotation<S> {
     /// The body that turns.
     pub body: usize,
-    /// The body that it is seen from; `None` is ground.
+    /// Body B, which it is relative to; `None` for ground.
     pub relative_to: Option<usize>,
-    /// Unit axis n, in the axes of that body.
+    /// Unit axis n, axes of body B.
     pub axis: Vec3<S>,
-    /// c, where the angle counts from the placement; `None` where it counts from parallel axes.
+    /// c, if the angle counts from the placement; `None` if it counts from parallel axes.
     pub placed: Option<Quat<S>>,
 }
 
-/// Derivatives of an angle in the tangent positions of both bodies and in its own parameters.
+/// Derivatives of an angle in the tangent positions of both bodies and in its parameters.
 struct ByRotation {
     theta: Vec3<f64>,
     theta_other: Vec3<f64>,
@@ -39,7 +39,7 @@ struct ByRotation {
 }
 
 impl<S: Scalar> Rotation<S> {
-    /// The rotation with every parameter replaced by `f` of it.
+    /// The rotation with `f` applied to every parameter.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Rotation<T> {
         Rotation {
             body: self.body,
@@ -49,7 +49,7 @@ impl<S: Scalar> Rotation<S> {
         }
     }
 
-    /// r of the positions `q`.
+    /// r at the positions `q`.
     fn turned(&self, numbering: &Numbering, q: &[S]) -> Quat<S> {
         let p = orientation(numbering, q, self.body);
         let seen = match self.relative_to {
@@ -59,12 +59,12 @@ impl<S: Scalar> Rotation<S> {
         self.placed.map_or(seen, |placed| compose(&seen, &placed))
     }
 
-    /// θ of the positions `q`, less whole turns (rad).
+    /// θ at the positions `q`, without whole turns \[rad\].
     pub(crate) fn angle(&self, numbering: &Numbering, q: &[S]) -> S {
         rotation::twist(&self.turned(numbering, q), &self.axis)
     }
 
-    /// θ̇ of the state (q, v) (rad/s).
+    /// θ̇ of the state (q, v) \[rad/s\].
     fn rate(&self, numbering: &Numbering, (q, v): (&[S], &[S])) -> f64 {
         let real = self.map(&mut |x| x.re());
         let motion = |body| {
@@ -107,7 +107,7 @@ impl Rotation<f64> {
         let seen = other.map_or(p, |other| compose(&conjugate(&other), &p));
         let turned = self.placed.map_or(seen, |placed| compose(&seen, &placed));
         let (by_turned, axis) = rotation::twist_derivative(&turned, &self.axis);
-        // a b depends on a by ȳ b* and on b by a* ȳ.
+        // The cotangents of a b are ȳ b* for a, and a* ȳ for b.
         let by_seen = match &self.placed {
             Some(placed) => compose(&by_turned, &conjugate(placed)),
             None => by_turned,
@@ -169,11 +169,11 @@ fn orientation<S: Scalar>(numbering: &Numbering, q: &[S], body: usize) -> Quat<S
     positions_of(&q[numbering.position(body)..]).1
 }
 
-/// Multiples of 2π that make a rotation continuous over a run.
+/// Multiples of 2π that make a rotation continuous over a run; one per sample.
 ///
-/// Where the rates of the rotation at two samples agree within half a turn over the time between
-/// them, the rotation goes on by their mean, however many turns that makes; else, where a rate says
-/// little, to the nearest angle.
+/// If the rates at two samples differ by less than half a turn over the time between them, the
+/// rotation advances by their mean, with any number of turns. Otherwise it goes to the nearest
+/// angle.
 pub(crate) fn turns<S: Scalar>(
     watched: Option<&Rotation<S>>,
     run: &Trajectory<S>,

@@ -1,4 +1,4 @@
-//! Sparse linear algebra: static patterns, the LU and the Cholesky factorisation.
+//! Sparse linear algebra: static patterns, LU and Cholesky factorisation.
 
 pub(crate) mod cholesky;
 pub(crate) mod pattern;

@@ -1,12 +1,12 @@
-//! Static sparsity patterns, and matrices that are assembled into them again and again.
+//! Static sparsity patterns, and matrices that are assembled into them repeatedly.
 //!
 //! An assembly emits its entries (row, column, value) in an order that does not depend on values.
-//! The first pass records where each emitted entry goes; later passes replay the record, so
-//! adding an entry is one indexed addition. Entries at the same place add up.
+//! The first pass records the place of each entry. Later passes replay the record, so an entry
+//! costs one indexed addition. Entries at the same place are summed.
 
 use crate::math::{Mat3, Scalar, Vec3};
 
-/// Receives the entries of an assembly, in its fixed order.
+/// Receives the entries of an assembly in their fixed order.
 pub(crate) trait Emit<S: Scalar> {
     /// Adds `value` at (`row`, `column`).
     fn add(&mut self, row: usize, column: usize, value: S);
@@ -42,7 +42,7 @@ pub(crate) trait Emit<S: Scalar> {
     }
 }
 
-/// Places of the non-zeros of a square matrix by compressed columns.
+/// Positions of the non-zeros of a square matrix in compressed columns.
 #[derive(Clone, Debug)]
 pub(crate) struct Pattern {
     column_starts: Vec<usize>,
@@ -50,19 +50,19 @@ pub(crate) struct Pattern {
     record: Record,
 }
 
-/// Where the entries of an assembly go, in its order.
+/// Slots of the entries of an assembly, in its order.
 #[derive(Clone, Debug)]
 enum Record {
-    /// The slot of each.
+    /// One slot per entry.
     Whole(Vec<u32>),
-    /// Each goes to the slots between two starts, with a weight for each slot.
+    /// Entry k goes to the slots from `starts[k]` to `starts[k + 1]`, each with a weight.
     Shared {
         starts: Vec<u32>,
         shares: Vec<(u32, f64)>,
     },
 }
 
-/// Collects the places that an assembly touches.
+/// Collects the places of an assembly.
 struct Recorder(Vec<(usize, usize)>);
 
 impl<S: Scalar> Emit<S> for Recorder {
@@ -72,7 +72,7 @@ impl<S: Scalar> Emit<S> for Recorder {
 }
 
 impl Pattern {
-    /// Records the pattern of order `n` of the given assembly.
+    /// Records the pattern of order `n` of an assembly.
     pub(crate) fn record<S: Scalar>(n: usize, assemble: impl FnOnce(&mut dyn Emit<S>)) -> Self {
         let mut recorder = Recorder(Vec::new());
         assemble(&mut recorder);
@@ -85,8 +85,8 @@ impl Pattern {
         }
     }
 
-    /// Records the pattern of order `n` of Bᵀ A B for an assembly of A, of which B is given by row:
-    /// `shares` are the columns of its non-zeros and these (a zero counts as none).
+    /// Records the pattern of order `n` of Bᵀ A B for an assembly of A. `shares` gives a row of B:
+    /// the columns and values of its non-zeros (a zero value is ignored).
     pub(crate) fn record_reduced<S: Scalar>(
         n: usize,
         shares: impl Fn(usize) -> [(usize, f64); 2],
@@ -116,7 +116,7 @@ impl Pattern {
         }
     }
 
-    /// Column starts, and the distinct places (column, row) in order.
+    /// Column starts, and the distinct places (column, row) in ascending order.
     fn sort(n: usize, places: &[(usize, usize)]) -> (Vec<usize>, Vec<(usize, usize)>) {
         let mut sorted = places.to_vec();
         sorted.sort_unstable();
@@ -141,15 +141,15 @@ impl Pattern {
         self.rows.len()
     }
 
-    /// Start of each column among the entries, and one past the last.
+    /// First entry of each column, and the number of entries; length order + 1.
     pub(crate) fn column_starts(&self) -> &[usize] {
         &self.column_starts
     }
 
-    /// Entries that stand where those of `other`, a part of this pattern, do.
+    /// Slots of the entries of `other`, a part of this pattern.
     ///
     /// # Panics
-    /// If an entry of the other is none of this.
+    /// An entry of `other` is not in this pattern.
     pub(crate) fn slots_of(&self, other: &Self) -> Vec<usize> {
         let mut slots = Vec::with_capacity(other.entries());
         for j in 0..other.order() {
@@ -168,7 +168,7 @@ impl Pattern {
     }
 }
 
-/// Where a place stands among those of a pattern.
+/// Index of a place among those of a pattern.
 fn slot(sorted: &[(usize, usize)], place: &(usize, usize)) -> u32 {
     let slot = sorted
         .binary_search(place)
@@ -179,9 +179,9 @@ fn slot(sorted: &[(usize, usize)], place: &(usize, usize)) -> u32 {
 /// A matrix in a static pattern.
 #[derive(Clone, Debug)]
 pub(crate) struct SparseMatrix<S> {
-    /// Where the entries are.
+    /// Positions of the entries.
     pub pattern: Pattern,
-    /// Their values.
+    /// Values of the entries, in the order of the pattern.
     pub values: Vec<S>,
 }
 
@@ -201,7 +201,7 @@ impl<S: Scalar> Emit<S> for Replay<'_, S> {
     }
 }
 
-/// Adds the entries to the slots that they have shares in.
+/// Adds the entries, with their weights, to their slots.
 struct SharedReplay<'a, S> {
     starts: &'a [u32],
     shares: &'a [(u32, f64)],
@@ -226,7 +226,7 @@ impl<S: Scalar> SparseMatrix<S> {
         Self { pattern, values }
     }
 
-    /// Replaces the values by those that the recorded assembly emits now.
+    /// Replaces the values by those of the recorded assembly.
     pub(crate) fn assemble(&mut self, assemble: impl FnOnce(&mut dyn Emit<S>)) {
         self.values.fill(S::zero());
         let values = &mut self.values[..];
@@ -251,7 +251,7 @@ impl<S: Scalar> SparseMatrix<S> {
         debug_assert!(whole, "an assembly emits as often as recorded");
     }
 
-    /// Emits every entry, moved down and to the right by `at` and scaled by `scale`.
+    /// Emits every entry, shifted by `at` and multiplied by `scale`.
     pub(crate) fn emit(&self, at: (usize, usize), scale: S, emit: &mut dyn Emit<S>) {
         let starts = self.pattern.column_starts();
         for j in 0..self.pattern.order() {

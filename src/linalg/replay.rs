@@ -1,9 +1,9 @@
-//! LU factorisation with a pivot sequence that is known beforehand.
+//! LU factorisation with a known pivot sequence.
 //!
-//! The matrices of consecutive steps differ little, and a pivot sequence that was good for one is
-//! good for the next: structure and order of elimination are planned once and replayed with new
-//! values (left-looking, as in Gilbert & Peierls 1988 and in the refactorisation of KLU, Davis &
-//! Palamadai Natarajan 2010). A pivot that has become too small ends the replay.
+//! Matrices of consecutive steps differ little, so a pivot sequence that was good for one is good
+//! for the next. Structure and order of elimination are planned once and replayed with new values
+//! (left-looking, Gilbert & Peierls 1988; refactorisation of KLU, Davis & Palamadai Natarajan
+//! 2010). The replay fails if a pivot has become too small.
 
 use super::pattern::{Pattern, SparseMatrix};
 use super::scaling::{Equilibration, size};
@@ -11,19 +11,19 @@ use crate::math::Scalar;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// A pivot smaller than this part of the largest candidate of its column is refused.
+/// A pivot below this fraction of the largest candidate of its column is rejected.
 const THRESHOLD: f64 = 0.1;
 
-/// The pivot of some column of the matrix is zero, not finite, or too small beside the others.
+/// A pivot of the matrix is zero, not finite, or too small relative to other candidates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct BadPivot {
     /// Column of the matrix.
     pub column: usize,
-    /// Whether another pivot of the same column would do.
+    /// Whether another pivot in the same column is acceptable.
     pub replaceable: bool,
 }
 
-/// Columns of a triangular factor, diagonal left out, rows ascending in pivot order.
+/// Columns of a triangular factor without its diagonal; rows ascend in pivot order.
 struct Triangle<S> {
     starts: Vec<usize>,
     rows: Vec<u32>,
@@ -61,14 +61,14 @@ impl<S: Scalar> Triangle<S> {
     }
 }
 
-/// Planned elimination and the factors of the latest matrix: P R A C Q = L U, L with unit diagonal, R
-/// and C of powers of two.
+/// Planned elimination and the factors of the latest matrix: P R A C Q = L U. L has a unit
+/// diagonal, R and C are diagonal with powers of two.
 pub(super) struct Replay<S> {
-    /// Column of the matrix that is eliminated j-th.
+    /// Column of the matrix of the j-th pivot.
     columns: Vec<usize>,
-    /// Row of the matrix that is the j-th pivot's.
+    /// Row of the matrix of the j-th pivot.
     pivot_rows: Vec<usize>,
-    /// Rows of the matrix's entries in pivot order, entry by entry.
+    /// By entry of the matrix: its row in pivot order.
     entry_rows: Vec<u32>,
     scaling: Equilibration,
     lower: Triangle<S>,
@@ -76,15 +76,15 @@ pub(super) struct Replay<S> {
     /// Reciprocals of the pivots.
     inverse_pivots: Vec<S>,
     work: Vec<S>,
-    /// Where each row of the matrix stands in pivot order.
+    /// By row of the matrix: its index in pivot order.
     place: Vec<u32>,
-    /// For planning: the column that each row was last met in, and rows that are to come.
+    /// For planning: the last column that used each row, and the rows that follow.
     seen: Vec<u32>,
     heap: BinaryHeap<Reverse<u32>>,
 }
 
 impl<S: Scalar> Replay<S> {
-    /// Eliminates the columns of matrices of this pattern in the given order; not planned yet.
+    /// An elimination without plan: columns of matrices of this pattern in the given order.
     pub(crate) fn new(pattern: &Pattern, columns: &[usize]) -> Self {
         let n = pattern.order();
         Self {
@@ -102,7 +102,7 @@ impl<S: Scalar> Replay<S> {
         }
     }
 
-    /// Plans the elimination with pivot j in row `pivot_rows[j]` of a matrix that is scaled like this.
+    /// Plans the elimination of a matrix with this scaling; row `pivot_rows[j]` has pivot j.
     pub(crate) fn plan(
         &mut self,
         pattern: &Pattern,
@@ -139,7 +139,7 @@ impl<S: Scalar> Replay<S> {
                 }
             };
             add(&self.entry_rows[entries], heap);
-            // Fill is made below what makes it, so that rows come in ascending order.
+            // Fill lies below the entry that causes it, so the rows come in ascending order.
             while let Some(Reverse(i)) = heap.pop() {
                 if i < j {
                     upper.rows.push(i);
@@ -158,7 +158,7 @@ impl<S: Scalar> Replay<S> {
         (&self.pivot_rows, &self.scaling)
     }
 
-    /// Entries of both factors, and floating-point operations of a factorisation.
+    /// Number of entries of both factors, and of floating-point operations of a factorisation.
     pub(crate) fn cost(&self) -> (usize, usize) {
         let n = self.columns.len();
         let column = |j: usize| {
@@ -172,7 +172,7 @@ impl<S: Scalar> Replay<S> {
         (entries, (0..n).map(column).sum())
     }
 
-    /// The smallest pivot in the columns from `first` on, of the scaled matrix, and its column.
+    /// The smallest pivot of the scaled matrix in the columns from `first` on, and its column.
     pub(crate) fn smallest_pivot(&self, first: usize) -> (f64, usize) {
         let mut found = (0.0, first);
         for (&inverse, &column) in self.inverse_pivots.iter().zip(&self.columns) {
@@ -183,10 +183,10 @@ impl<S: Scalar> Replay<S> {
         (1.0 / found.0, found.1)
     }
 
-    /// Eliminates the values of `matrix`, whose pattern was planned for.
+    /// Factorises `matrix`, which has the planned pattern.
     ///
     /// # Errors
-    /// [`BadPivot`]; the factors are then of no use.
+    /// [`BadPivot`]; the factors are then not usable.
     pub(crate) fn factorise(&mut self, matrix: &SparseMatrix<S>) -> Result<(), BadPivot> {
         let starts = matrix.pattern.column_starts();
         let x = &mut self.work;

@@ -1,28 +1,28 @@
-//! Scaling of the rows and columns of a matrix, so that elimination compares like with like.
+//! Scaling of the rows and columns of a matrix before elimination.
 
 use super::pattern::{Pattern, SparseMatrix};
 use crate::math::Scalar;
 
-/// Largest exponent of a scale, and of what needs none.
+/// Largest exponent of a scale, and largest exponent that needs no scale.
 const MOST: f64 = 500.0;
 const MODERATE: f64 = 8.0;
 
-/// Powers of two R and C, which make the largest entries of all rows and columns of R A C alike:
-/// whatever units a row or column is in, elimination then compares it with the others (Golub & Van
-/// Loan 2013, section 3.5.2), and scaling itself makes no round-off. Largest entries from 2⁻⁸ to 2⁸
-/// are left as they are, others are brought between 1/2 and 1.
+/// Diagonal matrices R and C of powers of two. R A C has rows and columns with similar largest
+/// entries, so pivoting does not depend on units (Golub & Van Loan 2013, section 3.5.2). Powers of
+/// two cause no round-off. Largest entries from 2⁻⁸ to 2⁸ are not scaled, others are brought to
+/// [1/2, 1].
 #[derive(Clone, Debug)]
 pub(super) struct Equilibration {
     /// R.
     pub rows: Vec<f64>,
     /// C.
     pub columns: Vec<f64>,
-    /// What each entry is multiplied by.
+    /// Factor of each entry.
     pub entries: Vec<f64>,
 }
 
 impl Equilibration {
-    /// No scaling yet.
+    /// The identity.
     pub(crate) fn new(pattern: &Pattern) -> Self {
         Self {
             rows: vec![1.0; pattern.order()],
@@ -31,14 +31,14 @@ impl Equilibration {
         }
     }
 
-    /// Becomes equal to another scaling of the same pattern.
+    /// Copies another scaling of the same pattern.
     pub(crate) fn set(&mut self, other: &Self) {
         self.rows.copy_from_slice(&other.rows);
         self.columns.copy_from_slice(&other.columns);
         self.entries.copy_from_slice(&other.entries);
     }
 
-    /// Scales for a matrix: first its rows, then the columns of what that makes.
+    /// Scales for a matrix: first its rows, then the columns of the result.
     pub(crate) fn fit<S: Scalar>(&mut self, matrix: &SparseMatrix<S>) {
         let pattern = &matrix.pattern;
         self.rows.fill(0.0);
@@ -64,12 +64,12 @@ impl Equilibration {
     }
 }
 
-/// Size of a number as pivoting sees it, |Re x| + |Im x|; NaN of NaN.
+/// Size of a number in pivoting, |Re x| + |Im x|; NaN for NaN.
 pub(super) fn size<S: Scalar>(x: S) -> f64 {
     x.re().abs() + x.infinitesimal().abs()
 }
 
-/// The power of two that brings `largest` between 1/2 and 1; 1 where it need not or cannot be.
+/// The power of two that brings `largest` to [1/2, 1]; 1 if this is not needed or not possible.
 fn scale(largest: f64) -> f64 {
     if !(largest > 0.0 && largest.is_finite()) {
         return 1.0;

@@ -1,5 +1,5 @@
-//! Sparse LU with partial pivoting, analysed once and factorised often. faer, which no
-//! other folder names, orders the columns and chooses the pivots.
+//! Sparse LU with partial pivoting: one analysis, many factorisations. faer orders the columns and
+//! chooses the pivots. Only this folder uses faer.
 
 use super::pattern::{Pattern, SparseMatrix};
 use super::replay::Replay;
@@ -10,16 +10,16 @@ use faer::sparse::linalg::lu::{LuSymbolicParams, SymbolicLu, factorize_symbolic_
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use std::sync::Arc;
 
-/// Steps of iterative refinement of a transposed solution.
+/// Number of steps of iterative refinement of a transposed solution.
 const REFINEMENTS: usize = 2;
-/// Solves with the factors that a refined solution takes.
+/// Number of solves with the factors for a refined solution.
 pub(crate) const REFINED_SOLVES: usize = 1 + REFINEMENTS;
 
-/// A scalar that linear systems are solved in: `f64` and `Complex64`.
+/// A scalar of linear systems: `f64` or `Complex64`.
 pub(crate) trait SolveScalar: Scalar + faer::traits::ComplexField {}
 impl<S: Scalar + faer::traits::ComplexField> SolveScalar for S {}
 
-/// The matrix has no usable pivot in some column.
+/// A column of the matrix has no usable pivot.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("singular matrix: column {column} has no usable pivot")]
 pub(crate) struct SingularMatrix {
@@ -27,29 +27,29 @@ pub(crate) struct SingularMatrix {
     pub column: usize,
 }
 
-/// LU factors P R A C Q = L U; Q (COLAMD) depends on the pattern only; P, R and C depend on the values.
+/// LU factors P R A C Q = L U. Q (COLAMD) depends only on the pattern; P, R and C depend on values.
 ///
-/// R and C are powers of two that make the largest entries of all rows and columns alike, to 2⁸. They and P,
-/// which is found by partial pivoting, are those of the first matrix and kept while their pivots stay
-/// good; what is found anew is put where the old was, so that factorisations allocate nothing.
+/// R and C are powers of two that make the largest entries of all rows and columns equal up to 2⁸.
+/// P is found by partial pivoting. All three are those of the first matrix, and are kept while its
+/// pivots stay good. A new search reuses the memory, so factorisations do not allocate.
 pub(crate) struct SparseLu<S> {
     symbolic: SymbolicLu<usize>,
     pivoting: Pivoting<S>,
     replay: Option<Replay<S>>,
-    /// The pivots in use, once they were asked for.
+    /// The pivots in use, if they have been requested.
     pivots: Option<Arc<Pivots>>,
     /// Right-hand side and correction of a refined solution.
     refined: [Vec<S>; 2],
 }
 
-/// Which pivots a factorisation takes, and how it scales: what its factors depend on besides the matrix.
+/// Pivots and scaling of a factorisation. With the matrix they determine its factors.
 #[derive(Clone, Debug)]
 pub(crate) struct Pivots {
     rows: Vec<usize>,
     scaling: Equilibration,
 }
 
-/// The search for pivots, with what it needs again each time.
+/// The search for pivots, with its workspace.
 struct Pivoting<S> {
     scaling: Equilibration,
     scaled: Vec<S>,
@@ -73,7 +73,7 @@ impl<S: SolveScalar> Pivoting<S> {
         }
     }
 
-    /// Scales a matrix and finds the rows of the pivots that partial pivoting chooses.
+    /// Scales a matrix and finds the pivot rows of partial pivoting.
     fn search(
         &mut self,
         matrix: &SparseMatrix<S>,
@@ -99,7 +99,7 @@ impl<S: SolveScalar> Pivoting<S> {
 impl<S: SolveScalar> SparseLu<S> {
     /// Analyses a pattern.
     ///
-    /// # Panics
+    /// Memory is exhausted.
     /// If memory is exhausted.
     pub(crate) fn new(pattern: &Pattern) -> Self {
         let symbolic = factorize_symbolic_lu(structure(pattern), LuSymbolicParams::default())
@@ -138,7 +138,7 @@ impl<S: SolveScalar> SparseLu<S> {
             .map_err(|bad| SingularMatrix { column: bad.column })
     }
 
-    /// The pivots in use; none before the first factorisation.
+    /// The pivots in use; `None` before the first factorisation.
     pub(crate) fn pivots(&mut self) -> Option<Arc<Pivots>> {
         let replay = self.replay.as_ref()?;
         let found = self.pivots.get_or_insert_with(|| {
@@ -151,7 +151,7 @@ impl<S: SolveScalar> SparseLu<S> {
         Some(Arc::clone(found))
     }
 
-    /// Goes on with pivots that were in use for matrices of the same pattern.
+    /// Sets pivots that were in use for matrices of the same pattern.
     pub(crate) fn set_pivots(&mut self, pattern: &Pattern, pivots: Option<&Arc<Pivots>>) {
         let Some(new) = pivots else {
             (self.replay, self.pivots) = (None, None);
@@ -167,10 +167,10 @@ impl<S: SolveScalar> SparseLu<S> {
         self.pivots = Some(Arc::clone(new));
     }
 
-    /// Entries of both factors, and floating-point operations of a factorisation.
+    /// Number of entries of both factors, and of floating-point operations of a factorisation.
     ///
     /// # Panics
-    /// If no matrix was factorised.
+    /// No matrix has been factorised.
     pub(crate) fn cost(&mut self) -> (usize, usize) {
         self.factors().cost()
     }
@@ -185,7 +185,7 @@ impl<S: SolveScalar> SparseLu<S> {
     /// Solves A x = b in place.
     ///
     /// # Panics
-    /// If no matrix was factorised.
+    /// No matrix has been factorised.
     pub(crate) fn solve(&mut self, b: &mut [S]) {
         self.factors().solve(b);
     }
@@ -193,26 +193,27 @@ impl<S: SolveScalar> SparseLu<S> {
     /// Solves Aᵀ x = b in place (transposed, not conjugated).
     ///
     /// # Panics
-    /// If no matrix was factorised.
+    /// No matrix has been factorised.
     pub(crate) fn solve_transposed(&mut self, b: &mut [S]) {
         self.factors().solve_transposed(b);
     }
 
-    /// Size of the smallest pivot in the columns from `first` on, of the scaled matrix, and its
-    /// column; infinite if there is none.
+    /// Smallest absolute pivot of the scaled matrix in the columns from `first` on, and its column;
+    /// infinite if there is none.
     ///
     /// # Panics
+    /// No matrix has been factorised.
     /// If no matrix was factorised.
     pub(crate) fn smallest_pivot(&mut self, first: usize) -> (f64, usize) {
         self.factors().smallest_pivot(first)
     }
 
     /// Solves Aᵀ x = b in place for the matrix A that was factorised last, with two steps of
-    /// iterative refinement: the error of x is then that of its residual in each equation, however
-    /// badly the pivots have grown (Skeel 1980).
+    /// iterative refinement. The backward error of each equation is then small for any growth of
+    /// the pivots (Skeel 1980).
     ///
     /// # Panics
-    /// If no matrix was factorised.
+    /// No matrix has been factorised.
     pub(crate) fn solve_transposed_refined(&mut self, matrix: &SparseMatrix<S>, b: &mut [S]) {
         let [mut rhs, mut correction] = std::mem::take(&mut self.refined);
         rhs.copy_from_slice(b);
@@ -281,8 +282,8 @@ mod tests {
         }
     }
 
-    /// x + k y = 1 + k and x + y = 2, in units of any size: with the first row as pivot x would be lost
-    /// beside k.
+    /// x + k y = 1 + k and x + y = 2 in units of any size. With the first row as pivot, x would be
+    /// lost in round-off relative to k.
     #[test]
     fn units_of_rows_and_columns_do_not_spoil_a_solution() {
         let k = 1e30;

@@ -7,7 +7,7 @@
 //! - gravity, forces and velocities lie in the plane, torques and angular velocities are along n;
 //! - forces on bodies that no joint holds upright act at the height of the centre of mass.
 //!
-//! Rows of a joint by the axes that they use, along n (N) or across it (P):
+//! Rows of a joint by the axes that they use, along n \[N\] or across it (P):
 //!
 //! ```text
 //! Coincident k         left out for the k of the largest |n_k|: d · n = 0 identically

@@ -46,7 +46,7 @@ pub(crate) fn rate_transposed<S: Scalar>(p: &Quat<S>, a: &Vec3<S>) -> Quat<S> {
     [-e.dot(a), w.x, w.y, w.z]
 }
 
-/// Pulls a cotangent of the rotation matrix back to the Euler parameters, each of its own: the
+/// Pulls a cotangent of the rotation matrix back to the Euler parameters, taken as independent: the
 /// derivatives of Σ by_ij R_ij(p).
 pub(crate) fn pull_matrix<S: Scalar>(p: &Quat<S>, by: &Mat3<S>) -> Quat<S> {
     let e = vector(p);
@@ -62,19 +62,18 @@ pub(crate) fn pull_matrix<S: Scalar>(p: &Quat<S>, by: &Mat3<S>) -> Quat<S> {
     [(p[0] * trace + e.dot(&w)) * two, by_e.x, by_e.y, by_e.z]
 }
 
-/// Rate of the Euler parameters, ṗ = ½ L(p)ᵀ ω, ω in body axes (rad/s).
+/// Rate of the Euler parameters, ṗ = ½ L(p)ᵀ ω, ω in body axes \[rad/s\].
 pub(crate) fn rates<S: Scalar>(p: &Quat<S>, omega: &Vec3<S>) -> Quat<S> {
     rate_transposed(p, omega).map(|x| x * 0.5)
 }
 
-/// Angular velocity in body axes, ω = 2 L(p) ṗ (rad/s).
+/// Angular velocity in body axes, ω = 2 L(p) ṗ \[rad/s\].
 pub(crate) fn angular_velocity<S: Scalar>(p: &Quat<S>, pdot: &Quat<S>) -> Vec3<S> {
     rate_product(p, pdot) * S::from(2.0)
 }
 
-/// Change of p that the small body-axes rotation δθ makes when p is moved by ½ L(p)ᵀ δθ and
-/// brought back onto the unit sphere; the rotation itself up to third order. The change keeps its
-/// relative accuracy however small it is.
+/// Change of p by the small body-axes rotation δθ: p moves by ½ L(p)ᵀ δθ and is normalised. It
+/// equals the rotation up to third order. Its relative accuracy does not depend on the size of δθ.
 pub(crate) fn retraction<S: Scalar>(p: &Quat<S>, dtheta: &Vec3<S>) -> Quat<S> {
     let step = rates(p, dtheta);
     let square = step.iter().fold(S::zero(), |sum, &x| sum + x * x);
@@ -104,7 +103,7 @@ pub(crate) fn unit_pull_back(p: &Quat<f64>, theta: &Vec3<f64>) -> Quat<f64> {
     rate_transposed(p, theta).map(|x| x * (2.0 / square))
 }
 
-/// Euler parameters of the rotation by `angle` (rad) about `axis` (any length but zero).
+/// Euler parameters of the rotation by `angle` \[rad\] about `axis` (any length but zero).
 pub(crate) fn from_axis_angle<S: Scalar>(axis: &Vec3<S>, angle: S) -> Quat<S> {
     let (s, c) = (angle * 0.5).sin_cos();
     let e = axis * (s / length(axis));
@@ -123,7 +122,7 @@ pub(crate) fn conjugate<S: Scalar>(p: &Quat<S>) -> Quat<S> {
     [p[0], -p[1], -p[2], -p[3]]
 }
 
-/// Rotation angle about the unit axis n (its twist), 2 atan2(eᵀn, p0), in (−2π, 2π] (rad).
+/// Rotation angle about the unit axis n (its twist), 2 atan2(eᵀn, p0), in (−2π, 2π] \[rad\].
 pub(crate) fn twist<S: Scalar>(p: &Quat<S>, n: &Vec3<S>) -> S {
     vector(p).dot(n).atan2(p[0]) * 2.0
 }

@@ -1,4 +1,4 @@
-//! The scalar that formulas are written in: real, complex (complex step) or dual (forward mode).
+//! The scalar of all formulas: real, complex (complex step) or dual (forward mode).
 
 use nalgebra::{Matrix3, Vector3};
 use num_traits::{One, Zero};
@@ -12,15 +12,15 @@ pub(crate) type Mat3<S> = Matrix3<S>;
 /// The scalar of the complex-step derivative.
 pub(crate) type Complex64 = num_complex::Complex<f64>;
 
-/// Step of the complex-step derivative; no subtraction takes place, so it may be tiny
-/// (Martins, Sturdza & Alonso 2003, eq. 6).
+/// Step of the complex-step derivative. It may be tiny because nothing is subtracted (Martins,
+/// Sturdza & Alonso 2003, eq. 6).
 pub(crate) const COMPLEX_STEP: f64 = 1e-30;
 
-/// A number that analytic formulas can be evaluated in.
+/// A number in which analytic formulas are evaluated.
 ///
-/// Only analytic functions live here: no absolute value, no conjugate, no ordering. A branch may
-/// look at [`Scalar::re`] and at nothing else, so a formula written once in `S: Scalar` gives its
-/// value in `f64`, its exact derivative in [`Complex64`] (complex step) and in [`Dual`].
+/// It has only analytic functions: no absolute value, no conjugate, no ordering. A branch may
+/// depend only on [`Scalar::re`]. So a formula in `S: Scalar` gives its value in `f64`, and its
+/// exact derivative in [`Complex64`] (complex step) and in [`Dual`].
 pub trait Scalar:
     Copy
     + Debug
@@ -45,13 +45,13 @@ pub trait Scalar:
     + MulAssign
     + DivAssign
 {
-    /// True if the number carries an infinitesimal part (a derivative) beside its value.
+    /// Whether the number has an infinitesimal part (a derivative).
     const INFINITESIMAL: bool;
-    /// Real part: the only thing that a branch may look at.
+    /// Real part. A branch may depend only on it.
     fn re(self) -> f64;
-    /// Infinitesimal part; zero for a real number. No branch may look at it either.
+    /// Infinitesimal part; zero for a real number. No branch may depend on it.
     fn infinitesimal(self) -> f64;
-    /// The number with this infinitesimal part and no real one; zero for real numbers.
+    /// The number with this infinitesimal part and real part zero; zero for real numbers.
     fn of_infinitesimal(x: f64) -> Self;
     /// Square root (principal branch).
     fn sqrt(self) -> Self;
@@ -111,7 +111,7 @@ impl Scalar for Complex64 {
         Complex64::new(0.0, x)
     }
     fn sqrt(self) -> Self {
-        // Cartesian form, first order in the imaginary part: the polar form loses digits of a
+        // Cartesian form to first order in the imaginary part. The polar form loses digits of a
         // tiny imaginary part.
         let root = self.re.sqrt();
         Complex64::new(root, self.im / (2.0 * root))
@@ -144,8 +144,8 @@ impl Scalar for Complex64 {
 
 /// Dual number a + ε b with ε² = 0: value and derivative in one direction.
 ///
-/// It carries the derivative of the map from design variables to model parameters; the check of
-/// the total gradient uses [`Complex64`] instead, so that neither verifies itself.
+/// It carries the derivative of model parameters in design variables. The check of the total
+/// gradient uses [`Complex64`], so neither verifies itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual {
     /// Value.
@@ -308,7 +308,7 @@ impl Scalar for Dual {
     }
 }
 
-/// Length √(aᵀa), analytic (not a norm: nothing is conjugated).
+/// Length √(aᵀa). It is analytic: no number is conjugated.
 pub(crate) fn length<S: Scalar>(a: &Vec3<S>) -> S {
     a.dot(a).sqrt()
 }

@@ -4,7 +4,7 @@ use super::Scalar;
 
 /// The softmax of values g_k with quadrature weights c_k, Σ c_k = 1.
 ///
-/// Every exponent is ρ (g_k − g_m) ≤ 0 with g_m the largest value, so no ρ overflows.
+/// Every exponent ρ (g_k − g_m) is ≤ 0 for the largest value g_m, so none overflows.
 #[derive(Clone, Debug)]
 pub(crate) struct SoftMax<S> {
     /// Weights w_k = c_k e^{ρ(g_k − g_m)} / Σ, Σ w_k = 1.
@@ -13,16 +13,16 @@ pub(crate) struct SoftMax<S> {
     pub ks: S,
     /// The true maximum g_m.
     pub maximum: f64,
-    /// Where it is attained (first index).
+    /// Index of the maximum (the first).
     pub peak: usize,
 }
 
 impl<S: Scalar> SoftMax<S> {
-    /// Aggregates `values` with the parameter `rho` > 0 and quadrature weights `c` (Σ c = 1, or counts of
-    /// maxima less minima).
+    /// Aggregates `values` with the parameter `rho` > 0 and the quadrature weights `c` (Σ c = 1, or
+    /// numbers of maxima minus minima).
     ///
     /// # Panics
-    /// If `values` is empty.
+    /// `values` is empty.
     pub(crate) fn new(values: &[S], c: impl Fn(usize) -> f64, rho: f64) -> Self {
         let peak = (0..values.len())
             .reduce(|best, k| {
@@ -75,7 +75,7 @@ mod tests {
         }
     }
 
-    /// Beside the formula itself, where no exponent overflows.
+    /// Comparison with the formula itself, with exponents that do not overflow.
     #[test]
     fn value_is_the_logarithm_of_the_mean_exponential() {
         let values = [0.3, -1.2, 2.0, 1.9, 0.0];

@@ -1,4 +1,4 @@
-//! How many eigenvalues of a matrix are negative.
+//! Number of negative eigenvalues of a matrix.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
@@ -10,12 +10,13 @@ use faer::{Conj, MatMut, Par, Side};
 use super::pattern::structure;
 use super::{SparseCholesky, SymmetricPattern, norm};
 
-/// Residual of a solution by L D Lᵀ, beside the right side, up to which its pivots are trusted.
+/// Largest residual of a solution by L D Lᵀ, relative to the right side, with trustworthy pivots.
 const SOUND_PIVOTS: f64 = 1e-4;
 
 impl SparseCholesky {
-    /// Number of negative eigenvalues of the matrix of these values, by Sylvester's law of inertia: the
-    /// negative pivots of L D Lᵀ. `None` if rounding spoils the pivots. The factors are lost.
+    /// Number of negative eigenvalues of the matrix: the number of negative pivots of L D Lᵀ, by
+    /// Sylvester's law of inertia. `None` if round-off spoils the pivots. The factors are
+    /// overwritten.
     pub(crate) fn negative_eigenvalues(
         &mut self,
         pattern: &SymmetricPattern,
@@ -47,7 +48,7 @@ impl SparseCholesky {
                 Default::default(),
             )
             .ok()?;
-        // Pivots are not exchanged: see by a solution if they have grown.
+        // Pivots are not exchanged. The residual of a solution shows whether they have grown.
         let right: Vec<f64> = (0..pattern.order()).map(|i| (i as f64).sin()).collect();
         let mut x = right.clone();
         factors.solve_in_place_with_conj(
@@ -97,8 +98,9 @@ impl SparseCholesky {
 mod tests {
     use super::*;
 
-    /// The second difference of order n has the eigenvalues 4 sin²(kπ / 2(n + 1)); less μ I it has as many
-    /// negative ones as lie below μ. Small orders have simplicial factors, large banded ones may not.
+    /// The second difference of order n has the eigenvalues 4 sin²(kπ / 2(n + 1)). Minus μ I it has
+    /// as many negative ones as lie below μ. Factors of small orders are simplicial, large banded
+    /// ones may not be.
     #[test]
     fn negative_pivots_count_the_eigenvalues_below() {
         for (order, band) in [(5, 1), (60, 1), (400, 40)] {

@@ -1,4 +1,5 @@
-//! Sparse Cholesky factorisation of symmetric positive definite matrices, analysed once.
+//! Sparse Cholesky factorisation of symmetric positive definite matrices: one analysis, many
+//! matrices.
 
 mod inertia;
 mod pattern;
@@ -17,13 +18,13 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::{Conj, MatMut, Par, Side};
 
-/// Growth of a random vector by the solution of the matrix with ones on its diagonal from which on
-/// it counts as singular.
+/// The matrix with unit diagonal is singular if its solution magnifies a random vector by this
+/// factor.
 const SINGULAR_GROWTH: f64 = 1e14;
-/// What is added to the diagonal to find the weakest direction of a matrix that has no factors.
+/// First shift of the diagonal in the search for the weakest direction of an indefinite matrix.
 const PROBE_SHIFT: f64 = 1e-9;
 
-/// The matrix is not positive definite: along `direction` it has no stiffness, or less.
+/// The matrix is not positive definite: its stiffness along `direction` is zero or negative.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
     "the matrix is not positive definite: xᵀA x / xᵀ diag(A) x = {quotient:.1e} along a direction"
@@ -35,7 +36,7 @@ pub(crate) struct NotPositiveDefinite {
     pub direction: Vec<f64>,
 }
 
-/// Factors L Lᵀ = D A D, D making the diagonal ones. The order of the rows is the caller's: see
+/// Factors L Lᵀ = D A D, where D makes the diagonal one. The caller orders the rows; see
 /// [`fill_reducing_order`].
 pub(crate) struct SparseCholesky {
     symbolic: SymbolicCholesky<usize>,
@@ -43,7 +44,7 @@ pub(crate) struct SparseCholesky {
     scale: Vec<f64>,
     scaled: Vec<f64>,
     scratch: MemBuffer,
-    /// Right sides that the scratch suffices for.
+    /// Number of right sides for which the scratch memory suffices.
     columns: usize,
 }
 
@@ -51,10 +52,10 @@ impl SparseCholesky {
     /// Analyses a pattern.
     ///
     /// # Panics
-    /// If memory is exhausted.
+    /// Memory is exhausted.
     pub(crate) fn new(pattern: &SymmetricPattern) -> Self {
         let same: Vec<usize> = (0..pattern.order()).collect();
-        // faer reads the lower part of a matrix only when it is given an order.
+        // Only with an explicit order does faer read just the lower part.
         let symbolic = factorize_symbolic_cholesky(
             structure(pattern),
             Side::Lower,
@@ -73,15 +74,16 @@ impl SparseCholesky {
         }
     }
 
-    /// Entries of the factor.
+    /// Number of entries of the factor.
     pub(crate) fn entries(&self) -> usize {
         self.factors.len()
     }
 
-    /// Factorises the matrix of these values.
+    /// Factorises the matrix with these values.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] if a pivot is not positive, or if the matrix is singular to round-off.
+    /// [`NotPositiveDefinite`] if a pivot is not positive, or if the matrix is singular up to
+    /// round-off.
     pub(crate) fn factorise(
         &mut self,
         pattern: &SymmetricPattern,
@@ -101,7 +103,7 @@ impl SparseCholesky {
         Err(self.weakest(pattern, values))
     }
 
-    /// Factorises D A D + `shift` I; false if it has no factors.
+    /// Factorises D A D + `shift` I; false if it is not positive definite.
     fn factorise_shifted(
         &mut self,
         pattern: &SymmetricPattern,
@@ -133,7 +135,7 @@ impl SparseCholesky {
         }
     }
 
-    /// Growth of a vector that no mode is likely to be orthogonal to.
+    /// Growth by a solution of a vector that is hardly orthogonal to any mode.
     fn growth(&mut self) -> f64 {
         let mut x: Vec<f64> = (0..self.scale.len()).map(|i| (i as f64).sin()).collect();
         let before = norm(&x);
@@ -141,7 +143,8 @@ impl SparseCholesky {
         norm(&x) / before
     }
 
-    /// The weakest direction, by inverse iteration with a shift that makes the matrix definite.
+    /// The weakest direction, by inverse iteration with a shift that makes the matrix positive
+    /// definite.
     fn weakest(&mut self, pattern: &SymmetricPattern, values: &[f64]) -> NotPositiveDefinite {
         let mut shift = PROBE_SHIFT;
         while !self.factorise_shifted(pattern, values, shift) && shift < 1e3 {
@@ -166,7 +169,7 @@ impl SparseCholesky {
         }
     }
 
-    /// Solves A X = B in place; `b` holds the columns of B one after another.
+    /// Solves A X = B in place; `b` holds the columns of B in order.
     pub(crate) fn solve(&mut self, b: &mut [f64]) {
         self.scale_columns(b);
         self.solve_scaled(b);

@@ -4,7 +4,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
 
-/// The lower part, diagonal included, of a symmetric sparse matrix by columns.
+/// The lower part of a symmetric sparse matrix, with its diagonal, in compressed columns.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SymmetricPattern {
     pub(super) starts: Vec<usize>,
@@ -12,10 +12,10 @@ pub(crate) struct SymmetricPattern {
 }
 
 impl SymmetricPattern {
-    /// The pattern whose column j has `columns[j]` for its rows: sorted, none twice, the first being j.
+    /// The pattern with the rows `columns[j]` in column j: ascending and unique, the first is j.
     ///
     /// # Panics
-    /// If that does not hold.
+    /// A column is not so.
     pub(crate) fn new(columns: &[Vec<usize>]) -> Self {
         let mut starts = vec![0];
         let mut rows = Vec::with_capacity(columns.iter().map(Vec::len).sum());
@@ -37,7 +37,7 @@ impl SymmetricPattern {
         self.rows.len()
     }
 
-    /// Where entry (i, j) of the lower part, i ≥ j, stands among the values.
+    /// Index of entry (i, j), i ≥ j, among the values; `None` if it is not stored.
     pub(crate) fn slot(&self, i: usize, j: usize) -> Option<usize> {
         let start = self.starts[j];
         let column = &self.rows[start..self.starts[j + 1]];
@@ -61,11 +61,11 @@ impl SymmetricPattern {
     }
 }
 
-/// An order of the nodes of a graph that keeps the fill of a factorisation small (approximate minimum
-/// degree): `order[k]` is the node that comes k-th. `neighbours[j]` are the neighbours i > j, sorted.
+/// An order of the nodes of a graph with little fill (approximate minimum degree). `order[k]` is
+/// the k-th node; `neighbours[j]` are the neighbours i > j, ascending.
 ///
 /// # Panics
-/// If memory is exhausted.
+/// Memory is exhausted.
 pub(crate) fn fill_reducing_order(neighbours: &[Vec<usize>]) -> Vec<usize> {
     let columns: Vec<Vec<usize>> = neighbours
         .iter()
