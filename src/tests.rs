@@ -1,5 +1,5 @@
-//! Tests of what the library keeps to itself. They live in `tests/`, beside those of the command and of
-//! the library's front, and are compiled with the library.
+//! Tests of internals. They live in `tests/` with the tests of the command and the public library,
+//! and are compiled with the library.
 
 #[path = "../tests/dynamics/mod.rs"]
 mod dynamics;

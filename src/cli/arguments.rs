@@ -19,43 +19,44 @@ use std::path::PathBuf;
                   130 interrupted by a signal."
 )]
 pub(crate) struct Arguments {
-    /// What to do instead of optimising.
+    /// The command, if it is not the optimisation.
     #[command(subcommand)]
     pub command: Option<Command>,
     /// The optimisation.
     #[command(flatten)]
     pub job: Option<Job>,
-    /// Where it starts and what it does besides.
+    /// Start and options of the optimisation.
     #[command(flatten)]
     pub course: RunOptions,
 }
 
-/// Where an optimisation starts and what it does besides.
+/// Start and options of an optimisation.
 #[derive(Args, Debug)]
 pub(crate) struct RunOptions {
-    /// Goes on with the run of this directory that was killed, interrupted or at a limit: its
+    /// Continues the run in this directory that was killed, interrupted or reached a limit. Its
     /// evaluations are not repeated. Settings of the optimiser may differ.
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
-    /// Starts from the design of another optimum.json (or its directory), by names of variables; with the
-    /// state.json beside it if that is of the same design.
+    /// Starts from the design in another optimum.json (or its directory), by names of variables.
+    /// Uses the state.json in the same directory if it belongs to this design.
     #[arg(long, value_name = "FILE")]
     pub from: Option<PathBuf>,
-    /// Optimises from this many starts, spread evenly between the bounds, and keeps the best; writes all
-    /// optima to optima.csv.
+    /// Optimises from this many starts, spread evenly between the bounds, and keeps the best.
+    /// Writes all optima to optima.csv.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub starts: Option<u32>,
-    /// Checks by differences of gradients whether the optimum is a minimum of second order; exit code 1 if
-    /// it is none.
+    /// Checks by differences of gradients whether the optimum is a minimum of second order. Exit
+    /// code 1 if it is not.
     #[arg(long)]
     pub second_order: bool,
-    /// Leaves out the certificate of the gradients: at the start and at the optimum, one directional
-    /// derivative of every function by the adjoint and by the complex step; exit code 1 if they differ.
+    /// Skips the certificate of the gradients. It compares one directional derivative of every
+    /// function by the adjoint with the complex step, at start and optimum; exit code 1 if they
+    /// differ.
     #[arg(long)]
     pub no_certificate: bool,
 }
 
-/// A problem file and what is done with it.
+/// A problem file and common options.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Job {
     /// Problem file (JSON).
@@ -67,29 +68,29 @@ pub(crate) struct Job {
     /// No progress and no summary.
     #[arg(long, short)]
     pub quiet: bool,
-    /// Changes one value of the file for this run: a JSON Pointer and a JSON value, as in
+    /// Changes one value of the file for this run, by a JSON Pointer and a JSON value, as in
     /// /bodies/arm/mass=42. May be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
-    /// Memory that what is kept for gradients may take: 500MB, 2GiB. A gradient makes the steps that are
-    /// not kept again, at most twenty times: what that takes is kept however little is given; see
-    /// `optimize explain` [default: half of what is available].
+    /// Limits the memory for the data that gradients need: 500MB, 2GiB. A gradient repeats steps
+    /// that are not stored, at most twenty times. The memory for this is used even if the limit is
+    /// smaller; see `optimize explain` [default: half of the available memory].
     #[arg(long, value_name = "SIZE", value_parser = bytes)]
     pub memory: Option<usize>,
-    /// Integrates the scene as it is written: leaves out nothing that its motion does not need.
+    /// Integrates the scene as written, without reductions.
     #[arg(long)]
     pub no_lowering: bool,
     /// Reports the estimated discretisation error of every function and of its gradient, by a
     /// second simulation with steps of half the size.
     #[arg(long)]
     pub error: bool,
-    /// Refines the steps or the samples, whichever err too much, until the estimated error of the
-    /// objective at the start, relative to it, is below this. Never coarser than the file asks.
+    /// Refines steps or samples until the estimated relative error of the objective at the start is
+    /// below this value. They are never coarser than in the file.
     #[arg(long, value_name = "ERROR", value_parser = positive)]
     pub accuracy: Option<f64>,
 }
 
-/// The other jobs.
+/// The other commands.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Simulate the problem's start and report its functions, energy and constraint drift. With
@@ -116,8 +117,8 @@ pub(crate) enum Command {
         #[arg(long, default_value_t = 1e-10, value_parser = positive)]
         tolerance: f64,
     },
-    /// Say what the scene has, what is left out before it is integrated and why, and what is left:
-    /// unknowns, elimination, method, memory, and what the functions depend on.
+    /// Report the contents of the scene, which reductions are made and why, and the reduced scene:
+    /// unknowns, elimination, method, memory, and the dependencies of the functions.
     Explain {
         /// The problem.
         #[command(flatten)]
@@ -126,22 +127,22 @@ pub(crate) enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Measure error against run time for all methods, orders, steps and tolerances; writes
+    /// Measure error against run time for all methods, orders, steps and tolerances. Writes
     /// work_precision.csv, orders.csv and work_precision.svg.
     WorkPrecision(Measurement),
-    /// Try the program on extreme scenes and judge what it says of them; writes stability.md and
-    /// stability.csv. Exit code 1 if a number is wrong without a word about it.
+    /// Run the program on extreme scenes and check its results. Writes stability.md and
+    /// stability.csv. Exit code 1 if a result is wrong without a warning.
     Stability(Suite),
     /// The former name of `stability`.
     #[command(hide = true, disable_help_flag = true)]
     Stress {
-        /// What was asked for.
+        /// The remaining arguments.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<std::ffi::OsString>,
     },
     /// Compare two records of optimal designs; exit code 1 if they differ beyond tolerance.
     Compare(Comparison),
-    /// Draw the figures of a result directory again from its record.
+    /// Draw the figures of a result directory again, from its record.
     Plot {
         /// Directory with optimum.json and history.csv.
         directory: PathBuf,
@@ -150,28 +151,28 @@ pub(crate) enum Command {
     Schema,
 }
 
-/// What `work-precision` measures.
+/// Options of `work-precision`.
 #[derive(Args, Debug)]
 pub(crate) struct Measurement {
     /// The problem.
     #[command(flatten)]
     pub job: Job,
-    /// CPU time that the runs of one method with equal steps, or with chosen ones, may take (s).
+    /// CPU time of the runs of one method with equal steps, or with adaptive ones [s].
     #[arg(long, default_value_t = 8.0, value_parser = positive)]
     pub seconds: f64,
-    /// Runs of which the fastest counts, after one that does not.
+    /// Number of runs of which the fastest counts. One more run comes first and does not count.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub runs: u32,
-    /// Table of exact positions (CSV: time,body,x,y,z in s and m); the rows at the end of the
-    /// motion are compared. Without it a run at tight tolerance is the reference.
+    /// Table of exact positions (CSV: time,body,x,y,z in s and m). The rows at the end of the
+    /// motion are compared. Without it, a run with a tight tolerance is the reference.
     #[arg(long, value_name = "FILE")]
     pub reference: Option<PathBuf>,
-    /// Function whose gradient is judged [default: the objective, or the first function].
+    /// Function whose gradient is measured [default: the objective, or the first function].
     #[arg(long, value_name = "NAME")]
     pub function: Option<String>,
 }
 
-/// Which cases `stability` tries.
+/// Options of `stability`.
 #[derive(Args, Debug)]
 pub(crate) struct Suite {
     /// Directory for the table [default: results/stability; none if only some cases are run].
@@ -180,7 +181,7 @@ pub(crate) struct Suite {
     /// Only the case of this name, or those whose names begin with it: mass-ratio, mass-ratio/1e-8.
     #[arg(long, value_name = "CASE")]
     pub only: Option<String>,
-    /// Time that a case may take (s).
+    /// Longest time of a case [s].
     #[arg(long, default_value_t = crate::driver::stability::LIMIT, value_parser = positive)]
     pub seconds: f64,
     /// No progress and no summary.

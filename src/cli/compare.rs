@@ -18,7 +18,7 @@ pub(crate) fn compare(files: &Comparison) -> Result<u8, Failure> {
     })
 }
 
-/// Draws the figures of a result directory again.
+/// Draws the figures of a result directory from its record.
 pub(crate) fn plot(directory: &Path) -> Result<u8, Failure> {
     let (_, optimum) = record(directory)?;
     let history = read_text(&directory.join("history.csv"))?;
@@ -33,7 +33,7 @@ pub(crate) fn plot(directory: &Path) -> Result<u8, Failure> {
     Ok(DONE)
 }
 
-/// Prints the schema of problem files.
+/// Prints the JSON Schema of problem files.
 pub(crate) fn schema() -> Result<u8, Failure> {
     let text =
         serde_json::to_string_pretty(&crate::problem::schema()).map_err(Failure::bad_input)?;

@@ -4,7 +4,7 @@ use super::arguments::Job;
 use super::{DONE, Failure, load, print};
 use crate::driver;
 
-/// Says what is left out of a problem's scenes and what is left.
+/// Reports the reductions of a problem's scenes and the reduced scene.
 pub(crate) fn explain(job: &Job, json: bool) -> Result<u8, Failure> {
     if job.output.is_some() || job.error {
         let what = "found --output or --error, expected neither: optimize explain writes no files";

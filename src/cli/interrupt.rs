@@ -3,15 +3,15 @@
 use super::INTERRUPTED;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether the work under way looks at [`asked`] and ends by itself.
+/// Whether the present work checks [`asked`] and ends by itself.
 static HEEDED: AtomicBool = AtomicBool::new(false);
-/// Whether it has been asked to.
+/// Whether an interrupt has occurred.
 static ASKED: AtomicBool = AtomicBool::new(false);
 
-/// Makes an interrupt end the program with its exit code: at once, or, the first time while it is
-/// [heeded](heed), when the results are written.
+/// Makes an interrupt end the program with its exit code. The first one during [heeding](heed) work
+/// only sets [`asked`], so that the results are written first.
 pub(crate) fn listen() {
-    // Where no handler can be set, the system ends the program.
+    // If no handler can be set, the system ends the program.
     let _ = ctrlc::set_handler(|| {
         let first = !ASKED.swap(true, Ordering::Relaxed);
         if !(first && HEEDED.load(Ordering::Relaxed)) {
@@ -20,12 +20,12 @@ pub(crate) fn listen() {
     });
 }
 
-/// From now on the work looks at [`asked`].
+/// Declares that the work checks [`asked`] from now on.
 pub(crate) fn heed() {
     HEEDED.store(true, Ordering::Relaxed);
 }
 
-/// Whether the work shall end.
+/// Whether the work must end.
 pub(crate) fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }

@@ -25,9 +25,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Done.
+/// The command succeeded.
 const DONE: u8 = 0;
-/// Did not converge, or not to an optimum, or a check or comparison failed.
+/// No convergence to an optimum, or a check or comparison failed.
 const NOT_REACHED: u8 = 1;
 /// Bad input.
 const BAD_INPUT: u8 = 2;
@@ -35,10 +35,10 @@ const BAD_INPUT: u8 = 2;
 const NUMERICAL_FAILURE: u8 = 3;
 /// The system refused to read or to write a file.
 const NO_ACCESS: u8 = 4;
-/// Interrupted by a signal, from the keyboard or not.
+/// Interrupted by a signal.
 const INTERRUPTED: u8 = 130;
 
-/// Why a command did not do what it was asked to.
+/// Why a command failed: exit code and message.
 struct Failure {
     code: u8,
     message: String,
@@ -78,7 +78,7 @@ impl From<ReportError> for Failure {
     }
 }
 
-/// A path without a text file behind it is bad input; what the system does not let one read is none.
+/// Exit code of a path that cannot be read: bad input if it is no text file, else no access.
 fn code_of_reading(error: &io::Error) -> u8 {
     match error.kind() {
         io::ErrorKind::NotFound
@@ -89,12 +89,12 @@ fn code_of_reading(error: &io::Error) -> u8 {
     }
 }
 
-/// Runs the command with the given arguments (the first is the program's name).
+/// Runs the command with the given arguments; the first is the program's name.
 pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(message) => {
-            // What was typed comes back in the message.
+            // The message contains the user's text.
             let rendered = message.render();
             let shown = match visible_lines(&rendered.to_string()) == rendered.to_string() {
                 true => message.print(),
@@ -146,12 +146,12 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     }
 }
 
-/// A path in a message.
+/// A path as text for messages.
 fn shown(path: &Path) -> String {
     visible(&path.display().to_string())
 }
 
-/// Tells of progress or a fault; where nobody can be told, the work goes on.
+/// Writes progress or a fault to standard error. A failure to write is ignored.
 fn tell(text: &str) {
     use std::io::Write;
     let _ = io::stderr()
@@ -159,7 +159,7 @@ fn tell(text: &str) {
         .write_all(visible_lines(text).as_bytes());
 }
 
-/// Prints a result; a reader that closed the pipe is no failure.
+/// Prints a result. A reader that closed the pipe is no failure.
 fn print(text: &str) -> Result<(), Failure> {
     use std::io::Write;
     let mut out = std::io::stdout().lock();
@@ -173,8 +173,8 @@ fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Writes figures. Where one cannot be written, that is a warning, and none of an earlier run stays in
-/// its place.
+/// Writes figures. If one cannot be written, a warning follows, and the figure of an earlier run is
+/// removed.
 fn draw(directory: &Path, figures: Vec<figures::NamedFile>) {
     for (name, bytes) in figures {
         let path = directory.join(name);
@@ -185,7 +185,7 @@ fn draw(directory: &Path, figures: Vec<figures::NamedFile>) {
     }
 }
 
-/// Reads the problem file of a job, with the steps that its accuracy needs.
+/// Reads the problem file of a job and refines its steps to the accuracy of the job.
 fn load(job: &Job) -> Result<Problem, Failure> {
     refine(job, read(job)?)
 }
@@ -208,7 +208,7 @@ fn overrides(job: &Job) -> Result<Vec<Override>, Failure> {
 
 fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
     let mut problem = Problem::load(&job.problem, overrides).map_err(|faults| {
-        // The faults of a file that cannot be read are not those of its text.
+        // A file that cannot be opened has another exit code than a faulty text.
         let mut byte = [0];
         let unread = File::open(&job.problem).and_then(|mut file| file.read(&mut byte));
         let unread = unread.err();
@@ -225,7 +225,7 @@ fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
     Ok(problem)
 }
 
-/// A problem that was read, with the steps that the accuracy of the job needs.
+/// Refines the steps of a problem to the accuracy of the job.
 fn refine(job: &Job, problem: Problem) -> Result<Problem, Failure> {
     let Some(accuracy) = job.accuracy else {
         return Ok(problem);
@@ -250,7 +250,7 @@ fn refine(job: &Job, problem: Problem) -> Result<Problem, Failure> {
     read_with(job, &overrides)
 }
 
-/// Reads a record from its file or its directory; also says which file that is.
+/// Reads a record from its file or its directory; also returns the path of the file.
 fn record(path: &Path) -> Result<(PathBuf, Optimum), Failure> {
     let path = if path.is_dir() {
         path.join("optimum.json")

@@ -23,9 +23,9 @@ use std::time::Instant;
 
 /// The record of the optimum.
 const OPTIMUM: &str = "optimum.json";
-/// The history while the run goes on: the results beside it are still those of an earlier run.
+/// The history during the run. The other results are still those of an earlier run.
 const PARTIAL: &str = "history.partial.csv";
-/// What another run can start from.
+/// The state of the optimiser, for a warm start.
 const STATE: &str = "state.json";
 /// The distinct optima of several starts.
 const OPTIMA: &str = "optima.csv";
@@ -35,7 +35,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     let problem = read(job)?;
     complete(&problem, job)?;
     let begin = |problem: Problem| -> Result<_, Failure> {
-        // What neither objective nor constraint sees costs nothing.
+        // Parts on which neither objective nor constraints depend are not simulated.
         let mut problem = problem.for_optimisation().unwrap_or(problem);
         let state = match &course.from {
             Some(from) => start_from(&mut problem, from)?,
@@ -103,7 +103,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     let state = WarmStart::of(&problem, &done.outcome);
     let (recorded, refused) = write(&done, state, optima, &directory);
     let mut unwritten = lost.or(refused);
-    // What goes wrong from here on loses nothing.
+    // The results are on the disk now: later failures lose nothing.
     let checked = match (course.second_order, &unwritten) {
         (true, None) => second_order(&problem, &mut done, &directory, (&records, start), &stopped),
         _ => Ok(()),
@@ -117,12 +117,12 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
         }
     }
     let certified = begun.elapsed().as_secs_f64();
-    // What the disk does not take is told, quiet or not.
+    // A failure to write is reported even if the run is quiet.
     if !job.quiet || unwritten.is_some() {
         print(&summary(&done.optimum))?;
         tell(&times(&done.outcome.counts, certified));
     }
-    // Those of an earlier run belong to its record, which stays if there is no new one.
+    // Figures of an earlier run belong to its record, which stays if no new one was written.
     if recorded {
         draw(&directory, figures::of_optimisation(&problem, &done));
     }
@@ -178,8 +178,8 @@ fn spread(problem: &Problem, count: u32) -> Result<Vec<Vec<f64>>, Failure> {
     })
 }
 
-/// Writes all results but the figures: together, or the record of the optimum at least, or nothing. Also
-/// says whether the record is there.
+/// Writes all results except figures: all of them, or only the record, or nothing. Also returns
+/// whether the record was written.
 fn write(
     done: &Optimisation,
     state: Option<WarmStart>,
@@ -187,7 +187,7 @@ fn write(
     directory: &Path,
 ) -> (bool, Option<ReportError>) {
     let mut files = Vec::new();
-    // That it cannot be made is told at the end.
+    // If the record has no text, this is reported at the end.
     if let Ok(text) = done.optimum.to_json() {
         files.push((OPTIMUM, text.into_bytes()));
     }
@@ -208,31 +208,31 @@ fn write(
         let recorded = record.is_some_and(|(path, bytes)| atomic_write(path, bytes).is_ok());
         let others = files.iter().filter(|(path, _)| !path.ends_with(OPTIMUM));
         for (path, _) in others.filter(|_| recorded) {
-            // Beside the new record, those of an earlier run would be wrong.
+            // With a new record, files of an earlier run would be wrong.
             let _ = std::fs::remove_file(path);
         }
         return (recorded, Some(error));
     }
-    // The whole history stands beside it now; a file that stays does no harm.
+    // The whole history is written. A partial one that stays does no harm.
     let _ = std::fs::remove_file(directory.join(PARTIAL));
     if !several {
-        // Those of an earlier run.
+        // The optima of an earlier run.
         let _ = std::fs::remove_file(directory.join(OPTIMA));
     }
     (true, None)
 }
 
-/// Writes the record of an optimum anew, and hands back why it could not be written, if so.
+/// Writes the record of an optimum again; returns the error of writing, if any.
 fn renew(done: &Optimisation, directory: &Path) -> Result<Option<ReportError>, Failure> {
     match done.optimum.to_json() {
         Ok(text) => Ok(atomic_write(&directory.join(OPTIMUM), text.as_bytes()).err()),
-        // As before: what it lacks is told by its status.
+        // The status of the optimum says already what the record lacks.
         Err(error) if done.outcome.converged() => Err(Failure::numerical(error)),
         Err(_) => Ok(None),
     }
 }
 
-/// Checks the curvature of an optimum that is written already, and renews its record.
+/// Checks the curvature of a recorded optimum, and updates its record.
 fn second_order(
     problem: &Problem,
     done: &mut Optimisation,
@@ -261,7 +261,7 @@ fn second_order(
     renew(done, directory)?.map_or(Ok(()), |error| Err(error.into()))
 }
 
-/// Where the wall time went; not a part of the record, which is the same for the same run.
+/// Report of the wall time. It is not part of the record, which is the same for equal runs.
 fn times(counts: &Counts, certified: f64) -> String {
     let programs = match counts.quadratic_programs {
         0 => String::new(),
@@ -277,7 +277,7 @@ fn times(counts: &Counts, certified: f64) -> String {
     )
 }
 
-/// Refuses a problem that has nothing to optimise.
+/// Rejects a problem without variables or without objective and constraints.
 fn complete(problem: &Problem, job: &Job) -> Result<(), Failure> {
     let lacking = |what: &str, instead: &str| {
         Err(Failure::bad_input(format!(
@@ -295,8 +295,8 @@ fn complete(problem: &Problem, job: &Job) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Moves the start to the design of another optimum; its state, if it is there, of that very design, and
-/// fits.
+/// Moves the start to the design of another optimum. Returns its state, if there is one of the same
+/// design and problem.
 fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<WarmStart>, Failure> {
     let (record, optimum) = record(from)?;
     let mut start = problem.start();
@@ -331,8 +331,8 @@ fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<WarmStart>, F
     Ok(state.filter(|state| state.fits(problem) && state.is_at(&start)))
 }
 
-/// One optimisation, its evaluations and iterations on the disk as they happen; the first fault in
-/// writing ends it and is handed back beside what was found by then.
+/// One optimisation, which writes its evaluations and iterations to the disk as they happen. The
+/// first failure to write ends it and is returned with the best design so far.
 fn one(
     problem: &Problem,
     (file, directory): (&str, &Path),

@@ -1,4 +1,4 @@
-//! What is seen of an optimisation or a long simulation while it runs.
+//! Progress of an optimisation or a long simulation.
 
 use super::tell;
 use crate::integrate::Progress;
@@ -7,14 +7,14 @@ use crate::report::History;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-/// Wall time after which a simulation is told of, and the longest time between two lines [s].
+/// Wall time before the first line on a simulation, and longest time between two lines [s].
 const LONG: f64 = 2.0;
 const MOST: f64 = 30.0;
-/// How often the simulations are looked at.
+/// Interval at which the simulations are checked.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// What the simulations of this process tell how far they are. Those that take long are told of on
-/// standard error: after 2 s, then after twice the time of the line before, at least every 30 s.
+/// The progress of the simulations of this process. Long ones are reported on standard error: after
+/// 2 s, then after twice the time of the last line, at least every 30 s.
 pub(crate) fn watched() -> Arc<Progress> {
     static PROGRESS: OnceLock<Arc<Progress>> = OnceLock::new();
     let progress = PROGRESS.get_or_init(|| {
@@ -49,7 +49,7 @@ fn line(view: &View) -> String {
     )
 }
 
-/// One line an iteration, with the column heads every twenty lines.
+/// Prints one line per iteration, and the column heads every twenty lines.
 pub(crate) fn show(history: &History) {
     let Some(row) = history.rows.last() else {
         return;

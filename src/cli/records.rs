@@ -1,4 +1,4 @@
-//! The record of the evaluations of a run: begun, or gone on with.
+//! The evaluation logs of a run, new or resumed.
 
 use super::{Failure, shown, tell};
 use crate::driver::integration::FIRST_DESIGN;
@@ -9,18 +9,19 @@ use crate::report::evaluations::{Earlier, EvaluationLog, EvaluationRecord, Found
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-/// Record of the only start.
+/// Log of the only start.
 const SINGLE: &str = "evaluations.jsonl";
-/// Records of several starts begin and end so, with the number of the start between.
+/// Beginning and end of the names of logs of several starts; the number of the start is between
+/// them.
 const SEVERAL: (&str, &str) = ("evaluations.start_", ".jsonl");
 
-/// Where the records of a run are, and where those of an earlier one are, if it goes on with one.
+/// Directory of the logs of a run, and of those of the run that it resumes, if any.
 pub(crate) struct Records<'a> {
     directory: &'a Path,
     resumed: Option<&'a Path>,
 }
 
-/// Which of the starts of a run: the only one, or one of several, from 0.
+/// A start of a run: the only one, or one of several, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Start {
     Only,
@@ -36,19 +37,19 @@ impl Start {
     }
 }
 
-/// The record of one start, opened.
+/// The opened log of one start.
 pub(crate) struct Opened {
     log: EvaluationLog,
     earlier: Vec<EvaluationRecord>,
-    /// How many evaluations an earlier run left.
+    /// Number of evaluations of an earlier run.
     pub known: usize,
-    /// The settings that differ from those of the earlier run.
+    /// Settings that differ from those of the earlier run.
     pub changes: Vec<String>,
 }
 
 impl<'a> Records<'a> {
-    /// The records of a run in `directory`, which is there. What another run left there goes, unless it
-    /// is resumed.
+    /// The logs of a run in `directory`, which exists. Logs of another run in it are removed,
+    /// unless this run is resumed.
     pub(crate) fn new(directory: &'a Path, resumed: Option<&'a Path>) -> Result<Self, Failure> {
         let same =
             resumed.is_some_and(
@@ -63,7 +64,7 @@ impl<'a> Records<'a> {
         Ok(Self { directory, resumed })
     }
 
-    /// What is told of an earlier run that left so many evaluations.
+    /// Message about an earlier run with `known` evaluations.
     pub(crate) fn resumed(&self, known: usize) -> String {
         match (self.resumed, known) {
             (None, _) => String::new(),
@@ -75,12 +76,12 @@ impl<'a> Records<'a> {
         }
     }
 
-    /// Opens the record of a start, with what an earlier run left of it.
+    /// Opens the log of a start and reads that of an earlier run.
     pub(crate) fn open(&self, start: Start, problem: &Problem) -> Result<Opened, ReportError> {
         self.opened(self.resumed, start, problem)
     }
 
-    /// Opens the record of a start of this run again.
+    /// Opens the log of a start of this run again.
     pub(crate) fn reopen(&self, start: Start, problem: &Problem) -> Result<Opened, ReportError> {
         self.opened(Some(self.directory), start, problem)
     }
@@ -111,8 +112,8 @@ impl<'a> Records<'a> {
 }
 
 impl Opened {
-    /// The known evaluations of the record; the first fault in writing is left in `fault`. Choices of steps are
-    /// told unless `quiet`.
+    /// The known evaluations of the log. The first failure to write is stored in `fault`. Choices
+    /// of steps are reported unless `quiet`.
     pub(crate) fn known_evaluations(
         self,
         fault: &Mutex<Option<ReportError>>,
@@ -120,7 +121,7 @@ impl Opened {
     ) -> KnownEvaluations<'_> {
         let mut log = self.log;
         KnownEvaluations::new(self.earlier, move |evaluation| {
-            // That equal steps are taken, and by which method, goes without saying until it changes.
+            // The first choice of equal steps needs no report.
             let told = |steps: &StepsInUse| !steps.ends.is_empty() || steps.reason != FIRST_DESIGN;
             if let (false, Found::Steps(steps)) = (quiet, &evaluation.found)
                 && told(steps)
@@ -143,7 +144,7 @@ impl Opened {
     }
 }
 
-/// What differs from the run that is resumed, to be told.
+/// Message about the differences from the resumed run.
 pub(crate) fn changed(changes: &[String]) -> String {
     changes
         .iter()
@@ -151,8 +152,8 @@ pub(crate) fn changed(changes: &[String]) -> String {
         .collect()
 }
 
-/// Refuses a directory that holds no run, or one of the other kind, before anything is changed;
-/// `several` is whether the run that shall go on has several starts.
+/// Rejects a directory without a run, or with one of the other kind, before anything is changed.
+/// `several` states whether the resumed run has several starts.
 pub(crate) fn refuse_without_run(from: &Path, several: bool) -> Result<(), Failure> {
     if !from.is_dir() {
         return Err(Failure::bad_input(format!(
@@ -190,7 +191,7 @@ pub(crate) fn refuse_without_run(from: &Path, several: bool) -> Result<(), Failu
     }))
 }
 
-/// All records in a directory.
+/// All logs in a directory.
 fn files(directory: &Path) -> Result<Vec<PathBuf>, Failure> {
     let entries = std::fs::read_dir(directory).map_err(|source| ReportError::Read {
         path: directory.to_path_buf(),

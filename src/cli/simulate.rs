@@ -15,7 +15,7 @@ use std::fmt::Write;
 /// Simulates the start of a problem.
 pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Failure> {
     let problem = read(job)?;
-    // Held, and known to take files, before the work is done.
+    // The directory is locked and known to be writable before the simulation.
     let _held = match &job.output {
         Some(directory) => Some(prepare_directory(directory)?),
         None => None,
@@ -59,7 +59,7 @@ pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Fa
     Ok(DONE)
 }
 
-/// What a simulation found, in full precision.
+/// The result of a simulation in full precision.
 fn as_json(
     problem: &Problem,
     simulation: &Simulation,
@@ -265,7 +265,7 @@ pub(crate) fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
     let chaos = driver::chaos(&problem, &problem.start());
     let derivatives = match (driver::check(&problem, &problem.start()), &chaos) {
         (Ok(derivatives), _) => derivatives,
-        // Runs that differ by round-off come apart, and the steps of one do not suit the other.
+        // Runs that differ by round-off diverge, and the steps of one do not suit the other.
         (Err(_), Some(chaos)) => return Err(Failure::numerical(chaos)),
         (Err(failure), None) => return Err(Failure::numerical(failure)),
     };
@@ -286,7 +286,7 @@ pub(crate) fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
     for d in &derivatives {
         let difference = d.relative_difference();
         let nothing = d.is_round_off();
-        // Of larger terms, where the derivative itself is small.
+        // Round-off of larger terms, if the derivative itself is small.
         let round_off = !nothing && difference > tolerance && d.differs_by_round_off();
         let passed = nothing || round_off || difference <= tolerance;
         failed += usize::from(!passed);

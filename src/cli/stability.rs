@@ -27,7 +27,7 @@ pub(crate) fn stability(asked: &Suite) -> Result<u8, Failure> {
         (None, None) => Some(Path::new("results/stability")),
         (None, Some(_)) => None,
     };
-    // Held, and known to take files, before the work is done.
+    // The directory is locked and known to be writable before the runs.
     let _held = match directory {
         Some(directory) => Some(prepare_directory(directory)?),
         None => None,
@@ -38,7 +38,7 @@ pub(crate) fn stability(asked: &Suite) -> Result<u8, Failure> {
         }
     };
     let table = run(wanted, asked.seconds, &seen);
-    // Told first: a table that cannot be written is not lost.
+    // The table is printed first, so a failure to write does not lose it.
     if !asked.quiet {
         print(&format!("{}\n", table.summary()))?;
     }

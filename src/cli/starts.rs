@@ -9,9 +9,9 @@ use crate::report::{FoundOptimum, ReportError, optima_csv};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Optimisations from several starts: the best one, and the distinct optima as comma separated values,
-/// after a table of them. Every evaluation is on the disk as soon as it is known, in a file for each
-/// start; the first fault in writing ends the run and is handed back beside what was found by then.
+/// Optimisations from several starts: the best one, and the distinct optima as comma separated
+/// values. Prints a table of them. Every evaluation is written at once, to one log per start. The
+/// first failure to write ends the run and is returned with the results so far.
 pub(crate) fn several(
     problem: &Problem,
     starts: &[Vec<f64>],
@@ -26,7 +26,7 @@ pub(crate) fn several(
         match records.open(Start::OneOf(k), problem) {
             Ok(opened) => {
                 known.fetch_add(opened.known, Ordering::Relaxed);
-                // The same for all starts.
+                // The changes are the same for all starts.
                 if !opened.changes.is_empty() && !told.swap(true, Ordering::Relaxed) {
                     tell(&changed(&opened.changes));
                 }

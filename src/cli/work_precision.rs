@@ -8,7 +8,7 @@ use crate::report::positions::positions_from_csv;
 use crate::report::{PrecisionRow, plots, prepare_directory, read_text, write_all};
 use std::path::{Path, PathBuf};
 
-/// Measures all methods on the start of a problem and writes what it finds.
+/// Measures all methods on the start of a problem and writes the results.
 pub(crate) fn measure(asked: &Measurement) -> Result<u8, Failure> {
     let job: &Job = &asked.job;
     if job.error {
@@ -58,7 +58,7 @@ pub(crate) fn measure(asked: &Measurement) -> Result<u8, Failure> {
     Ok(DONE)
 }
 
-/// What is told of a scene that ends at an event.
+/// Message about a scene that ends at an event.
 fn without_event(problem: &Problem) -> Option<String> {
     let scene = problem.scene::<f64>(&problem.start());
     let until = scene.until?;

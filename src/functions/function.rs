@@ -20,10 +20,11 @@ pub(crate) enum Reduction {
     Final,
     /// ∫ g dt.
     Integral,
-    /// Kreisselmeier–Steinhauser function. Below the maximum: its integral form g_m + (1/ρ)
-    /// ln[(1/T) ∫ exp(ρ (g − g_m)) dt], a smooth lower bound that does not depend on the number of
-    /// samples (Kennedy & Hicken 2015, eq. 10). Above the maximum: g_m + (1/ρ) ln[Σ exp(ρ (M_i −
-    /// g_m)) − Σ exp(ρ (m_j − g_m))] with the maxima M_i and the minima m_j of g over time.
+    /// Kreisselmeier–Steinhauser function. Below the maximum: its integral form
+    /// g_m + (1/ρ) ln[(1/T) ∫ exp(ρ (g − g_m)) dt], a smooth lower bound that does not depend on
+    /// the number of samples (Kennedy & Hicken 2015, eq. 10). Above the maximum:
+    /// g_m + (1/ρ) ln[Σ exp(ρ (M_i − g_m)) − Σ exp(ρ (m_j − g_m))] with the maxima M_i and the
+    /// minima m_j of g over time.
     Ks {
         /// Aggregation parameter ρ, in 1/unit of g. A larger one is closer to the maximum.
         rho: f64,

@@ -1,20 +1,20 @@
 //! Prescribed motions of joints.
 //!
-//! A drive turns or shifts the joint's frame on body B by a course in time, about or along e3, and
-//! adds the row that makes body A follow it (see [`super::joint`]):
+//! A drive rotates or shifts the joint's frame on body B by a function of time, about or along e3.
+//! It adds a row that makes body A follow (see [`super::joint`]):
 //!
 //! ```text
 //! turn    e1(t) = e1 cos φ(t) + e2 sin φ(t),   e2(t) = e2 cos φ(t) − e1 sin φ(t)
 //! slide   s(t)  = s + σ(t) e3
 //! ```
 //!
-//! φ is thus the angle and σ the displacement of body A relative to body B from the placement. The
-//! courses are twice continuously differentiable:
+//! φ is the angle and σ the displacement of body A relative to body B, from the placement. The
+//! functions are twice continuously differentiable:
 //!
 //! ```text
 //! polynomial   c0 + c1 t + c2 t² + …
 //! harmonic     m + A sin(2π f t + φ0)
-//! table        interpolation between (t_i, m_i), see [`super::table`]; held beyond the ends
+//! table        interpolation between (t_i, m_i), see [`super::table`]; constant beyond the ends
 //! ```
 
 use super::table::{Bracket, Interpolation, around, by_points, interval, motion, polynomial};
@@ -22,53 +22,53 @@ use crate::math::Scalar;
 use crate::math::scalar::Dual;
 use std::f64::consts::TAU;
 
-/// A motion that a joint allows along or about its axis.
+/// A degree of freedom of a joint along or about its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum DegreeOfFreedom {
-    /// Turning about the axis: the rate is φ̇ = e · (ω_A − ω_B).
+    /// Rotation about the axis e: the rate is φ̇ = e · (ω_A − ω_B).
     Rotation,
-    /// Sliding along the axis: the rate is that of e · (P_A − P_B).
+    /// Displacement along the axis e: the rate is that of e · (P_A − P_B).
     Translation,
 }
 
 /// The prescribed motion of a joint along or about its axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Drive<S> {
-    /// Which motion.
+    /// The degree of freedom.
     pub dof: DegreeOfFreedom,
-    /// Angle (rad) or displacement (m) in time.
+    /// Angle \[rad\] or displacement \[m\] as a function of time.
     pub course: PrescribedMotion<S>,
 }
 
-/// An angle or displacement as a function of time.
+/// An angle \[rad\] or displacement \[m\] as a function of time.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum PrescribedMotion<S> {
     /// Coefficients of 1, t, t², …; at least one.
     Polynomial(Vec<S>),
-    /// A sine of time about a mean.
+    /// Harmonic motion about a mean.
     Harmonic {
         /// Mean m.
         mean: S,
         /// Amplitude A.
         amplitude: S,
-        /// Frequency f (Hz).
+        /// Frequency f \[Hz\].
         frequency: S,
-        /// Phase φ0 at t = 0 (rad).
+        /// Phase φ0 at t = 0 \[rad\].
         phase: S,
     },
-    /// Interpolated between instants.
+    /// Interpolation between instants.
     Table {
-        /// Instants t_i, increasing (s); at least two.
+        /// Instants t_i \[s\], increasing; at least two.
         times: Vec<S>,
-        /// Values m_i, as many.
+        /// Values m_i; length of `times`.
         values: Vec<S>,
-        /// What stands between them.
+        /// Interpolation between the values.
         interpolation: Interpolation,
     },
 }
 
 impl<S: Scalar> Drive<S> {
-    /// The drive with every parameter replaced by `f` of it.
+    /// The drive with `f` applied to every parameter.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Drive<T> {
         Drive {
             dof: self.dof,
@@ -78,7 +78,7 @@ impl<S: Scalar> Drive<S> {
 }
 
 impl<S: Scalar> PrescribedMotion<S> {
-    /// The course with every parameter replaced by `f` of it.
+    /// The motion with `f` applied to every parameter.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> PrescribedMotion<T> {
         let mut list = |list: &[S]| list.iter().map(|&x| f(x)).collect::<Vec<T>>();
         match self {
@@ -106,7 +106,7 @@ impl<S: Scalar> PrescribedMotion<S> {
         }
     }
 
-    /// Value and first to third derivative at `time` (s).
+    /// Value and first to third derivatives at `time` \[s\].
     pub(crate) fn derivatives(&self, time: S) -> [S; 4] {
         match self {
             Self::Polynomial(coefficients) => polynomial(coefficients, time),
@@ -133,8 +133,8 @@ impl<S: Scalar> PrescribedMotion<S> {
 }
 
 impl PrescribedMotion<f64> {
-    /// Adds the derivatives of w0 m + w1 ṁ + w2 m̈ by the parameters, at `time`, to those in `own`
-    /// (of the same kind); returns that by time.
+    /// Adds the derivatives of w0 m + w1 ṁ + w2 m̈ at `time` in the parameters to `own`, which has
+    /// the same variant. Returns the derivative in time.
     pub(crate) fn pull_back(&self, time: f64, weights: [f64; 3], own: &mut Self) -> f64 {
         let [w0, w1, w2] = weights;
         let along = |d: [Dual; 4]| w0 * d[0].du + w1 * d[1].du + w2 * d[2].du;
@@ -280,7 +280,7 @@ mod tests {
             for t in breaks(times, interpolation, true) {
                 let (before, after) = (course.derivatives(t - 1e-9), course.derivatives(t + 1e-9));
                 for k in 0..3 {
-                    // No more than the next derivative makes of the 2e-9 s between them.
+                    // The next derivative bounds the change over the 2e-9 s between them.
                     let slope = before[k + 1].abs().max(after[k + 1].abs());
                     let jump = (before[k] - after[k]).abs();
                     let near = jump < 4e-9 * slope + 1e-8;
@@ -300,7 +300,7 @@ mod tests {
             (state >> 40) as f64 / (1 << 24) as f64
         };
         for _ in 0..200 {
-            // Dwells, reversals, and steps and intervals of very unequal size.
+            // Dwells, reversals, and steps and intervals of very different sizes.
             let (mut t, mut times, mut values) = (0.0, Vec::new(), Vec::new());
             for _ in 0..8 {
                 times.push(t);
@@ -325,7 +325,7 @@ mod tests {
                     for i in 0..=200 {
                         let at = t[0] + (t[1] - t[0]) * f64::from(i) / 200.0;
                         let x = course.derivatives(at.min(t[1]))[0];
-                        // Monotone, so that it stays between the values.
+                        // Monotone: the motion stays between the values.
                         let way = (x - before) * (m[1] - m[0]).signum();
                         let flat = m[1] == m[0] && (x - before).abs() > 1e-13;
                         assert!(
@@ -349,11 +349,11 @@ mod tests {
             values,
             interpolation,
         };
-        // A mean of power −4 of two quotients falls short of their mean by 5/8 of their difference
-        // squared over it, the mean of the slope by h²/6 of the third derivative. Curvatures by
-        // neighbours err by h of that at most. Values between err by a quarter of h times the slopes'
-        // error and by 0.035 h² times the curvatures', rates by twice the slopes'. Away from the ends,
-        // where the motion starts from rest.
+        // The mean of power −4 of two quotients is below their mean by 5/8 of their squared
+        // difference over it; that mean misses the slope by h²/6 of the third derivative.
+        // Curvatures by neighbours err by at most h times that. Values between err by h/4 times the
+        // error of the slopes plus 0.035 h² times that of the curvatures, rates by twice that of
+        // the slopes. This holds away from the ends, where the motion starts at rest.
         let (h, third) = (0.05, 1.5_f64.powi(3));
         for i in 0..100 {
             let t = 0.1 + 0.008 * f64::from(i);

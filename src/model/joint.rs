@@ -1,7 +1,7 @@
-//! The joints and the constraint rows that each is made of.
+//! The joints and their constraint rows.
 //!
-//! With d = r_A + R_A s_A − r_B − R_B s_B and orthonormal axes e1, e2, e3 fixed in each body
-//! (e3 is the joint's axis), every joint is a list of four kinds of row (Haug 1989,
+//! Let d = r_A + R_A s_A − r_B − R_B s_B, and let e1, e2, e3 be orthonormal axes fixed in each body
+//! (e3 is the joint's axis). Every joint is a list of rows of four kinds (Haug 1989,
 //! *Computer Aided Kinematics and Dynamics of Mechanical Systems*, ch. 9):
 //!
 //! ```text
@@ -11,14 +11,14 @@
 //! Distance         ½ (d · d / L − L)       = 0      L is the length of a rod
 //! ```
 //!
-//! A drive prescribes what a joint would leave free by one more row, see [`super::drive`]. The
-//! equations, Jacobians and pull-backs of the rows are in `system::constraint`.
+//! A drive adds one row for a degree of freedom of the joint, see [`super::drive`]. The equations,
+//! Jacobians and pull-backs of the rows are in `system::constraint`.
 
 use super::drive::{DegreeOfFreedom, Drive};
 use crate::math::{Scalar, Vec3};
 
 impl DegreeOfFreedom {
-    /// The row that holds this motion where a drive has it.
+    /// The row of a drive of this degree of freedom.
     pub(crate) fn driven_row(self) -> ConstraintRow {
         match self {
             DegreeOfFreedom::Rotation => Perpendicular { a: 0, b: 1 },
@@ -57,7 +57,7 @@ impl ConstraintRow {
         }
     }
 
-    /// What the row holds, for messages.
+    /// What the row constrains, for messages.
     pub(crate) fn describe(self) -> &'static str {
         match self {
             Coincident(0) => "x distance",
@@ -69,7 +69,7 @@ impl ConstraintRow {
         }
     }
 
-    /// True if the row transmits a force.
+    /// Whether the row transmits a force.
     pub(crate) fn has_force(self) -> bool {
         match self {
             Coincident(_) | Sliding { .. } | Distance => true,
@@ -77,7 +77,7 @@ impl ConstraintRow {
         }
     }
 
-    /// True if the gradient depends on d, and with it on where the bodies are.
+    /// Whether the gradient depends on d, and so on the positions of the bodies.
     pub(crate) fn depends_on_distance(self) -> bool {
         match self {
             Sliding { .. } | Distance => true,
@@ -85,7 +85,7 @@ impl ConstraintRow {
         }
     }
 
-    /// True if the force turns with d.
+    /// Whether the force has the direction of d.
     pub(crate) fn follows_distance(self) -> bool {
         match self {
             Distance => true,
@@ -93,7 +93,7 @@ impl ConstraintRow {
         }
     }
 
-    /// True if the reaction on one body depends on the rotation of the other.
+    /// Whether the reaction on one body depends on the rotation of the other.
     pub(crate) fn couples_rotations(self) -> bool {
         match self {
             Perpendicular { .. } | Sliding { .. } | Distance => true,
@@ -173,7 +173,7 @@ impl JointKind {
         }
     }
 
-    /// What the joint allows along or about its axis, turning first.
+    /// The degrees of freedom along or about its axis, rotation first.
     pub(crate) fn degrees_of_freedom(self) -> &'static [DegreeOfFreedom] {
         match self {
             JointKind::Revolute | JointKind::Planar => &[DegreeOfFreedom::Rotation],
@@ -183,7 +183,7 @@ impl JointKind {
         }
     }
 
-    /// Frame axes that both bodies share; the rows alone would also admit them turned by 180°.
+    /// Frame axes that both bodies share. The rows alone would also admit a rotation by 180°.
     pub(crate) fn common_axes(self) -> &'static [usize] {
         match self {
             JointKind::Spherical | JointKind::Universal | JointKind::Rod => &[],
@@ -207,19 +207,19 @@ impl JointKind {
     }
 }
 
-/// Where a joint sits on a body.
+/// Frame of a joint on a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointFrame<S> {
-    /// Point from the centre of mass, in body axes (ground axes from the origin if ground) (m).
+    /// Point from the centre of mass, body axes (on ground: from the origin) \[m\].
     pub point: Vec3<S>,
     /// Orthonormal axes e1, e2, e3 in body axes; e3 is the joint's axis.
     pub axes: [Vec3<S>; 3],
-    /// Length L of a rod that starts here (frame A of a rod; else unused) (m).
+    /// Length L of a rod \[m\]; only used in frame A of a rod.
     pub length: S,
 }
 
 impl<S: Scalar> JointFrame<S> {
-    /// The frame of zeros (a cotangent).
+    /// The zero frame (a cotangent).
     pub(crate) fn zero() -> Self {
         Self {
             point: Vec3::zeros(),
@@ -228,7 +228,7 @@ impl<S: Scalar> JointFrame<S> {
         }
     }
 
-    /// Adds another frame (of cotangents).
+    /// Adds another cotangent.
     pub(crate) fn add(&mut self, other: &Self) {
         self.point += other.point;
         for (axis, by) in self.axes.iter_mut().zip(&other.axes) {
@@ -243,23 +243,23 @@ impl<S: Scalar> JointFrame<S> {
 pub(crate) struct Joint<S> {
     /// Name in the problem file.
     pub name: String,
-    /// Which equations it imposes.
+    /// Kind, which determines its equations.
     pub kind: JointKind,
     /// Body A.
     pub body_a: usize,
     /// Body B; `None` is ground.
     pub body_b: Option<usize>,
-    /// Where the joint sits on body A.
+    /// Frame on body A.
     pub frame_a: JointFrame<S>,
-    /// Where the joint sits on body B.
+    /// Frame on body B.
     pub frame_b: JointFrame<S>,
-    /// Prescribed motions, one a freedom at most.
+    /// Prescribed motions; at most one per degree of freedom.
     pub drives: Vec<Drive<S>>,
-    /// Rows of [`Joint::all_rows`] that are not imposed at the start, as they follow from those of other
-    /// joints; a run may exchange them for others (see `system::redundant_rows`).
+    /// Redundant rows of [`Joint::all_rows`]: they follow from those of other joints and are not
+    /// imposed at the start. A run may exchange them for others (see `system::redundant_rows`).
     pub redundant: Vec<ConstraintRow>,
-    /// Rows that hold identically in all motions that the bodies' mobility admits, and are not
-    /// imposed.
+    /// Trivially satisfied rows: they hold in all motions that the bodies' mobility admits, and are
+    /// not imposed.
     pub trivial_rows: Vec<ConstraintRow>,
 }
 
@@ -270,18 +270,18 @@ impl<S> Joint<S> {
         self.kind.rows().iter().copied().chain(driven)
     }
 
-    /// The rows that do not hold identically.
+    /// The rows that are not trivially satisfied.
     pub(crate) fn rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
         let counts = |row: &ConstraintRow| !self.trivial_rows.contains(row);
         self.all_rows().filter(counts)
     }
 
-    /// Those of [`Joint::rows`] that are imposed at the start.
+    /// The rows of [`Joint::rows`] that are imposed at the start.
     pub(crate) fn imposed(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
         self.rows().filter(|row| !self.redundant.contains(row))
     }
 
-    /// Frame axes that both bodies share once the joint is closed.
+    /// Frame axes that both bodies share if the joint is closed.
     pub(crate) fn common_axes(&self) -> &'static [usize] {
         let turned = |drive: &Drive<S>| drive.dof == DegreeOfFreedom::Rotation;
         match self.drives.iter().any(turned) {
@@ -292,7 +292,7 @@ impl<S> Joint<S> {
 }
 
 impl<S: Scalar> Joint<S> {
-    /// The joint with every parameter replaced by `f` of it.
+    /// The joint with `f` applied to every parameter.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Joint<T> {
         let mut frame = |frame: &JointFrame<S>| JointFrame {
             point: frame.point.map(&mut *f),

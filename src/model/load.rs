@@ -1,8 +1,8 @@
 //! Loads: forces and torques on bodies, springs, dampers and friction.
 //!
-//! With m(t) a [`TimeFunction`], d = P_A − P_B the distance of two points, l = √(dᵀd), e the axis of a
-//! joint, φ the angle of its body A relative to body B about e, s = e · d its displacement, and
-//! w a width, each load acts on body A by
+//! Let m(t) be a [`TimeFunction`], d = P_A − P_B the vector between two points, l = √(dᵀd), e the
+//! axis of a joint, φ the angle of its body A relative to body B about e, s = e · d its
+//! displacement, and w a width. Each load acts on body A by
 //!
 //! ```text
 //! force              F = m(t) n              at a point; n in ground or in body axes
@@ -14,8 +14,8 @@
 //! friction           M = −μ tanh(φ̇ / w) e   or   F = −μ tanh(ṡ / w) e
 //! ```
 //!
-//! and by the opposite on body B, so that momentum is exchanged and never made. Forces and their
-//! derivatives are in `system::loads`.
+//! and by the opposite on body B, so momentum is conserved. Forces and their derivatives are in
+//! `system::loads`.
 
 use super::drive::DegreeOfFreedom;
 use super::time_function::TimeFunction;
@@ -26,16 +26,16 @@ use crate::math::{Scalar, Vec3};
 pub(crate) struct Load<S> {
     /// Name in the problem file.
     pub name: String,
-    /// What acts.
+    /// Kind and parameters.
     pub kind: LoadKind<S>,
 }
 
-/// The axes that a force or torque keeps its direction in.
+/// The axes in which the direction of a force or torque is fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Axes {
-    /// Those of ground.
+    /// Ground axes.
     Ground,
-    /// Those of the body that it acts on, which it turns with.
+    /// Axes of the loaded body.
     Body,
 }
 
@@ -46,24 +46,24 @@ pub(crate) enum LoadKind<S> {
     Force {
         /// The body.
         body: usize,
-        /// The point, from the centre of mass in body axes (m).
+        /// The point, from the centre of mass in body axes \[m\].
         point: Vec3<S>,
-        /// Direction n, used as it is.
+        /// Direction n; it is not normalised.
         direction: Vec3<S>,
-        /// What the direction is fixed in.
+        /// Axes of the direction.
         axes: Axes,
-        /// m(t) (N).
+        /// m(t) \[N\].
         magnitude: TimeFunction<S>,
     },
     /// A torque on a body.
     Torque {
         /// The body.
         body: usize,
-        /// Direction n, used as it is.
+        /// Direction n; it is not normalised.
         direction: Vec3<S>,
-        /// What the direction is fixed in.
+        /// Axes of the direction.
         axes: Axes,
-        /// m(t) (N m).
+        /// m(t) \[N m\].
         magnitude: TimeFunction<S>,
     },
     /// A spring with a damper between points of two bodies. The points must stay apart.
@@ -72,37 +72,36 @@ pub(crate) enum LoadKind<S> {
         body_a: usize,
         /// Body B; `None` is ground.
         body_b: Option<usize>,
-        /// Point of A, from the centre of mass in body axes (m).
+        /// Point of A, from the centre of mass in body axes \[m\].
         point_a: Vec3<S>,
-        /// Point of B likewise (ground axes from the origin if ground) (m).
+        /// Point of B, from the centre of mass in body axes (on ground: from the origin) \[m\].
         point_b: Vec3<S>,
-        /// Length l0 without force (m).
+        /// Length l0 at zero force \[m\].
         rest_length: S,
-        /// Stiffness k (N/m).
+        /// Stiffness k \[N/m\].
         stiffness: S,
-        /// Cubic stiffness k3 (N/m³).
+        /// Cubic stiffness k3 \[N/m³\].
         cubic: S,
-        /// Damping c (N s/m).
+        /// Damping c \[N s/m\].
         damping: S,
     },
-    /// A spring with a damper about the axis of a joint. Its angle x = φ − φ0 is taken in
-    /// (−π, π], so it is smooth in all positions but those half a turn from rest, where it jumps
-    /// by a turn.
+    /// A spring with a damper about the axis of a joint. Its angle x = φ − φ0 is taken in (−π, π].
+    /// So it jumps by a turn in positions that are half a turn from rest, and is smooth elsewhere.
     TorsionSpring {
         /// The joint.
         joint: usize,
-        /// Angle φ0 without torque (rad).
+        /// Angle φ0 at zero torque \[rad\].
         rest_angle: S,
-        /// Stiffness k (N m/rad).
+        /// Stiffness k \[N m/rad\].
         stiffness: S,
-        /// Damping c (N m s/rad).
+        /// Damping c \[N m s/rad\].
         damping: S,
     },
     /// Viscous damping along or about the axis of a joint.
     Damping {
         /// The joint.
         joint: usize,
-        /// Which motion is damped.
+        /// The degree of freedom that is damped.
         dof: DegreeOfFreedom,
         /// c (N m s/rad or N s/m).
         coefficient: S,
@@ -111,25 +110,25 @@ pub(crate) enum LoadKind<S> {
     BallDamping {
         /// The joint.
         joint: usize,
-        /// c (N m s/rad).
+        /// c \[N m s/rad\].
         coefficient: S,
     },
-    /// Coulomb friction of constant size along or about the axis of a joint, smooth about zero
-    /// rate.
+    /// Coulomb friction of constant size along or about the axis of a joint. It is smooth at rate
+    /// zero.
     Friction {
         /// The joint.
         joint: usize,
-        /// Which motion is opposed.
+        /// The degree of freedom with friction.
         dof: DegreeOfFreedom,
         /// Size μ of the torque or force (N m or N).
         size: S,
-        /// Rate w at which tanh 1 of it acts (rad/s or m/s).
+        /// Rate w, at which tanh 1 of μ acts \[rad/s or m/s\].
         width: S,
     },
 }
 
 impl<S: Scalar> Load<S> {
-    /// The load with every parameter replaced by `f` of it.
+    /// The load with `f` applied to every parameter.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Load<T> {
         Load {
             name: self.name.clone(),
@@ -139,7 +138,7 @@ impl<S: Scalar> Load<S> {
 }
 
 impl<S: Scalar> LoadKind<S> {
-    /// How the load changes in time, if it does.
+    /// The time function of the load, if it has one.
     pub(crate) fn course(&self) -> Option<&TimeFunction<S>> {
         match self {
             LoadKind::Force { magnitude, .. } | LoadKind::Torque { magnitude, .. } => {
@@ -153,7 +152,7 @@ impl<S: Scalar> LoadKind<S> {
         }
     }
 
-    /// The load with every parameter replaced by `f` of it.
+    /// The load with `f` applied to every parameter.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> LoadKind<T> {
         match self {
             LoadKind::Force {

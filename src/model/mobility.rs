@@ -1,11 +1,11 @@
-//! Which velocities a body can have in the scene that it is part of.
+//! The velocities that a body can have in its scene.
 
 use crate::math::scalar::along;
 use crate::math::{Mat3, Scalar, Vec3};
 
-/// Velocities of a body, (ṙ in ground axes, ω in body axes) = B u with a constant basis B of
-/// orthonormal columns: the directions of its translation, then those of its rotation. A body that
-/// cannot leave a subspace has its equations solved in it alone.
+/// Velocities of a body, (ṙ in ground axes, ω in body axes) = B u, with a constant basis B of
+/// orthonormal columns: directions of translation, then of rotation. The equations of a body that
+/// cannot leave this subspace are solved in u.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Mobility {
     /// Directions of ṙ, ground axes.
@@ -14,8 +14,7 @@ pub(crate) struct Mobility {
     pub rotation: Directions,
 }
 
-/// Orthonormal axes of space, of which the first ones are free. Where all are, they are the unit
-/// vectors.
+/// Orthonormal axes of space; the first ones are free. If all are free, they are the unit vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Directions {
     axes: [Vec3<f64>; 3],
@@ -31,8 +30,8 @@ impl Mobility {
         }
     }
 
-    /// Translation along two orthonormal directions of a plane, ground axes, and rotation about its unit
-    /// normal, body axes, which a motion in the plane does not change: three unknowns.
+    /// Three unknowns: translation along two orthonormal directions of a plane (ground axes), and
+    /// rotation about its unit normal (body axes), which a planar motion does not change.
     pub(crate) fn planar([t1, t2]: [Vec3<f64>; 2], normal: Vec3<f64>) -> Self {
         let mut farthest = Vec3::zeros();
         farthest[normal.iamin()] = 1.0;
@@ -49,12 +48,12 @@ impl Mobility {
         }
     }
 
-    /// Any translation without rotation: three unknowns.
+    /// Three unknowns: any translation, no rotation.
     pub(crate) fn point() -> Self {
         Self::spatial().without_rotation()
     }
 
-    /// None: no unknowns.
+    /// No unknowns.
     pub(crate) fn fixed() -> Self {
         let mut none = Self::point();
         none.translation.free = 0;
@@ -72,20 +71,20 @@ impl Mobility {
         self.translation.free + self.rotation.free
     }
 
-    /// Whether it has rotation.
+    /// Whether the body can rotate.
     pub(crate) fn has_rotation(&self) -> bool {
         self.rotation.free > 0
     }
 
-    /// The axes of translation, if that is along the first two of them, and those of the body, if it
-    /// turns about none but the first of them: the normal of the plane that it stays in is the third of
-    /// the former and the first of the latter.
+    /// If the body moves in a plane: axes of translation, of which the first two are free, and of
+    /// rotation, of which at most the first is free. The normal of the plane is the third of the
+    /// former and the first of the latter.
     pub(crate) fn plane(&self) -> Option<[[Vec3<f64>; 3]; 2]> {
         let planar = self.translation.free == 2 && self.rotation.free <= 1;
         planar.then_some([self.translation.axes, self.rotation.axes])
     }
 
-    /// Writes u = Bᵀ (x, y) of a linear and an angular part to the head of `out`.
+    /// Writes u = Bᵀ (x, y) of a linear and an angular part to the first entries of `out`.
     #[inline]
     pub(crate) fn reduce<S: Scalar>(&self, linear: &Vec3<S>, angular: &Vec3<S>, out: &mut [S]) {
         if let Some([t1, t2, normal]) = self.planar_axes() {
@@ -98,7 +97,7 @@ impl Mobility {
         self.rotation.components(angular, out);
     }
 
-    /// The linear and the angular part of B u, with u at the head of `u`.
+    /// The linear and angular parts of B u; u are the first entries of `u`.
     #[inline]
     pub(crate) fn expand<S: Scalar>(&self, u: &[S]) -> (Vec3<S>, Vec3<S>) {
         if let Some([t1, t2, normal]) = self.planar_axes() {
@@ -110,8 +109,8 @@ impl Mobility {
         (linear, self.rotation.combine(&u[self.translation.free..]))
     }
 
-    /// The columns of B of a body that moves in a plane: most bodies, for which the formulas above are
-    /// written out.
+    /// The columns of B of a planar body. Most bodies are planar, so the formulas above have a
+    /// branch for them.
     #[inline]
     fn planar_axes(&self) -> Option<[&Vec3<f64>; 3]> {
         let planar = self.translation.free == 2 && self.rotation.free == 1;
@@ -119,7 +118,7 @@ impl Mobility {
         planar.then_some([t1, t2, &self.rotation.axes[0]])
     }
 
-    /// Row k of B, as places in u and entries: entries of zero stand for none.
+    /// Row k of B: pairs of an index in u and an entry. A zero entry is a filler.
     pub(crate) fn row(&self, k: usize) -> [(usize, f64); 2] {
         match k {
             0..3 => self.translation.row(k, 0),
@@ -136,7 +135,7 @@ impl Directions {
         }
     }
 
-    /// How many are free.
+    /// Number of free axes.
     pub(crate) fn free(&self) -> usize {
         self.free
     }
@@ -146,7 +145,7 @@ impl Directions {
         &self.axes[i]
     }
 
-    /// Writes the components of `x` in the free directions to the head of `out`.
+    /// Writes the components of `x` in the free directions to the first entries of `out`.
     #[inline]
     pub(crate) fn components<S: Scalar>(&self, x: &Vec3<S>, out: &mut [S]) {
         match self.free {
@@ -160,7 +159,7 @@ impl Directions {
         }
     }
 
-    /// The vector with the components at the head of `u` in the free directions.
+    /// The vector whose components in the free directions are the first entries of `u`.
     #[inline]
     pub(crate) fn combine<S: Scalar>(&self, u: &[S]) -> Vec3<S> {
         match self.free {
@@ -190,8 +189,8 @@ impl Directions {
         }
     }
 
-    /// Component k of the free directions, the first of which is unknown `at`; there are two at most,
-    /// as three are unit vectors.
+    /// Component k of the free directions; their first unknown is `at`. At most two entries are not
+    /// zero, since three free directions are unit vectors.
     fn row(&self, k: usize, at: usize) -> [(usize, f64); 2] {
         match self.free {
             3 => [(at + k, 1.0), (0, 0.0)],

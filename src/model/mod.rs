@@ -1,9 +1,8 @@
-//! The mechanical model: bodies, joints, loads and gravity with their parameters, and nothing that
-//! moves.
+//! The mechanical model: bodies, joints, loads and gravity with their parameters, without state.
 //!
-//! Parameters are generic in the scalar, so that the same model carries values (`f64`), complex
-//! steps or dual numbers. A model of zeros in `f64` also serves as the cotangent of a model:
-//! every parameter's place then holds the derivative of a function with respect to it.
+//! Parameters are generic in the scalar: a model has values (`f64`), complex steps or dual numbers.
+//! A model of zeros in `f64` also serves as a cotangent: it holds the derivative of a function in
+//! each parameter.
 
 pub(crate) mod drive;
 pub(crate) mod joint;
@@ -26,7 +25,7 @@ use crate::math::{Scalar, Vec3};
 /// Bodies, joints, loads and gravity of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Model<S> {
-    /// Gravitational acceleration in ground axes (m/s²).
+    /// Gravitational acceleration in ground axes \[m/s²\].
     pub gravity: Vec3<S>,
     /// Bodies in the order of the problem file.
     pub bodies: Vec<RigidBody<S>>,
@@ -37,7 +36,7 @@ pub(crate) struct Model<S> {
 }
 
 impl<S: Scalar> Model<S> {
-    /// Whether nothing but springs and gravity does work, so that energy is conserved.
+    /// Whether energy is conserved: only springs and gravity do work.
     pub(crate) fn conserves_energy(&self) -> bool {
         let conserves = |load: &Load<S>| match &load.kind {
             LoadKind::Spring { damping, .. } | LoadKind::TorsionSpring { damping, .. } => {
@@ -53,7 +52,7 @@ impl<S: Scalar> Model<S> {
         !driven && self.loads.iter().all(conserves)
     }
 
-    /// The model with every parameter replaced by `f` of it, visited in one fixed order.
+    /// The model with `f` applied to every parameter, in a fixed order.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Model<T> {
         Model {
             gravity: self.gravity.map(&mut *f),

@@ -1,36 +1,36 @@
-//! A rigid body: its mass properties and its start.
+//! A rigid body: its mass properties and its initial state.
 
 use super::Mobility;
 use crate::math::rotation::Quat;
 use crate::math::{Mat3, Scalar, Vec3};
 
-/// Violation of the conditions of a solid, relative to the largest moment, that is round-off.
+/// A violation of the conditions of a solid up to this fraction of the largest moment is round-off.
 const ROUNDING: f64 = 1e-12;
 
-/// A rigid body. Its reference point is the centre of mass; its axes are the body's axes in the
+/// A rigid body. Its reference point is the centre of mass. Its axes are those of the body in the
 /// problem file.
 #[derive(Clone, Debug)]
 pub(crate) struct RigidBody<S> {
     /// Name in the problem file.
     pub name: String,
-    /// Mass (kg).
+    /// Mass \[kg\].
     pub mass: S,
-    /// Inertia about the centre of mass in body axes, symmetric (kg m²).
+    /// Inertia about the centre of mass, body axes, symmetric \[kg m²\].
     pub inertia: Mat3<S>,
-    /// Guess of the centre of mass at t = 0 in ground axes (m).
+    /// Guess of the centre of mass at t = 0 in ground axes \[m\].
     pub position: Vec3<S>,
-    /// Guess of the Euler parameters at t = 0, of unit length (body axes to ground).
+    /// Guess of the Euler parameters at t = 0, from body axes to ground; unit length.
     pub orientation: Quat<S>,
-    /// Guess of the velocity of the centre of mass at t = 0 in ground axes (m/s).
+    /// Guess of the velocity of the centre of mass at t = 0 in ground axes \[m/s\].
     pub velocity: Vec3<S>,
-    /// Guess of the angular velocity at t = 0 in body axes (rad/s).
+    /// Guess of the angular velocity at t = 0 in body axes \[rad/s\].
     pub angular_velocity: Vec3<S>,
-    /// Which velocities the body can have; constant whatever the design.
+    /// The velocities that the body can have, for all designs.
     pub mobility: Mobility,
 }
 
 impl<S: Scalar> RigidBody<S> {
-    /// The body with every parameter replaced by `f` of it.
+    /// The body with `f` applied to every parameter.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> RigidBody<T> {
         RigidBody {
             name: self.name.clone(),
@@ -46,15 +46,14 @@ impl<S: Scalar> RigidBody<S> {
 }
 
 impl RigidBody<f64> {
-    /// Whether mass and inertia are those of some solid: a positive mass, and
-    /// [`is_inertia_of_solid`].
+    /// Whether mass and inertia are those of a solid: a positive mass, and [`is_inertia_of_solid`].
     pub(crate) fn is_solid(&self) -> bool {
         self.mass > 0.0 && is_inertia_of_solid(&self.inertia)
     }
 }
 
-/// Whether an inertia is that of some solid. Principal moments are integrals of squares: none is
-/// negative, and none is larger than the sum of the other two.
+/// Whether an inertia is that of a solid. Principal moments are integrals of squares: none is
+/// negative, and none exceeds the sum of the other two.
 pub(crate) fn is_inertia_of_solid(inertia: &Mat3<f64>) -> bool {
     let moments = inertia.symmetric_eigenvalues();
     let sum: f64 = moments.iter().sum();

@@ -1,6 +1,6 @@
-//! Tables of values at instants, and what stands between them.
+//! Tables of values at instants, and interpolation between them.
 //!
-//! Between (t_i, m_i) and (t_{i+1}, m_{i+1}), h_i apart, with the difference quotients d_i:
+//! Let the points (t_i, m_i) and (t_{i+1}, m_{i+1}) be h_i apart, with difference quotients d_i:
 //!
 //! ```text
 //!            a magnitude                          a motion
@@ -11,25 +11,25 @@
 //! spline     quintic by parabolas, C2             the same
 //! ```
 //!
-//! Linear and monotone courses stay between neighbouring values: they do not overshoot. All are level
-//! at both ends and held beyond them, but for a linear magnitude, which has kinks at its instants.
+//! Linear and monotone functions stay between neighbouring values. All functions are level at both
+//! ends and constant beyond, except for a linear magnitude, which has kinks at its instants.
 //!
-//! The cubic has as slopes the weighted harmonic means of the neighbouring quotients (Fritsch &
+//! The slopes of the cubic are weighted harmonic means of the neighbouring quotients (Fritsch &
 //! Butland 1984, *SIAM J. Sci. Stat. Comput.* 5(2), 300–304).
 //!
 //! The slope of a motion is s = ((d_{i−1}⁻⁴ + d_i⁻⁴)/2)^{−1/4}, which is at most 2^{1/4} of either
-//! quotient. A quintic is monotone if its derivative has no negative coefficient in Bernstein's form
-//! (Dougherty, Edelman & Hyman 1989, *Math. Comp.* 52(186), 471–494): with α = s/d and γ = c h/d at
-//! an end of slope s and curvature c, if |γ| ≤ 4α and |γ| ≤ 10 − 8α at both. The curvature of the
-//! parabola through three points is shrunk smoothly until it fulfils this.
+//! quotient. A quintic is monotone if its derivative has no negative Bernstein coefficient
+//! (Dougherty, Edelman & Hyman 1989, *Math. Comp.* 52(186), 471–494). With α = s/d and γ = c h/d
+//! for the slope s and the curvature c at an end, this holds if |γ| ≤ 4α and |γ| ≤ 10 − 8α at both
+//! ends. The curvature of the parabola through three points is reduced smoothly to fulfil this.
 //!
-//! The spline has slope and curvature of the parabola through a point and its neighbours. It follows
-//! smooth values with the least error and overshoots others.
+//! The spline has slope and curvature of the parabola through a point and its neighbours. It has
+//! the least error for smooth values and overshoots for others.
 
 use crate::math::Scalar;
 use crate::math::scalar::Dual;
 
-/// How values between the instants of a table follow from those at them.
+/// Interpolation between the values of a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Interpolation {
     /// Straight lines.
@@ -41,10 +41,10 @@ pub(crate) enum Interpolation {
     Spline,
 }
 
-/// Part of an interval over which a linear motion is rounded at each of its ends.
+/// Fraction of an interval over which a linear motion is rounded at each end.
 const ROUNDED: f64 = 0.2;
 
-/// Instants at which a course of magnitude or motion is no longer smooth, where steps should end.
+/// Instants at which a tabulated magnitude or motion is not smooth. Steps should end there.
 pub(crate) fn breaks<S: Scalar>(
     times: &[S],
     interpolation: Interpolation,
@@ -61,7 +61,7 @@ pub(crate) fn breaks<S: Scalar>(
     all
 }
 
-/// Where a time lies in a table.
+/// Position of a time in a table.
 pub(super) enum Bracket {
     Before,
     /// Between the instants k and k + 1.
@@ -77,7 +77,7 @@ pub(super) fn interval<S: Scalar>(times: &[S], time: f64) -> Bracket {
     }
 }
 
-/// The points k − 1 … k + 2, as far as there are any: their instants or their values.
+/// Instants or values of the points k − 1 … k + 2; `None` beyond the ends of the table.
 pub(super) type Neighbours<S> = [Option<S>; 4];
 
 fn stencil(k: usize, count: usize) -> [Option<usize>; 4] {
@@ -85,13 +85,13 @@ fn stencil(k: usize, count: usize) -> [Option<usize>; 4] {
     [k.checked_sub(1), Some(k), Some(k + 1), there(Some(k + 2))]
 }
 
-/// The numbers of a list around the interval k.
+/// The entries of a list around interval k.
 pub(super) fn around<S: Scalar>(list: &[S], k: usize) -> Neighbours<S> {
     stencil(k, list.len()).map(|i| i.map(|i| list[i]))
 }
 
-/// Adds the derivatives of an interpolation between the instants k and k + 1 by instants and values:
-/// it depends on four points at most, so that of `slope` by dual numbers, one number at a time.
+/// Adds the derivatives in instants and values of the interpolation between points k and k + 1. It
+/// depends on at most four points. `slope` computes them by dual numbers, one entry at a time.
 pub(super) fn by_points(
     k: usize,
     (times, values): (&[f64], &[f64]),
@@ -112,7 +112,7 @@ pub(super) fn by_points(
     }
 }
 
-/// The interval that a time lies in: its ends (instant, value), and width and quotient of those
+/// The interval of a time: its ends (instant, value), and the width and quotient of the intervals
 /// before, at and after it.
 struct Interval<S> {
     start: (S, S),
@@ -138,7 +138,8 @@ impl<S: Scalar> Interval<S> {
         }
     }
 
-    /// What `rule` makes of the two intervals at the start and at the end; zero at an end of the table.
+    /// `rule` applied to the two intervals at the start and at the end; zero at an end of the
+    /// table.
     fn ends(&self, rule: impl Fn((S, S), (S, S)) -> [S; 2]) -> [[S; 2]; 2] {
         let level = [S::zero(); 2];
         [
@@ -166,7 +167,7 @@ pub(super) fn magnitude<S: Scalar>(
     }
 }
 
-/// A motion and its first to third derivative at `time`.
+/// A motion and its first to third derivatives at `time`.
 pub(super) fn motion<S: Scalar>(
     interpolation: Interpolation,
     times: &Neighbours<S>,
@@ -187,11 +188,11 @@ fn cubic<S: Scalar>(at: &Interval<S>, time: S) -> S {
     let [[slope0, _], [slope1, _]] = at.ends(|a, b| [harmonic_mean(a, b), S::zero()]);
     let x = (time - t0) / width;
     let curve = |end: S| x * (S::one() - x) * end;
-    // Linear part, and the departure of the slopes from it.
+    // Linear part, and the deviation of the slopes from it.
     m0 + (m1 - m0) * x + curve((slope0 - middle) * (S::one() - x) - (slope1 - middle) * x) * width
 }
 
-/// A straight motion whose ends are rounded.
+/// A linear motion whose ends are rounded.
 fn rounded<S: Scalar>(at: &Interval<S>, time: S) -> [S; 4] {
     let zero = S::zero();
     let ((t0, m0), (t1, m1), (width, slope)) = (at.start, at.end, at.own);
@@ -211,8 +212,8 @@ fn rounded<S: Scalar>(at: &Interval<S>, time: S) -> [S; 4] {
     }
 }
 
-/// Quintic Hermite interpolation between two points (instant, value) with [slope, curvature] at both,
-/// and its derivatives.
+/// Quintic Hermite interpolation between two points (instant, value) with (slope, curvature) at
+/// both, and its first to third derivatives.
 fn quintic<S: Scalar>(
     (t0, m0): (S, S),
     (t1, m1): (S, S),
@@ -246,17 +247,17 @@ pub(super) fn polynomial<S: Scalar>(coefficients: &[S], t: S) -> [S; 4] {
         }
         out[0] = out[0] * t + c;
     }
-    // Taylor coefficients so far.
+    // The sums are Taylor coefficients.
     [out[0], out[1], out[2] * 2.0, out[3] * 6.0]
 }
 
-/// Slope and curvature at a point between two intervals, each (width, difference quotient).
+/// Slope and curvature of the parabola at a point between two intervals (width, quotient).
 fn parabola<S: Scalar>((w0, d0): (S, S), (w1, d1): (S, S)) -> [S; 2] {
     let both = w0 + w1;
     [(d0 * w1 + d1 * w0) / both, (d1 - d0) * 2.0 / both]
 }
 
-/// Slope of the cubic at a point between two intervals, each (width, difference quotient).
+/// Slope of the cubic at a point between two intervals (width, quotient).
 fn harmonic_mean<S: Scalar>((w0, d0): (S, S), (w1, d1): (S, S)) -> S {
     if d0.re() * d1.re() <= 0.0 {
         return S::zero();
@@ -265,7 +266,7 @@ fn harmonic_mean<S: Scalar>((w0, d0): (S, S), (w1, d1): (S, S)) -> S {
     (a + b) / (a / d0 + b / d1)
 }
 
-/// The mean of power −4 of two quotients of one sign, else zero; at most 2^{1/4} of the smaller.
+/// Mean of power −4 of two quotients of one sign, else zero; at most 2^{1/4} of the smaller.
 fn power_mean<S: Scalar>(a: S, b: S) -> S {
     if a.re() * b.re() <= 0.0 {
         return S::zero();
@@ -280,7 +281,7 @@ fn power_mean<S: Scalar>(a: S, b: S) -> S {
     small / ((square * square + 1.0) * 0.5).sqrt().sqrt()
 }
 
-/// Slope and curvature of a monotone motion at a point between two intervals.
+/// Slope and curvature of a monotone motion at a point between two intervals (width, quotient).
 fn limited<S: Scalar>((w0, d0): (S, S), (w1, d1): (S, S)) -> [S; 2] {
     let slope = power_mean(d0, d1);
     if slope.re() == 0.0 {

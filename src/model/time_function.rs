@@ -1,9 +1,9 @@
-//! The course of a force or torque in time: constant, harmonic or tabulated.
+//! Force or torque as a function of time: constant, harmonic or tabulated.
 //!
 //! ```text
 //! constant   m(t) = m
 //! harmonic   m(t) = A sin(2π f t + φ)
-//! table      m(t) = interpolation between (t_i, m_i), see [`super::table`]; held beyond the ends
+//! table      m(t) = interpolation between (t_i, m_i), see [`super::table`]; constant outside
 //! ```
 
 use super::table::{Bracket, Interpolation, around, by_points, interval, magnitude};
@@ -14,30 +14,30 @@ use std::f64::consts::TAU;
 /// A magnitude as a function of time.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum TimeFunction<S> {
-    /// The same at all times (N or N m).
+    /// Constant \[N or N m\].
     Constant(S),
-    /// A sine of time.
+    /// Sine of time.
     Harmonic {
-        /// Amplitude A (N or N m).
+        /// Amplitude A \[N or N m\].
         amplitude: S,
-        /// Frequency f (Hz).
+        /// Frequency f \[Hz\].
         frequency: S,
-        /// Phase φ at t = 0 (rad).
+        /// Phase φ at t = 0 \[rad\].
         phase: S,
     },
-    /// Interpolated between instants.
+    /// Interpolation between instants.
     Table {
-        /// Instants t_i, increasing (s); at least two.
+        /// Instants t_i \[s\], increasing; at least two.
         times: Vec<S>,
-        /// Values m_i, as many (N or N m).
+        /// Values m_i \[N or N m\]; length of `times`.
         values: Vec<S>,
-        /// What stands between them.
+        /// Interpolation between the values.
         interpolation: Interpolation,
     },
 }
 
 impl<S: Scalar> TimeFunction<S> {
-    /// The course with every parameter replaced by `f` of it.
+    /// The function with `f` applied to every parameter.
     pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> TimeFunction<T> {
         match self {
             TimeFunction::Constant(value) => TimeFunction::Constant(f(*value)),
@@ -62,7 +62,7 @@ impl<S: Scalar> TimeFunction<S> {
         }
     }
 
-    /// Value at `time` (s).
+    /// Value at `time` \[s\].
     pub(crate) fn value(&self, time: S) -> S {
         match self {
             TimeFunction::Constant(value) => *value,
@@ -88,8 +88,8 @@ impl<S: Scalar> TimeFunction<S> {
 }
 
 impl TimeFunction<f64> {
-    /// Adds `weight` times the derivatives of [`TimeFunction::value`] to those in the parameters, `own`
-    /// (of the same kind), and in the time.
+    /// Adds `weight` times the derivatives of [`TimeFunction::value`] to those in the parameters
+    /// (`own`, of the same variant) and in the time.
     pub(crate) fn pull_back(
         &self,
         time: f64,
