@@ -7,7 +7,7 @@ use crate::functions::{Scene, evaluate};
 use crate::integrate::{
     IntegrationFailure, Samples, Settings, Trajectory, WorkCounts, simulate_by,
 };
-use crate::math::Dual;
+use crate::math::{Dual, Parameters};
 use crate::model::RigidBody;
 use crate::problem::{Focus, Problem};
 use std::borrow::Cow;

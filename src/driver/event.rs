@@ -12,8 +12,8 @@
 
 use crate::functions::{Scene, TerminalEvent};
 use crate::integrate::{IntegrationFailure, Settings, Trajectory, WorkCounts, simulate};
-use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
+use crate::math::{Complex64, Parameters};
 
 /// Largest number of runs to a root.
 const RUNS: usize = 40;

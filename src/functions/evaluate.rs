@@ -7,8 +7,8 @@ use super::measure::{Snapshot, SnapshotCotangent, pull_flight};
 use super::peak::{self, Maximum, Point};
 use super::turning::turns;
 use crate::integrate::{Trajectory, quadrature};
-use crate::math::Scalar;
 use crate::math::soft_max::SoftMax;
+use crate::math::{Parameters, Scalar};
 use crate::model::Model;
 
 /// A function's value over a run, with data for reports.

@@ -1,7 +1,7 @@
 //! A function of interest: an instant quantity reduced over the run to one number.
 
 use super::instant::{Gate, Instant, Projectile};
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Vec3, parameters};
 
 /// Side of the maximum over time on which an aggregate lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,6 +83,18 @@ pub(crate) enum Function<S> {
     OfDesign(S),
 }
 
+parameters!(enum Function {
+    Reduced { reduction; instant },
+    Clearance {; projectile, release, distance, top },
+    Duration,
+    OfDesign(; value),
+});
+
+parameters!(enum Release {
+    Final,
+    Best { rho; projectile, gate },
+});
+
 impl<S: Scalar> Function<S> {
     /// SI unit of the value.
     pub(crate) fn unit(&self) -> String {
@@ -95,40 +107,6 @@ impl<S: Scalar> Function<S> {
             Function::Clearance { .. } => "m".to_owned(),
             Function::Duration => "s".to_owned(),
             Function::OfDesign(_) => "1".to_owned(),
-        }
-    }
-
-    /// The function with `f` applied to every parameter.
-    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Function<T> {
-        match self {
-            Function::Reduced { instant, reduction } => Function::Reduced {
-                instant: instant.map(f),
-                reduction: *reduction,
-            },
-            Function::Clearance {
-                projectile,
-                release,
-                distance,
-                top,
-            } => Function::Clearance {
-                projectile: projectile.map(f),
-                release: match release {
-                    Release::Final => Release::Final,
-                    Release::Best {
-                        rho,
-                        projectile,
-                        gate,
-                    } => Release::Best {
-                        rho: *rho,
-                        projectile: projectile.map(f),
-                        gate: gate.as_ref().map(|gate| gate.map(f)),
-                    },
-                },
-                distance: f(*distance),
-                top: f(*top),
-            },
-            Function::Duration => Function::Duration,
-            Function::OfDesign(value) => Function::OfDesign(f(*value)),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Quantities at an instant.
 
 use super::turning::Rotation;
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Vec3, parameters};
 
 /// A thrown point and the definition of its range. Up is against gravity.
 #[derive(Clone, Copy, Debug)]
@@ -111,29 +111,20 @@ pub(crate) enum Instant<S> {
     },
 }
 
-impl<S: Scalar> Gate<S> {
-    /// The gate with `f` applied to every parameter.
-    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Gate<T> {
-        Gate {
-            rotation: self.rotation.map(f),
-            limit: self.limit,
-            width: self.width,
-            open: self.open,
-        }
-    }
-}
+parameters!(struct Gate { limit, width, open; rotation });
 
-impl<S: Scalar> Projectile<S> {
-    /// The projectile with `f` applied to every parameter.
-    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Projectile<T> {
-        Projectile {
-            body: self.body,
-            point: self.point.map(&mut *f),
-            direction: self.direction.map(&mut *f),
-            ground: f(self.ground),
-        }
-    }
-}
+parameters!(struct Projectile { body; point, direction, ground });
+
+parameters!(enum Instant {
+    Position { body; point, direction },
+    Velocity { body; point, direction },
+    Acceleration { body; point, direction },
+    Speed { body; point },
+    SpeedSquared { body; point },
+    Energy(part;),
+    Rotation(; rotation),
+    Range {; projectile, gate },
+});
 
 impl<S: Scalar> Instant<S> {
     /// SI unit of the quantity.
@@ -169,53 +160,6 @@ impl<S: Scalar> Instant<S> {
             Instant::Energy(_) => "energy",
             Instant::Rotation(_) => "rotation",
             Instant::Range { .. } => "range",
-        }
-    }
-
-    /// The quantity with `f` applied to every parameter.
-    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Instant<T> {
-        match self {
-            Instant::Position {
-                body,
-                point,
-                direction,
-            } => Instant::Position {
-                body: *body,
-                point: point.map(&mut *f),
-                direction: direction.map(&mut *f),
-            },
-            Instant::Velocity {
-                body,
-                point,
-                direction,
-            } => Instant::Velocity {
-                body: *body,
-                point: point.map(&mut *f),
-                direction: direction.map(&mut *f),
-            },
-            Instant::Acceleration {
-                body,
-                point,
-                direction,
-            } => Instant::Acceleration {
-                body: *body,
-                point: point.map(&mut *f),
-                direction: direction.map(&mut *f),
-            },
-            Instant::Speed { body, point } => Instant::Speed {
-                body: *body,
-                point: point.map(&mut *f),
-            },
-            Instant::SpeedSquared { body, point } => Instant::SpeedSquared {
-                body: *body,
-                point: point.map(&mut *f),
-            },
-            Instant::Energy(part) => Instant::Energy(*part),
-            Instant::Rotation(rotation) => Instant::Rotation(rotation.map(f)),
-            Instant::Range { projectile, gate } => Instant::Range {
-                projectile: projectile.map(f),
-                gate: gate.as_ref().map(|gate| gate.map(f)),
-            },
         }
     }
 }

@@ -4,7 +4,7 @@ use super::evaluate::sample;
 use super::turning::turns;
 use super::{Function, Instant, Reduction};
 use crate::integrate::Trajectory;
-use crate::math::Scalar;
+use crate::math::{Parameters, Scalar, parameters};
 use crate::model::Model;
 use crate::system::failure::AssemblyFailure;
 
@@ -34,6 +34,8 @@ pub(crate) struct TerminalEvent<S> {
     pub value: S,
 }
 
+parameters!(struct TerminalEvent {; measure, value });
+
 impl<S: Scalar> TerminalEvent<S> {
     /// The event that `instant` reaches `value`.
     pub(crate) fn new(instant: Instant<S>, value: S) -> Self {
@@ -47,13 +49,6 @@ impl<S: Scalar> TerminalEvent<S> {
     /// g − c at the end of a run.
     pub(crate) fn gap(&self, model: &Model<S>, run: &Trajectory<S>) -> S {
         self.measure.evaluate(model, run).value - self.value
-    }
-
-    fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> TerminalEvent<T> {
-        TerminalEvent {
-            measure: self.measure.map(f),
-            value: f(self.value),
-        }
     }
 }
 
@@ -78,6 +73,9 @@ impl TerminalEvent<f64> {
         all.into_iter().map(|g| g - self.value).collect()
     }
 }
+
+// Visited in this order: model, duration, event, functions.
+parameters!(struct Scene { unstarted; model, duration, until, functions });
 
 impl<S: Scalar> Scene<S> {
     /// Number of the event's quantity: one past the last function.
@@ -110,22 +108,6 @@ impl<S: Scalar> Scene<S> {
             _ => &mut self.functions[number],
         };
         (&mut self.model, function)
-    }
-
-    /// The scene with `f` applied to every parameter, in a fixed order: model, duration, event,
-    /// functions.
-    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Scene<T> {
-        Scene {
-            model: self.model.map(f),
-            duration: f(self.duration),
-            until: self.until.as_ref().map(|until| until.map(f)),
-            functions: self
-                .functions
-                .iter()
-                .map(|function| function.map(f))
-                .collect(),
-            unstarted: self.unstarted.clone(),
-        }
     }
 
     /// All parameters in the order of [`Scene::map`].

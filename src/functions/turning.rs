@@ -12,7 +12,7 @@
 
 use crate::integrate::Trajectory;
 use crate::math::rotation::{self, Quat, compose, conjugate};
-use crate::math::{Scalar, Vec3};
+use crate::math::{Parameters, Scalar, Vec3, parameters};
 use crate::system::bodies::{add6, positions_of};
 use crate::system::{BodyMotion, Numbering};
 use std::f64::consts::{PI, TAU};
@@ -38,17 +38,9 @@ struct ByRotation {
     placed: Quat<f64>,
 }
 
-impl<S: Scalar> Rotation<S> {
-    /// The rotation with `f` applied to every parameter.
-    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Rotation<T> {
-        Rotation {
-            body: self.body,
-            relative_to: self.relative_to,
-            axis: self.axis.map(&mut *f),
-            placed: self.placed.map(|placed| placed.map(f)),
-        }
-    }
+parameters!(struct Rotation { body, relative_to; axis, placed });
 
+impl<S: Scalar> Rotation<S> {
     /// r at the positions `q`.
     fn turned(&self, numbering: &Numbering, q: &[S]) -> Quat<S> {
         let p = orientation(numbering, q, self.body);

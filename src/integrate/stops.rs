@@ -2,8 +2,7 @@
 
 use crate::math::Scalar;
 use crate::model::table::breaks;
-use crate::model::time_function::TimeFunction;
-use crate::model::{Model, PrescribedMotion};
+use crate::model::{Model, TimeFunction};
 
 /// Part of a period of the fastest harmonic load that a step may take.
 const PART_OF_PERIOD: f64 = 0.25;
@@ -13,9 +12,11 @@ const PART_OF_PERIOD: f64 = 0.25;
 pub(crate) fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64>, f64) {
     let mut stops = Vec::new();
     let mut widest = 1.0_f64;
-    for course in model.loads.iter().filter_map(|load| load.kind.course()) {
-        match course {
-            TimeFunction::Constant(_) => {}
+    let magnitudes = model.loads.iter().filter_map(|load| load.kind.course());
+    let drives = model.joints.iter().flat_map(|joint| &joint.drives);
+    for function in magnitudes.chain(drives.map(|drive| &drive.course)) {
+        match function {
+            TimeFunction::Polynomial(_) => {}
             TimeFunction::Harmonic { frequency, .. } => {
                 let period = 1.0 / frequency.re().abs();
                 widest = widest.min(PART_OF_PERIOD * period / duration);
@@ -23,22 +24,9 @@ pub(crate) fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64
             TimeFunction::Table {
                 times,
                 interpolation,
+                smoothness,
                 ..
-            } => stops.extend(breaks(times, *interpolation, false)),
-        }
-    }
-    for drive in model.joints.iter().flat_map(|joint| &joint.drives) {
-        match &drive.course {
-            PrescribedMotion::Polynomial(_) => {}
-            PrescribedMotion::Harmonic { frequency, .. } => {
-                let period = 1.0 / frequency.re().abs();
-                widest = widest.min(PART_OF_PERIOD * period / duration);
-            }
-            PrescribedMotion::Table {
-                times,
-                interpolation,
-                ..
-            } => stops.extend(breaks(times, *interpolation, true)),
+            } => stops.extend(breaks(times, (*interpolation, *smoothness))),
         }
     }
     stops.iter_mut().for_each(|at| *at /= duration);

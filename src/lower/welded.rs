@@ -11,7 +11,7 @@ use super::{Kept, fixed};
 use crate::functions::Scene;
 use crate::integrate::Trajectory;
 use crate::math::{Scalar, Vec3};
-use crate::model::{Joint, JointKind, LoadKind, Model, PrescribedMotion};
+use crate::model::{Joint, JointKind, LoadKind, Model, TimeFunction};
 use crate::system::{BodyMotion, Numbering, constraint, placement, side};
 
 /// Bodies that are merged.
@@ -272,12 +272,12 @@ fn closed<S: Scalar>(scene: &Scene<S>, joints: &[usize], change: f64) -> Verdict
 /// their rate at the start. Other prescribed motions have no such round-off.
 fn drives_reach<S: Scalar>(joint: &Joint<S>) -> f64 {
     let rates = joint.drives.iter().map(|drive| match &drive.course {
-        PrescribedMotion::Harmonic {
+        TimeFunction::Harmonic {
             amplitude,
             frequency,
             ..
         } => std::f64::consts::TAU * (amplitude.re() * frequency.re()).abs(),
-        PrescribedMotion::Polynomial(_) | PrescribedMotion::Table { .. } => 0.0,
+        TimeFunction::Polynomial(_) | TimeFunction::Table { .. } => 0.0,
     });
     rates.fold(0.0, f64::max)
 }

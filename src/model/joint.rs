@@ -15,7 +15,7 @@
 //! Jacobians and pull-backs of the rows are in `system::constraint`.
 
 use super::drive::{DegreeOfFreedom, Drive};
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Vec3, parameters};
 
 impl DegreeOfFreedom {
     /// The row of a drive of this degree of freedom.
@@ -291,25 +291,9 @@ impl<S> Joint<S> {
     }
 }
 
-impl<S: Scalar> Joint<S> {
-    /// The joint with `f` applied to every parameter.
-    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Joint<T> {
-        let mut frame = |frame: &JointFrame<S>| JointFrame {
-            point: frame.point.map(&mut *f),
-            axes: frame.axes.map(|axis| axis.map(&mut *f)),
-            length: f(frame.length),
-        };
-        let (frame_a, frame_b) = (frame(&self.frame_a), frame(&self.frame_b));
-        Joint {
-            name: self.name.clone(),
-            kind: self.kind,
-            body_a: self.body_a,
-            body_b: self.body_b,
-            frame_a,
-            frame_b,
-            drives: self.drives.iter().map(|drive| drive.map(f)).collect(),
-            redundant: self.redundant.clone(),
-            trivial_rows: self.trivial_rows.clone(),
-        }
-    }
-}
+parameters!(struct JointFrame {; point, axes, length });
+
+parameters!(struct Joint {
+    name, kind, body_a, body_b, redundant, trivial_rows;
+    frame_a, frame_b, drives
+});

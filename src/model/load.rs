@@ -19,7 +19,7 @@
 
 use super::drive::DegreeOfFreedom;
 use super::time_function::TimeFunction;
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Vec3, parameters};
 
 /// A named load.
 #[derive(Clone, Debug)]
@@ -127,15 +127,17 @@ pub(crate) enum LoadKind<S> {
     },
 }
 
-impl<S: Scalar> Load<S> {
-    /// The load with `f` applied to every parameter.
-    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Load<T> {
-        Load {
-            name: self.name.clone(),
-            kind: self.kind.map(f),
-        }
-    }
-}
+parameters!(struct Load { name; kind });
+
+parameters!(enum LoadKind {
+    Force { body, axes; point, direction, magnitude },
+    Torque { body, axes; direction, magnitude },
+    Spring { body_a, body_b; point_a, point_b, rest_length, stiffness, cubic, damping },
+    TorsionSpring { joint; rest_angle, stiffness, damping },
+    Damping { joint, dof; coefficient },
+    BallDamping { joint; coefficient },
+    Friction { joint, dof; size, width },
+});
 
 impl<S: Scalar> LoadKind<S> {
     /// The time function of the load, if it has one.
@@ -149,90 +151,6 @@ impl<S: Scalar> LoadKind<S> {
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
             | LoadKind::Friction { .. } => None,
-        }
-    }
-
-    /// The load with `f` applied to every parameter.
-    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> LoadKind<T> {
-        match self {
-            LoadKind::Force {
-                body,
-                point,
-                direction,
-                axes,
-                magnitude,
-            } => LoadKind::Force {
-                body: *body,
-                point: point.map(&mut *f),
-                direction: direction.map(&mut *f),
-                axes: *axes,
-                magnitude: magnitude.map(f),
-            },
-            LoadKind::Torque {
-                body,
-                direction,
-                axes,
-                magnitude,
-            } => LoadKind::Torque {
-                body: *body,
-                direction: direction.map(&mut *f),
-                axes: *axes,
-                magnitude: magnitude.map(f),
-            },
-            LoadKind::Spring {
-                body_a,
-                body_b,
-                point_a,
-                point_b,
-                rest_length,
-                stiffness,
-                cubic,
-                damping,
-            } => LoadKind::Spring {
-                body_a: *body_a,
-                body_b: *body_b,
-                point_a: point_a.map(&mut *f),
-                point_b: point_b.map(&mut *f),
-                rest_length: f(*rest_length),
-                stiffness: f(*stiffness),
-                cubic: f(*cubic),
-                damping: f(*damping),
-            },
-            LoadKind::TorsionSpring {
-                joint,
-                rest_angle,
-                stiffness,
-                damping,
-            } => LoadKind::TorsionSpring {
-                joint: *joint,
-                rest_angle: f(*rest_angle),
-                stiffness: f(*stiffness),
-                damping: f(*damping),
-            },
-            LoadKind::Damping {
-                joint,
-                dof,
-                coefficient,
-            } => LoadKind::Damping {
-                joint: *joint,
-                dof: *dof,
-                coefficient: f(*coefficient),
-            },
-            LoadKind::BallDamping { joint, coefficient } => LoadKind::BallDamping {
-                joint: *joint,
-                coefficient: f(*coefficient),
-            },
-            LoadKind::Friction {
-                joint,
-                dof,
-                size,
-                width,
-            } => LoadKind::Friction {
-                joint: *joint,
-                dof: *dof,
-                size: f(*size),
-                width: f(*width),
-            },
         }
     }
 }

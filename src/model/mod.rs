@@ -12,15 +12,15 @@ pub(crate) mod rigid_body;
 pub(crate) mod table;
 pub(crate) mod time_function;
 
-pub(crate) use drive::{DegreeOfFreedom, Drive, PrescribedMotion};
+pub(crate) use drive::{DegreeOfFreedom, Drive};
 pub(crate) use joint::{ConstraintRow, Joint, JointFrame, JointKind};
 pub(crate) use load::{Axes, Load, LoadKind};
 pub(crate) use mobility::Mobility;
 pub(crate) use rigid_body::RigidBody;
-pub(crate) use table::Interpolation;
+pub(crate) use table::{Interpolation, Smoothness};
 pub(crate) use time_function::TimeFunction;
 
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Vec3, parameters};
 
 /// Bodies, joints, loads and gravity of a scene.
 #[derive(Clone, Debug)]
@@ -34,6 +34,8 @@ pub(crate) struct Model<S> {
     /// Loads in the order of the problem file.
     pub loads: Vec<Load<S>>,
 }
+
+parameters!(struct Model {; gravity, bodies, joints, loads });
 
 impl<S: Scalar> Model<S> {
     /// Whether energy is conserved: only springs and gravity do work.
@@ -50,15 +52,5 @@ impl<S: Scalar> Model<S> {
         };
         let driven = self.joints.iter().any(|joint| !joint.drives.is_empty());
         !driven && self.loads.iter().all(conserves)
-    }
-
-    /// The model with `f` applied to every parameter, in a fixed order.
-    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Model<T> {
-        Model {
-            gravity: self.gravity.map(&mut *f),
-            bodies: self.bodies.iter().map(|body| body.map(f)).collect(),
-            joints: self.joints.iter().map(|joint| joint.map(f)).collect(),
-            loads: self.loads.iter().map(|load| load.map(f)).collect(),
-        }
     }
 }

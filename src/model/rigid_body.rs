@@ -2,7 +2,7 @@
 
 use super::Mobility;
 use crate::math::rotation::Quat;
-use crate::math::{Mat3, Scalar, Vec3};
+use crate::math::{Mat3, Vec3, parameters};
 
 /// A violation of the conditions of a solid up to this fraction of the largest moment is round-off.
 const ROUNDING: f64 = 1e-12;
@@ -29,21 +29,10 @@ pub(crate) struct RigidBody<S> {
     pub mobility: Mobility,
 }
 
-impl<S: Scalar> RigidBody<S> {
-    /// The body with `f` applied to every parameter.
-    pub(crate) fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> RigidBody<T> {
-        RigidBody {
-            name: self.name.clone(),
-            mass: f(self.mass),
-            inertia: self.inertia.map(&mut *f),
-            position: self.position.map(&mut *f),
-            orientation: self.orientation.map(&mut *f),
-            velocity: self.velocity.map(&mut *f),
-            angular_velocity: self.angular_velocity.map(&mut *f),
-            mobility: self.mobility,
-        }
-    }
-}
+parameters!(struct RigidBody {
+    name, mobility;
+    mass, inertia, position, orientation, velocity, angular_velocity
+});
 
 impl RigidBody<f64> {
     /// Whether mass and inertia are those of a solid: a positive mass, and [`is_inertia_of_solid`].

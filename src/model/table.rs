@@ -41,17 +41,25 @@ pub(crate) enum Interpolation {
     Spline,
 }
 
-/// Fraction of an interval over which a linear motion is rounded at each end.
+/// How smooth the curve of a table is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Smoothness {
+    /// That of a force or torque: C0 or C1.
+    Magnitude,
+    /// That of a prescribed motion: C2.
+    Motion,
+}
+
+/// Part of an interval over which a linear motion is rounded at each of its ends.
 const ROUNDED: f64 = 0.2;
 
-/// Instants at which a tabulated magnitude or motion is not smooth. Steps should end there.
+/// Instants at which the curve of a table is no longer smooth, where steps should end.
 pub(crate) fn breaks<S: Scalar>(
     times: &[S],
-    interpolation: Interpolation,
-    of_motion: bool,
+    (interpolation, smoothness): (Interpolation, Smoothness),
 ) -> Vec<f64> {
     let mut all: Vec<f64> = times.iter().map(|t| t.re()).collect();
-    if of_motion && interpolation == Interpolation::Linear {
+    if (interpolation, smoothness) == (Interpolation::Linear, Smoothness::Motion) {
         for pair in times.windows(2) {
             let (start, end) = (pair[0].re(), pair[1].re());
             let rounded = ROUNDED * (end - start);
@@ -149,50 +157,43 @@ impl<S: Scalar> Interval<S> {
     }
 }
 
-/// A magnitude at `time`.
-pub(super) fn magnitude<S: Scalar>(
-    interpolation: Interpolation,
-    times: &Neighbours<S>,
-    values: &Neighbours<S>,
-    time: S,
-) -> S {
-    let at = Interval::of(times, values);
-    match interpolation {
-        Interpolation::Linear => at.start.1 + at.own.1 * (time - at.start.0),
-        Interpolation::Monotone => cubic(&at, time),
-        Interpolation::Spline => {
-            let ends = at.ends(parabola);
-            quintic(at.start, at.end, ends, time)[0]
-        }
-    }
-}
-
-/// A motion and its first to third derivatives at `time`.
-pub(super) fn motion<S: Scalar>(
-    interpolation: Interpolation,
+/// Value and first to third derivative at `time`.
+pub(super) fn interpolate<S: Scalar>(
+    (interpolation, smoothness): (Interpolation, Smoothness),
     times: &Neighbours<S>,
     values: &Neighbours<S>,
     time: S,
 ) -> [S; 4] {
     let at = Interval::of(times, values);
-    match interpolation {
-        Interpolation::Linear => rounded(&at, time),
-        Interpolation::Monotone => quintic(at.start, at.end, at.ends(limited), time),
-        Interpolation::Spline => quintic(at.start, at.end, at.ends(parabola), time),
+    match (interpolation, smoothness) {
+        (Interpolation::Linear, Smoothness::Magnitude) => straight(&at, time),
+        (Interpolation::Linear, Smoothness::Motion) => rounded(&at, time),
+        (Interpolation::Monotone, Smoothness::Magnitude) => cubic(&at, time),
+        (Interpolation::Monotone, Smoothness::Motion) => {
+            quintic(at.start, at.end, at.ends(limited), time)
+        }
+        (Interpolation::Spline, _) => quintic(at.start, at.end, at.ends(parabola), time),
     }
 }
 
-/// Cubic Hermite interpolation.
-fn cubic<S: Scalar>(at: &Interval<S>, time: S) -> S {
-    let ((t0, m0), (_, m1), (width, middle)) = (at.start, at.end, at.own);
-    let [[slope0, _], [slope1, _]] = at.ends(|a, b| [harmonic_mean(a, b), S::zero()]);
-    let x = (time - t0) / width;
-    let curve = |end: S| x * (S::one() - x) * end;
-    // Linear part, and the deviation of the slopes from it.
-    m0 + (m1 - m0) * x + curve((slope0 - middle) * (S::one() - x) - (slope1 - middle) * x) * width
+/// The straight line between the points.
+fn straight<S: Scalar>(at: &Interval<S>, time: S) -> [S; 4] {
+    let ((t0, m0), (_, slope)) = (at.start, at.own);
+    [m0 + slope * (time - t0), slope, S::zero(), S::zero()]
 }
 
-/// A linear motion whose ends are rounded.
+/// Cubic Hermite interpolation and its derivatives.
+fn cubic<S: Scalar>(at: &Interval<S>, time: S) -> [S; 4] {
+    let ((t0, m0), (width, middle)) = (at.start, at.own);
+    let [[slope0, _], [slope1, _]] = at.ends(|a, b| [harmonic_mean(a, b), S::zero()]);
+    // In t − t0: the departures of the slopes from the quotient give the square and the cube.
+    let (start, end) = (slope0 - middle, slope1 - middle);
+    let square = -(start * 2.0 + end) / width;
+    let cube = (start + end) / (width * width);
+    polynomial(&[m0, slope0, square, cube], time - t0)
+}
+
+/// A straight motion whose ends are rounded.
 fn rounded<S: Scalar>(at: &Interval<S>, time: S) -> [S; 4] {
     let zero = S::zero();
     let ((t0, m0), (t1, m1), (width, slope)) = (at.start, at.end, at.own);

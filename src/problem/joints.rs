@@ -9,7 +9,9 @@ use super::schema::loads::Interpolation;
 use super::schema::mechanics::Shape;
 use crate::math::scalar::{length, unit};
 use crate::math::{Scalar, Vec3};
-use crate::model::{DegreeOfFreedom, Drive, Joint, JointFrame, JointKind, PrescribedMotion};
+use crate::model::{
+    DegreeOfFreedom, Drive, Joint, JointFrame, JointKind, Smoothness, TimeFunction,
+};
 
 /// The joints of a checked document with their drives, in its order.
 pub(crate) fn joints<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Joint<S>> {
@@ -145,21 +147,22 @@ fn drives<S: Scalar>(document: &Document, assembly: &Assembly<S>, name: &str) ->
         .collect()
 }
 
-fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> PrescribedMotion<S> {
+fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S> {
     let get = |quantity: &Quantity| assembly.quantity(quantity);
     match written {
-        Written::Rate(rate) => PrescribedMotion::Polynomial(vec![S::zero(), get(rate)]),
+        Written::Rate(rate) => TimeFunction::Polynomial(vec![S::zero(), get(rate)]),
         Written::Polynomial(coefficients) => {
-            PrescribedMotion::Polynomial(coefficients.iter().map(get).collect())
+            TimeFunction::Polynomial(coefficients.iter().map(get).collect())
         }
-        Written::Harmonic([mean, amplitude, frequency, phase]) => PrescribedMotion::Harmonic {
+        Written::Harmonic([mean, amplitude, frequency, phase]) => TimeFunction::Harmonic {
             mean: get(mean),
             amplitude: get(amplitude),
             frequency: get(frequency),
             phase: get(phase),
         },
-        Written::Table(times, values, interpolation) => PrescribedMotion::Table {
+        Written::Table(times, values, interpolation) => TimeFunction::Table {
             interpolation: Interpolation::of(interpolation),
+            smoothness: Smoothness::Motion,
             times: times.iter().map(|&t| t.into()).collect(),
             values: values.iter().map(get).collect(),
         },

@@ -8,7 +8,7 @@ use super::schema::loads::{
 };
 use crate::math::scalar::unit;
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, DegreeOfFreedom, Load, LoadKind, TimeFunction};
+use crate::model::{Axes, DegreeOfFreedom, Load, LoadKind, Smoothness, TimeFunction};
 
 /// The loads of a checked document, in its order.
 pub(crate) fn loads<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Load<S>> {
@@ -114,14 +114,16 @@ fn axes(written: WrittenAxes) -> Axes {
 fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S> {
     let get = |quantity: &super::quantity::Quantity| assembly.quantity(quantity);
     match written {
-        Written::Constant(value) => TimeFunction::Constant(get(value)),
+        Written::Constant(value) => TimeFunction::constant(get(value)),
         Written::Harmonic([amplitude, frequency, phase]) => TimeFunction::Harmonic {
+            mean: S::zero(),
             amplitude: get(amplitude),
             frequency: get(frequency),
             phase: get(phase),
         },
         Written::Table(times, values, interpolation) => TimeFunction::Table {
             interpolation: Interpolation::of(interpolation),
+            smoothness: Smoothness::Magnitude,
             times: times.iter().map(|&t| t.into()).collect(),
             values: values.iter().map(get).collect(),
         },

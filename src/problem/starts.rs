@@ -19,9 +19,9 @@ use super::schema::Document;
 use super::schema::joints::{Ends, Joint as WrittenJoint, JointPlace};
 use super::schema::mechanics::Shape;
 use crate::math::rotation::{Quat, compose, conjugate, from_axis_angle, matrix};
-use crate::math::{Mat3, Scalar, Vec3};
+use crate::math::{Mat3, Parameters, Scalar, Vec3};
 use crate::model::{
-    DegreeOfFreedom, Drive, Joint, JointFrame, Mobility, Model, PrescribedMotion, RigidBody,
+    DegreeOfFreedom, Drive, Joint, JointFrame, Mobility, Model, RigidBody, TimeFunction,
 };
 use crate::system::bodies::positions_of;
 use crate::system::failure::AssemblyFailure;
@@ -314,7 +314,7 @@ impl<S: Scalar> Starts<S> {
             };
             part.joints[joint].drives.push(Drive {
                 dof,
-                course: PrescribedMotion::Polynomial(coefficients),
+                course: TimeFunction::Polynomial(coefficients),
             });
         }
     }
@@ -340,7 +340,7 @@ impl<S: Scalar> Starts<S> {
             let at = place(&model, joint, dof);
             model.joints[joint].drives.push(Drive {
                 dof,
-                course: PrescribedMotion::Polynomial(vec![at]),
+                course: TimeFunction::Polynomial(vec![at]),
             });
             more(&model).then(|| model.joints[joint].name.clone())
         };

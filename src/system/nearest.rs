@@ -22,7 +22,7 @@ use super::numbering::Numbering;
 use super::placement::guess;
 use super::redundant_rows::RedundantRows;
 use super::{rank, redundancy};
-use crate::math::Scalar;
+use crate::math::{Parameters, Scalar};
 use crate::model::Model;
 
 /// Positions and velocities of a model's bodies.

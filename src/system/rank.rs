@@ -4,7 +4,7 @@ use super::failure::AssemblyFailure;
 use super::numbering::Numbering;
 use super::placement::length_scale;
 use super::redundancy;
-use crate::math::Scalar;
+use crate::math::{Parameters, Scalar};
 use crate::model::Model;
 use nalgebra::DMatrix;
 

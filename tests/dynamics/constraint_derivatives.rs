@@ -9,7 +9,7 @@ use crate::tests::reference;
 
 use flexbody::integrate::implicit::ggl::{Equations, StepState};
 use flexbody::linalg::{Pattern, SparseMatrix};
-use flexbody::math::{Complex64, Mat3, rotation};
+use flexbody::math::{Complex64, Mat3, Parameters, rotation};
 use flexbody::model::Model;
 use flexbody::system::InMotion;
 use flexbody::system::bodies::{self, BodyMotion, rates, velocity_of_rates};

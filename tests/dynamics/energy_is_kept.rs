@@ -8,9 +8,9 @@ use flexbody::integrate::scale::Scale;
 use flexbody::integrate::{
     Grid, IntegrationFailure, Method, Settings, Spacing, Trajectory, simulate,
 };
-use flexbody::math::{Complex64, Vec3};
+use flexbody::math::{Complex64, Parameters, Vec3};
 use flexbody::model::{
-    Axes, DegreeOfFreedom, Drive, JointKind, Load, LoadKind, Model, PrescribedMotion, TimeFunction,
+    Axes, DegreeOfFreedom, Drive, JointKind, Load, LoadKind, Model, TimeFunction,
 };
 use flexbody::system::BodyMotion;
 
@@ -272,7 +272,7 @@ fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance()
         let mut driven = model.clone();
         driven.joints[0].drives.push(Drive {
             dof: DegreeOfFreedom::Rotation,
-            course: PrescribedMotion::Polynomial(vec![0.0, 1.0]),
+            course: TimeFunction::Polynomial(vec![0.0, 1.0]),
         });
         assert!(Ledger::open(&driven, &by, &scale).is_none());
         let (joint, dof) = (0, DegreeOfFreedom::Rotation);
@@ -312,7 +312,7 @@ fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance()
                     point: Vec3::zeros(),
                     direction: Vec3::x(),
                     axes: Axes::Ground,
-                    magnitude: TimeFunction::Constant(1.0),
+                    magnitude: TimeFunction::constant(1.0),
                 },
                 false,
             ),

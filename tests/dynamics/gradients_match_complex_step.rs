@@ -8,7 +8,7 @@ use flexbody::functions::{
     Scene,
 };
 use flexbody::integrate::{Method, Samples, Settings, Spacing, Start, Trajectory, simulate};
-use flexbody::math::{Complex64, Vec3, scalar::COMPLEX_STEP};
+use flexbody::math::{Complex64, Parameters, Vec3, scalar::COMPLEX_STEP};
 use flexbody::model::{JointKind, Model};
 
 /// Every instant quantity and every reduction at least once.

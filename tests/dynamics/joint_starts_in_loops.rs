@@ -9,7 +9,7 @@ use flexbody::integrate::IntegrationFailure;
 use flexbody::math::rotation::{from_axis_angle, matrix};
 use flexbody::math::scalar::COMPLEX_STEP;
 use flexbody::math::{Complex64, Dual, Scalar, Vec3};
-use flexbody::model::{DegreeOfFreedom, Drive, Model, PrescribedMotion};
+use flexbody::model::{DegreeOfFreedom, Drive, Model, TimeFunction};
 use flexbody::problem::Problem;
 use flexbody::system::Numbering;
 use flexbody::system::initial;
@@ -488,7 +488,7 @@ fn every_hinge_of_a_bricard_loop_can_start() {
                 }
                 driven.joints[joint].drives.push(Drive {
                     dof: DegreeOfFreedom::Rotation,
-                    course: PrescribedMotion::Polynomial(vec![step(0), step(1)]),
+                    course: TimeFunction::Polynomial(vec![step(0), step(1)]),
                 });
                 let numbering = Numbering::new(&driven);
                 let mut saddle = SaddlePoint::new(&driven, &numbering);

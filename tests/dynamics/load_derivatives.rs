@@ -10,9 +10,11 @@ use crate::tests::reference;
 use flexbody::integrate::implicit::ggl::{Equations, StepState};
 use flexbody::linalg::{Emit, SparseMatrix};
 use flexbody::math::scalar::COMPLEX_STEP;
-use flexbody::math::{Complex64, Scalar};
+use flexbody::math::{Complex64, Parameters, Scalar};
 use flexbody::model::Interpolation;
-use flexbody::model::{Axes, DegreeOfFreedom, JointKind, Load, LoadKind, Model, TimeFunction};
+use flexbody::model::{
+    Axes, DegreeOfFreedom, JointKind, Load, LoadKind, Model, Smoothness, TimeFunction,
+};
 use flexbody::system::InMotion;
 use flexbody::system::initial;
 use flexbody::system::kkt::SaddlePoint;
@@ -27,6 +29,7 @@ const TIME: f64 = 0.37;
 
 fn table() -> TimeFunction<f64> {
     TimeFunction::Table {
+        smoothness: Smoothness::Magnitude,
         times: vec![0.0, 0.2, 0.5, 0.9],
         values: vec![1.0, 2.0, 4.0, 4.5],
         interpolation: Interpolation::Monotone,
@@ -35,6 +38,7 @@ fn table() -> TimeFunction<f64> {
 
 fn harmonic() -> TimeFunction<f64> {
     TimeFunction::Harmonic {
+        mean: 0.3,
         amplitude: 3.0,
         frequency: 0.8,
         phase: 0.3,
@@ -46,7 +50,7 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
     use JointKind::{Prismatic, Revolute, Spherical};
     let mut all = Vec::new();
     for axes in [Axes::Ground, Axes::Body] {
-        for magnitude in [TimeFunction::Constant(2.0), harmonic(), table()] {
+        for magnitude in [TimeFunction::constant(2.0), harmonic(), table()] {
             let (point, direction) = (numbers.vector(), numbers.vector());
             let force = LoadKind::Force {
                 body: 1,

@@ -4,7 +4,7 @@
 
 use crate::tests::reference;
 
-use flexbody::math::{Complex64, Scalar, rotation};
+use flexbody::math::{Complex64, Parameters, Scalar, rotation};
 use flexbody::model::{Mobility, Model};
 use flexbody::system::InMotion;
 use flexbody::system::constraint::RowGradient;

@@ -2,9 +2,9 @@
 
 use super::models::{KINDS, Numbers, axes_along, joint};
 use flexbody::math::scalar::COMPLEX_STEP;
-use flexbody::math::{Complex64, Scalar};
+use flexbody::math::{Complex64, Parameters, Scalar};
 use flexbody::model::Interpolation;
-use flexbody::model::{DegreeOfFreedom, Drive, JointKind, Model, PrescribedMotion};
+use flexbody::model::{DegreeOfFreedom, Drive, JointKind, Model, Smoothness, TimeFunction};
 use flexbody::system::bodies::{BodyMotion, rates};
 use flexbody::system::{InMotion, Numbering, joints, placement};
 
@@ -66,18 +66,19 @@ pub fn case(kind: JointKind, body_b: Option<usize>, seed: u64) -> Case {
 fn driven(mut case: Case) -> Case {
     let joint = &mut case.model.joints[0];
     let course = |dof: DegreeOfFreedom| match (joint.kind, dof) {
-        (JointKind::Planar, _) => PrescribedMotion::Table {
+        (JointKind::Planar, _) => TimeFunction::Table {
+            smoothness: Smoothness::Motion,
             times: vec![0.0, 0.1, 0.25, 0.4, 0.6],
             values: vec![0.1, 0.2, -0.3, 0.4, 0.2],
             interpolation: Interpolation::Spline,
         },
-        (_, DegreeOfFreedom::Translation) => PrescribedMotion::Harmonic {
+        (_, DegreeOfFreedom::Translation) => TimeFunction::Harmonic {
             mean: 0.1,
             amplitude: 0.4,
             frequency: 0.7,
             phase: 0.2,
         },
-        (_, DegreeOfFreedom::Rotation) => PrescribedMotion::Polynomial(vec![0.2, 1.3, -0.7, 0.4]),
+        (_, DegreeOfFreedom::Rotation) => TimeFunction::Polynomial(vec![0.2, 1.3, -0.7, 0.4]),
     };
     let drive = |&dof: &DegreeOfFreedom| Drive {
         dof,

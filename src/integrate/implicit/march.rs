@@ -17,6 +17,7 @@ use crate::integrate::singular::{MOST_IMPLICIT, Steadiness};
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::{close, watch};
 use crate::linalg::SolveScalar;
+use crate::math::Parameters;
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::initial::InitialState;

@@ -25,7 +25,7 @@ pub(super) fn give_to_parameters(
         ) => {
             *point += pulled.a.frame.point;
             *direction += pulled.direction;
-            magnitude.pull_back(now, s0, own, by_time);
+            *by_time += magnitude.pull_back(now, [s0, 0.0, 0.0], own);
         }
         (
             LoadKind::Torque { magnitude, .. },
@@ -36,7 +36,7 @@ pub(super) fn give_to_parameters(
             },
         ) => {
             *direction += pulled.direction;
-            magnitude.pull_back(now, s0, own, by_time);
+            *by_time += magnitude.pull_back(now, [s0, 0.0, 0.0], own);
         }
         (
             LoadKind::Spring { .. },
