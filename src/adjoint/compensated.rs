@@ -1,7 +1,7 @@
-//! Sums of many small changes without the round-off of the sum.
+//! Compensated sums of many small changes.
 
-/// A vector as an unevaluated sum of two: changes that are small beside it keep all their digits
-/// (Kahan 1965; Knuth's two-sum).
+/// A vector as an unevaluated sum of two vectors. Small changes keep all their digits (Kahan 1965;
+/// Knuth's two-sum).
 #[derive(Clone, Debug)]
 pub(super) struct Compensated {
     /// The vector to working precision.

@@ -9,21 +9,21 @@ mod workspace;
 use crate::functions::Scene;
 use crate::integrate::{IntegrationFailure, Tape, Trajectory, WorkCounts};
 
-/// Gradients and the work that they took.
+/// Gradients and the work of computing them.
 #[derive(Clone, Debug)]
 pub(crate) struct AdjointRun {
-    /// For each function asked for, its derivative in every parameter of the scene (a cotangent
-    /// of the scene).
+    /// By requested function: its derivative in every parameter of the scene (a cotangent of the
+    /// scene).
     pub gradients: Vec<Scene<f64>>,
     /// Work of the backward march.
     pub counts: WorkCounts,
 }
 
-/// Exact derivatives of the functions `which` (indices into the scene's) over `run`, in one
-/// backward march over its steps.
+/// Exact derivatives of the functions `which` (indices into the scene's functions) over `run`, by
+/// one backward march.
 ///
 /// # Errors
-/// If the equations of a step are singular.
+/// The equations of a step are singular.
 pub(crate) fn gradients(
     scene: &Scene<f64>,
     run: &Trajectory<f64>,

@@ -1,5 +1,5 @@
-//! One function on its way back: its cotangents at the samples and at the state that the march
-//! has reached, and its derivatives in the parameters so far.
+//! One function during the backward march: its cotangents at the samples and at the present state,
+//! and its derivatives in the parameters so far.
 
 use super::compensated::Compensated;
 use crate::functions::Scene;
@@ -11,24 +11,24 @@ use crate::linalg::REFINED_SOLVES;
 use crate::system::kkt::SaddlePoint;
 use crate::system::{bodies, initial};
 
-/// One function on its way back.
+/// One function during the backward march.
 pub(super) struct Sensitivity<'a> {
     linearised: Linearised<'a>,
     own: usize,
     /// Derivatives in the parameters of the scene so far.
     pub cot: Scene<f64>,
-    /// Derivative in the duration by way of the step sizes.
+    /// Derivative in the duration through the step sizes.
     pub by_duration: f64,
-    /// Cotangent of the positions that the march has reached, in their seven coordinates.
+    /// Cotangent of the present positions; seven coordinates per body.
     pub q: Compensated,
-    /// Cotangent of the velocities there.
+    /// Cotangent of the present velocities.
     pub v: Compensated,
-    /// Partial derivatives at a sample: by tangent positions, velocities and accelerations.
+    /// Partial derivatives at a sample in tangent positions, velocities and accelerations.
     pub sample: [Vec<f64>; 3],
 }
 
 impl<'a> Sensitivity<'a> {
-    /// Function `own` of the scene at the end of `run`.
+    /// Function number `own` of the scene, at the end of `run`.
     pub(crate) fn new(scene: &'a Scene<f64>, run: &Trajectory<f64>, own: usize) -> Self {
         let (nq, nv) = (run.numbering.positions(), run.numbering.velocities());
         Self {
@@ -47,7 +47,7 @@ impl<'a> Sensitivity<'a> {
         self.linearised.depends_on(k)
     }
 
-    /// Puts the partial derivatives of the function at sample k into `sample`; false if there are
+    /// Sets `sample` to the partial derivatives of the function at sample k; false if there are
     /// none.
     pub(crate) fn linearise(
         &mut self,
@@ -70,11 +70,10 @@ impl<'a> Sensitivity<'a> {
     }
 
     /// Pulls the cotangents of the initial state and of the initial accelerations (`a`) back to the
-    /// parameters, and adds what is left: derivatives in the duration and in parameters that no
-    /// instant depends on.
+    /// parameters. Adds the derivatives in the duration and in parameters of no instant.
     ///
     /// # Errors
-    /// If the equations of the initial state are singular.
+    /// The equations of the initial state are singular.
     pub(crate) fn finish(
         &mut self,
         scene: &Scene<f64>,

@@ -1,7 +1,7 @@
-//! Vectors that are used for a while and given back, so that a backward march allocates in its first
-//! step only.
+//! Vectors for temporary use. They are given back, so a backward march allocates only in its first
+//! step.
 
-/// Vectors that are not in use.
+/// Unused vectors.
 #[derive(Default)]
 pub(super) struct Workspace(Vec<Vec<f64>>);
 
@@ -22,7 +22,7 @@ impl Workspace {
         y
     }
 
-    /// Takes vectors back.
+    /// Returns vectors to the workspace.
     pub(crate) fn back<const N: usize>(&mut self, all: [Vec<f64>; N]) {
         self.0.extend(all);
     }

@@ -1,4 +1,4 @@
-//! Which method a scene is integrated by, and which it had better not be.
+//! The choice of the integration method of a scene, and warnings about methods.
 
 use super::explicit::stiffness::Watch;
 use super::settings::{Method, Settings, Spacing};
@@ -9,33 +9,32 @@ use crate::math::{Scalar, Vec3};
 use crate::model::load::LoadKind;
 use crate::model::{Model, RigidBody};
 
-/// The method of scenes that are not stiff.
+/// The method for scenes that are not stiff.
 pub(crate) const NON_STIFF: Method = Method::Dop853;
-/// The method of stiff scenes.
+/// The method for stiff scenes.
 pub(crate) const STIFF: Method = Method::Radau { stages: 3 };
 
 /// Ranges of ωh in which BDF of order 3, 4, 5, 6 amplifies undamped vibration.
 const AMPLIFIED: [(f64, f64); 4] = [(0.0, 1.94), (0.0, 4.71), (0.71, 9.39), (0.84, 17.6)];
 
-/// Damping ratio above which a vibration is stable, and ωh below which it grows too slowly to
-/// matter.
+/// A vibration is stable above this damping ratio. Below this ωh it grows too slowly to matter.
 const DAMPED: f64 = 0.3;
 const SLOW: f64 = 0.2;
 
-/// A run by the method that was asked for, or else by the one that suits the scene.
+/// A run by the given method, or by the method that suits the scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Chosen<S: Scalar> {
     /// The motion.
     pub run: Trajectory<S>,
-    /// Method and spacing that made it; chosen steps are frozen.
+    /// Method and steps of the run; adaptive steps are frozen.
     pub settings: Settings,
-    /// Why this method.
+    /// The reason for the method.
     pub reason: String,
 }
 
-/// Simulates by `method`, or, without one, by the explicit method; by Radau IIA if that proves cheaper
-/// (see [`stiffness`](super::explicit::stiffness)), or if explicit steps of equal size fail or those by a
-/// tolerance make no headway.
+/// Simulates by `method` or, without one, by the explicit method. Changes to Radau IIA if that is
+/// cheaper (see [`stiffness`](super::explicit::stiffness)), if explicit steps of equal size fail,
+/// or if adaptive ones make no headway.
 ///
 /// # Errors
 /// As `simulate`.
@@ -101,7 +100,7 @@ pub(crate) fn simulate_by<S: SolveScalar>(
     }
 }
 
-/// Why a method is in use: the problem says so, or the scene's stiffness.
+/// The reason for a method: the problem gives it, or the stiffness of the scene.
 pub(crate) fn reason(given: bool, method: Method) -> &'static str {
     match method {
         _ if given => "as the problem says",
@@ -110,8 +109,8 @@ pub(crate) fn reason(given: bool, method: Method) -> &'static str {
     }
 }
 
-/// What is wrong with a method for a scene that takes steps of size h (s), if anything: BDF of order
-/// 3 and more amplifies undamped vibration with ωh in a range around one.
+/// A warning about a method with steps of size h \[s\], if it suits the scene badly: BDF of order 3
+/// and more amplifies undamped vibration if ωh is in a range around one.
 pub(crate) fn warning(model: &Model<f64>, method: Method, h: f64) -> Option<String> {
     let Method::Bdf { order, .. } = method else {
         return None;
@@ -131,14 +130,15 @@ pub(crate) fn warning(model: &Model<f64>, method: Method, h: f64) -> Option<Stri
     })
 }
 
-/// Largest acceleration of a point of a free body by a unit force there (1/kg).
+/// Largest acceleration of a point of a free body per force at this point \[1/kg\].
 fn mobility(body: &RigidBody<f64>, point: &Vec3<f64>) -> f64 {
     let least = body.inertia.symmetric_eigenvalues().min();
     let turning = point.norm_squared() / least;
     1.0 / body.mass + if turning.is_finite() { turning } else { 0.0 }
 }
 
-/// Angular frequency (rad/s), at most, and damping ratio of the vibration of its bodies on a spring.
+/// Angular frequency (upper bound) \[rad/s\] and damping ratio of the vibration of bodies on a
+/// spring.
 fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
     let (stiffness, damping, inverse) = match *load {
         LoadKind::Spring {

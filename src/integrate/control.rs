@@ -1,4 +1,4 @@
-//! Step size control: how large the next step is.
+//! Step size control.
 
 use super::grid::Grid;
 use super::headway::{Headway, Stop};
@@ -9,39 +9,39 @@ use super::stops::load_steps;
 use crate::math::Scalar;
 use crate::model::Model;
 
-/// Safety factor of the next step, and how much it may shrink or grow.
+/// Safety factor of the next step, and smallest and largest ratio of consecutive steps.
 const SAFETY: f64 = 0.9;
 const SHRINK: f64 = 0.2;
 const GROW: f64 = 6.0;
-/// Steps that are tried near a singular position, relative to the one that failed.
+/// Sizes of steps that are tried near a singular position, relative to the step that failed.
 const LEAPS: [f64; 8] = [0.7, 1.3, 0.5, 1.8, 0.3, 2.5, 0.15, 4.0];
-/// Smallest step, as a part of the time in which the scene crosses its length, and of the time that
-/// has passed, whose round-off it must exceed.
+/// Smallest step relative to the time in which the scene crosses its length, and relative to the
+/// time reached, whose round-off it must exceed.
 const SMALLEST: f64 = 1e-12;
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
-/// Where in a step that leaps over a singular position this stands: far from the stages, and from those
-/// of the two halves of the step; and where else, if that fails. A leap may exceed the step that the
-/// error allows by a factor; the step before it leaves a part of such a step to the singular
-/// position; and one further away than so many steps is not looked at.
+/// Constants of leaps over a singular position. Its position in the step: far from the stages of
+/// the step and of its two halves; the others follow if that fails. A leap may exceed the step that
+/// the error allows by `LEAP_MORE`. The step before it ends `LEAP_FROM` such steps before the
+/// position. Positions beyond `LOOK_AHEAD` such steps are ignored.
 const LEAP_AT: [f64; 5] = [0.455, 0.4, 0.52, 0.73, 0.36];
 const LEAP_MORE: f64 = 1.2;
 const LEAP_FROM: f64 = 0.42;
 const LOOK_AHEAD: f64 = 1.4;
-/// Part of the way to the singular position that is free to end in.
+/// Part of the way to the singular position in which a step may end.
 const FREE: f64 = 0.6;
-/// Error of a step, relative to the tolerance, that tells of a stage at the singular position.
+/// Above this error relative to the tolerance, a stage has hit a singular position.
 const STRUCK: f64 = 30.0;
 /// Round-off in the error of a step from near a singular position, relative to the cube of its
-/// magnification there, and at most.
+/// magnification there, and its upper bound.
 const NOISE: f64 = 200.0 * f64::EPSILON;
 const MOST_NOISE: f64 = 1e-10;
-/// Steps that are given up for others that end further away from a singular position.
+/// Number of steps that are retried because they end too close to a singular position.
 const KEPT_AWAY: usize = 3;
 
-/// Width of the next step where a singular position is expected at the distance `d`, the error allows
-/// steps of `width`, and the motion ends after `rest`: a leap over it, at the fraction `at` of the step,
-/// which may exceed `width` by the factor `more` and reach beyond the end; or a step to where the leap
-/// may begin.
+/// Width of the next step if a singular position is expected at the distance `d`. The error allows
+/// steps of `width`, and the motion ends after `rest`. The step is a leap over the position, which
+/// lies at the fraction `at` of it; it may exceed `width` by the factor `more` and go beyond the
+/// end. Or the step ends where the leap begins.
 fn approach(d: f64, width: f64, rest: f64, (at, more): (f64, f64)) -> Option<f64> {
     let leap = d / at;
     let short = d - LEAP_FROM * width;
@@ -54,33 +54,33 @@ fn approach(d: f64, width: f64, rest: f64, (at, more): (f64, f64)) -> Option<f64
     }
 }
 
-/// Gives the width of one step after the other, in fractions of the duration.
+/// Determines the widths of consecutive steps, as fractions of the duration.
 #[derive(Debug)]
 pub(crate) struct Controller {
     plan: StepPlan,
     /// Exponent 1/m of the controller.
     exponent: f64,
     estimates: bool,
-    /// Factor for the step to come.
+    /// Factor for the next step.
     factor: f64,
     rejected: bool,
-    /// Ends that chosen steps must not step over, and the largest width (see [`load_steps`]).
+    /// Ends that adaptive steps must not pass, and the largest width (see [`load_steps`]).
     stops: Vec<f64>,
     widest: f64,
-    /// Width that was wanted where a stop cut the step.
+    /// Width before a stop shortened the step.
     uncut: Option<f64>,
-    /// Smallest width, and the part of it that does not depend on the time.
+    /// Smallest width, and its part that does not depend on time.
     least: f64,
     shortest: f64,
-    /// Where a singular position is expected, and the magnification of round-off at the step's start.
+    /// Expected singular position, and the magnification of round-off at the step's start.
     ahead: Option<f64>,
     magnified: f64,
-    /// Whether the step reaches beyond the end.
+    /// Whether the step ends after the end of the motion.
     beyond: bool,
-    /// Whether the step leaps over a singular position, and how many leaps failed before.
+    /// Whether the step leaps over a singular position, and the number of leaps that failed before.
     leaping: bool,
     leaps: usize,
-    /// Width of the step that could not be made, and how many others were tried since.
+    /// Width of the step that failed, and the number of others tried since.
     leap: Option<(f64, usize)>,
     latest: f64,
     largest: f64,
@@ -91,14 +91,14 @@ pub(crate) struct Controller {
 
 #[derive(Clone, Debug)]
 enum StepPlan {
-    /// Steps that are given, and the number of the next one.
+    /// Given steps, and the number of the next one.
     Given { grid: Grid, next: usize },
-    /// Chosen by the error: tolerance and width of the next step.
+    /// Adaptive steps: tolerance, and width of the next one.
     Chosen { tolerance: f64, width: f64 },
 }
 
 impl Controller {
-    /// A controller for a method whose steps have an error of the given order.
+    /// A controller for a method whose step error has the given order.
     pub(crate) fn new<S: Scalar>(
         settings: &Settings,
         order: usize,
@@ -107,7 +107,7 @@ impl Controller {
     ) -> Self {
         let (stops, widest) = load_steps(model, duration);
         let spacing = &settings.spacing;
-        // The time in which the scene crosses its length.
+        // The time in which the scene crosses its length, as a fraction of the duration.
         let swing = (scale.length / scale.floor[0]).min(1.0 / scale.floor[1]) / duration;
         let least = SMALLEST * swing.min(1.0);
         let widest = widest.max(10.0 * least);
@@ -153,7 +153,7 @@ impl Controller {
         }
     }
 
-    /// The grid of the run, which grows from 0.
+    /// An empty grid for the run, which grows from 0.
     pub(crate) fn growing(&self) -> Grid {
         match &self.plan {
             StepPlan::Given { grid, .. } => grid.to_grow(),
@@ -161,7 +161,7 @@ impl Controller {
         }
     }
 
-    /// Number of steps, where they are given.
+    /// Number of steps, if they are given.
     pub(crate) fn steps(&self) -> Option<usize> {
         match &self.plan {
             StepPlan::Given { grid, .. } => Some(grid.steps()),
@@ -169,12 +169,14 @@ impl Controller {
         }
     }
 
-    /// Whether the error of steps is of interest: they follow it, or are kept as long as it is small.
+    /// Whether the errors of steps are needed: to adapt the steps, or to check that they stay
+    /// small.
     pub(crate) fn estimates(&self) -> bool {
         self.estimates
     }
 
-    /// Width of the step from `reached`, or `None` at the end or if the march is [stopped](Self::stopped).
+    /// Width of the step from `reached`; `None` at the end, or if the march is
+    /// [stopped](Self::stopped).
     pub(crate) fn next(&mut self, reached: f64) -> Option<f64> {
         self.headway.try_one();
         let (tries, rejected) = self.headway.so_far();
@@ -220,22 +222,22 @@ impl Controller {
                 }
                 self.beyond = planned.is_some() && *width > rest;
                 if planned.is_some() {
-                    // It was said above how far the step goes.
+                    // `planned` is the width.
                 } else if *width >= rest * (1.0 - 1e-10) {
-                    // Two equal steps rather than a whole one and a remainder.
+                    // Two equal steps instead of a whole one and a remainder.
                     *width = rest;
                 } else if *width > 0.5 * rest {
                     *width = 0.5 * rest;
                 }
-                // The width that the ends of the steps tell, so that kept steps repeat it exactly.
+                // The width as the difference of the ends, so that frozen steps repeat it exactly.
                 let width = *width;
                 Some(self.end(reached, width) - reached)
             }
         }
     }
 
-    /// The end of a step of `width` from `reached`; the last one ends at 1 exactly, or beyond it if it
-    /// leaps over a singular position.
+    /// The end of a step of `width` from `reached`. The last step ends exactly at 1, or after it if
+    /// it leaps over a singular position.
     pub(crate) fn end(&self, reached: f64, width: f64) -> f64 {
         match &self.plan {
             StepPlan::Given { grid, next } => grid.ends()[*next],
@@ -244,7 +246,7 @@ impl Controller {
         }
     }
 
-    /// Whether a step whose error relative to the scale is `error` is accepted.
+    /// Whether a step with the relative error `error` is accepted.
     pub(crate) fn judge(&mut self, error: f64) -> bool {
         match &mut self.plan {
             StepPlan::Given { .. } => {
@@ -282,7 +284,7 @@ impl Controller {
         }
     }
 
-    /// Records that the step was made.
+    /// Records an accepted step.
     pub(crate) fn accept(&mut self) {
         self.leap = None;
         self.leaps = 0;
@@ -292,15 +294,15 @@ impl Controller {
         match &mut self.plan {
             StepPlan::Given { next, .. } => *next += 1,
             StepPlan::Chosen { width, .. } => {
-                // A step that was cut short says little of the next one.
+                // A shortened step does not limit the next one.
                 let wanted = self.uncut.take().unwrap_or(0.0);
                 *width = (*width * self.factor).max(wanted * self.factor.min(1.0));
             }
         }
     }
 
-    /// Whether a step that could not be made is the end; otherwise another is tried: a smaller one
-    /// or, near a `singular` position, which it may leap over, one of another size first.
+    /// Whether the march ends after a step that failed. Otherwise another step is tried: a smaller
+    /// one. Near a `singular` position other sizes come first, which may leap over it.
     pub(crate) fn give_up(&mut self, singular: bool) -> bool {
         match &mut self.plan {
             StepPlan::Given { .. } => true,
@@ -318,19 +320,19 @@ impl Controller {
         }
     }
 
-    /// Why the march ended before the end of its motion, if it did.
+    /// The reason why the march ended early, if it did.
     pub(crate) fn stopped(&self) -> Option<Stop> {
         self.stopped
     }
 
-    /// Whether a step may be given up for another that keeps away from a singular position.
+    /// Whether a step that ends too close to a singular position may be replaced by another.
     pub(crate) fn may_keep_away(&self) -> bool {
         let chosen = matches!(self.plan, StepPlan::Chosen { .. });
         chosen && self.leap.is_none_or(|(_, tried)| tried < KEPT_AWAY)
     }
 
-    /// As [`Controller::give_up`] for a step that ended too close to a singular position, expected at the
-    /// fraction `at` of the duration.
+    /// As [`Controller::give_up`], for a step that ended too close to a singular position. It is
+    /// expected at the fraction `at` of the duration.
     pub(crate) fn give_up_near(&mut self, at: f64) -> bool {
         match &mut self.plan {
             StepPlan::Given { .. } => true,
@@ -349,14 +351,14 @@ impl Controller {
         }
     }
 
-    /// Takes notice of how round-off is magnified at the end of the step made last, and of where a
-    /// singular position is expected, if one is.
+    /// Records the magnification of round-off at the end of the last step, and the fraction at
+    /// which a singular position is expected, if any.
     pub(crate) fn expect(&mut self, magnified: f64, ahead: Option<f64>) {
         self.magnified = magnified;
         self.ahead = ahead.or(self.ahead);
     }
 
-    /// Error that steps may have: the tolerance, or what those that are given had so far.
+    /// Allowed error of steps: the tolerance, or the largest error of given steps so far.
     pub(crate) fn allowed(&self) -> f64 {
         match &self.plan {
             StepPlan::Given { .. } => self.largest.max(self.latest),

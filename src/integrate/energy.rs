@@ -1,14 +1,12 @@
-//! Energy as a witness: a motion that conserves it has to have kept it.
+//! The check of energy: a conservative motion must conserve it.
 //!
-//! Springs without damping, gravity and joints at rest conserve E = T + V. A step that errs by ε of the
-//! scene's lengths L and speeds U changes it by about
-//!
-//! ```text
+//! Springs without damping, gravity and joints at rest conserve E = T + V. A step with the error ε
+//! relative to the scene's lengths L and speeds U changes E by about
 //! ε (X + K) + ε √(X S) + ε² S,      K = Σ (½ m U² + ½ tr J Ω²),      S = Σ ½ k L²,
 //! ```
 //!
-//! with X the energy exchanged between bodies, gravity and springs. A run of N steps that is off by far
-//! more than N times that, and by a thousandth of X + K, is not the motion of the scene.
+//! where X is the energy exchanged between bodies, gravity and springs. A run of N steps is wrong if
+//! its energy changes by far more than N times that, and by a thousandth of X + K.
 
 use super::failure::IntegrationFailure;
 use super::scale::Scale;
@@ -18,17 +16,17 @@ use crate::model::Model;
 use crate::model::load::LoadKind;
 use crate::system::{BodyMotion, loads};
 
-/// Part of the energy that no run by a tolerance may lose, however small its error.
+/// Smallest change of energy that can reject a run, relative to X + K.
 const PART: f64 = 1e-3;
-/// How much more than what follows from the errors of the steps.
+/// Factor on the change that follows from the errors of the steps.
 const MARGIN: f64 = 100.0;
-/// Round-off, relative to the energies.
+/// Round-off relative to the energies.
 const ROUND_OFF: f64 = 1e-10;
 
-/// Energies of a run at a few instants: at the ends of steps 1, 2, 4, 8 … and of the last.
+/// Energies of a run at the ends of steps 1, 2, 4, 8 … and of the last step.
 #[derive(Clone, Debug)]
 pub(crate) struct Ledger {
-    /// The tolerance, if steps follow one.
+    /// The tolerance of adaptive steps.
     tolerance: Option<f64>,
     /// K and S \[J\].
     at_speed: f64,
@@ -41,7 +39,7 @@ pub(crate) struct Ledger {
 struct Look {
     time: f64,
     kinetic: f64,
-    /// Of each body's weight, and of all springs.
+    /// Of the weight of each body, and of all springs.
     potential: Vec<f64>,
 }
 
@@ -50,15 +48,15 @@ impl Look {
         self.kinetic + self.potential.iter().sum::<f64>()
     }
 
-    /// Sum of the sizes of all energies.
+    /// Sum of the absolute values of all energies.
     fn size(&self) -> f64 {
         self.kinetic + self.potential.iter().map(|x| x.abs()).sum::<f64>()
     }
 }
 
 impl Ledger {
-    /// A ledger for a run of `model`, if the model conserves energy and the steps follow a tolerance or did
-    /// so when they were chosen. Accuracy by equal steps is the user's choice.
+    /// A ledger for a run of `model`. `None` if the model does not conserve energy, or if the steps
+    /// are equal: their accuracy is the user's choice. Frozen steps have followed a tolerance.
     pub(crate) fn open<S: Scalar>(
         model: &Model<S>,
         settings: &Settings,
@@ -69,7 +67,7 @@ impl Ledger {
             Spacing::Tolerance(tolerance) => Some(tolerance),
             Spacing::Frozen(_) => None,
         };
-        // A complex run has the real part of one that was judged.
+        // A complex run has the real part of a run that was checked.
         if S::INFINITESIMAL || !settings.method.is_adaptive() || !model.conserves_energy() {
             return None;
         }
@@ -100,12 +98,12 @@ impl Ledger {
         })
     }
 
-    /// Whether the end of step k is looked at; zero is the start.
+    /// Whether the end of step k is recorded; 0 is the start.
     pub(crate) fn is_due(k: usize) -> bool {
         k == 0 || k.is_power_of_two()
     }
 
-    /// Enters the energies at `time`.
+    /// Records the energies at `time`.
     pub(crate) fn enter<S: Scalar>(
         &mut self,
         model: &Model<S>,
@@ -127,8 +125,8 @@ impl Ledger {
         });
     }
 
-    /// Refuses a run of so many steps, each of at most the estimated error `step_error`, that has not kept
-    /// its energy.
+    /// Rejects a run of so many steps, with the largest estimated error `step_error`, that has not
+    /// conserved its energy.
     ///
     /// # Errors
     /// [`IntegrationFailure::EnergyLost`].
@@ -150,7 +148,7 @@ impl Ledger {
         let follows = off * all + slack * (2.0 * exchanged.sqrt() + slack);
         let allowed = follows.max(PART * all) + ROUND_OFF * size;
         let drift = |look: &Look| (look.energy() - start.energy()).abs();
-        // NaN is lost, too.
+        // NaN counts as a loss.
         let lost = self.looks.iter().find(|look| {
             let drift = drift(look);
             drift.is_nan() || drift > allowed

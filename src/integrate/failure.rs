@@ -1,11 +1,11 @@
-//! How a simulation can fail.
+//! Failures of a simulation.
 
 use crate::system::failure::AssemblyFailure;
 
-/// Why a simulation did not reach its end.
+/// The reason why a simulation did not reach its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum IntegrationFailure {
-    /// No consistent start.
+    /// There is no consistent start.
     #[error(transparent)]
     Assembly(#[from] AssemblyFailure),
     /// Newton's method did not converge.
@@ -14,7 +14,7 @@ pub enum IntegrationFailure {
          scaled residual {residual:.3e}, worst in {worst}"
     )]
     NewtonStalled {
-        /// Time of the step's end (s).
+        /// Time of the step's end \[s\].
         time: f64,
         /// Step number, from 1.
         step: usize,
@@ -22,13 +22,13 @@ pub enum IntegrationFailure {
         iterations: usize,
         /// Largest scaled residual.
         residual: f64,
-        /// The equation and the body or joint that it stands in.
+        /// The equation, and its body or joint.
         worst: String,
     },
     /// The iteration matrix is singular.
     #[error("the equations became singular at t = {time:.6e} s (step {step}), at {place}")]
     Singular {
-        /// Time of the step's end (s).
+        /// Time of the step's end \[s\].
         time: f64,
         /// Step number, from 1.
         step: usize,
@@ -41,7 +41,7 @@ pub enum IntegrationFailure {
          large for the motion, or the mechanism is at a singular position"
     )]
     Projection {
-        /// Time of the step's end (s).
+        /// Time of the step's end \[s\].
         time: f64,
         /// Step number, from 1.
         step: usize,
@@ -52,7 +52,7 @@ pub enum IntegrationFailure {
          not determine its motion: a step that ends there is not accurate"
     )]
     SingularPosition {
-        /// Time of the step's end (s).
+        /// Time of the step's end \[s\].
         time: f64,
         /// Step number, from 1.
         step: usize,
@@ -63,19 +63,19 @@ pub enum IntegrationFailure {
          accuracy allows: the step is too large for the motion, or passes a singular position"
     )]
     Opened {
-        /// Time of the step's end (s).
+        /// Time of the step's end \[s\].
         time: f64,
         /// Step number, from 1.
         step: usize,
     },
-    /// A given step is far too large.
+    /// The estimated error of a given step is as large as the motion.
     #[error(
         "the explicit steps are too large at t = {time:.6e} s (step {step}): the estimated error of the \
          step is {error:.1e} of the scene's lengths and speeds; take more steps, a tolerance, or a radau \
          method"
     )]
     Unstable {
-        /// Time of the step's end (s).
+        /// Time of the step's end \[s\].
         time: f64,
         /// Step number, from 1.
         step: usize,
@@ -88,19 +88,19 @@ pub enum IntegrationFailure {
          smaller than the accuracy asks for; use a radau method"
     )]
     Stiff {
-        /// Time of the step's end (s).
+        /// Time of the step's end \[s\].
         time: f64,
         /// Step number, from 1.
         step: usize,
         /// Work of an implicit method relative to that of the explicit one, if it was measured.
         share: Option<f64>,
     },
-    /// The error estimate asks for steps that are too small to go on.
+    /// The tolerance requires steps that are too small.
     #[error(
         "the tolerance cannot be kept at t = {time:.6e} s (step {step}): the steps became too small"
     )]
     StepTooSmall {
-        /// Time reached (s).
+        /// Time reached \[s\].
         time: f64,
         /// Step number, from 1.
         step: usize,
@@ -116,7 +116,7 @@ pub enum IntegrationFailure {
         time: f64,
         /// Step number, from 1.
         step: usize,
-        /// Steps that were rejected.
+        /// Number of these steps.
         in_a_row: usize,
     },
     /// The steps are so small that the motion makes no headway.
@@ -134,14 +134,14 @@ pub enum IntegrationFailure {
         duration: f64,
         /// Step number, from 1.
         step: usize,
-        /// Steps that were tried last.
+        /// Latest steps that were tried.
         tries: usize,
-        /// Rejected ones among them.
+        /// Number of rejected ones among them.
         rejected: usize,
-        /// How far they advanced the motion \[s\].
+        /// Time by which they advanced the motion \[s\].
         advance: f64,
     },
-    /// The simulation took longer than it may.
+    /// The simulation exceeded its time limit.
     #[error(
         "the simulation exceeds its time limit of {seconds} s at t = {time:.6e} s of {duration} s \
          (step {step})"
@@ -159,14 +159,14 @@ pub enum IntegrationFailure {
     /// A value overflowed or became NaN.
     #[error("the motion is not finite at t = {time:.6e} s (step {step}), in {worst}")]
     NotFinite {
-        /// Time of the step's end (s).
+        /// Time of the step's end \[s\].
         time: f64,
         /// Step number, from 1.
         step: usize,
-        /// The equation and the body or joint that it stands in.
+        /// The equation, and its body or joint.
         worst: String,
     },
-    /// A constraint that followed from the others at the start does not any more.
+    /// A row that was redundant at the start is no longer redundant.
     #[error(
         "joint \"{joint}\" opens by {gap:.3e} at t = {time:.6e} s (step {step}): a row of it was left \
          out, as it followed from the other joints at the start, and does not follow any more"
@@ -176,12 +176,12 @@ pub enum IntegrationFailure {
         joint: String,
         /// |Φ| of the row (m or 1).
         gap: f64,
-        /// Time of the step's end (s).
+        /// Time of the step's end \[s\].
         time: f64,
         /// Step number, from 1.
         step: usize,
     },
-    /// A driven joint was found turned by half a turn.
+    /// A driven joint is half a turn off its drive.
     #[error(
         "joint \"{joint}\" is half a turn off its drive at t = {time:.6e} s (step {step}): the steps \
          are too large for it"
@@ -189,26 +189,26 @@ pub enum IntegrationFailure {
     Turned {
         /// The joint.
         joint: String,
-        /// Time of the step's end (s).
+        /// Time of the step's end \[s\].
         time: f64,
         /// Step number, from 1.
         step: usize,
     },
-    /// A motion that conserves energy has not kept it.
+    /// The energy of a conservative motion has changed.
     #[error(
         "energy is not conserved: at t = {time:.6e} s it is off by {drift:.3e} J, and {exchanged:.3e} J are \
          exchanged on the way; nothing in the scene dissipates or drives, and the errors of the steps do \
          not explain it: this is not its motion; take a smaller tolerance, or another method"
     )]
     EnergyLost {
-        /// When it was seen \[s\].
+        /// Time at which it was found \[s\].
         time: f64,
         /// |E(time) − E(0)| \[J\].
         drift: f64,
-        /// Largest kinetic energy, or change of the potential one, that was seen \[J\].
+        /// Largest kinetic energy or change of potential energy \[J\].
         exchanged: f64,
     },
-    /// A body has mass or inertia that no solid has.
+    /// Mass and inertia of a body are not those of a solid.
     #[error(
         "body \"{body}\" has no mass and inertia of a solid: mass and principal moments are \
          positive, and no moment exceeds the sum of the others"
@@ -217,7 +217,7 @@ pub enum IntegrationFailure {
         /// The body.
         body: String,
     },
-    /// The event that ends the run does not come, or not there where it came for designs before.
+    /// The event that ends the run does not occur, or not where it occurred for earlier designs.
     #[error(
         "the {quantity} that ends the run does not reach {value} within {waited} s: it comes as \
          near as {nearest:.3e}"
@@ -227,35 +227,35 @@ pub enum IntegrationFailure {
         quantity: String,
         /// Its value at the event.
         value: f64,
-        /// Least distance from it.
+        /// Smallest distance from it.
         nearest: f64,
-        /// How long it was waited for (s).
+        /// Waiting time \[s\].
         waited: f64,
     },
-    /// The motion takes more memory than there is.
+    /// The motion needs more memory than is available.
     #[error(
         "the motion takes {needed} of memory, and {available} are available: {samples} samples of \
          {bodies} bodies take {of_samples}; ask for fewer in /simulation/samples, or give \
          /simulation/tolerance instead of steps{hint}"
     )]
     Memory {
-        /// What it takes, as text.
+        /// Needed memory, as text.
         needed: String,
-        /// What there is.
+        /// Available memory, as text.
         available: String,
-        /// Number of samples, of bodies, and what the samples take.
+        /// Number of samples.
         samples: usize,
-        /// See above.
+        /// Number of bodies.
         bodies: usize,
-        /// See above.
+        /// Memory of the samples, as text.
         of_samples: String,
-        /// What else helps.
+        /// Further advice.
         hint: &'static str,
     },
     /// The duration is zero, negative or not finite.
     #[error("the duration {duration} s is not positive")]
     Duration {
-        /// The duration (s).
+        /// The duration \[s\].
         duration: f64,
     },
 }

@@ -1,20 +1,20 @@
-//! Where steps end and where the motion is sampled, in fractions of the duration.
+//! Ends of steps and positions of samples, as fractions of the duration.
 
 use super::quadrature::{Step, is_same};
 use crate::system::RedundantRows;
 
 /// Ends of the steps as fractions τ_0 = 0 < τ_1 < … < τ_N of the duration T, so that t_k = τ_k T
-/// moves with the duration and with nothing else. τ_N is 1; it is larger where the motion ends too close
-/// to a singular position for a step to end there.
+/// depends only on the duration. τ_N is 1, or larger if the motion ends too close to a singular
+/// position for a step to end there.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Grid {
     ends: Vec<f64>,
-    /// Width of every step if all are equal, free of the round-off of their ends.
+    /// Width of every step if all are equal, without the round-off of their ends.
     equal: Option<f64>,
-    /// Cells of each step for sums over the motion (see [`quadrature`](super::quadrature)); one each if
-    /// none are given.
+    /// Number of cells of each step for sums over the motion (see
+    /// [`quadrature`](super::quadrature)); one per step if empty.
     cells: Vec<u32>,
-    /// Constraint rows that are left out from a step on.
+    /// Redundant rows that are left out, each from a given step on.
     left_out: Vec<(usize, RedundantRows)>,
 }
 
@@ -34,7 +34,7 @@ impl Grid {
         Self::growing_from(0.0)
     }
 
-    /// A grid that grows step by step from the fraction `start`, over a part of a motion.
+    /// An empty grid that grows from the fraction `start`, for a part of a motion.
     pub(crate) fn growing_from(start: f64) -> Self {
         Self {
             ends: vec![start],
@@ -44,7 +44,7 @@ impl Grid {
         }
     }
 
-    /// A grid that grows from 0 to this one.
+    /// An empty grid that will grow to this one.
     pub(crate) fn to_grow(&self) -> Self {
         Self {
             ends: vec![0.0],
@@ -54,7 +54,7 @@ impl Grid {
         }
     }
 
-    /// The grid with these ends, if they rise from 0 and the last step alone reaches 1 or beyond.
+    /// The grid with these ends; `None` unless they ascend from 0 and only the last is 1 or more.
     pub(crate) fn from_ends(ends: Vec<f64>) -> Option<Self> {
         let rises = ends.windows(2).all(|pair| pair[0] < pair[1]);
         let whole = match &ends[..] {
@@ -76,7 +76,7 @@ impl Grid {
         &self.ends
     }
 
-    /// Makes room for so many steps.
+    /// Reserves memory for more steps.
     pub(crate) fn reserve(&mut self, steps: usize) {
         self.ends.reserve(steps);
     }
@@ -86,24 +86,24 @@ impl Grid {
         self.ends.push(end);
     }
 
-    /// Constraint rows that are left out in step k = 1 … N; `None` if that was not recorded, or if no row
-    /// ever is.
+    /// Redundant rows that are left out in step k = 1 … N; `None` if they were not recorded, or if
+    /// there are none.
     pub(crate) fn left_out(&self, k: usize) -> Option<&RedundantRows> {
         let from = self.left_out.iter().rev().find(|(from, _)| *from <= k);
         from.map(|(_, rows)| rows)
     }
 
-    /// All changes of the rows that are left out: the step from which on, and the rows.
+    /// All changes of the redundant rows: first step, and rows.
     pub(crate) fn choices(&self) -> &[(usize, RedundantRows)] {
         &self.left_out
     }
 
-    /// Records what is left out from the step after the last one on, if that is a change.
+    /// Records the redundant rows from the next step on, if they change.
     pub(crate) fn leave_out(&mut self, rows: &RedundantRows) {
         self.leave_out_from(self.steps() + 1, rows);
     }
 
-    /// Records what is left out from step k on, in rising order, if that is a change.
+    /// Records the redundant rows from step k on, in ascending order, if they change.
     pub(crate) fn leave_out_from(&mut self, k: usize, rows: &RedundantRows) {
         let known = self.left_out.last().map(|(_, rows)| rows);
         if !rows.is_empty() && known != Some(rows) {
@@ -122,23 +122,23 @@ impl Grid {
             .unwrap_or_else(|| self.ends[k] - self.ends[k - 1])
     }
 
-    /// The grid with these cells of its steps.
+    /// The grid with these numbers of cells.
     pub(crate) fn with_cells(mut self, cells: Vec<u32>) -> Self {
         self.cells = cells;
         self
     }
 
-    /// Cells of all steps; none where each step has one.
+    /// Number of cells of every step; empty if each step has one.
     pub(crate) fn all_cells(&self) -> &[u32] {
         &self.cells
     }
 
-    /// Cells of step k = 1 … N.
+    /// Number of cells of step k = 1 … N.
     pub(crate) fn cells(&self, k: usize) -> usize {
         self.cells.get(k - 1).map_or(1, |&cells| cells as usize)
     }
 
-    /// Step k = 1 … N with its cells, as far as the motion goes.
+    /// Step k = 1 … N with its cells, up to the end of the motion.
     pub(crate) fn step(&self, k: usize) -> Step {
         Step {
             from: self.ends[k - 1],
@@ -153,14 +153,14 @@ impl Grid {
         self.clone().with_cells(cells.collect())
     }
 
-    /// The grid with every step cut into two halves of as many cells.
+    /// The grid with every step halved; each half has as many cells.
     pub(crate) fn halved(&self) -> Self {
         let mut ends = vec![0.0];
         for pair in self.ends.windows(2) {
             ends.extend([0.5 * (pair[0] + pair[1]), pair[1]]);
         }
         let mut cells: Vec<u32> = self.cells.iter().flat_map(|&cells| [cells; 2]).collect();
-        // Half a step that begins after the motion's end is of no use.
+        // A half that begins after the end of the motion is not needed.
         if ends[ends.len() - 2] >= 1.0 {
             ends.pop();
             cells.truncate(ends.len() - 1);
@@ -181,7 +181,7 @@ impl Grid {
     }
 }
 
-/// A sample between or at the ends of steps.
+/// Position of a sample relative to the steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SamplePlace {
     /// The end of step k (the start for k = 0).
@@ -196,8 +196,7 @@ pub(crate) enum SamplePlace {
 }
 
 impl SamplePlace {
-    /// The step that the sample belongs to: the one that it stands in or at the end of; 0 for the
-    /// start.
+    /// The step that contains the sample, inside or at its end; 0 for the start.
     pub(crate) fn step(&self) -> usize {
         match *self {
             SamplePlace::Node(step) | SamplePlace::Inside { step, .. } => step,
@@ -205,7 +204,7 @@ impl SamplePlace {
     }
 }
 
-/// Where the fraction `at` in (τ_{k−1}, τ_k] stands in step k of the grid.
+/// Position of the fraction `at` in (τ_{k−1}, τ_k], in step k of the grid.
 pub(crate) fn place(grid: &Grid, k: usize, at: f64) -> SamplePlace {
     let (start, end) = (grid.ends[k - 1], grid.ends[k]);
     if is_same(end, at) {

@@ -1,32 +1,31 @@
-//! When a march whose steps follow the error is given up: too many tries to come, or too many in a row
-//! that are rejected.
+//! Stops a march with adaptive steps that would need too many tries, or rejects too many in a row.
 
 use super::limits::Limits;
 use crate::model::Model;
 
-/// Most tries of a run whose steps follow the error, and most of them that are rejected, times the
-/// unknowns of the accelerations. The pace is looked at every so many tries: a run that would need more
-/// at its latest pace is given up at once. A mechanism that is nearly locked rejects a quarter of its
-/// tries; so may a fast vibration of one body, which costs little.
+/// Largest number of tries of a run with adaptive steps, and largest number of rejected ones times
+/// the number of unknowns of the accelerations. Every `PACE` tries the pace is checked: a run that
+/// would need more tries at its present pace is stopped. A nearly locked mechanism rejects a
+/// quarter of its tries. So does a fast vibration of one body, but it costs little.
 const MOST: usize = 10_000_000;
 const MOST_REJECTED: usize = 2_000_000;
 const PACE: usize = 5_000;
-/// Most tries in a row that are rejected. One that fails is a fifth as wide as the one before, and twenty of
-/// those are below the smallest step; where the error is round-off, or jumps about, it would take hundreds.
+/// Largest number of rejected tries in a row. Each is a fifth as wide as the one before, so twenty
+/// reach the smallest step. If the error is round-off, or irregular, hundreds would be needed.
 pub(crate) const MOST_IN_A_ROW: usize = 100;
 
-/// Why a march ended before the end of its motion.
+/// The reason why a march ended early.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Stop {
     /// The steps became too small.
     TooSmall,
-    /// So many tries in a row were rejected.
+    /// Too many tries in a row were rejected.
     Rejected {
         /// Their number.
         in_a_row: usize,
     },
-    /// The latest `tries`, `rejected` of them rejected, advanced the motion by the fraction `advance`
-    /// of its duration; at this pace it would need too many.
+    /// The latest `tries`, of which `rejected` were rejected, advanced the motion by the fraction
+    /// `advance` of its duration. At this pace the run needs too many.
     NoHeadway {
         /// Tries.
         tries: usize,
@@ -35,11 +34,11 @@ pub(crate) enum Stop {
         /// Fraction of the duration.
         advance: f64,
     },
-    /// It took longer than it may \[s\].
+    /// The time limit \[s\] was exceeded.
     TimeLimit(f64),
 }
 
-/// Unknowns of the accelerations: velocities and multipliers.
+/// Number of unknowns of the accelerations: velocities and multipliers.
 fn unknowns<S>(model: &Model<S>) -> usize {
     let velocities = model.bodies.iter().map(|body| body.mobility.unknowns());
     let rows = model.joints.iter().map(|joint| joint.rows().count());
@@ -49,13 +48,13 @@ fn unknowns<S>(model: &Model<S>) -> usize {
 /// Counts the tries of a march.
 #[derive(Debug)]
 pub(crate) struct Headway {
-    /// Tries, rejected ones among them, and those since the last step that was made.
+    /// Numbers of tries, of rejected ones, and of rejected ones since the last accepted step.
     tries: usize,
     rejected: usize,
     in_a_row: usize,
-    /// Fraction of the duration and rejected tries when the pace was looked at.
+    /// Fraction of the duration and rejected tries at the last check of the pace.
     looked: (f64, usize),
-    /// Most rejected tries.
+    /// Largest number of rejected tries.
     most_rejected: usize,
 }
 
@@ -67,7 +66,7 @@ impl Headway {
             rejected: 0,
             in_a_row: 0,
             looked: (0.0, 0),
-            // Who says how long it may take says so instead.
+            // A time limit replaces the limit on rejected tries.
             most_rejected: match limits.seconds {
                 Some(_) => MOST,
                 None => MOST_REJECTED / unknowns(model).max(1),
@@ -75,12 +74,12 @@ impl Headway {
         }
     }
 
-    /// Tries so far, and rejected ones among them.
+    /// Number of tries, and of rejected ones among them.
     pub(crate) fn so_far(&self) -> (usize, usize) {
         (self.tries, self.rejected)
     }
 
-    /// Counts a try to come.
+    /// Counts the next try.
     pub(crate) fn try_one(&mut self) {
         self.tries += 1;
     }
@@ -91,12 +90,12 @@ impl Headway {
         self.in_a_row += 1;
     }
 
-    /// The latest try was a step.
+    /// Counts the latest try as accepted.
     pub(crate) fn accept(&mut self) {
         self.in_a_row = 0;
     }
 
-    /// Why the march is given up at the fraction `reached` of the duration, if it is.
+    /// The reason to stop the march at the fraction `reached` of the duration, if any.
     pub(crate) fn look(&mut self, reached: f64) -> Option<Stop> {
         if self.in_a_row >= MOST_IN_A_ROW {
             let in_a_row = self.in_a_row;

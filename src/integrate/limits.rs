@@ -1,60 +1,60 @@
-//! What a simulation may take, and how far it is for those who wait.
+//! Limits of a simulation, and its progress for observers.
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-/// What a simulation may take, and who is told how far it is. The number of steps is limited besides
+/// Limits of a simulation, and the observer of its progress. The number of steps is limited, too
 /// (see [`Headway`](super::headway::Headway)).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Limits {
     /// Longest wall time of one simulation \[s\].
     pub seconds: Option<f64>,
-    /// Who is told.
+    /// Observer of the progress.
     pub progress: Option<Arc<Progress>>,
 }
 
-/// Limits are equal if they allow the same, whoever is told.
+/// Limits are equal if they allow the same. The observer does not matter.
 impl PartialEq for Limits {
     fn eq(&self, other: &Self) -> bool {
         self.seconds == other.seconds
     }
 }
 
-/// The simulations under way, on any number of threads.
+/// The running simulations, on any number of threads.
 #[derive(Debug, Default)]
 pub(crate) struct Progress {
     running: Mutex<Vec<Arc<Run>>>,
 }
 
-/// One simulation under way. Its counters are written by the march and read by who waits.
+/// One running simulation. The march writes its counters, observers read them.
 #[derive(Debug)]
 struct Run {
     since: Instant,
     duration: f64,
-    /// The bits of the fraction of the duration that was reached.
+    /// The bits of the fraction of the duration that has been reached.
     reached: AtomicU64,
     tries: AtomicU64,
     rejected: AtomicU64,
 }
 
-/// How far a simulation is.
+/// Progress of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct View {
     /// Wall time since it began \[s\].
     pub seconds: f64,
-    /// Time reached in the motion \[s\].
+    /// Simulated time reached \[s\].
     pub time: f64,
-    /// Time to be reached \[s\].
+    /// Simulated duration \[s\].
     pub duration: f64,
-    /// Steps that were accepted.
+    /// Number of accepted steps.
     pub steps: u64,
-    /// Steps that were rejected.
+    /// Number of rejected steps.
     pub rejected: u64,
 }
 
 impl Progress {
-    /// The simulation that has been under way for the longest time, if there is one.
+    /// The simulation that has been running longest, if any.
     pub(crate) fn longest(&self) -> Option<View> {
         let running = self.running.lock().ok()?;
         let run = running.iter().min_by_key(|run| run.since)?;
@@ -69,10 +69,10 @@ impl Progress {
     }
 }
 
-/// Tries between two looks at the clock.
+/// Number of tries between two checks of the clock.
 const LOOKS: usize = 16;
 
-/// Watches one march. Its run leaves the list of those under way when it is dropped.
+/// Monitors one march. When it is dropped, the run leaves the list of running simulations.
 #[derive(Debug)]
 pub(super) struct Clock {
     since: Instant,
@@ -81,7 +81,7 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// A clock that starts now, for a motion of `duration` [s]; `None` if nobody needs one.
+    /// A clock that starts now, for a motion of `duration` [s]; `None` if it is not needed.
     pub(crate) fn start(limits: &Limits, duration: f64) -> Option<Self> {
         if limits.seconds.is_none() && limits.progress.is_none() {
             return None;
@@ -107,7 +107,7 @@ impl Clock {
         })
     }
 
-    /// Tells how far the march is; the limit [s], if it is exceeded.
+    /// Reports the progress of the march; returns the limit [s] if it is exceeded.
     pub(crate) fn look(&self, reached: f64, tries: usize, rejected: usize) -> Option<f64> {
         if !tries.is_multiple_of(LOOKS) {
             return None;
@@ -136,7 +136,7 @@ impl Drop for Clock {
 mod tests {
     use super::*;
 
-    /// The simulation that began first is told of as long as it is under way.
+    /// The simulation that began first is reported while it runs.
     #[test]
     fn the_longest_simulation_is_told() {
         let limits = Limits {

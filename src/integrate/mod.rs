@@ -1,4 +1,4 @@
-//! Time integration: the methods, the steps they take, and the motion they leave behind.
+//! Time integration: methods, steps, and the resulting motion.
 
 pub(crate) mod choice;
 pub(crate) mod control;
@@ -41,8 +41,8 @@ use control::Controller;
 use explicit::stiffness::Watch;
 use headway::Stop;
 
-/// Integrates `model` over `duration` in real or, for complex-step derivatives, in complex
-/// numbers.
+/// Integrates `model` over `duration`, in real numbers or, for complex-step derivatives, in complex
+/// ones.
 ///
 /// # Errors
 /// [`IntegrationFailure`] says what failed, when and where.
@@ -54,7 +54,7 @@ pub(crate) fn simulate<S: SolveScalar>(
     simulate_watching(model, duration, settings, Watch::Stability)
 }
 
-/// As [`simulate`]; an explicit march by a tolerance looks out for `watch`.
+/// As [`simulate`]. An explicit march with a tolerance watches for `watch`.
 fn simulate_watching<S: SolveScalar>(
     model: &Model<S>,
     duration: S,
@@ -80,7 +80,7 @@ fn simulate_watching<S: SolveScalar>(
     Ok(run)
 }
 
-/// Ends the march of `run` over the steps of `controller`.
+/// Completes `run` after the march over the steps of `controller`.
 fn close<S: SolveScalar>(
     run: &mut Trajectory<S>,
     controller: &Controller,
@@ -119,7 +119,7 @@ fn close<S: SolveScalar>(
             });
         }
     }
-    // Nodes of cells brought their weights with them.
+    // Nodes of cells have their weights already.
     if !run.has_cells {
         run.weights = quadrature::weights(&run.instants);
     }
@@ -128,8 +128,8 @@ fn close<S: SolveScalar>(
     Ok(())
 }
 
-/// Fails if a constraint that was left out has opened, or a driven joint has turned by half a turn, at
-/// the end of step `step`, where and when the bodies are as `at` says.
+/// Fails if a redundant row that was left out is violated, or if a driven joint is half a turn off,
+/// at the end of step `step` with the motions and the time `at`.
 fn watch<S: SolveScalar>(
     model: &Model<S>,
     at: (&[BodyMotion<S>], S),

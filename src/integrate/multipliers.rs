@@ -1,4 +1,4 @@
-//! The multipliers of a run, at any of its instants.
+//! The multipliers of a run at any of its instants.
 
 use super::trajectory::Trajectory;
 use crate::model::Model;
@@ -6,8 +6,8 @@ use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
 use crate::system::redundant_rows::EXCHANGE_WEIGHT;
 
-/// Multipliers λ of a model along a run: as the method marched them or, if it did not or the run left
-/// rows of the model out, from the index-1 equations of the states.
+/// Multipliers λ of a model along a run: those of the method. If the method has none, or if rows of
+/// the model were left out of the run, the index-1 equations of the states give them.
 pub(crate) struct Multipliers<'a> {
     run: &'a Trajectory<f64>,
     numbering: &'a Numbering,
@@ -16,7 +16,7 @@ pub(crate) struct Multipliers<'a> {
 }
 
 impl<'a> Multipliers<'a> {
-    /// Those of `model`, which has as many bodies as that of `run`, with its numbering.
+    /// The multipliers of `model`, with its numbering. It has as many bodies as the model of `run`.
     pub(crate) fn new(
         model: &'a Model<f64>,
         numbering: &'a Numbering,
@@ -30,7 +30,7 @@ impl<'a> Multipliers<'a> {
         }
     }
 
-    /// λ at instant k; not numbers where the equations are singular.
+    /// λ at instant k; NaN if the equations are singular.
     pub(crate) fn at(&mut self, k: usize) -> Vec<f64> {
         let (run, nc) = (self.run, self.numbering.constraints());
         let Some(field) = &mut self.field else {
@@ -38,7 +38,7 @@ impl<'a> Multipliers<'a> {
         };
         let (mut a, mut lambda) = (run.a(k).to_vec(), vec![0.0; nc]);
         field.set_state(run.q(k), run.v(k), run.time(k));
-        // Rows are chosen by their weights here, each at most once.
+        // The weights of the rows choose the redundant ones. Each is exchanged at most once.
         for _ in 0..=nc {
             if field.factorise().is_err() {
                 lambda.fill(f64::NAN);

@@ -1,11 +1,12 @@
-//! Where the motion is sampled inside a step, and the weights of sums over it.
+//! Samples inside a step, and the weights of sums over the motion.
 //!
-//! A step is cut into cells of equal size, each with the nodes and weights of Kronrod's extension of the
-//! Lobatto rule with four nodes (Gander & Gautschi 2000, section 3), which is exact for polynomials
-//! of degree 9. Fractions of a step move with it, and so sums stay smooth in the design. Samples at equal
-//! intervals have the weights of Gregory's rule of order 6, others those of the trapezoidal rule.
+//! A step is divided into cells of equal size. Each cell has the nodes and weights of Kronrod's
+//! extension of the four-node Lobatto rule (Gander & Gautschi 2000, section 3), which is exact for
+//! polynomials of degree 9. Fractions of a step move with it, so sums are smooth in the design.
+//! Equally spaced samples have the weights of Gregory's rule of order 6, others those of the
+//! trapezoidal rule.
 
-/// Nodes of a cell as fractions of it.
+/// Nodes of a cell, as fractions of it.
 pub(crate) const NODES: [f64; 7] = [
     0.0,
     0.091_751_709_536_136_98,
@@ -15,7 +16,7 @@ pub(crate) const NODES: [f64; 7] = [
     0.908_248_290_463_863,
     1.0,
 ];
-/// Their weights, which add up to one.
+/// Weights of the nodes; their sum is one.
 pub(crate) const WEIGHTS: [f64; 7] = [
     77.0 / 2940.0,
     432.0 / 2940.0,
@@ -25,7 +26,7 @@ pub(crate) const WEIGHTS: [f64; 7] = [
     432.0 / 2940.0,
     77.0 / 2940.0,
 ];
-/// Weights of the Lobatto rule with four of the nodes, exact for polynomials of degree 5.
+/// Weights of the Lobatto rule at four of the nodes, exact for polynomials of degree 5.
 pub(crate) const LOBATTO: [f64; 7] = [
     1.0 / 12.0,
     0.0,
@@ -35,10 +36,10 @@ pub(crate) const LOBATTO: [f64; 7] = [
     0.0,
     1.0 / 12.0,
 ];
-/// Nodes that a cell adds.
+/// Number of nodes that a cell adds.
 pub(crate) const ADDED: usize = NODES.len() - 1;
 
-/// Weights of the first and the last samples at equal intervals by Gregory's rule.
+/// Weights of the first and last equally spaced samples in Gregory's rule.
 const GREGORY: [f64; 5] = [
     95.0 / 288.0,
     317.0 / 240.0,
@@ -46,27 +47,26 @@ const GREGORY: [f64; 5] = [
     793.0 / 720.0,
     157.0 / 160.0,
 ];
-/// Part of an interval by which instants may be off and still be equally spaced.
+/// Instants are equally spaced up to this fraction of an interval.
 const EQUAL: f64 = 1e-6;
 
-/// Distance of fractions below which they are the same instant: some round-off of a fraction.
+/// Fractions with a smaller distance are the same instant; covers their round-off.
 const SAME: f64 = 1e-15;
 
-/// At which instants the motion is known after the run.
+/// Instants at which a run samples the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Samples {
     /// The ends of the steps.
     StepEnds,
-    /// This many intervals of equal size; between the ends of steps by the method's own
-    /// polynomial. Formulas of one stage are sampled at the ends of their steps whatever is asked
-    /// for.
+    /// This many intervals of equal size. Inside steps the method's polynomial gives the motion.
+    /// One-stage formulas always use the ends of their steps.
     Uniform(usize),
-    /// The nodes of sums over the motion in the [`cells`](super::Grid::cells) of each step and, to be shown,
-    /// the ends of this many intervals of equal size, if any.
+    /// The nodes of the [`cells`](super::Grid::cells) of each step and, for display, the ends of
+    /// this many intervals of equal size, if any.
     Quadrature(usize),
 }
 
-/// Weights of samples at these fractions, which add up to one.
+/// Weights of samples at these fractions; their sum is one.
 pub(crate) fn weights(instants: &[f64]) -> Vec<f64> {
     let last = instants.len() - 1;
     let trapezoidal = |k: usize| {
@@ -93,15 +93,15 @@ pub(crate) fn order(instants: &[f64]) -> usize {
     }
 }
 
-/// A step from one fraction of the duration to another, and how many cells it is cut into; without any
-/// the motion counts at its two ends, by the trapezoidal rule.
+/// A step between two fractions of the duration, with its number of cells. Without cells the
+/// trapezoidal rule uses its two ends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Step {
     /// Start.
     pub from: f64,
     /// End.
     pub end: f64,
-    /// Cells.
+    /// Number of cells.
     pub cells: usize,
 }
 
@@ -119,7 +119,7 @@ impl Step {
         }
     }
 
-    /// Place and weight of node i = 1 … [`Step::nodes`].
+    /// Fraction and weight of node i = 1 … [`Step::nodes`].
     fn node(&self, i: usize) -> (f64, f64) {
         let width = self.end - self.from;
         if i == self.nodes() {
@@ -138,14 +138,14 @@ impl Step {
 pub(crate) struct Due {
     /// Fraction of the duration.
     pub at: f64,
-    /// Weight in sums over the motion; zero where none is known yet.
+    /// Weight in sums over the motion; zero if it is not known yet.
     pub weight: f64,
-    /// Whether it is one of those that tables and figures show.
+    /// Whether tables and figures show it.
     pub shown: bool,
 }
 
-/// Whether `samples` asks for an instant inside a step of so many `cells` that ends at `end`, where `next`
-/// counts the equal intervals that were taken.
+/// Whether `samples` requires an instant inside a step with so many `cells` that ends at `end`.
+/// `next` is the number of the next equal interval.
 pub(super) fn looks_inside(samples: Samples, next: usize, (end, cells): (f64, usize)) -> bool {
     let before =
         |count: usize| count > 0 && next <= count && !within(end, next as f64 / count as f64);
@@ -156,8 +156,8 @@ pub(super) fn looks_inside(samples: Samples, next: usize, (end, cells): (f64, us
     }
 }
 
-/// The instants that `samples` asks for in a step, in rising order without its start; `next` counts the
-/// equal intervals that were taken.
+/// The instants of `samples` in a step, in ascending order without its start. `next` is the number
+/// of the next equal interval.
 pub(super) fn due(
     samples: Samples,
     next: &mut usize,
@@ -217,7 +217,7 @@ pub(crate) fn within(at: f64, end: f64) -> bool {
 mod tests {
     use super::*;
 
-    /// Sum of f over [0, 1] by steps of any size and number of cells.
+    /// Sum of f over [0, 1] with these ends of steps and this number of cells.
     fn sum(ends: &[f64], cells: usize, f: impl Fn(f64) -> f64) -> f64 {
         let mut next = 1;
         let mut total = 0.0;

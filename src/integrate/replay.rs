@@ -1,4 +1,4 @@
-//! What a run keeps for its adjoint, and the steps that are made again where it did not keep them.
+//! Data of a run for its adjoint, and the replay of steps that were not stored.
 
 use super::IntegrationFailure;
 use super::schedule::{MemoryOfBlock, Schedule};
@@ -7,79 +7,79 @@ use std::borrow::Cow;
 use std::fmt::Debug;
 use std::ops::Range;
 
-/// Steps in a row with all that the adjoint needs of them.
+/// Consecutive steps with all data that the adjoint needs.
 pub(crate) trait Block {
-    /// A state that a march can go on from.
+    /// A state from which a march can continue.
     type State: Clone + Debug;
-    /// What its solver keeps from step to step, so that the same steps come out to the last bit.
+    /// Data that its solver keeps from step to step. With it a replay repeats every bit.
     type Solver: Clone + Debug;
 
-    /// Empties it. The next step that it takes is the one after step `first`.
+    /// Empties the block. Its next step is the one after step `first`.
     fn restart(&mut self, first: usize);
 
-    /// Makes room for so many steps.
+    /// Reserves memory for this many steps.
     fn reserve(&mut self, steps: usize);
 
-    /// Steps that it holds, from 1.
+    /// Numbers of its steps, from 1.
     fn steps(&self) -> Range<usize>;
 
-    /// How many numbers it holds.
+    /// Number of stored numbers.
     fn numbers(&self) -> usize;
 
-    /// A block without any step, of the same system.
+    /// An empty block of the same system.
     fn empty(&self) -> Self;
 }
 
-/// A march that makes the steps of a run again.
+/// A march that repeats the steps of a run.
 pub(crate) trait March {
-    /// What it fills.
+    /// The block that it fills.
     type Block: Block;
 
-    /// The state that it has come to.
+    /// The present state.
     fn state(&self) -> <Self::Block as Block>::State;
 
-    /// What its solver keeps.
+    /// The data of its solver.
     fn solver(&mut self) -> <Self::Block as Block>::Solver;
 
-    /// Goes back to a state.
+    /// Returns to a state.
     fn restore(&mut self, state: &<Self::Block as Block>::State);
 
-    /// Takes what a solver kept.
+    /// Restores the data of a solver.
     fn restore_solver(&mut self, solver: &<Self::Block as Block>::Solver);
 
-    /// Makes step k, the next one, and adds it to `block`.
+    /// Makes step k, the next one, and adds it to `block`, if any.
     ///
     /// # Errors
-    /// If the step fails, which it did not in the run.
+    /// The step fails. It did not fail in the run.
     fn step(&mut self, k: usize, block: Option<&mut Self::Block>)
     -> Result<(), IntegrationFailure>;
 }
 
-/// A state that a march can go on from, with what its solver kept.
+/// A state from which a march can continue, with the data of its solver.
 pub(crate) type Checkpoint<B> = (<B as Block>::State, <B as Block>::Solver);
 
-/// What is kept of a run.
+/// Stored data of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Tape<B: Block> {
-    /// The last steps. There are none if memory did not suffice for steps that were chosen on the way.
+    /// The last steps; empty if the memory did not suffice for adaptive steps.
     pub block: B,
-    /// Where the steps are known beforehand.
+    /// The schedule, if the number of steps is known in advance.
     schedule: Option<Schedule>,
-    /// Steps and what stood after them, in rising order, without the start.
+    /// Checkpoints with the number of the step before them, ascending, without the start.
     checkpoints: Vec<(usize, Checkpoint<B>)>,
-    /// Steps after which checkpoints are still due, the next one last.
+    /// Steps after which checkpoints are still due; the next one is last.
     due: Vec<usize>,
-    /// What the solver kept when a step was made after another had been given up.
+    /// Data of the solver at steps that were made after a rejected one.
     retried: Vec<(usize, B::Solver)>,
-    /// Bytes that it may take, and whether they were too few for the steps that were chosen so far.
+    /// Memory limit \[bytes\], and whether it was too small for the steps so far.
     memory: usize,
     full: bool,
     room: MemoryOfBlock,
 }
 
 impl<B: Block> Tape<B> {
-    /// A tape that takes `memory` bytes; `steps` is how many there will be, if that is known. Without any
-    /// memory nothing is kept: a gradient that is asked for all the same makes the motion again.
+    /// A tape that may use `memory` bytes; `steps` is the number of steps, if known. Without memory
+    /// nothing is stored, and a gradient must repeat the motion.
     pub(crate) fn new(
         mut block: B,
         (memory, room): (usize, MemoryOfBlock),
@@ -106,7 +106,7 @@ impl<B: Block> Tape<B> {
         }
     }
 
-    /// Whether step k, the next one, is to be kept.
+    /// Whether to store step k, the next one.
     pub(crate) fn keeps(&mut self, k: usize) -> bool {
         if let Some(schedule) = &self.schedule {
             return k > schedule.head();
@@ -123,29 +123,29 @@ impl<B: Block> Tape<B> {
         self.due.pop_if(|due| *due == k).is_some()
     }
 
-    /// Leaves a checkpoint after step k.
+    /// Adds a checkpoint after step k.
     pub(crate) fn leave(&mut self, k: usize, checkpoint: Checkpoint<B>) {
         self.checkpoints.push((k, checkpoint));
     }
 
-    /// Says what the solver keeps when it tries step k once more.
+    /// Records the data of the solver when it tries step k again.
     pub(crate) fn retry(&mut self, k: usize, solver: B::Solver) {
         self.retried.pop_if(|(step, _)| *step == k);
         self.retried.push((k, solver));
     }
 
-    /// Memory that it takes (bytes).
+    /// Memory in use \[bytes\]; `number` is the size of a number.
     pub(crate) fn bytes(&self, number: usize) -> usize {
         self.block.numbers() * number + self.checkpoints.len() * self.room.checkpoint
     }
 
-    /// How a run of so many steps is kept.
+    /// The schedule of a run of `steps` steps.
     pub(crate) fn schedule(&self, steps: usize) -> Schedule {
         self.schedule
             .unwrap_or_else(|| self.checkpoint_plan(steps).0)
     }
 
-    /// How a run of so many steps would be kept, and what that takes (bytes).
+    /// The schedule of a run of `steps` steps, and its memory \[bytes\].
     pub(crate) fn checkpoint_plan(&self, steps: usize) -> (Schedule, usize) {
         let memory = match self.memory {
             0 => MEMORY,
@@ -170,17 +170,17 @@ impl<B: Block> Tape<B> {
     }
 }
 
-/// The steps of a run, from the last to the first: from its tape, or made again.
+/// The steps of a run from the last to the first: from its tape, or repeated.
 pub(crate) struct Replay<'t, M: March, F> {
     tape: &'t Tape<M::Block>,
     schedule: Schedule,
-    /// Makes the march, which stands at the start.
+    /// Creates the march at the start.
     make: F,
-    /// The march and the step that it stands after, once steps are made again.
+    /// The march and its present step, once steps are repeated.
     march: Option<(M, usize)>,
     stack: Vec<(usize, Cow<'t, Checkpoint<M::Block>>)>,
     block: M::Block,
-    /// Steps made again so far.
+    /// Number of repeated steps so far.
     pub again: usize,
 }
 
@@ -198,15 +198,15 @@ impl<'t, M: March, F: Fn() -> M> Replay<'t, M, F> {
         }
     }
 
-    /// The march that makes steps again, if any were.
+    /// The march that repeats steps, if any were repeated.
     pub(crate) fn march(&self) -> Option<&M> {
         self.march.as_ref().map(|(march, _)| march)
     }
 
-    /// A block that holds step n. No later step is asked for any more.
+    /// A block that holds step n. Calls must have descending n.
     ///
     /// # Errors
-    /// If a step that is made again fails.
+    /// A repeated step fails.
     pub(crate) fn block(&mut self, n: usize) -> Result<&M::Block, IntegrationFailure> {
         if self.tape.block.steps().contains(&n) {
             return Ok(&self.tape.block);
@@ -217,7 +217,7 @@ impl<'t, M: March, F: Fn() -> M> Replay<'t, M, F> {
         Ok(&self.block)
     }
 
-    /// Fills the block with steps up to step n.
+    /// Repeats a block of steps up to step n.
     fn make_again(&mut self, n: usize) -> Result<(), IntegrationFailure> {
         if self.march.is_none() {
             let mut march = (self.make)();
@@ -260,7 +260,7 @@ impl<'t, M: March, F: Fn() -> M> Replay<'t, M, F> {
         }
     }
 
-    /// Goes on to step n, and keeps the steps if `keep`.
+    /// Advances to step n, and stores the steps if `keep`.
     fn advance(&mut self, n: usize, keep: bool) -> Result<(), IntegrationFailure> {
         let Some((march, at)) = &mut self.march else {
             unreachable!("no march to go on with");

@@ -1,8 +1,8 @@
-//! Records of vectors, one after the other in one piece of memory.
+//! Records of vectors in contiguous memory.
 
 use crate::math::Complex64;
 
-/// Records of N vectors, whose lengths are the same in all records.
+/// Records of N vectors each. All records have the same lengths.
 #[derive(Clone, Debug)]
 pub(crate) struct Rows<S, const N: usize> {
     lengths: [usize; N],
@@ -11,7 +11,7 @@ pub(crate) struct Rows<S, const N: usize> {
 }
 
 impl<S: Copy, const N: usize> Rows<S, N> {
-    /// No record yet.
+    /// No records.
     pub(crate) fn new(lengths: [usize; N]) -> Self {
         Self {
             lengths,
@@ -25,12 +25,12 @@ impl<S: Copy, const N: usize> Rows<S, N> {
         self.lengths
     }
 
-    /// Number of numbers in a record.
+    /// Total length of a record.
     pub(crate) fn width(&self) -> usize {
         self.lengths.iter().sum()
     }
 
-    /// Makes room for so many more records.
+    /// Reserves memory for `count` more records.
     pub(crate) fn reserve(&mut self, count: usize) {
         self.data.reserve_exact(count * self.width());
     }
@@ -38,7 +38,7 @@ impl<S: Copy, const N: usize> Rows<S, N> {
     /// Adds a record.
     ///
     /// # Panics
-    /// If a vector has another length than in all records.
+    /// A vector has another length.
     pub(crate) fn push(&mut self, record: [&[S]; N]) {
         assert_eq!(record.map(<[S]>::len), self.lengths);
         for part in record {
@@ -47,13 +47,13 @@ impl<S: Copy, const N: usize> Rows<S, N> {
         self.count += 1;
     }
 
-    /// Gives all records up and keeps their memory for others.
+    /// Removes all records and keeps their memory.
     pub(crate) fn restart(&mut self) {
         self.data.clear();
         self.count = 0;
     }
 
-    /// Number of numbers in all records.
+    /// Total length of all records.
     pub(crate) fn numbers(&self) -> usize {
         self.data.len()
     }
@@ -61,7 +61,7 @@ impl<S: Copy, const N: usize> Rows<S, N> {
     /// Record k.
     ///
     /// # Panics
-    /// If there is none.
+    /// There is no record k.
     pub(crate) fn get(&self, k: usize) -> [&[S]; N] {
         let mut rest = &self.data[k * self.width()..(k + 1) * self.width()];
         self.lengths.map(|length| {

@@ -1,22 +1,22 @@
-//! What errors of a step are measured against.
+//! Scales of the errors of steps.
 
 use crate::math::Scalar;
 use crate::model::Model;
 use crate::system::initial::InitialState;
 use crate::system::{Numbering, placement};
 
-/// Lengths and speeds of a scene that errors are relative to.
+/// Length and speeds of a scene, relative to which errors are measured.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scale {
-    /// Length (m).
+    /// Length \[m\].
     pub length: f64,
-    /// Least speed (m/s) and angular speed (rad/s) to be relative to.
+    /// Smallest scales of speed \[m/s\] and angular speed \[rad/s\].
     pub floor: [f64; 2],
 }
 
 impl Scale {
-    /// The scale of a model that starts in `start` and moves for `duration` (s): its largest lever
-    /// arm; the speed at its start or that of a fall over the length.
+    /// The scale of a model that starts in `start` and moves for `duration` \[s\]: its largest
+    /// lever arm, and the speed at its start or that of a fall over the length.
     pub(crate) fn of<S: Scalar>(
         model: &Model<S>,
         numbering: &Numbering,
@@ -34,7 +34,7 @@ impl Scale {
         }
     }
 
-    /// Speeds that the errors of a step between the velocities `v` and `w` are relative to.
+    /// Scales of speed and angular speed of a step between the velocities `v` and `w`.
     pub(crate) fn speeds<S: Scalar>(&self, numbering: &Numbering, v: &[S], w: &[S]) -> [f64; 2] {
         let (v, w) = (fastest(numbering, v), fastest(numbering, w));
         std::array::from_fn(|i| self.floor[i].max(v[i]).max(w[i]))
@@ -61,7 +61,8 @@ impl Scale {
         sum / (q.len() + v.len()).max(1) as f64
     }
 
-    /// As [`Scale::square`] for a tangent change y of positions and h times one of velocities.
+    /// As [`Scale::square`], for a tangent change y of positions and h times a change of
+    /// velocities.
     pub(crate) fn tangent_square(&self, y: &[f64], hv: &[f64], h: f64, speeds: [f64; 2]) -> f64 {
         let part = |x: &[f64], scale: f64| -> f64 { x.iter().map(|x| (x / scale).powi(2)).sum() };
         let both = y.chunks_exact(6).zip(hv.chunks_exact(6));

@@ -1,46 +1,46 @@
-//! Which steps of a run are kept for its adjoint, and which are made again: binomial checkpointing
+//! Binomial checkpointing: which steps of a run are stored for its adjoint, and which are repeated
 //! (Griewank & Walther 2000, ACM TOMS 26(1), Algorithm 799).
 //!
-//! The last steps of a run are kept with all that the adjoint needs of them. The steps before them are
-//! cut into blocks. A checkpoint is a state that the march can go on from. With s checkpoints, the one
-//! at the start included, and every block made again at most r times,
+//! The last steps of a run are stored with all data for the adjoint. The steps before them are
+//! divided into blocks. A march can continue from a checkpoint. With s checkpoints, including the
+//! start, and at most r repetitions of every block,
 //!
 //! ```text
 //! β(s, r) = (s + r)! / (s! r!)                 blocks can be reversed at most
 //! t(l, s) = r l − β(s + 1, r − 1)              advances reverse l blocks,  β(s, r−1) < l ≤ β(s, r)
 //! ```
 //!
-//! The run itself makes l − 1 of these advances. Every block but the last is made again once more to be
-//! kept. So a gradient makes t(l, s) blocks again.
+//! The run itself makes l − 1 of these advances. Every block but the last is repeated once more to
+//! be stored. So a gradient repeats t(l, s) blocks.
 
-/// Room that the parts of a tape take (bytes).
+/// Memory of the parts of a tape \[bytes\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct MemoryOfBlock {
-    /// A step that is kept.
+    /// A stored step.
     pub step: usize,
     /// A checkpoint.
     pub checkpoint: usize,
 }
 
-/// What is kept of a run.
+/// Which steps of a run are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Schedule {
     steps: usize,
-    /// Steps before those that the run keeps.
+    /// Number of steps before the stored ones.
     head: usize,
-    /// Steps of a block of the head.
+    /// Number of steps per block of the head.
     block: usize,
-    /// Most checkpoints at a time, the start included.
+    /// Largest number of simultaneous checkpoints, including the start.
     checkpoints: usize,
 }
 
-/// Growth of the numbers of checkpoints that are tried.
+/// Ratio of consecutive numbers of checkpoints that are tried.
 const FINENESS: f64 = 1.1;
-/// Most times that a step is made again for a gradient: less memory than that takes is not asked for.
+/// Largest number of repetitions of a step for a gradient. The memory for this is used in any case.
 const MOST_TIMES: usize = 20;
 
-/// The least memory that a run of `steps` steps keeps for a gradient (bytes): two steps, and as many
-/// checkpoints as let every step be made again twenty times at most.
+/// The least memory that a run of `steps` steps uses for a gradient \[bytes\]: two steps, and
+/// enough checkpoints for at most twenty repetitions of every step.
 pub(crate) fn least(steps: usize, room: MemoryOfBlock) -> usize {
     let mut checkpoints = 1;
     while repetitions(steps, checkpoints) > MOST_TIMES {
@@ -50,9 +50,9 @@ pub(crate) fn least(steps: usize, room: MemoryOfBlock) -> usize {
 }
 
 impl Schedule {
-    /// The schedule of a run of `steps` steps that makes the fewest steps again in `memory` bytes, or in the
-    /// [`least`] if they would be made again too often. Without memory it keeps the start, and one step at
-    /// a time.
+    /// The schedule of a run of `steps` steps with the fewest repetitions in `memory` bytes, or in
+    /// the [`least`] memory if there would be too many. Without memory it stores only the start,
+    /// and one step at a time.
     pub(crate) fn new(steps: usize, memory: usize, room: MemoryOfBlock) -> Self {
         let own = Self::within(steps, memory, room);
         match memory > 0 && own.recomputed() > steps.saturating_mul(MOST_TIMES) {
@@ -74,13 +74,13 @@ impl Schedule {
         let mut best: Option<(usize, Self)> = None;
         let mut checkpoints = 1;
         while checkpoints <= steps {
-            // Checkpoints of the run stand beside those that the backward march makes.
+            // Checkpoints of the run coexist with those of the backward march.
             let rest = memory.saturating_sub(2 * checkpoints * room.checkpoint);
             let kept = (rest / room.step).min(steps);
             if kept < 2 {
                 break;
             }
-            // As many blocks as there are checkpoints are made again once.
+            // As many blocks as checkpoints: each is repeated once.
             let once = match checkpoints {
                 1 => kept,
                 _ => (steps - kept).div_ceil(checkpoints - 1),
@@ -107,34 +107,34 @@ impl Schedule {
         )
     }
 
-    /// Whether all steps are kept.
+    /// Whether all steps are stored.
     pub(crate) fn keeps_all(&self) -> bool {
         self.head == 0
     }
 
-    /// Number of steps before those that the run keeps.
+    /// Number of steps before the stored ones.
     pub(crate) fn head(&self) -> usize {
         self.head
     }
 
-    /// Steps of a block that is made again, at most.
+    /// Largest number of steps of a repeated block.
     #[cfg(test)]
     pub(crate) fn block(&self) -> usize {
         self.block
     }
 
-    /// Most checkpoints at a time.
+    /// Largest number of simultaneous checkpoints.
     pub(crate) fn checkpoints(&self) -> usize {
         self.checkpoints
     }
 
-    /// Blocks before the steps that the run keeps.
+    /// Number of blocks before the stored steps.
     fn blocks(&self) -> usize {
         self.head.div_ceil(self.block)
     }
 
-    /// Step after which block i starts; those that the run keeps are the last block. The first block
-    /// takes the remainder, as it is made again most.
+    /// Step after which block i starts; the stored steps are the last block. The first block takes
+    /// the remainder, because it is repeated most.
     fn start(&self, i: usize) -> usize {
         match i {
             0 => 0,
@@ -142,7 +142,7 @@ impl Schedule {
         }
     }
 
-    /// The block that step n = 1 … N stands in.
+    /// The block of step n = 1 … N.
     fn block_of(&self, n: usize) -> usize {
         match self.head.checked_sub(n) {
             None => self.blocks(),
@@ -150,14 +150,14 @@ impl Schedule {
         }
     }
 
-    /// Steps after which the run leaves checkpoints, without the start.
+    /// Steps after which the run sets checkpoints, without the start.
     pub(crate) fn of_run(&self) -> Vec<usize> {
         let (mut first, mut left) = (0, self.checkpoints);
         let mut all = Vec::new();
         while first < self.blocks() && left > 1 {
             first += split(self.blocks() + 1 - first, left);
             left -= 1;
-            // The steps that the run keeps need none.
+            // Stored steps need no checkpoint.
             if first < self.blocks() {
                 all.push(self.start(first));
             }
@@ -165,22 +165,23 @@ impl Schedule {
         all
     }
 
-    /// What to do for step n, when checkpoints `left` may be set and the last one stands after step
-    /// `from`: the step to go on to and to leave a checkpoint after, or `None` if the steps from there
-    /// on are to be kept.
+    /// The next action for step n, with `left` more checkpoints and the last one after step `from`:
+    /// the step to advance to for a new checkpoint, or `None` if the steps from there on are to be
+    /// stored.
     pub(crate) fn next(&self, from: usize, n: usize, left: usize) -> Option<usize> {
         let first = self.block_of(from + 1);
         let length = self.block_of(n) + 1 - first;
         (length > 1).then(|| self.start(first + split(length, left + 1)))
     }
 
-    /// Steps that a gradient makes again, of a function that looks at the end of the motion.
+    /// Number of steps that a gradient repeats, for a function that depends on the end of the
+    /// motion.
     pub(crate) fn recomputed(&self) -> usize {
         if self.keeps_all() {
             return 0;
         }
         let (length, s) = (self.blocks() + 1, self.checkpoints);
-        // The first block is advanced over whenever what starts there is split.
+        // Every split of the blocks from the start advances over the first block.
         let (mut splits, mut rest) = (0, length);
         while rest > 1 {
             rest = split(rest, s);
@@ -191,7 +192,7 @@ impl Schedule {
             .saturating_sub((self.block - first) * splits)
     }
 
-    /// What it keeps at most (bytes).
+    /// Largest memory \[bytes\].
     pub(crate) fn bytes(&self, room: MemoryOfBlock) -> usize {
         if self.keeps_all() {
             return self.steps * room.step;
@@ -201,7 +202,7 @@ impl Schedule {
     }
 }
 
-/// β(s, r): most blocks that s checkpoints reverse with r advances over each at most.
+/// β(s, r): largest number of blocks that s checkpoints reverse with at most r advances over each.
 fn most(s: usize, r: usize) -> usize {
     let (few, many) = (s.min(r) as u128, s.max(r) as u128);
     let mut found = 1_u128;
@@ -232,9 +233,8 @@ pub(crate) fn advances(l: usize, s: usize) -> usize {
     }
 }
 
-/// How many of l > 1 blocks to advance over before the next checkpoint, with s of them, the one that
-/// the blocks start from included: as many as leave both parts the least advances,
-/// t(l, s) = j + t(j, s) + t(l − j, s − 1).
+/// Number of l > 1 blocks to advance before the next checkpoint, with s checkpoints including that
+/// at the start of the blocks. It minimises the advances, t(l, s) = j + t(j, s) + t(l − j, s − 1).
 pub(crate) fn split(l: usize, s: usize) -> usize {
     if s <= 1 {
         return l - 1;
@@ -248,7 +248,7 @@ pub(crate) fn split(l: usize, s: usize) -> usize {
 mod tests {
     use super::*;
 
-    /// Least advances by trying every split.
+    /// Least number of advances, by trying every split.
     fn least(longest: usize, s: usize) -> Vec<Vec<usize>> {
         let mut all = vec![vec![0; longest + 1]; s + 1];
         for s in 1..=s {
@@ -281,7 +281,8 @@ mod tests {
         assert_eq!(advances(1_000_000, 1_000_000), 999_999);
     }
 
-    /// Carries a schedule out on numbers: the steps that are made again, and the most that is kept.
+    /// Executes a schedule on numbers: returns the repeated steps and the largest number of stored
+    /// ones.
     fn carry_out(schedule: &Schedule, known: bool) -> (usize, usize) {
         let mut stack = vec![0];
         if known {
@@ -302,7 +303,7 @@ mod tests {
                     if left > 0 {
                         stack.push(next);
                     } else {
-                        // Without room for another the block is made right away.
+                        // Without another checkpoint the block is made at once.
                         again += end - next;
                         end = next;
                     }
@@ -340,7 +341,7 @@ mod tests {
                     assert!(schedule.bytes(room) <= admitted, "{schedule:?} in {memory}");
                     assert!(again <= MOST_TIMES * steps, "{schedule:?}: {again}");
                 }
-                // Steps that were chosen on the way are all made again first.
+                // For adaptive steps, all steps are repeated once first.
                 let (unknown, _) = carry_out(&schedule, false);
                 if !schedule.keeps_all() {
                     assert!(unknown <= again + steps, "{schedule:?}: {unknown}");
@@ -365,7 +366,7 @@ mod tests {
         }
     }
 
-    /// A byte is as good as the least, and the least is little.
+    /// With one byte the least memory is used, and it is small.
     #[test]
     fn the_least_memory_bounds_the_work() {
         for (step, checkpoint) in [(1000, 70), (8000, 500), (300, 900)] {

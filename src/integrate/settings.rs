@@ -1,4 +1,4 @@
-//! How a scene is integrated in time.
+//! Settings of the time integration.
 
 use super::grid::Grid;
 use super::limits::Limits;
@@ -9,20 +9,20 @@ use crate::system::RedundantRows;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Method {
     /// Explicit Runge–Kutta pair of order 8 of Dormand & Prince on the index-1 equations, projected
-    /// onto the constraints after each step (Hairer, Nørsett & Wanner 1993, section II.5; Hairer
-    /// & Wanner 1996, section VII.2): for scenes that are not stiff.
+    /// onto the constraints after each step (Hairer, Nørsett & Wanner 1993, section II.5; Hairer &
+    /// Wanner 1996, section VII.2), for scenes that are not stiff.
     Dop853,
     /// Radau IIA with 2 or 3 stages (order 3 or 5) on the GGL-stabilised equations (Hairer &
-    /// Wanner 1996, section IV.5): for stiff scenes.
+    /// Wanner 1996, section IV.5), for stiff scenes.
     Radau {
-        /// Stages, 2 or 3.
+        /// Number of stages, 2 or 3.
         stages: usize,
     },
     /// Backward differentiation formula on the GGL-stabilised equations.
     Bdf {
         /// Order, 1 to 6.
         order: usize,
-        /// How the first steps, which have too short a past, are made.
+        /// Method of the first steps.
         start: Start,
     },
     /// Generalised-α method for first-order systems (Jansen, Whiting & Hulbert 2000) on the
@@ -33,13 +33,13 @@ pub(crate) enum Method {
     },
 }
 
-/// How a multistep formula of order m makes its first m − 1 steps.
+/// Method of the first m − 1 steps of a multistep formula of order m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Start {
-    /// By Radau IIA with three stages, which keeps the order m.
+    /// Radau IIA with three stages, which keeps the order m.
     Radau,
-    /// Step k by the formula of order min(k, m) (Kennedy & Boopathy, section II.A): the order of
-    /// the whole is then 2 at most.
+    /// Step k by the formula of order min(k, m) (Kennedy & Boopathy, section II.A). The order of
+    /// the run is then at most 2.
     RisingOrder,
 }
 
@@ -69,7 +69,7 @@ impl Method {
         }
     }
 
-    /// The method that chooses its steps with this [`Method::name`].
+    /// The adaptive method with this [`Method::name`].
     pub(crate) fn adaptive(name: &str) -> Option<Self> {
         [
             Method::Dop853,
@@ -80,7 +80,7 @@ impl Method {
         .find(|method| method.name() == name)
     }
 
-    /// The method's name with its parameters.
+    /// Name of the method with its parameters.
     pub(crate) fn name(self) -> String {
         match self {
             Method::Dop853 => "dop853".into(),
@@ -98,19 +98,19 @@ impl Method {
     }
 }
 
-/// Where the steps end.
+/// Ends of the steps.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Spacing {
     /// This many steps of equal size.
     Steps(usize),
-    /// Steps whose estimated error, relative to the scene's lengths and speeds, stays below this.
+    /// Adaptive steps: largest estimated error, relative to the scene's lengths and speeds.
     Tolerance(f64),
-    /// Steps that an earlier run chose, stretched to the duration.
+    /// Steps of an earlier run, stretched to the duration.
     Frozen(Grid),
 }
 
 impl Spacing {
-    /// The constraint rows that an earlier run left out, where it left out as many of as many as now.
+    /// Redundant rows that an earlier run left out, if they fit the present ones in number.
     pub(super) fn left_out(&self, now: &RedundantRows) -> &[(usize, RedundantRows)] {
         match self {
             Spacing::Frozen(grid) if grid.choices().iter().all(|(_, rows)| rows.fits(now)) => {
@@ -121,27 +121,27 @@ impl Spacing {
     }
 }
 
-/// Memory for gradients where nothing else is said (bytes).
+/// Default memory for gradients \[bytes\].
 pub(crate) const MEMORY: usize = 1 << 28;
 
-/// Method, steps and what is kept.
+/// Method, steps, samples and limits.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Settings {
     /// Method.
     pub method: Method,
-    /// Where the steps end.
+    /// Ends of the steps.
     pub spacing: Spacing,
-    /// Where the motion is sampled.
+    /// Samples of the motion.
     pub samples: Samples,
-    /// What the simulation may take, and who is told how far it is.
+    /// Limits of the simulation, and the observer of its progress.
     pub limits: Limits,
-    /// Memory that what is kept for a gradient may take (bytes); a gradient makes the other steps again.
-    /// Zero where none is asked for: one that is nevertheless makes the motion again, in [`MEMORY`].
+    /// Memory for the data of a gradient \[bytes\]; a gradient repeats the other steps. Zero if no
+    /// gradient is expected: one that follows repeats the motion in [`MEMORY`].
     pub memory: usize,
 }
 
 impl Samples {
-    /// At most so many samples of so many steps, if their cells are known.
+    /// Largest number of samples in `steps` steps, if their cells are known.
     pub(crate) fn count(self, steps: usize, grid: Option<&Grid>) -> usize {
         match self {
             Samples::StepEnds => steps,

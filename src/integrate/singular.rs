@@ -1,50 +1,50 @@
-//! How close the ends of steps are to singular positions, where constraints that are independent
-//! elsewhere depend on each other.
+//! Distance of the ends of steps from singular positions, where rows of the constraints that are
+//! independent elsewhere become dependent.
 //!
 //! At a distance x from such a position, errors of positions, velocities and accelerations are
-//! round-off divided by x, x² and x³: no step may end too close to one, and where the motion passes one
-//! a step leaps over it.
+//! round-off divided by x, x² and x³. So no step may end too close. If the motion passes a singular
+//! position, a step leaps over it.
 
 use super::scale::Scale;
 use crate::linalg::SolveScalar;
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
 
-/// Sets of rates that are solved for. One alone may be nearly orthogonal to the combination of rows that
-/// vanishes.
+/// Number of right sides. A single one may be nearly orthogonal to the dependent combination of
+/// rows.
 const PROBES: usize = 3;
-/// Steadiness, relative to the largest so far, below which it is looked at where it would vanish.
+/// Below this ratio of steadiness to its largest value, its zero is estimated.
 const NEAR: f64 = 0.6;
-/// Part of its length that a step keeps away from a singular position.
+/// Smallest distance of a step's end from a singular position, as a fraction of the step.
 const AWAY: f64 = 0.33;
-/// Error of accelerations by round-off at the ends of steps, relative to the tolerance, and the least
-/// tolerance that counts.
+/// Largest error of accelerations by round-off at the ends of steps, relative to the tolerance, and
+/// the smallest tolerance for this.
 const NOISE: f64 = 10.0;
 const LEAST: f64 = 1e-11;
-/// Largest magnification that any tolerance, and that given steps, may end with.
+/// Largest magnification at the end of steps: for any tolerance, and for given steps.
 const MOST: f64 = 1e3;
 const MOST_GIVEN: f64 = 3e3;
-/// The same for steps of implicit methods, which do not build on accelerations.
+/// Largest magnification for implicit methods, which do not use accelerations.
 pub(crate) const MOST_IMPLICIT: f64 = 1e4;
-/// Magnification from which a given step must not err by more than this, nor by so much more than those
-/// before it.
+/// Above this magnification a given step fails if its error exceeds `ERROR` and `MORE_ERROR` times
+/// the largest error before.
 const SUSPICIOUS: f64 = 3.0;
 const ERROR: f64 = 1e-6;
 const MORE_ERROR: f64 = 100.0;
 
-/// Steadiness of the ends of steps: the reciprocal of how much the index-1 equations magnify errors of
-/// the constraints' rates. It vanishes where rows depend on each other.
+/// Steadiness of the ends of steps: the reciprocal of the factor by which the index-1 equations
+/// magnify errors of the constraints' rates. It is zero where rows become dependent.
 pub(crate) struct Steadiness<S> {
     largest: f64,
-    /// The last two ends, the latest in front.
+    /// The last two ends (fraction, steadiness), the latest first.
     last: [Option<(f64, f64)>; 2],
-    /// Rates and what answers to them; positions that do not change.
+    /// Right side and solution; positions that do not change.
     rhs: Vec<S>,
     still: Vec<S>,
 }
 
 impl<S: SolveScalar> Steadiness<S> {
-    /// Before any end.
+    /// No end yet.
     pub(crate) fn new(numbering: &Numbering) -> Self {
         let (nv, nc) = (numbering.velocities(), numbering.constraints());
         Self {
@@ -55,7 +55,7 @@ impl<S: SolveScalar> Steadiness<S> {
         }
     }
 
-    /// The steadiness where the equations stand and were factorised, relative to the scene's scale.
+    /// The steadiness where `field` is evaluated and factorised, relative to the scene's scale.
     pub(crate) fn of(&mut self, field: &mut Accelerations<S>, scale: &Scale) -> f64 {
         let nv = field.numbering.velocities();
         let speeds = [scale.length, 1.0];
@@ -76,19 +76,19 @@ impl<S: SolveScalar> Steadiness<S> {
         (PROBES as f64 / sum).sqrt()
     }
 
-    /// How much more than elsewhere errors are magnified where the steadiness is `s`.
+    /// Factor by which a steadiness `s` magnifies errors, relative to the best end so far.
     pub(crate) fn magnified(&self, s: f64) -> f64 {
         (self.largest / s).max(1.0)
     }
 
-    /// Takes notice of the steadiness `s` at the fraction `at` of the duration.
+    /// Records the steadiness `s` at the fraction `at` of the duration.
     pub(crate) fn see(&mut self, at: f64, s: f64) {
         self.largest = self.largest.max(s);
         self.last = [Some((at, s)), self.last[0]];
     }
 
-    /// Where it would vanish, if it is `s` at the fraction `at` and the motion comes close to that: by
-    /// the parabola of the last three ends.
+    /// The zero of the steadiness, if it is `s` at the fraction `at` and the motion approaches a
+    /// zero; from the parabola through the last three ends.
     pub(crate) fn foresee(&self, at: f64, s: f64) -> Option<f64> {
         let (t1, s1) = self.last[0].filter(|(_, s1)| s < *s1 && s < NEAR * self.largest)?;
         let slope = (s - s1) / (at - t1);
@@ -99,24 +99,24 @@ impl<S: SolveScalar> Steadiness<S> {
         Some(at + 2.0 * s / (-slope + (slope * slope - 4.0 * bent * s).sqrt()))
     }
 
-    /// Whether a step from the last end to `at` ends too close to where the steadiness vanishes.
+    /// Whether a step from the last end to `at` ends too close to the zero of the steadiness.
     pub(crate) fn too_close(&self, at: f64, vanishes: f64) -> bool {
         let from = self.last[0].map_or(0.0, |(t1, _)| t1);
         vanishes - at < AWAY * (at - from)
     }
 
-    /// Whether a given step to an end of steadiness `s` errs near a singular position, and more than the
-    /// `largest` of those before it.
+    /// Whether a given step to an end with steadiness `s` fails: it is near a singular position,
+    /// and its error is much larger than the `largest` before.
     pub(crate) fn errs(&self, s: f64, error: f64, largest: f64) -> bool {
         let from = self.last[0].map_or(s, |(_, s1)| s1);
         self.magnified(s.min(from)) > SUSPICIOUS && error > ERROR.max(MORE_ERROR * largest)
     }
 }
 
-/// A number of either sign and of a size from 0.5 to 1.5, the same for the same `n` and without linear
-/// relations between several `n`: the finaliser of SplitMix64 (Steele, Lea & Flood 2014). Multiples of an
-/// irrational number would not do: u₁ − u₃ − u₅ + u₇ = 0 is the combination of rows that vanishes where
-/// the bars of a parallelogram are in line.
+/// A number of either sign with absolute value from 0.5 to 1.5, a function of `n` without linear
+/// relations: the finaliser of SplitMix64 (Steele, Lea & Flood 2014). Multiples of an irrational
+/// number have relations: u₁ − u₃ − u₅ + u₇ = 0 is the dependent combination of rows where the bars
+/// of a parallelogram are in line.
 fn irregular(n: usize) -> f64 {
     let mut x = (n as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -127,7 +127,7 @@ fn irregular(n: usize) -> f64 {
     sign * (0.5 + fraction)
 }
 
-/// Largest magnification that a step may end with, by the tolerance that steps follow if they do.
+/// Largest magnification at the end of a step, by the tolerance of adaptive steps.
 pub(crate) fn most(tolerance: Option<f64>) -> f64 {
     match tolerance {
         Some(tolerance) => {
@@ -150,7 +150,7 @@ mod tests {
             rhs: Vec::new(),
             still: Vec::new(),
         };
-        // Its zero is at 1, on a line and on a parabola.
+        // The zero is at 1, for a line and for a parabola.
         for bent in [0.0, 0.3] {
             seen.last = [None, None];
             let s = |t: f64| (1.0 - t) * (1.0 + bent * t);
@@ -161,7 +161,7 @@ mod tests {
             assert!((foreseen - 1.0).abs() < 1e-14, "{foreseen}");
             assert!(!seen.too_close(0.75, foreseen) && seen.too_close(0.95, foreseen));
             seen.see(0.75, s(0.75));
-            // One that rises has none ahead.
+            // An increasing steadiness has no zero ahead.
             assert_eq!(seen.foresee(1.25, 0.4), None);
         }
         assert_eq!(seen.magnified(0.1), 10.0);

@@ -1,14 +1,14 @@
-//! What loads and drives that depend on time say of the steps.
+//! Conditions on the steps from loads and drives that depend on time.
 
 use crate::math::Scalar;
 use crate::model::table::breaks;
 use crate::model::{Model, TimeFunction};
 
-/// Part of a period of the fastest harmonic load that a step may take.
+/// Largest step, as a part of the period of the fastest harmonic load.
 const PART_OF_PERIOD: f64 = 0.25;
 
-/// What the loads and drives of a model say of the steps: fractions of the duration at which steps must end,
-/// ascending, and their largest width.
+/// Conditions on the steps from loads and drives: ascending fractions of the duration at which
+/// steps must end, and the largest width.
 pub(crate) fn load_steps<S: Scalar>(model: &Model<S>, duration: f64) -> (Vec<f64>, f64) {
     let mut stops = Vec::new();
     let mut widest = 1.0_f64;

@@ -1,4 +1,4 @@
-//! What a run leaves behind.
+//! The result of a run.
 
 use super::grid::{Grid, SamplePlace};
 use super::quadrature::Samples;
@@ -12,34 +12,34 @@ use crate::math::{Complex64, Scalar};
 use crate::system::Numbering;
 use crate::system::initial::InitialState;
 
-/// The motion at the sampled instants, and what the adjoint needs of the steps.
+/// The motion at the sampled instants, and the data for the adjoint.
 #[derive(Clone, Debug)]
 pub(crate) struct Trajectory<S: Scalar> {
     /// Numbering of the states.
     pub numbering: Numbering,
-    /// The method that made it.
+    /// The integration method.
     pub method: Method,
-    /// Duration T (s).
+    /// Duration T \[s\].
     pub duration: S,
     /// Ends of the steps.
     pub grid: Grid,
     /// Sampled instants as fractions of T, from 0 to 1.
     pub instants: Vec<f64>,
-    /// Where the sampled instants stand among the steps.
+    /// Positions of the sampled instants relative to the steps.
     pub places: Vec<SamplePlace>,
-    /// Weights of the sampled instants in sums over the motion, which add up to one.
+    /// Weights of the sampled instants in sums over the motion; their sum is one.
     pub weights: Vec<f64>,
     /// Whether the sampled instants with weights are the nodes of the cells of the steps.
     pub has_cells: bool,
-    /// Whether the sampled instants are those that tables and figures show.
+    /// By instant: whether tables and figures show it.
     pub shown: Vec<bool>,
-    /// Positions, one row of `numbering.positions()` an instant.
+    /// Positions: one row of `numbering.positions()` per instant.
     pub q: Vec<S>,
-    /// Velocities, one row of `numbering.velocities()` an instant.
+    /// Velocities: one row of `numbering.velocities()` per instant.
     pub v: Vec<S>,
-    /// Accelerations v̇ as the method sees them.
+    /// Accelerations v̇ of the method: one row of `numbering.velocities()` per instant.
     pub a: Vec<S>,
-    /// Multipliers λ of the constraints; empty if the method does not march them (see
+    /// Multipliers λ: one row per instant; empty if the method does not compute them (see
     /// [`multipliers`](super::multipliers)).
     pub lambda: Vec<S>,
     /// The consistent start.
@@ -47,13 +47,13 @@ pub(crate) struct Trajectory<S: Scalar> {
     /// Largest estimated error of a step, relative to the scene's lengths and speeds; zero if the
     /// method has no estimate.
     pub step_error: f64,
-    /// What the adjoint needs.
+    /// Data for the adjoint.
     pub tape: Tape<S>,
     /// Work spent.
     pub counts: WorkCounts,
 }
 
-/// What the adjoint of each family of methods needs.
+/// Data for the adjoint, by family of methods.
 #[derive(Clone, Debug)]
 pub(crate) enum Tape<S: Scalar> {
     /// Of the explicit method.
@@ -63,7 +63,7 @@ pub(crate) enum Tape<S: Scalar> {
 }
 
 impl<S: Scalar> Trajectory<S> {
-    /// A trajectory that holds its start only.
+    /// A trajectory that has only its start.
     pub(crate) fn start(
         numbering: Numbering,
         method: Method,
@@ -92,7 +92,7 @@ impl<S: Scalar> Trajectory<S> {
         }
     }
 
-    /// Makes room for the history of `steps` steps and `samples` instants.
+    /// Reserves memory for `steps` steps and `samples` instants.
     pub(crate) fn reserve(&mut self, steps: usize, samples: usize) {
         let (nq, nv) = (self.numbering.positions(), self.numbering.velocities());
         self.grid.reserve(steps);
@@ -120,7 +120,7 @@ impl<S: Scalar> Trajectory<S> {
         self.lambda.extend_from_slice(lambda);
     }
 
-    /// Takes the cells of steps that are given, if these are what the motion is sampled in.
+    /// Takes the cells of given steps, if the motion is sampled at their nodes.
     pub(super) fn take_cells(&mut self, spacing: &Spacing, samples: Samples) {
         self.has_cells = matches!(samples, Samples::Quadrature(_));
         if let Spacing::Frozen(grid) = spacing {
@@ -128,7 +128,7 @@ impl<S: Scalar> Trajectory<S> {
         }
     }
 
-    /// Adds the weight of the start of a step to the last instant so far.
+    /// Adds the weight of the start of a step to the last instant.
     pub(super) fn weigh_start(&mut self, step: &Step) {
         if let Some(weight) = self.weights.last_mut() {
             *weight += step.first_weight();
@@ -140,7 +140,7 @@ impl<S: Scalar> Trajectory<S> {
         (0..=self.last()).filter(|&k| self.shown[k]).collect()
     }
 
-    /// Memory of the samples and of what is kept for the adjoint (bytes).
+    /// Memory of the samples and of the data for the adjoint \[bytes\].
     pub(crate) fn bytes(&self) -> [usize; 2] {
         let samples = [&self.q, &self.v, &self.a, &self.lambda];
         let samples: usize = samples.iter().map(|all| all.len()).sum();
@@ -152,8 +152,7 @@ impl<S: Scalar> Trajectory<S> {
         [samples * number, tape]
     }
 
-    /// How a run of so many steps would be kept for gradients in the same memory, and what that takes
-    /// (bytes).
+    /// The schedule of a run of `steps` steps in the same memory, and its memory \[bytes\].
     pub(crate) fn checkpoint_plan(&self, steps: usize) -> (Schedule, usize) {
         match &self.tape {
             Tape::Explicit(tape) => tape.checkpoint_plan(steps),
@@ -171,7 +170,7 @@ impl<S: Scalar> Trajectory<S> {
         self.instants.len() - 1
     }
 
-    /// Time of instant k (s).
+    /// Time of instant k \[s\].
     pub(crate) fn time(&self, k: usize) -> S {
         self.duration * self.instants[k]
     }

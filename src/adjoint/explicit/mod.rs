@@ -1,7 +1,7 @@
 //! The backward march through DOP853 and its projections.
 //!
-//! With k_i = (q̇_i, v̇_i) the derivatives at the stages, a bar the derivative of the function, and
-//! F the map from a stage's state to its derivatives, step n backwards is
+//! Let k_i = (q̇_i, v̇_i) be the derivatives at the stages, let a bar denote the derivative of the
+//! function, and let F map the state of a stage to its derivatives. Step n backwards is
 //!
 //! ```text
 //! ȳ*  += Fᵀ k̄_0(n+1)                           the node's own derivatives
@@ -11,8 +11,8 @@
 //! df/dh = Σ k̄_j · k_j / h
 //! ```
 //!
-//! (Hager 2000; Sandu 2006.) One symmetric solve a stage and function; the factors of a stage
-//! serve all functions.
+//! (Hager 2000; Sandu 2006.) It needs one symmetric solve per stage and function. All functions
+//! share the factors of a stage.
 
 mod projection;
 mod sweep;
@@ -52,7 +52,7 @@ pub(super) fn gradients(
         let samples = first..=sample;
         sample = first - 1;
         counts.steps += 1;
-        // The end of the motion may be of no concern to any function.
+        // No function may depend on the end of the motion.
         let concerns =
             |sweep: &Sweep| sweep.begun || samples.clone().any(|k| sweep.of.depends_on(k));
         if !sweeps.iter().any(concerns) {
@@ -132,7 +132,7 @@ pub(super) fn gradients(
     })
 }
 
-/// The first of the samples up to `last` that stand in step n.
+/// The first sample, among those up to `last`, that lies in step n.
 fn first_sample(run: &Trajectory<f64>, n: usize, last: usize) -> usize {
     let earlier = run.places[..=last].iter().rev();
     last + 1 - earlier.take_while(|place| place.step() == n).count()

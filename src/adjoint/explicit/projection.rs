@@ -8,12 +8,12 @@ use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::bodies::{self, positions_of, velocities_of};
 
-/// Most steps of refinement; a correction as large as a millionth needs two.
+/// Largest number of refinement steps. A correction of 1e-6 needs two.
 const REFINEMENTS: usize = 40;
 
 /// Pulls the cotangents of the projected state (`sweep.of`) back to the state before the
-/// projection; `field` stands at the projected state, at the `fraction` of the duration, and is
-/// factorised. `scratch` receives derivatives that are of no use.
+/// projection. `field` is evaluated and factorised at the projected state, at the `fraction` of the
+/// duration. `scratch` receives derivatives that are not used.
 pub(super) fn pull_back(
     sweep: &mut Sweep,
     field: &mut Accelerations<f64>,
@@ -36,7 +36,7 @@ pub(super) fn pull_back(
     let mut y = workspace.zeros(nv);
     bodies::tangent_of_cotangent(numbering, to.q, &q.value, &mut y);
 
-    // M δ + Gᵀσ = 0, G (v~ + δ) + Φ_t = 0: the cotangent loses its part Gᵀχ, which is as small as the
+    // M δ + Gᵀσ = 0, G (v~ + δ) + Φ_t = 0: subtract Gᵀχ from the cotangent. It is as small as the
     // step.
     let mut psi = workspace.copy(&v.value);
     psi.resize(nv + to.lambda.len(), 0.0);
@@ -57,8 +57,8 @@ pub(super) fn pull_back(
     by_time += field.pull_rates(&psi[nv..], &mut more, cot);
     y.iter_mut().zip(&more).for_each(|(y, &m)| *y += m);
 
-    // M T⁺ (q − q~) + Gᵀs = 0, Φ(q, t) = 0: its matrix differs from the factorised one by terms X of
-    // the size of the correction, which iterative refinement takes in.
+    // M T⁺ (q − q~) + Gᵀs = 0, Φ(q, t) = 0. The matrix differs from the factorised one by terms X
+    // of the size of the correction. Iterative refinement accounts for them.
     workspace.back([psi, reaction]);
     let mut psi = y;
     psi.resize(nv + to.lambda.len(), 0.0);
@@ -85,7 +85,7 @@ pub(super) fn pull_back(
         }
         before = moved;
     }
-    // M ψ = ȳ − Gᵀχ − Xᵀψ: what the cotangent loses beside ȳ.
+    // M ψ = ȳ − Gᵀχ − Xᵀψ: the part that is subtracted from the cotangent ȳ.
     more.iter_mut().zip(&rest).for_each(|(m, &x)| *m -= x);
     psi.iter_mut().for_each(|x| *x = -*x);
     field.add_reactions(&psi[nv..], &mut more);
@@ -105,7 +105,8 @@ pub(super) fn pull_back(
         let turned: Vec3<f64> = rotation::angular_velocity(&p, &away);
         cot.bodies[i].mass += psi_r.dot(&(r - r_raw));
         cot.bodies[i].inertia += psi_theta * turned.transpose();
-        // The projected Euler parameters are of unit length whatever the cotangent along them.
+        // Projected Euler parameters have unit length, so the radial part of the cotangent has no
+        // effect.
         let radial: f64 = (0..4).map(|k| p[k] * q.value[o + 3 + k]).sum();
         for k in 0..4 {
             change[o + 3 + k] -= radial * p[k];
@@ -115,8 +116,8 @@ pub(super) fn pull_back(
     workspace.back([psi, more, change]);
 }
 
-/// Adds Xᵀψ: the derivative of the position projection's equations in the projected positions, without
-/// the mass matrix, transposed.
+/// Adds Xᵀψ: the transposed derivative, in the projected positions, of the equations of the
+/// position projection without the mass matrix.
 fn add_difference(
     field: &mut Accelerations<f64>,
     data: StepView<f64>,

@@ -1,4 +1,4 @@
-//! One function on its way back through the stages of a step.
+//! The cotangents of one function during the backward march through a step.
 
 use super::row;
 use crate::adjoint::sensitivity::{Sensitivity, add_scaled, dot};
@@ -13,23 +13,23 @@ use crate::system::accelerations::Accelerations;
 use crate::system::bodies;
 use std::ops::Range;
 
-/// One function with its cotangents of the stages.
+/// One function with the cotangents of the stages.
 pub(super) struct Sweep<'a> {
-    /// Cotangents of the node after the step, and of the parameters.
+    /// Cotangents of the node after the step and of the parameters.
     pub of: Sensitivity<'a>,
-    /// Cotangents of q̇ and v̇ at the node after the step, as the step after it uses them.
+    /// Cotangents of q̇ and v̇ at the node after the step, from the next step.
     pub node: (Vec<f64>, Vec<f64>),
-    /// Whether the march has come to an instant that the function depends on: before, every cotangent
-    /// is zero.
+    /// Whether the march has reached an instant on which the function depends. Until then every
+    /// cotangent is zero.
     pub begun: bool,
-    /// Which stages have cotangents.
+    /// By stage: whether it has cotangents.
     pub touched: [bool; ALL],
-    /// Cotangents of q̇ and v̇ at the stages.
+    /// Cotangents of q̇ and v̇ at the stages: one row per stage.
     qdot: Vec<f64>,
     a: Vec<f64>,
-    /// What the step adds to the cotangents on the way to the node before it.
+    /// Contributions of the step to the cotangents of the node before it.
     before: (Vec<f64>, Vec<f64>),
-    /// Vectors that are not in use.
+    /// Unused vectors.
     pub workspace: Workspace,
 }
 
@@ -48,8 +48,8 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Adds the function's own derivatives at sample k; `inside` is the step that it stands in and
-    /// the node that this starts from.
+    /// Adds the derivatives of the function at sample k. `inside` is the step of the sample and the
+    /// node from which it starts.
     pub(crate) fn sample(
         &mut self,
         scene: &Scene<f64>,
@@ -69,7 +69,8 @@ impl<'a> Sweep<'a> {
             (SamplePlace::Inside { step, theta }, Some((data, from))) => {
                 let width = run.grid.width(step);
                 let h = run.duration * width;
-                // A function looks at few bodies: what lies between the first and the last.
+                // A function depends on few bodies. Only the range from the first to the last is
+                // processed.
                 let bodies = touched_bodies(numbering, [y, v, a]);
                 let (from_q, to_q) = (
                     numbering.position(bodies.start),
@@ -97,7 +98,7 @@ impl<'a> Sweep<'a> {
                     add_scaled(by_a, h * w, v);
                     if accelerated {
                         add_scaled(by_a, rate, a);
-                        // Accelerations do not scale with the step, as `leave_step` takes it.
+                        // Accelerations are not multiplied by h, which `leave_step` assumes.
                         let slope = dot(a, &row(data.a, nv, i)[in_v.clone()]);
                         self.of.by_duration -= rate * slope / run.duration;
                     }
@@ -115,8 +116,8 @@ impl<'a> Sweep<'a> {
         self.workspace.back([q]);
     }
 
-    /// Pulls the cotangents of the derivatives at stage i back to its state (returned), where `field`
-    /// stands.
+    /// Pulls the cotangents of the derivatives at stage i back to its state, at which `field` is
+    /// evaluated. Returns the cotangents (q, v) of this state.
     pub(crate) fn stage(
         &mut self,
         i: usize,
@@ -142,8 +143,8 @@ impl<'a> Sweep<'a> {
         (q_bar, v_bar)
     }
 
-    /// Hands the cotangents of a stage's state on to the stages that it was made of and to the node
-    /// before the step.
+    /// Adds the cotangents of a stage's state to those of the earlier stages and of the node before
+    /// the step.
     pub(crate) fn spread(&mut self, weights: &[(usize, f64)], (q, v): (&[f64], &[f64]), h: f64) {
         add_scaled(&mut self.before.0, 1.0, q);
         add_scaled(&mut self.before.1, 1.0, v);
@@ -158,8 +159,8 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Pulls the cotangents of the derivatives at the node after the step back to its state, where
-    /// `field` stands.
+    /// Pulls the cotangents of the derivatives at the node after the step back to its state, at
+    /// which `field` is evaluated.
     pub(crate) fn node(
         &mut self,
         field: &mut Accelerations<f64>,
@@ -203,7 +204,7 @@ impl<'a> Sweep<'a> {
         self.workspace.back([q, v]);
     }
 
-    /// Hands the cotangents of the unprojected end on to the stages and to the node before.
+    /// Adds the cotangents of the unprojected end to those of the stages and of the node before.
     pub(crate) fn end(&mut self, h: f64) {
         let q = self.workspace.copy(&self.of.q.value);
         let v = self.workspace.copy(&self.of.v.value);
@@ -211,9 +212,8 @@ impl<'a> Sweep<'a> {
         self.workspace.back([q, v]);
     }
 
-    /// Moves to the node before a step of a run of this duration. Whatever the derivatives k_i of the
-    /// stages were used for, it was with weights that are proportional to the step's size h, and so
-    /// h df/dh = Σ k̄_i · k_i.
+    /// Moves to the node before a step of a run with this duration. The derivatives k_i of the
+    /// stages always have weights proportional to the step size h, so h df/dh = Σ k̄_i · k_i.
     pub(crate) fn leave_step(&mut self, data: StepView<f64>, duration: f64) {
         let (nq, nv) = (self.before.0.len(), self.before.1.len());
         for i in (0..ALL).filter(|&i| self.touched[i]) {
@@ -233,7 +233,7 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// Bodies from the first to the last that have a cotangent.
+/// Range from the first to the last body with a cotangent.
 fn touched_bodies(numbering: &Numbering, cotangents: [&[f64]; 3]) -> Range<usize> {
     let touched = |body: &usize| {
         let o = numbering.velocity(*body);

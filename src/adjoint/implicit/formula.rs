@@ -1,4 +1,4 @@
-//! A step of a formula, backwards.
+//! A backward step of a one-stage formula.
 
 use super::sweep::{Pair, Sweep, add, add_state, clear, copy, move_back, pair, rates_of, work};
 use crate::adjoint::sensitivity::add_scaled;
@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::system::RedundantRows;
 use crate::system::{Numbering, bodies};
 
-/// The iteration matrix, which every step fills again, and vectors that every function does.
+/// The iteration matrix of the present step, and workspace that all functions share.
 pub(super) struct BackwardStage<'a> {
     model: &'a Model<f64>,
     numbering: &'a Numbering,
@@ -20,7 +20,7 @@ pub(super) struct BackwardStage<'a> {
     matrix: SparseMatrix<f64>,
     split: SplitMatrix,
     factors: SparseLu<f64>,
-    /// Cotangents of the increment, of all that stands at the stage, and of the rates by the adjoint.
+    /// Cotangents of the increment, of the whole stage, and of the rates by the adjoint.
     increment: Pair,
     total: Pair,
     own: Pair,
@@ -49,7 +49,7 @@ impl<'a> BackwardStage<'a> {
         }
     }
 
-    /// The plan with these rows left out, if any are.
+    /// The plan without these rows, if any.
     pub(crate) fn leaving_out(&mut self, rows: Option<&RedundantRows>) -> &mut Self {
         if let Some(rows) = rows {
             self.equations.leave_out(rows);
@@ -60,7 +60,7 @@ impl<'a> BackwardStage<'a> {
     /// Moves all functions from the end of the step to its start.
     ///
     /// # Errors
-    /// What the equations are singular in.
+    /// The equation with a singular matrix.
     pub(crate) fn step(
         &mut self,
         formula: &Formula,
@@ -81,7 +81,7 @@ impl<'a> BackwardStage<'a> {
             .map_err(|singular| equations.describe_reduced(singular.column))?;
         counts.factorisations += 1;
         for sweep in sweeps {
-            // By the increment Δ: the rates' and the memory's part.
+            // By the increment Δ: contributions of the rates and the memory.
             let (by_increment, total) = (&mut self.increment, &mut self.total);
             clear(by_increment);
             add(by_increment, c, &sweep.rates);

@@ -1,7 +1,7 @@
 //! The backward march through the implicit methods.
 //!
-//! With κ the cotangent of the rates ẏ of a stage and m̄ those of a formula's memory, step k of a
-//! formula backwards is
+//! Let κ be the cotangent of the rates ẏ of a stage, and m̄ those of a formula's memory. Step k of
+//! a formula backwards is
 //!
 //! ```text
 //! Jᵀ ψ  = −[ Tᵀ(ȳ_k + (c/h) κ⁰ + Σ f_i m̄_i') ; 0 ; 0 ]
@@ -10,16 +10,16 @@
 //! df/dh = −κ · ẏ / h,             df/dx += ψᵀ ∂F/∂x
 //! ```
 //!
-//! and a step of Radau IIA with the increments Z_j, Ẏ_i = Σ_j D_ij Z_j / h, and their own cotangents
-//! Z̄_j from the dense output,
+//! For Radau IIA with the increments Z_j and Ẏ_i = Σ_j D_ij Z_j / h, let Z̄_j be the cotangents of
+//! Z_j from the dense output. A step backwards is
 //!
 //! ```text
 //! Σ_i [δ_ij F_y + (D_ij/h) F_ẏ]_iᵀ ψ_i = −Tᵀ( δ_js ȳ_n+1 + Z̄_j + Σ_i (D_ij/h) κ⁰_i )
 //! κ_i = κ⁰_i + F_ẏ,iᵀ ψ_i,        ȳ_n = −Σ_j ( Z̄_j + Σ_i (D_ij/h) κ_i )
 //! ```
 //!
-//! One factorisation a step serves all functions. (Kennedy & Boopathy, eq. 6 and 7, in increments
-//! instead of values, and with the initial conditions that the paper leaves out.)
+//! All functions share one factorisation per step. (Kennedy & Boopathy, eq. 6 and 7, in increments
+//! instead of values, and with the initial conditions, which the paper omits.)
 
 mod formula;
 mod radau;

@@ -1,4 +1,4 @@
-//! A step of Radau IIA, backwards: the coupled system of all stages.
+//! A backward step of Radau IIA: the coupled system of all stages.
 
 use super::sweep::{Pair, Sweep, add, add_state, clear, copy, move_back, pair, rates_of, work};
 use crate::adjoint::sensitivity::add_scaled;
@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::system::RedundantRows;
 use crate::system::{Numbering, bodies};
 
-/// The coupled matrix, which every step fills again, and vectors that every function does.
+/// The coupled matrix of the present step, and workspace that all functions share.
 pub(super) struct BackwardStage<'a> {
     model: &'a Model<f64>,
     numbering: &'a Numbering,
@@ -24,18 +24,18 @@ pub(super) struct BackwardStage<'a> {
     /// Cotangents of the increments, and of the rates of a stage by its adjoint.
     by: Vec<Pair>,
     own: Pair,
-    /// Adjoint of all stages, and that of one in velocity numbering.
+    /// Adjoint of all stages, and that of one stage in velocity numbering.
     psi: Vec<f64>,
     part: Vec<f64>,
-    /// What the equations of each stage say of its state.
+    /// By stage: derivative of its equations in its state, times the adjoint.
     changes: Vec<Vec<f64>>,
 }
 
-/// What the coupled matrix consists of, each in the unknowns of one stage.
+/// Blocks of the coupled matrix, each in the unknowns of one stage.
 struct Blocks {
     /// The matrix of each stage.
     stages: Vec<SplitMatrix>,
-    /// The derivative of the rates of stage i in the increments of stage j, all i for the first j.
+    /// Derivatives of the rates of stage i in the increments of stage j; all i for the first j.
     beside: Vec<SparseMatrix<f64>>,
 }
 
@@ -101,7 +101,7 @@ impl<'a> BackwardStage<'a> {
         }
     }
 
-    /// The plan with these rows left out, if any are.
+    /// The plan without these rows, if any.
     pub(crate) fn leaving_out(&mut self, rows: Option<&RedundantRows>) -> &mut Self {
         if let Some(rows) = rows {
             self.equations.leave_out(rows);
@@ -112,7 +112,7 @@ impl<'a> BackwardStage<'a> {
     /// Moves all functions from the end of the step to its start.
     ///
     /// # Errors
-    /// What the equations are singular in.
+    /// The equation with a singular matrix.
     pub(crate) fn step(
         &mut self,
         stages: &[Stage<f64>],
@@ -133,7 +133,7 @@ impl<'a> BackwardStage<'a> {
         let last = stages.len() - 1;
         let (psi, part, by) = (&mut self.psi, &mut self.part, &mut self.by);
         for sweep in sweeps {
-            // The step leaves its increment in front of a formula's memory.
+            // The first memory vector of a formula is the increment of the step.
             let newest = &mut sweep.increments[last];
             let newest = [&mut newest.0, &mut newest.1];
             for (memory, increment) in sweep.memory.iter_mut().zip(newest) {
@@ -143,7 +143,7 @@ impl<'a> BackwardStage<'a> {
                     memory.rotate_left(1);
                 }
             }
-            // By the increments Z_j: their own and the rates' part.
+            // By the increments Z_j: their own contribution and that of the rates.
             for (by, own) in by.iter_mut().zip(&sweep.increments) {
                 copy(by, own);
             }
@@ -200,7 +200,7 @@ impl<'a> BackwardStage<'a> {
     }
 }
 
-/// Hands the cotangent of the rates of stage i on to the increments.
+/// Adds the cotangent of the rates of stage i to those of the increments.
 fn spread(scheme: &Scheme, i: usize, rates: &Pair, h: f64, by: &mut [Pair]) {
     for (by, d) in by.iter_mut().zip(&scheme.rates[i]) {
         add(by, d / h, rates);

@@ -1,4 +1,4 @@
-//! One function on its way back through implicit steps.
+//! The cotangents of one function during the backward march through implicit steps.
 
 use crate::adjoint::sensitivity::{Sensitivity, add_scaled, dot};
 use crate::functions::Scene;
@@ -11,21 +11,21 @@ use crate::integrate::{Method, Trajectory};
 use crate::system::Numbering;
 use crate::system::bodies;
 
-/// Cotangents of positions (seven coordinates a body) and velocities, or of their increments or
+/// Cotangents of positions (seven coordinates per body) and velocities, or of their increments or
 /// rates.
 pub(super) type Pair = (Vec<f64>, Vec<f64>);
 
-/// One function with the cotangents that the steps hand on.
+/// One function with the cotangents that pass from step to step.
 pub(super) struct Sweep<'a> {
-    /// Cotangents of the state at the step's end, and of the parameters.
+    /// Cotangents of the state at the step's end and of the parameters.
     pub of: Sensitivity<'a>,
-    /// Cotangents of the rates at the step's end (at the start of all steps: of the initial rates).
+    /// Cotangents of the rates at the step's end (finally of the initial rates).
     pub rates: Pair,
-    /// Cotangents of the formula's memory after the step, of q and of v.
+    /// Cotangents of the formula's memory after the step, for q and v.
     pub memory: [Vec<Vec<f64>>; 2],
-    /// Cotangents of the increments of the stages, by the dense output.
+    /// Cotangents of the increments of the stages, from the dense output.
     pub increments: Vec<Pair>,
-    /// Cotangents of the state at the step's start, by the dense output.
+    /// Cotangents of the state at the step's start, from the dense output.
     pub before: Pair,
     /// Cotangent of the positions at a sample, and the motion there.
     q: Vec<f64>,
@@ -50,8 +50,8 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Adds the function's own derivatives at sample k; `step` are the coefficients, the state that
-    /// the step starts from and its stages.
+    /// Adds the derivatives of the function at sample k. `step` has the coefficients, the state at
+    /// the start of the step, and its stages.
     pub(crate) fn sample(
         &mut self,
         scene: &Scene<f64>,
@@ -91,7 +91,7 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Hands the cotangents of a memory that started as h times the initial rates on to these.
+    /// Pulls the cotangents of a memory that starts as h times the initial rates back to these.
     pub(crate) fn starting_memory(&mut self, start: &Stage<f64>, h: f64, width: f64) {
         let [by_q, by_v] = &self.memory;
         for (q, v) in by_q.iter().zip(by_v) {
@@ -113,11 +113,11 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// Moves the cotangent of a state from the end of a step to its start. What the equations of a
-/// stage say of it, F_yᵀψ (`change`, tangent positions and velocities), is as small as the step and
-/// is added as such; the part of `total` (the cotangent of the stage's positions, with those of
-/// its increment and rates) along the Euler parameters, which the equations do not see, is taken
-/// from it directly.
+/// Moves the cotangent of a state from the end of a step to its start. The derivative F_yᵀψ of the
+/// equations of a stage (`change`, in tangent positions and velocities) is as small as the step and
+/// is added. The equations do not depend on the Euler parameters along themselves: that part is
+/// taken from `total`, the cotangent of the stage's positions with those of its increment and
+/// rates.
 pub(super) fn move_back(
     sweep: &mut Sweep,
     numbering: &Numbering,
@@ -165,7 +165,7 @@ pub(super) fn add_state(out: &mut Pair, of: &Sensitivity) {
     add_scaled(&mut out.1, 1.0, &of.v.value);
 }
 
-/// A pair of zeros.
+/// A pair of zeros, of lengths n_q and n_v.
 pub(super) fn pair(numbering: &Numbering) -> Pair {
     (
         vec![0.0; numbering.positions()],
@@ -173,13 +173,13 @@ pub(super) fn pair(numbering: &Numbering) -> Pair {
     )
 }
 
-/// Makes a pair all zero.
+/// Sets a pair to zero.
 pub(super) fn clear(x: &mut Pair) {
     x.0.fill(0.0);
     x.1.fill(0.0);
 }
 
-/// Makes a pair equal to another.
+/// Copies a pair.
 pub(super) fn copy(out: &mut Pair, x: &Pair) {
     out.0.copy_from_slice(&x.0);
     out.1.copy_from_slice(&x.1);

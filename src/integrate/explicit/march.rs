@@ -1,4 +1,4 @@
-//! The march of the explicit method over given or chosen steps.
+//! The march of the explicit method over given or adaptive steps.
 
 use super::record::{Node, NodeView};
 use super::step::{StepFailure, Stepper};
@@ -22,12 +22,13 @@ use crate::system::initial::InitialState;
 use crate::system::redundant_rows::EXCHANGE_WEIGHT;
 use crate::system::{BodyMotion, Numbering};
 
-/// Correction of the velocities, relative to their scale, that is none of the step's error.
+/// A correction of the velocities above this, relative to their scale, is no error of the step.
 const LOST: f64 = 0.01;
-/// Estimated error of a given step, relative to the scale, that is no step's any more.
+/// A given step fails above this estimated error, relative to the scale.
 const UNSTABLE: f64 = 0.1;
-/// Where in a step it is looked at whether the joints stay closed, and by how much they may open: relative
-/// to the error that steps may have, of which so much is round-off.
+/// Fractions of a step at which the constraints are checked, and their largest violation: relative
+/// to the allowed error of steps, for adaptive and for given steps. The allowed error is at least
+/// the last.
 const LOOKED_AT: [f64; 2] = [0.2, 0.75];
 const OPEN: f64 = 100.0;
 const OPEN_GIVEN: f64 = 1e3;
@@ -68,7 +69,7 @@ pub(crate) fn march<S: SolveScalar>(
         Spacing::Tolerance(tolerance) => Some(tolerance),
         Spacing::Steps(_) | Spacing::Frozen(_) => None,
     });
-    // Kept steps were found good where they were chosen, and are judged by their error.
+    // Frozen steps were not stiff when they were chosen. Their error is checked instead.
     let mut stiffness = match settings.spacing {
         Spacing::Frozen(_) => None,
         Spacing::Steps(_) => Some(Stiffness::new(Watch::Stability)),
@@ -82,7 +83,7 @@ pub(crate) fn march<S: SolveScalar>(
         .map_or(&run.initial.left_out, |(_, rows)| rows);
     stepper.field.leave_out(left_out);
     run.grid.leave_out(left_out);
-    // The history of steps that are chosen on the way grows with them.
+    // The history of adaptive steps grows with them.
     reserve(&mut run, settings);
     if stepper.field.closes_loops() {
         let before = stepper.field.memory();
@@ -91,7 +92,7 @@ pub(crate) fn march<S: SolveScalar>(
             let steady = steadiness.of(&mut stepper.field, &scale);
             steadiness.see(0.0, steady);
         }
-        // Steps that are made again begin without it.
+        // Replayed steps begin without this factorisation.
         stepper.field.restore(&before);
     }
     let mut ledger = Ledger::open(model, settings, &scale);
@@ -108,7 +109,7 @@ pub(crate) fn march<S: SolveScalar>(
             .stages(from.view(), (duration * run.grid.reached(), h))
             .map(|()| error(&mut stepper, &scale, from.view(), h))
             .and_then(|error| {
-                // A step that may be refused for another is judged by the tolerance.
+                // The tolerance judges steps that may be replaced by others.
                 if given && (error > UNSTABLE || error.is_nan()) {
                     return Err(StepFailure::Inaccurate(error));
                 }
@@ -132,7 +133,7 @@ pub(crate) fn march<S: SolveScalar>(
                 if steadiness.magnified(steady) > most || errs {
                     return Err(StepFailure::Close(ahead.unwrap_or(end)));
                 }
-                // By the matrix at the end of the step, before those inside it.
+                // Use the matrix at the end of the step, before those inside it.
                 if choices.is_empty() {
                     exchanged = stepper.field.exchanged(EXCHANGE_WEIGHT);
                 }
@@ -183,7 +184,7 @@ pub(crate) fn march<S: SolveScalar>(
             steadiness.see(end, steady);
             controller.expect(steadiness.magnified(steady), ahead);
         }
-        // The equations were left standing at the end of the step.
+        // The equations are still evaluated at the end of the step.
         watch(model, (&stepper.field.motions, duration * end), number)?;
         if let Some(ledger) = ledger.as_mut().filter(|_| Ledger::is_due(number)) {
             ledger.enter(model, &stepper.field.motions, duration.re() * end);
@@ -216,7 +217,7 @@ pub(crate) fn march<S: SolveScalar>(
             tape.leave(number, (to.clone(), stepper.field.memory()));
         }
         std::mem::swap(&mut from, &mut to);
-        // Rows are exchanged between steps, so that every step has smooth equations.
+        // Rows are exchanged only between steps, so that every step has smooth equations.
         let known = choices.iter().find(|(from, _)| *from == number + 1);
         if let Some(rows) = known.map(|(_, rows)| rows).or(exchanged.as_ref()) {
             stepper.field.leave_out(rows);
@@ -234,7 +235,7 @@ pub(crate) fn march<S: SolveScalar>(
     Ok(run)
 }
 
-/// Makes room for the history of a run whose steps are known.
+/// Reserves memory for the history of a run whose steps are known.
 fn reserve<S: SolveScalar>(run: &mut Trajectory<S>, settings: &Settings) {
     let (steps, grid) = match &settings.spacing {
         Spacing::Steps(steps) => (*steps, None),
@@ -252,7 +253,7 @@ fn tape_of<S: SolveScalar>(run: &mut Trajectory<S>) -> &mut Tape<S> {
     tape
 }
 
-/// How far the motion inside the step leaves the joints, relative to the scene's scale.
+/// Violation of the constraints inside the step, relative to the scene's scale.
 fn open<S: SolveScalar>(
     stepper: &mut Stepper<S>,
     scale: &Scale,
@@ -264,7 +265,7 @@ fn open<S: SolveScalar>(
     if a.is_nan() || a > b { a } else { b }
 }
 
-/// Adds the instants of the step that was just accepted.
+/// Adds the samples of the accepted step.
 fn sample<S: SolveScalar>(
     run: &mut Trajectory<S>,
     stepper: &mut Stepper<S>,
@@ -310,8 +311,8 @@ fn error<S: SolveScalar>(stepper: &mut Stepper<S>, scale: &Scale, from: NodeView
     }
 }
 
-/// Whether the projection takes away much of the velocities, as where branches of the motion meet and
-/// the step ends on another than it came on: there it is no correction of the step's error.
+/// Whether the projection removes a large part of the velocities. This happens where branches of
+/// the motion meet and the step changes to another branch; it is no correction of the step's error.
 fn leaves_branch<S: SolveScalar>(
     stepper: &mut Stepper<S>,
     scale: &Scale,
@@ -323,7 +324,7 @@ fn leaves_branch<S: SolveScalar>(
     lost.sqrt() > LOST
 }
 
-/// The body or joint that an unknown of the index-1 equations belongs to.
+/// The body or joint of an unknown of the index-1 equations.
 fn describe<S>(model: &Model<S>, numbering: &Numbering, singular: SingularMatrix) -> String {
     let nv = numbering.velocities();
     match singular.column {
@@ -338,7 +339,7 @@ fn describe<S>(model: &Model<S>, numbering: &Numbering, singular: SingularMatrix
     }
 }
 
-/// What a step that could not be made is told as, with its number and the time of its end.
+/// The failure of a step as an [`IntegrationFailure`], with its number and the time of its end.
 pub(crate) fn failed<S: SolveScalar>(
     failure: StepFailure,
     (model, numbering): (&Model<S>, &Numbering),

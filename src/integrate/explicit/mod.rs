@@ -1,9 +1,9 @@
 //! The explicit Runge–Kutta pair DOP853 with projection.
 //!
 //! ```text
-//! q̇ = T(q) v,     v̇ = a(q, v)  of  M a + Gᵀλ = f,  G a = γ         12 stages a step
-//! W (q* − q) + G(q*)ᵀ s = 0,  Φ(q*) = 0                            then positions are projected
-//! M (v* − v) + G(q*)ᵀ σ = 0,  G(q*) v* = 0                         and velocities
+//! q̇ = T(q) v,     v̇ = a(q, v)  of  M a + Gᵀλ = f,  G a = γ         12 stages per step
+//! W (q* − q) + G(q*)ᵀ s = 0,  Φ(q*) = 0                            projection of positions
+//! M (v* − v) + G(q*)ᵀ σ = 0,  G(q*) v* = 0                         projection of velocities
 //! ```
 //!
 //! (Hairer & Wanner 1996, *Solving Ordinary Differential Equations II*, section VII.2.)

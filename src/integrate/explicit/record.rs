@@ -1,11 +1,11 @@
-//! What a step of DOP853 computes: its end, its stages, and the motion between them.
+//! The results of a step of DOP853: its end, its stages, and the motion inside it.
 
 use super::tableau::{ALL, dense_weights};
 use crate::linalg::SolveScalar;
 use crate::math::Scalar;
 use crate::system::Numbering;
 
-/// State at the end of a step, with its accelerations; V is a vector or a slice.
+/// State at the end of a step with its accelerations. V is a vector or a slice.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node<V> {
     /// Positions.
@@ -43,11 +43,11 @@ impl<S> Node<Vec<S>> {
     }
 }
 
-/// Everything that a step computed; stage i stands in row i of `q`, `v`, `qdot`, `a`, `lambda`. V is
-/// a vector or a slice.
+/// All results of a step. Row i of `q`, `v`, `qdot`, `a`, `lambda` belongs to stage i. V is a
+/// vector or a slice.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepData<V> {
-    /// Positions of the stages; their Euler parameters are not of unit length.
+    /// Positions of the stages; their Euler parameters do not have unit length.
     pub q: V,
     /// Velocities of the stages.
     pub v: V,
@@ -72,7 +72,7 @@ pub(crate) struct StepData<V> {
 }
 
 impl<V> StepData<V> {
-    /// Lengths of its vectors for so many stages.
+    /// Lengths of its vectors for a number of stages.
     pub(crate) fn lengths(numbering: &Numbering, stages: usize) -> [usize; 10] {
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         let nc = numbering.constraints();
@@ -142,8 +142,8 @@ impl<S: SolveScalar> StepData<Vec<S>> {
 }
 
 impl<S: SolveScalar> StepData<&[S]> {
-    /// State and derivative at the fraction θ of a step of size h that starts from `node`: q before
-    /// its Euler parameters are brought to unit length, v, and the derivative of v.
+    /// State and derivative at the fraction θ of a step of size h from `node`: q before its Euler
+    /// parameters are normalised, v, and the derivative of v.
     pub(super) fn dense(self, node: Node<&[S]>, h: S, theta: f64, [q, v, a]: [&mut [S]; 3]) {
         let (w, rate) = dense_weights(theta);
         q.copy_from_slice(node.q);
@@ -155,8 +155,8 @@ impl<S: SolveScalar> StepData<&[S]> {
     }
 }
 
-/// Adds `scale` · Σ w_i · (row i of `rows`) to `out`, which is the part of every row that starts at
-/// `at`; rows are `width` long.
+/// Adds `scale` · Σ w_i · (row i of `rows`) to `out`. `out` corresponds to the part of every row
+/// that starts at `at`; rows have length `width`.
 pub(crate) fn add_rows<S: Scalar>(
     out: &mut [S],
     scale: S,
@@ -164,7 +164,7 @@ pub(crate) fn add_rows<S: Scalar>(
     rows: &[S],
     (width, at): (usize, usize),
 ) {
-    // As many sums at a time as stay in registers.
+    // As many sums at a time as fit into registers.
     let mut done = 0;
     while let Some(left) = out.len().checked_sub(done).filter(|&left| left > 0) {
         let (out, from) = (&mut out[done..], (width, at + done));

@@ -1,4 +1,4 @@
-//! Explicit steps of a run, made again.
+//! Replay of the explicit steps of a run.
 
 use super::Stepper;
 use super::march::failed;
@@ -11,7 +11,7 @@ use crate::integrate::{IntegrationFailure, Trajectory};
 use crate::model::Model;
 use crate::system::accelerations::Memory;
 
-/// Makes the steps of a run again.
+/// Repeats the steps of a run.
 pub(crate) struct Replayer<'a> {
     run: &'a Trajectory<f64>,
     /// The steps.
@@ -21,7 +21,7 @@ pub(crate) struct Replayer<'a> {
 }
 
 impl<'a> Replayer<'a> {
-    /// At the start of `run`, which is one of `model`.
+    /// A replayer at the start of `run`, a run of `model`.
     pub(crate) fn new(model: &'a Model<f64>, run: &'a Trajectory<f64>) -> Self {
         let start = &run.initial;
         let node = Node {
@@ -38,7 +38,7 @@ impl<'a> Replayer<'a> {
         }
     }
 
-    /// Whether samples stand inside step k.
+    /// Whether samples lie inside step k.
     fn is_dense(&self, k: usize) -> bool {
         let places = &self.run.places;
         let first = places.partition_point(|place| place.step() < k);
@@ -83,7 +83,7 @@ impl March for Replayer<'_> {
     }
 
     fn step(&mut self, k: usize, block: Option<&mut Block<f64>>) -> Result<(), IntegrationFailure> {
-        // Stages between samples leave nothing behind unless the solver remembers them.
+        // Stages of the dense output are needed only for the block or if the solver remembers them.
         let seen = block.is_some() || self.stepper.field.remembers();
         let made = self.make(k, seen && self.is_dense(k));
         made.map_err(|failure| {

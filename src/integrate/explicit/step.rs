@@ -9,15 +9,15 @@ use crate::system::accelerations::Accelerations;
 use crate::system::bodies::{self, add6, positions_of};
 use crate::system::{Numbering, placement};
 
-/// Iterations of the position projection.
+/// Largest number of iterations of the position projection.
 const ITERATIONS: usize = 12;
-/// What the iterations may leave of the projection, relative to the length scale.
+/// Largest change of the last iteration, relative to the length scale.
 const REMAINDER: f64 = 1e-16;
 
-/// Largest |Φ| that is round-off, relative to the length scale.
+/// A constraint is satisfied up to this |Φ| relative to the length scale: round-off.
 const CLOSED: f64 = 2e-15;
 
-/// Why a step could not be made.
+/// Reason for the failure of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum StepFailure {
     /// The index-1 equations are singular.
@@ -26,7 +26,7 @@ pub(crate) enum StepFailure {
     Projection,
     /// The step ends too close to a singular position, expected at this fraction of the duration.
     Close(f64),
-    /// The motion inside the step leaves the joints.
+    /// The motion inside the step violates the constraints.
     Open,
     /// The step's estimated error is as large as the motion.
     Inaccurate(f64),
@@ -44,12 +44,12 @@ impl From<SingularMatrix> for StepFailure {
 pub(crate) struct Stepper<'a, S> {
     /// The index-1 equations.
     pub field: Accelerations<'a, S>,
-    /// The step made last.
+    /// The results of the last step.
     pub data: StepData<Vec<S>>,
     length: f64,
     residual: Vec<S>,
     moved: Vec<S>,
-    /// Room for positions and two times velocities.
+    /// Workspace: positions, and two vectors of velocities.
     scratch: (Vec<S>, Vec<S>, Vec<S>),
 }
 
@@ -70,8 +70,8 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         }
     }
 
-    /// Stages 0 … 11 of a step of size `h` from `node` at the time `start`, and the state at its end before the
-    /// projection. The matrix of the last stage is left factorised.
+    /// Computes stages 0 … 11 of a step of size `h` from `node` at the time `start`, and the state
+    /// at its end before the projection. The matrix of the last stage remains factorised.
     ///
     /// # Errors
     /// [`StepFailure`].
@@ -99,7 +99,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         }
     }
 
-    /// The stages of the dense output, for a step from `node` to `end`.
+    /// Computes the stages of the dense output for a step from `node` to `end`.
     ///
     /// # Errors
     /// [`StepFailure`].
@@ -135,7 +135,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
     ) -> Result<(), StepFailure> {
         let (q, v, c) = (span(node.q, i), span(node.v, i), span(node.lambda, i));
         let data = &mut self.data;
-        // The stages before i stand in front of it.
+        // The stages before i are stored before it.
         let (_, at_q) = data.q.split_at_mut(q.start);
         let (_, at_v) = data.v.split_at_mut(v.start);
         let (nq, nv) = (node.q.len(), node.v.len());
@@ -171,8 +171,8 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         Ok(())
     }
 
-    /// Positions nearest to `q_raw` in the metric of the masses, by Newton's method with the matrix
-    /// that is factorised already. Leaves the equations standing there.
+    /// Finds the positions nearest to `q_raw` in the metric of the masses, by Newton's method with
+    /// the factorised matrix. The equations remain evaluated there.
     fn project_positions(&mut self, q: &mut [S], end: S) -> Result<(), StepFailure> {
         let numbering = self.field.numbering;
         let nv = numbering.velocities();
@@ -185,7 +185,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         let mut settled = 0;
         for iteration in 0..ITERATIONS {
             field.set_state(q, &data.v_raw, end);
-            // The infinitesimal part converges with the real one, some iterations behind it.
+            // The infinitesimal part converges some iterations after the real part.
             if settled > if S::INFINITESIMAL { 4 } else { 0 } {
                 return Ok(());
             }
@@ -202,7 +202,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             let (step, ds) = self.residual.split_at(nv);
             let size = step.chunks_exact(6).fold(0.0_f64, |m, six| {
                 let part = |x: &[S]| x.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
-                // A comparison with NaN keeps the other number: look at all of them.
+                // `f64::max` ignores NaN, so test every component.
                 match six.iter().all(|x| x.is_finite()) {
                     true => m.max(part(&six[..3]) / self.length).max(part(&six[3..])),
                     false => f64::INFINITY,
@@ -216,7 +216,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             if iteration > 0 && before > 0.0 {
                 contraction = (size / before).max(1e-3);
             }
-            // Near a singular position round-off moves the nearest point, not the gap.
+            // Near a singular position round-off moves the nearest point along the constraints.
             let closed = iteration >= 3 && gap <= CLOSED * self.length.max(1.0);
             let stagnant = size <= 1e-13 && contraction > 0.3;
             if size * contraction <= REMAINDER || stagnant || closed {
@@ -231,9 +231,9 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         Err(StepFailure::Projection)
     }
 
-    /// How far the motion inside the step of size h from `node` leaves the joints at its fraction θ, at
-    /// `time`: the largest |Φ|, relative to the length scale or 1, and |G v + Φ_t|, relative to these
-    /// speeds (m/s, rad/s). The equations are left standing there.
+    /// Violation of the constraints at the fraction θ of the step of size h from `node`, at `time`:
+    /// the largest |Φ|, relative to the length scale or 1, and |G v + Φ_t|, relative to these
+    /// speeds \[m/s, rad/s\]. The equations remain evaluated there.
     pub(crate) fn open(
         &mut self,
         node: NodeView<S>,
@@ -255,7 +255,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
                     true => x.re().abs() / length,
                     false => x.re().abs() / angle,
                 });
-            // A comparison with NaN keeps the other number.
+            // `f64::max` ignores NaN.
             scaled.fold(
                 0.0,
                 |m: f64, x| if x.is_nan() { x } else { m.max(x) + 0.0 * m },
@@ -268,7 +268,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
     }
 
     /// Estimated errors of positions and velocities of the step of size h, Σ h e_i k_i for the
-    /// embedded formulas of order 5 and 3, each measured by `measure`.
+    /// embedded formulas of order 5 and 3, by the norm `measure`.
     pub(crate) fn errors(&mut self, h: S, measure: impl Fn(&[S], &[S]) -> f64) -> [f64; 2] {
         let (q, v, _) = &mut self.scratch;
         let data = &self.data;
@@ -282,8 +282,8 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         })
     }
 
-    /// The correction of the velocities by the projection of the step made last, measured by `measure`;
-    /// zero if the joints close no loop, as such scenes have no singular positions.
+    /// Correction of the velocities by the projection of the last step, by the norm `measure`. It
+    /// is zero if the joints form no loop: such scenes have no singular positions.
     pub(crate) fn velocity_correction(&mut self, measure: impl Fn(&[S], &[S]) -> f64) -> f64 {
         if !self.field.closes_loops() {
             return 0.0;
@@ -293,7 +293,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         measure(q, &self.data.delta)
     }
 
-    /// How far the last stage is from the end of the step in state and in derivative, measured by
+    /// Distance of the last stage from the end of the step in state and in derivative, by the norm
     /// `measure`.
     pub(crate) fn last_stage(
         &mut self,
@@ -320,8 +320,8 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         [state, measure(q, v)]
     }
 
-    /// The motion inside the step of size h from `node`, at its fraction θ: positions, velocities and
-    /// accelerations.
+    /// The motion inside the step of size h from `node`, at its fraction θ: positions, velocities
+    /// and accelerations.
     pub(crate) fn inside(&mut self, node: NodeView<S>, h: S, theta: f64) -> [&[S]; 3] {
         let (q, v, a) = &mut self.scratch;
         self.data.view().dense(node, h, theta, [q, v, a]);

@@ -1,11 +1,11 @@
-//! When an implicit method takes over from the explicit one.
+//! Decides when an implicit method replaces the explicit one.
 //!
-//! h |λ| near the border of the stability region makes a scene suspicious. So do steps over which the
-//! motion is so smooth that |λ| drowns in round-off. Smaller h |λ| is possible too: vibration that is not
-//! seen bounds steps by tight tolerances. Whether an implicit method is cheaper is then measured: Radau
-//! IIA marches on from the state at hand until it has spent a fixed amount of work, and the paces of
-//! both methods are compared. Work is counted in evaluations of the accelerations, so the decision is
-//! the same on every machine.
+//! A scene is suspicious if h |λ| is near the border of the stability region, or if the motion is
+//! so smooth that round-off hides |λ|. With a smaller h |λ| stiffness is still possible: at tight
+//! tolerances, vibration that does not show may bound the steps. Then Radau IIA marches on from the
+//! present state until it has spent a fixed amount of work, and the paces of both methods are
+//! compared. Work is counted in evaluations of the accelerations, so the decision does not depend
+//! on the machine.
 
 use super::record::NodeView;
 use super::step::Stepper;
@@ -21,7 +21,7 @@ use crate::model::Model;
 use crate::system::Numbering;
 use crate::system::initial::InitialState;
 
-/// What an explicit march looks out for.
+/// What an explicit march watches for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Watch {
     /// Steps that stability bounds, whatever another method would cost.
@@ -30,34 +30,35 @@ pub(crate) enum Watch {
     Cost,
 }
 
-/// h |λ| beyond which an explicit step is at the border of its stability region (Hairer & Wanner
-/// 1996, section IV.2), beyond which it may be near it, and below which nothing is gained.
+/// Limits of h |λ|: border of the stability region (Hairer & Wanner 1996, section IV.2); possibly
+/// near it; below the last an implicit method has no advantage.
 const UNSTABLE: f64 = 6.1;
 const SUSPICIOUS: f64 = 2.0;
 const POSSIBLE: f64 = 0.3;
-/// Steps beyond it that make a scene stiff or suspicious.
+/// Number of steps beyond a limit that make a scene stiff or suspicious.
 const STIFF: usize = 15;
-/// Steps within it after which a suspicion is dropped.
+/// Number of steps within a limit that end a suspicion.
 const NOT_STIFF: usize = 6;
-/// Difference of states, relative to their scale, that may be round-off.
+/// Differences of states below this, relative to their scale, are round-off.
 const NOISE: f64 = 1e-13;
 
-/// Steps before the methods are compared for the first time, where that is suspicious and where it is
-/// possible, and how many times as many come before they are compared again.
+/// Number of steps before the first comparison of the methods, if the scene is suspicious or if
+/// stiffness is possible; and the factor between the numbers of steps before consecutive
+/// comparisons.
 const FIRST: [usize; 2] = [40, 500];
 const AGAIN: usize = 4;
-/// Steps over which the pace is taken, at least.
+/// Least number of steps over which the pace is measured.
 const RECENT: usize = 32;
-/// Work of the implicit method that is compared: at least this, and this part of what the explicit one
-/// has spent.
+/// Work of the implicit method in a comparison: at least this, and this part of the explicit work
+/// so far.
 const LEAST_WORK: f64 = 300.0;
 const PART: f64 = 0.02;
-/// Part of the explicit work that the implicit method may need if it takes over, and if what is spent
-/// already is counted too.
+/// The implicit method takes over if it needs less than this part of the explicit work, for the
+/// rest and with the work already spent.
 const CHEAPER: f64 = 0.8;
 const IN_ALL: f64 = 1.5;
 
-/// Steps in a row, but for few, that have a property.
+/// Counts steps in a row with a property; a few without it do not interrupt the row.
 #[derive(Default)]
 struct Streak {
     with: usize,
@@ -65,7 +66,7 @@ struct Streak {
 }
 
 impl Streak {
-    /// Counts a step; whether there are enough.
+    /// Counts a step; returns whether there are enough.
     fn count(&mut self, has: bool) -> bool {
         if has {
             self.without = 0;
@@ -80,15 +81,15 @@ impl Streak {
     }
 }
 
-/// Watches whether stability rather than accuracy bounds the steps.
+/// Monitors whether stability, not accuracy, bounds the steps.
 pub(crate) struct Stiffness {
     watch: Watch,
     unstable: Streak,
     suspicious: Streak,
     possible: Streak,
-    /// Fraction of the duration and work at two earlier steps, the later one last.
+    /// Fraction of the duration and work at two earlier steps; the later one is last.
     earlier: [(f64, f64); 2],
-    /// Steps before the methods are compared, where that is suspicious and where it is possible.
+    /// Numbers of steps before the next comparison: if suspicious, and if possible.
     next: [usize; 2],
 }
 
@@ -105,8 +106,8 @@ impl Stiffness {
         }
     }
 
-    /// Whether it is time to decide on the scene after the step in `stepper`, of size h, which ended in
-    /// `to` and is the last of `run`.
+    /// Whether to decide on the scene after the step in `stepper`, of size h, which ended in `to`
+    /// and is the last of `run`.
     pub(crate) fn seen<S: SolveScalar>(
         &mut self,
         stepper: &mut Stepper<S>,
@@ -118,7 +119,7 @@ impl Stiffness {
         let speeds = scale.speeds(numbering, to.v, &stepper.data.v_raw);
         let measure = |q: &[S], v: &[S]| scale.square(numbering, q, v, speeds);
         let [dy, df] = stepper.last_stage(to, measure);
-        // Round-off compared with round-off says nothing of λ.
+        // A ratio of round-off does not estimate λ.
         let known = dy > NOISE * NOISE;
         let beyond = |most: f64| known && h * (df / dy).sqrt() > most;
         if self.watch == Watch::Stability {
@@ -133,8 +134,8 @@ impl Stiffness {
         (suspicious && steps >= self.next[0]) || (possible && steps >= self.next[1])
     }
 
-    /// Decides on a suspicious scene at the end of `run`, in the state `at`: the part of the explicit
-    /// method's work that the implicit one needs, where that is known, if it takes over.
+    /// Decides on a suspicious scene at the end of `run`, in the state `at`. If the implicit method
+    /// takes over, returns its part of the explicit work, if measured.
     pub(crate) fn decides<S: SolveScalar>(
         &mut self,
         (model, numbering): (&Model<S>, &Numbering),
@@ -172,14 +173,14 @@ impl Stiffness {
         let all = (model, numbering);
         implicit::march_stretch(all, run.duration, &settings, start, &mut stretch).ok()?;
         let other = stretch.pace()?;
-        // The other method begins anew at the start.
+        // The other method starts again at the beginning.
         let own = spent + (1.0 - reached) / pace;
         let takes_over = 1.0 / other < CHEAPER * own && spent + 1.0 / other < IN_ALL * own;
         takes_over.then_some(Some(pace / other))
     }
 }
 
-/// Work of an explicit march, but for what its samples take.
+/// Work of an explicit march without that of its samples.
 fn work_so_far<S: SolveScalar>(run: &Trajectory<S>) -> f64 {
     (STAGES * (run.grid.steps() + run.counts.rejected)) as f64
 }

@@ -1,11 +1,11 @@
 //! Coefficients of the pair DOP853 of Dormand & Prince, with its dense output of order 7 (Hairer,
 //! Nørsett & Wanner 1993, *Solving Ordinary Differential Equations I*, section II.5 and II.6).
 
-/// Stages that a step needs; stage 0 is the derivative at its start.
+/// Number of stages of a step; stage 0 is the derivative at its start.
 pub(crate) const STAGES: usize = 12;
-/// Index of the derivative at the step's end, which is stage 0 of the next step.
+/// Index of the derivative at the step's end: stage 0 of the next step.
 pub(crate) const END: usize = 12;
-/// Stages with those that only the dense output needs.
+/// Number of stages with those of the dense output.
 pub(crate) const ALL: usize = 16;
 /// Order of the method.
 pub(crate) const ORDER: usize = 8;
@@ -30,7 +30,7 @@ pub(crate) const C: [f64; ALL] = [
     0.7777777777777778,
 ];
 
-/// Runge–Kutta matrix a, the non-zeros of each row (stage END has the weights b of the step).
+/// Runge–Kutta matrix a: the non-zeros of each row (row END has the weights b of the step).
 pub(crate) const A: [&[(usize, f64)]; ALL] = [
     &[],
     &[(0, 0.05260015195876773)],
@@ -235,7 +235,7 @@ pub(crate) const D: [&[(usize, f64)]; 4] = [
     ],
 ];
 
-/// Weights of the stages that the dense output is made of: 0 and 5 … 15.
+/// Weights of the stages of the dense output: 0 and 5 … 15.
 pub(crate) type DenseWeights = [(usize, f64); 12];
 
 /// Weights of the derivatives k_i in the dense output y(θ) = y_0 + h Σ w_i(θ) k_i, and their
@@ -261,7 +261,7 @@ pub(crate) fn dense_weights(theta: f64) -> (DenseWeights, DenseWeights) {
     (combined(&basis), combined(&slopes))
 }
 
-/// Stages that the dense output is made of, and their weights in each of its basis polynomials.
+/// Stages of the dense output, and their weights in each of its basis polynomials.
 const DENSE_STAGES: [usize; 12] = [0, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 const DENSE: [[f64; 12]; 7] = dense_rows();
 
@@ -292,12 +292,12 @@ const fn dense_rows() -> [[f64; 12]; 7] {
     rows
 }
 
-/// Where a stage stands among those of the dense output.
+/// Index of a stage among those of the dense output.
 const fn place(stage: usize) -> usize {
     stage.saturating_sub(4)
 }
 
-/// The weights that the values of the basis polynomials make.
+/// The weights for given values of the basis polynomials.
 fn combined(polynomials: &[f64; 7]) -> DenseWeights {
     let mut sum = [0.0; 12];
     for (row, p) in DENSE.iter().zip(polynomials) {

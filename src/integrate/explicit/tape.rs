@@ -1,4 +1,4 @@
-//! What the adjoint needs of explicit steps.
+//! Data of explicit steps for the adjoint.
 
 use super::record::{Node, StepData};
 use super::tableau::{ALL, STAGES};
@@ -11,21 +11,21 @@ use crate::system::Numbering;
 use crate::system::accelerations::Memory;
 use std::ops::Range;
 
-/// What is kept of a run.
+/// Stored data of a run.
 pub(crate) type Tape<S> = replay::Tape<Block<S>>;
 
-/// The nodes of steps in a row, and their stages.
+/// Consecutive steps: nodes and stages.
 #[derive(Clone, Debug)]
 pub(crate) struct Block<S> {
     first: usize,
     nodes: Rows<S, 4>,
     steps: Rows<S, 10>,
-    /// Whether the stages of the dense output of each step were computed.
+    /// By step: whether the stages of the dense output were computed.
     dense: Vec<bool>,
 }
 
 impl<S: Scalar> Tape<S> {
-    /// The tape of a motion that no gradient is asked for of.
+    /// The tape of a motion without gradients.
     pub(crate) fn none(numbering: &Numbering) -> Self {
         let block = Block::new(numbering, Samples::StepEnds, false);
         let room = block.room();
@@ -34,8 +34,8 @@ impl<S: Scalar> Tape<S> {
 }
 
 impl<S: Scalar> Block<S> {
-    /// No step yet. It has room for the stages of the dense output only where samples may stand inside
-    /// steps, as the end of the motion does where steps may `leap` over it.
+    /// An empty block. It has memory for the stages of the dense output only if samples may lie
+    /// inside steps, as the end of the motion does if steps may `leap` over it.
     pub(crate) fn new(numbering: &Numbering, samples: Samples, leap: bool) -> Self {
         let stages = match samples {
             Samples::StepEnds | Samples::Uniform(..=1) if !leap => STAGES,
@@ -49,7 +49,7 @@ impl<S: Scalar> Block<S> {
         }
     }
 
-    /// Room that a step and a checkpoint take.
+    /// Memory of a step and of a checkpoint.
     pub(crate) fn room(&self) -> MemoryOfBlock {
         let node = self.nodes.width();
         MemoryOfBlock {

@@ -11,18 +11,18 @@ use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::{BodyMotion, InMotion, Numbering, RedundantRows, bodies, joints};
 
-/// Round-off in an estimated error, relative to that in the stages, and the most that is taken for it.
+/// Round-off in an estimated error relative to that in the stages, and its upper bound.
 const MORE_NOISE: f64 = 30.0;
 const MOST_NOISE: f64 = 1e-6;
 
-/// Estimates errors, with what that needs again in every step.
+/// Estimates errors; keeps its workspace between steps.
 pub(super) struct Estimate<'a> {
     model: &'a Model<f64>,
     numbering: &'a Numbering,
     scheme: &'a Scheme,
     /// True rates at the start of a step.
     field: Accelerations<'a, f64>,
-    /// The start and the stages of the step, and its middle.
+    /// The start, the stages and the middle of the step.
     from: Stage<f64>,
     stages: Vec<Stage<f64>>,
     middle: Stage<f64>,
@@ -46,18 +46,18 @@ impl<'a> Estimate<'a> {
         }
     }
 
-    /// Leaves other rows out.
+    /// Sets the redundant rows that are left out.
     pub(crate) fn leave_out(&mut self, left_out: &RedundantRows) {
         self.field.leave_out(left_out);
     }
 
-    /// Adds the work so far.
+    /// Adds the work so far to `counts`.
     pub(crate) fn count(&self, counts: &mut WorkCounts) {
         counts.factorisations += self.field.factorisations;
         counts.solves += self.field.solves;
     }
 
-    /// Estimated error of the step that `newton` just made, relative to the scene's scale.
+    /// Estimated error of the last step of `newton`, relative to the scene's scale.
     pub(crate) fn error<S: SolveScalar>(
         &mut self,
         newton: &mut StageNewton<S>,
@@ -92,7 +92,7 @@ impl<'a> Estimate<'a> {
         let size = |x: &[f64]| scale.tangent_square(&x[..nv], &x[nv..], h, speeds).sqrt();
         let mut error = size(found);
         if let Some(noise) = newton.noise().map(size) {
-            // What round-off makes of the stages is none of the step's size.
+            // Round-off in the stages does not depend on the step size.
             error -= error.min((MORE_NOISE * noise).min(MOST_NOISE));
         }
         if (self.model.joints.iter()).all(|joint| joint.drives.is_empty()) {
@@ -101,8 +101,8 @@ impl<'a> Estimate<'a> {
         error.max(self.drift(h, (scale, speeds)))
     }
 
-    /// How far the middle of a step is off the joints, relative to the scene's scale. The stages are
-    /// on them: motion that is prescribed has no other error to be seen.
+    /// Violation of the constraints at the middle of a step, relative to the scene's scale. The
+    /// stages satisfy them. For a prescribed motion this is the only visible error.
     fn drift(&mut self, h: f64, (scale, speeds): (&Scale, [f64; 2])) -> f64 {
         let (model, numbering) = (self.model, self.numbering);
         let middle = &mut self.middle;

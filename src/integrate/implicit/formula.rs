@@ -1,18 +1,18 @@
 //! One-stage formulas with a memory: backward differentiation and generalised-α.
 //!
-//! With the increment Δ = y_k − y_{k−1} and memory vectors m_j of the size of increments,
+//! Let Δ = y_k − y_{k−1} be the increment and m_j memory vectors of the size of increments. Then
 //!
 //! ```text
 //! h ẏ_k = c Δ + Σ_j e_j m_j,        m_i' = f_i Δ + Σ_j F_ij m_j
 //! ```
 //!
-//! Increments rather than values keep the rates free of the round-off of values divided by the
-//! step, and make one backward march serve all formulas.
+//! With increments instead of values, rates have no round-off of values divided by the step, and
+//! one backward march suffices for all formulas.
 
 use crate::integrate::settings::{Method, Start};
 use crate::math::Scalar;
 
-/// Most memory vectors of a formula.
+/// Largest number of memory vectors of a formula.
 const MOST: usize = 5;
 
 /// Coefficients of a step; they do not depend on its size.
@@ -27,8 +27,8 @@ pub(crate) struct Formula {
 }
 
 impl Formula {
-    /// Backward differentiation of order m, of which `kept` − 1 earlier increments are remembered:
-    /// h ẏ = Σ_{j=1..m} ∇ʲy / j (Gear 1971), and ∇ʲy = Σ_l (−1)ˡ C(j−1, l) Δ_{k−l}.
+    /// Backward differentiation of order m: h ẏ = Σ_{j=1..m} ∇ʲy / j (Gear 1971), with
+    /// ∇ʲy = Σ_l (−1)ˡ C(j−1, l) Δ_{k−l}. The memory has `kept` − 1 earlier increments.
     fn bdf(order: usize, kept: usize) -> Self {
         let weight = |l: usize| -> f64 {
             let sign = if l.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -53,9 +53,9 @@ impl Formula {
         }
     }
 
-    /// Generalised-α of spectral radius ρ∞ (Jansen, Whiting & Hulbert 2000), the equations enforced
-    /// at the step's end as by Arnold & Brüls (2007). The memory is h times the algorithmic rates w
-    /// and the rates ẏ:
+    /// Generalised-α with spectral radius ρ∞ (Jansen, Whiting & Hulbert 2000). The equations hold
+    /// at the step's end, as in Arnold & Brüls (2007). The memory is h times the algorithmic rates
+    /// w and the rates ẏ:
     ///
     /// ```text
     /// Δ = h (1−γ) w + h γ w',     (1−α_m) w' + α_m w = (1−α_f) ẏ' + α_f ẏ
@@ -88,12 +88,12 @@ impl Formula {
         &self.past[..self.slots]
     }
 
-    /// (f_i, F_i1 … F_im) for each memory vector; what follows in a row is zero.
+    /// (f_i, F_i1 … F_im) for each memory vector; the other entries of a row are zero.
     pub(crate) fn memory(&self) -> &[(f64, [f64; MOST])] {
         &self.memory[..self.slots]
     }
 
-    /// Moves component k of the memory past a step with the increment `delta`.
+    /// Updates component k of the memory after a step with the increment `delta`.
     pub(crate) fn remember<S: Scalar>(&self, delta: S, memory: &mut [Vec<S>], k: usize) {
         let mut old = [S::zero(); MOST];
         for (old, m) in old.iter_mut().zip(&*memory) {
@@ -105,9 +105,9 @@ impl Formula {
         }
     }
 
-    /// The transpose of [`Formula::remember`] and of the rates' part: replaces component k of the
-    /// cotangents of the memory after the step by that of the memory before it, given the cotangent
-    /// `rate` of h times the rates.
+    /// The transpose of [`Formula::remember`] and of the rates: replaces component k of the
+    /// cotangents of the memory after the step by that before it. `rate` is the cotangent of h
+    /// times the rates.
     pub(crate) fn recall(&self, rate: f64, memory: &mut [Vec<f64>], k: usize) {
         let mut later = [0.0; MOST];
         for (later, m) in later.iter_mut().zip(&*memory) {
@@ -121,7 +121,7 @@ impl Formula {
         }
     }
 
-    /// The formula of step k ≥ 1 of a method, or `None` where the step is made by Radau IIA.
+    /// The formula of step k ≥ 1 of a method; `None` if Radau IIA makes the step.
     pub(crate) fn of_step(method: Method, k: usize) -> Option<Self> {
         match method {
             Method::Dop853 | Method::Radau { .. } => None,
@@ -144,7 +144,7 @@ pub(crate) fn memory_size(method: Method) -> usize {
     }
 }
 
-/// Whether the memory starts with h times the initial rates (rather than with nothing).
+/// Whether the memory starts with h times the initial rates (otherwise it starts empty).
 pub(crate) fn remembers_start(method: Method) -> bool {
     matches!(method, Method::GeneralisedAlpha { .. })
 }
@@ -170,7 +170,7 @@ mod tests {
         assert!((six.past[1] - six.past[0] - 450.0 / 60.0).abs() < 1e-13);
     }
 
-    /// A polynomial of the order's degree is differentiated exactly.
+    /// Polynomials of the formula's order are differentiated exactly.
     #[test]
     fn formulas_are_exact_for_polynomials() {
         for order in 1..=6 {
@@ -184,7 +184,7 @@ mod tests {
             assert!((rate - exact).abs() < 1e-10 * exact, "order {order}");
         }
         let formula = Formula::generalised_alpha(0.8);
-        // y = t² with exact rates in the memory after the first step's transient: y = t is exact.
+        // y = t: exact if the memory holds exact rates.
         let rate = formula.lead + formula.past().iter().sum::<f64>();
         assert!((rate - 1.0).abs() < 1e-15);
     }

@@ -8,9 +8,10 @@
 //! ```
 //!
 //! (Gear, Leimkuhler & Gupta 1985.) The unknowns are the tangent positions y, v, λ and μ, in this
-//! order; q̇ and v̇ are what the method makes of q and v, with ∂q̇/∂q = ∂v̇/∂v = c. The equations
-//! are solved in a scaling that keeps the condition independent of the step h and of the unit of mass,
-//! m being the mean mass (rows times h, h²/m, 1, h; columns v, λ, μ divided by h, h²/m, h).
+//! order. The method gives q̇ and v̇ as functions of q and v, with ∂q̇/∂q = ∂v̇/∂v = c. The
+//! equations are scaled so that the condition depends neither on the step h nor on the unit of
+//! mass: rows are multiplied by h, h²/m, 1, h, columns v, λ, μ divided by h, h²/m, h, with the mean
+//! mass m.
 
 use crate::linalg::{Emit, Pattern};
 use crate::math::{Mat3, Scalar};
@@ -31,7 +32,7 @@ use crate::system::redundant_rows::RedundantRows;
 use crate::system::side::sides;
 use crate::system::{Numbering, joints::rate_by_position};
 
-/// Positions and velocities are the parts of a residual that are in velocity numbering.
+/// Number of parts of a residual in velocity numbering: positions and velocities.
 const PARTS: usize = 2;
 
 /// Unknowns and rates at one instant.
@@ -49,28 +50,28 @@ pub(crate) struct StepState<'a, S> {
     pub qdot: &'a [S],
     /// Rates v̇ of the velocities.
     pub vdot: &'a [S],
-    /// Time (s).
+    /// Time \[s\].
     pub time: S,
 }
 
-/// The equations of one model, with the workspace that evaluating them needs.
+/// The equations of one model, with workspace.
 pub(crate) struct Equations<'a, S> {
     model: &'a Model<S>,
     numbering: &'a Numbering,
     motions: Vec<BodyMotion<S>>,
     gradients: Vec<RowGradient<S>>,
-    /// Rows that are not imposed: λ_i = 0 and μ_i = 0 stand in their places.
+    /// Redundant rows, which are not imposed: λ_i = 0 and μ_i = 0 replace them.
     left_out: RedundantRows,
     loads: Vec<S>,
     /// Motions with virtual velocities, for pull-backs.
     moving: Vec<BodyMotion<S>>,
-    /// Tangent positions that stay as bodies are placed, for pull-backs.
+    /// Tangent positions that are held in the placement, for pull-backs.
     placed: Vec<S>,
-    /// Mass that the dynamics are divided by and the multipliers λ counted in (kg).
+    /// Mass by which the dynamics are divided, and the unit of the multipliers λ \[kg\].
     mass: f64,
 }
 
-/// Entries times a number.
+/// Multiplies emitted entries by a number.
 struct Times<'a, S>(&'a mut dyn Emit<S>, S);
 
 impl<S: Scalar> Emit<S> for Times<'_, S> {
@@ -95,7 +96,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         }
     }
 
-    /// Leaves other rows out; whether that is a change.
+    /// Sets the redundant rows that are left out; returns whether they change.
     pub(crate) fn leave_out(&mut self, left_out: &RedundantRows) -> bool {
         let changes = self.left_out != *left_out;
         if changes {
@@ -104,7 +105,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         changes
     }
 
-    /// Mass that the dynamics are divided by (kg).
+    /// Mass by which the dynamics are divided \[kg\].
     pub(crate) fn mass(&self) -> f64 {
         self.mass
     }
@@ -119,17 +120,17 @@ impl<'a, S: Scalar> Equations<'a, S> {
         2 * (self.numbering.velocities() + self.numbering.constraints())
     }
 
-    /// Order of the iteration matrix, which is in the unknowns of the bodies: 2 (n_u + n_c).
+    /// Order of the iteration matrix, in the unknowns of the bodies: 2 (n_u + n_c).
     pub(crate) fn order(&self) -> usize {
         2 * (self.numbering.unknowns() + self.numbering.constraints())
     }
 
-    /// Lets `solve` work in place on the reduced form of a residual.
+    /// Applies `solve` in place to the reduced form of a residual.
     pub(crate) fn through<T: Scalar>(&self, x: &mut [T], solve: impl FnOnce(&mut [T])) {
         reduce::through(self.numbering, PARTS, x, solve);
     }
 
-    /// Brings a residual to its reduced form, of [`Equations::order`] entries at its head.
+    /// Reduces a residual to its first [`Equations::order`] entries.
     pub(crate) fn compress<T: Scalar>(&self, x: &mut [T]) {
         reduce::compress(self.numbering, PARTS, x);
     }
@@ -139,7 +140,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         reduce::expand(self.numbering, PARTS, x);
     }
 
-    /// Starts of F1 … F4, which are also the starts of y, v, λ, μ.
+    /// First indices of F1 … F4, and of y, v, λ, μ.
     fn starts(&self) -> [usize; 4] {
         let (nv, nc) = (self.numbering.velocities(), self.numbering.constraints());
         [0, nv, 2 * nv, 2 * nv + nc]
@@ -152,7 +153,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         self.left_out.clear_gradients(&mut self.gradients);
     }
 
-    /// Residual in the scaling of step h.
+    /// Residual in the scaling of step h; `out` has [`Equations::length`] entries.
     pub(crate) fn residual(&mut self, at: &StepState<S>, h: S, out: &mut [S]) {
         self.visit(at);
         let (model, numbering) = (self.model, self.numbering);
@@ -188,7 +189,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         }
     }
 
-    /// Records the pattern of the iteration matrix, which is in the unknowns of the bodies.
+    /// Records the pattern of the iteration matrix, in the unknowns of the bodies.
     pub(crate) fn pattern(&mut self, at: &StepState<S>) -> Pattern {
         self.visit(at);
         let this = &*self;
@@ -241,13 +242,13 @@ impl<'a, S: Scalar> Equations<'a, S> {
         emit_gradients(model, numbering, &self.gradients, (f4, v), emit);
         let places = [(f3, lambda), (f4, mu)];
         emit_left_out(numbering, &self.left_out, &places, emit);
-        // F4 by y.
+        // Derivative of F4 in y.
         let ground = BodyMotion::ground();
         for (j, joint) in model.joints.iter().enumerate() {
             let (a, b) = sides(joint, motions, &ground, at.time);
             for (i, row) in numbering.rows(j).zip(joint.rows()) {
                 let (by_a, by_b) = rate_by_position(row, &a, &b);
-                // Zeros are emitted, as the pattern serves every choice.
+                // Zeros are emitted, because the pattern serves every choice of rows.
                 let h = if self.left_out.contains(i) {
                     S::zero()
                 } else {
@@ -265,8 +266,8 @@ impl<'a, S: Scalar> Equations<'a, S> {
         }
     }
 
-    /// Emits the scaled derivative in the unknowns of another stage with positions `other`, of which
-    /// h times the rates at the positions `q` contain the tangent: (P(q) T(q'), M).
+    /// Emits the scaled derivative of F in the unknowns of another stage with positions `other`,
+    /// through h times the rates at the positions `q`: (P(q) T(q'), M).
     pub(crate) fn emit_rates(&self, q: &[S], other: &[S], emit: &mut dyn Emit<S>) {
         self.emit_rates_turned(emit, |i| {
             let o = self.numbering.position(i);
@@ -274,7 +275,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         });
     }
 
-    /// As [`Equations::emit_rates`] for the stage itself: (1, M).
+    /// [`Equations::emit_rates`] for the stage itself: (1, M).
     pub(crate) fn emit_own_rates(&self, emit: &mut dyn Emit<S>) {
         self.emit_rates_turned(emit, |_| Mat3::identity());
     }
@@ -291,8 +292,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         }
     }
 
-    /// Multiplies an unscaled cotangent of the unknowns by the column scaling, or the solution of
-    /// the scaled transposed system by the row scaling.
+    /// Multiplies an unscaled cotangent of the unknowns by the column scaling.
     pub(crate) fn scale_columns(&self, h: f64, b: &mut [f64]) {
         let [_, v, lambda, mu] = self.starts();
         let by_lambda = self.mass / (h * h);
@@ -305,7 +305,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         scale_parts(b, &[(v, h), (lambda, h * h / self.mass), (mu, h)]);
     }
 
-    /// See [`Equations::scale_columns`].
+    /// Multiplies the solution of the scaled transposed system by the row scaling.
     pub(crate) fn scale_rows(&self, h: f64, psi: &mut [f64]) {
         let [_, f2, f3, f4] = self.starts();
         for x in &mut psi[..f2] {
@@ -314,12 +314,12 @@ impl<'a, S: Scalar> Equations<'a, S> {
         scale_parts(psi, &[(f2, h * h / self.mass), (f3, 1.0), (f4, h)]);
     }
 
-    /// The body or joint that a row or column of the iteration matrix belongs to, for messages.
+    /// Name of the body or joint of a row or column of the iteration matrix, for messages.
     pub(crate) fn describe_reduced(&self, row: usize) -> String {
         self.describe(reduce::unreduced(self.numbering, PARTS, row))
     }
 
-    /// The body or joint that an equation (or unknown) belongs to, for messages.
+    /// Name of the body or joint of an equation or unknown, for messages.
     pub(crate) fn describe(&self, row: usize) -> String {
         let [_, f2, f3, f4] = self.starts();
         let body = |i: usize| &self.model.bodies[self.numbering.body_of_velocity(i)].name;
@@ -333,7 +333,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
     }
 }
 
-/// The geometric mean of the bodies' masses (kg); 1 if there is none.
+/// Geometric mean of the bodies' masses \[kg\]; 1 if there are none.
 fn typical_mass<S: Scalar>(model: &Model<S>) -> f64 {
     let masses = model.bodies.iter().map(|body| body.mass.re());
     let logs: Vec<f64> = masses.filter(|m| *m > 0.0).map(f64::ln).collect();
@@ -353,16 +353,15 @@ fn scale_parts(x: &mut [f64], parts: &[(usize, f64)]) {
 }
 
 impl Equations<'_, f64> {
-    /// Pulls the adjoint ψ (unscaled, of F1 … F4) back to the parameters of `cot`; returns the
+    /// Pulls the adjoint ψ (unscaled, of F1 … F4) back to the parameters in `cot`. Returns the
     /// derivative of ψᵀF in time.
     #[cfg(test)]
     pub fn pull_back(&mut self, at: &StepState<f64>, psi: &[f64], cot: &mut Model<f64>) -> f64 {
         self.pull_back_projected(at, psi, cot, &mut [])
     }
 
-    /// As [`Equations::pull_back`], and adds the part of F_yᵀψ that the mobilities do not admit, by
-    /// positions that stay as the bodies are placed, to the tangent positions `held`, unless these are
-    /// none.
+    /// As [`Equations::pull_back`]. If `held` is not empty, adds to these tangent positions the
+    /// part of F_yᵀψ that the mobilities do not admit, through positions that stay as placed.
     pub(crate) fn pull_back_projected(
         &mut self,
         at: &StepState<f64>,
@@ -413,7 +412,7 @@ impl Equations<'_, f64> {
             let here = InMotion::new(model, numbering, motions, at.time);
             by_time += joints::pull_back(&here, cotangents, &mut out);
         };
-        // λᵀ G ψ_2 beside Φ and G v, and μᵀ G ψ_1 unless the motion needs no μ.
+        // λᵀ G ψ_2 with Φ and G v; μᵀ G ψ_1 only if the motion has μ.
         let (motions, moving) = (&self.motions, &mut self.moving);
         let mut virtually = |psi: &[f64], cotangents: &RowCotangents| {
             let at = |(i, motion): (usize, &BodyMotion<f64>)| {

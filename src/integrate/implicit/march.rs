@@ -38,19 +38,19 @@ pub(crate) fn march<S: SolveScalar>(
     march_until((model, numbering), duration, settings, start, None)
 }
 
-/// Part of a motion, on which the pace of a method is measured.
+/// A part of a motion, for measuring the pace of a method.
 #[derive(Clone, Debug)]
 pub(crate) struct Stretch {
-    /// Fraction of the duration that it begins at.
+    /// Fraction of the duration at its start.
     from: f64,
     /// Work after which it ends [evaluations].
     most: f64,
-    /// Work by the end of each step, and the fraction that it reached.
+    /// Work up to the end of each step, and the fraction reached.
     steps: Vec<(f64, f64)>,
 }
 
 impl Stretch {
-    /// A stretch from the fraction `from` that ends after so much work.
+    /// A part from the fraction `from` that ends after the work `most`.
     pub(crate) fn new(from: f64, most: f64) -> Self {
         Self {
             from,
@@ -59,8 +59,8 @@ impl Stretch {
         }
     }
 
-    /// Fraction of the duration for a unit of work, in its second half where it has several steps: the
-    /// first steps are small and have no past.
+    /// Fraction of the duration per unit of work. Of several steps only the second half counts,
+    /// because the first steps are small and have no history.
     pub(crate) fn pace(&self) -> Option<f64> {
         let &(work, reached) = self.steps.last()?;
         let half = self.steps.iter().find(|(before, _)| *before >= 0.5 * work);
@@ -120,7 +120,7 @@ fn march_until<S: SolveScalar>(
         Some(stretch) => Grid::growing_from(stretch.from),
         None => controller.growing(),
     };
-    // A formula knows its motion at the ends of its steps only.
+    // A formula gives the motion only at the ends of its steps.
     let samples = match method {
         Method::Radau { .. } => settings.samples,
         _ => match settings.samples {
@@ -129,7 +129,7 @@ fn march_until<S: SolveScalar>(
         },
     };
     run.take_cells(&settings.spacing, samples);
-    // The history of steps that are chosen on the way grows with them.
+    // The history of adaptive steps grows with them.
     reserve(&mut run, &settings.spacing, samples);
     let mut next = 1;
     let mut motions = Vec::new();
@@ -141,7 +141,7 @@ fn march_until<S: SolveScalar>(
         .map_or(&run.initial.left_out, |(_, rows)| rows);
     solver.leave_out(left_out);
     run.grid.leave_out(left_out);
-    // Only loops of joints have singular positions, and rows that are left out.
+    // Only loops of joints have singular positions and redundant rows.
     let mut field = Accelerations::new(model, numbering);
     field.leave_out(left_out);
     let loops = field.closes_loops();
@@ -215,7 +215,7 @@ fn march_until<S: SolveScalar>(
             tape_of(&mut run).block.push(&past.from, stages);
         }
         solver.remember(count, k);
-        // Rows are exchanged between steps, so that every step has smooth equations.
+        // Rows are exchanged only between steps, so that every step has smooth equations.
         let exchanged = match choices.is_empty() && loops {
             true => field.exchanged(EXCHANGE_WEIGHT),
             false => None,
@@ -249,7 +249,7 @@ fn march_until<S: SolveScalar>(
     Ok(run)
 }
 
-/// Gives the step that was tried as number k up for another.
+/// Rejects step number k, so that another is tried.
 fn retry<S: SolveScalar>(run: &mut Trajectory<S>, solver: &mut Solver<S>, k: usize) {
     run.counts.rejected += 1;
     solver.forget();
@@ -263,7 +263,7 @@ fn tape_of<S: SolveScalar>(run: &mut Trajectory<S>) -> &mut Tape<S> {
     tape
 }
 
-/// Makes room for the samples of a run whose steps are known.
+/// Reserves memory for the samples of a run whose steps are known.
 fn reserve<S: SolveScalar>(run: &mut Trajectory<S>, spacing: &Spacing, samples: Samples) {
     let (steps, grid) = match spacing {
         Spacing::Steps(steps) => (*steps, None),
@@ -274,7 +274,7 @@ fn reserve<S: SolveScalar>(run: &mut Trajectory<S>, spacing: &Spacing, samples: 
     run.reserve(steps, samples);
 }
 
-/// Adds the instants of the step that was just accepted, given its start and its stages.
+/// Adds the samples of the accepted step, from its start and its stages.
 fn sample<S: SolveScalar>(
     run: &mut Trajectory<S>,
     scheme: &Scheme,

@@ -22,17 +22,17 @@ use crate::math::Scalar;
 use crate::system::{Numbering, bodies, reduce};
 use ggl::StepState;
 
-/// State at a stage with its multipliers, rates and its increments since the start of the step.
+/// State at a stage, with multipliers, rates, and increments since the start of the step.
 #[derive(Clone, Debug)]
 pub(crate) struct Stage<S> {
     /// Positions.
     pub q: Vec<S>,
     /// Velocities.
     pub v: Vec<S>,
-    /// Increment of q since the start of the step. Rates are made from increments, so that they do
-    /// not carry the round-off of positions divided by the step.
+    /// Increment of q since the start of the step. Rates are computed from increments, so they have
+    /// no round-off of positions divided by the step.
     pub dq: Vec<S>,
-    /// Increment of v likewise.
+    /// Increment of v since the start of the step.
     pub dv: Vec<S>,
     /// Multipliers λ.
     pub lambda: Vec<S>,
@@ -42,12 +42,12 @@ pub(crate) struct Stage<S> {
     pub qdot: Vec<S>,
     /// Rates v̇.
     pub vdot: Vec<S>,
-    /// Time (s).
+    /// Time \[s\].
     pub time: S,
 }
 
 impl<S: Scalar> Stage<S> {
-    /// All zero.
+    /// A stage of zeros.
     pub(crate) fn zero(numbering: &Numbering) -> Self {
         let zeros = |n: usize| vec![S::zero(); n];
         let (nq, nv) = (numbering.positions(), numbering.velocities());
@@ -65,7 +65,7 @@ impl<S: Scalar> Stage<S> {
         }
     }
 
-    /// The instant that the equations are evaluated at.
+    /// The state at which the equations are evaluated.
     pub(crate) fn instant(&self) -> StepState<'_, S> {
         StepState {
             q: &self.q,
@@ -78,8 +78,8 @@ impl<S: Scalar> Stage<S> {
         }
     }
 
-    /// Moves by a scaled update (δy, h δv, h² δλ / m, h δμ) of a step of size h, the dynamics divided
-    /// by the mass m; the rates stay.
+    /// Adds a scaled update (δy, h δv, h² δλ / m, h δμ) of a step of size h, where m is the mass by
+    /// which the dynamics are divided. The rates do not change.
     pub(crate) fn advance(&mut self, numbering: &Numbering, update: &[S], (h, mass): (S, f64)) {
         let (nv, nc) = (numbering.velocities(), numbering.constraints());
         bodies::advance(numbering, &mut self.q, &mut self.dq, &update[..nv]);
@@ -94,14 +94,14 @@ impl<S: Scalar> Stage<S> {
         }
     }
 
-    /// Keeps a predicted stage of a step from `from` in what the bodies' mobilities admit.
+    /// Projects a predicted stage of a step from `from` onto what the mobilities admit.
     fn project_increments(&mut self, numbering: &Numbering, from: &Self) {
         let before = (&from.q[..], &from.v[..]);
         let positions = (&mut self.q[..], &mut self.dq[..]);
         reduce::project_increments(numbering, before, positions, (&mut self.v, &mut self.dv));
     }
 
-    /// Its vectors, the time as the last.
+    /// Its vectors; the time is the last.
     pub(super) fn parts(&self) -> [&[S]; 9] {
         [
             &self.q,
@@ -116,7 +116,7 @@ impl<S: Scalar> Stage<S> {
         ]
     }
 
-    /// Takes the vectors of another stage of the same system.
+    /// Copies the vectors of another stage of the same system.
     pub(super) fn set_parts(&mut self, parts: [&[S]; 9]) {
         for (own, part) in self.parts_mut().into_iter().zip(parts) {
             own.copy_from_slice(part);
@@ -137,17 +137,17 @@ impl<S: Scalar> Stage<S> {
         ]
     }
 
-    /// Becomes equal to another stage of the same system.
+    /// Copies another stage of the same system.
     pub(crate) fn set(&mut self, other: &Self) {
         self.set_parts(other.parts());
     }
 
-    /// Whether all its numbers are finite.
+    /// Whether all numbers are finite.
     pub(super) fn is_finite(&self) -> bool {
         self.parts().into_iter().flatten().all(|x| x.is_finite())
     }
 
-    /// Puts the real part into `out`.
+    /// Writes the real part to `out`.
     pub(super) fn real_into(&self, out: &mut Stage<f64>) {
         for (own, part) in out.parts_mut().into_iter().zip(self.parts()) {
             for (own, x) in own.iter_mut().zip(part) {

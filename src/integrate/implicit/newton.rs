@@ -1,4 +1,4 @@
-//! Newton's method for one implicit step, with the iteration matrix kept while it converges.
+//! Newton's method for one implicit step. The iteration matrix is kept while the method converges.
 
 use super::Stage;
 use super::formula::Formula;
@@ -12,32 +12,32 @@ use crate::model::Model;
 use crate::system::{Numbering, RedundantRows};
 use std::sync::Arc;
 
-/// Error left in a step, relative to the largest increments of position, rotation, velocity and
-/// angular velocity in it, at which Newton's method stops: the relative error of accelerations.
+/// Newton's method stops at this error of a step, relative to its largest increments of position,
+/// rotation, velocity and angular velocity. It is the relative error of accelerations.
 const TOLERANCE: f64 = 1e-13;
-/// Relative change below which a stagnating iteration has reached round-off as well.
+/// Below this relative change a stagnating iteration has reached round-off.
 const STAGNANT: f64 = 1e-9;
-/// Scaled residual, relative to the largest coordinate, that is round-off.
+/// A scaled residual below this, relative to the largest coordinate, is round-off.
 const ROUND_OFF: f64 = 1e-14;
-/// Contraction above which the iteration matrix is renewed.
+/// The iteration matrix is renewed above this contraction.
 const RENEW: f64 = 0.1;
-/// Steps of one iteration each after which the iteration matrix is renewed.
+/// The iteration matrix is renewed after this many steps of one iteration each.
 const UNSEEN: usize = 8;
 const ITERATIONS: usize = 25;
 
-/// How rates follow from increments in this step: q̇ = c dq + `qdot`, v̇ = c dv + `vdot`.
+/// Rates as functions of the increments in this step: q̇ = c dq + `qdot`, v̇ = c dv + `vdot`.
 #[derive(Clone, Debug)]
 pub(crate) struct History<S> {
     /// c, the formula's lead coefficient divided by h.
     pub c: S,
-    /// History part of q̇.
+    /// Part of q̇ from the memory.
     pub qdot: Vec<S>,
-    /// History part of v̇.
+    /// Part of v̇ from the memory.
     pub vdot: Vec<S>,
 }
 
 impl<S: Scalar> History<S> {
-    /// Nothing remembered yet.
+    /// A history without memory.
     pub(crate) fn new(numbering: &Numbering) -> Self {
         Self {
             c: S::zero(),
@@ -46,7 +46,7 @@ impl<S: Scalar> History<S> {
         }
     }
 
-    /// What a formula makes of its memory, of q and of v, in a step of size h:
+    /// Sets the history of a formula in a step of size h, from its memory of q and of v:
     /// h ẏ = c Δ + Σ e_j m_j.
     pub(crate) fn set(&mut self, formula: &Formula, memory: &[Vec<Vec<S>>; 2], h: S) {
         self.c = S::from(formula.lead) / h;
@@ -70,29 +70,29 @@ impl<S: Scalar> History<S> {
     }
 }
 
-/// What it keeps from step to step.
+/// Data that Newton's method keeps from step to step.
 #[derive(Clone, Debug)]
 pub(crate) struct Memory<S> {
-    /// Where the kept factors were made, the step size there, and c.
+    /// State of the kept factors, with step size and c.
     made: Option<(Stage<S>, [S; 2])>,
     contraction: f64,
     unseen: usize,
     pivots: Option<Arc<Pivots>>,
 }
 
-/// Newton's method with everything that it needs again in every step.
+/// Newton's method with its workspace.
 pub(crate) struct Newton<'a, S> {
     equations: Equations<'a, S>,
     numbering: &'a Numbering,
     matrix: SparseMatrix<S>,
     factors: SparseLu<S>,
-    /// c h of the kept factors, or `None`.
+    /// c h of the kept factors; `None` without factors.
     factored: Option<S>,
-    /// Where they were made, the step size there, and c.
+    /// State of the kept factors, with step size and c.
     made: (Stage<S>, [S; 2]),
-    /// Contraction seen with the kept factors.
+    /// Contraction with the kept factors.
     contraction: f64,
-    /// Steps in a row that took one iteration, which shows no contraction.
+    /// Number of steps in a row with one iteration, which gives no contraction.
     unseen: usize,
     scale: SceneScale,
     residual: Vec<S>,
@@ -118,7 +118,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         }
     }
 
-    /// What it keeps from step to step.
+    /// The data that is kept from step to step.
     pub(crate) fn memory(&mut self) -> Memory<S> {
         Memory {
             made: self.factored.map(|_| self.made.clone()),
@@ -128,7 +128,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         }
     }
 
-    /// Takes what another one kept, and makes its factors again.
+    /// Restores kept data, and repeats its factorisation.
     pub(crate) fn restore(&mut self, kept: &Memory<S>, counts: &mut WorkCounts) {
         self.contraction = kept.contraction;
         self.unseen = kept.unseen;
@@ -148,23 +148,24 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         }
     }
 
-    /// Leaves other rows out.
+    /// Sets the redundant rows that are left out.
     pub(crate) fn leave_out(&mut self, left_out: &RedundantRows) {
         if self.equations.leave_out(left_out) {
             self.factored = None;
         }
     }
 
-    /// Forgets the kept factors.
+    /// Discards the kept factors.
     pub(crate) fn forget(&mut self) {
         self.factored = None;
     }
 
-    /// Solves the equations of step `step` of size `h`, which ends at `time`, starting from and ending
-    /// in `x`.
+    /// Solves the equations of step `step` of size `h`, which ends at `time`. `x` is the initial
+    /// guess and the result.
     ///
     /// # Errors
-    /// Stalled, singular or not finite, with the time and the worst equation by name.
+    /// No convergence, a singular matrix, or a value that is not finite; with the worst equation by
+    /// name.
     pub(crate) fn solve(
         &mut self,
         x: &mut Stage<S>,
@@ -178,7 +179,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         let scales = self
             .scale
             .step(numbering, [&x.q, &x.v, &x.dq, &x.dv], h.re());
-        // What a nearly singular matrix magnifies to changes of any size.
+        // Changes by round-off, which a nearly singular matrix can magnify to any size.
         let round_off = ROUND_OFF * scales.place().max(1.0);
         let mut previous = f64::INFINITY;
         let (mut polish, mut before) = (false, 0.0_f64);
@@ -186,7 +187,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             history.rates(x);
             let at = x.instant();
             self.equations.residual(&at, h, &mut self.residual);
-            // A derivative converges with the exact matrix only.
+            // An infinitesimal part converges only with the exact matrix.
             let residual = (self.residual.iter()).fold(0.0, |m: f64, x| m.max(x.re().abs()));
             let fresh = S::INFINITESIMAL || self.factored != Some(history.c * h);
             if fresh {
@@ -223,11 +224,11 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
 
             let contraction = match iteration {
                 1 => self.contraction,
-                // A change after none is round-off or an infinitesimal part: no contraction.
+                // A change after a zero one is round-off or an infinitesimal part: no contraction.
                 _ if previous == 0.0 => 0.0,
                 _ => size / previous,
             };
-            // Contraction alternates between positions and multipliers: trust the worse of two.
+            // Contraction alternates between positions and multipliers: use the worse of two.
             let slow = contraction.max(before);
             let remaining = size * (slow / (1.0 - slow.min(0.9))).min(1.0);
             before = contraction;
@@ -243,7 +244,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 if iteration > 1 && !stagnant {
                     self.contraction = contraction.clamp(1e-3, 1.0);
                 }
-                // Kept factors that are not seen to converge do not serve for long.
+                // Kept factors whose convergence is unknown are not used for long.
                 self.unseen = if iteration == 1 { self.unseen + 1 } else { 0 };
                 if self.unseen >= UNSEEN {
                     self.factored = None;

@@ -1,22 +1,22 @@
-//! Where Newton's method starts in a step, and the polynomials that say so.
+//! Initial guesses of Newton's method, and their polynomials.
 
 use super::Stage;
 use super::radau::Scheme;
 use crate::linalg::SolveScalar;
 use crate::system::{Numbering, bodies};
 
-/// Steps whose ends a formula's start is extrapolated from.
+/// Number of steps whose ends the guess of a formula extrapolates.
 pub(super) const RECENT: usize = 3;
 
-/// What is behind the step to come.
+/// The history before the next step.
 #[derive(Clone, Debug)]
 pub(crate) struct Past<S> {
     /// The end of the last step.
     pub(super) from: Stage<S>,
-    /// Size and stages of the last step, if it was one of Radau IIA.
+    /// Size of the last step, if it was one of Radau IIA.
     before: Option<S>,
     stages: Vec<Stage<S>>,
-    /// Ends of the latest steps, newest first, and how many there are yet.
+    /// Ends of the latest steps, newest first, and their number.
     recent: [Stage<S>; RECENT],
     known: usize,
     /// A tangent step of the positions.
@@ -24,7 +24,7 @@ pub(crate) struct Past<S> {
 }
 
 impl<S: SolveScalar> Past<S> {
-    /// Before the first step, which starts at `from`; a step has at most `stages` stages.
+    /// The history at the first step, which starts at `from`. A step has at most `stages` stages.
     pub(crate) fn new(numbering: &Numbering, from: Stage<S>, stages: usize) -> Self {
         let zero = Stage::zero(numbering);
         Self {
@@ -37,8 +37,8 @@ impl<S: SolveScalar> Past<S> {
         }
     }
 
-    /// Moves past a step of size h, of which `count` of the `stages` were used; others take their
-    /// place.
+    /// Moves past a step of size h with the first `count` of the `stages`. `stages` becomes
+    /// workspace for the next step.
     pub(crate) fn advance(&mut self, h: S, stages: &mut Vec<Stage<S>>, count: usize) {
         self.from.set(&stages[count - 1]);
         self.recent.rotate_right(1);
@@ -48,8 +48,8 @@ impl<S: SolveScalar> Past<S> {
         std::mem::swap(&mut self.stages, stages);
     }
 
-    /// Where Newton's method starts in a step of size h of Radau IIA: the stages' polynomial of the
-    /// last step, extrapolated; in the first step a Taylor polynomial.
+    /// Initial guess of a step of size h of Radau IIA: extrapolation of the stages' polynomial of
+    /// the last step. In the first step: a Taylor polynomial.
     pub(crate) fn predict_stages(
         &mut self,
         numbering: &Numbering,
@@ -64,7 +64,7 @@ impl<S: SolveScalar> Past<S> {
             };
             let theta = 1.0 + c * h.re() / before.re();
             dense(scheme, &self.from, &self.stages, before, theta, far);
-            // The polynomial starts where the last step did.
+            // The polynomial starts at the start of the last step.
             let last = &self.stages[self.stages.len() - 1];
             for (x, d) in [(&mut far.q, &last.dq), (&mut far.dq, &last.dq)] {
                 x.iter_mut().zip(d).for_each(|(x, &d)| *x -= d);
@@ -76,7 +76,7 @@ impl<S: SolveScalar> Past<S> {
         }
     }
 
-    /// A Taylor polynomial over the time `h`, multipliers held.
+    /// A Taylor polynomial over the time `h`, with constant multipliers.
     pub(crate) fn taylor(&mut self, numbering: &Numbering, h: S, out: &mut Stage<S>) {
         let from = &self.from;
         out.set(from);
@@ -92,8 +92,8 @@ impl<S: SolveScalar> Past<S> {
         }
     }
 
-    /// Where Newton's method starts for a formula of equal steps: cubic extrapolation of q and v and
-    /// quadratic of λ and μ once three increments are known, before that a Taylor polynomial.
+    /// Initial guess of a formula with equal steps: cubic extrapolation of q and v, quadratic of λ
+    /// and μ. Before three increments are known: a Taylor polynomial.
     pub(crate) fn predict(&mut self, numbering: &Numbering, h: S, out: &mut Stage<S>) {
         if self.known < RECENT {
             return self.taylor(numbering, h, out);
@@ -116,8 +116,7 @@ impl<S: SolveScalar> Past<S> {
 }
 
 /// The collocation polynomial at the fraction θ of a step of size h (beyond the step for θ > 1):
-/// positions before their Euler parameters are brought to unit length, velocities, accelerations
-/// and multipliers.
+/// positions before their Euler parameters are normalised, velocities, accelerations, multipliers.
 pub(crate) fn dense<S: SolveScalar>(
     scheme: &Scheme,
     from: &Stage<S>,

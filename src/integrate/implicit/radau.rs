@@ -1,17 +1,17 @@
 //! The Radau IIA methods of 2 and 3 stages: coefficients, transformation, dense output (Hairer &
 //! Wanner 1996, *Solving Ordinary Differential Equations II*, sections IV.5 and IV.8).
 //!
-//! In the increments Z_i = Y_i − y_n of the stages, h Ẏ_i = Σ_j D_ij Z_j with D = A⁻¹, and
+//! With the increments Z_i = Y_i − y_n of the stages, h Ẏ_i = Σ_j D_ij Z_j with D = A⁻¹, and
 //! y_{n+1} = y_n + Z_s. The eigenvectors of D split the linear systems of Newton's method into a
-//! real one (3 stages only) and a complex one.
+//! real one (only for 3 stages) and a complex one.
 
 use crate::integrate::settings::Method;
 use crate::math::Complex64;
 use nalgebra::{DMatrix, DVector};
 
-/// Most stages of a method.
+/// Largest number of stages.
 const MOST: usize = 3;
-/// Stages of the method that a formula of several steps begins with.
+/// Number of stages of the method that makes the first steps of a multistep formula.
 const STARTING_STAGES: usize = 3;
 
 /// Coefficients of a method.
@@ -27,7 +27,7 @@ pub(crate) struct Scheme {
     pub error: (f64, Vec<f64>),
 }
 
-/// An eigenvalue of D with its vectors, lᵀ r = 1.
+/// An eigenvalue of D with its eigenvectors, lᵀ r = 1.
 #[derive(Clone, Debug)]
 pub(crate) struct Mode {
     /// Eigenvalue.
@@ -46,7 +46,7 @@ impl Mode {
 }
 
 impl Scheme {
-    /// The method that makes the steps, or those that a formula of several steps begins with.
+    /// The scheme of a method, or that of the first steps of a multistep formula.
     pub(crate) fn of(method: Method) -> Self {
         match method {
             Method::Radau { stages } => Self::new(stages),
@@ -59,7 +59,7 @@ impl Scheme {
     /// The method of 2 or 3 stages.
     ///
     /// # Panics
-    /// For another number of stages.
+    /// The number of stages is not 2 or 3.
     pub(crate) fn new(stages: usize) -> Self {
         let root = 6.0_f64.sqrt();
         let (nodes, a, values) = match stages {
@@ -114,11 +114,12 @@ impl Scheme {
     }
 
     /// Weights of Z_i in y(θ) − y_n, the polynomial through the start and the stages, and their
-    /// derivatives by θ; zero beyond the stages.
+    /// derivatives in θ. Entries beyond the stages are zero.
     pub(crate) fn dense_weights(&self, theta: f64) -> ([f64; MOST], [f64; MOST]) {
         let (mut values, mut slopes) = ([0.0; MOST], [0.0; MOST]);
         for (i, &node) in self.nodes.iter().enumerate() {
-            // 1 at the node and 0 at the others, times what is 1 at the node and 0 at the start.
+            // Lagrange polynomial of the node times θ / node, which is 1 at the node and 0 at the
+            // start.
             let (value, slope) = lagrange(&self.nodes, i, theta);
             values[i] = value * theta / node;
             slopes[i] = (slope * theta + value) / node;
@@ -126,7 +127,7 @@ impl Scheme {
         (values, slopes)
     }
 
-    /// Weights of the stages themselves in their polynomial, which has no value at the start.
+    /// Weights of the stages in their polynomial, which does not use the start.
     pub(crate) fn stage_weights(&self, theta: f64) -> [f64; MOST] {
         let mut weights = [0.0; MOST];
         for (i, weight) in weights.iter_mut().enumerate().take(self.stages()) {
@@ -136,7 +137,7 @@ impl Scheme {
     }
 }
 
-/// Value and derivative at θ of the polynomial that is 1 at node i and 0 at the others.
+/// Value and derivative at θ of the Lagrange polynomial of node i.
 fn lagrange(nodes: &[f64], i: usize, theta: f64) -> (f64, f64) {
     let (mut value, mut slope) = (1.0, 0.0);
     for (j, &node) in nodes.iter().enumerate() {
@@ -166,7 +167,7 @@ fn mode(d: &DMatrix<f64>, value: Complex64) -> Mode {
     Mode { value, right, left }
 }
 
-/// A vector that a singular matrix of order 2 or 3 takes to zero: minors of its first rows.
+/// A null vector of a singular matrix of order 2 or 3: minors of its first rows.
 fn null_vector(m: &DMatrix<Complex64>) -> Vec<Complex64> {
     match m.nrows() {
         2 => vec![m[(0, 1)], -m[(0, 0)]],
@@ -177,8 +178,8 @@ fn null_vector(m: &DMatrix<Complex64>) -> Vec<Complex64> {
     }
 }
 
-/// ŷ − y_{n+1} = h b̂_0 ẏ_n + Σ e_i Z_i for the formula of order s whose weight b̂_0 is the
-/// reciprocal of the real eigenvalue (of the modulus of the complex pair where there is none).
+/// Weights e_i of ŷ − y_{n+1} = h b̂_0 ẏ_n + Σ e_i Z_i for the formula of order s. b̂_0 is the
+/// reciprocal of the real eigenvalue, or of the modulus of the complex pair if there is none.
 fn error_weights(
     nodes: &[f64],
     a: &DMatrix<f64>,

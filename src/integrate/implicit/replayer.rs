@@ -1,4 +1,4 @@
-//! Implicit steps of a run, made again.
+//! Replay of the implicit steps of a run.
 
 use super::Stage;
 use super::predict::Past;
@@ -10,7 +10,7 @@ use crate::integrate::work::WorkCounts;
 use crate::integrate::{IntegrationFailure, Trajectory};
 use crate::model::Model;
 
-/// Makes the steps of a run again.
+/// Repeats the steps of a run.
 pub(crate) struct Replayer<'a> {
     run: &'a Trajectory<f64>,
     solver: Solver<'a, f64>,
@@ -20,7 +20,7 @@ pub(crate) struct Replayer<'a> {
 }
 
 impl<'a> Replayer<'a> {
-    /// At the start of `run`, which is one of `model`.
+    /// A replayer at the start of `run`, a run of `model`.
     pub(crate) fn new(model: &'a Model<f64>, run: &'a Trajectory<f64>, scheme: &'a Scheme) -> Self {
         let numbering = &run.numbering;
         let system = (numbering, scheme);

@@ -1,25 +1,25 @@
-//! What Newton's updates are judged against.
+//! Scales of the updates of Newton's method.
 
 use crate::math::Scalar;
 use crate::model::Model;
 use crate::system::{Numbering, placement};
 
-/// Changes below this, relative to the largest position or velocity, are round-off.
+/// Changes below this are round-off, relative to the largest position or velocity.
 const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
-/// Length and gravity of a scene, which do not change during a run.
+/// Length and gravity of a scene; they are constant during a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SceneScale {
-    /// Length scale (m).
+    /// Length scale \[m\].
     length: f64,
     gravity: f64,
 }
 
-/// For positions, rotations, velocities and angular velocities: the largest increment of the step
-/// and the largest value.
+/// For positions, rotations, velocities and angular velocities: largest increment of the step and
+/// largest value.
 pub(super) struct Scales {
     parts: [[f64; 2]; 4],
-    /// What the round-off of positions makes of velocity increments, relative to them.
+    /// Relative round-off of velocity increments due to positions.
     pub round_off: f64,
 }
 
@@ -31,8 +31,8 @@ impl SceneScale {
         }
     }
 
-    /// The scales of a step of size `h` with the increments `dq`, `dv` to (q, v): never less than
-    /// what gravity moves in a step, so that a model at rest is not judged by its noise.
+    /// The scales of a step of size `h` with the increments `dq`, `dv` to (q, v). They are at least
+    /// the change by gravity in a step, so a model at rest is not judged by its round-off.
     pub(crate) fn step<S: Scalar>(
         &self,
         n: &Numbering,
@@ -67,14 +67,14 @@ impl SceneScale {
 }
 
 impl Scales {
-    /// Largest coordinate of a body, or the scene's length if that is larger (m): positions have
-    /// round-off of its size.
+    /// Largest coordinate of a body, or the scene's length if that is larger \[m\]. The round-off
+    /// of positions is proportional to it.
     pub(crate) fn place(&self) -> f64 {
         self.parts[0][1]
     }
 
-    /// Largest change relative to the increments, round-off left out, of the scaled update (δy,
-    /// h δv); NaN if it is not finite.
+    /// Largest change of the scaled update (δy, h δv) relative to the increments, without
+    /// round-off; NaN if it is not finite.
     pub(crate) fn size<S: Scalar>(&self, update: &[S], h: f64) -> f64 {
         let (positions, velocities) = update.split_at(update.len() / 2);
         let mut size = 0.0_f64;
@@ -86,7 +86,7 @@ impl Scales {
                 for part in 0..2 {
                     let change = largest(&six[3 * part..3 * part + 3]) * scale;
                     let [increment, value] = self.parts[half + part];
-                    // What has no size at all is judged by nothing.
+                    // Parts that are zero have no relative change.
                     if increment.max(value) > 0.0 && change > ROUND_OFF * value.max(increment) {
                         size = size.max(change / increment.max(ROUND_OFF * value));
                     }

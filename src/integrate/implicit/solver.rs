@@ -1,4 +1,4 @@
-//! The steps of the implicit methods, one after the other.
+//! Consecutive steps of the implicit methods.
 
 use super::Stage;
 use super::estimate::Estimate;
@@ -16,7 +16,7 @@ use crate::model::Model;
 use crate::system::initial::InitialState;
 use crate::system::{Numbering, RedundantRows, bodies};
 
-/// What Newton's methods keep from step to step.
+/// Data that Newton's method keeps from step to step.
 #[derive(Clone, Debug)]
 pub(crate) struct Memory<S> {
     one: Option<newton::Memory<S>>,
@@ -24,7 +24,7 @@ pub(crate) struct Memory<S> {
     left_out: RedundantRows,
 }
 
-/// The start as a stage, with its rates q̇ = T(q) v and v̇.
+/// The initial stage, with its rates q̇ = T(q) v and v̇.
 pub(crate) fn starting_stage<S: SolveScalar>(
     numbering: &Numbering,
     start: &InitialState<S>,
@@ -45,23 +45,23 @@ pub(super) struct Solver<'a, S> {
     real: &'a Model<f64>,
     numbering: &'a Numbering,
     scheme: &'a Scheme,
-    /// Newton's method for formulas, once it is needed.
+    /// Newton's method for formulas, created when needed.
     one: Option<Newton<'a, S>>,
-    /// Newton's method for Radau IIA, once it is needed.
+    /// Newton's method for Radau IIA, created when needed.
     coupled: Option<StageNewton<'a, S>>,
     estimate: Option<Estimate<'a>>,
-    /// Rows that are not imposed.
+    /// Redundant rows, which are not imposed.
     left_out: RedundantRows,
-    /// Memory of a formula, of q and of v.
+    /// Memory of a formula, for q and v.
     pub memory: [Vec<Vec<S>>; 2],
     history: History<S>,
-    /// Stages of the latest step, a formula's in front.
+    /// Stages of the latest step; that of a formula is the first.
     pub stages: Vec<Stage<S>>,
 }
 
 impl<'a, S: SolveScalar> Solver<'a, S> {
-    /// The steps of `method` for a model, whose real part is `real`; `estimates` is whether errors will
-    /// be asked for.
+    /// A solver of `method` for a model with the real part `real`. `estimates` states whether
+    /// errors will be needed.
     pub(crate) fn new(
         method: Method,
         (model, real): (&'a Model<S>, &'a Model<f64>),
@@ -85,7 +85,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         }
     }
 
-    /// What Newton's methods keep from step to step.
+    /// The data that Newton's method keeps from step to step.
     pub(crate) fn newton(&mut self) -> Memory<S> {
         Memory {
             one: self.one.as_mut().map(Newton::memory),
@@ -94,7 +94,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         }
     }
 
-    /// Takes what Newton's methods kept.
+    /// Restores the data that Newton's method kept.
     pub(crate) fn restore(&mut self, newton: &Memory<S>, counts: &mut WorkCounts) {
         self.leave_out(&newton.left_out);
         match &newton.one {
@@ -120,7 +120,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         }
     }
 
-    /// Leaves other rows out of the steps to come.
+    /// Sets the redundant rows of the next steps.
     pub(crate) fn leave_out(&mut self, rows: &RedundantRows) {
         self.left_out.clone_from(rows);
         if let Some(newton) = &mut self.one {
@@ -134,7 +134,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         }
     }
 
-    /// Forgets the factors of steps that were given up.
+    /// Discards the factors of rejected steps.
     pub(crate) fn forget(&mut self) {
         if let Some(newton) = &mut self.coupled {
             newton.forget();
@@ -186,7 +186,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
             .get_or_insert_with(|| Newton::new(model, numbering));
         newton.leave_out(&self.left_out);
         newton.solve(stage, history, h, at, counts).or_else(|_| {
-            // An extrapolation over steps that are large for the motion may lead astray.
+            // The extrapolation over large steps may be a bad guess.
             past.taylor(numbering, h, stage);
             stage.project_increments(numbering, &past.from);
             stage.time = start + h;
@@ -196,7 +196,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         Ok(1)
     }
 
-    /// Moves the memory past step k of `count` stages.
+    /// Updates the memory after step k with `count` stages.
     pub(crate) fn remember(&mut self, count: usize, k: usize) {
         let last = &self.stages[count - 1];
         let formula = Formula::of_step(self.method, k);
@@ -207,7 +207,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
                         formula.remember(delta, memory, k);
                     }
                 }
-                // Increments that a formula to come starts from, newest first.
+                // Increments for a later formula, newest first.
                 None => {
                     if let Some(oldest) = memory.last_mut() {
                         oldest.copy_from_slice(delta);
@@ -218,7 +218,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         }
     }
 
-    /// Estimated error of the step that was just made from `from`, relative to the scene's scale;
+    /// Estimated error of the last step, which started at `from`, relative to the scene's scale;
     /// zero without an estimate.
     pub(crate) fn error(&mut self, from: &Stage<S>, h: f64, scale: &Scale) -> f64 {
         match (&mut self.coupled, &mut self.estimate) {
@@ -229,7 +229,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         }
     }
 
-    /// Adds the work of the estimates.
+    /// Adds the work of the estimates to `counts`.
     pub(crate) fn count(&self, counts: &mut WorkCounts) {
         if let Some(estimate) = &self.estimate {
             estimate.count(counts);

@@ -1,4 +1,5 @@
-//! The iteration matrix as a sum: what depends on the state, and the constant derivative in the rates.
+//! The iteration matrix as a sum: a part with fixed rates, and the constant derivative in the
+//! rates.
 
 use super::Stage;
 use super::ggl::{Equations, StepState};
@@ -6,20 +7,20 @@ use crate::linalg::SparseMatrix;
 use crate::math::Scalar;
 
 /// The iteration matrix K = H + c h B of equations whose rates change by c times the change of the
-/// state: H with the rates held, and B = (1, M) in the rows of kinematics and dynamics, as these are
-/// scaled. One assembly of H serves every c.
+/// state. H is the matrix with fixed rates. B = (1, M), scaled, is in the rows of kinematics and
+/// dynamics. One assembly of H serves every c.
 #[derive(Clone, Debug)]
 pub(crate) struct SplitMatrix {
     /// H.
     pub held: SparseMatrix<f64>,
-    /// B, in a pattern of its own.
+    /// B, in its own pattern.
     pub rates: SparseMatrix<f64>,
     /// Slots of its entries in H.
     slots: Vec<usize>,
 }
 
 impl SplitMatrix {
-    /// Plans the matrix of `equations`; `zero` is any stage of theirs.
+    /// Plans the matrix of `equations`; `zero` is any of their stages.
     pub(crate) fn new(equations: &mut Equations<f64>, zero: &Stage<f64>) -> Self {
         let held = SparseMatrix::new(equations.pattern(&zero.instant()));
         let mut rates = SparseMatrix::new(equations.pattern_of_rates());
@@ -37,7 +38,7 @@ impl SplitMatrix {
             .assemble(|emit| equations.jacobian(at, h, 0.0, emit));
     }
 
-    /// Fills `out`, which has the pattern of H, with H + c h B.
+    /// Sets `out`, which has the pattern of H, to H + c h B.
     pub(crate) fn fill<S: Scalar>(&self, ch: S, out: &mut SparseMatrix<S>) {
         for (out, &value) in out.values.iter_mut().zip(&self.held.values) {
             *out = S::from(value);

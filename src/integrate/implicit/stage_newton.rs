@@ -1,5 +1,5 @@
-//! Newton's method for the coupled stages of Radau IIA: one real and one complex matrix, kept while
-//! they converge (Hairer & Wanner 1996, section IV.8).
+//! Newton's method for the coupled stages of Radau IIA, with one real and one complex matrix. They
+//! are kept while the method converges (Hairer & Wanner 1996, section IV.8).
 
 use super::Stage;
 use super::ggl::Equations;
@@ -15,41 +15,42 @@ use crate::system::{Numbering, RedundantRows, bodies};
 use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
-/// Error left in the stages, relative to the largest increments in the step.
+/// Newton's method stops at this error of the stages, relative to the largest increments of the
+/// step.
 const TOLERANCE: f64 = 1e-13;
-/// Relative change below which a stagnating iteration has reached round-off: stiff forces magnify
-/// that of positions.
+/// Below this relative change a stagnating iteration has reached round-off. Stiff forces magnify
+/// the round-off of positions.
 const STAGNANT: f64 = 1e-7;
-/// Scaled residual, relative to the largest coordinate, that is round-off.
+/// A scaled residual below this, relative to the largest coordinate, is round-off.
 const ROUND_OFF: f64 = 1e-14;
-/// Round-off of a residual relative to the largest coordinate, and how much more than it changes may be
-/// that still come from it: they meet a matrix that was made elsewhere.
+/// Round-off of a residual relative to the largest coordinate, and largest ratio of changes to the
+/// magnified round-off that is still attributed to it: the matrix belongs to another state.
 const UNIT: f64 = f64::EPSILON;
 const FROM_NOISE: f64 = 100.0;
-/// Magnification of round-off from which the matrix is nearly singular.
+/// The matrix is nearly singular above this magnification of round-off.
 const MAGNIFIED: f64 = 1e3;
-/// Contraction above which the matrices are renewed for the next step.
+/// The matrices are renewed for the next step above this contraction.
 const RENEW: f64 = 0.05;
-/// Contraction that is given up.
+/// The iteration is stopped above this contraction.
 const DIVERGENT: f64 = 0.9;
-/// Relative change of the step size that the kept factors do not feel.
+/// The kept factors are used up to this relative change of the step size.
 const SAME_STEP: f64 = 1e-6;
 const ITERATIONS: usize = 20;
-/// Pivot of a multiplier that tells of a singular position.
+/// A pivot of a multiplier below this indicates a singular position.
 const NEARLY_SINGULAR: f64 = 1e-4;
-/// Iterations that let an infinitesimal part converge after the real one.
+/// Number of iterations in which an infinitesimal part converges after the real part.
 const INFINITESIMAL_ITERATIONS: usize = 12;
 
-/// What it keeps from step to step.
+/// Data that Newton's method keeps from step to step.
 #[derive(Clone, Debug)]
 pub(crate) struct Memory {
-    /// Where the kept factors were made, and the step size there.
+    /// State of the kept factors, and the step size.
     made: Option<(Stage<f64>, f64)>,
     /// Pivots of the real and of the complex matrix.
     pivots: [Option<Arc<Pivots>>; 2],
 }
 
-/// Newton's method with what it needs again in every step.
+/// Newton's method with its workspace.
 pub(crate) struct StageNewton<'a, S> {
     equations: Equations<'a, S>,
     /// The same equations in real numbers, for the matrices.
@@ -57,7 +58,7 @@ pub(crate) struct StageNewton<'a, S> {
     numbering: &'a Numbering,
     scheme: &'a Scheme,
     split: SplitMatrix,
-    /// The matrix of the real eigenvalue, or of the error's filter where there is none.
+    /// The matrix of the real eigenvalue, or of the error filter if there is none.
     real_mode: Option<(SparseMatrix<f64>, SparseLu<f64>)>,
     complex_mode: (SparseMatrix<Complex64>, SparseLu<Complex64>),
     /// Step size of the kept factors.
@@ -67,18 +68,18 @@ pub(crate) struct StageNewton<'a, S> {
     updates: Vec<Vec<S>>,
     real_rhs: Vec<f64>,
     complex_rhs: Vec<Complex64>,
-    /// Where the iterations of a step start, and the stage that the matrices are made at.
+    /// Initial guess of a step, and the stage at which the matrices are evaluated.
     predicted: Vec<Stage<S>>,
     middle: Stage<f64>,
     /// Combinations of increments of q and v, for the error.
     combined: [Vec<f64>; 2],
-    /// Change (δy, h δv) that round-off made in the latest step, if a nearly singular matrix magnified it.
+    /// Change (δy, h δv) by round-off in the latest step, if a nearly singular matrix magnified it.
     noise: Option<Vec<f64>>,
 }
 
 impl<'a, S: SolveScalar> StageNewton<'a, S> {
-    /// Plans the solution; `real` is the real part of `model`, and `estimates` whether errors will
-    /// be asked for.
+    /// Plans the solution. `real` is the real part of `model`; `estimates` states whether errors
+    /// will be needed.
     pub(crate) fn new(
         model: &'a Model<S>,
         real: &'a Model<f64>,
@@ -119,7 +120,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         }
     }
 
-    /// What it keeps from step to step.
+    /// The data that is kept from step to step.
     pub(crate) fn memory(&mut self) -> Memory {
         let real = self.real_mode.as_mut();
         Memory {
@@ -131,7 +132,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         }
     }
 
-    /// Takes what another one kept, and makes its factors again.
+    /// Restores kept data, and repeats its factorisations.
     pub(crate) fn restore(&mut self, kept: &Memory, counts: &mut WorkCounts) {
         let [real, complex] = &kept.pivots;
         if let Some((matrix, factors)) = &mut self.real_mode {
@@ -142,17 +143,17 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         self.factored = None;
         if let Some((middle, h)) = &kept.made {
             self.middle.set(middle);
-            // They were made before, so they can be.
+            // This cannot fail: the same matrices were factorised before.
             let _ = self.factorise_there(*h, counts);
         }
     }
 
-    /// Forgets the kept factors.
+    /// Discards the kept factors.
     pub(crate) fn forget(&mut self) {
         self.factored = None;
     }
 
-    /// Leaves other rows out.
+    /// Sets the redundant rows that are left out.
     pub(crate) fn leave_out(&mut self, left_out: &RedundantRows) {
         if self.equations.leave_out(left_out) {
             self.real.leave_out(left_out);
@@ -160,10 +161,12 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         }
     }
 
-    /// Solves the stage equations of a step of size `h`, starting from and ending in `stages`.
+    /// Solves the stage equations of a step of size `h`. `stages` are the initial guess and the
+    /// result.
     ///
     /// # Errors
-    /// Stalled, singular or not finite, with the time and the worst equation by name.
+    /// No convergence, a singular matrix, or a value that is not finite; with the worst equation by
+    /// name.
     pub(crate) fn solve(
         &mut self,
         stages: &mut [Stage<S>],
@@ -211,11 +214,11 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             }
             let contraction = match iteration {
                 1 => RENEW,
-                // A change after none is round-off or an infinitesimal part: no contraction.
+                // A change after a zero one is round-off or an infinitesimal part: no contraction.
                 _ if previous == 0.0 => 0.0,
                 _ => size / previous,
             };
-            // Contraction alternates between positions and multipliers: trust the worse of two.
+            // Contraction alternates between positions and multipliers: use the worse of two.
             let pair = contraction.max(before);
             let slow = contraction.min(before) > DIVERGENT || contraction > 10.0;
             before = contraction;
@@ -257,24 +260,25 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         Err(self.stalled(stages, h, at, counts))
     }
 
-    /// Whether the residuals are round-off, however large the changes are that a nearly singular
-    /// matrix makes of it.
+    /// Whether the residuals are round-off. A nearly singular matrix may turn them into changes of
+    /// any size.
     fn is_round_off(&self, scales: &Scales) -> bool {
         let limit = ROUND_OFF * scales.place().max(1.0);
         let all = self.residuals.iter().flatten();
         all.fold(0.0, |m: f64, x| m.max(x.re().abs())) <= limit
     }
 
-    /// What the matrix makes of round-off in the constraints: the largest change (δy, h δv) of a stage, and
-    /// its size relative to the increments. It lies across the motion that the joints allow. The change is
-    /// `None` where the matrix magnifies nothing: the round-off of large coordinates is an error of the step.
+    /// Effect of round-off in the constraints: the largest change (δy, h δv) of a stage, and its
+    /// size relative to the increments. The change is normal to the motion that the joints allow.
+    /// It is `None` if the matrix does not magnify: round-off of large coordinates then belongs to
+    /// the error of the step.
     fn magnified(&mut self, scales: &Scales, h: S) -> (Option<Vec<f64>>, f64) {
         let n = 2 * self.numbering.velocities();
         let unit = UNIT * scales.place().max(1.0);
         for residual in &mut self.residuals {
             residual.fill(S::zero());
             for (i, x) in residual[n..].iter_mut().enumerate() {
-                // No combination of rows is to be missed: both signs, without a pattern.
+                // Irregular signs, so that no combination of rows is missed.
                 let sign = (SQRT_2 * (i + 1) as f64).fract() - 0.5;
                 *x = S::from(unit.copysign(sign));
             }
@@ -294,12 +298,12 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         ((largest > MAGNIFIED * unit).then_some(all), size)
     }
 
-    /// Change (δy, h δv) that round-off made in the latest step, if a nearly singular matrix magnified it.
+    /// Change (δy, h δv) by round-off in the latest step, if a nearly singular matrix magnified it.
     pub(crate) fn noise(&self) -> Option<&[f64]> {
         self.noise.as_deref()
     }
 
-    /// One iteration; the size of the change.
+    /// Makes one iteration; returns the size of the change.
     fn improve(
         &mut self,
         stages: &mut [Stage<S>],
@@ -331,7 +335,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         size
     }
 
-    /// Rates of the stages from their increments, h Ẏ_i = Σ D_ij Z_j.
+    /// Sets the rates of the stages from their increments, h Ẏ_i = Σ D_ij Z_j.
     fn set_rates(&self, stages: &mut [Stage<S>], h: S) {
         for i in 0..stages.len() {
             let mut qdot = std::mem::take(&mut stages[i].qdot);
@@ -352,8 +356,8 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         }
     }
 
-    /// Adds the updates that one part of the residuals makes: x_i −= Σ r_i K⁻¹ Σ l_j F_j over the
-    /// modes and the conjugates of complex ones.
+    /// Adds the updates by one part of the residuals: x_i −= Σ r_i K⁻¹ Σ l_j F_j over the modes and
+    /// the conjugates of complex ones.
     fn update(&mut self, part: impl Fn(S) -> f64, whole: impl Fn(f64) -> S) {
         for mode in &self.scheme.modes {
             if let (true, Some((_, factors))) = (mode.is_real(), &mut self.real_mode) {
@@ -406,7 +410,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             })
     }
 
-    /// Assembles and factorises where the middle stage stands.
+    /// Assembles and factorises at the stored middle stage.
     fn factorise_there(&mut self, h: f64, counts: &mut WorkCounts) -> Result<(), SingularMatrix> {
         let Self {
             split,
@@ -439,9 +443,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         found
     }
 
-    /// Estimated error (δy, h δv) of a step of size h: the difference of the embedded formula,
-    /// filtered by the real matrix, (K δ) = B (b̂_0 h ẏ_n + Σ e_i Z_i) / (b̂_0 h) in the equations
-    /// of motion and 0 in the constraints (Hairer & Wanner 1996, eq. IV.8.19 and 20). `rates` are
+    /// Estimated error (δy, h δv) of a step of size h. The difference of the embedded formula is
+    /// filtered by the real matrix: (K δ) = B (b̂_0 h ẏ_n + Σ e_i Z_i) / (b̂_0 h) in the equations
+    /// of motion, and 0 in the constraints (Hairer & Wanner 1996, eq. IV.8.19 and 20). `rates` are
     /// the rates (q̇, v̇) at the start.
     pub(crate) fn error(
         &mut self,
@@ -494,7 +498,8 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         }
     }
 
-    /// Why the iterations failed, and whether the matrix is nearly singular where they ended.
+    /// The reason why the iterations failed, and whether the matrix is nearly singular at their
+    /// end.
     fn stalled(
         &mut self,
         stages: &mut [Stage<S>],
@@ -508,7 +513,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                 return singular;
             }
             self.factored = None;
-            // Stiff forces make small pivots as well, but in the rows of bodies.
+            // Stiff forces also cause small pivots, but in the rows of bodies.
             let first = self.real.order() - 2 * self.numbering.constraints();
             let complex = self.complex_mode.1.smallest_pivot(first);
             let real = self.real_mode.as_mut();

@@ -1,4 +1,4 @@
-//! What the adjoint needs of implicit steps.
+//! Data of implicit steps for the adjoint.
 
 use super::Stage;
 use super::formula::memory_size;
@@ -12,24 +12,24 @@ use crate::math::{Complex64, Scalar};
 use crate::system::Numbering;
 use std::ops::Range;
 
-/// What is kept of a run.
+/// Stored data of a run.
 pub(crate) type Tape<S> = replay::Tape<Block<S>>;
 
-/// The stages of steps in a row, one for a formula, all for Radau IIA, and the state that the first one
-/// starts from. The last stage stands at the step's end.
+/// Consecutive steps: their stages (one for a formula, all for Radau IIA) and the state at the
+/// start of the first step. The last stage of a step is its end.
 #[derive(Clone, Debug)]
 pub(crate) struct Block<S> {
     first: usize,
     start: Stage<S>,
     stages: Rows<S, 9>,
-    /// How many stages there are up to the end of each step.
+    /// By step: number of stages up to its end.
     ends: Vec<usize>,
-    /// Most stages of a step.
+    /// Largest number of stages of a step.
     most: usize,
 }
 
 impl<S: Scalar> Block<S> {
-    /// No step yet of a run that starts with `start`; a step has at most `most` stages.
+    /// An empty block of a run that starts with `start`. A step has at most `most` stages.
     pub(crate) fn new(numbering: &Numbering, start: Stage<S>, most: usize) -> Self {
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         let nc = numbering.constraints();
@@ -42,7 +42,7 @@ impl<S: Scalar> Block<S> {
         }
     }
 
-    /// Room that a step and a checkpoint of a method take.
+    /// Memory of a step and of a checkpoint of a method.
     pub(crate) fn room(&self, method: Method) -> MemoryOfBlock {
         let [nq, nv, ..] = self.stages.lengths();
         let (width, number) = (self.stages.width(), size_of::<S>());
@@ -50,8 +50,8 @@ impl<S: Scalar> Block<S> {
             Method::Radau { .. } => self.most,
             Method::Dop853 | Method::Bdf { .. } | Method::GeneralisedAlpha { .. } => 1,
         };
-        // A checkpoint holds the state, the stages of the last step, the ends of the latest ones and the
-        // stage that the factors are made at.
+        // A checkpoint holds the state, the stages of the last step, the ends of the latest steps,
+        // and the stage of the factors.
         let states = 2 + self.most + RECENT;
         MemoryOfBlock {
             step: (stages * width + 1) * number,
@@ -59,7 +59,7 @@ impl<S: Scalar> Block<S> {
         }
     }
 
-    /// Adds a step that starts from `from`.
+    /// Adds a step that starts at `from`.
     pub(crate) fn push(&mut self, from: &Stage<S>, stages: &[Stage<S>]) {
         if self.ends.is_empty() {
             self.start.set(from);
@@ -71,12 +71,12 @@ impl<S: Scalar> Block<S> {
         self.ends.push(before + stages.len());
     }
 
-    /// Number of stages before the step that is number `at` here, from 0.
+    /// Number of stages before step `at` of this block, counted from 0.
     fn before(&self, at: usize) -> usize {
         at.checked_sub(1).map_or(0, |last| self.ends[last])
     }
 
-    /// Puts the stages of step k of the run in front of `out`, and returns how many there are.
+    /// Writes the stages of step k of the run to the first entries of `out`; returns their number.
     pub(crate) fn read(&self, k: usize, out: &mut [Stage<S>]) -> usize {
         let at = k - self.first - 1;
         let all = self.before(at)..self.ends[at];
@@ -86,7 +86,8 @@ impl<S: Scalar> Block<S> {
         all.len()
     }
 
-    /// Puts the end of step k of the run, which may be the start of the first step here, into `out`.
+    /// Writes the end of step k of the run to `out`; k may be the step before the first of this
+    /// block.
     pub(crate) fn read_end(&self, k: usize, out: &mut Stage<S>) {
         match self.before(k - self.first) {
             0 => out.set(&self.start),
@@ -95,7 +96,7 @@ impl<S: Scalar> Block<S> {
     }
 }
 
-/// What is behind a step, and the memory of a formula, of q and of v.
+/// History before a step, and the memory of a formula for q and v.
 pub(crate) type State<S> = (Past<S>, [Vec<Vec<S>>; 2]);
 
 impl<S: Scalar> replay::Block for Block<S> {
