@@ -22,56 +22,57 @@ use crate::linalg::{Pivots, SingularMatrix, SolveScalar};
 use crate::model::Model;
 use std::sync::Arc;
 
-/// Solver of the index-1 equations at one position after the other.
+/// Solver of the index-1 equations at consecutive states.
 pub(crate) struct Accelerations<'a, S> {
     /// The model.
     pub model: &'a Model<S>,
     /// Its numbering.
     pub numbering: &'a Numbering,
-    /// Motions of the bodies where the solver stands.
+    /// Motions of the bodies in the present state.
     pub motions: Vec<BodyMotion<S>>,
     gradients: Vec<RowGradient<S>>,
-    /// Rows that are not imposed.
+    /// Redundant rows, which are not imposed.
     left_out: RedundantRows,
     weighing: RowWeights<S>,
     /// The joints, if the scene is planar.
     planar: Option<PlanarJoints<S>>,
-    /// Motions with accelerations and virtual velocities, for the pull-back.
+    /// Motions with accelerations and virtual velocities, for pull-backs.
     moving: Vec<BodyMotion<S>>,
-    /// Time where the solver stands (s).
+    /// Time of the present state \[s\].
     time: S,
     solver: Solver<S>,
     left_to_sparse: Option<FallbackReason>,
     rhs: Vec<S>,
-    /// Factorisations so far.
+    /// Number of factorisations so far.
     pub factorisations: usize,
-    /// Solutions so far.
+    /// Number of solutions so far.
     pub solves: usize,
 }
 
-/// By the tree of joints, or by sparse LU where they close many loops or a body lacks inertia.
+/// Elimination by the tree of joints, or by sparse LU if they close many loops or a body lacks
+/// inertia.
 enum Solver<S> {
     Tree(Box<Tree<S>>),
     Sparse(Box<SaddlePoint<S>>, Vec<S>),
 }
 
-/// What the factors depend on besides the state: a solver with the same memory finds the same numbers, to
-/// the last bit.
+/// Data that determine the factors, besides the state. A solver with the same memory gives the same
+/// numbers to the last bit.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
     left_to_sparse: Option<FallbackReason>,
     pivots: Option<Arc<Pivots>>,
 }
 
-/// Why the tree of joints does not serve.
+/// The reason why sparse LU replaces the tree of joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FallbackReason {
-    /// Loops of joints reach so far and overlap so much that sparse LU costs less.
+    /// Loops of joints are so long and overlap so much that sparse LU costs less.
     Loops,
-    /// A body, with what hangs from it, has a motion without inertia, or one whose inertia loses five
-    /// digits beside that of the others.
+    /// A body, with the bodies that it carries, has a motion without inertia, or with an inertia
+    /// that loses five digits relative to the others.
     Body(usize),
-    /// Likewise the rows of a joint, for the inertias of what it holds.
+    /// The same for the rows of a joint and the inertias of its bodies.
     Joint(usize),
 }
 
@@ -100,12 +101,12 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         }
     }
 
-    /// Whether its factors depend on more than the state that it stands at.
+    /// Whether its factors depend on more than the present state.
     pub(crate) fn remembers(&self) -> bool {
         matches!(self.solver, Solver::Sparse(..))
     }
 
-    /// What its factors depend on besides the state.
+    /// The data that determine its factors, besides the state.
     pub(crate) fn memory(&mut self) -> Memory {
         Memory {
             left_to_sparse: self.left_to_sparse,
@@ -116,7 +117,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         }
     }
 
-    /// Takes the memory of another solver of the same model.
+    /// Restores the memory of another solver of the same model.
     pub(crate) fn restore(&mut self, memory: &Memory) {
         if self.left_to_sparse != memory.left_to_sparse {
             let tree = || Tree::plan(self.model, self.numbering);
@@ -136,7 +137,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         Solver::Sparse(Box::new(SaddlePoint::new(model, numbering)), zeros)
     }
 
-    /// Whether the joints close loops, or a body lacks inertia so that the tree does not serve.
+    /// Whether the joints close loops, or the tree is not used because a body lacks inertia.
     pub(crate) fn closes_loops(&self) -> bool {
         match &self.solver {
             Solver::Tree(tree) => tree.closes_loops(),
@@ -144,12 +145,12 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         }
     }
 
-    /// Rows that are not imposed.
+    /// Redundant rows, which are not imposed.
     pub(crate) fn left_out(&self) -> &RedundantRows {
         &self.left_out
     }
 
-    /// Leaves other rows out from where the solver stands next.
+    /// Sets the redundant rows from the next state on.
     pub(crate) fn leave_out(&mut self, left_out: &RedundantRows) {
         if self.left_out != *left_out {
             self.left_out.clone_from(left_out);
@@ -159,8 +160,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         }
     }
 
-    /// What should be left out from here on, where that is another choice (see [`RedundantRows::exchanged`]),
-    /// with the matrix factorised where the solver stands.
+    /// Another choice of redundant rows, if one is better (see [`RedundantRows::exchanged`]). The
+    /// matrix must be factorised in the present state.
     pub(crate) fn exchanged(&mut self, worn: f64) -> Option<RedundantRows> {
         if self.left_out.is_empty() {
             return None;
@@ -176,8 +177,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         exchanged
     }
 
-    /// Moves to the state (q, v) at `time` without factorising; the Euler parameters in `q` need not
-    /// be of unit length.
+    /// Moves to the state (q, v) at `time` without factorising. The Euler parameters in `q` need
+    /// not have unit length.
     pub(crate) fn set_state(&mut self, q: &[S], v: &[S], time: S) {
         self.time = time;
         BodyMotion::all_normalised(self.numbering, q, v, &mut self.motions);
@@ -194,12 +195,12 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         self.left_out.clear_gradients(&mut self.gradients);
     }
 
-    /// Where the solver stands.
+    /// The present state.
     fn here(&self) -> InMotion<'_, S> {
         InMotion::new(self.model, self.numbering, &self.motions, self.time)
     }
 
-    /// Changes the velocities, the position kept.
+    /// Changes the velocities; the positions stay.
     pub(crate) fn set_velocities(&mut self, v: &[S]) {
         for (body, motion) in self.motions.iter_mut().enumerate() {
             (motion.velocity, motion.omega) = velocities_of(&v[self.numbering.velocity(body)..]);
@@ -209,7 +210,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         }
     }
 
-    /// Factorises [M Gᵀ; G 0] where the solver stands.
+    /// Factorises [M Gᵀ; G 0] in the present state.
     ///
     /// # Errors
     /// [`SingularMatrix`]: redundant constraints, or a motion without inertia.
@@ -228,8 +229,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
                 Some(row) => FallbackReason::Joint(self.numbering.joint_of_row(row)),
                 None => FallbackReason::Body(self.numbering.body_of_velocity(at.column)),
             });
-            // A body without inertia of its own may still be held by its joints, and the rows of a loop
-            // by a choice of pivots.
+            // Joints may hold a body without inertia, and sparse LU may find pivots for the rows of
+            // a loop.
             self.solver = Self::sparse(self.model, self.numbering);
             if let Solver::Sparse(saddle, _) = &mut self.solver {
                 saddle.leave_out(&self.left_out);
@@ -242,14 +243,14 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         saddle.factorise(&at, zeros, mass(self.model))
     }
 
-    /// Solves [M Gᵀ; G 0] (x, λ) = (f, g) in place, with the matrix factorised last.
+    /// Solves [M Gᵀ; G 0] (x, λ) = (f, g) in place; `rhs` has length n_v + n_c.
     pub(crate) fn solve(&mut self, rhs: &mut [S]) {
         self.solves += 1;
         self.left_out.clear(&mut rhs[self.numbering.velocities()..]);
         if let Solver::Sparse(saddle, _) = &mut self.solver {
             return saddle.solve(rhs);
         }
-        // The tree takes inertias as symmetric, which their infinitesimal parts need not be.
+        // The tree treats inertias as symmetric, but their infinitesimal parts may not be.
         let given = S::INFINITESIMAL.then(|| rhs.to_vec());
         self.solve_tree(rhs);
         if let Some(given) = given {
@@ -259,7 +260,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         }
     }
 
-    /// How the matrix that was factorised last is eliminated.
+    /// Summary of the elimination of the last factorised matrix.
     pub(crate) fn elimination(&mut self) -> EliminationSummary {
         match &mut self.solver {
             Solver::Tree(tree) => tree.elimination(self.numbering),
@@ -267,7 +268,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         }
     }
 
-    /// Why that is left to sparse LU, if it is.
+    /// The reason why sparse LU is used, if it is.
     pub(crate) fn left_to_sparse(&self) -> Option<FallbackReason> {
         self.left_to_sparse
     }
@@ -279,7 +280,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         }
     }
 
-    /// rhs − [M Gᵀ; G 0] (x, λ).
+    /// The residual rhs − [M Gᵀ; G 0] (x, λ).
     fn residual(&self, x: &[S], rhs: &[S]) -> Vec<S> {
         let nv = self.numbering.velocities();
         let mut out = vec![S::zero(); x.len()];
@@ -302,7 +303,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         out
     }
 
-    /// Accelerations and multipliers where the solver stands and was factorised.
+    /// Accelerations (length n_v) and multipliers (n_c) in the present, factorised state.
     pub(crate) fn accelerations(&mut self, a: &mut [S], lambda: &mut [S]) {
         let mut rhs = std::mem::take(&mut self.rhs);
         let nv = self.numbering.velocities();
@@ -324,8 +325,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         self.rhs = rhs;
     }
 
-    /// The correction of the velocities that makes G v + Φ_t = 0 in the metric of the mass, and
-    /// its multipliers: M δ + Gᵀσ = 0, G (v + δ) + Φ_t = 0.
+    /// The correction δ of the velocities and its multipliers σ, in the metric of the mass:
+    /// M δ + Gᵀσ = 0, G (v + δ) + Φ_t = 0.
     pub(crate) fn velocity_correction(&mut self, v: &[S], delta: &mut [S], sigma: &mut [S]) {
         let mut rhs = std::mem::take(&mut self.rhs);
         let nv = self.numbering.velocities();
@@ -338,8 +339,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         self.rhs = rhs;
     }
 
-    /// Rates G v + Φ_t of the constraints at the velocities `v`, where the solver stands, zero those that
-    /// are left out.
+    /// Rates G v + Φ_t of the constraints at the velocities `v` and the present positions; zero for
+    /// redundant rows.
     pub(crate) fn rates(&self, v: &[S], out: &mut [S]) {
         let (model, numbering) = (self.model, self.numbering);
         joints::rates_from_gradients(model, numbering, &self.gradients, v, out);
@@ -347,18 +348,18 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         self.left_out.clear(out);
     }
 
-    /// Whether row i is a length (m), as those of points are, rather than the product of two axes.
+    /// Whether row i is a length \[m\], not a product of two axes.
     pub(crate) fn is_length(&self, i: usize) -> bool {
         self.gradients[i].force.iter().any(|x| x.re() != 0.0)
     }
 
-    /// Constraints Φ where the solver stands, zero those that are left out.
+    /// Constraints Φ in the present state; zero for redundant rows.
     pub(crate) fn constraints(&self, out: &mut [S]) {
         joints::values(&self.here(), out);
         self.left_out.clear(out);
     }
 
-    /// Adds Gᵀ λ to `out`.
+    /// Adds Gᵀ λ to `out` (length n_v).
     pub(crate) fn add_reactions(&self, lambda: &[S], out: &mut [S]) {
         joints::add_reactions(self.model, self.numbering, &self.gradients, lambda, out);
     }
@@ -366,8 +367,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
 
 impl Accelerations<'_, f64> {
     /// Pulls the cotangent ā of the accelerations back to tangent positions, velocities, time
-    /// (returned) and parameters, where the solver stands and was factorised. `a` and `lambda` are what
-    /// [`Accelerations::accelerations`] gave there.
+    /// (returned) and parameters, in the present, factorised state. `a` and `lambda` are the
+    /// results of [`Accelerations::accelerations`].
     pub(crate) fn pull_back(
         &mut self,
         (a, lambda): (&[f64], &[f64]),
@@ -435,7 +436,7 @@ impl Accelerations<'_, f64> {
         self.pull_rows((None, Some(w)), &cotangents, (y, None), cot)
     }
 
-    /// As [`Accelerations::pull_rate`] for χᵀ (G v + Φ_t) at the velocities where the solver stands.
+    /// As [`Accelerations::pull_rate`], for χᵀ (G v + Φ_t) at the present velocities.
     pub(crate) fn pull_rates(&mut self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
         let cotangents = RowCotangents {
             rate: Some(chi),
@@ -458,8 +459,8 @@ impl Accelerations<'_, f64> {
         self.pull_rows((None, None), &cotangents, (y, None), cot)
     }
 
-    /// Pulls the rows' cotangents back where the bodies have these accelerations and virtual
-    /// velocities, zero where they are not given.
+    /// Pulls the cotangents of the rows back with these accelerations and virtual velocities;
+    /// `None` for zero.
     fn pull_rows(
         &mut self,
         (a, w): (Option<&[f64]>, Option<&[f64]>),
@@ -473,7 +474,7 @@ impl Accelerations<'_, f64> {
             v,
             model: cot,
         };
-        // Values depend on what is across the plane as well.
+        // Values also depend on the frames' components across the plane.
         if let (Some(planar), None) = (&mut self.planar, cotangents.value) {
             planar.set_moving(numbering, a, w);
             planar.pull_back(numbering, cotangents, &mut out);

@@ -1,12 +1,12 @@
-//! Assembly: the positions nearest to the placement that close every joint,
-//! E_y + Gᵀ s = 0, Φ(q, 0) = 0, or the joint that cannot be closed. The distance is the mean square
+//! Assembly: the positions nearest to the placement that satisfy all constraints, by E_y + Gᵀ s =
+//! 0, Φ(q, 0) = 0; or the joint that cannot be closed. The distance E is the mean square
 //! displacement of the mass,
 //!
 //! ```text
 //! E = ½ Σ ∫ |x(q) − x(q_g)|² dm = Σ ½ m |r − r_g|² + tr(S) − tr(R S R_gᵀ),     S = ½ tr(J) 1 − J
 //! ```
 //!
-//! It does not depend on units, and bodies that are welded count as one would.
+//! It does not depend on units. Welded bodies count as a single one would.
 
 use super::bodies::{self, BodyMotion, positions_of};
 use super::failure::AssemblyFailure;
@@ -23,16 +23,16 @@ use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::{Joint, Model};
 
 const ITERATIONS: usize = 50;
-/// Gap relative to the length scale below which the joints count as closed.
+/// Joints are closed up to this gap relative to the length scale.
 const CLOSED: f64 = 1e-13;
 
-/// Gap relative to the length scale up to which rows that are left out follow from the others.
+/// Rows that are left out are redundant up to this gap relative to the length scale.
 const FOLLOWS: f64 = 1e-9;
 
-/// Gap relative to the length scale up to which a singular start is put down to its constraints.
+/// Up to this gap relative to the length scale, a singular start is attributed to its constraints.
 const NEARLY_CLOSED: f64 = 0.05;
 
-/// Nearest assembled positions by Newton's method: (q, s, iterations).
+/// Finds the nearest assembled positions by Newton's method: (q, s, iterations).
 pub(super) fn assemble<S: SolveScalar>(
     model: &Model<S>,
     numbering: &Numbering,
@@ -50,7 +50,7 @@ pub(super) fn assemble<S: SolveScalar>(
     let mut phi = vec![S::zero(); nc];
     let mut gradients = Vec::new();
     let mut closed_before = false;
-    // The conditions as far as they could be closed, which is what a failure tells.
+    // The conditions with the smallest gap so far, for the message of a failure.
     let mut best = Vec::new();
     let mut least = f64::INFINITY;
     for iteration in 0..ITERATIONS {
@@ -73,7 +73,7 @@ pub(super) fn assemble<S: SolveScalar>(
         }
         let metric = displacement_metric(model, numbering, &q);
         saddle.factorise(&at, &s, metric).map_err(|_| {
-            // Redundant joints seldom meet exactly before they are assembled.
+            // Joints that are redundant seldom meet exactly before assembly.
             let meet = least <= NEARLY_CLOSED * scale && iteration == 0;
             if meet || least <= CLOSED * scale.max(1.0) {
                 super::rank::explain(model, &q)
@@ -89,7 +89,8 @@ pub(super) fn assemble<S: SolveScalar>(
         for (s, step) in s.iter_mut().zip(&rhs[nv..]) {
             *s += *step;
         }
-        // One step past the closed real part, so that an infinitesimal part is closed as well.
+        // One more step after the real part has converged, so that an infinitesimal part converges
+        // too.
         let moved = rhs[..nv].iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
         let closed = gap <= CLOSED * scale.max(1.0) && moved <= 1e-10 * scale.max(1.0);
         if closed && closed_before {
@@ -102,8 +103,8 @@ pub(super) fn assemble<S: SolveScalar>(
     Err(open(model, numbering, &best, ITERATIONS))
 }
 
-/// Second moment S = ∫ s sᵀ dm = ½ tr(J) 1 − J of a body with inertia J. The moments of a thin rod about
-/// two axes are subtracted from each other first, so that what is left of it has all digits.
+/// Second moment S = ∫ s sᵀ dm = ½ tr(J) 1 − J of a body with inertia J. For a thin rod, the
+/// difference of the moments about two axes is computed first, so that S keeps all digits.
 pub(super) fn second_moment<S: Scalar>(inertia: &Mat3<S>) -> Mat3<S> {
     let moment = |k: usize| inertia[(k, k)];
     Mat3::from_fn(|k, l| {
@@ -125,7 +126,7 @@ pub(super) fn axial<S: Scalar>(x: &Mat3<S>) -> Vec3<S> {
     )
 }
 
-/// The rotation R_gᵀ R(p) from where a body is placed to where it is.
+/// The rotation R_gᵀ R(p) of a body from its placement.
 pub(super) fn turned_by<S: Scalar>(placed: &Quat<S>, p: &Quat<S>) -> Mat3<S> {
     rotation::matrix(placed).transpose() * rotation::matrix(p)
 }
@@ -145,8 +146,8 @@ pub(super) fn add_displacement<S: Scalar>(
     }
 }
 
-/// E_yy: m, and tr(X) 1 − Xᵀ with X = S R_gᵀ R, which is J + tr(Y) 1 − Yᵀ with Y = S (R_gᵀ R − 1): the
-/// smallest moment of inertia does not drown in the others.
+/// E_yy: m, and tr(X) 1 − Xᵀ with X = S R_gᵀ R. The latter is computed as J + tr(Y) 1 − Yᵀ with
+/// Y = S (R_gᵀ R − 1), so that the smallest moment of inertia keeps its digits.
 pub(super) fn displacement_metric<'a, S: Scalar>(
     model: &'a Model<S>,
     numbering: &'a Numbering,
@@ -164,7 +165,7 @@ pub(super) fn displacement_metric<'a, S: Scalar>(
     }
 }
 
-/// The worst open row, by joint.
+/// The joint and row with the largest gap.
 fn open<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
@@ -191,7 +192,7 @@ fn open<S: Scalar>(
     }
 }
 
-/// Refuses positions at which rows that are left out do not follow from those that are imposed.
+/// Rejects positions at which rows that were left out are not redundant.
 fn check_left_out<S: Scalar>(
     model: &Model<S>,
     motions: &[BodyMotion<S>],
@@ -211,7 +212,7 @@ fn check_left_out<S: Scalar>(
     }
 }
 
-/// Refuses the spurious root of the orientation rows in which one frame is turned by 180°.
+/// Rejects the spurious solution of the orientation rows in which one frame is turned by 180°.
 fn check_turned<S: Scalar>(
     model: &Model<S>,
     motions: &[BodyMotion<S>],
@@ -225,8 +226,8 @@ fn check_turned<S: Scalar>(
     }
 }
 
-/// A driven joint that is at the spurious root of its rows, in which a frame is turned by 180°, where
-/// and when the bodies are as `at` says. Steps of half a turn lead there.
+/// A driven joint at the spurious solution of its rows, in which a frame is turned by 180°, with
+/// the motions and the time `at`. Steps of half a turn lead there.
 pub(crate) fn turned<'a, S: Scalar>(
     model: &'a Model<S>,
     at: (&[BodyMotion<S>], S),

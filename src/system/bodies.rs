@@ -1,5 +1,5 @@
-//! Bodies in motion: kinematics q̇ = T(q) v and dynamics M v̇ = f(v) under gravity alone, with their
-//! derivatives; other forces are in `loads`.
+//! Bodies in motion: kinematics q̇ = T(q) v, and dynamics M v̇ = f(v) with gravity only, with their
+//! derivatives. Other forces are in `loads`.
 //!
 //! Rigid body, reference point at the centre of mass, ω and torques in body axes:
 //!
@@ -14,26 +14,27 @@ use crate::math::scalar::skew;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::{Model, RigidBody};
 
-/// Position, velocity and, where it is asked for, acceleration of a body.
+/// Position, velocity and, if needed, acceleration of a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BodyMotion<S> {
-    /// Centre of mass r, ground axes (m).
+    /// Centre of mass r, ground axes \[m\].
     pub position: Vec3<S>,
     /// Euler parameters p.
     pub orientation: Quat<S>,
     /// Rotation matrix R(p), body axes to ground.
     pub rotation: Mat3<S>,
-    /// Velocity ṙ, ground axes (m/s).
+    /// Velocity ṙ, ground axes \[m/s\].
     pub velocity: Vec3<S>,
-    /// Angular velocity ω, body axes (rad/s).
+    /// Angular velocity ω, body axes \[rad/s\].
     pub omega: Vec3<S>,
-    /// Acceleration r̈, ground axes (m/s²); zero unless set by [`BodyMotion::accelerated`].
+    /// Acceleration r̈, ground axes \[m/s²\]; zero unless set by [`BodyMotion::accelerated`].
     pub acceleration: Vec3<S>,
-    /// Angular acceleration ω̇, body axes (rad/s²); zero unless set likewise.
+    /// Angular acceleration ω̇, body axes \[rad/s²\]; zero unless set by
+    /// [`BodyMotion::accelerated`].
     pub alpha: Vec3<S>,
     /// Virtual velocity, ground axes; zero unless set by [`BodyMotion::virtually`].
     pub virtual_velocity: Vec3<S>,
-    /// Virtual angular velocity, body axes; zero unless set likewise.
+    /// Virtual angular velocity, body axes; zero unless set by [`BodyMotion::virtually`].
     pub virtual_omega: Vec3<S>,
 }
 
@@ -72,13 +73,13 @@ impl<S: Scalar> BodyMotion<S> {
         }
     }
 
-    /// The same motion with the accelerations that six coordinates give.
+    /// The same motion with accelerations from six coordinates.
     pub(crate) fn accelerated(mut self, a: &[S]) -> Self {
         (self.acceleration, self.alpha) = velocities_of(a);
         self
     }
 
-    /// The same motion with the virtual velocities that six coordinates give.
+    /// The same motion with virtual velocities from six coordinates.
     pub(crate) fn virtually(mut self, w: &[S]) -> Self {
         (self.virtual_velocity, self.virtual_omega) = velocities_of(w);
         self
@@ -90,7 +91,7 @@ impl<S: Scalar> BodyMotion<S> {
         out.extend((0..numbering.bodies()).map(|body| Self::of(numbering, body, q, v)));
     }
 
-    /// All bodies in the state (q, v), the Euler parameters in `q` brought to unit length.
+    /// All bodies in the state (q, v), with normalised Euler parameters.
     pub(crate) fn all_normalised(numbering: &Numbering, q: &[S], v: &[S], out: &mut Vec<Self>) {
         out.clear();
         out.extend((0..numbering.bodies()).map(|body| {
@@ -111,25 +112,25 @@ impl<S: Scalar> BodyMotion<S> {
         }));
     }
 
-    /// Position of the point `s` (from the centre of mass, body axes) (m).
+    /// Position of the point `s` (from the centre of mass, body axes) in ground axes \[m\].
     pub(crate) fn point(&self, s: &Vec3<S>) -> Vec3<S> {
         self.position + self.rotation * s
     }
 
-    /// Velocity of the point `s` (m/s).
+    /// Velocity of the point `s` in ground axes \[m/s\].
     pub(crate) fn point_velocity(&self, s: &Vec3<S>) -> Vec3<S> {
         self.velocity + self.rotation * self.omega.cross(s)
     }
 }
 
-/// The linear and the angular part of six velocity (or tangent) coordinates.
+/// The linear and angular parts of six velocity (or tangent) coordinates.
 #[inline]
 pub(crate) fn velocities_of<S: Scalar>(v: &[S]) -> (Vec3<S>, Vec3<S>) {
     let v = &v[..6];
     (Vec3::new(v[0], v[1], v[2]), Vec3::new(v[3], v[4], v[5]))
 }
 
-/// The position and the Euler-parameter part of seven position coordinates.
+/// The position and the Euler parameters of seven position coordinates.
 #[inline]
 pub(crate) fn positions_of<S: Scalar>(q: &[S]) -> (Vec3<S>, Quat<S>) {
     let q = &q[..7];
@@ -146,7 +147,7 @@ pub(crate) fn add6<S: Scalar>(out: &mut [S], linear: &Vec3<S>, angular: &Vec3<S>
     }
 }
 
-/// Adds a position and an Euler-parameter part to seven coordinates.
+/// Adds a position and Euler parameters to seven coordinates.
 #[inline]
 pub(crate) fn add7<S: Scalar>(out: &mut [S], position: &Vec3<S>, orientation: &Quat<S>) {
     let out = &mut out[..7];
@@ -158,8 +159,8 @@ pub(crate) fn add7<S: Scalar>(out: &mut [S], position: &Vec3<S>, orientation: &Q
     }
 }
 
-/// Moves the positions `q` of every body by the tangent step δy, the Euler parameters staying on
-/// the unit sphere, and adds the same change to `increment`, which stays accurate to its own size.
+/// Adds the tangent step δy (length n_v) to the positions `q` (n_q); Euler parameters keep unit
+/// length. Adds the same change to `increment` (n_q), which keeps its relative accuracy.
 pub(crate) fn advance<S: Scalar>(
     numbering: &Numbering,
     q: &mut [S],
@@ -176,7 +177,7 @@ pub(crate) fn advance<S: Scalar>(
     }
 }
 
-/// Brings the Euler parameters in `q` to unit length and adds the change to `increment`.
+/// Normalises the Euler parameters in `q` and adds the change to `increment`.
 pub(crate) fn normalise<S: Scalar>(numbering: &Numbering, q: &mut [S], increment: &mut [S]) {
     for body in 0..numbering.bodies() {
         let o = numbering.position(body);
@@ -222,7 +223,7 @@ pub(crate) fn velocity_of_rates<S: Scalar>(
     }
 }
 
-/// Derivative of 2 L(p) ṗ in the tangent δθ of p, ṗ held: the matrix −L(ṗ) L(p)ᵀ.
+/// Derivative of 2 L(p) ṗ in the tangent δθ of p at constant ṗ: the matrix −L(ṗ) L(p)ᵀ.
 pub(crate) fn angular_velocity_by_theta<S: Scalar>(p: &Quat<S>, pdot: &Quat<S>) -> Mat3<S> {
     let mut out = Mat3::zeros();
     for j in 0..3 {
@@ -234,8 +235,8 @@ pub(crate) fn angular_velocity_by_theta<S: Scalar>(p: &Quat<S>, pdot: &Quat<S>) 
     out
 }
 
-/// The angular velocity at the positions `q` (of one body) that a tangent rotation rate at the
-/// positions `other` makes: L(p) L(p')ᵀ.
+/// L(p) L(p')ᵀ: maps the tangent rotation rate at the positions `other` of a body to its angular
+/// velocity at the positions `q`.
 pub(crate) fn turn_between<S: Scalar>(q: &[S], other: &[S]) -> Mat3<S> {
     let (p, other) = (positions_of(q).1, positions_of(other).1);
     let mut out = Mat3::zeros();
@@ -248,7 +249,7 @@ pub(crate) fn turn_between<S: Scalar>(q: &[S], other: &[S]) -> Mat3<S> {
     out
 }
 
-/// Tangent cotangent of a cotangent of q: T(q)ᵀ g, per body (g_r, ½ L(p) g_p).
+/// Cotangent of the tangent from a cotangent of q: T(q)ᵀ g, per body (g_r, ½ L(p) g_p).
 pub(crate) fn tangent_of_cotangent<S: Scalar>(
     numbering: &Numbering,
     q: &[S],
@@ -264,7 +265,8 @@ pub(crate) fn tangent_of_cotangent<S: Scalar>(
     }
 }
 
-/// Cotangent of q̇ from one of the velocity coordinates: P(q)ᵀ ψ, per body (ψ_r, 2 L(p)ᵀ ψ_θ).
+/// Cotangent of q̇ from a cotangent of the velocity coordinates: P(q)ᵀ ψ, per body (ψ_r, 2 L(p)ᵀ
+/// ψ_θ).
 pub(crate) fn rates_cotangent<S: Scalar>(numbering: &Numbering, q: &[S], psi: &[S], out: &mut [S]) {
     for body in 0..numbering.bodies() {
         let (_, p) = positions_of(&q[numbering.position(body)..]);
@@ -287,7 +289,7 @@ pub(crate) fn pull_rates(
         let (_, p) = positions_of(&q[o..]);
         let (_, omega) = velocities_of(&v[u..]);
         let (by_r, by_p) = positions_of(&qdot_bar[o..]);
-        // ½ L(p)ᵀ ω is linear in p by a skew matrix.
+        // ½ L(p)ᵀ ω = A(ω) p with a skew matrix A.
         let turned = rotation::rates(&by_p, &omega).map(|x| -x);
         add7(&mut q_bar[o..], &Vec3::zeros(), &turned);
         let by_omega = rotation::rate_product(&p, &by_p) * 0.5;
@@ -295,8 +297,8 @@ pub(crate) fn pull_rates(
     }
 }
 
-/// Adds the cotangent of positions whose Euler parameters are brought to unit length, given the
-/// cotangent of the tangent there.
+/// Adds the cotangent of positions from that of the tangent (`y`) at their normalised Euler
+/// parameters.
 pub(crate) fn add_unit_cotangent(numbering: &Numbering, q: &[f64], y: &[f64], out: &mut [f64]) {
     for body in 0..numbering.bodies() {
         let o = numbering.position(body);
@@ -335,7 +337,7 @@ pub(crate) fn torque_by_omega<S: Scalar>(body: &RigidBody<S>, omega: &Vec3<S>) -
 }
 
 /// Pulls the cotangent ψ = (ψ_r, ψ_θ) of [`force_balance`] back to ω (returned) and to the
-/// parameters (added to `cot` and `gravity_cot`).
+/// parameters (`cot` and `gravity_cot`).
 pub(crate) fn pull_force_balance(
     body: &RigidBody<f64>,
     gravity: &Vec3<f64>,
@@ -367,7 +369,7 @@ pub(crate) fn mass_product<S: Scalar>(
     }
 }
 
-/// Inertial minus applied forces of all bodies.
+/// Inertial minus applied forces of all bodies; `out` has length n_v.
 pub(crate) fn all_force_balances<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,

@@ -1,7 +1,7 @@
 //! The constraint rows: value, rate, acceleration bias, Jacobian and pull-back of each.
 //!
-//! A row is a bilinear function of markers (see [`super::marker`]): with d = P_A − P_B the
-//! distance of two points and u, w axes of the two frames (see [`crate::model::joint`]),
+//! A row is a bilinear function of markers (see [`super::marker`]). Let d = P_A − P_B be the vector
+//! between two points, and u, w axes of the two frames (see [`crate::model::joint`]):
 //!
 //! ```text
 //!                  value Φ     rate G v             second derivative Φ̈
@@ -11,8 +11,8 @@
 //! Distance         ½(d·d/L−L)  d · ḋ / L            (d · d̈ + ḋ · ḋ) / L
 //! ```
 //!
-//! A drive moves the markers on body B (see [`super::side`]): the rate is then G v + Φ_t. The
-//! acceleration term of the index-1 equations is γ = −bias, the bias being Φ̈ at v̇ = 0.
+//! A drive moves the markers on body B (see [`super::side`]). Then the rate is G v + Φ_t. The
+//! acceleration term of the index-1 equations is γ = −bias, where the bias is Φ̈ at v̇ = 0.
 
 use super::marker::{self, MarkerKinematics};
 use super::side::{FrameMotion, JointSide};
@@ -20,7 +20,7 @@ use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, JointFrame};
 use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
-/// The markers that the rows of a joint are made of, each in motion once.
+/// The markers of the rows of a joint; each is evaluated once.
 struct Markers<S> {
     distance: MarkerKinematics<S>,
     axes_a: [MarkerKinematics<S>; 3],
@@ -44,8 +44,8 @@ impl<S: Scalar> Markers<S> {
         }
     }
 
-    /// The vectors u, w whose product, times `scale`, the derivatives of a row are those of;
-    /// `length` is that of the rod.
+    /// The vectors u, w and the factor of a row: its derivatives are those of factor · u · w.
+    /// `length` is the length of the rod.
     fn factors(
         &self,
         row: ConstraintRow,
@@ -61,7 +61,7 @@ impl<S: Scalar> Markers<S> {
     }
 }
 
-/// Which markers the rows of a joint need.
+/// The markers that the rows of a joint need.
 struct MarkersUsed {
     points: bool,
     axes_a: [bool; 3],
@@ -132,8 +132,8 @@ pub(crate) fn rates<S: Scalar>(
     }
 }
 
-/// Second derivatives Φ̈ of the rows of a joint at the accelerations of the motions: the
-/// acceleration bias if these are zero.
+/// Second derivatives Φ̈ of the rows of a joint at the accelerations of the motions. If these are
+/// zero, they are the acceleration bias.
 pub(crate) fn accelerations<S: Scalar>(
     rows: impl Iterator<Item = ConstraintRow> + Clone,
     a: &JointSide<S>,
@@ -153,14 +153,14 @@ pub(crate) fn accelerations<S: Scalar>(
     }
 }
 
-/// One row of G: derivative of the rate in the velocities of both bodies.
+/// One row of G: the derivatives of the rate in the velocities of both bodies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowGradient<S> {
-    /// By ṙ_A; that by ṙ_B is its negative, since no row changes when both bodies move together.
+    /// In ṙ_A. The derivative in ṙ_B is its negative, because common motion changes no row.
     pub force: Vec3<S>,
-    /// By ω_A (body axes of A).
+    /// In ω_A (body axes of A).
     pub torque_a: Vec3<S>,
-    /// By ω_B (body axes of B).
+    /// In ω_B (body axes of B).
     pub torque_b: Vec3<S>,
 }
 
@@ -210,22 +210,22 @@ pub(crate) fn gradient<S: Scalar>(
 /// Cotangents of one side of a joint.
 #[derive(Clone, Debug)]
 pub(crate) struct SideCotangent<S> {
-    /// By the tangent position: δr (ground axes).
+    /// Of the tangent position: δr (ground axes).
     pub position: Vec3<S>,
-    /// By the tangent position: δθ (body axes).
+    /// Of the tangent position: δθ (body axes).
     pub theta: Vec3<S>,
-    /// By ṙ.
+    /// Of ṙ.
     pub velocity: Vec3<S>,
-    /// By ω.
+    /// Of ω.
     pub omega: Vec3<S>,
-    /// By the frame's point and axes.
+    /// Of the frame's point and axes.
     pub frame: JointFrame<S>,
-    /// By their motion on the body, if they move.
+    /// Of their motion on the body, if they move.
     pub moving: Option<FrameMotion<S>>,
 }
 
 impl<S: Scalar> SideCotangent<S> {
-    /// All cotangents of a side whose frame does not move zero.
+    /// The zero cotangent of a side with a fixed frame.
     pub(crate) fn fixed() -> Self {
         let zero = Vec3::zeros();
         Self {
@@ -238,7 +238,7 @@ impl<S: Scalar> SideCotangent<S> {
         }
     }
 
-    /// Adds another cotangent of a side whose frame does not move.
+    /// Adds another cotangent of a side with a fixed frame.
     pub(crate) fn add(&mut self, other: &Self) {
         self.position += other.position;
         self.theta += other.theta;
@@ -247,7 +247,7 @@ impl<S: Scalar> SideCotangent<S> {
         self.frame.add(&other.frame);
     }
 
-    /// All cotangents of `side` zero.
+    /// The zero cotangent of `side`.
     fn of(side: &JointSide<S>) -> Self {
         let moving = side.moving.as_ref();
         Self {
@@ -258,8 +258,8 @@ impl<S: Scalar> SideCotangent<S> {
 }
 
 /// Pulls the cotangents of the rows of a joint back to positions, velocities and joint frames of
-/// both bodies: the transposed derivative of [`value`], [`rates`] and [`accelerations`], the
-/// accelerations of the bodies held.
+/// both bodies: the transposed derivative of [`value`], [`rates`] and [`accelerations`], at
+/// constant accelerations of the bodies.
 pub(crate) fn pull_back<S: Scalar>(
     rows: impl Iterator<Item = ConstraintRow> + Clone,
     cot: impl Fn(usize) -> RowCotangent<S>,
@@ -273,7 +273,7 @@ pub(crate) fn pull_back<S: Scalar>(
     let mut by_length = S::zero();
     for (i, row) in rows.clone().enumerate() {
         let cot = cot(i);
-        // Φ = u·w and its time derivatives are symmetric in the two factors.
+        // Φ = u·w and its time derivatives are symmetric in u and w.
         let by = |other: &MarkerKinematics<S>| MarkerKinematics {
             x: other.x * cot.value
                 + other.rate * cot.rate
@@ -299,7 +299,7 @@ pub(crate) fn pull_back<S: Scalar>(
                 by_distance.add(&by(&markers.axes_a[i]));
             }
             Distance => {
-                // d · d / (2 L): both factors are d; Φ alone has the term −L / 2.
+                // d · d / (2 L): both factors are d; Φ has the additional term −L / 2.
                 let length = a.frame.length;
                 let d = &markers.distance;
                 by_distance.add(&by(d).scaled(S::one() / length));
@@ -338,7 +338,7 @@ pub(crate) struct RowCotangent<S> {
     pub rate: S,
     /// Of Φ̈.
     pub acceleration: S,
-    /// Of the rate G w that the virtual velocities w make.
+    /// Of the rate G w at the virtual velocities w.
     pub virtual_rate: S,
 }
 

@@ -1,21 +1,21 @@
-//! What the bodies contribute to the iteration matrices of implicit methods.
+//! Contributions of the bodies to the iteration matrices of implicit methods.
 
 use super::bodies::{angular_velocity_by_theta, positions_of, torque_by_omega};
 use super::in_motion::InMotion;
 use crate::linalg::Emit;
 use crate::math::{Mat3, Scalar};
 
-/// The derivatives of the rates in the unknowns of a step of size h: ∂q̇/∂q = ∂v̇/∂v = c.
+/// Derivatives of the rates in the unknowns of a step of size h: ∂q̇/∂q = ∂v̇/∂v = c.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rates<S> {
-    /// c (1/s).
+    /// c \[1/s\].
     pub by_state: S,
-    /// h (s).
+    /// h \[s\].
     pub h: S,
 }
 
-/// Emits the derivatives of P(q) q̇ − v, times h, in tangent positions and velocities (column scaled by
-/// 1/h), at row `row` and columns `y` and `v`.
+/// Emits the derivatives of P(q) q̇ − v, times h, in tangent positions and velocities (these
+/// columns divided by h), at row `row` and columns `y` and `v`.
 pub(crate) fn emit_kinematics<S: Scalar>(
     at: &InMotion<S>,
     qdot: &[S],
@@ -36,8 +36,8 @@ pub(crate) fn emit_kinematics<S: Scalar>(
     }
 }
 
-/// Emits the derivatives of M v̇ − f(q, v), times h², in velocities (column scaled by 1/h) at
-/// (`row`, `v`). Neither M nor the forces of rigid bodies under gravity depend on q.
+/// Emits the derivatives of M v̇ − f(q, v), times h², in velocities (columns divided by h) at
+/// (`row`, `v`). M and the forces of rigid bodies under gravity do not depend on q.
 pub(crate) fn emit_force_balance<S: Scalar>(
     at: &InMotion<S>,
     (row, v): (usize, usize),

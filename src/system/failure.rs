@@ -1,6 +1,6 @@
-//! Why a model cannot be started.
+//! Failures of the start of a model.
 
-/// Why a model has no consistent initial conditions.
+/// The reason why a model has no consistent initial conditions.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AssemblyFailure {
     /// The joints cannot be closed near the given placement.
@@ -11,20 +11,20 @@ pub enum AssemblyFailure {
     Open {
         /// Joint with the largest gap.
         joint: String,
-        /// Which of its conditions.
+        /// The row with the gap.
         row: String,
         /// The gap (m or 1).
         gap: f64,
-        /// Iterations spent.
+        /// Number of iterations.
         iterations: usize,
     },
-    /// The joint's axes meet only after half a turn.
+    /// The joint's axes coincide only after half a turn.
     #[error("joint \"{joint}\" was assembled with its axes turned by 180 degrees")]
     Turned {
         /// The joint.
         joint: String,
     },
-    /// The start of a joint is not free to be chosen.
+    /// The start of a joint is determined by others.
     #[error(
         "the start of joint \"{joint}\" cannot be chosen: the other joints, their starts and drives \
          determine it"
@@ -33,26 +33,26 @@ pub enum AssemblyFailure {
         /// The joint.
         joint: String,
     },
-    /// Constraints repeat each other.
+    /// Constraints are redundant.
     #[error(
         "{redundant} of {constraints} constraints are redundant; joints that repeat each other: \
          {joints}"
     )]
     Redundant {
-        /// Number of constraints that follow from the others.
+        /// Number of redundant constraints.
         redundant: usize,
         /// Number of all constraints.
         constraints: usize,
-        /// Names of the joints that they belong to.
+        /// Names of their joints.
         joints: String,
     },
-    /// Constraints follow from each other at this placement, though not beside it.
+    /// Constraints are dependent at this placement, but not near it.
     #[error(
         "the placement is a singular position, in which the joints do not determine how the bodies \
          move on: {joints}"
     )]
     SingularPosition {
-        /// Names of the joints whose constraints depend on each other.
+        /// Names of the joints with dependent constraints.
         joints: String,
     },
     /// A motion that the joints allow has no inertia.
@@ -61,7 +61,7 @@ pub enum AssemblyFailure {
         /// Names of the bodies.
         bodies: String,
     },
-    /// The system is singular or not finite for another reason.
+    /// The equations are singular or not finite for another reason.
     #[error(
         "the equations of motion are singular to working precision at this placement, though joints \
          and inertia determine the motion: lengths, masses or times differ too much from one"

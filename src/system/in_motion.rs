@@ -1,4 +1,4 @@
-//! A model, the numbering of its states, and where its bodies are at a time.
+//! A model with the motions of its bodies at an instant.
 
 use super::bodies::BodyMotion;
 use super::numbering::Numbering;
@@ -13,12 +13,12 @@ pub(crate) struct InMotion<'a, S> {
     pub numbering: &'a Numbering,
     /// The motions of its bodies.
     pub motions: &'a [BodyMotion<S>],
-    /// The time (s).
+    /// The time \[s\].
     pub time: S,
 }
 
 impl<'a, S> InMotion<'a, S> {
-    /// Where the bodies of `model` are at `time`.
+    /// The motions of the bodies of `model` at `time`.
     pub(crate) fn new(
         model: &'a Model<S>,
         numbering: &'a Numbering,

@@ -1,14 +1,14 @@
-//! Consistent initial conditions: nearest assembled positions, projected velocities, and the
-//! accelerations and multipliers that go with them; forwards, and backwards for the adjoint.
+//! Consistent initial conditions: nearest assembled positions, projected velocities, accelerations
+//! and multipliers; and their pull-back for the adjoint.
 //!
 //! ```text
 //! positions       E_y(q, q_g) + Gᵀ s = 0,          Φ(q, 0) = 0
 //! velocities      M (v − v_g) + Gᵀ σ = 0,          G v + Φ_t = 0
 //! accelerations   M a − f(q, v, 0) + Gᵀ λ = 0,     G a + bias(q, v) = 0
 //! ```
-//!
-//! E is the mean square displacement of the mass (see [`super::assembly`]), whose metric is M for small
-//! displacements. So the start does not depend on the units of length, mass and angle. The velocity
+//! E is the mean square displacement of the mass (see [`super::assembly`]). Its metric is M for
+//! small displacements, so the start does not depend on the units of length, mass and angle. The
+//! velocity projection is the effect of an impulse of the joints on the given velocities.
 //! projection is what an impulse of the joints does to the given velocities.
 
 use super::assembly::{assemble, displacement_metric, finite, second_moment, turned_by};
@@ -41,16 +41,16 @@ pub(crate) struct InitialState<S> {
     pub s: Vec<S>,
     /// Multipliers σ of the velocity projection.
     pub sigma: Vec<S>,
-    /// Rows that are not imposed on velocities and accelerations.
+    /// Redundant rows, which are not imposed on velocities and accelerations.
     pub left_out: RedundantRows,
-    /// Newton iterations of the assembly.
+    /// Number of Newton iterations of the assembly.
     pub iterations: usize,
 }
 
 /// Finds the consistent state nearest to the model's placement.
 ///
 /// # Errors
-/// [`AssemblyFailure`] names the joint that cannot be closed, or what is singular.
+/// [`AssemblyFailure`] names the joint that cannot be closed, or the singular part.
 pub(crate) fn solve<S: SolveScalar>(
     model: &Model<S>,
     numbering: &Numbering,
@@ -63,8 +63,8 @@ pub(crate) fn solve<S: SolveScalar>(
     let (q, s, iterations) = assemble(model, numbering, saddle, &q_guess, &v_guess)?;
     choose_left_out(model, numbering, saddle, (&q, &v_guess));
 
-    // The change of the velocities that the bodies' mobilities admit: one that the joints allow is kept
-    // to round-off. What the mobilities do not admit has momentum as well.
+    // The projection changes only the part of the velocities that the mobilities admit, so that a
+    // velocity that satisfies the joints stays the same. The other part also has momentum.
     let mut v = v_guess.clone();
     reduce::project(numbering, &mut v);
     let held: Vec<S> = v_guess.iter().zip(&v).map(|(&g, &v)| g - v).collect();
@@ -121,8 +121,8 @@ pub(crate) fn solve<S: SolveScalar>(
     })
 }
 
-/// Chooses the rows that are left out by the weights that they have where the joints are closed; where
-/// they are open, no row follows from others.
+/// Chooses the redundant rows by their weights, if the joints are closed. Otherwise no row is
+/// redundant.
 fn choose_left_out<S: SolveScalar>(
     model: &Model<S>,
     numbering: &Numbering,
@@ -163,10 +163,10 @@ pub(crate) fn mass<S: Scalar>(model: &Model<S>) -> impl Fn(usize) -> BodyBlocks<
 }
 
 /// Pulls cotangents (ȳ of q0 in its tangent, v̄ of v0, ā of the initial accelerations) back through
-/// the three solves to the parameters of `cot`.
+/// the three solutions to the parameters in `cot`.
 ///
 /// # Errors
-/// [`AssemblyFailure`] if a matrix that was regular forwards is not any more.
+/// [`AssemblyFailure`] if a matrix is singular now that was regular in the forward computation.
 pub(crate) fn pull_back(
     model: &Model<f64>,
     numbering: &Numbering,
@@ -192,7 +192,7 @@ pub(crate) fn pull_back(
         let chi = psi.split_off(nv);
         (psi, chi)
     };
-    // The start is at t = 0 whatever the design, so derivatives by time are of no use.
+    // The start is at t = 0 for every design: derivatives in time are not needed.
     let pull = |motions: &[BodyMotion<f64>],
                 cotangents: &RowCotangents,
                 y: &mut [f64],
@@ -268,7 +268,7 @@ pub(crate) fn pull_back(
         ..Default::default()
     };
     pull(&motions, &cotangents, &mut y_bar, cot);
-    // M ψ = −v̄ − Gᵀχ, and the cotangent of v_g is −M ψ.
+    // M ψ = −v̄ − Gᵀχ; the cotangent of v_g is −M ψ.
     let mut v_guess_bar = vec![0.0; nv];
     for (i, body) in model.bodies.iter().enumerate() {
         let o = numbering.velocity(i);
@@ -284,12 +284,12 @@ pub(crate) fn pull_back(
         );
     }
 
-    // The assembly leaves out what the joints name.
+    // The assembly leaves out the redundant rows of the joints.
     saddle.leave_out(&RedundantRows::of(model, numbering));
     let metric = displacement_metric(model, numbering, &state.q);
     saddle.factorise(&at, &state.s, metric).map_err(singular)?;
     let (psi, chi) = transposed(saddle, &y_bar);
-    // By the positions where they are those of the placement.
+    // Through the positions that stay as placed.
     pull_rate(&psi, &state.s, &mut y_bar, cot);
     let cotangents = RowCotangents {
         value: Some(&chi),

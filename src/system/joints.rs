@@ -10,7 +10,7 @@ use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Joint, Model};
 use std::ops::Range;
 
-/// Most rows of a joint.
+/// Largest number of rows of a joint.
 pub(crate) const ROWS: usize = 6;
 
 /// Calls `visit(row numbers, joint, side a, side b)` for every joint.
@@ -40,7 +40,7 @@ pub(crate) fn for_each_row<S: Scalar>(
     }
 }
 
-/// Constraints Φ(q, t).
+/// Constraints Φ(q, t); `out` has length n_c.
 pub(crate) fn values<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
     for_each_joint(at, |numbers, joint, a, b| {
         for (out, row) in out[numbers].iter_mut().zip(joint.rows()) {
@@ -49,7 +49,7 @@ pub(crate) fn values<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
     });
 }
 
-/// Products G(q) v from the gradients.
+/// Products G(q) v from the gradients; `out` has length n_c.
 pub(crate) fn rates_from_gradients<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
@@ -70,14 +70,14 @@ pub(crate) fn rates_from_gradients<S: Scalar>(
     }
 }
 
-/// Constraint rates G(q) v + Φ_t.
+/// Constraint rates G(q) v + Φ_t; `out` has length n_c.
 pub(crate) fn rates<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
     for_each_joint(at, |numbers, joint, a, b| {
         constraint::rates(joint.rows(), a, b, &mut out[numbers]);
     });
 }
 
-/// Adds the rates Φ_t that the drives make to `out`.
+/// Adds the rates Φ_t of the drives to `out`.
 pub(crate) fn add_driven_rates<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
     let (model, numbering) = (at.model, at.numbering);
     let ground = BodyMotion::ground();
@@ -102,15 +102,15 @@ pub(crate) fn add_driven_rates<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
     }
 }
 
-/// Second derivatives Φ̈ at the accelerations of `motions`: the biases −γ of Φ̈ = G v̇ − γ if these
-/// are zero.
+/// Second derivatives Φ̈ at the accelerations of `motions`. If these are zero, they are the biases
+/// −γ of Φ̈ = G v̇ − γ.
 pub(crate) fn accelerations<S: Scalar>(at: &InMotion<S>, out: &mut [S]) {
     for_each_joint(at, |numbers, joint, a, b| {
         constraint::accelerations(joint.rows(), a, b, &mut out[numbers]);
     });
 }
 
-/// Gradients of all rows (the non-zero blocks of G).
+/// Gradients of all rows: the non-zero blocks of G.
 pub(crate) fn gradients<S: Scalar>(at: &InMotion<S>, out: &mut Vec<RowGradient<S>>) {
     out.clear();
     for_each_joint(at, |_, joint, a, b| {
@@ -118,7 +118,7 @@ pub(crate) fn gradients<S: Scalar>(at: &InMotion<S>, out: &mut Vec<RowGradient<S
     });
 }
 
-/// Adds G(q)ᵀ λ to `out` (velocity coordinates).
+/// Adds G(q)ᵀ λ to `out`, in velocity numbering.
 pub(crate) fn add_reactions<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
@@ -182,17 +182,17 @@ pub(crate) fn rate_by_position<S: Scalar>(
     constraint::pull_back(std::iter::once(row), |_| unit, a, b)
 }
 
-/// Where the pull-back of the constraints is added to.
+/// Destination of the pull-back of the constraints.
 pub(crate) struct JointCotangent<'a> {
-    /// Tangent positions, velocity numbering; `None` if not wanted.
+    /// Tangent positions, velocity numbering; `None` if not needed.
     pub y: Option<&'a mut [f64]>,
-    /// Velocities; `None` if not wanted.
+    /// Velocities; `None` if not needed.
     pub v: Option<&'a mut [f64]>,
     /// Parameters of the joints.
     pub model: &'a mut Model<f64>,
 }
 
-/// Cotangents of all rows; `None` stands for zero.
+/// Cotangents of all rows; `None` for zero.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct RowCotangents<'a> {
     /// Of the values Φ.
@@ -206,7 +206,7 @@ pub(crate) struct RowCotangents<'a> {
 }
 
 impl RowCotangents<'_> {
-    /// Those of row i.
+    /// The cotangents of row i.
     pub(crate) fn row(&self, i: usize) -> RowCotangent<f64> {
         let at = |all: Option<&[f64]>| all.map_or(0.0, |all| all[i]);
         RowCotangent {
@@ -219,7 +219,7 @@ impl RowCotangents<'_> {
 }
 
 /// Pulls cotangents of all rows back to tangent positions, velocities and the parameters of the
-/// joints, the accelerations and virtual velocities held; returns the derivative by time.
+/// joints, at constant accelerations and virtual velocities. Returns the derivative in time.
 pub(crate) fn pull_back(
     at: &InMotion<f64>,
     cotangents: &RowCotangents,

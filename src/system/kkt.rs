@@ -1,5 +1,5 @@
-//! The saddle-point systems [B Gᵀ; G 0] of projections and accelerations, and their
-//! derivatives' transposes.
+//! The saddle-point systems [B Gᵀ; G 0] of projections and accelerations, and their transposed
+//! derivatives.
 
 use super::bodies::BodyMotion;
 use super::constraint::RowGradient;
@@ -13,7 +13,7 @@ use crate::math::{Mat3, Scalar};
 use crate::model::Model;
 use std::sync::Arc;
 
-/// Emits Gᵀ at (`row`, `column`) with the body blocks stacked by `numbering`.
+/// Emits Gᵀ at (`row`, `column`), in velocity numbering.
 pub(crate) fn emit_transposed_gradients<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
@@ -116,7 +116,7 @@ pub(crate) fn emit_reaction_jacobian<S: Scalar>(
     }
 }
 
-/// What stands in the upper left block B: 3 × 3 blocks of each body's linear and angular part.
+/// The upper left block B: linear and angular 3 × 3 blocks of a body.
 pub(crate) struct BodyBlocks<S> {
     /// Linear.
     pub linear: S,
@@ -124,30 +124,29 @@ pub(crate) struct BodyBlocks<S> {
     pub angular: Mat3<S>,
 }
 
-/// How a matrix of the index-1 equations is eliminated, and what that takes.
+/// Summary of the elimination of a matrix of the index-1 equations.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct EliminationSummary {
     /// Order of the matrix: unknowns of the bodies, and rows.
     pub order: usize,
-    /// Bodies in the order of elimination, each with the joint that it hangs from; `None` if a sparse
-    /// factorisation is used.
+    /// Bodies in the order of elimination; `None` if a sparse factorisation is used.
     pub bodies: Option<Vec<usize>>,
-    /// Joints that close loops, eliminated last; none if a sparse factorisation is used.
+    /// Joints that close loops, eliminated last; empty if a sparse factorisation is used.
     pub closing: Vec<usize>,
-    /// Entries of the sparse matrix and of its factors.
+    /// Numbers of entries of the sparse matrix and of its factors.
     pub fill: Option<(usize, usize)>,
-    /// Floating-point operations of a factorisation.
+    /// Number of floating-point operations of a factorisation.
     pub operations: usize,
 }
 
-/// The matrix [B + (Gᵀs)_y, Gᵀ; G, 0] in the unknowns of the bodies, and its factors. Vectors are of
+/// The matrix [B + (Gᵀs)_y, Gᵀ; G, 0] in the unknowns of the bodies, and its factors. Vectors have
 /// length n_v + n_c.
 pub(crate) struct SaddlePoint<S> {
     numbering: Numbering,
     matrix: SparseMatrix<S>,
     factors: SparseLu<S>,
     gradients: Vec<RowGradient<S>>,
-    /// Rows that are not imposed.
+    /// Redundant rows, which are not imposed.
     left_out: RedundantRows,
     /// Number of factorisations so far.
     pub factorisations: usize,
@@ -184,12 +183,12 @@ impl<S: SolveScalar> SaddlePoint<S> {
         }
     }
 
-    /// Rows that are not imposed.
+    /// Redundant rows, which are not imposed.
     pub(crate) fn left_out(&self) -> &RedundantRows {
         &self.left_out
     }
 
-    /// Leaves other rows out from the next factorisation on.
+    /// Sets the redundant rows from the next factorisation on.
     pub(crate) fn leave_out(&mut self, left_out: &RedundantRows) {
         self.left_out.clone_from(left_out);
     }
@@ -225,15 +224,15 @@ impl<S: SolveScalar> SaddlePoint<S> {
         self.factors.pivots()
     }
 
-    /// Goes on with pivots that were in use for the same system.
+    /// Sets pivots that were in use for the same system.
     pub(crate) fn set_pivots(&mut self, pivots: Option<&Arc<Pivots>>) {
         self.factors.set_pivots(&self.matrix.pattern, pivots);
     }
 
-    /// Order and entries of the matrix, and how it is eliminated.
+    /// Summary of the elimination of the matrix.
     ///
     /// # Panics
-    /// If it was not factorised.
+    /// The matrix was not factorised.
     pub(crate) fn elimination(&mut self) -> EliminationSummary {
         let (factor_entries, operations) = self.factors.cost();
         let pattern = &self.matrix.pattern;
@@ -246,7 +245,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
         }
     }
 
-    /// Solves in place.
+    /// Solves the system in place.
     pub(crate) fn solve(&mut self, rhs: &mut [S]) {
         self.left_out.clear(&mut rhs[self.numbering.velocities()..]);
         let factors = &mut self.factors;
@@ -284,8 +283,8 @@ fn emit_saddle_point<S: Scalar>(
     emit_left_out(numbering, left_out, &[(n, n)], emit);
 }
 
-/// Emits λ_i = 0 for the rows that are left out, at each of `places`; entries of zero for the others,
-/// so that the pattern serves every choice, if there is one.
+/// Emits λ_i = 0 for redundant rows at each of `places`, and zeros for the other rows, so that the
+/// pattern serves every choice. Emits nothing if no row is redundant.
 pub(crate) fn emit_left_out<S: Scalar>(
     numbering: &Numbering,
     left_out: &RedundantRows,

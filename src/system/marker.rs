@@ -1,5 +1,5 @@
 //! Markers: points P = r + R s and directions u = R e that move with a body, with their velocity
-//! and acceleration, and how cotangents of these come back to the body.
+//! and acceleration, and the pull-back of their cotangents to the body.
 //!
 //! ```text
 //! u = R e,   u̇ = R (ω × e + ė),   ü = R (α × e + ω × (ω × e) + 2 ω × ė + ë)    (P adds r, ṙ, r̈)
@@ -19,7 +19,7 @@ pub(crate) struct MarkerKinematics<S> {
     pub rate: Vec3<S>,
     /// Second derivative in time, at the accelerations of the motion.
     pub acceleration: Vec3<S>,
-    /// Rate that the virtual velocities of the motion make.
+    /// Rate at the virtual velocities of the motion.
     pub virtual_rate: Vec3<S>,
 }
 
@@ -33,12 +33,12 @@ pub(crate) struct RelativeMotion<S> {
 }
 
 impl<S: Scalar> MarkerKinematics<S> {
-    /// A jet that does not move from zero.
+    /// A fixed marker at zero.
     pub(crate) fn zero() -> Self {
         Self::fixed(Vec3::zeros())
     }
 
-    /// A jet that does not move.
+    /// A fixed marker.
     pub(crate) fn fixed(x: Vec3<S>) -> Self {
         Self {
             x,
@@ -53,7 +53,7 @@ impl<S: Scalar> MarkerKinematics<S> {
         Self::moving_point(motion, s, None)
     }
 
-    /// The direction with components `e` in body axes, which may move on the body.
+    /// The direction with components `e` in body axes; it may move on the body.
     pub(crate) fn moving_direction(
         motion: &BodyMotion<S>,
         e: &Vec3<S>,
@@ -69,7 +69,7 @@ impl<S: Scalar> MarkerKinematics<S> {
         }
     }
 
-    /// The point at `s` from the centre of mass, in body axes, which may move on the body.
+    /// The point at `s` from the centre of mass in body axes; it may move on the body.
     pub(crate) fn moving_point(
         motion: &BodyMotion<S>,
         s: &Vec3<S>,
@@ -83,7 +83,7 @@ impl<S: Scalar> MarkerKinematics<S> {
         jet
     }
 
-    /// The difference of two jets.
+    /// The difference of two markers.
     pub(crate) fn minus(&self, other: &Self) -> Self {
         MarkerKinematics {
             x: self.x - other.x,
@@ -93,7 +93,7 @@ impl<S: Scalar> MarkerKinematics<S> {
         }
     }
 
-    /// The jet times a number.
+    /// The marker times a number.
     pub(crate) fn scaled(&self, scale: S) -> Self {
         MarkerKinematics {
             x: self.x * scale,
@@ -103,7 +103,7 @@ impl<S: Scalar> MarkerKinematics<S> {
         }
     }
 
-    /// Adds another jet.
+    /// Adds another marker.
     pub(crate) fn add(&mut self, other: &Self) {
         self.x += other.x;
         self.rate += other.rate;
@@ -112,8 +112,8 @@ impl<S: Scalar> MarkerKinematics<S> {
     }
 }
 
-/// In body axes: ω × e + ė, and what ω × (that) lacks of the second derivative,
-/// α × e + ω × ė + ë.
+/// In body axes: b = ω × e + ė, and α × e + ω × ė + ë; the second derivative is the latter plus ω ×
+/// b.
 fn derivatives<S: Scalar>(
     motion: &BodyMotion<S>,
     e: &Vec3<S>,
@@ -127,24 +127,24 @@ fn derivatives<S: Scalar>(
     (rate, acceleration)
 }
 
-/// Cotangents that a marker's jet leaves on its body (for a point, those of r, ṙ and r̈ are the
-/// jet's own cotangents).
+/// Cotangents of a body from those of a marker. For a point, the cotangents of r, ṙ and r̈ are
+/// those of the marker itself.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MarkerCotangent<S> {
-    /// By the tangent rotation δθ, body axes.
+    /// Of the tangent rotation δθ, body axes.
     pub theta: Vec3<S>,
-    /// By ω.
+    /// Of ω.
     pub omega: Vec3<S>,
-    /// By the angular acceleration α.
+    /// Of the angular acceleration α.
     pub alpha: Vec3<S>,
-    /// By the marker's vector in body axes.
+    /// Of the marker's vector in body axes.
     pub vector: Vec3<S>,
-    /// By the motion of that vector on the body.
+    /// Of the motion of that vector on the body.
     pub local: RelativeMotion<S>,
 }
 
-/// Pulls the cotangent of a jet back: the transposed derivative of [`MarkerKinematics::moving_direction`], the virtual
-/// velocities held.
+/// Pulls the cotangent of a marker back: the transposed derivative of
+/// [`MarkerKinematics::moving_direction`] at constant virtual velocities.
 pub(crate) fn pull_back<S: Scalar>(
     motion: &BodyMotion<S>,
     e: &Vec3<S>,
@@ -153,7 +153,7 @@ pub(crate) fn pull_back<S: Scalar>(
     pull_back_moving(motion, e, None, cot)
 }
 
-/// As [`pull_back`] for a marker that moves on its body.
+/// As [`pull_back`], for a marker that moves on its body.
 pub(crate) fn pull_back_moving<S: Scalar>(
     motion: &BodyMotion<S>,
     e: &Vec3<S>,

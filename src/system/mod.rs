@@ -1,10 +1,10 @@
-//! The mechanical system: what integrators assemble their equations from.
+//! The mechanical system, from which integrators assemble their equations.
 //!
 //! States are positions q (per body r, p) and velocities v (per body ṙ in ground axes, ω in body
-//! axes), with the kinematics q̇ = T(q) v, the dynamics M v̇ = f(q, v, t) − G(q)ᵀ λ and the
-//! constraints Φ(q) = 0, G = Φ_q T. Small changes of position are taken in the tangent,
-//! δq = T(q) δy, so the Euler parameters stay of unit length and need no multiplier.
-//! Nothing here knows how time is discretised.
+//! axes). The kinematics are q̇ = T(q) v, the dynamics M v̇ = f(q, v, t) − G(q)ᵀ λ, the constraints
+//! Φ(q) = 0 with G = Φ_q T. Small changes of position are in the tangent, δq = T(q) δy, so the
+//! Euler parameters keep unit length and need no multiplier. This folder does not depend on the
+//! discretisation of time.
 
 pub(crate) mod accelerations;
 pub(crate) mod assembly;

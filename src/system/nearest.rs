@@ -1,5 +1,5 @@
-//! The consistent positions and velocities nearest to the placement, in any scalar: solved in real
-//! numbers, and to first order in the infinitesimal part by the implicit function theorem.
+//! The consistent positions and velocities nearest to the placement, in any scalar. They are solved
+//! in real numbers, and to first order in the infinitesimal part by the implicit function theorem.
 //!
 //! The equations are those of [`super::initial`],
 //!
@@ -7,9 +7,9 @@
 //! F(q, s; p) = (E_y + Gᵀ s, Φ) = 0,     (M (v − v_g) + Gᵀ σ, G v + Φ_t) = 0.
 //! ```
 //!
-//! At a real solution (q, s) of the real parameters, the solution of parameters p + ε ṗ is changed by
-//! −F_(q,s)⁻¹ F(q, s; p + ε ṗ): one solution with the matrix of real numbers, whose residual is taken in
-//! the scalar.
+//! Let (q, s) be a real solution for the real parameters. For the parameters p + ε ṗ it changes by
+//! −F_(q,s)⁻¹ F(q, s; p + ε ṗ). This takes one solution with the real matrix; the residual is
+//! computed in the scalar.
 
 use super::assembly::{add_displacement, displacement_metric};
 use super::bodies::{self, BodyMotion};
@@ -34,11 +34,11 @@ pub(crate) struct Nearest<S> {
     pub v: Vec<S>,
 }
 
-/// The consistent positions and velocities nearest to the placement of `model`. Rows that follow from
-/// others are found and left out.
+/// The consistent positions and velocities nearest to the placement of `model`. Redundant rows are
+/// found and left out.
 ///
 /// # Errors
-/// [`AssemblyFailure`] names the joint that cannot be closed, or what is singular.
+/// [`AssemblyFailure`] names the joint that cannot be closed, or the singular part.
 pub(crate) fn nearest<S: Scalar>(model: &Model<S>) -> Result<Nearest<S>, AssemblyFailure> {
     let numbering = Numbering::new(model);
     let mut real = model.map(&mut |x| x.re());
@@ -46,7 +46,7 @@ pub(crate) fn nearest<S: Scalar>(model: &Model<S>) -> Result<Nearest<S>, Assembl
     let mut saddle = SaddlePoint::new(&real, &numbering);
     let state = initial::solve(&real, &numbering, &mut saddle)?;
     let (q_guess, v_guess) = guess(model);
-    // The real part of the solution; the infinitesimal part of the placement, to start from.
+    // The real part of the solution with the infinitesimal part of the placement.
     let shifted = |guess: &[S], real: &[f64]| -> Vec<S> {
         let pairs = guess.iter().zip(real);
         pairs.map(|(&guess, &x)| guess + (x - guess.re())).collect()
@@ -68,7 +68,7 @@ pub(crate) fn nearest<S: Scalar>(model: &Model<S>) -> Result<Nearest<S>, Assembl
     Ok(Nearest { q, v })
 }
 
-/// What the change of a real solution is found with.
+/// Data for the change of a real solution.
 struct FirstOrder<'a, S> {
     model: &'a Model<S>,
     real: &'a Model<f64>,
@@ -88,7 +88,7 @@ impl<S: Scalar> FirstOrder<'_, S> {
         motions
     }
 
-    /// The change that makes the residual vanish, of velocities or tangent positions.
+    /// The change of velocities or tangent positions that cancels the residual.
     fn change(&mut self, residual: &[S]) -> Vec<S> {
         let mut change: Vec<f64> = residual.iter().map(|x| -x.infinitesimal()).collect();
         self.saddle.solve(&mut change);

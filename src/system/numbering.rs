@@ -1,12 +1,12 @@
-//! Where each body's states and each joint's multipliers stand; frozen once per scene.
+//! Indices of the states of bodies and of the multipliers of joints. They are fixed for a scene.
 //!
-//! Every rigid body has seven positions and six velocities; what it has of unknowns in a linear
-//! system is what its mobility says (see [`super::reduce`]).
+//! Every rigid body has seven positions and six velocities. Its mobility determines its unknowns in
+//! linear systems (see [`super::reduce`]).
 
 use crate::model::{Mobility, Model};
 use std::ops::Range;
 
-/// Positions and velocities of a body.
+/// Number of positions and of velocities of a body.
 const POSITIONS: usize = 7;
 const VELOCITIES: usize = 6;
 
@@ -19,7 +19,7 @@ pub(crate) struct Numbering {
 }
 
 impl Numbering {
-    /// Numbers the bodies and joints of `model` in its order.
+    /// Numbers the bodies and joints of `model` in their order.
     pub(crate) fn new<S>(model: &Model<S>) -> Self {
         let offsets = |sizes: &mut dyn Iterator<Item = usize>| {
             let mut all = vec![0];
@@ -46,17 +46,17 @@ impl Numbering {
         self.constraint.len() - 1
     }
 
-    /// Length of q: seven a rigid body (r, p).
+    /// Length n_q of q: seven per rigid body (r, p).
     pub(crate) fn positions(&self) -> usize {
         POSITIONS * self.bodies()
     }
 
-    /// Length of v: six a rigid body (ṙ, ω).
+    /// Length n_v of v: six per rigid body (ṙ, ω).
     pub(crate) fn velocities(&self) -> usize {
         VELOCITIES * self.bodies()
     }
 
-    /// Number of unknowns u in v = B u.
+    /// Number n_u of unknowns u in v = B u.
     pub(crate) fn unknowns(&self) -> usize {
         self.unknown[self.bodies()]
     }
@@ -66,27 +66,27 @@ impl Numbering {
         self.unknowns() < self.velocities()
     }
 
-    /// Whether some body cannot turn, or not move at all, so that it stays as it is placed.
+    /// Whether some body cannot rotate or move, so that this part of it stays as placed.
     pub(crate) fn keeps_placed(&self) -> bool {
         !self.mobility.iter().all(Mobility::has_rotation)
     }
 
-    /// Number of constraint rows.
+    /// Number n_c of constraint rows.
     pub(crate) fn constraints(&self) -> usize {
         self.constraint[self.joints()]
     }
 
-    /// Start of a body's positions in q.
+    /// First index of a body's positions in q.
     pub(crate) fn position(&self, body: usize) -> usize {
         POSITIONS * body
     }
 
-    /// Start of a body's velocities in v.
+    /// First index of a body's velocities in v.
     pub(crate) fn velocity(&self, body: usize) -> usize {
         VELOCITIES * body
     }
 
-    /// Start of a body's unknowns in u.
+    /// First index of a body's unknowns in u.
     pub(crate) fn unknown(&self, body: usize) -> usize {
         self.unknown[body]
     }
@@ -96,17 +96,17 @@ impl Numbering {
         self.unknown[body + 1] - self.unknown[body]
     }
 
-    /// Which velocities a body can have.
+    /// The velocities that a body can have.
     pub(crate) fn mobility(&self, body: usize) -> &Mobility {
         &self.mobility[body]
     }
 
-    /// The body that a component of v belongs to.
+    /// The body of a component of v.
     pub(crate) fn body_of_velocity(&self, component: usize) -> usize {
         component / VELOCITIES
     }
 
-    /// The component of v that stands for an unknown in messages: one of the same body.
+    /// A component of v of the same body as an unknown, for messages.
     pub(crate) fn velocity_of_unknown(&self, unknown: usize) -> usize {
         let body = self.unknown.partition_point(|&start| start <= unknown) - 1;
         self.velocity(body) + unknown - self.unknown[body]
@@ -117,7 +117,7 @@ impl Numbering {
         self.constraint[joint]..self.constraint[joint + 1]
     }
 
-    /// The joint that a constraint row belongs to.
+    /// The joint of a constraint row.
     pub(crate) fn joint_of_row(&self, row: usize) -> usize {
         self.constraint.partition_point(|&start| start <= row) - 1
     }

@@ -11,37 +11,37 @@ use super::side::sides;
 use crate::math::Vec3;
 use crate::model::Model;
 
-/// What a state is judged by.
+/// Conserved quantities and constraint drift of a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Observation {
-    /// ½ Σ (m ṙᵀṙ + ωᵀJω) (J).
+    /// ½ Σ (m ṙᵀṙ + ωᵀJω) \[J\].
     pub kinetic: f64,
-    /// −Σ m gᵀr from the origin, and the energy of springs (J).
+    /// −Σ m gᵀr from the origin, plus the energy of springs \[J\].
     pub potential: f64,
-    /// Linear momentum Σ m ṙ, ground axes (kg m/s).
+    /// Linear momentum Σ m ṙ, ground axes \[kg m/s\].
     pub momentum: Vec3<f64>,
-    /// Angular momentum about the origin, Σ (m r × ṙ + R J ω), ground axes (kg m²/s).
+    /// Angular momentum about the origin, Σ (m r × ṙ + R J ω), ground axes \[kg m²/s\].
     pub angular_momentum: Vec3<f64>,
-    /// Largest |Φ|, rows that are left out included (m or 1).
+    /// Largest |Φ|, including redundant rows \[m or 1\].
     pub position_drift: f64,
-    /// Largest |G v + Φ_t| likewise (m/s or 1/s).
+    /// Largest |G v + Φ_t|, including redundant rows \[m/s or 1/s\].
     pub velocity_drift: f64,
 }
 
 /// Force and torque of a joint on its body A, at the joint's point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Reaction {
-    /// Force in the joint's axes e1, e2, e3 on body A (N).
+    /// Force in the joint's axes e1, e2, e3 on body A \[N\].
     pub force: Vec3<f64>,
-    /// Torque about the joint's point in the joint's axes on body A (N m).
+    /// Torque about the joint's point in the joint's axes on body A \[N m\].
     pub torque: Vec3<f64>,
-    /// The same force in ground axes (N).
+    /// The same force in ground axes \[N\].
     pub force_ground: Vec3<f64>,
-    /// The same torque in ground axes (N m).
+    /// The same torque in ground axes \[N m\].
     pub torque_ground: Vec3<f64>,
 }
 
-/// Observes the state (q, v) at `time` (s).
+/// Observes the state (q, v) at `time` \[s\].
 pub(crate) fn observe(
     model: &Model<f64>,
     numbering: &Numbering,
@@ -76,7 +76,7 @@ pub(crate) fn observe(
     seen
 }
 
-/// Largest modulus; NaN if any is.
+/// Largest absolute value; NaN if there is one.
 fn largest(x: &[f64]) -> f64 {
     x.iter().fold(
         0.0,
@@ -84,10 +84,10 @@ fn largest(x: &[f64]) -> f64 {
     )
 }
 
-/// Reactions of all joints in the state (q, λ) at `time` (s), from −Gᵀλ.
+/// Reactions of all joints in the state (q, λ) at `time` \[s\], from −Gᵀλ.
 ///
-/// Where rows are left out, as they follow from others, reactions are not unique: these are those
-/// of the smallest multipliers over all rows that move the bodies in the same way.
+/// With redundant rows, reactions are not unique. Then these are those with the smallest
+/// multipliers over all rows that move the bodies in the same way.
 pub(crate) fn reactions(
     model: &Model<f64>,
     numbering: &Numbering,

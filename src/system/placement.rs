@@ -1,9 +1,9 @@
-//! Where a model's bodies are placed, and the length that belongs to it.
+//! The placement of a model's bodies, and its length scale.
 
 use crate::math::{Scalar, Vec3};
 use crate::model::Model;
 
-/// The placement (q_g, v_g) of the model's bodies.
+/// The placement (q_g, v_g) of the model's bodies, of lengths n_q and n_v.
 pub(crate) fn guess<S: Scalar>(model: &Model<S>) -> (Vec<S>, Vec<S>) {
     let (mut q, mut v) = (Vec::new(), Vec::new());
     for body in &model.bodies {
@@ -15,7 +15,7 @@ pub(crate) fn guess<S: Scalar>(model: &Model<S>) -> (Vec<S>, Vec<S>) {
     (q, v)
 }
 
-/// A length that the scene's gaps and motions are judged against (m): its largest lever arm or
+/// Length scale of a scene's gaps and motions \[m\]: its largest lever arm or coordinate of a
 /// placement.
 pub(crate) fn length_scale<S: Scalar>(model: &Model<S>) -> f64 {
     let size = |v: &Vec3<S>| v.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));

@@ -1,15 +1,15 @@
-//! The joints of a planar scene: what [`super::joints`] finds in space, from the two components of
-//! every marker that lie in the plane.
+//! The joints of a planar scene: the quantities of [`super::joints`] from the two components of
+//! every marker in the plane.
 //!
-//! With J a quarter turn, A = [R b1, R b2] the body's plane basis in that of the scene, and s the two
-//! components of a vector in the body,
+//! Let J be a quarter turn, A = [R b1, R b2] the body's basis of the plane in that of the scene,
+//! and s two components of a vector in the body:
 //!
 //! ```text
 //! ρ = A s,   ρ' = A J s,   ρ̇ = ω ρ',   ρ̈ = α ρ' − ω² ρ,   ∂ρ/∂θ = ρ',   ∂ρ'/∂θ = −ρ
 //! ```
 //!
-//! Rates and second derivatives of the rows do not depend on what is across the plane. Their values do,
-//! by what the frames have of it, and stay with [`super::joints`].
+//! Rates and second derivatives of the rows do not depend on components across the plane. Values
+//! depend on those of the frames, and remain in [`super::joints`].
 
 use super::bodies::BodyMotion;
 use super::constraint::RowGradient;
@@ -22,15 +22,15 @@ use nalgebra::Vector2;
 /// A vector in a plane.
 pub(super) type Vec2<S> = Vector2<S>;
 
-/// The joints of a planar scene without drives, and where its bodies stand.
+/// The joints of a planar scene without drives, and the present motions of its bodies.
 #[derive(Clone)]
 pub(crate) struct PlanarJoints<S> {
     /// Two orthonormal directions of the plane, ground axes.
     pub(super) along: [Vec3<f64>; 2],
-    /// The planes of the bodies, then that of the ground.
+    /// The planes of the bodies; that of ground is last.
     pub(super) planes: Vec<BodyPlane>,
     pub(super) joints: Vec<PlanarJoint<S>>,
-    /// Motions of the bodies, then that of the ground.
+    /// Motions of the bodies; that of ground is last.
     pub(super) motions: Vec<PlanarMotion<S>>,
 }
 
@@ -47,14 +47,14 @@ pub(super) struct BodyPlane {
 #[derive(Clone)]
 pub(super) struct PlanarJoint<S> {
     pub(super) body_a: usize,
-    /// The ground stands behind the bodies.
+    /// Ground has the number after the last body.
     pub(super) body_b: usize,
     pub(super) a: PlanarFrame<S>,
     pub(super) b: PlanarFrame<S>,
-    /// Length of a rod.
+    /// Length of a rod \[m\].
     pub(super) length: S,
     pub(super) rows: Vec<ConstraintRow>,
-    /// Whether a row looks at the distance of the points.
+    /// Whether a row uses the distance of the points.
     pub(super) points: bool,
 }
 
@@ -111,7 +111,7 @@ pub(super) fn spatial<S: Scalar>([t1, t2]: &[Vec3<f64>; 2], x: &Vec2<S>) -> Vec3
 }
 
 impl<S: Scalar> PlanarMotion<S> {
-    /// At rest in the origin.
+    /// At rest at the origin.
     fn ground() -> Self {
         let (zero, one) = (S::zero(), S::one());
         Self {
@@ -132,7 +132,7 @@ impl<S: Scalar> PlanarMotion<S> {
         (c1 * s.x + c2 * s.y, c2 * s.x - c1 * s.y)
     }
 
-    /// A direction of the body in motion.
+    /// A direction of the body as a marker.
     pub(super) fn direction(&self, s: &Vec2<S>) -> PlanarMarker<S> {
         let (x, across) = self.turned(s);
         PlanarMarker {
@@ -143,7 +143,7 @@ impl<S: Scalar> PlanarMotion<S> {
         }
     }
 
-    /// A point of the body in motion.
+    /// A point of the body as a marker.
     fn point(&self, s: &Vec2<S>) -> PlanarMarker<S> {
         let mut jet = self.direction(s);
         jet.x += self.position;
@@ -219,12 +219,12 @@ impl<S: Scalar> PlanarJoints<S> {
         })
     }
 
-    /// The components of ground axis k.
+    /// The components of ground axis k in the plane.
     pub(super) fn ground_axis(&self, k: usize) -> Vec2<S> {
         Vec2::new(S::from(self.along[0][k]), S::from(self.along[1][k]))
     }
 
-    /// Moves to where the bodies are, with their velocities; accelerations and virtual velocities are
+    /// Sets positions and velocities of the bodies. Accelerations and virtual velocities become
     /// zero.
     pub(crate) fn set_state(&mut self, motions: &[BodyMotion<S>]) {
         let [t1, t2] = &self.along;
@@ -242,7 +242,7 @@ impl<S: Scalar> PlanarJoints<S> {
         }
     }
 
-    /// Takes the velocities of the motions, the positions kept.
+    /// Sets the velocities; the positions stay.
     pub(crate) fn set_velocities(&mut self, numbering: &Numbering, v: &[S]) {
         for body in 0..numbering.bodies() {
             (self.motions[body].velocity, self.motions[body].omega) =
@@ -250,7 +250,7 @@ impl<S: Scalar> PlanarJoints<S> {
         }
     }
 
-    /// Takes accelerations and virtual velocities, zero where they are not given.
+    /// Sets accelerations and virtual velocities; `None` for zero.
     pub(crate) fn set_moving(&mut self, numbering: &Numbering, a: Option<&[S]>, w: Option<&[S]>) {
         let rest = (Vec2::zeros(), S::zero());
         for body in 0..numbering.bodies() {
@@ -263,7 +263,7 @@ impl<S: Scalar> PlanarJoints<S> {
         }
     }
 
-    /// The part in the plane of six velocity coordinates.
+    /// The components in the plane of six velocity coordinates.
     fn planar(&self, body: usize, six: &[S]) -> (Vec2<S>, S) {
         let (linear, angular) = super::bodies::velocities_of(six);
         let [t1, t2] = &self.along;
@@ -271,7 +271,7 @@ impl<S: Scalar> PlanarJoints<S> {
         (linear, along(&angular, &self.planes[body].normal))
     }
 
-    /// Gradients of all rows, as [`super::joints::gradients`] finds them but for torques across the
+    /// Gradients of all rows, as in [`super::joints::gradients`], without torques across the
     /// normal.
     pub(crate) fn gradients(&self, out: &mut Vec<RowGradient<S>>) {
         out.clear();
@@ -317,7 +317,7 @@ impl<S: Scalar> PlanarJoints<S> {
         }
     }
 
-    /// Second derivatives Φ̈ at the accelerations taken last: the biases if these are zero.
+    /// Second derivatives Φ̈ at the accelerations set last. If these are zero, they are the biases.
     pub(crate) fn accelerations(&self, numbering: &Numbering, out: &mut [S]) {
         for (j, joint) in self.joints.iter().enumerate() {
             let d = self.distance(joint);
@@ -343,7 +343,7 @@ impl<S: Scalar> PlanarJoints<S> {
         }
     }
 
-    /// The distance of a joint's points in motion, if a row looks at it.
+    /// The vector between a joint's points as a marker; zero if no row uses it.
     pub(super) fn distance(&self, joint: &PlanarJoint<S>) -> PlanarMarker<S> {
         match joint.points {
             true => {
@@ -354,7 +354,7 @@ impl<S: Scalar> PlanarJoints<S> {
         }
     }
 
-    /// Axis `a` of the frame on body A and axis `b` of that on body B, in motion.
+    /// Axis `a` of the frame on body A and axis `b` of that on body B, as markers.
     pub(super) fn axes(
         &self,
         joint: &PlanarJoint<S>,

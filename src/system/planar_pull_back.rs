@@ -1,5 +1,5 @@
-//! How cotangents of the rows of a planar scene come back to states and parameters: what
-//! [`super::joints::pull_back`] does in space, for rates and second derivatives.
+//! The pull-back of cotangents of the rows of a planar scene to states and parameters, as
+//! [`super::joints::pull_back`] in space, for rates and second derivatives.
 
 use super::bodies::add6;
 use super::constraint::RowCotangent;
@@ -10,7 +10,7 @@ use super::planar::{
 };
 use crate::model::{ConstraintRow, JointFrame};
 
-/// The cotangent that one factor of a row's product leaves on the other, without that of the value.
+/// Cotangent of one factor of a row from the other `factor`, without that of the value.
 fn on_factor(cot: &RowCotangent<f64>, factor: &PlanarMarker<f64>) -> PlanarMarker<f64> {
     PlanarMarker {
         x: factor.rate * cot.rate
@@ -46,7 +46,7 @@ impl SideCotangent {
         }
     }
 
-    /// Pulls the cotangent of a direction in motion back; returns that of its components in the body.
+    /// Pulls the cotangent of a direction back. Returns that of its components in the body.
     fn direction(
         &mut self,
         at: &PlanarMotion<f64>,
@@ -54,7 +54,7 @@ impl SideCotangent {
         cot: &PlanarMarker<f64>,
     ) -> Vec2<f64> {
         let (x, across) = at.turned(s);
-        // ρ and ρ' with all that they make.
+        // Cotangents of ρ and ρ'.
         let by_x = cot.x - cot.acceleration * (at.omega * at.omega);
         let by_across =
             cot.rate * at.omega + cot.acceleration * at.alpha + cot.virtual_rate * at.virtual_omega;
@@ -89,9 +89,9 @@ impl SideCotangent {
 }
 
 impl PlanarJoints<f64> {
-    /// Pulls cotangents of the rates, second derivatives and virtual rates of all rows, none of their
-    /// values, back to tangent positions, velocities and the parameters of the
-    /// joints, the accelerations and virtual velocities held.
+    /// Pulls cotangents of the rates, second derivatives and virtual rates of all rows (not of
+    /// their values) back to tangent positions, velocities and the parameters of the joints, at
+    /// constant accelerations and virtual velocities.
     pub(crate) fn pull_back(
         &self,
         numbering: &Numbering,
@@ -168,7 +168,7 @@ impl PlanarJoints<f64> {
         (by_a, by_b, by_length)
     }
 
-    /// Adds what the components in a body's plane are in the body's axes.
+    /// Adds the components in a body's plane, transformed to the body's axes.
     fn add_frame(&self, body: usize, by: &PlanarFrame<f64>, out: &mut JointFrame<f64>) {
         let along = &self.planes[body].along;
         out.point += spatial(along, &by.point);

@@ -1,4 +1,4 @@
-//! Which joints or bodies make a model singular, by name. Runs only after a factorisation failed.
+//! Names the joints or bodies that make a model singular. Used only after a factorisation failed.
 
 use super::failure::AssemblyFailure;
 use super::numbering::Numbering;
@@ -8,13 +8,13 @@ use crate::math::{Parameters, Scalar};
 use crate::model::Model;
 use nalgebra::DMatrix;
 
-/// Singular values below this, relative to the largest, count as zero.
+/// Singular values below this, relative to the largest, are zero.
 const NEGLIGIBLE: f64 = 1e-10;
 
-/// Inertia or hold, relative to the largest, up to which a motion has none.
+/// A motion below this inertia or constraint, relative to the largest, has none.
 const LOOSE: f64 = 1e-13;
 
-/// Says which constraints are redundant at q, or else which bodies can move without inertia.
+/// Names the redundant constraints at q or, if there are none, the bodies without inertia.
 pub(crate) fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     let numbering = Numbering::new(model);
     let real = model.map(&mut |x| x.re());
@@ -26,7 +26,7 @@ pub(crate) fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     if g.is_empty() {
         return without_inertia(&real, &g);
     }
-    // Its left singular vectors are those of the rows.
+    // Its left singular vectors correspond to the rows.
     let svd = g.transpose().svd(true, false);
     let largest = svd.singular_values.max();
     let redundant: Vec<usize> = (0..svd.singular_values.len())
@@ -54,7 +54,7 @@ pub(crate) fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     } else {
         names.join(", ")
     };
-    // What is redundant beside this placement as well has been left out already, or not yet.
+    // Rows that are also redundant near this placement have been left out, or will be.
     let left_out = real.joints.iter().map(|joint| joint.redundant.len()).sum();
     if redundancy::redundant_rows(&real) == Some(left_out) {
         return AssemblyFailure::SingularPosition { joints };
@@ -66,8 +66,8 @@ pub(crate) fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     }
 }
 
-/// Says which bodies can move without inertia, given the unit rows as columns; if none can, that the
-/// equations are singular for another reason.
+/// Names the bodies that can move without inertia; `g` has the unit rows as columns. If there are
+/// none, the equations are singular for another reason.
 fn without_inertia(model: &Model<f64>, g: &DMatrix<f64>) -> AssemblyFailure {
     let length = length_scale(model);
     let n = 6 * model.bodies.len();
@@ -85,7 +85,7 @@ fn without_inertia(model: &Model<f64>, g: &DMatrix<f64>) -> AssemblyFailure {
     if largest > 0.0 {
         inertia /= largest;
     }
-    // A motion that neither joints hold nor inertia resists.
+    // A motion that neither joints nor inertia resist.
     let held = &inertia + inertia.transpose() + g * g.transpose();
     if held.symmetric_eigenvalues().min() > LOOSE {
         return AssemblyFailure::Singular;

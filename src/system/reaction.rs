@@ -1,5 +1,5 @@
-//! How the reactions Gᵀλ of the rows turn with the bodies, for the iteration matrices of implicit
-//! methods.
+//! Derivatives of the reactions Gᵀλ of the rows in the positions, for the iteration matrices of
+//! implicit methods.
 
 use super::side::JointSide;
 use crate::math::scalar::skew;
@@ -7,9 +7,9 @@ use crate::math::{Mat3, Scalar};
 use crate::model::ConstraintRow;
 use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
-/// Derivative of Gᵀλ of one row in the tangent positions (δr_A, δθ_A, δr_B, δθ_B), rows ordered
-/// likewise; 3 × 3 blocks. Blocks that vanish for every row are left out, and the rows of r_B are
-/// the negatives of those of r_A.
+/// Derivative of Gᵀλ of one row in the tangent positions (δr_A, δθ_A, δr_B, δθ_B); components in
+/// the same order, 3 × 3 blocks. Blocks that vanish for every row are omitted. The components of
+/// r_B are the negatives of those of r_A.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ReactionJacobian<S> {
     /// (r_A, r_A); (r_A, r_B) is its negative.

@@ -1,9 +1,9 @@
-//! Linear systems in the unknowns u of v = B u: vectors are brought to Bᵀ x and back to B u, and
+//! Linear systems in the unknowns u of v = B u. Vectors are reduced to Bᵀ x and expanded to B u;
 //! matrices are emitted as Bᵀ A B.
 //!
-//! A vector or matrix consists of some parts in velocity numbering (one for the index-1 equations,
-//! two, of positions and of velocities, for the stabilised ones) followed by entries of constraint
-//! rows, which stay as they are. B has orthonormal columns, so that x = B u has u = Bᵀ x.
+//! A vector or matrix has some parts in velocity numbering (one for the index-1 equations; two,
+//! positions and velocities, for the stabilised ones), then entries of constraint rows, which do
+//! not change. B has orthonormal columns, so u = Bᵀ x for x = B u.
 
 use super::bodies::{add7, positions_of, velocities_of};
 use super::numbering::Numbering;
@@ -12,8 +12,8 @@ use crate::math::rotation::{self, Quat};
 use crate::math::scalar::along;
 use crate::math::{Scalar, Vec3};
 
-/// Replaces `x` by its reduced form, which stands at its head: Bᵀ of each of the `parts`, then the
-/// rest. Returns its length.
+/// Reduces `x` in place: its first entries become Bᵀ of each of the `parts`, then the rest. Returns
+/// the reduced length.
 pub(crate) fn compress<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) -> usize {
     if !numbering.is_reduced() {
         return x.len();
@@ -21,7 +21,7 @@ pub(crate) fn compress<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [
     let (nv, nu) = (numbering.velocities(), numbering.unknowns());
     for part in 0..parts {
         for body in 0..numbering.bodies() {
-            // What is written stands before what is yet to be read.
+            // Entries are written before the place of the next read.
             let (linear, angular) = velocities_of(&x[part * nv + numbering.velocity(body)..]);
             let to = part * nu + numbering.unknown(body);
             numbering
@@ -33,8 +33,8 @@ pub(crate) fn compress<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [
     x.len() - parts * (nv - nu)
 }
 
-/// The inverse of [`compress`]: the reduced form at the head of `x` becomes B u of each of the
-/// `parts`, then the rest.
+/// The inverse of [`compress`]: expands the reduced form in the first entries of `x` to B u of each
+/// of the `parts`, then the rest.
 pub(crate) fn expand<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) {
     if !numbering.is_reduced() {
         return;
@@ -53,7 +53,7 @@ pub(crate) fn expand<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]
     }
 }
 
-/// Lets `solve` work in place on the reduced form of `x`.
+/// Applies `solve` in place to the reduced form of `x`.
 pub(crate) fn through<S: Scalar>(
     numbering: &Numbering,
     parts: usize,
@@ -65,13 +65,13 @@ pub(crate) fn through<S: Scalar>(
     expand(numbering, parts, x);
 }
 
-/// Leaves of the velocities `x` the part that the mobilities admit, B Bᵀ x.
+/// Projects the velocities `x` onto what the mobilities admit, B Bᵀ x.
 pub(crate) fn project<S: Scalar>(numbering: &Numbering, x: &mut [S]) {
     through(numbering, 1, x, |_| {});
 }
 
-/// Leaves of tangent positions those that stay as the bodies are placed: all of a body that cannot
-/// move, and the rotation of one that cannot turn.
+/// Keeps only the tangent positions that stay as placed: all of a body that cannot move, and the
+/// rotation of a body that cannot rotate.
 pub(crate) fn constrain_cotangent(numbering: &Numbering, y: &mut [f64]) {
     for body in 0..numbering.bodies() {
         let at = numbering.velocity(body);
@@ -84,9 +84,9 @@ pub(crate) fn constrain_cotangent(numbering: &Numbering, y: &mut [f64]) {
     }
 }
 
-/// Takes what the mobilities do not admit out of the increments (dq, dv) from a state (q0, v0) to
-/// (q, v). The reduced equations do not see such round-off, so that it would grow from step to step
-/// by extrapolation.
+/// Removes from the increments (dq, dv) from a state (q0, v0) to (q, v) what the mobilities do not
+/// admit. The reduced equations do not act on such round-off; by extrapolation it would grow from
+/// step to step.
 pub(crate) fn project_increments<S: Scalar>(
     numbering: &Numbering,
     (q0, v0): (&[S], &[S]),
@@ -125,12 +125,12 @@ pub(crate) fn project_increments<S: Scalar>(
     }
 }
 
-/// The increment of Euler parameters p0, of unit length, that is nearest to dp among the turns about
+/// The increment of the unit Euler parameters p0 that is nearest to dp among the rotations about
 /// the body axis n.
 fn turn_about<S: Scalar>(p0: &Quat<S>, dp: &Quat<S>, n: &Vec3<f64>) -> Quat<S> {
     let back = [p0[0], -p0[1], -p0[2], -p0[3]];
     let turn = rotation::compose(&back, dp);
-    // 1 + back ∘ dp, of which the scalar and the part along n are kept.
+    // 1 + back ∘ dp; the scalar and the component along n are kept.
     let (w, x) = (
         S::one() + turn[0],
         along(&Vec3::new(turn[1], turn[2], turn[3]), n),
@@ -146,7 +146,7 @@ fn turn_about<S: Scalar>(p0: &Quat<S>, dp: &Quat<S>, n: &Vec3<f64>) -> Quat<S> {
     rotation::compose(p0, &[less, x * n[0], x * n[1], x * n[2]])
 }
 
-/// The place in unreduced numbering that stands for a reduced one in messages.
+/// An unreduced index of the same body or row as a reduced one, for messages.
 pub(crate) fn unreduced(numbering: &Numbering, parts: usize, place: usize) -> usize {
     let (nv, nu) = (numbering.velocities(), numbering.unknowns());
     match place.checked_div(nu) {
@@ -155,7 +155,8 @@ pub(crate) fn unreduced(numbering: &Numbering, parts: usize, place: usize) -> us
     }
 }
 
-/// Calls `assemble` with what takes entries in unreduced numbering and emits them reduced.
+/// Calls `assemble` with an `Emit` that takes entries in unreduced numbering and emits them
+/// reduced.
 pub(crate) fn emit_reduced<S: Scalar>(
     numbering: &Numbering,
     parts: usize,
@@ -180,7 +181,7 @@ struct Reduced<'a, S> {
     emit: &'a mut dyn Emit<S>,
 }
 
-/// The reduced places that an unreduced one has a share in, and its shares: a row of B.
+/// A row of B: the reduced indices of an unreduced one, each with its coefficient.
 pub(crate) fn shares(numbering: &Numbering, parts: usize, place: usize) -> [(usize, f64); 2] {
     let (nv, nu) = (numbering.velocities(), numbering.unknowns());
     let part = place / nv.max(1);
@@ -195,7 +196,7 @@ pub(crate) fn shares(numbering: &Numbering, parts: usize, place: usize) -> [(usi
 
 impl<S: Scalar> Emit<S> for Reduced<'_, S> {
     fn add(&mut self, row: usize, column: usize, value: S) {
-        // The shares do not depend on values: an entry without one is never emitted.
+        // The shares do not depend on values: the same entries are always omitted.
         let columns = shares(self.numbering, self.parts, column);
         for (i, x) in shares(self.numbering, self.parts, row) {
             for (j, y) in columns {

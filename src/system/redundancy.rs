@@ -1,12 +1,11 @@
-//! Constraint rows that follow from the others in every position near the start: found by rank and
-//! left out, so that the equations that are solved have full rank.
+//! Redundant constraint rows: they follow from the others in every position near the start. They
+//! are found by rank and left out, so that the remaining equations have full rank.
 //!
-//! A row that depends on the others only where the bodies are placed marks a singular position, not
-//! a redundancy. So the rank is taken at the closed placement and at a closed position beside it,
-//! reached along a motion that the joints allow, and what is left out is what depends on the rest
-//! at the position of the largest rank. Rows are kept by a pivoted Gram–Schmidt process on the rows
-//! of G: the first in the order of the joints whose part across the rows kept so far is not small
-//! against the largest such part.
+//! A row that is dependent only in the placement indicates a singular position, not a redundancy.
+//! So the rank is determined at the closed placement and at a closed position near it, along a
+//! motion that the joints allow. The position of the larger rank decides. A pivoted Gram–Schmidt
+//! process on the rows of G chooses the rows to keep: the first in the order of the joints whose
+//! part across the rows kept so far is not small relative to the largest such part.
 
 use super::bodies::{self, BodyMotion};
 use super::constraint;
@@ -20,32 +19,32 @@ use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Model};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Part of a unit row across the others below which it follows from them.
+/// A unit row is dependent if its part across the others is smaller.
 const DEPENDENT: f64 = 1e-11;
-/// Part of the largest such part that an earlier row is kept for.
+/// An earlier row is preferred if its part is at least this fraction of the largest.
 const PREFERRED: f64 = 0.1;
-/// Gap relative to the length scale at which the joints count as closed here.
+/// Joints are closed up to this gap relative to the length scale.
 const CLOSED: f64 = 1e-12;
-/// Weight that keeps the equations of a closing step regular, against unit rows.
+/// Weight that keeps the equations of a closing step regular, relative to unit rows.
 const REGULAR: f64 = 1e-10;
-/// Gap relative to the length scale from which a row that is left out counts as open in a run.
+/// A row that was left out is open above this gap relative to the length scale.
 pub(crate) const OPENED: f64 = 1e-6;
-/// Size relative to the largest row below which G has no part in a direction of the multipliers.
+/// Relative size of G below which a direction of the multipliers is not in its range.
 const DAMPED: f64 = 1e-6;
-/// Closing steps.
+/// Largest number of closing steps.
 const ITERATIONS: usize = 50;
-/// Distances of a position beside the placement that are tried, in units of the length scale and in
-/// radians.
+/// Distances from the placement that are tried for the nearby position, in units of the length
+/// scale and in radians.
 const BESIDE: [f64; 3] = [0.03, -0.02, 0.005];
 
-/// A joint some of whose rows follow from the other joints.
+/// A joint with redundant rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Redundancy {
     /// The joint.
     pub joint: String,
-    /// How many of its rows are left out.
+    /// Number of its rows that are left out.
     pub left_out: usize,
-    /// How many rows it has.
+    /// Number of its rows.
     pub rows: usize,
 }
 
@@ -60,8 +59,8 @@ impl std::fmt::Display for Redundancy {
     }
 }
 
-/// Leaves the redundant rows out of the joints of `model` and names them. Joints that cannot be
-/// closed are left as they are; assembly tells which.
+/// Leaves the redundant rows out of the joints of `model`, and returns these joints. If the joints
+/// cannot be closed, none are left out; assembly reports the failure.
 pub(crate) fn leave_out(model: &mut Model<f64>) -> Vec<Redundancy> {
     for joint in &mut model.joints {
         joint.redundant.clear();
@@ -92,8 +91,8 @@ pub(crate) fn leave_out(model: &mut Model<f64>) -> Vec<Redundancy> {
     found
 }
 
-/// Number of rows of the model that follow from the others, those that are left out included;
-/// `None` if its joints cannot be closed.
+/// Number of redundant rows of the model, including those that are left out; `None` if its joints
+/// cannot be closed.
 pub(crate) fn redundant_rows(model: &Model<f64>) -> Option<usize> {
     let mut model = model.clone();
     for joint in &mut model.joints {
@@ -103,8 +102,8 @@ pub(crate) fn redundant_rows(model: &Model<f64>) -> Option<usize> {
     Some(kept.into_iter().filter(|kept| !kept).count())
 }
 
-/// Unit rows of G at q as columns, in the order of the joints, without those that are left out, angles
-/// counted as arcs at the length scale; and the joint of each.
+/// Imposed unit rows of G at q as columns, in the order of the joints, and the joint of each.
+/// Angles count as arcs at the length scale.
 pub(crate) fn unit_rows(model: &Model<f64>, q: &[f64]) -> (DMatrix<f64>, Vec<usize>) {
     let joints: Vec<usize> = (0..model.joints.len()).collect();
     let rows = Rows::new(model, &joints);
@@ -115,7 +114,7 @@ pub(crate) fn unit_rows(model: &Model<f64>, q: &[f64]) -> (DMatrix<f64>, Vec<usi
     (rows.gradients(q).0.select_columns(&imposed), of)
 }
 
-/// Joints that lie in loops of bodies and ground; in trees no row follows from others.
+/// Joints in loops of bodies and ground. Without loops no row is redundant.
 fn in_loops<S>(model: &Model<S>) -> Vec<usize> {
     let ground = model.bodies.len();
     let ends = |j: usize| {
@@ -136,7 +135,7 @@ fn in_loops<S>(model: &Model<S>) -> Vec<usize> {
     }
 }
 
-/// Which rows of the `joints`, in their order, to keep; `None` if they cannot be closed.
+/// Which rows of the `joints` to keep, in their order; `None` if the joints cannot be closed.
 fn independent_rows(model: &Model<f64>, joints: &[usize]) -> Option<Vec<bool>> {
     let rows = Rows::new(model, joints);
     let (q, _) = guess(model);
@@ -146,7 +145,7 @@ fn independent_rows(model: &Model<f64>, joints: &[usize]) -> Option<Vec<bool>> {
     if count(&there) == there.len() {
         return Some(there);
     }
-    // Joints that allow no motion have no position beside the placement.
+    // Joints that allow no motion have no nearby position.
     let beside = BESIDE
         .iter()
         .find_map(|&distance| rows.beside(&placed, distance));
@@ -191,8 +190,8 @@ impl<'a> Rows<'a> {
         self.joints.iter().flat_map(|&j| self.numbering.rows(j))
     }
 
-    /// Unit rows of G as columns, angles counted as arcs at the length scale, and what makes them
-    /// so.
+    /// Unit rows of G as columns, with angles as arcs at the length scale, and the factors that
+    /// normalise them.
     fn gradients(&self, q: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
         let motions = self.motions(q);
         let mut all = Vec::new();
@@ -256,7 +255,7 @@ impl<'a> Rows<'a> {
         None
     }
 
-    /// Moves q by a step whose angles are arcs at the length scale.
+    /// Adds a step to q; its angles are arcs at the length scale.
     fn advance(&self, q: &mut [f64], step: &DVector<f64>) {
         let arcs = step.iter().enumerate();
         let step: Vec<f64> = arcs
@@ -266,16 +265,16 @@ impl<'a> Rows<'a> {
         bodies::advance(&self.numbering, q, &mut increment, &step);
     }
 
-    /// A closed position beside `q`, as far from it as asked for, along a motion that the joints
-    /// allow; `None` if they allow none.
+    /// A closed position at the given distance from `q`, along a motion that the joints allow;
+    /// `None` if they allow none.
     fn beside(&self, q: &[f64], distance: f64) -> Option<Vec<f64>> {
         let (g, _) = self.gradients(q);
-        // Any direction that no symmetry of a scene singles out.
+        // A direction without symmetry.
         let count = self.numbering.velocities();
         let mut along = DVector::from_fn(count, |i, _| (1.0 + 1.7 * i as f64).sin());
         reduce::project(&self.numbering, along.as_mut_slice());
         let factors = normal(&g)?;
-        // Twice, as the weight that keeps it regular leaves a little.
+        // Twice, because the regularising weight leaves a small part.
         for _ in 0..2 {
             along -= &g * factors.solve(&g.tr_mul(&along));
         }
@@ -288,7 +287,7 @@ impl<'a> Rows<'a> {
         self.close(moved)
     }
 
-    /// Which rows to keep at q so that those kept are independent and the others follow.
+    /// Which rows to keep at q, so that they are independent and the others follow.
     fn independent(&self, q: &[f64]) -> Vec<bool> {
         let (mut g, _) = self.gradients(q);
         let mut kept = vec![false; g.ncols()];
@@ -317,7 +316,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Factors of G Gᵀ, kept regular where rows depend on each other; G by its transpose.
+/// Factors of G Gᵀ, regularised where rows are dependent; `g` is the transpose of G.
 fn normal(g: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
     let mut product = g.transpose() * g;
     for i in 0..product.nrows() {
@@ -326,7 +325,7 @@ fn normal(g: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
     product.cholesky()
 }
 
-/// A row, and how far it is open.
+/// The row with the largest gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Widest {
     /// Its joint.
@@ -337,7 +336,7 @@ pub(crate) struct Widest {
     pub gap: f64,
 }
 
-/// The row that is open most; `None` if no row is left out, so that all are imposed.
+/// The row with the largest gap; `None` if no row is left out.
 pub(crate) fn widest<S: Scalar>(model: &Model<S>, at: (&[BodyMotion<S>], S)) -> Option<Widest> {
     if model.joints.iter().all(|joint| joint.redundant.is_empty()) {
         return None;
@@ -352,8 +351,7 @@ pub(crate) fn widest<S: Scalar>(model: &Model<S>, at: (&[BodyMotion<S>], S)) -> 
     widest
 }
 
-/// The row that is open by more than [`OPENED`] of the model's length scale where the bodies are, if
-/// one is.
+/// The row with the largest gap, if it is above [`OPENED`] times the model's length scale.
 pub(crate) fn opened<S: Scalar>(model: &Model<S>, at: (&[BodyMotion<S>], S)) -> Option<Widest> {
     widest(model, at).filter(|widest| {
         let limit = OPENED * length_scale(model);
@@ -361,20 +359,20 @@ pub(crate) fn opened<S: Scalar>(model: &Model<S>, at: (&[BodyMotion<S>], S)) -> 
     })
 }
 
-/// The multipliers of all rows, those left out included, with the smallest sum of squares that act
-/// as `lambda` does: the part of `lambda` in the range of G. Rows that follow from others do so up to
-/// the drift of the constraints, so directions in which G is that small are not of its range: they are
-/// damped,
+/// The multipliers of all rows, including redundant ones, with the smallest sum of squares and the
+/// same effect as `lambda`: the part of `lambda` in the range of G. Redundant rows are dependent
+/// only up to the drift of the constraints. So directions in which G is that small are damped,
 ///
 /// ```text
 /// min |λ − G y|² + δ² |y|²,     δ = 1e-6 of the largest row,
 /// ```
 ///
-/// by conjugate gradients on the normal equations (Björck 1996, *Numerical Methods for Least Squares
-/// Problems*, algorithm 7.4.1 and section 7.4.3), and once more for what is left of λ. A direction in
-/// which G has the size σ then lacks (δ/σ)⁴ if it is of the range, and leaks 2 (σ/δ)² if it is not.
+/// by conjugate gradients on the normal equations (Björck 1996, *Numerical Methods for Least
+/// Squares Problems*, algorithm 7.4.1 and section 7.4.3), and once more for the remainder of λ. In
+/// a direction in which G has the size σ, the relative error is (δ/σ)⁴ inside the range and 2
+/// (σ/δ)² outside.
 ///
-/// Each joint's rows follow each other in the order of its kind. The model has all rows imposed.
+/// Rows of a joint are in the order of its kind. The model must have all rows imposed.
 pub(crate) fn smallest_multipliers(at: &InMotion<f64>, lambda: &[f64]) -> Vec<f64> {
     let (model, numbering) = (at.model, at.numbering);
     let mut gradients = Vec::new();

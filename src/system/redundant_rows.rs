@@ -1,9 +1,9 @@
-//! Which constraint rows are not imposed, as they follow from those that are, chosen again on the way.
+//! The choice of redundant rows, which may change during a run.
 //!
-//! The matrix of every system has all rows. One that is left out stands there as λ_i = 0. What follows
-//! from what changes with the position: with a row left out whose weight in the dependence passes
-//! through zero the rows that are imposed depend on each other. So a row is exchanged for one of
-//! larger weight before that. The motion does not depend on the choice where all joints are closed.
+//! The matrix of every system has all rows. A redundant row is replaced by λ_i = 0. Dependence
+//! changes with the position: if the weight of a redundant row in the dependence becomes zero, the
+//! imposed rows become dependent. Before that, it is exchanged for a row of larger weight. The
+//! choice does not affect the motion as long as all joints are closed.
 
 use super::bodies::add6;
 use super::constraint::RowGradient;
@@ -14,11 +14,11 @@ use super::placement::length_scale;
 use crate::math::Scalar;
 use crate::model::Model;
 
-/// Weight of an imposed row, relative to that of a row that is left out, at which the two are
-/// exchanged between steps.
+/// A redundant row is exchanged between steps for an imposed row whose weight is larger by this
+/// factor.
 pub(crate) const EXCHANGE_WEIGHT: f64 = 2.0;
 
-/// What the weights of rows are found in, used again.
+/// Workspace for the weights of rows.
 #[derive(Clone, Debug)]
 pub(crate) struct RowWeights<S> {
     gradients: Vec<RowGradient<S>>,
@@ -36,15 +36,15 @@ impl<S> Default for RowWeights<S> {
     }
 }
 
-/// Rows that are not imposed.
+/// Redundant rows, which are not imposed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct RedundantRows {
-    /// One entry a row; none if all are imposed.
+    /// By row: whether it is redundant; empty if all are imposed.
     rows: Vec<bool>,
 }
 
 impl RedundantRows {
-    /// Those that the joints of a model name.
+    /// The redundant rows of the joints of a model.
     pub(crate) fn of<S>(model: &Model<S>, numbering: &Numbering) -> Self {
         if model.joints.iter().all(|joint| joint.redundant.is_empty()) {
             return Self::default();
@@ -55,14 +55,14 @@ impl RedundantRows {
                 rows[i] = joint.redundant.contains(&row);
             }
         }
-        // What holds identically is no row.
+        // Trivially satisfied rows are not in the matrix.
         match rows.contains(&true) {
             true => Self { rows },
             false => Self::default(),
         }
     }
 
-    /// Those with these numbers among `count` rows; `None` if there are not as many rows.
+    /// The redundant rows with these numbers, of `count` rows; `None` if a number is too large.
     pub(crate) fn from_rows(numbers: &[usize], count: usize) -> Option<Self> {
         let mut rows = vec![false; count];
         for &i in numbers {
@@ -71,40 +71,40 @@ impl RedundantRows {
         Some(Self { rows })
     }
 
-    /// Number of rows, imposed or not; 0 if all are imposed in every choice.
+    /// Number of all rows; 0 if no row is redundant.
     pub(crate) fn count(&self) -> usize {
         self.rows.len()
     }
 
-    /// Whether this is another choice of as many rows of as many.
+    /// Whether both have equal numbers of rows and of redundant rows.
     pub(crate) fn fits(&self, other: &Self) -> bool {
         self.count() == other.count() && self.numbers().count() == other.numbers().count()
     }
 
-    /// Whether all rows are imposed in every choice.
+    /// Whether no row is redundant.
     pub(crate) fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 
-    /// Whether row i is left out.
+    /// Whether row i is redundant.
     pub(crate) fn contains(&self, row: usize) -> bool {
         self.rows.get(row) == Some(&true)
     }
 
-    /// Their numbers.
+    /// Numbers of the redundant rows.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
         let rows = self.rows.iter().enumerate();
         rows.filter(|(_, out)| **out).map(|(i, _)| i)
     }
 
-    /// Sets the entries of rows that are left out to zero.
+    /// Sets the entries of redundant rows to zero.
     pub(crate) fn clear<T: Scalar>(&self, values: &mut [T]) {
         for i in self.numbers() {
             values[i] = T::zero();
         }
     }
 
-    /// Sets their gradients to zero.
+    /// Sets the gradients of redundant rows to zero.
     pub(crate) fn clear_gradients<S: Scalar>(&self, gradients: &mut [RowGradient<S>]) {
         for i in self.numbers() {
             let row = &mut gradients[i];
@@ -114,15 +114,15 @@ impl RedundantRows {
         }
     }
 
-    /// The choice with the first row that is left out exchanged for an imposed one whose weight in its
+    /// The choice after exchanging the first redundant row for an imposed row whose weight in its
     /// dependence is more than `worn` times its own; `None` if there is none. The weights are −λ of
     ///
     /// ```text
     /// M x + Gᵀλ = −g_i,      G x = 0
     /// ```
     ///
-    /// with the gradient g_i of the row that is left out, and x = 0 as it follows from the others.
-    /// `solve` solves that system in place where the bodies are.
+    /// with the gradient g_i of the redundant row. x = 0, because the row depends on the others.
+    /// `solve` solves that system in place at the present positions.
     pub(crate) fn exchanged<S: Scalar>(
         &self,
         at: &InMotion<S>,

@@ -1,10 +1,10 @@
-//! The two sides of a joint at an instant: the body's motion and the joint's frame on it, which the
-//! drives of the joint move.
+//! The two sides of a joint at an instant: the motion of the body, and the joint's frame on it,
+//! which drives may move.
 //!
-//! A frame on body B that turns by φ and shifts by σ (see [`crate::model::drive`]) has
+//! A frame on body B with rotation φ and displacement σ (see [`crate::model::drive`]) has
 //!
 //! ```text
-//! ė1 = φ̇ e2,   ë1 = φ̈ e2 − φ̇² e1,   ė2 = −φ̇ e1,   ë2 = −φ̈ e1 − φ̇² e2,   ṡ = σ̇ e3,   s̈ = σ̈ e3
+//! ė1 = φ̇ e2,  ë1 = φ̈ e2 − φ̇² e1,  ė2 = −φ̇ e1,  ë2 = −φ̈ e1 − φ̇² e2,  ṡ = σ̇ e3,  s̈ = σ̈ e3
 //! ```
 
 use super::bodies::BodyMotion;
@@ -15,15 +15,15 @@ use crate::model::{DegreeOfFreedom, Joint, JointFrame};
 /// One side of a joint.
 #[derive(Clone, Debug)]
 pub(crate) struct JointSide<'a, S> {
-    /// Motion of the body (ground at rest if there is none).
+    /// Motion of the body, or of ground.
     pub motion: &'a BodyMotion<S>,
-    /// The joint's frame on the body at this time.
+    /// The joint's frame on the body at this instant.
     pub frame: JointFrame<S>,
-    /// How the frame moves on the body, if it does.
+    /// Motion of the frame on the body, if it moves.
     pub moving: Option<FrameMotion<S>>,
 }
 
-/// First and second derivative in time of a frame, in the axes of its body.
+/// First and second derivatives in time of a frame, body axes.
 #[derive(Clone, Debug)]
 pub(crate) struct FrameMotion<S> {
     /// First derivative.
@@ -33,7 +33,7 @@ pub(crate) struct FrameMotion<S> {
 }
 
 impl<S: Scalar> FrameMotion<S> {
-    /// All zero.
+    /// The zero motion.
     pub(crate) fn zero() -> Self {
         Self {
             rate: JointFrame::zero(),
@@ -59,7 +59,7 @@ impl<S: Scalar> FrameMotion<S> {
 }
 
 impl<'a, S: Scalar> JointSide<'a, S> {
-    /// A side whose frame does not move.
+    /// A side with a fixed frame.
     pub(crate) fn fixed(motion: &'a BodyMotion<S>, frame: JointFrame<S>) -> Self {
         Self {
             motion,
@@ -78,20 +78,20 @@ impl<'a, S: Scalar> JointSide<'a, S> {
         self.motion.position + self.motion.rotation * self.frame.point
     }
 
-    /// Axis i in motion.
+    /// Axis i as a marker.
     pub(crate) fn axis_jet(&self, i: usize) -> MarkerKinematics<S> {
         let local = self.moving.as_ref().map(|moving| moving.axis(i));
         MarkerKinematics::moving_direction(self.motion, &self.frame.axes[i], local.as_ref())
     }
 
-    /// The point in motion.
+    /// The point as a marker.
     pub(crate) fn point_jet(&self) -> MarkerKinematics<S> {
         let local = self.moving.as_ref().map(|moving| moving.point());
         MarkerKinematics::moving_point(self.motion, &self.frame.point, local.as_ref())
     }
 }
 
-/// Both sides of a joint at `time` (s); `ground` is the motion of a missing body B.
+/// Both sides of a joint at `time` \[s\]; `ground` is the motion of a missing body B.
 pub(crate) fn sides<'a, S: Scalar>(
     joint: &Joint<S>,
     motions: &'a [BodyMotion<S>],
@@ -108,7 +108,7 @@ pub(crate) fn sides<'a, S: Scalar>(
     (JointSide::fixed(&motions[joint.body_a], joint.frame_a), b)
 }
 
-/// The courses of the joint's drives at `time`: (turn, slide), zero where there is none.
+/// The prescribed motions of the joint at `time`: (rotation, displacement), zero without a drive.
 fn courses<S: Scalar>(joint: &Joint<S>, time: S) -> ([S; 4], [S; 4]) {
     let zero = [S::zero(); 4];
     let (mut turn, mut slide) = (zero, zero);
@@ -144,8 +144,8 @@ fn driven_frame<S: Scalar>(joint: &Joint<S>, time: S) -> (JointFrame<S>, FrameMo
     (frame, moving)
 }
 
-/// Pulls the cotangents of the frame on body B at `time`, and of its motion, back to the joint's
-/// parameters (added to `own`); returns the derivative by time.
+/// Pulls the cotangents of the frame on body B at `time` and of its motion back to the joint's
+/// parameters (added to `own`). Returns the derivative in time.
 pub(crate) fn pull_driven_frame(
     joint: &Joint<f64>,
     time: f64,
@@ -159,7 +159,7 @@ pub(crate) fn pull_driven_frame(
     let [e1, e2, e3] = frame.axes;
     let (x, r, a) = (by_frame, &by_motion.rate, &by_motion.acceleration);
     let square = spin * spin;
-    // The turned axes, through themselves and through their derivatives.
+    // Cotangents of the turned axes, through themselves and their derivatives.
     let by_e1 = x.axes[0] - r.axes[1] * spin - a.axes[1] * spin_up - a.axes[0] * square;
     let by_e2 = x.axes[1] + r.axes[0] * spin + a.axes[0] * spin_up - a.axes[1] * square;
     let weights_turn = [

@@ -1,9 +1,8 @@
 //! The loads of a model in motion: generalised forces, their Jacobians, pull-backs and energy.
 //!
-//! A load is linear in the virtual velocities ψ that it is paired with: ψᵀf is its power at these
-//! velocities. `power.rs` writes the forces down and `pull.rs` the transposed derivative of the power, once for each kind
-//! and for any scalar; forces, Jacobians and pull-backs are all made of these two, so that they
-//! cannot disagree.
+//! For virtual velocities ψ, ψᵀf is the power of a load, linear in ψ. `power.rs` has the forces and
+//! `pull.rs` the transposed derivative of the power, once for each kind and for any scalar. Forces,
+//! Jacobians and pull-backs all use these two, so they agree.
 
 mod parameters;
 mod power;
@@ -20,7 +19,7 @@ use crate::model::{Axes, DegreeOfFreedom, JointFrame, LoadKind, Model};
 use parameters::give_to_parameters;
 use pull::{Pulled, pull};
 
-/// Both bodies of a load, and where it acts on them.
+/// Both bodies of a load, with its points or frames.
 pub(super) struct Acting<'a, S> {
     bodies: [Option<usize>; 2],
     a: JointSide<'a, S>,
@@ -58,7 +57,7 @@ fn for_each_load<S: Scalar>(
                 point_b,
                 ..
             } => acting((*body_a, at(point_a)), (*body_b, at(point_b))),
-            // The angle of a spring is that of the bodies, whatever drives them.
+            // The angle of a spring is that of the bodies; it does not include drives.
             LoadKind::TorsionSpring { joint, .. }
             | LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }
@@ -83,7 +82,7 @@ pub(crate) fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
     });
 }
 
-/// Which 3 × 3 blocks the derivative of a load has, of (linear, angular) parts on both bodies.
+/// Non-zero 3 × 3 blocks of the derivative of a load: (linear, angular) parts.
 struct Blocks {
     /// Forces and torques.
     rows: [bool; 2],
@@ -99,7 +98,7 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
     const ANGULAR: [bool; 2] = [false, true];
     const BOTH: [bool; 2] = [true, true];
     let of = |rows, y, v| Blocks { rows, y, v };
-    // A zero that no design moves leaves its columns out.
+    // A zero that no design changes has no columns.
     let damped = |c: &S, columns| if c.is_zero() { NONE } else { columns };
     match kind {
         LoadKind::Force { axes, .. } => match axes {
@@ -120,8 +119,7 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
     }
 }
 
-/// Where the derivatives of the forces are emitted, in velocity numbering, and what they are multiplied
-/// by.
+/// Place of the derivatives of the forces, in velocity numbering, and their factors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoadEntries<S> {
     /// Row of the forces.
@@ -136,7 +134,7 @@ pub(crate) struct LoadEntries<S> {
     pub by_v: S,
 }
 
-/// Emits ∂f/∂y and ∂f/∂v, f as in [`add_forces`]; only the blocks that a load has.
+/// Emits ∂f/∂y and ∂f/∂v with f as in [`add_forces`]; only the non-zero blocks of a load.
 pub(crate) fn emit_jacobian<S: Scalar>(
     here: &InMotion<S>,
     to: &LoadEntries<S>,
@@ -145,7 +143,7 @@ pub(crate) fn emit_jacobian<S: Scalar>(
     let numbering = here.numbering;
     for_each_load(here.model, here.motions, |_, kind, at| {
         let blocks = blocks(kind);
-        // One row of the Jacobian for each unit velocity of either body.
+        // One row of the Jacobian for each unit virtual velocity of either body.
         for side in 0..2 {
             let Some(body) = at.bodies[side] else {
                 continue;
@@ -177,11 +175,11 @@ pub(crate) fn emit_jacobian<S: Scalar>(
     });
 }
 
-/// Where the pull-back of the loads is added to.
+/// Destination of the pull-back of the loads.
 pub(crate) struct LoadCotangent<'a> {
-    /// Tangent positions, velocity numbering; `None` if not wanted.
+    /// Tangent positions, velocity numbering; `None` if not needed.
     pub y: Option<&'a mut [f64]>,
-    /// Velocities; `None` if not wanted.
+    /// Velocities; `None` if not needed.
     pub v: Option<&'a mut [f64]>,
     /// Time.
     pub time: &'a mut f64,
@@ -189,8 +187,8 @@ pub(crate) struct LoadCotangent<'a> {
     pub model: &'a mut Model<f64>,
 }
 
-/// Adds the derivatives of ψᵀf, f as in [`add_forces`], in tangent positions, velocities, time and
-/// parameters.
+/// Adds the derivatives of ψᵀf, with f as in [`add_forces`], in tangent positions, velocities, time
+/// and parameters.
 pub(crate) fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
     let (numbering, time) = (here.numbering, here.time);
     for_each_load(here.model, here.motions, |i, kind, at| {
@@ -223,7 +221,7 @@ fn give_to_states(
     }
 }
 
-/// The first spring whose ends meet where the bodies are placed, if any.
+/// The first spring of length zero in the placement, if any.
 pub(crate) fn without_length(model: &Model<f64>) -> Option<&str> {
     let (q, v) = guess(model);
     let mut motions = Vec::new();
@@ -239,7 +237,7 @@ pub(crate) fn without_length(model: &Model<f64>) -> Option<&str> {
     found.map(|i| model.loads[i].name.as_str())
 }
 
-/// Potential energy of the springs, Σ ½ k x² + ¼ k3 x⁴ (J).
+/// Potential energy of the springs, Σ ½ k x² + ¼ k3 x⁴ (torsion springs: Σ ½ k x²) \[J\].
 pub(crate) fn potential<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> S {
     let mut sum = S::zero();
     for_each_load(model, motions, |_, kind, at| {

@@ -1,10 +1,10 @@
-//! From the derivatives of a load's power to the parameters that they are in.
+//! Adds the derivatives of a load's power to the cotangents of its parameters.
 
 use super::pull::Pulled;
 use crate::model::{JointFrame, LoadKind, Model};
 
-/// Adds the derivatives in a load's parameters to their places in the cotangent of the model, and
-/// that in time.
+/// Adds the derivatives in a load's parameters to the cotangent of the model, and that in time to
+/// `by_time`. Functions of time are differentiated.
 pub(super) fn give_to_parameters(
     kind: &LoadKind<f64>,
     pulled: &Pulled<f64>,

@@ -7,7 +7,7 @@ use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
 use crate::system::constraint;
 use crate::system::marker::MarkerKinematics;
 
-/// The row whose rate is that of a slider's displacement along its axis.
+/// The row whose rate is that of a displacement along the axis of a joint.
 pub(super) const SLIDE: ConstraintRow = ConstraintRow::Sliding { a: 2 };
 
 /// Force (ground axes) and torque (body axes, about the centre of mass) on body A and on body B.
@@ -88,7 +88,7 @@ pub(super) fn forces<S: Scalar>(
     }
 }
 
-/// Potential energy of a load; zero if it is no spring.
+/// Potential energy of a load \[J\]; zero if it is no spring.
 pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
     match kind {
         LoadKind::Spring {
@@ -117,7 +117,7 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
     }
 }
 
-/// Forces of the size `law(rate)` along or about the axis of a joint.
+/// Forces of size `law(rate)` along or about the axis of a joint.
 fn along<S: Scalar>(
     at: &Acting<S>,
     dof: DegreeOfFreedom,
@@ -142,14 +142,14 @@ fn about_axis<S: Scalar>(at: &Acting<S>, torque: S) -> [(Vec3<S>, Vec3<S>); 2] {
     [(Vec3::zeros(), e * torque), (Vec3::zeros(), in_b * -torque)]
 }
 
-/// φ̇ = e · (ω_A − ω_B), e the third axis of the frame on A.
+/// φ̇ = e · (ω_A − ω_B), where e is the third axis of the frame on A.
 pub(super) fn turn_rate<S: Scalar>(at: &Acting<S>) -> S {
     let (a, b) = (at.a.motion, at.b.motion);
     let e = &at.a.frame.axes[2];
     e.dot(&a.omega) - (a.rotation * e).dot(&(b.rotation * b.omega))
 }
 
-/// The angle φ of frame A against frame B about the third axis, less `rest`, in (−π, π].
+/// The angle φ of frame A relative to frame B about the third axis, minus `rest`, in (−π, π].
 pub(super) fn angle<S: Scalar>(at: &Acting<S>, rest: S) -> S {
     let a1 = at.a.motion.rotation * at.a.frame.axes[0];
     let [x, y] = [0, 1].map(|i| a1.dot(&(at.b.motion.rotation * at.b.frame.axes[i])));
@@ -157,7 +157,7 @@ pub(super) fn angle<S: Scalar>(at: &Acting<S>, rest: S) -> S {
     (y * c - x * s).atan2(x * c + y * s)
 }
 
-/// A spring's length, its rate and its direction from B to A.
+/// Length of a spring, its rate, and its direction from B to A.
 pub(super) struct SpringLength<S> {
     pub length: S,
     pub rate: S,

@@ -9,16 +9,16 @@ use crate::system::constraint::{self, RowCotangent, SideCotangent};
 use crate::system::marker::{self, MarkerKinematics};
 use crate::system::side::JointSide;
 
-/// Derivatives of a load's power (or energy).
+/// Derivatives of the power (or energy) of a load.
 pub(super) struct Pulled<S> {
-    /// In the motion of body A, and in the point or frame that the load has there.
+    /// In the motion of body A, and in the load's point or frame on it.
     pub a: SideCotangent<S>,
     /// The same for body B.
     pub b: SideCotangent<S>,
     /// In the direction of a force or torque.
     pub direction: Vec3<S>,
-    /// In the scalars of the load, in the order of its definition; the first is that in the
-    /// magnitude of a force or torque.
+    /// In the scalars of the load, in the order of its definition. For a force or torque the first
+    /// is the magnitude.
     pub scalars: [S; 4],
 }
 
@@ -36,7 +36,7 @@ impl<S: Scalar> Pulled<S> {
 /// Virtual velocities (linear in ground axes, angular in body axes) of body A and body B.
 type Virtual<S> = [(Vec3<S>, Vec3<S>); 2];
 
-/// The load's bodies where they are, moving with ψ.
+/// The load's bodies with the velocities ψ.
 fn moving<S: Scalar>(at: &Acting<S>, psi: &Virtual<S>) -> [BodyMotion<S>; 2] {
     let with = |motion: &BodyMotion<S>, (velocity, omega): (Vec3<S>, Vec3<S>)| BodyMotion {
         velocity,
@@ -85,7 +85,7 @@ pub(super) fn pull<S: Scalar>(
             };
             out.direction = by * m;
             out.scalars[0] = by.dot(direction);
-            // The virtual velocities are held.
+            // The virtual velocities are constant.
             (out.a.velocity, out.a.omega) = (Vec3::zeros(), Vec3::zeros());
         }
         LoadKind::Torque {
@@ -172,7 +172,7 @@ pub(super) fn pull<S: Scalar>(
             let (ra, rb) = (&at.a.motion.rotation, &at.b.motion.rotation);
             let (wa, wb) = (at.a.motion.omega, at.b.motion.omega);
             let (pa, pb) = (psi[0].1, psi[1].1);
-            // ψᵀf = −c X · Y of the relative angular velocities, real and virtual.
+            // ψᵀf = −c X · Y with the relative angular velocities X (real) and Y (virtual).
             let (x, y) = (ra * wa - rb * wb, ra * pa - rb * pb);
             let c = *coefficient;
             out.scalars[0] = -x.dot(&y);
@@ -228,7 +228,7 @@ pub(super) fn pull_potential<S: Scalar>(
     Some(out)
 }
 
-/// Forgets the derivatives in velocities: the virtual ones are held.
+/// Clears the derivatives in velocities, because the virtual ones are constant.
 fn hold_virtual<S: Scalar>(out: &mut Pulled<S>) {
     for side in [&mut out.a, &mut out.b] {
         (side.velocity, side.omega) = (Vec3::zeros(), Vec3::zeros());
@@ -270,7 +270,7 @@ fn pull_rate<S: Scalar>(at: &Acting<S>, (by_length, by_rate): (S, S), out: &mut 
     } = stretch(at);
     let speed = |side: &JointSide<S>| side.point_jet().rate;
     let apart = speed(&at.a) - speed(&at.b);
-    // The direction turns with the part of a displacement across it.
+    // The component of a displacement across the direction turns it.
     let across = apart - direction * direction.dot(&apart);
     let x = direction * by_length + across * (by_rate / length);
     let rate = direction * by_rate;
@@ -291,7 +291,7 @@ fn pull_turn<S: Scalar>(at: &Acting<S>, cot: S, out: &mut Pulled<S>) {
     out.b.theta -= b.omega.cross(&e_in_b) * cot;
 }
 
-/// Pulls the cotangent of [`angle`] back to all but the angle at rest.
+/// Pulls the cotangent of [`angle`] back, except to the angle at rest.
 fn pull_angle<S: Scalar>(at: &Acting<S>, cot: S, out: &mut Pulled<S>) {
     let a1 = at.a.motion.rotation * at.a.frame.axes[0];
     let [b1, b2] = [0, 1].map(|i| at.b.motion.rotation * at.b.frame.axes[i]);
@@ -303,8 +303,8 @@ fn pull_angle<S: Scalar>(at: &Acting<S>, cot: S, out: &mut Pulled<S>) {
     pull_axis(&at.b, 1, a1 * by_y, &mut out.b);
 }
 
-/// Pulls the power of a force `law(rate)` = (size, its derivative) along or about the axis of a
-/// joint back; returns the rate and the virtual rate.
+/// Pulls back the power of a force along or about the axis of a joint, `law(rate)` = (size, its
+/// derivative). Returns the rate and the virtual rate.
 fn pull_along<S: Scalar>(
     at: &Acting<S>,
     virtually: &Acting<S>,

@@ -1,4 +1,4 @@
-//! Blocks of bodies and of rows in the unknowns of the bodies, and the factors made of them.
+//! Blocks of bodies and rows in the unknowns of the bodies, and their factors.
 
 use super::SMALL;
 use crate::math::Scalar;
@@ -19,7 +19,7 @@ pub(super) struct Factors<S, const N: usize> {
     pub schur: [[S; N]; N],
 }
 
-/// Order of the block of a body: known beforehand where all have up to three unknowns.
+/// Order of the block of a body; a constant if all have up to three unknowns.
 pub(super) fn size<const N: usize>(numbering: &Numbering, body: usize) -> usize {
     match N {
         SMALL => SMALL,
@@ -27,7 +27,7 @@ pub(super) fn size<const N: usize>(numbering: &Numbering, body: usize) -> usize 
     }
 }
 
-/// Unknowns of a body: known beforehand where all have N.
+/// Number of unknowns of a body; a constant if all have N.
 pub(super) fn unknowns<const N: usize, const FULL: bool>(
     numbering: &Numbering,
     body: usize,
@@ -38,8 +38,8 @@ pub(super) fn unknowns<const N: usize, const FULL: bool>(
     }
 }
 
-/// Bᵀ M B of a body, with the unit matrix behind it up to order three, so that it can be decomposed in
-/// that order.
+/// Bᵀ M B of a body. It is extended by the unit matrix to order three, so that it can be decomposed
+/// in that order.
 pub(super) fn inertia<S: Scalar, const N: usize>(
     body: &RigidBody<S>,
     mobility: &Mobility,
@@ -64,7 +64,7 @@ pub(super) fn inertia<S: Scalar, const N: usize>(
     out
 }
 
-/// A row of G B on its side A or B.
+/// A row of G B on side A or B of its joint.
 #[inline]
 pub(super) fn reduced<S: Scalar, const N: usize>(
     g: &RowGradient<S>,

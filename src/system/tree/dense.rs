@@ -3,8 +3,8 @@
 use super::SMALL;
 use crate::math::Scalar;
 
-/// A pivot below this part of its diagonal entry has lost too many digits: where a body carries one
-/// that is 1e5 times as heavy, sparse LU with its choice of pivots is more accurate.
+/// A pivot below this fraction of its diagonal entry has lost too many digits. If a body carries
+/// one that is 1e5 times as heavy, sparse LU with pivoting is more accurate.
 pub(super) const SINGULAR: f64 = 1e-5;
 
 /// The first m entries of `x`, then zeros.
@@ -13,7 +13,7 @@ pub(super) fn block<S: Scalar, const N: usize>(x: &[S], m: usize) -> [S; N] {
 }
 
 pub(super) fn dot<S: Scalar, const N: usize>(a: &[S; N], b: &[S; N]) -> S {
-    // Pairs three apart, which do not wait for each other.
+    // Pairs at distance three are independent of each other.
     let pair = |i: usize| match N {
         SMALL => a[i] * b[i],
         _ => a[i] * b[i] + a[i + 3] * b[i + 3],
@@ -30,7 +30,7 @@ pub(super) fn axpy<S: Scalar, const N: usize>(out: &mut [S], scale: S, x: &[S; N
 /// Replaces the lower triangle by L (unit, strictly below) and D⁻¹ (diagonal) of A = L D Lᵀ.
 ///
 /// # Errors
-/// The row whose pivot is not positive beside its diagonal entry.
+/// The row whose pivot is not positive relative to its diagonal entry.
 pub(super) fn decompose<S: Scalar, const N: usize>(
     a: &mut [[S; N]; N],
     n: usize,
@@ -40,7 +40,7 @@ pub(super) fn decompose<S: Scalar, const N: usize>(
         let mut pivot = a[j][j];
         let mut row = a[j];
         for k in 0..j {
-            // row[k] holds L_jk D_k until now.
+            // So far row[k] = L_jk D_k.
             let l = row[k] * a[k][k];
             pivot -= row[k] * l;
             row[k] = l;

@@ -1,4 +1,4 @@
-//! Bodies and joints eliminated leaf by leaf, in blocks of up to order N.
+//! Elimination of bodies and joints, leaves first, in blocks of up to order N.
 
 use super::blocks::{Factors, inertia, reduced, size, unknowns};
 use super::dense::{axpy, block, decompose, dot, solve};
@@ -21,12 +21,12 @@ pub(crate) struct Elimination<S, const N: usize> {
     link_of: Vec<usize>,
     /// Whether all bodies have N unknowns.
     full: bool,
-    /// The joints that close loops, if any do.
+    /// The joints that close loops, if any.
     pub(super) loops: Option<Loops<S, N>>,
 }
 
 impl<S: Scalar, const N: usize> Elimination<S, N> {
-    /// Plans the elimination, or `None` if the loops are so many that sparse LU serves better.
+    /// Plans the elimination; `None` if there are so many loops that sparse LU costs less.
     pub(super) fn plan<M>(model: &Model<M>, numbering: &Numbering, forest: Forest) -> Option<Self> {
         let Forest { links, closing } = forest;
         let bodies = numbering.bodies();
@@ -56,7 +56,7 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
         })
     }
 
-    /// The links, the joints that close loops, and the operations that these take.
+    /// The links, the joints that close loops, and the number of operations for these.
     pub(super) fn parts(&self, numbering: &Numbering) -> (&[Link], Vec<usize>, usize) {
         let closing = self.loops.iter().flat_map(Loops::joints).collect();
         let operations = (self.loops.iter()).map(|loops| loops.operations(numbering, &self.links));

@@ -1,18 +1,18 @@
-//! Symmetric positive definite matrices stored by envelope: each row from its first entry to the
+//! Symmetric positive definite matrices in envelope storage: each row from its first entry to the
 //! diagonal.
 
 use super::dense::SINGULAR;
 use crate::math::Scalar;
 
-/// A = L D Lᵀ in its envelope (Jennings 1966): L below the diagonal, D⁻¹ on it.
+/// A = L D Lᵀ in its envelope (Jennings 1966): L below the diagonal, D⁻¹ on the diagonal.
 #[derive(Clone)]
 pub(super) struct Envelope<S> {
     /// Column of the first entry of each row.
     first: Vec<usize>,
-    /// Where each row starts.
+    /// Index of the first entry of each row.
     start: Vec<usize>,
     entries: Vec<S>,
-    /// Size of what the diagonal entries are differences of.
+    /// By row: size of the terms whose difference is the diagonal entry.
     sizes: Vec<f64>,
 }
 
@@ -31,7 +31,7 @@ impl<S: Scalar> Envelope<S> {
         }
     }
 
-    /// Operations of a decomposition.
+    /// Number of operations of a decomposition.
     pub(crate) fn operations(&self) -> usize {
         let row = |(row, &first): (usize, &usize)| {
             let column = |column: usize| 2 * (column - first.max(self.first[column]));
@@ -45,8 +45,8 @@ impl<S: Scalar> Envelope<S> {
         self.entries.fill(S::zero());
     }
 
-    /// Sets an entry of the lower triangle. `size` is that of what it is a difference of, if on the
-    /// diagonal.
+    /// Sets an entry of the lower triangle. For a diagonal entry, `size` is the size of the terms
+    /// whose difference it is.
     pub(crate) fn set(&mut self, row: usize, column: usize, value: S, size: f64) {
         self.entries[self.start[row] + column - self.first[row]] = value;
         if row == column {
@@ -57,13 +57,13 @@ impl<S: Scalar> Envelope<S> {
     /// Decomposes in place.
     ///
     /// # Errors
-    /// A row whose pivot has lost too many digits.
+    /// The row whose pivot has lost too many digits.
     pub(crate) fn decompose(&mut self) -> Result<(), usize> {
         for i in 0..self.first.len() {
             let first = self.first[i];
             let (above, rest) = self.entries.split_at_mut(self.start[i]);
             let row = &mut rest[..=i - first];
-            // row[j] holds L_ij D_j once it is reduced.
+            // row[j] = L_ij D_j after its reduction.
             for j in first..i {
                 let other = &above[self.start[j]..self.start[j + 1]];
                 let from = first.max(self.first[j]);
@@ -105,7 +105,7 @@ impl<S: Scalar> Envelope<S> {
     }
 }
 
-/// Σ a_i b_i over what both have.
+/// Σ a_i b_i over the common indices.
 pub(super) fn product<S: Scalar>(a: &[S], b: &[S]) -> S {
     let products = a.iter().zip(b);
     products.fold(S::zero(), |sum, (&a, &b)| sum + a * b)

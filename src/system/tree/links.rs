@@ -1,18 +1,18 @@
-//! The spanning forest of the joints: the body that hangs from each joint, and the joints that are
-//! left over, which close loops.
+//! The spanning forest of the joints: the body below each joint, and the remaining joints, which
+//! close loops.
 
 use crate::model::Model;
 use crate::system::numbering::Numbering;
 
-/// A body and the joint that it hangs from.
+/// A body and the joint that connects it to its parent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Link {
     pub body: usize,
-    /// Joint, whether the body is its side A, and the parent (`None` is ground).
+    /// Joint, whether the body is on its side A, and the parent (`None` for ground).
     pub joint: Option<(usize, bool, Option<usize>)>,
 }
 
-/// A spanning forest of the bodies that move.
+/// A spanning forest of the moving bodies.
 pub(super) struct Forest {
     /// Leaves first.
     pub links: Vec<Link>,
@@ -20,14 +20,14 @@ pub(super) struct Forest {
     pub closing: Vec<usize>,
 }
 
-/// The forest, breadth first from ground. Bodies without unknowns are ground; joints without rows are
-/// none.
+/// The forest, breadth first from ground. Bodies without unknowns count as ground; joints without
+/// rows do not count.
 pub(super) fn forest<S>(model: &Model<S>, numbering: &Numbering) -> Forest {
     let bodies = model.bodies.len();
     let mut parent: Vec<Option<(usize, bool, Option<usize>)>> = vec![None; bodies];
     let mut used = vec![false; model.joints.len()];
     let mut closing = Vec::new();
-    // Bodies in the order in which they are reached from ground or a free root.
+    // Bodies in the order of the search from ground or a free root.
     let mut reached: Vec<usize> = Vec::with_capacity(bodies);
     let mut seen = vec![false; bodies];
     let moves = |body: usize| numbering.unknowns_of(body) > 0;

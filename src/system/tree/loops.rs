@@ -1,20 +1,21 @@
-//! The rows of the joints that close loops, eliminated after the forest.
+//! Elimination of the rows of joints that close loops, after the forest.
 //!
-//! With T the matrix of the forest and L the rows of the closing joints,
+//! Let T be the matrix of the forest and L the rows of the closing joints:
 //!
 //! ```text
 //! [T Lᵀ; L 0] (x, μ) = (f, g)      →      L T⁻¹ Lᵀ μ = L T⁻¹ f − g,      T x = f − Lᵀ μ
 //! ```
 //!
-//! A row ℓ reaches only the links between its two bodies and ground. Swept towards ground like a
-//! force, it leaves on body b the force f_ℓb, and on its joint j the gap e_ℓj = G_jb M̂_b⁻¹ f_ℓb, so that
+//! A row ℓ involves only the links between its two bodies and ground. It is swept towards ground
+//! like a force: it gives body b the force f_ℓb, and its joint j the gap e_ℓj = G_jb M̂_b⁻¹ f_ℓb,
+//! so that
 //!
 //! ```text
 //! (L T⁻¹ Lᵀ)_ℓκ = Σ_b f_ℓbᵀ M̂_b⁻¹ f_κb − Σ_j e_ℓjᵀ S_j⁻¹ e_κj
 //! ```
 //!
-//! over the links that both reach. That matrix is positive definite where the rows are independent; it is
-//! stored by envelope, so that a row of loops that only touch their neighbours costs as much as each.
+//! over the links of both rows. This matrix is positive definite if the rows are independent. It is
+//! stored by envelope, so in a chain of loops the cost per loop is constant.
 
 use super::blocks::{Factors, reduced, size, unknowns};
 use super::dense::{axpy, block, dot, solve};
@@ -28,32 +29,32 @@ use crate::system::numbering::Numbering;
 use crate::system::redundant_rows::RedundantRows;
 use std::ops::Range;
 
-/// Most blocks of work of the loops for each link: where loops reach far and overlap, fill in the
-/// order of sparse LU is less.
+/// Largest number of blocks of work per link. If loops are long and overlap, sparse LU has less
+/// fill.
 const MOST_WORK: usize = 32;
 
 /// A joint that closes a loop.
 #[derive(Clone)]
 struct Closing {
     joint: usize,
-    /// Bodies that it acts on, and whether each is its side A.
+    /// Bodies on which it acts, and whether each is on its side A.
     ends: [Option<(usize, bool)>; 2],
-    /// Its rows among those of all closing joints.
+    /// Range of its rows among those of all closing joints.
     rows: Range<usize>,
-    /// The links that it reaches, leaves first.
+    /// Its links, leaves first.
     path: Vec<usize>,
-    /// Where the waves of its first row start.
+    /// First index of the waves of its first row.
     waves: usize,
 }
 
-/// Two closing joints, the later one first, with the places in their paths of what both reach.
+/// Two closing joints, the later one first, with the positions of common links in both paths.
 #[derive(Clone)]
 struct Pair {
     joints: [usize; 2],
     places: Vec<[usize; 2]>,
 }
 
-/// What a row leaves on a link.
+/// Effect of a row on a link.
 #[derive(Clone, Copy)]
 struct Wave<S, const N: usize> {
     /// f on the body.
@@ -84,7 +85,7 @@ pub(super) struct Loops<S, const N: usize> {
     closing: Vec<Closing>,
     pairs: Vec<Pair>,
     waves: Vec<Wave<S, N>>,
-    /// Forces on the bodies of the links, under way.
+    /// Forces on the bodies of the links, during a sweep.
     forces: Vec<[S; N]>,
     link_of: Vec<usize>,
     matrix: Envelope<S>,
@@ -92,7 +93,7 @@ pub(super) struct Loops<S, const N: usize> {
 }
 
 impl<S: Scalar, const N: usize> Loops<S, N> {
-    /// Plans the rows of the joints `joints`, or `None` if sparse LU serves better.
+    /// Plans the rows of the joints `joints`; `None` if sparse LU costs less.
     pub(crate) fn plan<M>(
         model: &Model<M>,
         numbering: &Numbering,
@@ -128,7 +129,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
             });
             rows += count;
         }
-        // Rows that are left out cost nothing.
+        // Redundant rows cost nothing.
         let imposed = |closing: &Closing| model.joints[closing.joint].imposed().count();
         let mut work: usize = closing.iter().map(|c| imposed(c) * c.path.len()).sum();
         let mut pairs = Vec::new();
@@ -168,7 +169,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
         self.closing.iter().map(|closing| closing.joint)
     }
 
-    /// Operations of a factorisation.
+    /// Number of operations of a factorisation.
     pub(crate) fn operations(&self, numbering: &Numbering, links: &[Link]) -> usize {
         let sweep = |closing: &Closing| {
             let link = |&l: &usize| {
@@ -189,7 +190,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
     /// Sweeps the rows through the factors of the forest and decomposes L T⁻¹ Lᵀ.
     ///
     /// # Errors
-    /// [`SingularMatrix`] with the place (n_v + row) of a row that follows from the others.
+    /// [`SingularMatrix`] with the index (n_v + row) of a dependent row.
     pub(crate) fn factorise(
         &mut self,
         numbering: &Numbering,
@@ -246,13 +247,13 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
         })
     }
 
-    /// The constraint row that stands at `row` of the closing ones.
+    /// The constraint row with the number `row` among the closing ones.
     fn row(&self, numbering: &Numbering, row: usize) -> usize {
         let closing = self.closing.iter().find(|c| c.rows.contains(&row));
         closing.map_or(0, |c| numbering.rows(c.joint).start + row - c.rows.start)
     }
 
-    /// L T⁻¹ Lᵀ, with the unit matrix in the rows that are left out.
+    /// Assembles L T⁻¹ Lᵀ, with the unit matrix in redundant rows.
     fn assemble(&mut self, numbering: &Numbering, left_out: &RedundantRows) {
         self.matrix.clear();
         let out = |c: &Closing, i: usize| left_out.contains(numbering.rows(c.joint).start + i);
@@ -290,8 +291,8 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
         }
     }
 
-    /// Finds μ from `x` and `multipliers` as the forward sweep of the forest leaves them (f̂_b, and
-    /// S⁻¹ ê_j; g in the closing rows), and takes Lᵀ μ, swept, off them.
+    /// Computes μ from `x` and `multipliers` after the forward sweep of the forest (f̂_b, and S⁻¹
+    /// ê_j; g in the closing rows), and subtracts the swept Lᵀ μ from both.
     pub(crate) fn close<const FULL: bool>(
         &mut self,
         numbering: &Numbering,
@@ -340,7 +341,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
     }
 }
 
-/// Places of the entries that two ascending lists share.
+/// Pairs of positions of the common entries of two ascending lists.
 fn common(a: &[usize], b: &[usize]) -> Vec<[usize; 2]> {
     let mut found = Vec::new();
     let (mut p, mut q) = (0, 0);

@@ -1,24 +1,23 @@
-//! The saddle-point system of a scene: bodies and joints eliminated leaf by leaf, what closes loops
-//! last.
+//! The saddle-point system of a scene. Bodies and joints are eliminated leaves first, joints that
+//! close loops last.
 //!
 //! ```text
 //! M_b x_b + Σ_j G_jbᵀ λ_j = f_b          every body b
 //! Σ_b G_jb x_b            = g_j          every joint j
 //! ```
 //!
-//! In a spanning forest of the joints every body hangs from at most one. Eliminating a body b, then
-//! its joint j, leaves on the parent p
+//! In a spanning forest of the joints every body has at most one joint to its parent. Elimination
+//! of a body b and then of this joint j modifies the parent p:
 //!
 //! ```text
-//! S = G_jb M̂_b⁻¹ G_jbᵀ,     M̂_p += G_jpᵀ S⁻¹ G_jp,     f̂_p −= G_jpᵀ S⁻¹ (G_jb M̂_b⁻¹ f̂_b − g_j)
+//! S = G_jb M̂_b⁻¹ G_jbᵀ,    M̂_p += G_jpᵀ S⁻¹ G_jp,    f̂_p −= G_jpᵀ S⁻¹ (G_jb M̂_b⁻¹ f̂_b − g_j)
 //! ```
 //!
-//! The articulated inertia M̂ only grows. Its decomposition cancels where a light body carries heavy
-//! ones, by as many digits as their masses differ; beyond five the tree gives way to sparse LU.
-//! The cost is linear in the number of bodies (Featherstone 1983, here in absolute coordinates).
-//! x_b are the unknowns that the mobility of b leaves it; where no body and no joint has more than
-//! three, the blocks are of order three. The rows of the joints that are not in the forest are
-//! eliminated after it (`loops`).
+//! The articulated inertia M̂ only grows. If a light body carries heavy ones, its decomposition
+//! loses as many digits as their masses differ; beyond five digits sparse LU replaces the tree. The
+//! cost is linear in the number of bodies (Featherstone 1983, here in absolute coordinates). x_b
+//! are the unknowns that the mobility of b admits. If no body and no joint has more than three, the
+//! blocks have order three. Rows of joints outside the forest are eliminated after it (`loops`).
 
 mod blocks;
 mod dense;
@@ -36,7 +35,7 @@ use crate::math::Scalar;
 use crate::model::Model;
 use elimination::Elimination;
 
-/// Most unknowns of a body and most rows of a joint; and where both are small.
+/// Largest number of unknowns of a body and of rows of a joint, in general and for small blocks.
 const MOST: usize = 6;
 const SMALL: usize = 3;
 
@@ -50,8 +49,8 @@ pub(crate) enum Tree<S> {
 }
 
 impl<S: Scalar> Tree<S> {
-    /// Plans the elimination, or `None` if so many joints of `model` close loops that sparse LU
-    /// serves better.
+    /// Plans the elimination; `None` if so many joints of `model` close loops that sparse LU costs
+    /// less.
     pub(crate) fn plan(model: &Model<S>, numbering: &Numbering) -> Option<Self> {
         let forest = links::forest(model, numbering);
         let small = forest
@@ -73,9 +72,8 @@ impl<S: Scalar> Tree<S> {
         }
     }
 
-    /// How the matrix is eliminated. Operations are those of blocks of the sizes at hand: a
-    /// decomposition of order k takes k³/3, a solution 2 k², a product of all rows what its
-    /// factors say.
+    /// Summary of the elimination. A decomposition of order k counts k³/3 operations and a solution
+    /// 2 k², with the sizes of the blocks.
     pub(crate) fn elimination(&self, numbering: &Numbering) -> kkt::EliminationSummary {
         let (links, closing, more) = match self {
             Tree::Small(elimination) => elimination.parts(numbering),
@@ -99,12 +97,12 @@ impl<S: Scalar> Tree<S> {
         }
     }
 
-    /// Eliminates with the given masses and inertias (the model's) and gradients of the rows, zero
-    /// those of rows that are left out.
+    /// Eliminates with the model's masses and inertias and the gradients of the rows; those of
+    /// redundant rows must be zero.
     ///
     /// # Errors
-    /// [`SingularMatrix`] with a velocity coordinate that has no inertia or a constraint
-    /// (n_v + row) that follows from the others.
+    /// [`SingularMatrix`] with a velocity coordinate without inertia, or a dependent constraint
+    /// (n_v + row).
     pub(crate) fn factorise(
         &mut self,
         model: &Model<S>,
@@ -117,7 +115,7 @@ impl<S: Scalar> Tree<S> {
         }
     }
 
-    /// Solves in place for (u, λ) given (Bᵀ f, g), with the factors made last.
+    /// Solves in place for (u, λ) from (Bᵀ f, g), with the last factors.
     pub(crate) fn solve(&mut self, numbering: &Numbering, rhs: &mut [S]) {
         match self {
             Tree::Small(elimination) => elimination.solve(numbering, rhs),
