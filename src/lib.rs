@@ -1,8 +1,9 @@
 //! Design of flexible multibody systems by gradient.
 //!
 //! A problem file describes bodies, joints, loads, design variables, functions, an objective and
-//! constraints; it becomes a scene, the scene a motion, the motion values, and the adjoint of the
-//! motion their gradients, with which an interior-point method finds the best design.
+//! constraints. It defines a scene for each design. The scene is integrated to a motion, which
+//! gives the values of the functions. The adjoint of the motion gives their gradients. With these
+//! an interior-point method finds the best design.
 //!
 //! ```
 //! use flexbody::{Analysis, Problem, check, simulate};
@@ -29,24 +30,25 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A folder imports only from folders above its own in this list (`tests/files/layers.rs` checks it):
+//! A folder imports only from folders above its own in this list (`tests/files/layers.rs` checks
+//! it):
 //!
 //! | Folder | What lives there |
 //! |---|---|
 //! | `math` | scalars (real, complex, dual), rotations, smooth maxima |
 //! | `linalg` | static sparsity patterns, sparse LU and Cholesky |
-//! | `model` | bodies, joints, loads, gravity: parameters and nothing that moves |
-//! | `structures` | shells and beams as finite elements: statics, modes, exact gradients; nothing moves |
+//! | `model` | bodies, joints, loads, gravity: parameters without state |
+//! | `structures` | shells and beams as finite elements: statics, modes, exact gradients |
 //! | `system` | kinematics, dynamics, constraints, loads with all derivatives; consistent starts |
-//! | `integrate` | the methods, explicit and implicit; their equations, steps and trajectories |
+//! | `integrate` | integration methods, explicit and implicit: equations, steps, trajectories |
 //! | `functions` | functions of interest and their derivatives |
 //! | `adjoint` | exact gradients: the backward march through each method |
-//! | `lower` | what of a scene is left out before it is integrated, and why not more |
-//! | `optimiser` | nonlinear programs; knows nothing of mechanics |
+//! | `lower` | reductions of a scene before integration, and their conditions |
+//! | `optimiser` | nonlinear programs, without mechanics |
 //! | `problem` | the problem file: faults, schema, the map from a design to a scene |
 //! | `report` | records, comparison, tables, figures, text |
 //! | `driver` | simulate, check, optimise; estimate errors, measure methods |
-//! | `library` | what a user of the library needs of problems |
+//! | `library` | the public interface: simulate, differentiate, check and optimise a problem |
 //! | `cli` | the command line |
 
 #![cfg_attr(not(test), warn(unreachable_pub))]

@@ -1,8 +1,8 @@
-//! What a user of the library needs of problems: simulate a design, take its functions and exact
-//! gradients, check them, and find the best design.
+//! The public interface: simulate a design, compute its functions and exact gradients, check them,
+//! and find the best design.
 //!
-//! The types here hide how a scene is integrated, so that they can stay as they are while that changes.
-//! Bindings to other languages are made of these alone.
+//! These types hide the integration of a scene, so that they can stay the same when it changes.
+//! Bindings to other languages use only them.
 
 use crate::driver::integration::Integration;
 use crate::driver::{self, Evaluated, KnownEvaluations, Simulation};
@@ -14,15 +14,15 @@ use std::ops::ControlFlow;
 pub use crate::driver::CheckedDerivative;
 pub(crate) use crate::integrate::WorkCounts;
 
-/// Why a design could not be simulated or differentiated. Its text says when and where.
+/// The reason why a design could not be simulated or differentiated, with time and place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(transparent)]
 pub struct SimulationError(#[from] IntegrationFailure);
 
-/// Simulates the design `x`, one number a variable, in the units of the problem file.
+/// Simulates the design `x`: one number per variable, in the units of the problem file.
 ///
 /// # Errors
-/// If the joints cannot be closed, or the motion cannot be integrated to its end.
+/// The joints cannot be closed, or the motion cannot be integrated to its end.
 pub fn simulate(problem: &Problem, x: &[f64]) -> Result<Motion, SimulationError> {
     let simulation = driver::simulate(problem, x)?;
     Ok(Motion { simulation })
@@ -33,7 +33,7 @@ pub struct Motion {
     simulation: Simulation,
 }
 
-/// Where a body is at one instant, and how it moves; in ground axes.
+/// Position and velocity of a body at one instant, in ground axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyState {
     /// Centre of mass \[m\].
@@ -88,7 +88,7 @@ impl Motion {
         self.simulation.constraint_drift()
     }
 
-    /// What the simulation took.
+    /// Work of the simulation.
     pub fn work(&self) -> WorkCounts {
         self.simulation.at.run.counts
     }
@@ -99,10 +99,10 @@ fn values(at: &Evaluated) -> Vec<f64> {
     (0..count).map(|f| at.function(f).value).collect()
 }
 
-/// Simulates designs one after the other and differentiates them.
+/// Simulates consecutive designs and differentiates them.
 ///
-/// It keeps the time steps from design to design, so that values are smooth in the design and gradients
-/// are theirs. It chooses them anew where their error has grown.
+/// It keeps the time steps from design to design. So values are smooth in the design, and gradients
+/// are exact. It chooses new steps if their error has grown.
 pub struct Analysis<'a> {
     problem: &'a Problem,
     integration: Integration,
@@ -119,10 +119,10 @@ impl<'a> Analysis<'a> {
         }
     }
 
-    /// Simulates the design `x`, one number a variable.
+    /// Simulates the design `x`: one number per variable.
     ///
     /// # Errors
-    /// If the joints cannot be closed, or the motion cannot be integrated to its end.
+    /// The joints cannot be closed, or the motion cannot be integrated to its end.
     pub fn at(&mut self, x: &[f64]) -> Result<Design<'a>, SimulationError> {
         let (evaluated, _) = Evaluated::with(&mut self.integration, self.problem, x)?;
         Ok(Design {
@@ -132,7 +132,7 @@ impl<'a> Analysis<'a> {
     }
 }
 
-/// A design that was simulated, of which values and gradients can be taken.
+/// A simulated design, with values and gradients.
 pub struct Design<'a> {
     problem: &'a Problem,
     evaluated: Evaluated,
@@ -144,19 +144,20 @@ impl Design<'_> {
         values(&self.evaluated)
     }
 
-    /// Exact gradients of the functions `which`, by index: one row a function, one number a variable.
-    /// They are found by the discrete adjoint of the time integration, in one backward march together.
+    /// Exact gradients of the functions with the indices `which`: one row per function, one number
+    /// per variable. The discrete adjoint of the time integration computes them in one backward
+    /// march.
     ///
     /// # Errors
-    /// If the equations of a step are singular.
+    /// The equations of a step are singular.
     pub fn gradients(&self, which: &[usize]) -> Result<Vec<Vec<f64>>, SimulationError> {
         Ok(self.gradients_and_work(which)?.0)
     }
 
-    /// As [`Design::gradients`], and what that took.
+    /// [`Design::gradients`], and their work.
     ///
     /// # Errors
-    /// If the equations of a step are singular.
+    /// The equations of a step are singular.
     pub fn gradients_and_work(
         &self,
         which: &[usize],
@@ -164,16 +165,16 @@ impl Design<'_> {
         Ok(self.evaluated.gradients(self.problem, which)?)
     }
 
-    /// What the simulation took.
+    /// Work of the simulation.
     pub fn work(&self) -> WorkCounts {
         self.evaluated.run.counts
     }
 }
 
-/// Compares every derivative at the design `x`: adjoint against complex step.
+/// Compares every derivative at the design `x` by the adjoint with the complex step.
 ///
 /// # Errors
-/// If a simulation fails.
+/// A simulation fails.
 pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, SimulationError> {
     Ok(driver::check(problem, x)?)
 }
@@ -193,8 +194,8 @@ pub struct Iteration {
     pub optimality: f64,
 }
 
-/// Finds the best design from the problem's start. `progress` sees every iteration and may stop the run.
-/// `None` if the problem has no variables, or neither objective nor constraints.
+/// Finds the best design from the problem's start. It calls `progress` at every iteration, which
+/// may stop the run. `None` if the problem has no variables, or neither objective nor constraints.
 pub fn optimise(
     problem: &Problem,
     progress: &mut dyn FnMut(Iteration) -> ControlFlow<()>,
@@ -226,7 +227,7 @@ impl Optimum {
         self.record.status == "converged"
     }
 
-    /// How the run ended, in one word such as `converged`, and in a sentence.
+    /// The end of the run: a word such as `converged`, and a sentence.
     pub fn status(&self) -> (&str, &str) {
         (&self.record.status, &self.record.message)
     }
@@ -236,13 +237,13 @@ impl Optimum {
         self.record.objective.value
     }
 
-    /// The design, one number a variable.
+    /// The design: one number per variable.
     pub fn design(&self) -> Vec<f64> {
         self.record.design.values().map(|own| own.value).collect()
     }
 
-    /// The whole record, as the command writes it to `optimum.json`; `None` if a number in it is not
-    /// finite.
+    /// The whole record, as the command writes it to `optimum.json`; `None` if it contains a number
+    /// that is not finite.
     pub fn to_json(&self) -> Option<String> {
         self.record.to_json().ok()
     }

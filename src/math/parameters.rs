@@ -1,7 +1,7 @@
-//! One list of parameters a type: what a design can change, visited in one fixed order.
+//! One list of parameters per type: what a design can change, in a fixed order.
 //!
-//! Values, complex steps and dual numbers are carried by the same types, and cotangents have the
-//! shape of their objects. So every type with parameters can be mapped from scalar to scalar.
+//! The same types carry values, complex steps and dual numbers, and cotangents have the shape of
+//! their objects. So every type with parameters maps from scalar to scalar.
 
 use super::Scalar;
 use nalgebra::SMatrix;
@@ -11,7 +11,7 @@ pub(crate) trait Parameters<S: Scalar> {
     /// The same type with another scalar.
     type Of<T: Scalar>;
 
-    /// The value with each parameter replaced by `f` of it, visited in one fixed order.
+    /// The value with `f` applied to every parameter, in a fixed order.
     fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Self::Of<T>;
 }
 
@@ -55,8 +55,8 @@ impl<S: Scalar, P: Parameters<S>> Parameters<S> for Option<P> {
     }
 }
 
-/// Implements [`Parameters`] for a struct or enum in the scalar from one list of its fields, written
-/// `constants; parameters`. A field that is forgotten does not compile.
+/// Implements [`Parameters`] for a struct or enum from one list of its fields: `constants;
+/// parameters`. A forgotten field does not compile.
 macro_rules! parameters {
     (struct $name:ident { $($constant:ident),*; $($own:ident),* }) => {
         impl<S: $crate::math::Scalar> $crate::math::Parameters<S> for $name<S> {

@@ -103,7 +103,7 @@ pub(crate) enum LoadKind<S> {
         joint: usize,
         /// The degree of freedom that is damped.
         dof: DegreeOfFreedom,
-        /// c (N m s/rad or N s/m).
+        /// c \[N m s/rad or N s/m\].
         coefficient: S,
     },
     /// Viscous damping of all relative rotation of a joint's bodies.
@@ -120,7 +120,7 @@ pub(crate) enum LoadKind<S> {
         joint: usize,
         /// The degree of freedom with friction.
         dof: DegreeOfFreedom,
-        /// Size μ of the torque or force (N m or N).
+        /// Size μ of the torque or force \[N m or N\].
         size: S,
         /// Rate w, at which tanh 1 of μ acts \[rad/s or m/s\].
         width: S,

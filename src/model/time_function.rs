@@ -3,10 +3,10 @@
 //! ```text
 //! polynomial   m(t) = c0 + c1 t + c2 t² + …
 //! harmonic     m(t) = m + A sin(2π f t + φ)
-//! table        m(t) = interpolation between (t_i, m_i), see [`super::table`]; constant beyond the ends
+//! table        m(t) = interpolation between (t_i, m_i), see [`super::table`]; constant outside
 //! ```
 //!
-//! Accelerations follow from the second derivative of a prescribed motion, so its tables are twice
+//! Accelerations depend on the second derivative of a prescribed motion. So its tables are twice
 //! continuously differentiable ([`Smoothness::Motion`]).
 
 use super::table::{
@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 pub(crate) enum TimeFunction<S> {
     /// Coefficients of 1, t, t², …; at least one.
     Polynomial(Vec<S>),
-    /// A sine of time about a mean.
+    /// Harmonic function about a mean.
     Harmonic {
         /// Mean m.
         mean: S,
@@ -32,15 +32,15 @@ pub(crate) enum TimeFunction<S> {
         /// Phase φ at t = 0 \[rad\].
         phase: S,
     },
-    /// Interpolated between instants.
+    /// Interpolation between instants.
     Table {
         /// Instants t_i \[s\], increasing; at least two.
         times: Vec<S>,
         /// Values m_i; length of `times`.
         values: Vec<S>,
-        /// The curve between them.
+        /// Interpolation between the values.
         interpolation: Interpolation,
-        /// Its continuous derivatives.
+        /// Continuous derivatives.
         smoothness: Smoothness,
     },
 }
@@ -52,7 +52,7 @@ parameters!(enum TimeFunction {
 });
 
 impl<S: Scalar> TimeFunction<S> {
-    /// The same at all times.
+    /// A constant.
     pub(crate) fn constant(value: S) -> Self {
         Self::Polynomial(vec![value])
     }
@@ -62,7 +62,7 @@ impl<S: Scalar> TimeFunction<S> {
         self.derivatives(time)[0]
     }
 
-    /// Value and first to third derivative at `time` \[s\].
+    /// Value and first to third derivatives at `time` \[s\].
     pub(crate) fn derivatives(&self, time: S) -> [S; 4] {
         match self {
             Self::Polynomial(coefficients) => polynomial(coefficients, time),
@@ -274,7 +274,7 @@ mod tests {
             (state >> 40) as f64 / (1 << 24) as f64
         };
         for _ in 0..200 {
-            // Dwells, reversals, and steps and intervals of very unequal size.
+            // Dwells, reversals, and steps and intervals of very different sizes.
             let (mut t, mut times, mut values) = (0.0, Vec::new(), Vec::new());
             for _ in 0..8 {
                 times.push(t);
