@@ -1,4 +1,4 @@
-//! What is said before work is done.
+//! Faults and notes that are reported before any work.
 
 use crate::program::{expect, names, scratch};
 
@@ -19,7 +19,7 @@ fn a_suite_whose_table_cannot_be_written_is_not_run() {
     assert_eq!(names(at.path()), ["file"]);
 }
 
-/// Methods are measured over one and the same time.
+/// All methods are measured over the same duration.
 #[test]
 fn a_measurement_says_that_it_does_not_end_at_the_event() {
     let at = scratch();

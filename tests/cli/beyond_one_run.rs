@@ -1,11 +1,11 @@
-//! What is asked of an optimum besides finding it: another start, many starts, its curvature.
+//! Optimisations from another optimum, from many starts, and the check of the curvature.
 
 use crate::program::{HAMMER, expect, files, held, json, read, scratch};
 
-/// A bar that is hinged where it swings fastest, at d² = I/m from its centre.
+/// A bar that swings fastest if it is hinged at d² = I/m from its centre.
 const SWING: &str = include_str!("../data/swing.json");
 
-/// The check comes after the record: where it fails, the optimum is there.
+/// The check follows the record: if it fails, the optimum is there.
 #[test]
 fn a_check_of_the_curvature_that_fails_loses_nothing() {
     let at = scratch();
@@ -33,10 +33,10 @@ fn a_check_of_the_curvature_that_fails_loses_nothing() {
         before + 4,
         "four gradients beside the optimum are recorded"
     );
-    // As if the first of them had failed.
+    // As if the simulation of the first design had failed.
     let design = &json(lines[before])["design"];
     let failed = serde_json::json!({"design": design, "no_gradients": "the bar broke"});
-    // Without hashes, as older versions wrote it.
+    // Without hashes, as in older versions.
     let bare = |line: &&str| match line.find(",\"chain") {
         Some(hash) => line[..hash].to_owned() + "}\n",
         None => panic!("{line}"),
@@ -52,7 +52,7 @@ fn a_check_of_the_curvature_that_fails_loses_nothing() {
     assert!(record()["second_order"].is_null());
 }
 
-/// The swing has two optima, one on either side of the centre, of equal worth.
+/// The swing has two equal optima, one on each side of the centre.
 #[test]
 fn many_starts_find_both_optima() {
     let at = scratch();
@@ -132,7 +132,7 @@ fn limits_of_the_file_end_the_run_by_name() {
         let record = json(&read(&at.path().join("out/optimum.json")));
         assert_eq!(record["status"], status);
     }
-    // The strike is maximised: its negative falls by 0.22 m/s, below this.
+    // The strike is maximised. Its negative decreases by 0.22 m/s, beyond this limit.
     let floor = "/optimiser={\"unbounded_below\": -1e-3}";
     let arguments = [HAMMER, "--set", floor, "--output", "out", "--quiet"];
     let ran = expect(1, at.path(), &arguments);
@@ -150,7 +150,7 @@ fn limits_of_the_file_end_the_run_by_name() {
     }
 }
 
-/// The share of the quadratic programs is told, and their number recorded.
+/// The time of the quadratic programs is reported, and their number recorded.
 #[test]
 fn the_time_of_the_quadratic_programs_is_told() {
     let at = scratch();
@@ -163,7 +163,7 @@ fn the_time_of_the_quadratic_programs_is_told() {
     assert!(record["counts"]["quadratic_programs"].as_u64() > Some(0));
 }
 
-/// The design of the file counts, whatever state stands beside it.
+/// The design in the file counts, not the state in the same directory.
 #[test]
 fn a_start_from_an_edited_optimum_is_at_its_design() {
     let at = scratch();
@@ -187,7 +187,7 @@ fn a_start_from_an_edited_optimum_is_at_its_design() {
     }
 }
 
-/// A ball at rest has the least energy where the most is asked for: it is stationary all the same.
+/// The energy of a ball is maximised from rest, where it is least: the start is stationary.
 const REST: &str = r#"{
   "version": 1, "name": "rest", "gravity": [0, 0, 0],
   "bodies": {"ball": {"shape": "point", "mass": 2, "velocity": {"linear": [0, 0, 0]}}},
@@ -238,7 +238,7 @@ fn a_time_limit_that_is_over_at_once_leaves_the_values_of_the_start() {
     assert!((value - start).abs() <= 1e-9 * start.abs(), "{record}");
 }
 
-/// Another run in the same directory is refused, with nothing changed, as long as the first one lives.
+/// A second run in the same directory is rejected while the first one runs, and changes nothing.
 #[test]
 fn a_directory_has_one_run_at_a_time() {
     let at = scratch();
@@ -259,7 +259,7 @@ fn a_directory_has_one_run_at_a_time() {
         );
         assert!(files(&directory) == before);
     }
-    // Its record may be read.
+    // Its log may be read.
     run(0, &["--resume", "out", "--output", "other"]);
     drop(held);
     run(0, &["--resume", "out"]);

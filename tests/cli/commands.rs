@@ -1,6 +1,6 @@
-//! The command `optimize`: exit codes, what it prints, what it writes, and what it leaves alone.
+//! The command `optimize`: exit codes, output, written files, and files that must not change.
 //!
-//! Every test runs the program in a scratch directory of its own, on a hammer of two bodies and two
+//! Every test runs the program in its own scratch directory, on a hammer of two bodies and two
 //! design variables (`tests/data/hammer.json`, 100 steps).
 
 use crate::program::{HAMMER, changed, every, expect, files, json, names, read, scratch};
@@ -51,7 +51,7 @@ fn schema_describes_the_problem_file() {
         let key = key.as_str().expect("text");
         assert!(!document[key].is_null(), "{key}");
     }
-    // References lead to something.
+    // Every reference has a target.
     every(&schema, &mut |value| {
         if let Some(reference) = value["$ref"].as_str() {
             let pointer = reference.strip_prefix('#').expect("inside the schema");
@@ -336,7 +336,7 @@ fn set_changes_one_value_for_this_run() {
     assert!(ran.err.contains("expected PATH=VALUE"), "{}", ran.err);
 }
 
-/// One iteration is not enough: exit code 1, and the record says so.
+/// One iteration is not enough: the exit code is 1, and the record has this status.
 #[test]
 fn a_run_that_does_not_converge_is_recorded_as_such() {
     let at = scratch();
@@ -348,7 +348,7 @@ fn a_run_that_does_not_converge_is_recorded_as_such() {
     every(&optimum, &mut |value| assert!(!value.is_null()));
 }
 
-/// What a run would have overwritten stays when the problem cannot be read.
+/// Results of an earlier run stay if the problem cannot be read.
 #[test]
 fn a_bad_problem_leaves_results_untouched() {
     let at = scratch();
@@ -390,7 +390,7 @@ fn results_that_cannot_be_written_are_told_before_the_work() {
         for output in ["file", "file/below"] {
             let ran = expect(4, at.path(), &[job, &["--output", output]].concat());
             assert!(ran.err.contains("file"), "{}", ran.err);
-            // Found before the work, of which there is a line for each run.
+            // The fault is found before the work: each run prints one line.
             assert_eq!(ran.err.lines().count(), 1, "{}", ran.err);
         }
     }
@@ -398,7 +398,7 @@ fn results_that_cannot_be_written_are_told_before_the_work() {
     assert_eq!(names(at.path()), ["file"]);
 }
 
-/// Steps much too long for the spin: exit code 3, with the time and the body.
+/// The steps are much too long for the spin: exit code 3, with the time and the body.
 #[test]
 fn a_simulation_that_fails_is_told_with_time_and_body() {
     let at = scratch();
@@ -434,7 +434,7 @@ fn a_simulation_that_fails_is_told_with_time_and_body() {
     assert!(!at.path().join("out/optimum.json").exists());
 }
 
-/// A handle between two pins that are farther apart than it is long: exit code 3, with the joint.
+/// A handle is shorter than the distance of its two pins: exit code 3, with the joint.
 #[test]
 fn an_assembly_that_cannot_be_closed_is_told_with_its_joint() {
     let at = scratch();
@@ -475,7 +475,7 @@ fn explain_says_what_is_left_out_and_what_is_not() {
     assert!(files(at.path()).is_empty());
 }
 
-/// Commands and options that a document names are those of the program, of cargo or of a tool beside them.
+/// Commands and options in a document exist in the program, in cargo or in another tool.
 #[test]
 fn the_documents_name_commands_and_options_that_exist() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -493,7 +493,7 @@ fn the_documents_name_commands_and_options_that_exist() {
     for command in commands.iter().filter(|command| **command != "help") {
         known += &help(&[command, "--help"]);
     }
-    // Those of cargo, git and the linter.
+    // Options of cargo, git and the linter.
     known += "--release --all-targets --no-deps --bench --test --lib --check --stat --locked --open \
               --tool --threshold --auto --call-graph --nocapture --include-ignored";
     let options: Vec<&str> = known
@@ -550,7 +550,7 @@ fn the_documents_name_commands_and_options_that_exist() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// The program says on its error stream which joints repeat others, unless it is to be quiet.
+/// The program names redundant joints on standard error, unless it is quiet.
 #[test]
 fn the_program_names_redundant_joints() {
     let file = concat!(
@@ -572,7 +572,7 @@ fn the_program_names_redundant_joints() {
     }
 }
 
-/// The speed of a pendulum is zero where it turns back.
+/// The speed of a pendulum is zero at its turning points.
 #[test]
 fn an_aggregate_of_a_speed_that_passes_zero_is_warned_of() {
     let at = scratch();

@@ -1,4 +1,4 @@
-//! The program `optimize`, run as a user runs it.
+//! The program `optimize`, as a user runs it.
 
 mod before_work;
 mod beyond_one_run;

@@ -1,4 +1,4 @@
-//! Motions and files that are larger than memory, and optimisations in little of it.
+//! Motions and files that exceed the memory, and optimisations with little memory.
 
 use crate::program::{HAMMER, expect, json, optimum, read, scratch};
 use serde_json::{Value, json};
@@ -40,7 +40,7 @@ fn an_optimum_in_little_memory_is_the_same() {
     assert!(told["stretch"].is_null());
 }
 
-/// However little is given, a gradient of many steps makes each again twenty times at most, and is the same.
+/// With any memory, a gradient repeats each step at most twenty times, and has the same value.
 #[test]
 fn any_memory_bounds_the_work() {
     let at = scratch();
@@ -87,7 +87,7 @@ fn sizes_are_understood_or_refused() {
     expect(0, at.path(), &["simulate", HAMMER, "--memory", "2 GiB"]);
 }
 
-/// A motion of a million steps is explained by its first stretch.
+/// The explanation of a motion of a million steps uses its first part.
 #[test]
 fn a_long_motion_is_explained_from_its_first_stretch() {
     let at = scratch();
@@ -117,7 +117,7 @@ fn a_long_motion_is_explained_from_its_first_stretch() {
     );
 }
 
-/// What no machine has is refused before it is asked for.
+/// A motion that exceeds the memory of any machine is rejected before any allocation.
 #[test]
 fn a_motion_larger_than_memory_is_refused() {
     let at = scratch();
@@ -143,7 +143,7 @@ fn a_motion_larger_than_memory_is_refused() {
     assert!(told.out.contains("TB of memory"), "{}", told.out);
 }
 
-/// A list that no problem has is refused where it becomes too long.
+/// A list that is too long is rejected at the place where it becomes so.
 #[test]
 fn an_endless_list_is_refused() {
     let at = scratch();

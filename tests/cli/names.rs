@@ -1,16 +1,16 @@
-//! Names of a user in the hands of the program: none of them moves the cursor or forges a line.
+//! Names of a user in messages: they cannot move the cursor or forge a line.
 
 use crate::program::{HAMMER, changed, expect, names, optimize, read, scratch};
 use serde_json::Value;
 
-/// Characters that would not be seen, but for the end of a line.
+/// The first invisible character, except line ends.
 fn unseen(text: &str) -> Option<char> {
     let turns = |c: char| matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     text.chars()
         .find(|&c| (c.is_control() && c != '\n') || turns(c))
 }
 
-/// Puts a name in the place of every name of one kind.
+/// Replaces every name of one kind.
 fn renamed(document: &mut Value, kind: &str, to: &str) {
     match kind {
         "name" => document["name"] = to.into(),
@@ -64,7 +64,7 @@ fn characters_that_are_not_seen_are_refused_by_place() {
     assert_eq!(names(at.path()), ["tricky.json"]);
 }
 
-/// Arguments, paths and unknown keys come back in messages.
+/// Arguments, paths and unknown keys are repeated in messages.
 #[test]
 fn what_was_typed_is_shown_with_escapes() {
     let at = scratch();
@@ -103,7 +103,7 @@ fn what_was_typed_is_shown_with_escapes() {
     assert_eq!(ran.err.lines().count(), 1, "{}", ran.err);
 }
 
-/// A name that fills the screen is refused, and is not shown whole.
+/// A name that fills the screen is rejected and shown in part.
 #[test]
 fn a_name_that_is_too_long_is_shown_in_part() {
     let at = scratch();
@@ -130,7 +130,7 @@ fn a_name_that_is_too_long_is_shown_in_part() {
     }
 }
 
-/// Letters of any script are letters, and tables are as wide as their characters are many.
+/// Letters of any script are valid, and tables are aligned by characters.
 #[test]
 fn names_in_any_script_are_names() {
     let at = scratch();

@@ -1,4 +1,4 @@
-//! Runs of the program in scratch directories, and what they leave there.
+//! Runs of the program in scratch directories, and the files that they write.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ pub const HAMMER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/hammer
 
 pub const TREBUCHET: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/trebuchet.json");
 
-/// What a run of the program left.
+/// Result of a run of the program.
 #[derive(Debug)]
 pub struct Ran {
     pub code: i32,
@@ -44,7 +44,7 @@ pub fn expect(code: i32, directory: &Path, arguments: &[&str]) -> Ran {
     ran
 }
 
-/// All files below a directory, by their paths in it, with their content.
+/// All files below a directory: relative path and content.
 pub fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();
     for entry in std::fs::read_dir(directory).expect("a directory") {
@@ -65,7 +65,7 @@ pub fn names(directory: &Path) -> Vec<String> {
     files(directory).into_keys().collect()
 }
 
-/// Holds a directory as a run does that writes to it.
+/// Locks a directory, as a run that writes to it does.
 pub fn held(directory: &Path) -> File {
     std::fs::create_dir_all(directory).expect("is made");
     let file = File::open(directory).expect("a directory");
@@ -85,7 +85,7 @@ pub fn optimum(directory: &Path) -> Value {
     json(&read(&directory.join("optimum.json")))
 }
 
-/// A run of the program that is not waited for.
+/// Starts the program without waiting for it.
 pub fn start(directory: &Path, arguments: &[&str]) -> Child {
     Command::new(env!("CARGO_BIN_EXE_optimize"))
         .current_dir(directory)
@@ -96,9 +96,9 @@ pub fn start(directory: &Path, arguments: &[&str]) -> Child {
         .expect("the program runs")
 }
 
-/// Kills runs with these arguments at twenty moments spread over the whole run, early ones among them,
-/// and resumes them: `records`, whole lines of which stand there when a run is killed, are those of a run
-/// that is not killed, with no evaluation twice, and so is every other file, byte for byte.
+/// Kills runs with these arguments at twenty moments spread over the whole run, some of them early,
+/// and resumes them. The `records` (complete lines at the kill) equal those of a run that is not
+/// killed and repeat no evaluation. Every other file is the same, byte for byte.
 pub fn killed_runs_resume(arguments: &[&str], phase: f64, records: &[&str]) {
     let at = scratch();
     let with = |how: &[&str]| -> Vec<String> {
@@ -121,7 +121,7 @@ pub fn killed_runs_resume(arguments: &[&str], phase: f64, records: &[&str]) {
         let output = format!("killed_{k}");
         let directory = at.path().join(&output);
         let mut killed = run(&["--output", &output]);
-        // A fraction of the golden ratio: spread without a pattern.
+        // Multiples of the golden ratio are spread without a pattern.
         let moment = (phase + f64::from(k) * 0.618_033_988_749_895).fract();
         std::thread::sleep(duration.mul_f64(moment));
         killed.kill().expect("is killed or has ended");
@@ -136,7 +136,7 @@ pub fn killed_runs_resume(arguments: &[&str], phase: f64, records: &[&str]) {
             complete &= kept == whole[*name];
         }
         in_the_midst += usize::from(begun && !complete);
-        // Killed before it wrote a record, it was not begun.
+        // A run that was killed before it wrote a record is started again.
         let how = match records.iter().any(|name| directory.join(name).exists()) {
             true => "--resume",
             false => "--output",
@@ -163,7 +163,7 @@ pub fn every(value: &Value, judge: &mut impl FnMut(&Value)) {
     }
 }
 
-/// The hammer as a document with changes made to it, written to a file of the directory.
+/// The hammer as a document with changes, written to a file in the directory.
 pub fn changed(directory: &Path, name: &str, change: impl FnOnce(&mut Value)) -> String {
     let mut document = json(&read(Path::new(HAMMER)));
     change(&mut document);

@@ -1,4 +1,4 @@
-//! Runs that are killed, interrupted or resumed lose nothing and repeat nothing.
+//! Killed, interrupted or resumed runs lose no evaluation and repeat none.
 
 use crate::program::{
     HAMMER, TREBUCHET, changed, expect, json, killed_runs_resume, names, optimum, read, scratch,
@@ -8,13 +8,13 @@ use std::time::{Duration, Instant};
 
 #[test]
 fn a_killed_run_resumes_to_the_same_optimum_and_repeats_no_evaluation() {
-    // A tenth of the steps: the work of the optimiser is the same.
+    // A tenth of the samples: the work of the optimiser is the same.
     let arguments = [TREBUCHET, "--set", "/simulation/samples=300"];
     killed_runs_resume(&arguments, 0.5, &["evaluations.jsonl"]);
 }
 
-/// Cut after every line of the record, where a part of the next line is there too, a run ends with the
-/// same files, byte for byte.
+/// The log is cut after every line, with a part of the next line. The resumed run writes the same
+/// files, byte for byte.
 fn goes_on_after_every_line(problem: &str, code: i32, judge: impl Fn(&str)) {
     let at = scratch();
     let directory = at.path().join("out");
@@ -39,7 +39,7 @@ fn goes_on_after_every_line(problem: &str, code: i32, judge: impl Fn(&str)) {
     }
 }
 
-/// With the check of the curvature, and steps that follow a tolerance.
+/// With the check of the curvature and adaptive steps.
 #[test]
 fn a_record_of_any_length_is_gone_on_with() {
     let at = scratch();
@@ -51,7 +51,7 @@ fn a_record_of_any_length_is_gone_on_with() {
     });
 }
 
-/// Where a run begins to look for its event depends on the run before, which a resumed run has not made.
+/// The first guess of an event's time depends on the run before, which a resumed run has not made.
 #[test]
 fn a_run_that_ends_at_an_event_is_gone_on_with() {
     let at = scratch();
@@ -67,8 +67,8 @@ fn a_run_that_ends_at_an_event_is_gone_on_with() {
     }
 }
 
-/// A run that was killed before it had written an evaluation is begun anew, and what it left is removed.
-/// A directory without a run is left alone.
+/// A run that was killed before its first evaluation starts again, and its files are removed. A
+/// directory without a run is not changed.
 #[test]
 fn a_run_that_has_just_begun_is_resumed() {
     let at = scratch();
@@ -110,7 +110,7 @@ fn a_run_that_has_just_begun_is_resumed() {
     }
 }
 
-/// Limits, names and figures are no part of the functions; what differs is told.
+/// Limits, names and figures do not affect the functions. Differences are reported.
 #[test]
 fn a_run_at_its_limit_goes_on_with_a_higher_one() {
     let at = scratch();
@@ -164,13 +164,13 @@ fn a_run_at_its_limit_goes_on_with_a_higher_one() {
         let (evaluations, record) = end("out");
         assert!(evaluations.starts_with(&part) && evaluations.len() > part.len());
         assert_eq!((evaluations, record), end("whole"), "{limit}");
-        // What was told once is not told again.
+        // A difference is reported once.
         let ran = expect(0, at.path(), &again);
         assert!(!ran.err.contains("changed since"), "{}", ran.err);
     }
 }
 
-/// Another method asks for other designs; where it asks for known ones, nothing is repeated.
+/// Another method uses other designs. Known ones are not evaluated again.
 #[test]
 fn another_method_takes_the_evaluations_over() {
     let at = scratch();
@@ -237,7 +237,7 @@ fn a_record_of_another_problem_is_not_resumed() {
     assert_eq!(crate::program::files(&at.path().join("out")), before);
 }
 
-/// The work is that of the first run, which is counted once.
+/// The work is that of the first run, and is counted once.
 #[test]
 fn a_run_that_has_ended_is_resumed_without_a_simulation() {
     let at = scratch();

@@ -1,10 +1,10 @@
-//! What is found is not lost, and what stands there is not touched, whatever the disk or a signal does.
+//! Results are not lost, and earlier files are not changed, if the disk fails or a signal arrives.
 
 use crate::program::{HAMMER, expect, files, held, json, names, optimum, read, scratch, start};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// The record comes first, and a figure that cannot be written is a warning.
+/// The record is written first. A figure that cannot be written causes a warning.
 #[test]
 fn a_figure_that_cannot_be_written_costs_no_result() {
     let at = scratch();
@@ -30,7 +30,7 @@ fn a_figure_that_cannot_be_written_costs_no_result() {
     assert!(names(&out).contains(&"simulation.csv".to_owned()));
 }
 
-/// A record that cannot be written is told, even to those who asked for silence.
+/// A record that cannot be written is reported even if the run is quiet.
 #[test]
 fn a_record_that_cannot_be_written_is_told() {
     let at = scratch();
@@ -43,13 +43,13 @@ fn a_record_that_cannot_be_written_is_told() {
         "{}",
         ran.err
     );
-    // The table of the iterations goes with the record, which the evaluations bring back.
+    // The history is missing with the record. The log of the evaluations restores both.
     assert!(!names(&out).contains(&"history.csv".to_owned()));
     std::fs::remove_dir(out.join("optimum.json")).expect("is removed");
     let ran = expect(0, at.path(), &[HAMMER, "--resume", "out"]);
     assert!(ran.err.contains("are not repeated"), "{}", ran.err);
     assert_eq!(optimum(&out)["status"], "converged");
-    // Beside a record, another file that fails.
+    // The record can be written, and another file cannot.
     let out = at.path().join("other");
     std::fs::create_dir_all(out.join("history.csv")).expect("is made");
     let ran = expect(4, at.path(), &[HAMMER, "--output", "other"]);
@@ -68,7 +68,7 @@ fn a_file_that_the_system_refuses_has_its_own_code() {
         at.path(),
         &["compare", "/proc/self/mem", "/proc/self/mem"],
     );
-    // No file there at all is bad input.
+    // A missing file is bad input.
     for missing in [&["no.json"][..], &["plot", "no"], &["compare", "no", "no"]] {
         expect(2, at.path(), missing);
     }
@@ -82,7 +82,7 @@ fn a_file_that_the_system_refuses_has_its_own_code() {
     }
 }
 
-/// Whatever is under way when a signal comes, the exit code is the same.
+/// The exit code after a signal does not depend on the present work.
 #[cfg(unix)]
 #[test]
 fn a_signal_ends_every_command_with_130() {
@@ -107,7 +107,7 @@ fn a_signal_ends_every_command_with_130() {
             std::thread::sleep(Duration::from_millis(5));
         }
         for _ in 0..2 {
-            // An optimisation ends at the first when its simulation has, and at the second at once.
+            // An optimisation ends after its simulation at the first signal, at once at the second.
             std::thread::sleep(Duration::from_millis(100));
             let _ = Command::new("kill")
                 .args([signal, &run.id().to_string()])
@@ -117,7 +117,7 @@ fn a_signal_ends_every_command_with_130() {
     }
 }
 
-/// The directory is held before anything is worked out for it.
+/// The directory is locked before any computation.
 #[test]
 fn the_lock_comes_before_the_accuracy() {
     let at = scratch();
@@ -131,7 +131,7 @@ fn the_lock_comes_before_the_accuracy() {
     drop(held);
 }
 
-/// A record out of which a line was taken leads elsewhere: it is refused, and nothing changes.
+/// A log with a line removed leads to another run: it is rejected, and nothing changes.
 #[test]
 fn a_record_with_a_line_removed_is_not_resumed() {
     let at = scratch();
@@ -152,7 +152,7 @@ fn a_record_with_a_line_removed_is_not_resumed() {
     }
 }
 
-/// A link in the place of a file of the results is replaced, not followed.
+/// A link in place of a result file is replaced, not followed.
 #[cfg(unix)]
 #[test]
 fn links_among_the_results_are_not_followed() {

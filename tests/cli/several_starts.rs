@@ -1,4 +1,4 @@
-//! Optimisations from several starts, killed, interrupted and resumed.
+//! Killed, interrupted and resumed optimisations from several starts.
 
 use crate::program::{
     HAMMER, TREBUCHET, changed, expect, json, killed_runs_resume, optimum, read, scratch,
@@ -6,7 +6,7 @@ use crate::program::{
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// Few samples, wide steps and few iterations: what is resumed is the same.
+/// Few samples, wide steps and few iterations shorten the runs.
 const SHORT: [&str; 4] = [
     "--set",
     "/simulation={\"duration\": 2, \"samples\": 100, \"tolerance\": 1e-6}",
@@ -14,7 +14,7 @@ const SHORT: [&str; 4] = [
     "/optimiser={\"iterations\": 25}",
 ];
 
-/// Ended starts, starts under way and starts that were not begun among them.
+/// The kills leave finished, unfinished and new starts.
 #[test]
 fn killed_starts_resume_to_the_same_optimum_and_repeat_no_evaluation() {
     let records = [1, 2, 3].map(|k| format!("evaluations.start_{k}.jsonl"));
@@ -22,7 +22,7 @@ fn killed_starts_resume_to_the_same_optimum_and_repeat_no_evaluation() {
     killed_runs_resume(&arguments, 0.3, &records.each_ref().map(String::as_str));
 }
 
-/// Starts are counted on: more of them find those of the first run done.
+/// A run with more starts uses the results of one with fewer.
 #[test]
 fn more_starts_go_on_with_fewer() {
     let at = scratch();
@@ -81,7 +81,7 @@ fn interrupted_starts_write_the_best_and_exit_with_130() {
     assert!(!at.path().join("out/evaluations.start_150.jsonl").exists());
 }
 
-/// Every start has its own record; those of an earlier call with more starts are gone.
+/// Every start has its own log. Logs of an earlier run with more starts are removed.
 #[test]
 fn every_start_keeps_its_evaluations() {
     let at = scratch();
@@ -130,8 +130,8 @@ fn every_start_keeps_its_evaluations() {
     );
 }
 
-/// A ball without weight, whose energy is least, and zero, at rest: every start ends there, each at another
-/// speed that is round-off.
+/// A ball without gravity has its least energy, zero, at rest. Every start ends there, with a
+/// different speed by round-off.
 const REST: &str = r#"{
   "version": 1, "name": "rest", "gravity": [0, 0, 0],
   "bodies": {"ball": {"shape": "point", "mass": 2, "velocity": {"linear": [1, 0, 0]}}},
@@ -161,13 +161,13 @@ fn an_optimum_of_zero_is_one_optimum_and_is_written() {
     std::fs::remove_file(at.path().join("out/optima.csv")).expect("is removed");
     expect(0, at.path(), &[&arguments[..], &["--quiet"]].concat());
     assert_eq!(read(&at.path().join("out/optima.csv")), table);
-    // A run with a single start has no such table.
+    // A run with a single start has no table of optima.
     let single = ["rest.json", "--output", "out", "--quiet"];
     expect(0, at.path(), &single);
     assert!(!at.path().join("out/optima.csv").exists());
 }
 
-/// The limit is that of the call.
+/// The time limit applies to all starts together.
 #[test]
 fn starts_share_the_time() {
     let at = scratch();

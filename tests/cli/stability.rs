@@ -1,4 +1,4 @@
-//! `optimize stability`, run as a user runs it.
+//! `optimize stability`, as a user runs it.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -22,7 +22,7 @@ fn one_case_is_run_alone_and_written_where_it_is_asked_for() {
     assert_eq!(text, "1 cases: 1 refused\n");
     let told = String::from_utf8_lossy(&done.stderr);
     assert!(told.contains("the scene is stiff"), "{told}");
-    // A part of the table does not take the place of the whole.
+    // A part of the table does not replace the whole table.
     let files = |at: &Path| std::fs::read_dir(at).expect("a directory").count();
     assert_eq!(files(scratch.path()), 0);
 
@@ -64,7 +64,7 @@ fn a_name_of_no_case_is_bad_input() {
     );
 }
 
-/// The suite was called `stress` once.
+/// The former name of the command was `stress`.
 #[test]
 fn the_former_name_of_the_command_names_the_new_one() {
     for more in [&[][..], &["--only", "damping"], &["--help"]] {

@@ -1,4 +1,4 @@
-//! `optimize work-precision`, run as a user runs it.
+//! `optimize work-precision`, as a user runs it.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -33,7 +33,7 @@ fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).expect("is text")
 }
 
-/// The records of a CSV file, by columns.
+/// The records of a CSV file by columns.
 struct Table {
     header: Vec<String>,
     rows: Vec<Vec<String>>,
@@ -137,7 +137,7 @@ fn all_methods_are_measured_with_their_orders() {
         }
         let (first, last) = (equal[0], equal[equal.len() - 1]);
         let gradients = [first, last].map(|row| table.number(row, "gradient_error"));
-        // Large steps of a method of low order are right by chance.
+        // With large steps, a method of low order may be accurate by chance.
         if method != "bdf1" {
             assert!(gradients[1] < 0.2 * gradients[0], "{method}: {gradients:?}");
         }
@@ -147,7 +147,7 @@ fn all_methods_are_measured_with_their_orders() {
         let formal = orders.number(row, "formal_order");
         let method = orders.cell(row, "method");
         if method == "bdf1" {
-            // Its errors stay large with so few steps.
+            // With so few steps its errors stay large.
             continue;
         }
         let observed = orders.number(row, "observed_order");
@@ -176,7 +176,7 @@ fn all_methods_are_measured_with_their_orders() {
     }
 }
 
-/// Without variables there is no gradient; a table of positions can be the reference.
+/// A table of positions can be the reference. Without variables there is no gradient.
 #[test]
 fn a_file_can_be_the_reference() {
     let directory = tempfile::tempdir().expect("a directory");

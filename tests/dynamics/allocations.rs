@@ -1,5 +1,5 @@
-//! The time loops allocate nothing, forwards and backwards: runs of n and of 2 n kept steps make as many
-//! allocations, as their history is given room before.
+//! The time loops do not allocate, forwards and backwards: runs of n and of 2 n frozen steps make
+//! equal numbers of allocations, because memory for their history is reserved.
 
 use flexbody::adjoint::gradients;
 use flexbody::functions::Scene;
@@ -18,7 +18,7 @@ fn scene(path: &str) -> Scene<f64> {
     problem.scene(&problem.start())
 }
 
-/// Allocations of a run and of its adjoint, samples between the steps included, and its steps.
+/// Allocations of a run and of its adjoint, with samples inside the steps; and its grid.
 fn of_run(scene: &Scene<f64>, duration: f64, settings: &Settings) -> ([u64; 2], Grid) {
     let mut run = None;
     let forwards = allocations(|| {
@@ -31,7 +31,7 @@ fn of_run(scene: &Scene<f64>, duration: f64, settings: &Settings) -> ([u64; 2], 
     ([forwards, backwards], run.grid)
 }
 
-/// As [`of_run`] for so many equal steps.
+/// As [`of_run`], for equal steps.
 fn of_steps(scene: &Scene<f64>, duration: f64, steps: usize, method: Method) -> [u64; 2] {
     let mut settings = Settings::steps(method, steps);
     if method.is_adaptive() {
@@ -40,11 +40,11 @@ fn of_steps(scene: &Scene<f64>, duration: f64, steps: usize, method: Method) -> 
     of_run(scene, duration, &settings).0
 }
 
-/// Allocations that vectors which are used again may differ by, until each has had its largest size:
-/// those of the backward march, and of an LU factorisation that chooses other pivots on the way.
+/// Largest difference by reused vectors until each has had its largest size: in the backward march,
+/// and in an LU factorisation that changes its pivots.
 const GROWTH: u64 = 10;
 
-/// Scenes with a tree, in a plane and in space, with loops, and with driven joints.
+/// Scenes: trees, in a plane and in space, with loops, and with driven joints; and durations.
 const SCENES: [(&str, f64); 4] = [
     ("problems/trebuchet.json", 1.0),
     ("problems/triple_pendulum.json", 0.5),
@@ -52,7 +52,7 @@ const SCENES: [(&str, f64); 4] = [
     ("tests/data/driven_slider_crank.json", 0.5),
 ];
 
-/// Asserts that twice the steps take no more allocations, but for `growth` forwards and backwards.
+/// Asserts that twice the steps need no more allocations, up to `growth` forwards and backwards.
 fn assert_none(what: &str, few: [u64; 2], many: [u64; 2], growth: [u64; 2]) {
     for k in 0..2 {
         let more = many[k].saturating_sub(few[k]);
@@ -63,8 +63,8 @@ fn assert_none(what: &str, few: [u64; 2], many: [u64; 2], growth: [u64; 2]) {
     }
 }
 
-/// Vectors of the checkpoints, four each, that forty steps more take in little memory, forwards and
-/// backwards.
+/// Vectors of the additional checkpoints of forty more steps in little memory, four per checkpoint,
+/// forwards and backwards.
 const CHECKPOINTS: [u64; 2] = [4 * 12, 4 * 40];
 
 #[test]
@@ -83,7 +83,7 @@ fn explicit_steps_allocate_nothing() {
     }
 }
 
-/// The implicit methods, Radau's start of a formula included.
+/// The implicit methods, and a formula that Radau IIA starts.
 fn implicit() -> [Method; 5] {
     [
         Method::Radau { stages: 2 },
@@ -112,7 +112,7 @@ fn implicit_steps_allocate_nothing() {
     }
 }
 
-/// Vectors of the history, which grow with steps that are chosen on the way.
+/// Vectors of the history, which grow with adaptive steps.
 const HISTORY: u64 = 9;
 
 #[test]
@@ -130,7 +130,7 @@ fn steps_that_follow_the_error_allocate_their_history_only() {
         let doublings = ratio.log2().ceil() as u64 + 1;
         let more = many.0[0].saturating_sub(few.0[0]);
         assert!(more <= HISTORY * doublings, "{path}: {few:?}, {many:?}");
-        // The same steps, kept, and each of them halved.
+        // The same steps, frozen, and each of them halved.
         let [few, many] = [few.1.halved(), few.1.halved().halved()].map(|grid| {
             settings.spacing = Spacing::Frozen(grid);
             of_run(&scene, duration, &settings).0

@@ -1,5 +1,5 @@
-//! Gradients whose steps were not all kept equal those of kept ones, and make as many steps again as
-//! binomial checkpointing says.
+//! Gradients with repeated steps equal those with stored steps, and repeat as many as binomial
+//! checkpointing says.
 
 use flexbody::adjoint::gradients;
 use flexbody::driver::evaluate::Evaluated;
@@ -29,7 +29,7 @@ fn scene(path: &str) -> Scene<f64> {
     problem.scene(&problem.start())
 }
 
-/// Largest relative difference of two gradients of a function.
+/// Largest relative difference of two gradients.
 fn difference(a: &Scene<f64>, b: &Scene<f64>) -> f64 {
     let (a, b) = (a.parameters(), b.parameters());
     let size = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
@@ -40,8 +40,8 @@ fn difference(a: &Scene<f64>, b: &Scene<f64>) -> f64 {
     if off == 0.0 { 0.0 } else { off / size }
 }
 
-/// Scenes with a tree, with loops, with driven joints, with bodies so unlike that sparse LU serves, and
-/// with how long they are simulated (s).
+/// Scenes and durations \[s\]: with a tree, with loops, with driven joints, and with bodies so
+/// different that sparse LU is used.
 fn scenes() -> Vec<(Scene<f64>, f64)> {
     let mut unlike = document("problems/extreme/double_pendulum.json");
     let bodies = unlike["bodies"].as_object_mut().expect("bodies");
@@ -82,7 +82,7 @@ fn schedule(run: &Trajectory<f64>) -> Schedule {
     }
 }
 
-/// Gradients of the first `count` functions in `memory`, and how many steps were made again.
+/// Gradients of the first `count` functions in `memory`, and the number of repeated steps.
 fn found(
     (scene, duration): (&Scene<f64>, f64),
     settings: &Settings,
@@ -102,7 +102,7 @@ fn found(
     (adjoint.gradients, adjoint.counts.recomputed, run)
 }
 
-/// Bytes that all steps of a run of these settings take.
+/// Memory of all steps of a run with these settings \[bytes\].
 fn whole(scene: (&Scene<f64>, f64), settings: &Settings) -> usize {
     let run = found(scene, settings, (MEMORY, 1)).2;
     run.checkpoint_plan(run.grid.steps()).1
@@ -147,8 +147,8 @@ fn every_method_in_any_memory_finds_the_same_gradients() {
     }
 }
 
-/// Steps that follow the error: tries that were given up leave their traces in the pivots. If memory does
-/// not suffice the whole motion is made again once more, as nobody knew its steps beforehand.
+/// Adaptive steps: rejected tries affect the pivots. If the memory does not suffice, the whole
+/// motion is repeated once more, because the number of steps was unknown.
 #[test]
 fn steps_that_were_chosen_on_the_way_are_made_again_as_they_were() {
     for (s, (scene, duration)) in scenes().iter().enumerate() {
@@ -175,7 +175,7 @@ fn steps_that_were_chosen_on_the_way_are_made_again_as_they_were() {
     }
 }
 
-/// A gradient of a motion that kept nothing makes it again, once.
+/// A gradient of a motion without stored steps repeats it once.
 #[test]
 fn a_motion_that_kept_nothing_is_made_again_once() {
     let scene = scene("problems/triple_pendulum.json");
@@ -190,8 +190,8 @@ fn a_motion_that_kept_nothing_is_made_again_once() {
     }
 }
 
-/// Problems whose duration is a variable or ends at an event, on steps chosen at one design and kept for
-/// another.
+/// Problems whose duration is a variable or ends at an event, with steps chosen at one design and
+/// frozen for another.
 #[test]
 fn durations_and_events_are_differentiated_alike() {
     for path in [
@@ -228,8 +228,8 @@ fn durations_and_events_are_differentiated_alike() {
     }
 }
 
-/// What is kept takes no more memory than it may. A thirtieth of the memory costs one run of the explicit
-/// method, whose checkpoints are small beside its stages.
+/// The data do not exceed the memory. A thirtieth of the memory costs one more run of the explicit
+/// method, whose checkpoints are small relative to its stages.
 #[test]
 fn memory_is_not_exceeded() {
     let scene = scene("problems/triple_pendulum.json");

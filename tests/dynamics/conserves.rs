@@ -1,11 +1,10 @@
-//! What no joint and no inertia may change: energy, linear and angular momentum of free bodies,
-//! and the spin of a free top.
+//! Conserved quantities: energy, linear and angular momentum of free bodies, and the spin of a free
+//! top.
 //!
-//! Two bodies with full inertias, joined by each kind of joint about a skew axis, float without
-//! gravity for 2 s; the velocities that they are given do not fit the joint and are projected
-//! first. BDF conserves linear momentum, which is linear in the velocities, to round-off at any
-//! step; energy and angular momentum, which are quadratic, are conserved by the equations, and by
-//! BDF up to its order.
+//! Two bodies with full inertias, connected by each kind of joint about a skew axis, float without
+//! gravity for 2 s. Their given velocities do not fit the joint and are projected first. BDF
+//! conserves linear momentum, which is linear in the velocities, to round-off at any step. Energy
+//! and angular momentum are quadratic: the equations conserve them, BDF only up to its order.
 
 use crate::tests::reference;
 
@@ -18,7 +17,7 @@ use reference::{bdf, observed_order};
 
 const DURATION: f64 = 2.0;
 
-/// What the bodies are judged by at every instant of a run with steps of size `h`.
+/// Observations at every instant of a run with steps of size `h`.
 fn observations(model: &Model<f64>, h: f64, order: usize) -> Vec<Observation> {
     let run = bdf(model, DURATION, h, order);
     assert!(velocity_correction(model, &run.initial) > 0.1);
@@ -48,8 +47,8 @@ fn drift(model: &Model<f64>, h: f64, order: usize) -> Drift {
     }
 }
 
-/// The kinds of joint whose free pairs turn about as fast as each other; two bodies on a rod whirl
-/// several times as fast, so that their bounds are others.
+/// The kinds of joint whose free pairs rotate about equally fast. Two bodies on a rod whirl several
+/// times as fast and have other bounds.
 fn kinds() -> impl Iterator<Item = JointKind> {
     KINDS.into_iter().filter(|kind| *kind != JointKind::Rod)
 }
@@ -82,9 +81,9 @@ fn energy_and_momentum_drift_with_the_order_of_the_formula() {
     }
 }
 
-/// The equations conserve angular momentum and energy to 1e-9: the changes over runs with h and
-/// h/2 (h = 0.25 ms), extrapolated to h = 0 at every millisecond, Δ = (4 Δ(h/2) − Δ(h)) / 3 (measured up
-/// to 2e-10).
+/// The equations conserve angular momentum and energy to 1e-9: the changes over runs with h and h/2
+/// (h = 0.25 ms), extrapolated to h = 0 at every millisecond, Δ = (4 Δ(h/2) − Δ(h)) / 3 (measured
+/// up to 2e-10).
 #[test]
 fn every_joint_conserves_momentum_and_energy_in_the_limit_of_small_steps() {
     for kind in kinds() {
@@ -136,8 +135,8 @@ fn a_planar_joint_conserves_momentum() {
     assert_conserved(JointKind::Planar);
 }
 
-/// At steps whose extrapolated start is as exact as positions are stored, Newton's method still
-/// solves every step: the drift of 80 µs is (80/100)² of that of 100 µs, within 5 %.
+/// Newton's method still solves every step if the step is so small that the extrapolated start is
+/// as exact as stored positions: the drift of 80 µs is (80/100)² of that of 100 µs, within 5 %.
 #[test]
 fn small_steps_are_solved_as_well_as_large_ones() {
     let model = free_pair(JointKind::Planar, 2);

@@ -48,7 +48,7 @@ fn gradients_rates_and_biases() {
         let product: Vec<f64> = columns.collect();
         let reactions = case.reactions(&case.model, &case.q, &lambda);
         case.assert("Gᵀλ", &reactions, &product);
-        // Along the motion, v held.
+        // Along the motion, at constant v.
         let now = step((&TIME, &1.0));
         let in_time = case.constraints_at(&model, &case.moved(&case.v), &v, now);
         let (mut rate, mut bias) = (vec![0.0; rows], vec![0.0; rows]);
@@ -192,7 +192,7 @@ fn pull_backs_of_constraints() {
     }
 }
 
-/// The virtual rate of a motion is the rate of one with the virtual velocities.
+/// The virtual rate of a motion is the rate at the virtual velocities.
 #[test]
 fn pull_backs_of_virtual_rates() {
     for mut case in cases() {
@@ -221,7 +221,7 @@ fn pull_backs_of_virtual_rates() {
         let given = pull(&motions, virtually);
         let moving = case.motions(&case.q, &w);
         if !case.model.joints[0].drives.is_empty() {
-            // Its rate has a part that no velocity makes.
+            // Its rate has a part that does not depend on velocities.
             continue;
         }
         let rate = RowCotangents {
@@ -266,8 +266,8 @@ fn residual(
     slopes(&out)
 }
 
-/// The scaled iteration matrix: columns y, v / h, λ / h², μ / h with q̇ and v̇ moving c times as
-/// fast as q and v.
+/// The scaled iteration matrix: columns y, v / h, λ / h², μ / h, where q̇ and v̇ change by c times
+/// the changes of q and v.
 #[test]
 fn iteration_matrix_of_the_stabilised_equations() {
     let (h, c) = (0.03, 40.0);
@@ -342,7 +342,7 @@ fn pull_back_of_the_stabilised_equations() {
             qdot: lift(&qdot),
             vdot: lift(&vdot),
         };
-        // The residual has its dynamics divided by a mass.
+        // The dynamics in the residual are divided by a mass.
         let mut weights = psi.clone();
         weights[12..24]
             .iter_mut()

@@ -1,5 +1,5 @@
 //! Joints and drives in problem files: exact gradients in every number of every kind of drive, by
-//! several methods, and the faults of what they cannot be told.
+//! several methods, and the faults of wrong entries.
 
 use crate::tests::numbers;
 
@@ -56,8 +56,8 @@ fn assert_gradients(mut file: Value, sections: &[&str]) {
     }
 }
 
-/// An arm that a motor turns, with a slide on it that another moves; a weight hangs from the slide
-/// by a rod, a vane by a universal joint, and a box is welded to it.
+/// A motor turns an arm. A second one moves a slide on it. A weight hangs on the slide by a rod, a
+/// vane by a universal joint, and a box is welded to it.
 fn machine(turn: Value, slide: Value, simulation: Value) -> Value {
     json!({
         "version": 1, "name": "machine",
@@ -131,7 +131,7 @@ fn gradients_of_implicit_steps() {
     }
 }
 
-/// What drives and joints cannot be told, and where.
+/// Faults of joints and drives, with their places.
 #[test]
 fn faults_are_named() {
     let harmonic = json!({"harmonic": {"amplitude": 0.1, "frequency": 1}});
@@ -209,7 +209,7 @@ fn faults_are_named() {
         fault("/joints/cardan/universal/cross", json!([0, 0, 2])),
         &["/joints/cardan/universal/cross", "perpendicular"],
     );
-    // A second hinge on the shaft's axis, with a motor of its own.
+    // A second hinge on the shaft's axis, with its own motor.
     let mut twice = good.clone();
     twice["joints"]["hinge"] = json!({"revolute": {"between": ["arm", "ground"],
                                                    "at": "arm.root", "axis": [0.1, 0.2, 1]}});

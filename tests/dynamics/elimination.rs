@@ -1,4 +1,4 @@
-//! The elimination by the tree of joints, loops last, against sparse LU on the same matrix.
+//! The elimination by the tree of joints, loops last, agrees with sparse LU of the same matrix.
 
 use flexbody::linalg::SolveScalar;
 use flexbody::math::Complex64;
@@ -10,7 +10,7 @@ use flexbody::system::kkt::SaddlePoint;
 use flexbody::system::{BodyMotion, InMotion, Numbering};
 use std::path::Path;
 
-/// Problems, and how many joints of each close loops.
+/// Problems, and the number of joints of each that close loops.
 const SCENES: [(&str, usize); 9] = [
     ("trebuchet", 0),
     ("triple_pendulum", 0),
@@ -28,7 +28,7 @@ fn load(name: &str) -> Problem {
     Problem::load(&path, &[]).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// Numbers between −1 and 1 that follow from each other.
+/// Numbers between −1 and 1 without a pattern.
 fn spread(count: usize) -> Vec<f64> {
     let golden = 0.618_033_988_749_895;
     (1..=count)
@@ -37,7 +37,7 @@ fn spread(count: usize) -> Vec<f64> {
 }
 
 /// Largest differences of the solutions by tree and by sparse LU, relative to the largest entry: of
-/// their values and, if there are any, of their derivatives.
+/// their values and of their derivatives, if any.
 fn differences<S: SolveScalar>(name: &str, model: &Model<S>, closing: usize) -> [f64; 2] {
     let numbering = Numbering::new(model);
     let (mut q, mut motions) = (Vec::new(), Vec::new());
@@ -69,7 +69,7 @@ fn differences<S: SolveScalar>(name: &str, model: &Model<S>, closing: usize) -> 
         .into_iter()
         .map(S::from)
         .collect();
-    // What the mobilities do not admit is no part of either system.
+    // Neither system contains what the mobilities do not admit.
     flexbody::system::reduce::project(&numbering, &mut right);
     let (mut by_tree, mut by_lu) = (right.clone(), right);
     field.solve(&mut by_tree);

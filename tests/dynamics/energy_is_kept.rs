@@ -1,5 +1,5 @@
-//! Energy as a witness of a run: no right run of a scene that conserves it is refused, and one whose states
-//! are spoilt is.
+//! The check of energy: no correct run of a conservative scene is rejected, and a run with wrong
+//! states is.
 
 use crate::tests::reference::models::{KINDS, Numbers, joint};
 
@@ -14,8 +14,8 @@ use flexbody::model::{
 };
 use flexbody::system::BodyMotion;
 
-/// A tree of one to four bodies on random joints, with and without gravity, springs of stiffness 1 to 1e5
-/// between points and about hinges, in lengths of `unit` (m).
+/// A tree of one to four bodies on random joints, with and without gravity, with springs of
+/// stiffness 1 to 1e5 between points and about hinges, in lengths of `unit` \[m\].
 fn scene(seed: u64, unit: f64) -> (Model<f64>, f64) {
     let mut numbers = Numbers(seed);
     let mut below = |n: usize| ((numbers.next() + 1.0) * 0.5 * n as f64) as usize;
@@ -115,8 +115,8 @@ fn settings(method: Method, spacing: Spacing) -> Settings {
 
 const RADAU: Method = Method::Radau { stages: 3 };
 
-/// Runs by tolerances of 1e-3 to 1e-12, and on the steps of another duration and of half the size, are not
-/// refused for their energy. Those of the explicit method may be refused as stiff.
+/// Runs with tolerances from 1e-3 to 1e-12, on the steps of another duration and on halved steps
+/// are not rejected for their energy. The explicit method may find them stiff.
 #[test]
 fn no_right_run_is_refused() {
     let (mut runs, mut kept) = (0, 0);
@@ -158,7 +158,7 @@ fn no_right_run_is_refused() {
     assert!(runs > 75 && kept > 110, "{runs} runs, {kept} on kept steps");
 }
 
-/// Judges the states of a run at the ends of its steps after `spoil` has been at their velocities.
+/// Checks a run at the ends of its steps after `spoil` has changed the velocities.
 fn judge(
     model: &Model<f64>,
     run: &Trajectory<f64>,
@@ -181,8 +181,8 @@ fn judge(
     ledger.close(run.grid.steps(), run.step_error)
 }
 
-/// A run is refused, by name and where it was seen, if its velocities are off by a half from some step on, or
-/// if a state is not a number, and nearly always if they are off by 5 %; it is not if they are off by 1e-6.
+/// A run is rejected, with the time, if its velocities are wrong by a half from some step on, or if
+/// a state is NaN; nearly always if they are wrong by 5 %; and not if they are wrong by 1e-6.
 #[test]
 fn a_spoilt_run_is_refused() {
     let (mut runs, mut small) = (0, 0);
@@ -206,7 +206,7 @@ fn a_spoilt_run_is_refused() {
         };
         judge(0, 1.0).expect("as it was");
         judge(3, 1.0 + 1e-6).expect("nearly as it was");
-        // A body that is welded to ground has no velocity to be off.
+        // A body that is welded to ground has no velocity to change.
         let fastest = run.v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         let moves = fastest > 1e-6 * unit;
         for factor in [1.5, f64::NAN] {
@@ -220,7 +220,7 @@ fn a_spoilt_run_is_refused() {
             let IntegrationFailure::EnergyLost { time, drift, .. } = failure else {
                 panic!("scene {seed}: {text}");
             };
-            // The first end looked at from step 3 on is that of step 4, or the last.
+            // From step 3 on, the first checked end is that of step 4, or the last.
             assert_eq!(time, run.time(run.last().min(4)), "scene {seed}");
             assert_eq!(drift.is_nan(), factor.is_nan(), "scene {seed}");
             let named = text.starts_with("energy is not conserved: at t = ");
@@ -232,8 +232,7 @@ fn a_spoilt_run_is_refused() {
     assert!(runs >= 25 && 10 * small >= 9 * runs, "{small} of {runs}");
 }
 
-/// Nothing is looked at where energy is not conserved, where the user chose equal steps, and in complex
-/// runs.
+/// There is no check if energy is not conserved, if the user chose equal steps, or in complex runs.
 #[test]
 fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance() {
     let by = settings(Method::Dop853, Spacing::Tolerance(1e-9));

@@ -1,8 +1,8 @@
 //! The estimated discretisation errors of functions and gradients against the true ones.
 //!
-//! The true value is that of dop853 with halves of the steps of tolerance 1e-13; the same run with
-//! those steps cut in two once more says how far it can be trusted. A number is left out where its
-//! true error is not ten times that doubt, which includes 1e-13 of its size: it is at round-off.
+//! The true value is that of dop853 with the halved steps of tolerance 1e-13. The same run with
+//! these steps halved again gives its uncertainty, which includes 1e-13 of the value. A number is
+//! omitted if its true error is below ten times the uncertainty: it is round-off.
 
 use flexbody::driver::Evaluated;
 use flexbody::driver::error::{estimate, reach};
@@ -16,7 +16,7 @@ const BDF2: Method = Method::Bdf {
     order: 2,
     start: Start::Radau,
 };
-/// Ratio of estimate to true error, at least and at most.
+/// Smallest and largest trusted ratio of estimate to true error.
 const TRUSTED: (f64, f64) = (0.3, 3.0);
 
 fn load(file: &str, change: impl FnOnce(&mut Value)) -> Problem {
@@ -48,7 +48,7 @@ fn andrews() -> Problem {
     })
 }
 
-/// A function or one of its derivatives: value and doubt.
+/// A function or one of its derivatives: value and uncertainty.
 struct Exact {
     value: f64,
     doubt: f64,
@@ -99,8 +99,8 @@ fn exact(problem: &Problem) -> Vec<Vec<Exact>> {
         .collect()
 }
 
-/// Ratios of estimated to true errors, those of functions and those of derivatives, and how many
-/// were left out.
+/// Ratios of estimated to true errors, of functions and of derivatives, and the number of omitted
+/// ones.
 struct Ratios {
     functions: Vec<(String, f64)>,
     derivatives: Vec<(String, f64)>,
@@ -145,7 +145,7 @@ fn trusted(ratio: f64) -> bool {
     (TRUSTED.0..=TRUSTED.1).contains(&ratio)
 }
 
-/// One line of the table: how many are trusted, and the worst.
+/// One line of the table: number of trusted ratios, and the worst.
 fn line(all: &[(String, f64)]) -> String {
     let good = all.iter().filter(|(_, ratio)| trusted(*ratio)).count();
     let far = |ratio: f64| ratio.ln().abs();
@@ -156,8 +156,8 @@ fn line(all: &[(String, f64)]) -> String {
     }
 }
 
-/// Prints the settings' ratios and asserts that all those of the functions' values can be trusted, and
-/// this share of those of the derivatives.
+/// Prints the ratios of the settings. Asserts that all those of values are trusted, and this share
+/// of those of derivatives.
 fn judge(problem: &Problem, settings: &[(Method, Spacing)], share: f64) {
     let exact = exact(problem);
     let (mut wrong, mut derivatives) = (Vec::new(), Vec::new());
@@ -234,7 +234,8 @@ fn estimates_are_right_on_andrews_squeezer() {
     judge(&andrews(), &settings, 1.0);
 }
 
-/// What errs too much is refined: the tolerance, which sums over the motion follow too, or equal steps.
+/// The part with the larger error is refined: the tolerance, which also controls sums, or equal
+/// steps.
 #[test]
 fn an_accuracy_is_reached_by_what_lacks_it() {
     let by_tolerance = |tolerance: f64| {
@@ -248,13 +249,13 @@ fn an_accuracy_is_reached_by_what_lacks_it() {
         let which = problem.objective.expect("an objective").function;
         let found = reach(&mut problem, which, accuracy).expect("runs");
         assert!(found.error <= accuracy, "{found:?}");
-        // The estimate is that of the problem as it was left.
+        // The estimate is that of the refined problem.
         let at = Evaluated::new(&problem, &problem.start()).expect("runs");
         let own = estimate(&problem, &at, &[which], false).expect("runs")[0].value;
         assert!(own.error <= 1.01 * accuracy * own.value.abs(), "{own:?}");
         found
     };
-    // Sums over the motion follow the tolerance, whatever samples are shown.
+    // Sums over the motion follow the tolerance for any shown samples.
     let seldom = |problem: &mut Problem| {
         problem.simulation.samples = Some(50);
         problem.simulation.spacing = Spacing::Tolerance(1e-5);
@@ -286,7 +287,7 @@ fn an_accuracy_is_reached_by_what_lacks_it() {
     );
     assert_eq!(found.samples, None, "{found:?}");
 
-    // What suffices stays as it is.
+    // A sufficient setting is not changed.
     let found = reached("trebuchet_release_time.json", 1e-2, &by_tolerance(1e-6));
     assert!(found.overrides().is_empty(), "{found:?}");
 }
@@ -368,7 +369,8 @@ fn sums_over_the_motion_are_as_exact_as_the_motion() {
                     0.5 + whole.ln() / rho,
                     mean(|s| g(s) * soft(s)) / whole,
                 ];
-                // Angles err by the tolerance times the number of turns and steps.
+                // Errors of angles are proportional to the tolerance and the numbers of turns and
+                // steps.
                 let bound = tolerance * 50.0 * (1.0 + (omega * duration).abs()) + 1e-12;
                 for (f, exact) in [0, 1, 3].into_iter().zip(exact) {
                     let size = if f == 0 { duration } else { 1.0 };
@@ -436,9 +438,9 @@ fn ranges_of_balls_of_any_size_are_exact() {
     }
 }
 
-/// A clearance does not change when throw and barrier are moved together, however far, and however
-/// sharp the aggregate: weights add up to one, and what their derivatives lose to round-off is no
-/// part of them.
+/// A clearance does not change if throw and barrier are moved together, by any distance and for any
+/// sharpness of the aggregate. The weights sum to one, and their derivatives contain no round-off
+/// of large terms.
 #[test]
 fn far_from_the_origin_the_weights_of_a_release_do_not_drift() {
     let far = 1e6;

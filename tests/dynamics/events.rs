@@ -1,5 +1,5 @@
-//! Runs that end at an event: closed forms of time, place and derivatives, and gradients against the
-//! complex step by several methods.
+//! Runs that end at an event: closed forms of time, position and derivatives, and gradients against
+//! the complex step by several methods.
 
 use flexbody::driver::integration::Integration;
 use flexbody::driver::{Evaluated, KnownEvaluations, Optimisation, check, optimise, simulate};
@@ -13,7 +13,7 @@ fn problem(file: &Value) -> Problem {
     Problem::parse(&file.to_string(), "scene.json", &[]).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// A ball thrown up and along, until it is at a height again.
+/// A ball is thrown up and forward, until it returns to a height.
 fn throw(simulation: Value) -> Value {
     json!({
         "version": 1, "name": "throw",
@@ -67,7 +67,7 @@ fn a_throw_ends_where_its_parabola_does() {
     }
 }
 
-/// A height that is passed upwards and downwards ends the run on the way up.
+/// A height that is passed upwards and downwards ends the run at the first passage.
 #[test]
 fn the_first_of_several_events_counts() {
     let until = json!({"measure": height(), "reaches": 0.5});
@@ -90,7 +90,7 @@ fn an_event_that_does_not_come_is_named() {
     let IntegrationFailure::NotReached { nearest, .. } = &failure else {
         panic!("{failure}");
     };
-    // As near as the samples see of 2 − u²/(2 g).
+    // The nearest sample to the distance 2 − u²/(2 g).
     assert!((nearest - (2.0 - 16.0 / 19.62)).abs() < 1e-4, "{nearest}");
     let text = failure.to_string();
     assert!(
@@ -99,8 +99,8 @@ fn an_event_that_does_not_come_is_named() {
     );
 }
 
-/// A double pendulum with a spring, until its second bar has turned: every function, by all families
-/// of methods.
+/// A double pendulum with a spring, until its second bar has turned: every function, by all
+/// families of methods.
 #[test]
 fn gradients_are_those_of_the_complex_step() {
     for (key, value, method) in [
@@ -183,8 +183,8 @@ fn design(problem: &Problem, done: &Optimisation) -> Vec<f64> {
     problem.variables.iter().map(|v| value(&v.name)).collect()
 }
 
-/// The longest throw ends with the time that is waited for, the softest one touches its height: with steps
-/// of their own, both still end at their event.
+/// The longest throw ends at the longest waiting time, the softest one touches its height. With
+/// their own steps, both end at their event.
 #[test]
 fn an_optimum_ends_at_its_event_by_steps_of_its_own_too() {
     let until = |reaches: f64| json!({"measure": height(), "reaches": reaches});
@@ -213,16 +213,16 @@ fn an_optimum_ends_at_its_event_by_steps_of_its_own_too() {
         let (soft, done) = optimised(&file);
         let x = design(&soft, &done);
         simulate(&soft, &x).unwrap_or_else(|failure| panic!("{spacing} {value}: {failure}"));
-        // At its height the ball goes on along: 3 m/s.
+        // At its greatest height the ball moves forward: 3 m/s.
         let pace = done.optimum.objective.value;
         assert!((3.0..3.1).contains(&pace), "{spacing} {value}: {pace}");
     }
 }
 
-/// A start without values is none of the optimum's.
+/// A start without values does not enter the optimum.
 #[test]
 fn a_start_that_misses_its_event_has_no_objective() {
-    // The height that is reached by 4 m/s is 0.8155 m.
+    // With 4 m/s the ball reaches 0.8155 m.
     let mut file = throw(json!({"duration": 3, "until": {"measure": height(), "reaches": 0.82}}));
     file["variables"] =
         json!({"speed": {"path": "/bodies/ball/velocity/linear/1", "lower": 4, "upper": 10}});
@@ -243,8 +243,8 @@ fn a_start_that_misses_its_event_has_no_objective() {
     assert!(summary(&done.optimum).contains("x: not known → "));
 }
 
-/// Steps that do not suffice for another design, but find its event, are chosen anew for as long as is
-/// waited for, not up to the time that they found.
+/// Frozen steps that find the event of another design but are not accurate are chosen again for the
+/// whole waiting time, not only up to the event.
 #[test]
 fn steps_are_chosen_anew_for_the_whole_time() {
     let file = json!({
@@ -274,7 +274,8 @@ fn steps_are_chosen_anew_for_the_whole_time() {
     assert!(integration.refreshes > 1, "{}", integration.refreshes);
 }
 
-/// A bob on a rod without mass, let go at an angle; it swings until the hinge is at its lowest point.
+/// A bob on a massless rod is released at an angle. It swings until the hinge is at its lowest
+/// point.
 fn clock(angle: f64, constraints: Value) -> Problem {
     let length = 1.3;
     problem(&json!({
@@ -298,8 +299,8 @@ fn clock(angle: f64, constraints: Value) -> Problem {
     }))
 }
 
-/// The quarter of a pendulum's period is (π/2) √(l/g) / agm(1, cos ½θ), its derivative by the length
-/// half of it over the length; the integral of the speed is the length of the arc.
+/// A quarter of a pendulum's period is (π/2) √(l/g) / agm(1, cos ½θ). Its derivative in the length
+/// is half of it divided by the length. The integral of the speed is the length of the arc.
 #[test]
 fn the_time_of_an_event_is_a_function() {
     for angle in [0.3_f64, 1.0, 2.5] {
@@ -327,7 +328,7 @@ fn the_time_of_an_event_is_a_function() {
     }
 }
 
-/// Without objective the feasible design nearest to that of the file is found.
+/// Without an objective, the feasible design nearest to that of the file is found.
 #[test]
 fn a_problem_of_constraints_alone_is_made_feasible() {
     let second = json!({"second": {"function": "quarter", "lower": 0.5, "upper": 0.5}});
@@ -342,12 +343,12 @@ fn a_problem_of_constraints_alone_is_made_feasible() {
     };
     assert_eq!(done.optimum.status, "converged", "{}", done.optimum.message);
     assert!((at(length) - 0.5).abs() < 1e-6, "{length}");
-    // A file that is feasible stays as it is.
+    // A feasible file stays as it is.
     let loose = json!({"loose": {"function": "quarter", "lower": 0.1, "upper": 2}});
     let done = solved(&clock(0.3, loose));
     assert_eq!(done.optimum.status, "converged", "{}", done.optimum.message);
     assert!((done.optimum.design["length"].value - 1.3).abs() < 1e-6);
-    // And one that can not be is called that.
+    // A file that cannot be feasible is reported so.
     let never = json!({"never": {"function": "quarter", "lower": 3}});
     let done = solved(&clock(0.3, never));
     assert_ne!(done.optimum.status, "converged", "{}", done.optimum.message);

@@ -1,10 +1,10 @@
 //! Functions of the trebuchet and their gradients converge with the step size to those of an
 //! independent code.
 //!
-//! `tests/data/trebuchet_sensitivities.json` holds values and gradients in the five masses and the
-//! arm's initial angle, from minimal coordinates, by the complex step, confirmed to 1e-11 by
-//! differences. A value at the instant t* of a maximum has the gradient of the maximum, since its
-//! derivative in time vanishes there. Errors are relative, each component to its own size.
+//! `tests/data/trebuchet_sensitivities.json` has values and gradients in the five masses and the
+//! arm's initial angle. They come from minimal coordinates by the complex step, and differences
+//! confirm them to 1e-11. At a maximum the derivative in time vanishes, so its gradient is that of
+//! the value at its instant t*. Errors are relative, each component to its own size.
 
 use flexbody::driver::evaluate::Evaluated;
 use flexbody::problem::Problem;
@@ -41,7 +41,7 @@ fn value_and_gradient(function: &Value, duration: f64, steps: usize) -> Vec<f64>
     std::iter::once(value).chain(gradients[0].clone()).collect()
 }
 
-/// Value and gradient of function `number` of the reference; of a speed, from those of its square.
+/// Value and gradient of function `number` of the reference; for a speed, from those of its square.
 fn reference(number: usize, squared: bool) -> Vec<f64> {
     let file = json_file("tests/data/trebuchet_sensitivities.json");
     let known = &file["functions"][number];
@@ -56,7 +56,7 @@ fn reference(number: usize, squared: bool) -> Vec<f64> {
     gradient
 }
 
-/// Where the reference has the maximum `name` [s].
+/// Instant of the maximum `name` of the reference [s].
 fn instant(name: &str) -> f64 {
     let file = json_file("tests/data/trebuchet_sensitivities.json");
     file["t_star"][name].as_f64().expect("a number")
@@ -170,8 +170,8 @@ fn speed_at_the_end_of_the_second_whirl() {
 }
 
 /// KS of the stone's forward velocity, ρ = 0.1 s/m, over 2 s. The derivatives in the masses of
-/// sling and stone enter the asymptotic range late, since their errors pass through zero at steps
-/// of 2 ms. Steps of 0.25 ms: errors up to 2.0e-4.
+/// sling and stone reach the asymptotic range late, because their errors change sign at steps of 2
+/// ms. Steps of 0.25 ms: errors up to 2.0e-4.
 #[test]
 fn aggregate_of_the_forward_velocity() {
     let velocity = json!({"velocity": {"body": "stone", "direction": [1, 0, 0]}});

@@ -1,4 +1,4 @@
-//! The adjoint gives the derivative of every function in every single parameter of a scene.
+//! The adjoint gives the exact derivative of every function in every parameter of a scene.
 
 use crate::tests::reference;
 
@@ -11,7 +11,7 @@ use flexbody::integrate::{Method, Samples, Settings, Spacing, Start, Trajectory,
 use flexbody::math::{Complex64, Parameters, Vec3, scalar::COMPLEX_STEP};
 use flexbody::model::{JointKind, Model};
 
-/// Every instant quantity and every reduction at least once.
+/// Every instant quantity and every reduction, at least once each.
 fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
     let (point, direction) = (Vec3::new(0.1, 0.4, -0.2), Vec3::new(0.6, 0.64, -0.48));
     let projectile = Projectile {
@@ -131,9 +131,9 @@ fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
     ]
 }
 
-/// The derivative of every function in every parameter agrees to 1e-12 of itself or of the function's
-/// largest derivative, whose round-off reaches the small ones. Adjoint and complex step differentiate
-/// one and the same motion.
+/// The derivative of every function in every parameter agrees to 1e-12 of itself or of the
+/// function's largest derivative, whose round-off affects the small ones. Adjoint and complex step
+/// differentiate the same motion.
 fn check(model: &Model<f64>, duration: f64, settings: &Settings) {
     let scene = scene(model, duration);
     let count = scene.parameters().len();
@@ -143,7 +143,8 @@ fn check(model: &Model<f64>, duration: f64, settings: &Settings) {
     compare(&scene, settings, &units);
 }
 
-/// As [`check`] in three directions that move all parameters at once, each by as much as its size.
+/// As [`check`], in three directions that change all parameters at once, in proportion to their
+/// size.
 fn check_directions(model: &Model<f64>, duration: f64, settings: &Settings) {
     let scene = scene(model, duration);
     let parameters = scene.parameters();
@@ -196,8 +197,8 @@ fn compare(scene: &Scene<f64>, settings: &Settings, directions: &[Vec<f64>]) {
     }
 }
 
-/// Derivatives [direction][function] by the complex step, one run a direction, and the motion that
-/// they are of.
+/// Derivatives [direction][function] by the complex step, with one run per direction; and the real
+/// motion.
 fn complex_steps(
     scene: &Scene<f64>,
     settings: &Settings,
@@ -220,8 +221,8 @@ fn complex_steps(
     (derivatives, motion.expect("a scene has parameters"))
 }
 
-/// The settings that are tried with each scene: fixed and frozen adaptive grids, samples at the ends
-/// of steps and between them.
+/// Settings of the explicit method for each scene: given and frozen adaptive grids, samples at the
+/// ends of steps and inside.
 fn explicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
     let mut chosen = Settings::steps(Method::Dop853, steps);
     let fixed = chosen.clone();
@@ -231,7 +232,7 @@ fn explicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
     chosen.samples = Samples::Uniform(37);
     let mut kept = chosen.clone();
     kept.memory = 1 << 28;
-    // Nodes of cells, of which some steps have none and others several.
+    // Nodes of cells; some steps have none, others several.
     if let Spacing::Frozen(grid) = &chosen.spacing {
         let cells = (0..grid.steps()).map(|k| [1, 0, 3][k % 3]).collect();
         kept.spacing = Spacing::Frozen(grid.clone().with_cells(cells));
@@ -245,8 +246,8 @@ fn explicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
     vec![fixed, chosen, kept, loose]
 }
 
-/// Every implicit method, with steps of equal size and, where they can follow the error, on a frozen
-/// grid with samples between the ends of steps.
+/// Every implicit method with equal steps and, if adaptive, on a frozen grid with samples inside
+/// the steps.
 fn implicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
     let bdf = |order| Method::Bdf {
         order,
@@ -312,7 +313,7 @@ fn every_parameter_of_the_trebuchet() {
     check(&model, 0.5, &Settings::steps(alpha, 12));
 }
 
-/// All methods, in directions that move all parameters.
+/// All methods, in directions that change all parameters.
 #[test]
 fn triple_pendulum_in_space() {
     let (model, _) = reference::load("triple_pendulum");
@@ -324,7 +325,7 @@ fn triple_pendulum_in_space() {
     }
 }
 
-/// All methods, in directions that move all parameters.
+/// All methods, in directions that change all parameters.
 #[test]
 fn trebuchet() {
     let (model, _) = reference::load("trebuchet");

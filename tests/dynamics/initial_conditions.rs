@@ -1,8 +1,8 @@
-//! The start of a simulation is consistent: nearest assembly, projected velocities, accelerations
-//! that obey the equations of motion; what cannot be started is told by name.
+//! The start of a simulation is consistent: nearest assembly, projected velocities, and
+//! accelerations that satisfy the equations of motion. A model without a start is reported by name.
 //!
-//! Residuals are of round-off, 1e-12 in SI units of bodies of about 2 kg and 1 m; the nearest
-//! state is judged by its definition, against other states that the joints allow.
+//! Residuals are round-off, 1e-12 in SI units for bodies of about 2 kg and 1 m. The nearest state
+//! is checked by its definition, against other states that the joints allow.
 
 use crate::tests::reference;
 
@@ -25,8 +25,8 @@ fn solve(model: &Model<f64>) -> Result<InitialState<f64>, AssemblyFailure> {
     initial::solve(model, &numbering, &mut saddle)
 }
 
-/// The kinds of joint between two bodies whose guess leaves the joint open by about 0.2 m and
-/// 0.2 rad and moves against it.
+/// The kinds of joint between two bodies. The guess leaves the joint open by about 0.2 m and 0.2
+/// rad, and its velocities violate it.
 fn displaced() -> Vec<(String, Model<f64>)> {
     let one = |(kind, seed): (JointKind, u64)| {
         let mut model = free_pair(kind, seed);
@@ -57,7 +57,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
         .sqrt()
 }
 
-/// Positions in place of the model's guess.
+/// Sets the model's guess to these positions.
 fn placed(model: &Model<f64>, q: &[f64]) -> Model<f64> {
     let mut model = model.clone();
     for (body, q) in model.bodies.iter_mut().zip(q.chunks(7)) {
@@ -67,7 +67,7 @@ fn placed(model: &Model<f64>, q: &[f64]) -> Model<f64> {
     model
 }
 
-/// Σ ∫ |x − x'|² dm of all bodies between two positions, from the definition.
+/// Σ ∫ |x − x'|² dm of all bodies between two positions, by definition.
 fn displacement(model: &Model<f64>, a: &[f64], b: &[f64]) -> f64 {
     let one = |(body, (a, b)): (&RigidBody<f64>, (&[f64], &[f64]))| {
         let place = |q: &[f64]| {
@@ -87,7 +87,7 @@ fn displacement(model: &Model<f64>, a: &[f64], b: &[f64]) -> f64 {
     model.bodies.iter().zip(pairs).map(one).sum()
 }
 
-/// The joints are closed, and no assembled state nearby is nearer to the guess, in the mean square
+/// The joints are closed, and no assembled state nearby is nearer to the guess in the mean square
 /// displacement of the mass: states from guesses up to 0.1 around the solution are farther.
 #[test]
 fn a_displaced_guess_is_assembled_to_the_nearest_state() {
@@ -123,7 +123,7 @@ fn a_displaced_guess_is_assembled_to_the_nearest_state() {
     }
 }
 
-/// An assembled guess stays as it is, and so does a velocity that the joints allow.
+/// An assembled guess and velocities that the joints allow do not change.
 #[test]
 fn a_consistent_start_is_kept() {
     for (name, model) in displaced() {
@@ -143,7 +143,7 @@ fn a_consistent_start_is_kept() {
     }
 }
 
-/// G v = 0, with v as near to the guess as can be: the impulse M (v − v_g) = −Gᵀσ does no work on any
+/// G v = 0, with v nearest to the guess: the impulse M (v − v_g) = −Gᵀσ does no work on any
 /// velocity that the joints allow.
 #[test]
 fn velocities_are_projected() {
@@ -220,7 +220,7 @@ fn gravity() -> Vec3<f64> {
     Vec3::new(0.0, -9.81, 0.0)
 }
 
-/// Two rods of 1 m that stand as a roof, with the right wall at the given distance.
+/// Two rods of 1 m that form a roof, with the right wall at the given distance.
 fn roof(span: f64) -> Model<f64> {
     let (up, down) = (1.0, -1.0);
     let turn = |angle| rotation::from_axis_angle(&Vec3::z(), angle);
@@ -253,8 +253,8 @@ fn roof(span: f64) -> Model<f64> {
     }
 }
 
-/// Two rods of 1 m cannot span more than 2 m: the message names a joint, the condition that stays
-/// open, and by how much.
+/// Two rods of 1 m cannot span more than 2 m. The message names a joint, the open condition, and
+/// the gap.
 #[test]
 fn an_impossible_assembly_names_the_joint() {
     assert!(solve(&roof(1.9)).is_ok());
@@ -276,7 +276,7 @@ fn an_impossible_assembly_names_the_joint() {
     }
 }
 
-/// A door on two hinges has five constraints too many; a third joint elsewhere is not blamed.
+/// A door on two hinges has five redundant constraints. A third joint elsewhere is not named.
 #[test]
 fn redundant_constraints_are_named() {
     let bodies = vec![rod("door", 1.0, 0.5), rod("flap", 1.0, 1.5)];
@@ -301,8 +301,8 @@ fn redundant_constraints_are_named() {
     );
 }
 
-/// A hinge whose guess is turned away from its axis: up to a right angle the right root is found;
-/// beyond it, the root with opposite axes is nearer, and refused by name.
+/// A hinge whose guess is rotated away from its axis: up to a right angle the correct solution is
+/// found. Beyond it, the solution with opposite axes is nearer, and is rejected by name.
 #[test]
 fn a_frame_turned_by_half_a_turn_is_refused() {
     for kind in KINDS {
@@ -345,8 +345,8 @@ fn a_frame_turned_by_half_a_turn_is_refused() {
     }
 }
 
-/// A rod on a ball joint starts as thin as it may be, turned as it may be: at rest it falls with the angular
-/// acceleration r × m g / (m L²/3) across itself, and with none about itself.
+/// A rod on a ball joint starts with any thickness and rotation. From rest it falls with the
+/// angular acceleration r × m g / (m L²/3) across its axis, and zero about its axis.
 #[test]
 fn thin_rods_start() {
     for (radius, seed) in [

@@ -1,7 +1,7 @@
-//! Starts of joints in no loop: every body is where, and as fast as, the angles, displacements and rates of
-//! the joints make it in closed form.
+//! Starts of joints without loops: the states of all bodies follow in closed form from the angles,
+//! displacements and rates of the joints.
 //!
-//! Bodies are of about 1 m, 1 kg and 1 rad/s; what differs is round-off, 1e-12.
+//! Bodies have about 1 m, 1 kg and 1 rad/s. Differences are round-off, 1e-12.
 
 use crate::tests::reference::models::Numbers;
 use flexbody::driver::{check, simulate, start::notes};
@@ -19,7 +19,7 @@ pub(super) fn problem(file: &Value) -> Problem {
     Problem::parse(&file.to_string(), "scene.json", &[]).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// Where a body is and how it moves, in ground axes.
+/// Position and velocity of a body, ground axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
     pub r: Vec3<f64>,
@@ -46,8 +46,8 @@ impl State {
     }
 }
 
-/// The bodies at the start of the simulation, by name, and the model; joints are closed and admit the
-/// velocities to 1e-12.
+/// The bodies at the start of the simulation by name, and the model. Joints are closed, and the
+/// velocities satisfy them to 1e-12.
 pub(super) fn started(problem: &Problem, x: &[f64]) -> (Vec<(String, State)>, Model<f64>) {
     let scene = problem.unlowered_scene(x);
     assert_eq!(scene.unstarted, None);
@@ -97,7 +97,7 @@ fn body(numbers: &mut Numbers, at: &Vec3<f64>, axis: &Vec3<f64>, angle: f64) -> 
     })
 }
 
-/// One link of a chain: how its joint is written, and what it does.
+/// One link of a chain: its joint in the file, and its motion.
 struct Link {
     kind: &'static str,
     point: Vec3<f64>,
@@ -130,8 +130,8 @@ impl Link {
         }
     }
 
-    /// The joint in a file, its bodies in this order; `sign` is −1 if the link's own body is not the
-    /// first.
+    /// The joint in a file with its bodies in this order. `sign` is −1 if the link's own body is
+    /// not the first.
     fn written(&self, between: [&str; 2], sign: f64) -> Value {
         let [angle, shift, spin, speed] = self.motion.map(|x| x * sign);
         let mut start = json!({});
@@ -154,9 +154,9 @@ pub(super) fn shuffle<T>(numbers: &mut Numbers, list: &mut [T]) {
     }
 }
 
-/// Trees of five bodies with joints of all kinds that turn or slide, hung from ground or from earlier
-/// bodies, with every order of bodies, joints and `between`, have the states of the recursion
-/// R = R(e, φ) R_0, ω = ω_near + e φ̇, ….
+/// Trees of five bodies, on ground or on earlier bodies, with all kinds of joint that rotate or
+/// slide, and every order of bodies, joints and `between`, have the states of the recursion R =
+/// R(e, φ) R_0, ω = ω_near + e φ̇, ….
 #[test]
 fn trees_start_as_their_recursion_says() {
     for seed in 0..40 {
@@ -183,7 +183,7 @@ fn trees_start_as_their_recursion_says() {
                 let near = hung[i].map_or("ground", |j| names[j].as_str());
                 let swapped = numbers.next() < 0.0;
                 let between = if swapped { [near, own] } else { [own, near] };
-                // Ground counts as the second body wherever it stands.
+                // Ground counts as the second body in any order.
                 let sign = if swapped && hung[i].is_some() {
                     -1.0
                 } else {
@@ -214,7 +214,7 @@ fn trees_start_as_their_recursion_says() {
             }
         }
         let (placed, _) = started(&self::problem(&still), &[]);
-        // Where a body is taken, x ↦ R x + t, and its velocity field.
+        // Displacement x ↦ R x + t of each body, and its velocity field.
         let mut states: Vec<State> = Vec::new();
         let mut moves: Vec<(Mat3<f64>, Vec3<f64>)> = Vec::new();
         for i in 0..count {
@@ -253,12 +253,12 @@ fn trees_start_as_their_recursion_says() {
             let off = named(&found, &names[i]).off(&states[i]);
             assert!(off <= 2e-12, "seed {seed}, body {i}: {off:e}");
         }
-        // Nothing is told of a start that the file asks for.
+        // There are no notes on a start that the file requests.
         assert_eq!(notes(&problem, &[]), [""; 0], "seed {seed}");
     }
 }
 
-/// Two bars of 1 m that hang straight down; the bars are written by the extras of their joints.
+/// Two bars of 1 m that hang straight down. The arguments extend the joints and the lower bar.
 pub(super) fn double_pendulum(first: Value, second: Value, lower: Value) -> Value {
     let joint = |between: [&str; 2], y: f64, start: Value| {
         let mut joint = json!({"between": between, "at": [0, y, 0], "axis": [0, 0, 1]});
@@ -286,8 +286,8 @@ pub(super) fn double_pendulum(first: Value, second: Value, lower: Value) -> Valu
     })
 }
 
-/// The kinetic energy of a hinged bar is ½ (m l²/3) φ̇², of a double pendulum that of its two angles; a
-/// joint without start stays as it is placed, and keeps the rate of the file.
+/// The kinetic energy of a hinged bar is ½ (m l²/3) φ̇², that of a double pendulum follows from its
+/// two angles. A joint without start stays as placed and keeps the rate of the file.
 #[test]
 fn a_double_pendulum_starts_as_its_angles_say() {
     let mut numbers = Numbers(3);
@@ -301,12 +301,13 @@ fn a_double_pendulum_starts_as_its_angles_say() {
             (json!({"turn": {"rate": q}}), Value::Null, 0.0, q),
             (json!({"turn": {"angle": b}}), Value::Null, b, 0.0),
             (json!({"turn": {"angle": b, "rate": q}}), Value::Null, b, q),
-            // The file's velocities have the knee turn by r; that the lower bar is moved there is told.
+            // The file's velocities give the knee the rate r. A note reports that the lower bar is
+            // moved.
             (Value::Null, lower.clone(), 0.0, r),
             (json!({"turn": {"rate": q}}), lower, 0.0, q),
         ] {
             let replaced = !lower.is_null();
-            // The file's velocities are those of the bodies where they hang.
+            // The file's velocities are those of the hanging bodies.
             let (a, first) = match replaced {
                 true => (0.0, json!({"turn": {"rate": p}})),
                 false => (a, first.clone()),
@@ -342,7 +343,7 @@ fn a_double_pendulum_starts_as_its_angles_say() {
     }
 }
 
-/// The angle of a joint counts from where the bodies are placed: at the start it is the one that is given.
+/// The angle of a joint counts from the placement. At the start it has the given value.
 #[test]
 fn angles_are_those_that_are_given() {
     for [a, b] in [[0.3, -0.7], [-2.0, 3.0], [0.0, 1e-9]] {
@@ -355,8 +356,8 @@ fn angles_are_those_that_are_given() {
     }
 }
 
-/// What moves freely keeps the velocity of its first body; joints of loops that stay open as the bodies are
-/// placed are closed, with the angle that is given.
+/// Free bodies keep the velocity of their first body. Joints in loops that are open in the
+/// placement are closed, with the given angle.
 #[test]
 fn bodies_in_flight_and_open_joints_start_as_they_are_given() {
     let mut file = double_pendulum(
@@ -384,7 +385,7 @@ fn bodies_in_flight_and_open_joints_start_as_they_are_given() {
     assert!((lower.v - field(&lower.r) - relative.cross(&arm)).amax() <= 1e-14);
     assert_eq!(notes(&flying, &[]), [""; 0]);
 
-    // The knee is 0.2 m open: the bodies meet, and the thigh and the knee have what is given.
+    // The knee is 0.2 m open. The bodies meet, and thigh and knee have the given values.
     let mut open = double_pendulum(
         json!({"turn": {"angle": 0.4, "rate": -1.5}}),
         json!({"turn": {"angle": -0.3, "rate": 0.7}}),
@@ -398,7 +399,7 @@ fn bodies_in_flight_and_open_joints_start_as_they_are_given() {
     assert!((angle(&upper) - 0.4).abs() <= 1e-13 && (angle(&lower) - 0.1).abs() <= 1e-13);
     assert!((upper.omega.z + 1.5).abs() <= 1e-13 && (lower.omega.z + 0.8).abs() <= 1e-13);
 
-    // Without angles the open joint is closed as it is without starts, and told.
+    // Without angles the open joint is closed as without starts, and a note reports it.
     let mut rates = open.clone();
     for joint in ["hip", "knee"] {
         let turn = &mut rates["joints"][joint]["revolute"]["start"]["turn"];
@@ -420,8 +421,8 @@ fn bodies_in_flight_and_open_joints_start_as_they_are_given() {
     assert_eq!(notes(&rates, &[]), notes(&plain, &[]));
 }
 
-/// Gradients by angles, rates and geometry: the adjoint beside the complex step, 1e-12; and the energy of
-/// the start in closed form.
+/// Gradients in angles, rates and geometry agree with the complex step to 1e-12. The energy of the
+/// start has its closed form.
 #[test]
 fn gradients_by_starts_match_the_complex_step() {
     for method in [json!("dop853"), json!({"radau": {"stages": 3}})] {

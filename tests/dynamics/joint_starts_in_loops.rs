@@ -1,6 +1,6 @@
-//! Starts of joints in loops: the joints that have none follow.
+//! Starts of joints in loops: the other joints follow.
 //!
-//! Mechanisms are of about 1 m, 1 kg and 1 s; what differs is round-off, 1e-12, unless it says more.
+//! Mechanisms have about 1 m, 1 kg and 1 s. Differences are round-off, 1e-12, unless stated.
 
 use super::joint_starts::{State, list, named, problem, shuffle, started};
 use crate::tests::reference::models::Numbers;
@@ -20,9 +20,9 @@ use serde_json::{Value, json};
 /// Crank, coupler, rocker and distance of the pivots of a four-bar linkage.
 const LENGTHS: [f64; 4] = [0.4, 1.3, 0.9, 1.1];
 
-/// Angles of coupler and rocker of a four-bar linkage with its crank at θ, and their rates at the crank's
-/// rate: where two circles meet (the solution of Freudenstein's equation that is not crossed), and the
-/// projections of the loop's velocities.
+/// Angles of coupler and rocker of a four-bar linkage with its crank at θ, and their rates for the
+/// crank's rate: the intersection of two circles (the open solution of Freudenstein's equation),
+/// and the projections of the loop's velocities.
 fn linkage<S: Scalar>([a, b, c, d]: [S; 4], theta: S, rate: S) -> [S; 4] {
     let (sine, cosine) = theta.sin_cos();
     let (ax, ay) = (a * cosine, a * sine);
@@ -43,7 +43,8 @@ fn linkage<S: Scalar>([a, b, c, d]: [S; 4], theta: S, rate: S) -> [S; 4] {
     ]
 }
 
-/// A four-bar linkage whose crank is placed at the angle `placed` and whose joint `joint` starts so.
+/// A four-bar linkage whose crank is placed at the angle `placed`; the joint `joint` has this
+/// start.
 fn four_bar(placed: f64, joint: &str, start: Value) -> Value {
     let [a, b, c, d] = LENGTHS;
     let [coupler, rocker, ..] = linkage(LENGTHS, placed, 0.0);
@@ -86,8 +87,9 @@ fn around(angle: f64) -> f64 {
     sine.atan2(cosine)
 }
 
-/// The linkage with its crank at every angle and rate, in a whole turn to both sides of where it is placed,
-/// has the angles and rates of the closed form; so it has with the start of another joint in its place.
+/// The linkage has the angles and rates of the closed form for every angle of the crank, up to a
+/// whole turn from the placement, and every rate. It also has them with the start of another joint
+/// instead.
 #[test]
 fn a_four_bar_linkage_starts_as_its_closed_form_says() {
     let mut numbers = Numbers(5);
@@ -121,9 +123,9 @@ fn a_four_bar_linkage_starts_as_its_closed_form_says() {
     }
 }
 
-/// Derivatives of the rocker's angle and rate by the crank's angle and rate and by every length, which
-/// opens the joints of the placement: of the map to the scene by dual numbers, and of the closed form by
-/// the complex step, to 1e-12.
+/// Derivatives of the rocker's angle and rate in the crank's angle and rate and in every length,
+/// which opens the joints of the placement. The map to the scene by dual numbers agrees with the
+/// closed form by the complex step to 1e-12.
 #[test]
 fn derivatives_are_those_of_the_closed_form() {
     for (placed, by, rate) in [(0.7, 0.4, 1.3), (0.2, -1.1, -0.8), (1.9, 2.5, 0.6)] {
@@ -197,7 +199,7 @@ fn tilted(mut file: Value, axis: &Vec3<f64>, angle: f64) -> Value {
     file
 }
 
-/// A lowered scene moves as the whole one, in any plane.
+/// A reduced scene moves as the whole one, in any plane.
 #[test]
 fn a_lowered_linkage_starts_as_the_whole_one() {
     let mut numbers = Numbers(31);
@@ -234,7 +236,7 @@ fn a_lowered_linkage_starts_as_the_whole_one() {
     }
 }
 
-/// The order that a mechanism is written in, and how it lies and what it is measured in.
+/// Order, orientation and units in which a mechanism is written.
 struct Writing {
     seed: u64,
     axis: Vec3<f64>,
@@ -250,9 +252,9 @@ const PLAIN: Writing = Writing {
     units: [1.0; 3],
 };
 
-/// A loop of four bodies with five freedoms, and a body that hangs on it: a hinge, a ball, a cylindrical
-/// and a universal joint and a ball; where the hinge and the cylindrical joint start is given, the rest
-/// follows from the mass.
+/// A loop of four bodies with five degrees of freedom (a hinge, a ball, a cylindrical and a
+/// universal joint, and a ball), and a body that it carries. The starts of the hinge and the
+/// cylindrical joint are given. The rest follows from the mass.
 fn five_freedoms(writing: &Writing) -> Value {
     let [metre, kilogram, second] = writing.units;
     let turn = matrix(&from_axis_angle(&writing.axis, writing.angle));
@@ -353,8 +355,8 @@ fn five_freedoms(writing: &Writing) -> Value {
     })
 }
 
-/// In any units, however the scene is turned, and in any order of bodies, joints and `between`, the start
-/// is the same; it has what is given.
+/// In any units, orientation and order of bodies, joints and `between`, the start is the same and
+/// has the given values.
 #[test]
 fn a_loop_of_five_freedoms_starts_the_same_however_it_is_written() {
     let pattern = problem(&five_freedoms(&PLAIN));
@@ -410,7 +412,7 @@ fn a_loop_of_five_freedoms_starts_the_same_however_it_is_written() {
     }
 }
 
-/// Angle or displacement of a joint and its rate where a model is placed, from its frames.
+/// Angle or displacement of a joint and its rate in the placement, from its frames.
 fn measured(model: &Model<f64>, name: &str, dof: DegreeOfFreedom) -> [f64; 2] {
     let joint = model.joints.iter().find(|joint| joint.name == name);
     let joint = joint.expect("a joint of this name");
@@ -430,7 +432,7 @@ fn measured(model: &Model<f64>, name: &str, dof: DegreeOfFreedom) -> [f64; 2] {
         let (arm, omega) = (turn * joint.frame_b.point, turn * b.angular_velocity);
         let point = b.position + arm;
         let axes = joint.frame_b.axes.map(|e| turn * e);
-        // Of the point of body B at the point of body A.
+        // Velocity of the point of body B at the point of body A.
         let to_a = a.position + arm_a - b.position;
         other = (point, axes, b.velocity + omega.cross(&to_a), omega);
     }
@@ -447,9 +449,9 @@ fn measured(model: &Model<f64>, name: &str, dof: DegreeOfFreedom) -> [f64; 2] {
     }
 }
 
-/// Bricard's loop of six hinges, one of whose conditions is redundant, with every hinge started in turn.
-/// The complex step through the assembly and projection of the simulation itself, with a drive in the
-/// start's place, has the same derivatives to 1e-12.
+/// Bricard's loop of six hinges, one of whose conditions is redundant, with a start of each hinge
+/// in turn. The simulation's own assembly and projection, with a drive instead of the start, have
+/// the same derivatives by the complex step to 1e-12.
 #[test]
 fn every_hinge_of_a_bricard_loop_can_start() {
     let path = concat!(
@@ -478,7 +480,7 @@ fn every_hinge_of_a_bricard_loop_can_start() {
                 let step = |j: usize| Complex64::new(x[j], if i == j { COMPLEX_STEP } else { 0.0 });
                 let design: Vec<Complex64> = (0..x.len()).map(step).collect();
                 let scene = problem.unlowered_scene(&design).model;
-                // From the same real start, and without what the map to the scene found.
+                // From the same real start, without its infinitesimal part.
                 let mut driven = scene.clone();
                 for body in &mut driven.bodies {
                     body.position = body.position.map(|x| x.re.into());
@@ -504,8 +506,8 @@ fn every_hinge_of_a_bricard_loop_can_start() {
     }
 }
 
-/// Starts that contradict the loop are refused with the joint's name: an angle that it cannot have, and
-/// more starts than freedoms. Designs that cannot start are failed simulations.
+/// Starts that contradict the loop are rejected with the joint's name: an impossible angle, and
+/// more starts than degrees of freedom. Designs that cannot start are failed simulations.
 #[test]
 fn what_a_loop_cannot_have_is_refused() {
     let refused = |file: &Value| match Problem::parse(&file.to_string(), "scene.json", &[]) {
@@ -534,7 +536,7 @@ fn what_a_loop_cannot_have_is_refused() {
         told.contains("the start of joint \"motor\" cannot be chosen"),
         "{told}"
     );
-    // An angle and a rate of two joints are one freedom each.
+    // An angle and a rate of two joints use one degree of freedom each.
     let mut each = four_bar(0.7, "motor", json!({"turn": {"angle": 0.2}}));
     each["joints"]["pivot"]["revolute"]["start"] = json!({"turn": {"rate": 3}});
     let (found, model) = started(&problem(&each), &[]);

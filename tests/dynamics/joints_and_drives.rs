@@ -1,4 +1,4 @@
-//! Joints and drives in problem files: motions that are known in closed form.
+//! Joints and drives in problem files: motions in closed form.
 
 use flexbody::driver::simulate;
 use flexbody::problem::Problem;
@@ -36,7 +36,7 @@ fn component(what: &str, body: &str, direction: [f64; 3]) -> Value {
     json!({"final": {what: {"body": body, "direction": direction}}})
 }
 
-/// A point mass on a rod without mass is the simple pendulum (MBS benchmark library, A01: positions
+/// A point mass on a massless rod is the simple pendulum (MBS benchmark library, A01: positions
 /// from elliptic functions).
 #[test]
 fn a_point_mass_on_a_rod_is_a_simple_pendulum() {
@@ -71,7 +71,7 @@ fn a_point_mass_on_a_rod_is_a_simple_pendulum() {
     );
 }
 
-/// Two bodies that are welded move as the one that they make.
+/// Two welded bodies move as the single body that they form.
 #[test]
 fn welded_bodies_move_as_one() {
     let functions = json!({
@@ -108,7 +108,7 @@ fn welded_bodies_move_as_one() {
     agree("weld", &values(&welded), &values(&one), 1e-10);
 }
 
-/// On a cylindrical joint along gravity a body falls freely and keeps its spin.
+/// A body on a cylindrical joint along gravity falls freely and keeps its spin.
 #[test]
 fn a_body_on_a_cylindrical_joint_falls_and_spins() {
     let file = json!({
@@ -134,9 +134,10 @@ fn a_body_on_a_cylindrical_joint_falls_and_spins() {
     agree("cylindrical", &values(&file), &exact, 1e-11);
 }
 
-/// Shafts at an angle β, joined by a universal joint whose cross axis starts in their plane's normal:
-/// tan φ2 = cos β tan φ1 or its inverse, by where the turn starts (Schmelz, Seherr-Thoss & Aucktor
-/// 1992, *Universal Joints and Driveshafts*, section 1.2). The first is driven at a constant rate.
+/// Shafts at an angle β, connected by a universal joint whose cross axis starts along the normal of
+/// their plane: tan φ2 = cos β tan φ1 or its inverse, depending on the initial angle (Schmelz,
+/// Seherr-Thoss & Aucktor 1992, *Universal Joints and Driveshafts*, section 1.2). The first has a
+/// constant rate.
 #[test]
 fn a_universal_joint_passes_a_driven_turn_on() {
     let (rate, duration, beta) = (4.0, 1.1, FRAC_PI_4);
@@ -174,7 +175,7 @@ fn a_universal_joint_passes_a_driven_turn_on() {
     agree("universal", &values(&file), &exact, 1e-9);
 }
 
-/// A slider-crank driven at a constant rate: the place, speed and acceleration of its slider.
+/// A slider-crank driven at a constant rate: position, speed and acceleration of its slider.
 fn slider_crank(method: &Value, spacing: (&str, f64)) -> Value {
     let (r, l) = (0.2_f64, 0.5_f64);
     let angle = 0.3_f64;
@@ -236,7 +237,7 @@ fn a_driven_slider_crank_moves_as_its_geometry_says() {
     ] {
         let found = values(&slider_crank(&method, spacing));
         agree(&method.to_string(), &found[..2], &exact[..2], tolerance);
-        // The acceleration as a method sees it: the slope of its velocities.
+        // The acceleration of a method is the slope of its velocities.
         agree(
             &method.to_string(),
             &found[2..],
@@ -246,7 +247,7 @@ fn a_driven_slider_crank_moves_as_its_geometry_says() {
     }
 }
 
-/// A mass that is shaken along gravity presses on its drive with m (g + s̈).
+/// A mass that is shaken along gravity loads its drive with m (g + s̈).
 #[test]
 fn a_drive_bears_weight_and_inertia() {
     let (amplitude, frequency, mass, duration) = (0.02, 3.0, 2.5, 0.43);
@@ -275,7 +276,7 @@ fn a_drive_bears_weight_and_inertia() {
     );
 }
 
-/// A nut on a cylindrical joint comes to rest by damping, along and about the axis apart.
+/// A nut on a cylindrical joint comes to rest by damping, along and about the axis independently.
 #[test]
 fn damping_acts_on_one_motion_of_a_cylindrical_joint() {
     let file = json!({

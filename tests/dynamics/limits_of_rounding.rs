@@ -1,5 +1,5 @@
-//! Scenes at the limits of rounding: they run where their motion is known, and are given up after a
-//! bounded number of tries where it is not.
+//! Scenes at the limits of round-off. They run if their motion is determined; otherwise they stop
+//! after a bounded number of tries.
 
 use crate::tests::reference::models::Numbers;
 use flexbody::driver::simulate;
@@ -24,9 +24,9 @@ fn values(problem: &Problem) -> Vec<f64> {
     (0..count).map(|f| seen.at.function(f).value).collect()
 }
 
-/// Two ball joints close to each other are a hinge, though a matrix that knows the line through them
-/// to 1e-16 m over their distance is nearly singular. Steps stay as many as those of the hinge, to a small
-/// factor.
+/// Two ball joints close to each other are a hinge. Their line is known to 1e-16 m over their
+/// distance, so a matrix is nearly singular. The number of steps is that of the hinge, up to a
+/// small factor.
 #[test]
 fn ball_joints_close_to_each_other_are_a_hinge() {
     let hinge = r#"/joints={"hinge":{"revolute":{"between":["door","ground"],"at":"door.first","axis":[0,0,1]}}}"#;
@@ -66,8 +66,8 @@ fn ball_joints_close_to_each_other_are_a_hinge() {
     }
 }
 
-/// A spring so stiff that explicit steps make no headway hands over to Radau IIA; the bob moves as on a
-/// rod, to 1/ω².
+/// A spring is so stiff that explicit steps make no headway. Radau IIA takes over, and the bob
+/// moves as on a rod, to 1/ω².
 #[test]
 fn where_explicit_steps_make_no_headway_radau_takes_over() {
     for (stiffness, duration) in [(1e14, 1.0), (4e13, 0.6)] {
@@ -86,8 +86,8 @@ fn where_explicit_steps_make_no_headway_radau_takes_over() {
     }
 }
 
-/// Errors that do not fall with the step are given up after a hundred tries, whatever they are; errors that
-/// fall with it never are.
+/// Errors that do not decrease with the step end the run after a hundred tries. Errors that
+/// decrease never do.
 #[test]
 fn rejections_in_a_row_are_bounded() {
     let problem = extreme("door", &[]);
@@ -102,7 +102,7 @@ fn rejections_in_a_row_are_bounded() {
             let mut settings = Settings::steps(Method::Dop853, 1);
             settings.spacing = Spacing::Tolerance(tolerance);
             let new = || Controller::new(&settings, order, &scale, (&scene.model, 1.0));
-            // Just too large, jumping about, and growing as steps shrink.
+            // Just too large, irregular, and growing as steps shrink.
             for law in 0..3 {
                 let mut controller = new();
                 let (mut tries, mut before) = (0, 0.0);
@@ -122,7 +122,7 @@ fn rejections_in_a_row_are_bounded() {
                     "{before}"
                 );
             }
-            // Two in three are too large, and then one is not.
+            // Two of three are too large.
             let mut controller = new();
             let (mut reached, mut tries) = (0.0, 0);
             while let Some(width) = controller.next(reached) {

@@ -45,7 +45,7 @@ fn harmonic() -> TimeFunction<f64> {
     }
 }
 
-/// Every kind of load with the joint that it needs, every option of it at least once.
+/// Every kind of load with the joint that it needs; every option at least once.
 fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKind<f64>)> {
     use JointKind::{Prismatic, Revolute, Spherical};
     let mut all = Vec::new();
@@ -79,7 +79,7 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
             cubic: 1.7,
             damping,
         };
-        // An angle at rest on the far side, so that the difference is wrapped.
+        // A rest angle on the far side, so that the difference is wrapped.
         let torsion = LoadKind::TorsionSpring {
             joint: 0,
             rest_angle: 2.5,
@@ -154,7 +154,7 @@ fn forces<S: Scalar>(case: &Case, model: &Model<S>, q: &[S], v: &[S], time: S) -
     out
 }
 
-/// Entries as they are emitted.
+/// Collects emitted entries.
 struct Dense(DMatrix<f64>, usize);
 
 impl Emit<f64> for Dense {
@@ -254,7 +254,7 @@ fn potentials() {
         let exact = case.by_parameters(|model| energy(model, &q));
         agree(&case, "energy by parameters", &parameters(&cot), &exact);
         if matches!(case.model.loads[0].kind, LoadKind::Spring { .. }) {
-            // At rest a spring's force is minus the slope of its energy.
+            // At rest, the force of a spring is minus the derivative of its energy.
             let still = forces(&case, &case.model, &case.q, &[0.0; 12], TIME);
             let down: Vec<f64> = y.iter().map(|y| -y / 0.7).collect();
             agree(&case, "force from energy", &still, &down);
@@ -301,7 +301,7 @@ fn equations_of_a_step() {
         let (model, time) = (case.lifted(), Complex64::from(TIME));
         let (q0, v0) = (lift(&case.q), lift(&case.v));
         for j in 0..12 {
-            // Columns of positions with q̇ held at zero: the rate part c h is known.
+            // Columns of positions at q̇ = 0: the part c h of the rates is known.
             let e = unit(n, j);
             let mut exact = residual(&model, &case.moved(&e[..12]), &v0, &still[..12], time, h);
             exact[j] += c * h;
@@ -324,7 +324,7 @@ fn equations_of_a_step() {
         let psi = case.numbers.list(n);
         let mut cot = case.model.map(&mut |_| 0.0);
         let by_time = equations.pull_back(&at, &psi, &mut cot);
-        // The residual has its dynamics divided by a mass.
+        // The dynamics in the residual are divided by a mass.
         let mut weights = psi.clone();
         let dynamics = weights[12..24].iter_mut();
         dynamics.for_each(|x| *x *= equations.mass());
@@ -368,7 +368,7 @@ fn initial_accelerations() {
     }
 }
 
-/// Loads between two bodies exchange momentum and make none.
+/// Loads between two bodies do not change the total momentum.
 #[test]
 fn forces_between_two_bodies_balance() {
     for case in cases() {

@@ -1,5 +1,5 @@
-//! Loads in problem files: exact gradients in every number of every kind of load, and motions that
-//! are known in closed form.
+//! Loads in problem files: exact gradients in every number of every kind of load, and motions in
+//! closed form.
 
 use crate::tests::numbers;
 
@@ -8,13 +8,13 @@ use flexbody::problem::Problem;
 use numbers::numbers;
 use serde_json::{Value, json};
 
-/// Half a second by BDF2 from the first step on.
+/// Half a second by BDF2 with a start of rising order.
 fn bdf(steps: usize) -> Value {
     let method = json!({"bdf": {"order": 2, "start": "rising_order"}});
     json!({"duration": 0.5, "steps": steps, "method": method})
 }
 
-/// A slider on a rail, an arm hinged to it, a box hung from the arm by a ball joint.
+/// A slider on a rail, an arm on a hinge, and a box on the arm by a ball joint.
 fn scene(load: &Value) -> Value {
     json!({
         "version": 1,
@@ -55,8 +55,9 @@ fn scene(load: &Value) -> Value {
     })
 }
 
-/// The duration, a length and an angle of the scene, and every number of the load: to 1e-12 of
-/// themselves, or to 1e-14 of the function's largest, whose round-off reaches the small ones.
+/// Gradients in the duration, a length and an angle of the scene, and every number of the load: to
+/// 1e-12 of themselves, or to 1e-14 of the function's largest, whose round-off affects the small
+/// ones.
 fn assert_gradients(load: Value) {
     assert_gradients_of(&json!({"load": load}), bdf(100));
 }
@@ -95,7 +96,7 @@ fn assert_gradients_of(loads: &Value, simulation: Value) {
             "{loads}: {name}: {derivative:?}"
         );
     }
-    // Every variable moves a function.
+    // Every variable changes a function.
     assert!(moved >= problem.variables.len(), "{loads}: {moved}");
 }
 
@@ -149,8 +150,8 @@ fn gradients_of_damping_and_friction() {
     }
 }
 
-/// All kinds of load at once by every method, with steps of equal size and with chosen ones: the
-/// explicit methods need forces alone, the implicit ones their Jacobians too.
+/// All kinds of load at once by every method, with equal and adaptive steps. Explicit methods need
+/// only forces, implicit ones also their Jacobians.
 #[test]
 fn gradients_by_every_method() {
     let loads = json!({
@@ -213,7 +214,8 @@ fn along(joint: &str) -> ([f64; 3], Value, Value) {
     }
 }
 
-/// Known motions of one coordinate with unit rate at the start, by BDF2 with 4000 steps, to 2e-6.
+/// Motions of one coordinate in closed form, with unit rate at the start, by BDF2 with 4000 steps,
+/// to 2e-6.
 #[test]
 fn motions_in_closed_form() {
     let m: f64 = 2.0;
@@ -313,8 +315,8 @@ fn simpson(f: impl Fn(f64) -> f64) -> f64 {
         / 3.0
 }
 
-/// Springs keep the total energy to the order of the formula (1.2e-4 J and less of about 10 J at 2000
-/// steps); what dampers take away is lost for good.
+/// Springs conserve the total energy to the order of the formula (at most 1.2e-4 J of about 10 J at
+/// 2000 steps). Dampers reduce it.
 #[test]
 fn springs_keep_energy_and_dampers_take_it() {
     let drift = |load: Value, steps: usize| {

@@ -1,9 +1,9 @@
 //! All methods against trajectories of independent codes: error, order, constraints, reactions,
 //! energy and work.
 //!
-//! The scenes are a trebuchet of five bodies (2 s), a triple pendulum in space (3 s) and a chain
-//! of sixteen bars (1 s); how their references were made, and how accurate they are, stands in
-//! `reference`. All tolerances are on the largest error over all bodies and reference instants.
+//! The scenes are a trebuchet of five bodies (2 s), a triple pendulum in space (3 s) and a chain of
+//! sixteen bars (1 s). `reference` states the origin and accuracy of their references. All
+//! tolerances are on the largest error over all bodies and reference instants.
 
 use crate::tests::reference;
 
@@ -12,8 +12,8 @@ use flexbody::model::Model;
 use flexbody::system::observe::observe;
 use reference::{Instant, bdf, motion_error, observed_order, reaction_error, rising};
 
-/// A scene, its duration [s] and the largest of three step sizes [s], each half of the one
-/// before, at which errors are in their asymptotic range.
+/// A scene, its duration [s] and the largest of three step sizes [s]. Each is half of the one
+/// before; errors are in their asymptotic range.
 const SCENES: [(&str, f64, f64); 3] = [
     ("trebuchet", 2.0, 1e-3),
     ("triple_pendulum", 3.0, 1e-3),
@@ -25,7 +25,7 @@ fn refined(model: &Model<f64>, duration: f64, h: f64, order: usize) -> [Trajecto
     [h, h / 2.0, h / 4.0].map(|h| bdf(model, duration, h, order))
 }
 
-/// Asserts that an error falls with the given order, within 0.1, each time the step is halved.
+/// Asserts that an error decreases with the given order, within 0.1, each time the step is halved.
 fn assert_order(what: &str, errors: [f64; 3], order: f64) {
     for pair in errors.windows(2) {
         let observed = observed_order(pair[0], pair[1]);
@@ -59,9 +59,9 @@ fn assert_constraints_hold(model: &Model<f64>, run: &Trajectory<f64>) {
     }
 }
 
-/// Centres of mass of the trebuchet at dt = 1e-3 s. TACS (Boopathy & Kennedy), which has the same
-/// formula without the velocity constraints, is off by 5.1e-3 m there; this is off by 3.33e-3 m.
-/// The pendulum and the chain, with steps half as long, are off by 2.6e-3 m and 6.6e-6 m.
+/// Centres of mass of the trebuchet at dt = 1e-3 s. TACS (Boopathy & Kennedy) has the same formula
+/// without the velocity constraints; its error is 5.1e-3 m, ours 3.33e-3 m. The errors of the
+/// pendulum and of the chain, with steps half as long, are 2.6e-3 m and 6.6e-6 m.
 #[test]
 fn positions_are_closer_than_the_published_code() {
     for (name, duration, h, tolerance) in [
@@ -75,10 +75,10 @@ fn positions_are_closer_than_the_published_code() {
     }
 }
 
-/// Positions and velocities with order 2, reactions of all joints (forces and torques, relative
-/// to the largest) with order 2 and below the given error at the finest step, and the drift of
-/// energy with order 2, each within 0.1 (reactions of the chain, whose end cracks like a whip,
-/// converge faster at first: its coarsest step is left out).
+/// Positions and velocities have order 2. Reactions of all joints (relative to the largest) have
+/// order 2, and the given error at the finest step. The drift of energy has order 2. All within
+/// 0.1. Reactions of the chain, whose end cracks like a whip, converge faster at first: its
+/// coarsest step is omitted.
 #[test]
 fn second_order() {
     let reactions_at_finest = [1.3e-6, 6.6e-4, 2.3e-5];
@@ -104,7 +104,8 @@ fn second_order() {
     }
 }
 
-/// Positions with order 1, within 0.1; of the pendulum, which is chaotic, over its first second.
+/// Positions have order 1, within 0.1; those of the pendulum, which is chaotic, over its first
+/// second.
 #[test]
 fn first_order() {
     for ((name, _, h), duration) in SCENES.into_iter().zip([2.0, 1.0, 1.0]) {
@@ -118,7 +119,7 @@ fn first_order() {
     }
 }
 
-/// Constraints hold at steps of any size, also where the motion is no longer accurate.
+/// Constraints hold at steps of any size, also if the motion is not accurate.
 #[test]
 fn constraints_hold_at_coarse_steps() {
     for (name, duration, _) in SCENES {
@@ -129,8 +130,8 @@ fn constraints_hold_at_coarse_steps() {
     }
 }
 
-/// Newton iterations and factorisations of BDF2 at dt = 1e-3 s, as counted, within 5 %: a change
-/// that makes a run dearer, or quietly less accurate, fails.
+/// Newton iterations and factorisations of BDF2 at dt = 1e-3 s equal the recorded counts within 5
+/// %. A change that makes a run more expensive or less accurate fails.
 #[test]
 fn work_is_as_counted() {
     for (name, duration, newton, factorisations) in [
@@ -155,9 +156,10 @@ fn work_is_as_counted() {
 }
 
 /// Observed orders of all methods on the trebuchet over 2 s, from the errors with so many steps and
-/// twice as many: those of theory, but for the paper's start-up of rising order, which caps BDF5 at 2.
-/// Gains at the finest step that is measured are required, so that no error before its asymptotic
-/// range counts.
+/// twice as many. They are the theoretical ones, except that the paper's start-up of rising order
+/// limits BDF5 to
+/// 2. A gain at the finest step is required, so that an error outside its asymptotic range does not
+/// count.
 #[test]
 fn every_method_has_its_order() {
     let (model, instants) = reference::load("trebuchet");
@@ -192,8 +194,8 @@ fn every_method_has_its_order() {
     }
 }
 
-/// Steps that follow a tolerance: errors of the explicit method and of Radau IIA, and their work as
-/// counted, within 5 %.
+/// Adaptive steps: errors of the explicit method and of Radau IIA, and their work as recorded,
+/// within 5 %.
 #[test]
 fn steps_follow_the_tolerance_at_the_work_that_was_counted() {
     let radau = Method::Radau { stages: 3 };
@@ -254,7 +256,7 @@ fn steps_follow_the_tolerance_at_the_work_that_was_counted() {
     }
 }
 
-/// The triple pendulum over 10 s, which is chaotic, keeps its energy.
+/// The triple pendulum over 10 s is chaotic and conserves its energy.
 #[test]
 fn energy_of_a_chaotic_motion() {
     let (model, _) = reference::load("triple_pendulum");

@@ -1,6 +1,6 @@
-//! The joints of a planar scene, looked at in the plane, against the same joints in space: every kind
-//! of joint with all its rows, between two bodies and between a body and ground, with skew frames in
-//! random planes. What lies in the plane agrees to 1e-14 of the largest number.
+//! The joints of a planar scene, computed in the plane and in space: every kind of joint with all
+//! its rows, between two bodies and between a body and ground, with skew frames in random planes.
+//! Components in the plane agree to 1e-14 of the largest number.
 
 use crate::tests::reference;
 
@@ -14,7 +14,7 @@ use flexbody::system::{BodyMotion, Numbering, reduce};
 use reference::cases::{Case, case, lift, parameters, step};
 use reference::models::{KINDS, axes_along};
 
-/// All kinds of joint in a random plane, moving in it; with accelerations and virtual velocities.
+/// All kinds of joint, moving in a random plane, with accelerations and virtual velocities.
 fn cases() -> Vec<(Case, Vec<f64>, Vec<f64>)> {
     let mut all = Vec::new();
     for kind in KINDS {
@@ -52,7 +52,7 @@ fn moving<S: Scalar>(case: &Case, q: &[S], v: &[S], a: &[S], w: &[S]) -> Vec<Bod
     motions
 }
 
-/// What the equations in the plane are made of: G B of all rows, column by column.
+/// The matrix of the equations in the plane: G B of all rows, column by column.
 fn in_plane<S: Scalar>(case: &Case, model: &Model<S>, gradients: &[RowGradient<S>]) -> Vec<S> {
     let numbering = &case.numbering;
     let mut all = Vec::new();
@@ -114,7 +114,7 @@ fn gradients_and_accelerations_are_those_in_space() {
     }
 }
 
-/// The infinitesimal parts, which any motion in the plane and any change of the model leave.
+/// The infinitesimal parts agree for any motion in the plane and any change of the model.
 #[test]
 fn infinitesimal_parts_are_those_in_space() {
     for (mut case, a, _) in cases() {
@@ -179,7 +179,7 @@ fn pull_backs_are_those_in_space() {
     }
 }
 
-/// Bodies that leave the plane, or drives, are looked at in space.
+/// Bodies that leave the plane, and drives, are treated in space.
 #[test]
 fn spatial_scenes_are_told_apart() {
     for (mut case, _, _) in cases().into_iter().take(2) {

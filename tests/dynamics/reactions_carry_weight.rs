@@ -1,5 +1,4 @@
-//! Joints carry what hangs from them: reactions of bodies at rest against statics, to 5e-11 N or
-//! N m (1e-12 of 50 N).
+//! Reactions of bodies at rest agree with statics to 5e-11 N or N m (1e-12 of 50 N).
 
 use crate::tests::reference;
 
@@ -35,7 +34,7 @@ fn hanging(name: &str, mass: f64, y: f64) -> RigidBody<f64> {
     }
 }
 
-/// Two bodies that hang from each other pull at their joints with what hangs from these.
+/// Two bodies that hang on each other load their joints with the weight below them.
 #[test]
 fn a_joint_carries_the_weight_that_hangs_from_it() {
     for kind in [
@@ -62,7 +61,7 @@ fn a_joint_carries_the_weight_that_hangs_from_it() {
             loads: Vec::new(),
         };
         let found = reactions_at_start(&model);
-        // On body A, the upper body: held by the ceiling, pulled down by the lower body.
+        // The upper body is body A: the ceiling holds it, and the lower body pulls it down.
         let up = |force| Vec3::new(0.0, force, 0.0);
         assert_near("ceiling", &found[0].force_ground, &up(5.0 * 9.81));
         assert_near("middle", &found[1].force_ground, &up(-3.0 * 9.81));
@@ -72,8 +71,7 @@ fn a_joint_carries_the_weight_that_hangs_from_it() {
     }
 }
 
-/// Two bodies that hang from each other stay at rest, to 1e-12 m, and go on pulling with their
-/// weights.
+/// Two bodies that hang on each other stay at rest, to 1e-12 m, and their reactions stay the same.
 #[test]
 fn bodies_at_rest_stay_at_rest() {
     for kind in [
@@ -123,9 +121,9 @@ fn bodies_at_rest_stay_at_rest() {
     }
 }
 
-/// A drawer that is held 0.5 m from its centre of mass by a slide along x carries force m g and
-/// torque m g · 0.5 m about z on the body; in the joint's own axes they have the same lengths, and
-/// nothing acts along the slide. A puck on a horizontal plane is held up by m g.
+/// A slide along x holds a drawer 0.5 m from its centre of mass. It carries the force m g and the
+/// torque m g · 0.5 m about z. In the joint's axes they have the same lengths, and there is no
+/// component along the slide. A puck on a horizontal plane is carried by m g.
 #[test]
 fn a_slide_and_a_plane_carry_weight_and_moment() {
     let bodies = vec![rod("drawer", 2.0, 0.5)];

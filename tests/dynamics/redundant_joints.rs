@@ -1,5 +1,5 @@
-//! Joints that repeat each other: what follows from the others is left out and named, the motion is
-//! that without it, and a singular position or joints that do not fit are told apart from it.
+//! Redundant joints: redundant rows are left out and named, and the motion is that without them.
+//! Singular positions and joints that do not fit are distinguished from redundancy.
 
 use crate::tests::reference;
 
@@ -21,7 +21,7 @@ fn left_out(problem: &Problem) -> Vec<(&str, usize)> {
     all.map(|r| (r.joint.as_str(), r.left_out)).collect()
 }
 
-/// A door on hinges about the y axis at these heights, pushed and left to swing.
+/// A door on hinges about the y axis at these heights, with an initial velocity.
 fn door(hinges: &[f64]) -> Value {
     let hinge = |y: &f64| {
         (
@@ -62,8 +62,8 @@ fn a_door_on_three_hinges_moves_as_on_one() {
     }
 }
 
-/// The smallest reactions over all rows carry the weight in equal parts, and together the same as
-/// one hinge does.
+/// The smallest reactions over all rows share the weight equally. Together they equal those of a
+/// single hinge.
 #[test]
 fn reactions_of_a_door_on_two_hinges_are_shared() {
     let (two, one) = (problem(&door(&[-0.8, 0.8])), problem(&door(&[0.0])));
@@ -86,8 +86,8 @@ fn reactions_of_a_door_on_two_hinges_are_shared() {
     }
 }
 
-/// A parallelogram of rods of 1 m and 1 kg, N cells wide, turned by `angle` from upright, its
-/// upper nodes moving to the right at 1 m/s (MBS benchmark library, A02).
+/// A parallelogram of rods of 1 m and 1 kg, N cells wide, at `angle` from upright. Its upper nodes
+/// move to the right at 1 m/s (MBS benchmark library, A02).
 fn parallelograms(n: usize, angle: f64) -> Value {
     let (mut bodies, mut joints) = (serde_json::Map::new(), serde_json::Map::new());
     let half = std::f64::consts::FRAC_PI_2;
@@ -152,8 +152,8 @@ fn angle_of(n: usize, time: f64) -> f64 {
     x
 }
 
-/// Three of the conditions out of the plane of each cell follow from the others; the motion is that
-/// of the one coordinate, to the error of BDF2 (2e-6 m), and its gradient exact.
+/// Three of the conditions out of the plane of each cell are redundant. The motion is that of the
+/// single coordinate, to the error of BDF2 (2e-6 m), and its gradient is exact.
 #[test]
 fn parallelograms_move_in_their_plane() {
     for n in [1, 2, 5] {
@@ -174,8 +174,7 @@ fn parallelograms_move_in_their_plane() {
     }
 }
 
-/// A design that makes rows independent that were redundant at the start does not run on as if
-/// nothing had happened.
+/// A design at which the redundant rows become independent fails with an error.
 #[test]
 fn a_design_that_breaks_the_redundancy_is_refused_by_name() {
     let mut file = parallelograms(1, 0.3);
@@ -194,7 +193,7 @@ fn a_design_that_breaks_the_redundancy_is_refused_by_name() {
     }
 }
 
-/// With all rods in a line one more row depends on the others, there alone: no redundancy.
+/// With all rods in a line one more row is dependent, only there: no redundancy.
 #[test]
 fn a_singular_position_is_no_redundancy() {
     let half = std::f64::consts::FRAC_PI_2;
@@ -225,9 +224,8 @@ fn joints_that_contradict_each_other_are_no_redundancy() {
     assert!(fault.contains("cannot be assembled"), "{fault}");
 }
 
-/// A tree of bodies has nothing to leave out, however it stands.
-/// Two bodies that a weld and a rod beside it hold together, swinging: the shares of the two follow from
-/// the forces, however far the joints have drifted and however the scene is lowered.
+/// A weld and a rod hold two swinging bodies together. Their shares of the load follow from the
+/// forces, for any drift of the joints and with any reductions.
 #[test]
 fn shares_of_redundant_joints_are_smooth() {
     let solid = json!({"box": {"size": [1, 0.2, 0.3]}});
@@ -282,6 +280,7 @@ fn shares_of_redundant_joints_are_smooth() {
     assert!(share > 1e-3, "{share}");
 }
 
+/// A tree of bodies has no redundant rows.
 #[test]
 fn trees_are_not_searched() {
     for name in ["trebuchet", "trebuchet_release_time", "triple_pendulum"] {
@@ -291,8 +290,8 @@ fn trees_are_not_searched() {
     }
 }
 
-/// Positions of P3 from an independent integration to 1e-10 of the one coordinate that the loop
-/// leaves (its energy error is 6e-14 J), to 1e-8 m.
+/// Positions of P3 agree to 1e-8 m with an independent integration of the loop's single coordinate
+/// to 1e-10 (its energy error is 6e-14 J).
 #[test]
 fn bricards_mechanism() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/benchmarks/bricard.json");
@@ -318,8 +317,9 @@ fn bricards_mechanism() {
     }
 }
 
-/// Rows of linkages through singular positions (MBS benchmark library, A02), by the explicit method
-/// with a tolerance of 1e-9: ten passages in 10 s, to 1e-6 of the exact motion of the one coordinate.
+/// Rows of linkages pass singular positions (MBS benchmark library, A02) by the explicit method
+/// with a tolerance of 1e-9: ten passages in 10 s, to 1e-6 of the exact motion of the single
+/// coordinate.
 #[test]
 fn linkages_pass_singular_positions_on_their_branch() {
     for (n, exact) in [
@@ -344,8 +344,8 @@ fn linkages_pass_singular_positions_on_their_branch() {
     }
 }
 
-/// Radau IIA with equal steps passes two singular positions, in which all rods lie in a line, with the
-/// accuracy of its order, or says where it cannot.
+/// Radau IIA with equal steps passes two singular positions, in which all rods are in line, with
+/// the accuracy of its order, or reports where it cannot.
 #[test]
 fn implicit_steps_pass_singular_positions_rightly_or_name_them() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/benchmarks/four_bars_2.json");
@@ -358,7 +358,7 @@ fn implicit_steps_pass_singular_positions_rightly_or_name_them() {
         match simulate(&problem, &[]) {
             Ok(done) => {
                 let found = [0, 1].map(|f| done.at.function(f).value);
-                // The exact equation of its one freedom, at 1 s.
+                // The exact equation of its single coordinate, at 1 s.
                 let apart = (found[0] + 0.1950203019).hypot(found[1] + 0.9807992057);
                 assert!(apart < 1e-5, "{steps}: {found:?}");
             }
@@ -372,8 +372,8 @@ fn implicit_steps_pass_singular_positions_rightly_or_name_them() {
     }
 }
 
-/// A parallelogram of rods of 1 m that stands upright and turns at this speed (rad/s), without gravity: its
-/// speed stays as it is, and it lies in a line, where its rods could fold, after quarter turns.
+/// A parallelogram of rods of 1 m that starts upright and rotates at this speed [rad/s] without
+/// gravity. Its speed is constant. After quarter turns it is in line, where its rods could fold.
 fn turning_parallelogram(speed: f64, simulation: &Value) -> Value {
     let half = std::f64::consts::FRAC_PI_2;
     let rod = |place: Value, linear: f64, angular: f64| {
@@ -403,7 +403,7 @@ fn turning_parallelogram(speed: f64, simulation: &Value) -> Value {
     })
 }
 
-/// Largest error of a run of the turning parallelogram for `duration`, each relative to its scale.
+/// Largest error of a run of the rotating parallelogram for `duration`, each relative to its scale.
 fn error_of_turning(speed: f64, duration: f64, more: &Value) -> Result<f64, IntegrationFailure> {
     let mut simulation = json!({"duration": duration});
     for (key, value) in more.as_object().expect("settings") {
@@ -438,8 +438,8 @@ fn distances(count: i32) -> impl Iterator<Item = f64> {
     })
 }
 
-/// Runs that end at all distances from a singular position are as accurate as others: the last step leaps
-/// over it.
+/// Runs that end at any distance from a singular position are as accurate as others: the last step
+/// leaps over it.
 #[test]
 fn runs_end_at_singular_positions() {
     let half = std::f64::consts::FRAC_PI_2;
@@ -460,7 +460,7 @@ fn runs_end_at_singular_positions() {
     }
 }
 
-/// The same for speeds that bring the end of the same duration there, after some passages.
+/// The same for speeds at which the same duration ends there, after some passages.
 #[test]
 fn any_speed_passes_singular_positions() {
     let half = std::f64::consts::FRAC_PI_2;
@@ -474,7 +474,7 @@ fn any_speed_passes_singular_positions() {
     }
 }
 
-/// Equal steps, which cannot keep away from singular positions, are accurate or refused.
+/// Equal steps cannot avoid singular positions. They are accurate or rejected.
 #[test]
 fn given_steps_are_accurate_or_refused_at_singular_positions() {
     let half = std::f64::consts::FRAC_PI_2;
@@ -503,8 +503,8 @@ fn given_steps_are_accurate_or_refused_at_singular_positions() {
     assert!(accurate >= 30 && refused >= 10, "{accurate}, {refused}");
 }
 
-/// Derivatives of a run that ends in a singular position are those of the numbers that it gives, and those of
-/// the motion.
+/// Derivatives of a run that ends in a singular position are those of its values and those of the
+/// exact motion.
 #[test]
 fn derivatives_reach_over_singular_positions() {
     let half = std::f64::consts::FRAC_PI_2;
@@ -525,8 +525,8 @@ fn derivatives_reach_over_singular_positions() {
     }
 }
 
-/// Whether rows of four-bars pass their singular positions does not depend on the tolerance, and the error
-/// follows it down to round-off.
+/// Rows of four-bars pass their singular positions with any tolerance, and the error follows it
+/// down to round-off.
 #[test]
 fn every_tolerance_passes_singular_positions() {
     for (n, steps, exact) in [
@@ -553,8 +553,8 @@ fn every_tolerance_passes_singular_positions() {
     }
 }
 
-/// The problem with its bodies, joints and the two bodies of some joints in another order, which is all
-/// that differs, and the positions of all centres of mass at the end as its functions.
+/// The problem with its bodies, joints and the two bodies of some joints in another order. Its
+/// functions are the final positions of all centres of mass.
 fn permuted(file: &Value, numbers: &mut Numbers, settings: &Value) -> Value {
     fn shuffle(object: &mut Value, numbers: &mut Numbers) {
         let map = object.as_object_mut().expect("an object");
@@ -620,7 +620,7 @@ fn benchmark(name: &str) -> Value {
     serde_json::from_str(&text).expect("JSON")
 }
 
-/// Final positions of the bodies, and the most that their joints are open by.
+/// Final positions of the bodies, and the largest gap of their joints.
 fn ends(file: &Value) -> (Vec<(String, f64)>, f64) {
     let problem = problem(file);
     let done = simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
@@ -630,7 +630,7 @@ fn ends(file: &Value) -> (Vec<(String, f64)>, f64) {
 }
 
 /// Forty orders of bodies, joints and their two bodies of each benchmark with loops: equal motions,
-/// within what the tolerance lets pass.
+/// within the tolerance.
 #[test]
 fn the_order_of_a_file_does_not_matter() {
     let dop853 = |duration: f64, tolerance: f64| json!({"duration": duration, "tolerance": tolerance, "method": "dop853"});
@@ -660,7 +660,7 @@ fn the_order_of_a_file_does_not_matter() {
         for run in 1..runs {
             let other = permuted(&file, &mut numbers, &settings);
             let (found, open) = ends(&other);
-            // Samples stand inside the steps.
+            // Samples lie inside the steps.
             assert!(open <= bound, "{name}, {run}: {open:e}");
             for ((of, a), (_, b)) in first.iter().zip(&found) {
                 assert!(
@@ -696,8 +696,8 @@ fn bricards_mechanism_in_any_order() {
     }
 }
 
-/// Derivatives over motions in which rows that are left out are exchanged, by explicit and implicit
-/// steps, in three orders of the file.
+/// Derivatives over motions in which redundant rows are exchanged, by explicit and implicit steps,
+/// in three orders of the file.
 #[test]
 fn derivatives_are_exact_where_rows_are_exchanged() {
     let file = benchmark("bricard");

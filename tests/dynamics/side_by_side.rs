@@ -1,11 +1,12 @@
-//! Simulations that are made side by side change no number of a run.
+//! Parallel simulations do not change the results of a run.
 
 use flexbody::driver::{KnownEvaluations, optimise, second_order};
 use flexbody::problem::Problem;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// What a run on so many processors does: its rows, its record and, if wanted, its curvature.
+/// Result of a run on this number of processors: its rows, its record and, if wanted, its
+/// curvature.
 fn run(file: &str, threads: usize, curvature: bool) -> (usize, String) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
     let problem = Problem::load(&path, &[]).unwrap_or_else(|faults| panic!("{faults}"));
@@ -39,7 +40,7 @@ fn run(file: &str, threads: usize, curvature: bool) -> (usize, String) {
     })
 }
 
-/// Steps into designs that cannot be assembled, and the gradients of a second-order check.
+/// Steps to designs that cannot be assembled, and the gradients of a second-order check.
 #[test]
 fn runs_do_not_depend_on_the_number_of_processors() {
     for (file, curvature, fails) in [

@@ -1,5 +1,5 @@
-//! Linkages that pass positions where their bars are in line. A parallelogram in gravity moves as a
-//! pendulum with the same moments does, whatever its lengths, its start and the tolerance.
+//! Linkages that pass positions with their bars in line. A parallelogram in gravity moves as a
+//! pendulum with the same moments, for any lengths, start and tolerance.
 
 use crate::tests::reference;
 
@@ -8,8 +8,8 @@ use flexbody::problem::Problem;
 use reference::models::Numbers;
 use serde_json::{Value, json};
 
-/// Lengths [m] of crank and coupler, masses [kg] of crank, coupler and rocker, angle [rad] and rate
-/// [rad/s] of the start.
+/// Lengths [m] of crank and coupler, masses [kg] of crank, coupler and rocker, initial angle [rad]
+/// and rate [rad/s].
 struct Parallelogram {
     lengths: [f64; 2],
     masses: [f64; 3],
@@ -62,7 +62,7 @@ impl Parallelogram {
         })
     }
 
-    /// One body with the moments of inertia and of weight that the linkage has about its crank's hinge.
+    /// One body with the linkage's moments of inertia and of weight about the crank's hinge.
     fn pendulum(&self) -> Value {
         let a = self.lengths[0];
         let [crank, coupler, rocker] = self.masses;

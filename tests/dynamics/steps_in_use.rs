@@ -1,5 +1,5 @@
-//! The method that a scene chooses, the steps that are kept from design to design, and what is said of
-//! both.
+//! The method chosen for a scene, the steps that are kept from design to design, and the messages
+//! about both.
 
 use flexbody::driver::evaluate::Evaluated;
 use flexbody::driver::evaluator::Evaluator;
@@ -28,9 +28,9 @@ fn a_rigid_scene_is_integrated_explicitly() {
     assert_eq!(motion.at.run.counts.newton_iterations, 0);
 }
 
-/// Bricard's mechanism with one joint off by little is nearly locked: it shakes between two stops, and
-/// 1 s of it needs half a million steps. It is given up after a fixed number of steps, by a message that
-/// says so, unless the file says how long it may take, or leaves the method open.
+/// Bricard's mechanism with one joint slightly displaced is nearly locked: it shakes between two
+/// stops, and 1 s needs half a million steps. It stops after a fixed number of steps with a
+/// message, unless the file gives a time limit or leaves the method open.
 #[test]
 fn a_mechanism_that_is_nearly_locked_is_given_up() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/nearly_locked.json");
@@ -55,7 +55,7 @@ fn a_mechanism_that_is_nearly_locked_is_given_up() {
         let told = failure.to_string();
         assert!(told.contains("nearly locked"), "{told}");
     }
-    // Radau IIA takes over where it may: without a freedom, nothing moves.
+    // Radau IIA takes over if the file allows it: without a degree of freedom nothing moves.
     for more in ["/simulation/tolerance=1e-9", "/simulation/duration=10"] {
         let problem = load(&[&off(1e-6), more]);
         let seen = simulate(&problem, &problem.start()).expect("runs");
@@ -67,10 +67,10 @@ fn a_mechanism_that_is_nearly_locked_is_given_up() {
             assert!((from - to).abs() < 1e-6, "{from} {to}");
         }
     }
-    // The mechanism that is not off moves.
+    // The mechanism without displacement moves.
     let problem = load(&["/simulation/duration=0.2"]);
     simulate(&problem, &problem.start()).expect("runs");
-    // Time instead of steps.
+    // A time limit instead of a number of steps.
     let problem = load(&[&off(1e-6), "/simulation/seconds=1e-9"]);
     let failure = simulate(&problem, &problem.start()).map(|_| ());
     let failure = failure.expect_err("takes longer");
@@ -80,8 +80,8 @@ fn a_mechanism_that_is_nearly_locked_is_given_up() {
     );
 }
 
-/// A stiff spring that vibrates without damping needs hundreds of thousands of steps at a tight tolerance,
-/// a fifth of them rejected. It is one body, and is not given up.
+/// A stiff spring vibrates without damping. At a tight tolerance it needs hundreds of thousands of
+/// steps, and a fifth of them is rejected. The scene has one body, and the run is not stopped.
 #[test]
 fn a_fast_vibration_is_not_given_up() {
     let simulation = r#"/simulation={"duration": 4, "tolerance": 1e-11, "samples": 1}"#;
@@ -90,7 +90,7 @@ fn a_fast_vibration_is_not_given_up() {
     assert_eq!(motion.at.run.grid.reached(), 1.0);
 }
 
-/// A design whose simulation exceeds its limit is one that the optimiser backs off from.
+/// The optimiser backs off from a design whose simulation exceeds its limit.
 #[test]
 fn a_simulation_over_its_limit_is_a_failed_evaluation() {
     let problem = load("trebuchet", &["/simulation/seconds=1e-9"]);
@@ -104,8 +104,8 @@ fn a_simulation_over_its_limit_is_a_failed_evaluation() {
     );
 }
 
-/// A spring of 1e5 rad/s bounds explicit steps by 6e-5 s, 50 000 for 3 s; Radau IIA needs a
-/// thirtieth.
+/// A spring of 1e5 rad/s limits explicit steps to 6e-5 s: 50 000 for 3 s. Radau IIA needs a
+/// thirtieth of them.
 #[test]
 fn a_stiff_scene_hands_over_by_itself() {
     let path =
@@ -136,7 +136,7 @@ fn a_stiff_scene_hands_over_by_itself() {
     assert!(told.contains("stiff") && told.contains("radau"), "{told}");
 }
 
-/// BDF of order 3 and more is warned of by name where it amplifies an undamped spring.
+/// A warning names BDF of order 3 and more if it amplifies an undamped spring.
 #[test]
 fn an_unstable_formula_is_told() {
     let path =
@@ -160,8 +160,8 @@ fn an_unstable_formula_is_told() {
     }
 }
 
-/// Steps stay as they are for designs near the first, stretched to the duration, and are chosen anew
-/// where they no longer suffice.
+/// Steps are kept for designs near the first, stretched to the duration, and chosen again if they
+/// are no longer accurate.
 #[test]
 fn steps_are_kept_until_they_do_not_suffice() {
     let problem = load("trebuchet_release_time", &["/simulation/tolerance=1e-6"]);
@@ -179,7 +179,7 @@ fn steps_are_kept_until_they_do_not_suffice() {
     assert_eq!(ends[0], ends[1]);
     assert_eq!(ends[0], ends[2]);
     assert_eq!(integration.refreshes, 0);
-    // A throw of another shape: a light sling, released late.
+    // A different throw: a light sling, released late.
     let far = [500.0, 8.0, 30.0, 0.004, 0.02, -0.3, 1.8];
     let (at, changed) = Evaluated::with(&mut integration, &problem, &far).expect("runs");
     let changed = changed.expect("steps that suffice");
@@ -196,7 +196,8 @@ fn steps_are_kept_until_they_do_not_suffice() {
     assert_eq!(settings.spacing, Spacing::Frozen(at.run.grid.clone()));
 }
 
-/// A blow of 1 N s that lasts 0.2 of 10 s, to a body at rest, is met though nothing announces it.
+/// A load of 1 N s that lasts 0.2 of 10 s acts on a body at rest. The steps resolve it without
+/// notice.
 #[test]
 fn a_short_load_is_not_stepped_over() {
     let file = serde_json::json!({
@@ -266,8 +267,8 @@ const SAG: &str = r#"{
   "objective": {"maximise": "height"}
 }"#;
 
-/// Where one design is stiff for explicit steps of the given size, another method goes on, in a run too
-/// that has that design from the record of an earlier one.
+/// If a design is stiff for the given explicit steps, another method continues. A resumed run that
+/// has that design from its log continues with it, too.
 #[test]
 fn a_method_that_took_over_stays_in_a_resumed_run() {
     let problem = Problem::parse(SAG, "sag.json", &[]).expect("no faults");
@@ -289,7 +290,7 @@ fn a_method_that_took_over_stays_in_a_resumed_run() {
     let whole = run(&[]);
     let (_, (method, reason, _), records) = &whole;
     assert_eq!(*method, Method::Radau { stages: 3 });
-    // The motion is lost after three steps, before it is seen to be stiff.
+    // The run fails after three steps, before stiffness is detected.
     assert!(
         reason.contains("explicit steps of this size fail"),
         "{reason}"
@@ -304,7 +305,7 @@ fn a_method_that_took_over_stays_in_a_resumed_run() {
     }
 }
 
-/// A spring pendulum with a damper, over decades of stiffness k, damping ratio ζ and tolerance.
+/// A spring pendulum with a damper, with stiffness k, damping ratio ζ and tolerance.
 fn damped_spring(stiffness: f64, ratio: f64, tolerance: f64, method: Option<&str>) -> Problem {
     let damping = 2.0 * ratio * stiffness.sqrt();
     let mut document = serde_json::json!({
@@ -320,7 +321,7 @@ fn damped_spring(stiffness: f64, ratio: f64, tolerance: f64, method: Option<&str
     Problem::parse(&document.to_string(), "spring.json", &[]).unwrap_or_else(|f| panic!("{f}"))
 }
 
-/// Work of a run in evaluations of the accelerations; infinite if it is refused.
+/// Work of a run in evaluations of the accelerations; infinite if it fails.
 fn work(problem: &Problem) -> (f64, Option<Method>) {
     let scene = problem.scene::<f64>(&problem.start());
     let settings = flexbody::integrate::Settings {
@@ -343,7 +344,8 @@ fn work(problem: &Problem) -> (f64, Option<Method>) {
 
 const RADAU: &str = r#"{"radau": {"stages": 3}}"#;
 
-/// The work of the chosen method beside that of both, with the worst share of the better one's.
+/// Prints the work of the chosen method and of both methods; returns the largest ratio to the
+/// better one.
 fn shares(cases: impl Iterator<Item = [f64; 3]>) -> f64 {
     println!("stiffness  damping  tolerance  |    dop853      radau3     chosen   share");
     let mut worst = 0.0_f64;
@@ -363,7 +365,7 @@ fn shares(cases: impl Iterator<Item = [f64; 3]>) -> f64 {
     worst
 }
 
-/// The method that is chosen takes at most half as much work again as the better one.
+/// The chosen method needs at most 1.5 times the work of the better one.
 #[test]
 fn the_method_that_costs_less_is_chosen() {
     let cases = [
@@ -376,7 +378,7 @@ fn the_method_that_costs_less_is_chosen() {
     ];
     let worst = shares(cases.into_iter());
     assert!(worst < 1.5, "{worst}");
-    // Strong dampers, of which h |λ| alone says nothing.
+    // Strong dampers, which h |λ| alone does not indicate.
     let problem = load("benchmarks/flyball_governor", &["/simulation/duration=1"]);
     let document = problem.document.to_string().replace(RADAU, "null");
     let mut document: serde_json::Value = serde_json::from_str(&document).expect("JSON");
@@ -397,7 +399,7 @@ fn the_method_that_costs_less_is_chosen() {
     );
 }
 
-/// The whole family.
+/// The whole family of cases.
 #[test]
 #[ignore = "a table of 480 runs"]
 fn the_method_that_costs_less_is_chosen_over_decades() {
@@ -411,8 +413,8 @@ fn the_method_that_costs_less_is_chosen_over_decades() {
     println!("worst share {worst:.2}");
 }
 
-/// A bar on a hinge and a spring: equal explicit steps that are too large for the spring are refused where the
-/// motion is lost, whatever the damping.
+/// A bar on a hinge and a spring: equal explicit steps that are too large for the spring are
+/// rejected where the motion is lost, for any damping.
 #[test]
 fn explicit_steps_that_are_too_large_are_refused() {
     let (mut refused, mut kept) = (0, 0);
@@ -440,7 +442,7 @@ fn explicit_steps_that_are_too_large_are_refused() {
                         assert!(named.iter().any(|name| told.contains(name)), "{told}");
                         refused += 1;
                     }
-                    // No energy comes from anywhere: the bar is no faster than the spring can make it.
+                    // The energy bounds the speed of the bar.
                     Ok(run) => {
                         let most = (3.0 * (9.81 + stiffness)).sqrt();
                         let speed = run.at.function(0).value;
@@ -457,7 +459,7 @@ fn explicit_steps_that_are_too_large_are_refused() {
     assert!(refused >= 10 && kept >= 10, "{refused}, {kept}");
 }
 
-/// How small a step may become has to do with the scene, not with how long it is looked at.
+/// The smallest step depends on the scene, not on the duration.
 #[test]
 fn long_durations_are_simulated_with_any_tolerance() {
     for (duration, tolerance) in [
@@ -487,7 +489,8 @@ fn long_durations_are_simulated_with_any_tolerance() {
             "{duration:e}, {tolerance:e}: {error:e}"
         );
         if duration == 1e9 {
-            // It swings more often than steps can be made, and that is what is said.
+            // The number of its oscillations exceeds that of possible steps, and the message says
+            // so.
             falling["gravity"] = serde_json::json!([0, -9.81, 0]);
             let problem = Problem::parse(&falling.to_string(), "bar.json", &[]).expect("no faults");
             let told = simulate(&problem, &[])

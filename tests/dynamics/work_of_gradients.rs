@@ -1,13 +1,12 @@
-//! What no function sees of a motion is left out of the backward march: instants that weigh nothing, and
-//! the steps behind the last that weighs something.
+//! The backward march skips parts of a motion that affect no function: instants with negligible
+//! weight, and the steps after the last instant with weight.
 
 use flexbody::driver::Evaluated;
 use flexbody::problem::Problem;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// The trebuchet's start with a function, and the factorisations of its gradient beside those of its
-/// run.
+/// The trebuchet's start with a function: factorisations of its gradient and of its run.
 fn work(function: Value) -> [usize; 2] {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/trebuchet.json");
     let text = std::fs::read_to_string(path).expect("the problem file");
@@ -21,11 +20,12 @@ fn work(function: Value) -> [usize; 2] {
     let which = [other.expect("the function")];
     let (_, counts) = at.gradients(&problem, &which).expect("regular");
     assert_eq!(counts.steps, at.run.grid.steps());
-    // A step forwards factorises twelve times; choosing the cells of sums makes the motion again.
+    // A forward step has twelve factorisations. The choice of cells for sums repeats the motion.
     [counts.factorisations, 12 * at.run.grid.steps()]
 }
 
-/// The stone has left long before the end of the motion; what is summed over all of it needs all steps.
+/// The stone is released long before the end of the motion. A sum over the whole motion needs all
+/// steps.
 #[test]
 fn gradients_begin_where_a_function_ends() {
     let range = json!({"body": "stone", "ground": -10,

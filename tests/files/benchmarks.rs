@@ -1,7 +1,7 @@
-//! The rigid benchmarks under `problems/benchmarks` as they are shipped, against their references:
-//! Andrews' squeezer from the test set for IVP solvers (Mazzia & Magherini 2008, solved by PSIDE); the
-//! simple pendulum from elliptic functions; the governor from an independent integration of its
-//! three coordinates to 1e-11 (Radau).
+//! The rigid benchmarks in `problems/benchmarks` against their references: Andrews' squeezer from
+//! the test set for IVP solvers (Mazzia & Magherini 2008, solved by PSIDE); the simple pendulum
+//! from elliptic functions; the governor from an independent integration of its three coordinates
+//! to 1e-11 (Radau).
 
 use flexbody::driver::start::notes;
 use flexbody::driver::{KnownEvaluations, Simulation, optimise, simulate};
@@ -124,7 +124,7 @@ fn andrews_squeezer() {
     agree("A03 multipliers", &found, &multipliers, 1e-7);
 }
 
-/// A05: height of the slider, given to ten digits.
+/// A05: height of the slider, known to ten digits.
 #[test]
 fn flyball_governor() {
     for (duration, height) in [
@@ -142,8 +142,8 @@ fn flyball_governor() {
 }
 
 /// A spring of 1e5 rad/s without damping, at ω h = 100 by Radau IIA with three stages, against an
-/// integration that resolves it: the slow swing is met to 1e-8 m and 1e-7 m/s throughout, and nothing
-/// fast is excited.
+/// integration that resolves it. The slow swing agrees to 1e-8 m and 1e-7 m/s throughout, and no
+/// fast vibration is excited.
 #[test]
 fn stiff_pendulum() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -167,8 +167,8 @@ fn stiff_pendulum() {
     }
 }
 
-/// The shaking force vanishes where s1 = −L1 (m2 + m3) / m1 = −0.075 m and
-/// s2 = −L2 m3 / m2 = −0.15 m: found by gradient from 0.075 m and 0.3 m away, and from the other side.
+/// The shaking force vanishes at s1 = −L1 (m2 + m3) / m1 = −0.075 m and s2 = −L2 m3 / m2 = −0.15 m.
+/// The optimiser finds this from 0.075 m and 0.3 m away, and from the other side.
 #[test]
 fn balanced_slider_crank() {
     for start in [[0.0, 0.15], [-0.1, -0.2]] {
@@ -183,7 +183,7 @@ fn balanced_slider_crank() {
     }
 }
 
-/// Every benchmark with a duration that is cheap, and the tolerance that it is run with.
+/// Every benchmark with a short duration, and its tolerance.
 const FAMILY: [(&str, f64, f64); 9] = [
     ("simple_pendulum", 0.5, 1e-10),
     ("andrews_squeezer", 0.005, 1e-10),
@@ -196,8 +196,8 @@ const FAMILY: [(&str, f64, f64); 9] = [
     ("stiff_pendulum", 0.01, 1e-8),
 ];
 
-/// A benchmark without its functions: final positions of all centres of mass take their place. If it is
-/// to start inconsistently, its first body is given a velocity that joints do not admit.
+/// A benchmark with the final positions of all centres of mass as its functions. For an
+/// `inconsistent` start, its first body has a velocity that violates its joints.
 fn plain(name: &str, (duration, tolerance): (f64, f64), inconsistent: bool) -> Value {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"));
     let path = path.join(format!("problems/benchmarks/{name}.json"));
@@ -247,8 +247,8 @@ fn ends(file: &Value) -> Vec<f64> {
     values(&simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}")))
 }
 
-/// Multiplies every number that has a unit as if lengths were counted in 1/`length` m and masses in
-/// 1/`mass` kg; `unit` is what the numbers below a key have.
+/// Multiplies every number with a unit as if lengths were in 1/`length` m and masses in 1/`mass`
+/// kg; `unit` is the factor of the numbers below a key.
 fn in_units(value: &mut Value, unit: f64, (length, mass): (f64, f64)) {
     match value {
         Value::Object(map) => {
@@ -276,8 +276,8 @@ fn in_units(value: &mut Value, unit: f64, (length, mass): (f64, f64)) {
     }
 }
 
-/// Lengths in 1000 m and mm, masses in t·1000 and mg: equal motions but for the unit, from consistent
-/// starts and from those that are projected.
+/// With lengths in 1000 m and mm, and masses in 1000 t and mg, the motions are equal except for the
+/// unit, from consistent and from projected starts.
 #[test]
 fn units_do_not_matter() {
     for (name, duration, tolerance) in FAMILY {
@@ -305,7 +305,7 @@ fn units_do_not_matter() {
     }
 }
 
-/// Turns the three numbers of a list.
+/// Rotates the three numbers of a list.
 fn turn(value: &mut Value, by: &Mat3<f64>) {
     let list = value
         .as_array()
@@ -316,7 +316,7 @@ fn turn(value: &mut Value, by: &Mat3<f64>) {
     }
 }
 
-/// The scene turned as a whole about the origin.
+/// The whole scene, rotated about the origin.
 fn turned(file: &Value, axis: &Vec3<f64>, angle: f64) -> Value {
     let by = rotation::matrix(&rotation::from_axis_angle(axis, angle));
     let mut file = file.clone();
@@ -398,8 +398,8 @@ fn turned(file: &Value, axis: &Vec3<f64>, angle: f64) -> Value {
     file
 }
 
-/// Five rotations of every scene as a whole: equal motions, turned, from consistent starts and from
-/// those that are projected.
+/// Five rotations of every scene: equal motions, rotated, from consistent and from projected
+/// starts.
 #[test]
 fn axes_do_not_matter() {
     for (name, duration, tolerance) in FAMILY {
@@ -425,8 +425,9 @@ fn axes_do_not_matter() {
     }
 }
 
-/// A body on one hinge with a velocity that the hinge does not admit: it starts as an impulse of the
-/// hinge leaves it, ω = e · (J_C ω + c × m v) / (e · J_O e), in any unit of length, and says so.
+/// A body on one hinge with a velocity that violates the hinge. It starts with the velocity after
+/// an impulse of the hinge, ω = e · (J_C ω + c × m v) / (e · J_O e), in any unit of length, with a
+/// note.
 #[test]
 fn an_inconsistent_start_is_told_and_has_no_unit() {
     for unit in [1.0, 1e3, 1e-3] {
@@ -457,9 +458,9 @@ fn an_inconsistent_start_is_told_and_has_no_unit() {
     }
 }
 
-/// A door whose second hinge is tilted by 1e-6 cannot move: that is told, and that it does not start as
-/// it was given. So is a Bricard mechanism with a hinge 1e-6 m off, whose conditions nearly repeat each
-/// other.
+/// A door whose second hinge is tilted by 1e-6 cannot move. Notes report this, and that it does not
+/// start as given. The same holds for a Bricard mechanism with a hinge displaced by 1e-6 m, whose
+/// conditions are nearly redundant.
 #[test]
 fn joints_that_leave_no_freedom_are_told() {
     let door = |tilt: f64| {

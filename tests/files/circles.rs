@@ -1,8 +1,8 @@
 //! The files of a folder of `src` import each other without circles.
 //!
-//! A file imports another if it names an item of it, by `use` or by a path; an item that a `mod.rs`
-//! exports again counts as one of the file that has it. What the `mod.rs` of a folder has is common to the
-//! files below it, and does not count. Tests inside of files may import anything.
+//! A file imports another if it names an item of it, by `use` or by a path. An item that a `mod.rs`
+//! re-exports counts as one of its original file. Items of the `mod.rs` of a folder are shared by
+//! the files below it and do not count. Tests inside files may import anything.
 
 use super::layers::{code, files, identifier, read, source};
 use std::collections::{BTreeMap, BTreeSet};
@@ -10,14 +10,14 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Names from the root of the crate down to a module or an item.
 type Names = Vec<String>;
 
-/// A file with the paths that it names and the items that it exports again.
+/// A file with the paths that it names and the items that it re-exports.
 struct File {
     named: BTreeSet<Names>,
-    /// What is exported, by its name.
+    /// Re-exported items by name.
     exported: BTreeMap<String, Names>,
 }
 
-/// The paths of a tree `a::{b, c::{self, d}, e as f}`, each with the name that it gets.
+/// The paths of a tree `a::{b, c::{self, d}, e as f}`, each with its local name.
 fn paths(tree: &str) -> Vec<(Names, String)> {
     let tree = tree.trim();
     let Some((before, inner)) = tree.split_once('{') else {
@@ -48,7 +48,7 @@ fn paths(tree: &str) -> Vec<(Names, String)> {
     found
 }
 
-/// The names from the root of what a path in the module `own` means, if that is in the crate.
+/// The path from the root of the crate of a path in the module `own`, if it is in the crate.
 fn absolute(own: &[String], path: &[String], modules: &BTreeSet<Names>) -> Option<Names> {
     let climbs = path.iter().take_while(|part| *part == "super").count();
     match path.first()?.as_str() {
@@ -62,7 +62,7 @@ fn absolute(own: &[String], path: &[String], modules: &BTreeSet<Names>) -> Optio
     }
 }
 
-/// Every `a::b::c` in the text that is not part of another path.
+/// Every path `a::b::c` in the text that is not part of another path.
 fn written_paths(text: &str) -> Vec<Names> {
     let part_of_name = |c: char| c.is_alphanumeric() || c == '_';
     let mut found = Vec::new();
@@ -128,10 +128,10 @@ fn file(own: &[String], text: &str, modules: &BTreeSet<Names>) -> File {
     File { named, exported }
 }
 
-/// The module that has the item or is the module with these names.
+/// The module of the item or module with these names.
 fn home(names: &Names, all: &BTreeMap<Names, File>) -> Option<Names> {
     let mut names = names.clone();
-    // An export may be of an export.
+    // A re-export may be of a re-export.
     for _ in 0..8 {
         let length = (1..=names.len())
             .rev()
@@ -146,7 +146,7 @@ fn home(names: &Names, all: &BTreeMap<Names, File>) -> Option<Names> {
     None
 }
 
-/// The modules that each imports of its own folder of `src`, but for those that it is part of.
+/// By module: the modules of its own folder of `src` that it imports, without its parents.
 fn imports(texts: &[(Names, String)]) -> BTreeMap<Names, BTreeSet<Names>> {
     let modules = texts.iter().map(|(names, _)| names.clone()).collect();
     let all: BTreeMap<Names, File> = texts
@@ -162,10 +162,10 @@ fn imports(texts: &[(Names, String)]) -> BTreeMap<Names, BTreeSet<Names>> {
     all.keys().map(|own| (own.clone(), of(own))).collect()
 }
 
-/// One circle among the imports, if there is one.
+/// One circle among the imports, if any.
 fn circle(imports: &BTreeMap<Names, BTreeSet<Names>>) -> Option<Vec<String>> {
     let mut left = imports.clone();
-    // What imports nothing that is left is in no circle.
+    // A module without imports is in no circle.
     while let Some(free) = left
         .iter()
         .find(|(_, to)| !to.iter().any(|to| left.contains_key(to)))
@@ -201,7 +201,7 @@ fn the_files_of_a_folder_import_each_other_without_circles() {
     let imports = imports(&texts);
     let count: usize = imports.values().map(BTreeSet::len).sum();
     assert!(count > 500, "only {count} imports were found");
-    // One that is found by a path alone, and one through an export.
+    // An import by a path only, and one through a re-export.
     let has = |from: &[&str], to: &[&str]| {
         let names = |all: &[&str]| -> Names { all.iter().map(|&part| part.into()).collect() };
         imports[&names(from)].contains(&names(to))

@@ -1,10 +1,10 @@
-//! The folders of `src` form layers: a file imports only from folders above its own in the table
-//! of `src/lib.rs`, and the optimiser, which knows nothing of mechanics, from its own only.
+//! The folders of `src` form layers: a file imports only from folders above its own in the table of
+//! `src/lib.rs`. The optimiser, which contains no mechanics, imports only from its own folder.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Folders that import from no other folder whatever stands above them.
+/// Folders that import from no other folder.
 const INDEPENDENT: [&str; 1] = ["optimiser"];
 
 /// An import of a folder of the crate.
@@ -33,7 +33,7 @@ fn table() -> Vec<String> {
     text.lines().filter_map(row).collect()
 }
 
-/// The Rust files of a folder and its folders, in order.
+/// The Rust files of a folder and its subfolders, in order.
 pub(super) fn files(folder: &Path) -> Vec<PathBuf> {
     let mut all = Vec::new();
     let mut entries: Vec<PathBuf> = std::fs::read_dir(folder)
@@ -51,7 +51,7 @@ pub(super) fn files(folder: &Path) -> Vec<PathBuf> {
     all
 }
 
-/// The text without what stands behind `//`, lines kept.
+/// The text without comments; the lines are kept.
 pub(super) fn code(text: &str) -> String {
     text.lines()
         .map(|line| line.split("//").next().unwrap_or("").to_owned() + "\n")
@@ -63,7 +63,7 @@ pub(super) fn identifier(text: &str) -> &str {
     &text[..end.unwrap_or(text.len())]
 }
 
-/// The first names of a list `{a::b, c, d::{e, f}}`, each with its place in `text`.
+/// The first names of a list `{a::b, c, d::{e, f}}`, each with its position in `text`.
 fn names_in_braces(text: &str) -> Vec<(usize, String)> {
     let (mut depth, mut expected, mut names) = (0, false, Vec::new());
     for (at, c) in text.char_indices() {
@@ -85,8 +85,8 @@ fn names_in_braces(text: &str) -> Vec<(usize, String)> {
     names
 }
 
-/// Everything that a file names by `crate::`, and what it reaches by more `super::` than its
-/// `depth` below the root allows (each inline module before it allows one more).
+/// All folders that a file imports by `crate::`, and by more `super::` than its `depth` below the
+/// root allows (each inline module above allows one more).
 fn imports(text: &str, depth: usize) -> Vec<Import> {
     let code = code(text);
     let line = |at: usize| code[..at].matches('\n').count() + 1;
@@ -132,7 +132,7 @@ fn depth(file: &Path) -> usize {
     parts - usize::from(file.ends_with("mod.rs"))
 }
 
-/// What is wrong with the imports of a file of `folder`, as `file:line: …`.
+/// Faults of the imports of a file of `folder`, as `file:line: …`.
 fn offences(table: &[String], folder: &str, file: &str, imports: &[Import]) -> Vec<String> {
     let rank = |name: &str| table.iter().position(|known| known == name);
     let own = rank(folder);

@@ -1,4 +1,4 @@
-//! What is in files: problems, records, figures, documents, and the layers of the source.
+//! Contents of files: problems, records, figures, documents, and the layers of the source.
 
 mod benchmarks;
 mod circles;

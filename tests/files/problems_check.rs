@@ -1,11 +1,11 @@
-//! The gradients of the shipped problems, differentiated twice along one and the same motion: by the
-//! adjoint and by the complex step, as `optimize check` does it.
+//! Gradients of the shipped problems along the same motion by the adjoint and by the complex step,
+//! as in `optimize check`.
 //!
-//! Two measures: of itself, and of the function's gradient in scaled variables, which is what an
-//! optimisation sees. Single derivatives are small rests of terms hundreds of times as large, or of the
-//! triple pendulum, whose motion magnifies the round-off of every step; these agree less well with
-//! themselves, to what is stated, and as well as the others with the gradient. Coarse steps, at which
-//! Newton's method works hardest, are checked as well.
+//! Differences are relative to the derivative itself, and to the function's gradient in scaled
+//! variables, which an optimisation uses. Some derivatives are small differences of terms hundreds
+//! of times as large, and the motion of the triple pendulum magnifies the round-off of every step.
+//! These agree relative to themselves only to the stated tolerance, and relative to the gradient as
+//! well as others. Coarse steps, the hardest for Newton's method, are checked, too.
 
 use flexbody::driver::{CheckedDerivative, chaos, check};
 use flexbody::problem::Problem;
@@ -51,7 +51,7 @@ fn at_full_size() {
     for (name, simulation, of_itself) in [
         ("trebuchet", r#"{"samples": 2000}"#, 1e-11),
         ("trebuchet", BDF2, 1e-11),
-        // The derivative in the arm's angle is the small one: 1e-14 of the gradient.
+        // The derivative in the arm's angle is small: 1e-14 of the gradient.
         ("trebuchet", RADAU, 2e-11),
         ("trebuchet_release_time", "{}", 1e-12),
         ("trebuchet_release_time", BDF2, 1e-12),
@@ -87,8 +87,8 @@ fn at_coarse_steps() {
     }
 }
 
-/// A problem of the package with another duration and tolerance, and the total energy beside its
-/// functions.
+/// A problem of the package with another duration and tolerance, and the total energy as an
+/// additional function.
 fn with_energy(name: &str, duration: Option<f64>, tolerance: f64) -> Problem {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/{name}.json"));
     let text = std::fs::read_to_string(path).expect("a problem");
@@ -101,8 +101,8 @@ fn with_energy(name: &str, duration: Option<f64>, tolerance: f64) -> Problem {
     Problem::parse(&document.to_string(), name, &[]).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// A double pendulum that swings for long is chaotic, even where its functions are exact, such as the
-/// energy. The smaller the errors of the steps, the later its derivatives mean nothing.
+/// A double pendulum over a long duration is chaotic, even if its functions are exact, such as the
+/// energy. The smaller the errors of the steps, the later its derivatives become meaningless.
 #[test]
 fn chaos_is_named_with_its_time() {
     let start = [
@@ -126,7 +126,7 @@ fn chaos_is_named_with_its_time() {
             assert!(found.to_string().contains("chaotic"), "{found}");
             before = found.from;
         }
-        // The same motion as long as it can be told.
+        // The same motion as long as it is determined.
         let short = with_energy("extreme/double_pendulum", Some(2.0), 1e-9);
         assert_eq!(chaos(&short, &short.start()), None);
     }

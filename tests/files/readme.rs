@@ -1,4 +1,4 @@
-//! The example of README.md runs and has the answer that is given there; what documents name is there.
+//! The example of README.md runs and has the stated result. Paths in the documents exist.
 
 use flexbody::driver::{KnownEvaluations, optimise};
 use flexbody::problem::Problem;
@@ -21,11 +21,11 @@ fn the_example_of_the_readme_finds_the_radius_of_gyration() {
     .expect("has an objective");
     assert!(done.outcome.converged());
     let pin = done.optimum.design["pin"].value;
-    // The angular acceleration m g d cos θ / (I + m d²) is largest at d² = I/m whatever the angle.
+    // The angular acceleration m g d cos θ / (I + m d²) is largest at d² = I/m for any angle.
     assert!((pin + (1.0_f64 / 12.0).sqrt()).abs() < 2e-5, "{pin}");
 }
 
-/// Documents at the root and in docs/, by path, without what stands in fences.
+/// Documents at the root and in docs/: path, and text without code blocks.
 fn documents() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut paths: Vec<PathBuf> = [root.to_path_buf(), root.join("docs")]
@@ -44,7 +44,7 @@ fn documents() -> Vec<(PathBuf, String)> {
     paths.into_iter().map(read).collect()
 }
 
-/// `a/{b,c}.rs` is two paths.
+/// Expands `a/{b,c}.rs` to two paths.
 fn expanded(text: &str) -> Vec<String> {
     match text
         .split_once('{')
@@ -71,8 +71,8 @@ fn below(directory: &Path, all: &mut Vec<String>) {
     }
 }
 
-/// Every source, test, problem and document that a document names in its prose is there; so is what it
-/// links to, with its heading.
+/// Every source, test, problem and document that a document names in its prose exists; so do the
+/// targets of its links, with their headings.
 #[test]
 fn paths_and_links_of_the_documents_exist() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -84,7 +84,7 @@ fn paths_and_links_of_the_documents_exist() {
         known.push(folder.to_owned());
         below(&root.join(folder), &mut known);
     }
-    // A file may be called by the end of its path.
+    // A file may be named by the end of its path.
     let is_known = |name: &str| {
         let name = name.trim_end_matches('/');
         let end = format!("/{name}");
@@ -105,7 +105,7 @@ fn paths_and_links_of_the_documents_exist() {
                 let in_folder = path.contains('/') && folders.contains(&first);
                 if in_folder || path.ends_with(".rs") {
                     paths += 1;
-                    // Results are written where one asks for them.
+                    // Results are created on request.
                     if !is_known(&path) && !path.starts_with("results/") {
                         wrong.push(named(&path));
                     }
@@ -143,7 +143,7 @@ fn paths_and_links_of_the_documents_exist() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// What a heading is linked by.
+/// The anchor of a heading.
 fn slug(heading: &str) -> String {
     let text = heading.trim_start_matches('#').trim().to_lowercase();
     let kept = text

@@ -1,4 +1,4 @@
-//! Figures show what they should, inside their canvas, whatever the data.
+//! Figures show the data inside their canvas, for any data.
 
 use flexbody::report::history::Column;
 use flexbody::report::plots::{
@@ -7,7 +7,7 @@ use flexbody::report::plots::{
 };
 use flexbody::report::{History, HistoryRow};
 
-/// Values of an attribute in the order of the file.
+/// Values of an attribute, in the order of the file.
 fn attributes<'a>(svg: &'a str, name: &str) -> Vec<&'a str> {
     let start = format!(" {name}=\"");
     let parts = svg.split(&start).skip(1);
@@ -16,7 +16,7 @@ fn attributes<'a>(svg: &'a str, name: &str) -> Vec<&'a str> {
         .collect()
 }
 
-/// Every shape lies within the picture; a text may not even start outside.
+/// Every shape lies inside the picture, and every text begins inside.
 fn assert_inside(svg: &str) {
     let view: Vec<f64> = attributes(svg, "viewBox")[0]
         .split(' ')
@@ -133,7 +133,7 @@ fn zeros_of_a_logarithmic_axis_are_marked_on_its_floor() {
     let svg = convergence(&history(rows.into_iter())).expect("is valid");
     assert_inside(&svg);
     assert!(has_text(&svg, "zero or below the axis"));
-    // Two zeros and the sample in the legend; one dot is left.
+    // Two zeros and the sample in the legend. One dot remains.
     assert_eq!(colored(&svg, "polygon", VERMILION).len(), 3);
     assert_eq!(colored(&svg, "circle", VERMILION).len(), 1);
 }
@@ -159,7 +159,7 @@ fn convergence_survives_one_row_gaps_and_huge_ranges() {
         0,
         "no dots on a long history"
     );
-    // The sample in the legend and a curve that the gap cuts into two.
+    // The sample in the legend, and a curve that a gap divides into two.
     assert_eq!(colored(&svg, "polyline", VERMILION).len(), 3);
 
     let error = convergence(&history(std::iter::empty())).expect_err("must be refused");
@@ -254,9 +254,9 @@ fn motion_shows_designs_flights_barrier_and_ground() {
         let text = format!("{}: lands at {distance:.1} m", design.title);
         assert!(has_text(&svg, &text), "{text}");
     }
-    // Stones: one polygon a frame and design, and a sample.
+    // Stones: one polygon per frame and design, and a sample.
     assert_eq!(colored(&svg, "polygon", VERMILION).len(), 2 * 6 + 1);
-    // Arms are lines: one a frame and design, the first flight and its sample.
+    // Arms are lines: one per frame and design, the first flight and its sample.
     assert_eq!(colored(&svg, "polyline", BLUE).len(), 2 * 6 + 2);
     // A release in both designs, and a sample.
     assert_eq!(colored(&svg, "circle", "#000000").len(), 3);

@@ -1,4 +1,4 @@
-//! Records survive the disk exactly, and differences between them are told.
+//! Records are read back exactly, and differences between them are reported.
 
 use flexbody::driver::{KnownEvaluations, optimise};
 use flexbody::problem::Problem;
@@ -284,7 +284,8 @@ fn a_number_that_is_not_finite_is_refused_by_name() {
     );
 }
 
-/// A worse objective than at the start is no loss where the start was not feasible: it is told.
+/// An objective worse than at the start is no loss if the start was infeasible; the summary says
+/// so.
 #[test]
 fn a_start_that_is_not_feasible_is_told() {
     let told = |lower: Option<f64>, upper: Option<f64>, start: Option<f64>| {
@@ -323,9 +324,9 @@ fn an_error_of_nothing_is_below_rounding() {
     assert!(told(1e-12).contains("accurate to about 1e-12 m"));
 }
 
-/// A ball without weight flies for a second at v: x = v, and the energy E = v² at 2 kg. The multipliers are
-/// the derivatives of the optimum in the bounds: those of a constraint in the user's sense, those of the
-/// bounds of v never negative.
+/// A ball flies for a second at v without gravity: x = v, and the energy is E = v² for 2 kg. The
+/// multipliers are the derivatives of the optimum in the bounds: of a constraint in the user's
+/// sense, of the bounds of v without sign.
 #[test]
 fn multipliers_are_sensitivities_with_their_signs() {
     let solved = |objective: &str, constraint: &str, bounds: (f64, f64), start: f64| {
@@ -400,7 +401,8 @@ fn multipliers_are_sensitivities_with_their_signs() {
             "{case}: {text}"
         );
     }
-    // With a constraint far away: objective, bounds of v, start, side, multiplier, d objective / d bound.
+    // With an inactive constraint: objective, bounds of v, start, side, multiplier, d objective / d
+    // bound.
     let cases = [
         (maximise, "x", (-4.0, 4.0), BoundSide::Upper, 1.0),
         (minimise, "x", (-4.0, 4.0), BoundSide::Lower, 1.0),
@@ -543,7 +545,7 @@ Maximised range: 546.507 → 849.8985 m (+55.5 %)
     assert!(text.contains("Warning: the aggregate is coarse"), "{text}");
 }
 
-/// An upper bound that the aggregate keeps and the true maximum does not is told.
+/// The summary reports an upper bound that the aggregate satisfies and the true maximum violates.
 #[test]
 fn summary_tells_the_true_maximum_behind_an_aggregate() {
     let mut optimum = optimum();
@@ -584,7 +586,7 @@ fn files_are_written_whole_or_not_at_all() {
     atomic_write(&path, b"second").expect("is valid");
     assert_eq!(read_text(&path).expect("is valid"), "second");
 
-    // The second file of the group cannot be written, so the first stays as it was.
+    // The second file of the group cannot be written, so the first one is not changed.
     let blocked = directory.path().join("blocked");
     std::fs::create_dir(&blocked).expect("is valid");
     let group = [

@@ -1,4 +1,4 @@
-//! The curvature at an optimum, against differences of the function and with bounds that hold by no force.
+//! The curvature at an optimum, against differences of the function, and with bounds without force.
 
 use flexbody::driver::evaluate::Evaluated;
 use flexbody::driver::{KnownEvaluations, Optimisation, optimise, second_order};
@@ -6,7 +6,7 @@ use flexbody::problem::Problem;
 use flexbody::report::optimum::{Curvature, SecondOrder};
 use std::ops::ControlFlow;
 
-/// A bar that is hinged where it swings fastest, at d² = I/m from its centre.
+/// A bar that swings fastest if it is hinged at d² = I/m from its centre.
 const SWING: &str = include_str!("../data/swing.json");
 
 fn solved(problem: &Problem) -> Optimisation {
@@ -43,7 +43,7 @@ fn the_curvature_is_that_of_the_function() {
     let found = curvature(&problem, &done);
     assert_eq!(found.curvature, Curvature::StrictOptimum);
     assert!(found.weakly_active.is_empty());
-    // The second difference of the function itself, with steps of the fourth root of round-off.
+    // The second difference of the function, with steps of the fourth root of round-off.
     let scale = problem.variables[0].scale;
     let x = done.optimum.design["pin"].value;
     let h = 2e-3;
@@ -61,7 +61,7 @@ fn the_curvature_is_that_of_the_function() {
     );
 }
 
-/// A bound through the optimum holds it by no force; a bound beside it does.
+/// A bound through the optimum has no force; a bound away from it does.
 #[test]
 fn a_bound_without_force_leaves_its_direction_free() {
     let free = Problem::parse(SWING, "swing.json", &[]).expect("no faults");
@@ -80,7 +80,7 @@ fn a_bound_without_force_leaves_its_direction_free() {
     let touched = bounded(best);
     assert_eq!(touched.weakly_active, ["pin"], "{touched:?}");
     assert_eq!(touched.curvature, Curvature::StrictOptimum);
-    // The differences are taken inside the bound, a few 1e-4 of the scale beside the optimum.
+    // The differences are inside the bound, a few 1e-4 of the scale from the optimum.
     let error = (touched.eigenvalues[0] - expected).abs();
     assert!(
         error < 1e-2 * expected && error < 10.0 * touched.uncertainty,

@@ -1,5 +1,5 @@
-//! The stability suite: a fast part of it run and compared with the committed table, which is held to
-//! the claims that `docs/stability.md` makes of it.
+//! The stability suite: a fast part is run and compared with the committed table. The table
+//! satisfies the claims of `docs/stability.md`.
 
 use flexbody::driver::stability::{names, stability};
 use flexbody::problem::Problem;
@@ -10,26 +10,27 @@ use std::path::Path;
 /// derivative of the scene.
 const GRADIENT: f64 = 1e-10;
 
-/// Cases whose derivatives round-off spoils beyond that, and how far; `docs/stability.md` says why.
+/// Cases with a larger difference by round-off, and its bound; `docs/stability.md` gives the
+/// reasons.
 const SPOILT: [(&str, f64); 19] = [
-    // ε k l / (m g): the force of a spring of l = 1 m is known to ε k l.
+    // ε k l / (m g): the force of a spring of l = 1 m has the round-off ε k l.
     ("stiffness/10/", 2.3e-9),
     ("stiffness/100/", 2.3e-7),
     ("stiffness/1e3/", 2.3e-5),
     ("stiffness/1e4/", 2.3e-3),
     ("stiffness/1e5/", 2.3e-1),
-    // Of these nothing is known.
+    // No bound is known for these.
     ("stiffness/1e6/", f64::INFINITY),
-    // The direction of the line between two balls so far apart.
+    // The direction of the line between two ball joints at this distance.
     ("hinge-distance/1e-2/", 1e-9),
     ("hinge-distance/1e-4/", 1e-6),
     ("hinge-distance/1e-5/", 1e-8),
     ("hinge-distance/1e-6/", 1e-7),
     ("hinge-distance/1e-7/", 1e-7),
-    // A singular position, 1e-4 of the length away.
+    // A singular position at 1e-4 of the length.
     ("locking/2.0999/", 1e-9),
-    // Ends and steps so far from a singular position, where round-off counts: `optimize check` says by how
-    // much.
+    // Ends and steps at this distance from a singular position, where round-off matters; `optimize
+    // check` estimates it.
     ("passage/1e-4 before the first/radau", 1e-5),
     ("passage/1e-3 before the first/radau", 1e-7),
     ("passage/1e-2 before the first/radau", 1e-9),
@@ -44,7 +45,7 @@ fn gradient_bound(case: &str) -> f64 {
     spoilt.map_or(GRADIENT, |(_, bound)| *bound)
 }
 
-/// Whether an error is above its bound; a NaN is no small error.
+/// Whether an error is above its bound, or NaN.
 fn is_large(error: f64, bound: f64) -> bool {
     error.is_nan() || error > bound
 }
@@ -62,7 +63,7 @@ struct Committed {
     no_gradient: bool,
 }
 
-/// The committed rows; no field up to the gradient's error holds a comma.
+/// The committed rows. No field up to the error of the gradient contains a comma.
 fn committed() -> Vec<Committed> {
     let path = root().join("results/stability/stability.csv");
     let text = std::fs::read_to_string(path).expect("a committed table");
@@ -87,8 +88,8 @@ fn committed() -> Vec<Committed> {
     lines.map(row).collect()
 }
 
-/// The part of the suite that tests can afford: what a user gets who says nothing of the method, all
-/// methods where it is cheap, and all optimisations.
+/// The part of the suite that is fast enough for a test: the default method, all methods if cheap,
+/// and all optimisations.
 fn is_fast(case: &str) -> bool {
     let families = ["damping/", "optimum/", "rho/", "speed/1e6"];
     case.contains("/chosen to") || families.iter().any(|family| case.starts_with(family))

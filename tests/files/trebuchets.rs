@@ -1,9 +1,9 @@
-//! Both trebuchets are optimised, from the file's start and from four other feasible ones, to the
-//! optima that an independent prototype found (minimal coordinates, Gragg–Bulirsch–Stoer at 1e-12,
+//! Optimisations of both trebuchets, from the file's start and from four other feasible ones, reach
+//! the optima of an independent prototype (minimal coordinates, Gragg–Bulirsch–Stoer at 1e-12,
 //! SLSQP from five and six starts).
 //!
-//! As the files stand, both objectives are met to all digits of the reference, and the designs to 1e-5
-//! of the variables' ranges.
+//! With the settings of the files, both objectives agree to all digits of the reference, the
+//! designs to 1e-5 of the variables' ranges.
 
 use flexbody::driver::evaluate::Evaluated;
 use flexbody::driver::{KnownEvaluations, Optimisation, optimise};
@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// A problem of the package with, if not empty, another start.
+/// A problem of the package; with another start if `start` is not empty.
 fn problem(file: &str, start: &[f64]) -> Problem {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("problems")
@@ -83,7 +83,7 @@ fn assert_optimal(problem: &Problem, done: &Optimisation, per_metre: f64, design
     }
 }
 
-/// Asserts that a number is that of the reference, up to a fraction of it.
+/// Asserts that a number agrees with the reference, up to a fraction of it.
 fn assert_near(what: &str, found: f64, reference: f64, within: f64) {
     let off = found / reference - 1.0;
     assert!(
@@ -93,7 +93,7 @@ fn assert_near(what: &str, found: f64, reference: f64, within: f64) {
     );
 }
 
-/// Asserts that every constraint holds, with room, at the start of a problem.
+/// Asserts that the start of a problem is strictly feasible.
 fn assert_feasible_start(problem: &Problem) {
     let at = Evaluated::new(problem, &problem.start()).expect("runs");
     for constraint in &problem.constraints {
@@ -102,8 +102,8 @@ fn assert_feasible_start(problem: &Problem) {
     }
 }
 
-/// Largest range 856.58952 m at the release time 1.022599623 s, 1.408766 m less for a metre of
-/// barrier. The same optimum from every start.
+/// Largest range 856.58952 m at the release time 1.022599623 s; 1.408766 m less per metre of
+/// barrier. All starts reach the same optimum.
 fn release_time(start: &[f64]) {
     let problem = problem("trebuchet_release_time.json", start);
     if !start.is_empty() {
@@ -123,8 +123,8 @@ fn release_time(start: &[f64]) {
     assert_near("range", done.optimum.objective.value, 856.58952, 1e-8);
 }
 
-/// A sling that lets go at an angle, found as an event, throws as far as one that lets go at the best
-/// time; the best angle is the one that it has then.
+/// A sling that releases at an angle, found as an event, throws as far as one that releases at the
+/// best time. The best angle is its angle at that time.
 #[test]
 fn release_angle_throws_as_far_as_release_time() {
     let design = [
@@ -161,8 +161,8 @@ fn release_time_from_other_starts() {
     release_time(&[486.0, 4.407, 53.58, 0.006089, 0.00882, 0.04094, 1.125]);
 }
 
-/// Largest aggregate 849.8985 m and true maximum 867.7 m, 3.5014 m less for a metre of barrier.
-/// A start is a feasible design, or empty for that of the file.
+/// Largest aggregate 849.8985 m and true maximum 867.7 m; 3.5014 m less per metre of barrier. A
+/// start is a feasible design, or empty for that of the file.
 fn aggregate(start: &[f64]) {
     let problem = problem("trebuchet.json", start);
     if !start.is_empty() {
@@ -190,18 +190,18 @@ fn aggregate_from_other_starts() {
     aggregate(&[489.0, 6.24, 31.9, 0.00667, 0.00952, -0.0454]);
 }
 
-/// What the gate of a turned trebuchet watches.
+/// The rotation of the gate of a rotated trebuchet.
 #[derive(Clone, Copy, PartialEq)]
 enum Watched {
     /// The rotation of the sling from ground axes, as in the file.
     FromAxes,
-    /// The same from the placement.
+    /// The rotation of the sling from the placement.
     FromPlacement,
-    /// The angle of its joint to the arm.
+    /// The angle of the sling's joint to the arm.
     Joint,
 }
 
-/// The trebuchet turned as a whole by a rotation vector [rad].
+/// The whole trebuchet, rotated by a rotation vector [rad].
 fn turned(turn: Vec3<f64>, watched: Watched, tolerance: f64) -> Problem {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/trebuchet.json");
     let text = std::fs::read_to_string(path).expect("a file");
@@ -218,7 +218,8 @@ fn turned(turn: Vec3<f64>, watched: Watched, tolerance: f64) -> Problem {
         .map(|(axis, angle)| json!({"axis": [axis.x, axis.y, axis.z], "angle": angle}));
     for body in ["counterweight", "link", "arm", "sling", "stone"] {
         let place = &mut file["bodies"][body]["place"];
-        // A body that is placed by another goes with it; its own turn is about ground axes.
+        // A body that is placed relative to another moves with it; its own turn is about ground
+        // axes.
         let own = place.get("turn").cloned();
         let all: Vec<&Value> = own.iter().chain(&whole).collect();
         place["turn"] = json!(all);
@@ -253,7 +254,7 @@ const TURNS: [[f64; 3]; 5] = [
 
 #[test]
 fn a_scene_turned_as_a_whole_has_the_same_functions() {
-    // Each scene chooses its own steps, which err by far less than what is asserted.
+    // Each scene chooses its own steps; their errors are far below the asserted ones.
     let of = |turn: Vec3<f64>, watched| turned(turn, watched, 1e-12);
     let still = of(Vec3::zeros(), Watched::FromAxes);
     for watched in [Watched::FromPlacement, Watched::Joint] {
@@ -271,7 +272,7 @@ fn a_scene_turned_as_a_whole_has_the_same_functions() {
             };
             let (values, gradients) = find(&non_rotating);
             if watched == Watched::FromPlacement {
-                // Counted from the placement or from the axes of ground, where nothing is turned.
+                // Counted from the placement, or from ground axes without rotation.
                 let (own, _) = find(&still);
                 assert_near("range", values[0], own[0], 1e-9);
             }

@@ -1,4 +1,4 @@
-//! The library as its users see it: its examples run, and its front agrees with itself.
+//! The library as its users see it: its examples run, and its results are consistent.
 
 #[path = "../../examples/gradients.rs"]
 mod gradients;
@@ -23,7 +23,7 @@ fn trebuchet() -> Problem {
     Problem::load(&path, &[]).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// The gradient that [`Analysis`] gives is that of its values, whose steps are kept.
+/// The gradient of [`Analysis`] is that of its values with frozen steps.
 #[test]
 fn values_are_smooth_and_gradients_are_theirs() {
     let problem = trebuchet();

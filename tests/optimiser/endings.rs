@@ -1,5 +1,5 @@
-//! How runs end: programs that make no sense, units of the objective, points that only look
-//! infeasible, and what is said of fixed variables and rows.
+//! The ends of runs: ill-posed programs, units of the objective, points that only seem infeasible,
+//! and the report on fixed variables and rows.
 
 use crate::problems;
 use crate::problems::residuals;
@@ -101,7 +101,7 @@ fn bounds_that_cross_are_infeasible_at_once() {
     }
 }
 
-/// A claim must not depend on the unit in which the objective is given.
+/// A claim does not depend on the unit of the objective.
 #[test]
 fn the_unit_of_the_objective_does_not_matter() {
     let rosenbrock = || {
@@ -122,7 +122,7 @@ fn the_unit_of_the_objective_does_not_matter() {
             assert!(outcome.objective <= 1e-9 * factor, "{context}");
             assert!((outcome.x[0] - 1.0).abs() <= 1e-4, "{context}");
             assert!(outcome.counts.evaluations <= 80, "{:?}", outcome.counts);
-            // Before the end one of the residuals is too large.
+            // Before the end, one of the residuals is too large.
             let mut problem = Scaled {
                 inner: rosenbrock(),
                 factor,
@@ -148,8 +148,8 @@ fn the_unit_of_the_objective_does_not_matter() {
     }
 }
 
-/// As many problems are solved in other units, up to the few whose path leads to another optimum, and
-/// no claim is false. Stationarity is judged against gradients of up to 1e4 on the way.
+/// As many problems are solved in other units, except for a few whose path leads to another
+/// optimum, and no claim is false. Gradients on the way are up to 1e4.
 #[test]
 fn scaled_objectives_are_solved_and_claims_stay_true() {
     for (method, least) in [
@@ -182,7 +182,7 @@ fn scaled_objectives_are_solved_and_claims_stay_true() {
     }
 }
 
-/// The first steps come down from gradients of 1e8, beside which those at the optimum are small.
+/// The first steps start at gradients of 1e8. Those at the optimum are small relative to them.
 #[test]
 fn a_start_on_a_cliff_does_not_loosen_the_conditions() {
     for method in METHODS {
@@ -199,7 +199,7 @@ fn a_start_on_a_cliff_does_not_loosen_the_conditions() {
     }
 }
 
-/// No multipliers exist at these optima: the gradients of the active rows and bounds are parallel.
+/// These optima have no multipliers: the gradients of the active rows and bounds are parallel.
 #[test]
 fn a_cusp_is_not_called_converged() {
     for method in METHODS {
@@ -275,7 +275,7 @@ fn an_unbounded_objective_is_named_in_any_unit() {
     }
 }
 
-/// min x² + 3xy with y fixed at 2 and x ≥ 1.5 − y: moving y by δ moves x = −0.5 − δ along.
+/// min x² + 3xy with y fixed at 2 and x ≥ 1.5 − y: if y changes by δ, then x = −0.5 − δ.
 #[test]
 fn multipliers_of_fixed_variables_are_sensitivities() {
     let at = |y: f64| {
@@ -335,7 +335,7 @@ fn active_rows_are_found_in_any_unit() {
     }
 }
 
-/// The interior point spends its evaluations on the large circle; the trust region goes round it.
+/// The interior point uses all its evaluations on the large circle; the trust region follows it.
 #[test]
 fn one_method_stands_in_where_the_other_runs_out() {
     let circle = || {
@@ -390,7 +390,7 @@ fn scaled_variables_stay_between_their_bounds() {
     }
 }
 
-/// The second variable changes the functions by their rounding at most.
+/// The second variable changes the functions at most by round-off.
 #[test]
 fn variables_without_effect_stay_where_they_are() {
     for method in METHODS {
@@ -409,7 +409,7 @@ fn variables_without_effect_stay_where_they_are() {
     }
 }
 
-/// A variable without effect at the start is found again where it has one.
+/// A variable without effect at the start is used again where it has an effect.
 #[test]
 fn variables_wake_where_they_matter() {
     for method in METHODS {

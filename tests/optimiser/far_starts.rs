@@ -1,5 +1,5 @@
 //! Claims from starts that are far too steep: ten and a hundred times those of the collections, and
-//! sums of high powers. What does not converge must end under another name.
+//! sums of high powers. A run that does not converge must have another status.
 
 use crate::problems;
 use crate::problems::least_squares;
@@ -69,8 +69,8 @@ fn is_true(problem: &mut dyn Nlp, outcome: &Outcome) -> bool {
         && found.signs
 }
 
-/// No claim from `times` the start may be false, and each method must converge on at least as many
-/// problems as `least` says.
+/// No claim from `times` the start is false, and each method converges on at least as many problems
+/// as `least` states.
 fn check(name: &str, make: impl Fn() -> Vec<Problem>, times: f64, least: [usize; 3]) {
     for (method, least) in METHODS.into_iter().zip(least) {
         let mut converged = 0;
@@ -106,7 +106,7 @@ fn claims_of_constrained_problems_are_true() {
     check("collection", hock_schittkowski, 100.0, [96, 86, 97]);
 }
 
-/// Σ x_i^p + b_i x_i, whose least value is −Σ (1 − 1/p) b_i (b_i/p)^(1/(p − 1)).
+/// Σ x_i^p + b_i x_i, whose minimum is −Σ (1 − 1/p) b_i (b_i/p)^(1/(p − 1)).
 fn powers(power: i32, start: &[f64], b: Vec<f64>) -> Problem {
     let p = f64::from(power);
     let part = |b: &f64| -(1.0 - 1.0 / p) * b * (b / p).powf(1.0 / (p - 1.0));
@@ -172,7 +172,7 @@ fn steep_starts_are_left_for_the_optimum() {
         };
         let outcome = run(&mut problem, method);
         assert!(outcome.converged(), "{method:?}: {:?}", outcome.status);
-        // The sum has a stationary point beside its least one, which is 124.36.
+        // The sum has a stationary point apart from its minimum, which is 124.36.
         let context = format!("{method:?}: {} {:?}", outcome.objective, outcome.kkt);
         assert!(outcome.objective < 260.0, "{context}");
         assert!(is_true(&mut problem, &outcome), "{context}");

@@ -1,5 +1,5 @@
-//! What counts as feasible: constraints in tiny units, the tolerance, and programs without a feasible
-//! point, whose least violation is told.
+//! Feasibility: constraints in tiny units, the tolerance, and programs without a feasible point,
+//! whose least violation is reported.
 
 use crate::problems;
 
@@ -30,7 +30,7 @@ fn driven(lower: f64, upper: f64) -> Problem {
         .row_bounds(&[lower], &[upper])
 }
 
-/// A violation of 1e-6 would be the thousandfold of these bounds and is none of a solution.
+/// A violation of 1e-6 would be a thousand times these bounds; no solution has it.
 #[test]
 fn constraints_in_tiny_units_hold() {
     for bound in [1e-3, 1e-6, 1e-9, 1e-12] {
@@ -66,7 +66,7 @@ fn constraints_in_tiny_units_hold() {
     }
 }
 
-/// The sphere is approached from outside, so that each step leaves a violation.
+/// The sphere is approached from outside, so each step leaves a violation.
 #[test]
 fn the_tolerance_of_constraints_is_kept() {
     for method in [Method::InteriorPoint, Method::TrustRegion] {

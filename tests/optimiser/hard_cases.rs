@@ -26,8 +26,8 @@ fn run(mut problem: Problem, method: Method) -> Outcome {
     solve(&mut problem, &options, &mut Silent)
 }
 
-/// Solves by every method; each must converge to `best` within its limit of evaluations: that of
-/// the interior point and of `Auto`, and that of the trust region.
+/// Solves by every method. Each converges to `best` within its limit of evaluations: that of the
+/// interior point and of `Auto`, and that of the trust region.
 fn solved_by_all(make: impl Fn() -> Problem, limits: (usize, usize)) {
     for method in METHODS {
         let limit = if method == Method::TrustRegion {
@@ -68,7 +68,7 @@ fn maratos_effect_does_not_stop_the_steps() {
     solved_by_all(hard::maratos, (10, 20));
 }
 
-/// Without strictly feasible points the interior point creeps along the boundary.
+/// Without strictly feasible points the interior point advances slowly along the boundary.
 #[test]
 fn complementarity_constraints_are_solved() {
     solved_by_all(hard::complementarity, (300, 10));
@@ -164,13 +164,13 @@ fn undefined_region_beside_the_optimum_is_avoided() {
     solved_by_all(hard::logarithm, (50, 80));
 }
 
-/// Notes what is announced and what is then asked for.
+/// Records announced points and the next requested ones.
 struct Announced {
     inner: Problem,
     /// Points announced after the last evaluation, if that failed.
     next: Option<Vec<Vec<f64>>>,
     failed: bool,
-    /// How often the first of these was asked for next.
+    /// How often the first of these was requested next.
     met: usize,
 }
 
@@ -208,7 +208,7 @@ impl Nlp for Announced {
     }
 }
 
-/// After a step to where the functions are not defined, the line search announces the shorter ones.
+/// After a step to an undefined point, the line search announces the shorter steps.
 #[test]
 fn steps_after_a_failure_are_announced() {
     let mut program = Announced {
@@ -240,7 +240,7 @@ fn undefined_start_is_moved_or_named() {
     }
 }
 
-/// The violation is judged in the row's own units.
+/// The violation is measured in the row's own units.
 #[test]
 fn constraint_scaled_by_1e8_is_solved() {
     solved_by_all(hard::scaled_row, (15, 10));
@@ -283,7 +283,7 @@ fn two_hundred_variables_and_a_hundred_constraints_are_solved() {
     }
 }
 
-/// Every third call fails, in one of three ways; the failures cost steps but not the solution.
+/// Every third call fails, in one of three ways. The failures cost steps but not the solution.
 #[test]
 fn failing_calls_do_not_spoil_the_solution() {
     let names = [
@@ -322,7 +322,7 @@ fn failing_calls_do_not_spoil_the_solution() {
     }
 }
 
-/// Collects what an observer sees and stops after some iterations.
+/// Collects the rows of an observer and stops after some iterations.
 struct Stop {
     after: usize,
     optimality: Vec<f64>,
@@ -390,7 +390,7 @@ fn limits_and_interruptions_are_named_and_every_row_is_a_number() {
     }
 }
 
-/// What is left unsolved is not claimed to be solved.
+/// Unsolved programs are not claimed to be solved.
 #[test]
 fn programs_of_other_collections_are_solved() {
     for (method, unsolved) in [

@@ -26,14 +26,14 @@ const STATIONARY: [(&str, f64); 10] = [
     ("HS116", 97.59103473),
 ];
 
-/// What is asked of a method over all problems.
+/// Requirements on a method over all problems.
 struct Demand {
     solved: usize,
     median_evaluations: usize,
     median_gradients: usize,
 }
 
-/// Evaluations of functions and gradients that `method` may need for a problem.
+/// Largest number of evaluations of functions and gradients of `method` for a problem.
 fn allowed(name: &str, method: Method) -> Allowed {
     let found = ALLOWED.iter().find(|(problem, _, _)| *problem == name);
     let (_, interior, trust) = found.unwrap_or_else(|| panic!("{name} has no band"));
@@ -52,9 +52,9 @@ fn median(mut counts: Vec<usize>) -> usize {
     counts[counts.len() / 2]
 }
 
-/// A claim of convergence must hold at the point, by the reported multipliers, and its value be that
-/// of a known stationary point. Nothing is divided by multipliers, and no residual of the optimiser's
-/// is used.
+/// A claim of convergence holds at the point with the reported multipliers, and its value is that
+/// of a known stationary point. No residual is divided by multipliers, and none comes from the
+/// optimiser.
 fn assert_true_claim(problem: &mut Problem, outcome: &Outcome) {
     let (name, best) = (problem.name, problem.best);
     let found = Residuals::in_unit(problem, outcome, 1.0);

@@ -1,4 +1,4 @@
-//! A run repeats itself exactly, and continues from what an earlier one saved.
+//! A run repeats itself exactly, and continues from the saved state of an earlier one.
 
 use crate::problems;
 use crate::problems::recorded;
@@ -24,8 +24,7 @@ fn problem(name: &str) -> Problem {
         .expect("the problem is coded")
 }
 
-/// A history of evaluations can stand in for the functions only if the designs are the same to the
-/// last bit.
+/// A log of evaluations can replace the functions only if the designs are the same to the last bit.
 #[test]
 fn two_runs_ask_for_the_same_designs() {
     for method in METHODS {
@@ -120,7 +119,7 @@ fn rosenbrock(factor: f64) -> Problem {
     })
 }
 
-/// The gradients of 1e8 times an objective must not make those of the objective look small.
+/// The gradients of an objective multiplied by 1e8 must not make those of the objective look small.
 #[test]
 fn the_state_of_another_objective_claims_nothing() {
     for method in METHODS {
@@ -143,7 +142,7 @@ fn the_state_of_another_objective_claims_nothing() {
     }
 }
 
-/// What a damaged file may hold is refused by name, before anything is evaluated.
+/// Damaged states are rejected by name, before any evaluation.
 #[test]
 fn damaged_states_are_refused_by_name() {
     let options = Options::default();

@@ -1,5 +1,5 @@
-//! Verdicts where the unit of the variables is far from their typical changes: bounds that are ten to
-//! 1e20 typical changes apart and give the unit, and starts from which everything has to shrink.
+//! Verdicts if the unit of the variables is far from their typical changes: bounds that are ten to
+//! 1e20 typical changes apart and determine the unit, and starts from which everything must shrink.
 
 use crate::problems;
 
@@ -123,8 +123,8 @@ fn bounds_far_apart_do_not_hide_the_optimum() {
     }
 }
 
-/// The trust region crawls to its limit from one or two of these starts, which must not be called an
-/// end.
+/// From one or two of these starts the trust region advances slowly to its limit. This must not be
+/// called an end.
 #[test]
 fn far_starts_do_not_end_early() {
     let mut crawled = 0;
@@ -146,7 +146,8 @@ fn far_starts_do_not_end_early() {
     assert!(crawled <= 2, "{crawled}");
 }
 
-/// Units that are up to 1e6 times too small or too large cost some optima, but make no verdict false.
+/// Units that are up to 1e6 times too small or too large prevent some optima, but cause no false
+/// verdict.
 #[test]
 fn the_unit_of_the_variables_does_not_decide_the_verdict() {
     for (method, units) in [

@@ -1,5 +1,5 @@
-//! Verdicts that must not be given too soon: unbounded, infeasible, a limit; and what extreme numbers
-//! and rounding end as.
+//! Verdicts that must not come too early (unbounded, infeasible, a limit), and the ends of programs
+//! with extreme numbers and round-off.
 
 use crate::problems;
 use crate::problems::least_squares;
@@ -25,7 +25,7 @@ fn run(mut problem: Problem, method: Method) -> Outcome {
     solve(&mut problem, &with(method), &mut Silent)
 }
 
-/// All of these have a least value and feasible points.
+/// All of these have a minimum and feasible points.
 #[test]
 fn published_programs_are_neither_unbounded_nor_infeasible() {
     for method in METHODS {
@@ -76,8 +76,8 @@ fn bounded_objectives_are_not_called_unbounded() {
     }
 }
 
-/// At these starts the violation has a maximum or a saddle; feasible points are a hundred to a
-/// thousand away.
+/// At these starts the violation has a maximum or a saddle. Feasible points are at distances from a
+/// hundred to a thousand.
 #[test]
 fn distant_feasible_points_are_found() {
     for method in METHODS {
@@ -107,7 +107,7 @@ fn distant_feasible_points_are_found() {
     }
 }
 
-/// Far from its bump the row does not change at all: that no point is feasible is not known.
+/// Far from its bump the row is constant: it is not known that no point is feasible.
 #[test]
 fn a_plateau_of_the_violation_is_not_called_infeasible() {
     for start in [0.0, 10.0, 20.0, 36.0] {
@@ -127,7 +127,7 @@ fn a_plateau_of_the_violation_is_not_called_infeasible() {
     }
 }
 
-/// Huge numbers, no variables, more equalities than variables: every run ends under a name.
+/// Huge numbers, no variables, more equalities than variables: every run ends with a status.
 #[test]
 fn extreme_programs_end_by_name() {
     let square = |x: &[Dual]| x[0].powi(2) + (x[1] - 1.0).powi(2);
@@ -173,8 +173,8 @@ fn extreme_programs_end_by_name() {
     }
 }
 
-/// The rounding of an objective of 1e13 is above what the tolerance asks for: that is said, at a point
-/// that is as good as can be.
+/// The round-off of an objective of 1e13 exceeds the tolerance. The status says so, at a point that
+/// is as good as possible.
 #[test]
 fn the_precision_of_the_objective_is_named() {
     let all = || least_squares().into_iter();
@@ -195,7 +195,7 @@ fn the_precision_of_the_objective_is_named() {
     }
 }
 
-/// Where the interior point runs out of its share, the trust region gets all that is left.
+/// If the interior point uses up its share, the trust region gets the rest.
 #[test]
 fn auto_spends_what_is_allowed_before_it_names_a_limit() {
     let problem = || {
@@ -216,7 +216,7 @@ fn auto_spends_what_is_allowed_before_it_names_a_limit() {
 }
 
 /// The residuals of an outcome follow from its point and its multipliers, whose signs are those of
-/// ∇f + Jᵀy − z_L + z_U = 0: all of them are computed here once more, at ends and on the way.
+/// ∇f + Jᵀy − z_L + z_U = 0. They are all computed again here, at ends and on the way.
 #[test]
 fn residuals_follow_from_the_point_and_its_multipliers() {
     let made: [fn() -> Problem; 5] = [
@@ -283,7 +283,7 @@ fn residuals_follow_from_the_point_and_its_multipliers() {
     }
     for method in METHODS {
         let y = run(made[2](), method).multipliers.constraints;
-        // min y − x: x + y = 1 is held by 1, y = −0.5 by −2.
+        // min y − x: x + y = 1 has the multiplier 1, y = −0.5 has −2.
         let expected = [1.0, -2.0, 0.0];
         for (y, expected) in y.iter().zip(expected) {
             assert!((y - expected).abs() < 1e-5, "{method:?} {y} {expected}");
@@ -291,7 +291,7 @@ fn residuals_follow_from_the_point_and_its_multipliers() {
     }
 }
 
-/// Judges the residuals in an outcome by ones that are computed from the problem.
+/// Compares the residuals of an outcome with those computed from the problem.
 fn recomputed(mut problem: Problem, outcome: &Outcome, context: &str) {
     let context = format!("{} {context} {:?}", problem.name, outcome.status);
     let slopes = problem.gradients(&outcome.x).expect("is defined");

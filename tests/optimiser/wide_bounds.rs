@@ -1,5 +1,6 @@
-//! Bounds and scales of variables that are many orders of magnitude apart, by every method: a thrown
-//! ball whose optima are known in closed form. What is called converged is so in the units of the file.
+//! Bounds and scales of variables that differ by many orders of magnitude, by every method: a
+//! thrown ball whose optima are known in closed form. A claim of convergence holds in the units of
+//! the file.
 
 use flexbody::{Problem, optimise};
 use serde_json::{Value, json};
@@ -25,7 +26,7 @@ fn ball(variables: Value, objective: &Value, energy: Option<f64>) -> Value {
     document
 }
 
-/// Asserts the optimum by every method; the trust region may run into its limit if `crawls`.
+/// Asserts the optimum by every method. The trust region may reach its limit if `crawls`.
 fn assert_optimum(what: &str, mut document: Value, best: f64, crawls: bool) {
     for method in ["interior_point", "trust_region", "auto"] {
         document["optimiser"] = json!({"method": method});
@@ -52,7 +53,7 @@ fn speed(component: usize, bounds: Value) -> Value {
     variable
 }
 
-/// Least energy: the least mass, at rest but for the 2 m/s that no variable changes.
+/// Least energy: the least mass, at rest except for the 2 m/s that no variable changes.
 #[test]
 fn a_wide_bound_hides_no_force_on_other_variables() {
     for upper in [1e4, 1e6, 1e9, 1e12] {
@@ -66,7 +67,7 @@ fn a_wide_bound_hides_no_force_on_other_variables() {
     }
 }
 
-/// Least x with an energy of at most 20 J: with m = 1 kg and w = 0 and the 2 m/s across, u = −6.
+/// Least x with an energy of at most 20 J: with m = 1 kg, w = 0 and the 2 m/s across, u = −6.
 #[test]
 fn a_feasible_start_is_not_called_infeasible() {
     for upper in [1e4, 1e7, 1e9] {
@@ -80,7 +81,7 @@ fn a_feasible_start_is_not_called_infeasible() {
     }
 }
 
-/// A scale that does not fit its variable makes no optimum of the start.
+/// A wrong scale of a variable does not turn the start into an optimum.
 #[test]
 fn a_scale_that_is_wrong_ends_no_run_early() {
     for scale in [1e-12, 1e-6, 1e6] {

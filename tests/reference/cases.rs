@@ -1,4 +1,4 @@
-//! Open joints in random states, and their complex steps.
+//! Open joints in random states, and their derivatives by the complex step.
 
 use super::models::{KINDS, Numbers, axes_along, joint};
 use flexbody::math::scalar::COMPLEX_STEP;
@@ -8,7 +8,7 @@ use flexbody::model::{DegreeOfFreedom, Drive, JointKind, Model, Smoothness, Time
 use flexbody::system::bodies::{BodyMotion, rates};
 use flexbody::system::{InMotion, Numbering, joints, placement};
 
-/// A model in a state, and random numbers for what the derivatives are multiplied with.
+/// A model in a state, and random numbers for cotangents.
 pub struct Case {
     pub name: String,
     pub model: Model<f64>,
@@ -18,11 +18,11 @@ pub struct Case {
     pub numbers: Numbers,
 }
 
-/// When the cases are looked at (s).
+/// Time of the cases [s].
 pub const TIME: f64 = 0.3;
 
 /// Every kind of joint between two bodies and to ground, at two random states, without drives and
-/// with all that it can have.
+/// with all possible drives.
 pub fn cases() -> Vec<Case> {
     let mut all = Vec::new();
     for kind in KINDS {
@@ -62,7 +62,7 @@ pub fn case(kind: JointKind, body_b: Option<usize>, seed: u64) -> Case {
     }
 }
 
-/// The case with its joint driven along and about its axis, by courses of all kinds.
+/// The case with drives along and about the joint's axis, by functions of time of all kinds.
 fn driven(mut case: Case) -> Case {
     let joint = &mut case.model.joints[0];
     let course = |dof: DegreeOfFreedom| match (joint.kind, dof) {
@@ -92,7 +92,7 @@ fn driven(mut case: Case) -> Case {
 }
 
 impl Case {
-    /// Puts the joint at a random place with a random axis, closed.
+    /// Closes the joint at a random place with a random axis.
     pub fn close_joint(&mut self) {
         let joint = &self.model.joints[0];
         let at = (joint.name.as_str(), joint.kind);
@@ -129,7 +129,7 @@ impl Case {
         motions
     }
 
-    /// Values, rates and biases of all rows, one after the other.
+    /// Values, rates and biases of all rows, in this order.
     pub fn constraints(
         &self,
         model: &Model<Complex64>,
@@ -139,7 +139,7 @@ impl Case {
         self.constraints_at(model, q, v, TIME.into())
     }
 
-    /// The same at another time.
+    /// As [`Case::constraints`], at another time.
     pub fn constraints_at(
         &self,
         model: &Model<Complex64>,

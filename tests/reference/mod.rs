@@ -1,7 +1,7 @@
 //! Scenes and trajectories of independent codes, as models.
 //!
-//! Made by integrating minimal coordinates with the Gragg–Bulirsch–Stoer method in 80-bit
-//! arithmetic at tolerance 1e-17; accurate to 3e-14 m.
+//! The trajectories are integrations of minimal coordinates by the Gragg–Bulirsch–Stoer method in
+//! 80-bit arithmetic with the tolerance 1e-17. They are accurate to 3e-14 m.
 #![allow(dead_code)] // each test binary uses a part
 
 pub mod cases;
@@ -133,7 +133,7 @@ fn model(scene: &Value) -> Model<f64> {
     }
 }
 
-/// BDF of the given order with the start-up of rising order.
+/// BDF of the given order with a start of rising order.
 pub fn rising(order: usize) -> Method {
     Method::Bdf {
         order,
@@ -152,7 +152,7 @@ pub fn bdf(model: &Model<f64>, duration: f64, h: f64, order: usize) -> Trajector
     run(model, duration, rising(order), h)
 }
 
-/// Observed order of an error that a step of half the size makes smaller.
+/// Observed order of an error, from steps of one size and of half of it.
 pub fn observed_order(coarse: f64, fine: f64) -> f64 {
     (coarse / fine).log2()
 }
@@ -175,7 +175,7 @@ pub fn motion_error(run: &Trajectory<f64>, reference: &[Instant]) -> (f64, f64) 
     (position, velocity)
 }
 
-/// The reference instants that are sampled, with their samples.
+/// The sampled reference instants, with their samples.
 fn common<'a>(
     run: &'a Trajectory<f64>,
     reference: &'a [Instant],

@@ -1,4 +1,4 @@
-//! Models that are generic on purpose: full inertias, skew axes, no symmetry that hides a term.
+//! General models: full inertias, skew axes, no symmetry that hides a term.
 
 use flexbody::math::{Mat3, Vec3, rotation};
 use flexbody::model::{Joint, JointFrame, JointKind, Mobility, Model, RigidBody};
@@ -15,7 +15,7 @@ pub const KINDS: [JointKind; 8] = [
     JointKind::Weld,
 ];
 
-/// Pseudo-random numbers that are the same in every run (Steele, Lea & Flood 2014, SplitMix64).
+/// Pseudo-random numbers, the same in every run (SplitMix64, Steele, Lea & Flood 2014).
 pub struct Numbers(pub u64);
 
 impl Numbers {
@@ -68,8 +68,8 @@ pub fn axes_along(axis: &Vec3<f64>) -> [Vec3<f64>; 3] {
     [e1, axis.cross(&e1), axis]
 }
 
-/// A joint at a ground point and along a ground axis, closed where the bodies are placed;
-/// `None` is ground. A rod is 0.75 m long and ends at the point.
+/// A joint at a ground point and along a ground axis, closed in the placement; `None` is ground. A
+/// rod is 0.75 m long and ends at the point.
 pub fn joint(
     bodies: &[RigidBody<f64>],
     (name, kind): (&str, JointKind),
@@ -125,8 +125,8 @@ pub fn rod(name: &str, mass: f64, x: f64) -> RigidBody<f64> {
     }
 }
 
-/// Two free bodies with one joint between them, without gravity; their velocities do not fit the
-/// joint, so that the start has to be made consistent first.
+/// Two free bodies with one joint between them, without gravity. Their velocities violate the
+/// joint, so the start must be made consistent first.
 pub fn free_pair(kind: JointKind, seed: u64) -> Model<f64> {
     let mut numbers = Numbers(seed);
     let bodies = vec![numbers.body("first"), numbers.body("second")];

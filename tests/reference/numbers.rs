@@ -1,9 +1,9 @@
-//! The numbers of a problem file that may be designed.
+//! Numbers of a problem file that can be design variables.
 
 use serde_json::Value;
 
-/// Adds the paths to all numbers below `value`, which stands at `at`; the instants of tables keep their
-/// order and are left out.
+/// Adds the paths of all numbers below `value`, which is at `at`. Instants of tables keep their
+/// order and are omitted.
 pub fn numbers(value: &Value, at: &str, out: &mut Vec<String>) {
     match value {
         Value::Number(_) => out.push(at.to_owned()),

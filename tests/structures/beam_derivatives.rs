@@ -1,5 +1,5 @@
-//! Every derivative of the beam element against the complex step, for all sections, on curved elements with
-//! offsets; the transposes by dot products.
+//! Every derivative of the beam element against the complex step, for all sections, on curved
+//! elements with offsets. The transposes are checked by dot products.
 
 use super::sample::{ALUMINIUM, Compared, Numbers, complex_step};
 use flexbody::math::{Complex64, Scalar, Vec3};
@@ -64,7 +64,8 @@ fn beam_numbers<S: Scalar>(beam: &Beam<S>) -> Vec<S> {
     all
 }
 
-/// Stretches of equal units: nodes, orientation, each number of the section, offset, material, mass.
+/// Lengths of the ranges of equal units: nodes, orientation, each number of the section, offset,
+/// material, mass.
 fn kinds(beam: &Beam<f64>) -> Vec<usize> {
     let mut all = vec![3 * BEAM_NODES, 3];
     let _ = beam.section.map(&mut |_| all.push(1));
@@ -98,7 +99,7 @@ fn lift(motion: &BeamMotion<f64>) -> BeamMotion<Complex64> {
     motion_of(&all)
 }
 
-/// Checks derivatives by all numbers of the beam and of the motion.
+/// Checks the derivatives in all numbers of the beam and of the motion.
 fn check(
     name: &str,
     beam: &Beam<f64>,
@@ -213,7 +214,7 @@ fn matrices_are_the_derivatives_of_forces_and_momenta() {
     }
 }
 
-/// Rigid motions of a curved beam with an offset make no strain.
+/// Rigid motions of a curved beam with an offset cause no strain.
 #[test]
 fn rigid_motions_have_no_strain_energy() {
     let mut numbers = Numbers::new(90);
@@ -235,8 +236,8 @@ fn rigid_motions_have_no_strain_energy() {
     }
 }
 
-/// Torsion constants J / (long short³): Timoshenko & Goodier 1951, table of section 109. J is symmetric and
-/// smooth through the square.
+/// Torsion constants J / (long short³): Timoshenko & Goodier 1951, table of section 109. J is
+/// symmetric in the sides and smooth at the square.
 #[test]
 fn torsion_constants_of_rectangles_are_those_of_the_table() {
     let constant = |width: f64, height: f64| {

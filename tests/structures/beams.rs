@@ -1,5 +1,5 @@
-//! Beams against closed forms: in any direction, curved, as frames, slender and stocky; frequencies; where
-//! von Karman's strains end.
+//! Beams against closed forms: in any direction, curved, as frames, slender and stocky;
+//! frequencies; and the limits of von Karman's strains.
 
 use super::sample::{ALUMINIUM, Numbers};
 use flexbody::math::Vec3;
@@ -31,7 +31,7 @@ fn structure(generated: GeneratedBeams<f64>, section: Section<f64>) -> Structure
     Structure::with_beams(mesh, nodes, 0.0, section, orientations, ALUMINIUM).expect("sound")
 }
 
-/// Turns a whole mesh.
+/// Rotates a whole mesh.
 fn turned(mut generated: GeneratedBeams<f64>, turn: &Rotation3<f64>) -> GeneratedBeams<f64> {
     for x in generated
         .nodes
@@ -47,7 +47,7 @@ fn some_turn(seed: u64) -> Rotation3<f64> {
     Rotation3::new(Numbers::new(seed).vector(2.5))
 }
 
-/// Displacement of a set of one node under a force on it, one set clamped.
+/// Displacement of a set of one node under a force on it, with one set clamped.
 fn deflection(
     structure: &Structure<f64>,
     clamped: &str,
@@ -82,8 +82,8 @@ fn stiffness(section: &Section<f64>) -> [f64; 6] {
     section.values(&ALUMINIUM).stiffness
 }
 
-/// P L³/3EI + P L/kGA, P L/EA, in any direction of space and for every section; the element has them
-/// exactly, whatever its slenderness: no locking.
+/// P L³/3EI + P L/kGA, P L/EA, in any direction of space and for every section. The element has
+/// them exactly for any slenderness: no locking.
 #[test]
 fn a_cantilever_bends_as_timoshenko_says() {
     let sections = |size: f64| {
@@ -135,9 +135,10 @@ fn a_cantilever_bends_as_timoshenko_says() {
     }
 }
 
-/// A quarter of a circle, clamped at one end, loaded at the other (Castigliano): radially
-/// π/4 (R³/EI + R/EA + R/kGA), along the tangent (3π/4 − 2) R³/EI + π/4 (R/EA + R/kGA), out of the plane
-/// π/4 R³/EI + (3π/4 − 2) R³/GJ + π/2 R/kGA. EI/R² beside EA: a stocky one and slender ones.
+/// A quarter of a circle, clamped at one end, loaded at the other (Castigliano): radially π/4
+/// (R³/EI + R/EA + R/kGA), along the tangent (3π/4 − 2) R³/EI + π/4 (R/EA + R/kGA), out of the
+/// plane π/4 R³/EI + (3π/4 − 2) R³/GJ + π/2 R/kGA. One is stocky (EI/R² comparable to EA), the
+/// others slender.
 #[test]
 fn a_curved_beam_bends_as_castigliano_says() {
     let radius: f64 = 1.0;
@@ -151,7 +152,7 @@ fn a_curved_beam_bends_as_castigliano_says() {
         let (quarter, twist) = (PI / 4.0, 3.0 * PI / 4.0 - 2.0);
         let (r, cube) = (radius, radius.powi(3));
         let stretch = quarter * (r / axial + r / shear3);
-        // The free end stands on the x axis: radial is x, tangential y.
+        // The free end is on the x axis: radial is x, tangential y.
         let expected = [
             quarter * cube / bending2 + stretch,
             twist * cube / bending2 + stretch,
@@ -211,8 +212,8 @@ fn a_frame_gives_way_as_castigliano_says() {
     }
 }
 
-/// An offset is a rigid arm: the tip of a beam whose line runs beside its nodes turns under an axial force
-/// as under the moment of that force.
+/// An offset is a rigid arm. If the line of a beam is off its nodes, an axial force rotates the tip
+/// as its moment does.
 #[test]
 fn an_offset_is_a_rigid_arm() {
     let length = 1.0;
@@ -235,8 +236,8 @@ fn an_offset_is_a_rigid_arm() {
     );
 }
 
-/// Slender cantilever: bending in both planes (1.8751², 4.6941²), torsion and stretching in quarter waves.
-/// A stocky beam on hinges: Timoshenko's frequencies (1921), which are exact.
+/// Slender cantilever: bending in both planes (1.8751², 4.6941²), torsion and stretching in quarter
+/// waves. A stocky beam on hinges has Timoshenko's exact frequencies (1921).
 #[test]
 fn beams_have_their_frequencies() {
     let length: f64 = 2.0;
@@ -300,10 +301,11 @@ fn beams_have_their_frequencies() {
     }
 }
 
-/// The Princeton beam (Dowell & Traybar; tips of ANSYS beams, 8.896 N). Von Karman's strains stretch the line
-/// by what it bends, and a cantilever is free to come nearer: they give the linear deflection. Stiffly
-/// loaded (0.021 of the length) that is right to 0.05 %; softly loaded (0.29 of the length) it is 9.4 %
-/// too large, and the coupling of twist with bending at 45° is missing.
+/// The Princeton beam (Dowell & Traybar; tips of ANSYS beams, 8.896 N). Von Karman's strains
+/// include the stretch by bending, but the end of a cantilever is free to move, so they give the
+/// linear deflection. With a small load (0.021 of the length) this is correct to 0.05 %. With a
+/// large one (0.29 of the length) it is 9.4 % too large, and the coupling of twist and bending at
+/// 45° is missing.
 #[test]
 fn the_princeton_beam_shows_where_von_karman_ends() {
     let (length, height, width) = (0.508, 12.3777e-3, 3.2024e-3);
@@ -328,8 +330,8 @@ fn the_princeton_beam_shows_where_von_karman_ends() {
     assert!((0.85..0.87).contains(&missing), "{missing}");
 }
 
-/// Between hinges that do not come nearer a beam stiffens as a plate in cylindrical bending does: w'² makes
-/// tension. One term of a sine, exact for a sine load: q = EI (π/L)⁴ a + ¼ EA (π/L)⁴ a³.
+/// Between fixed hinges a beam stiffens as a plate in cylindrical bending: w'² causes tension. One
+/// term of a sine is exact for a sine load: q = EI (π/L)⁴ a + ¼ EA (π/L)⁴ a³.
 #[test]
 fn a_beam_between_fixed_hinges_stiffens() {
     let (length, n) = (1.0, 16);
@@ -355,7 +357,7 @@ fn a_beam_between_fixed_hinges_stiffens() {
     for amplitude in [0.001, 0.004, 0.012] {
         let k = PI / length;
         let q = bending * k.powi(4) * amplitude + 0.25 * axial * k.powi(4) * amplitude.powi(3);
-        // Means over elements have a sine that is smaller by sinc².
+        // The means of a sine over elements are smaller by sinc².
         let half = 0.5 * k * length / n as f64;
         let q_mean = q / (half.sin() / half).powi(2);
         let case: Vec<Load<f64>> = (0..n)

@@ -1,4 +1,4 @@
-//! Plates with beams on them: derivatives of functions, frequencies and sizes of generators.
+//! Plates with beams: derivatives of functions and frequencies, also in sizes of generators.
 
 use super::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
 use flexbody::math::{Complex64, Vec3};
@@ -15,7 +15,7 @@ use flexbody::structures::structure::Structure;
 use flexbody::structures::supports::{NodeUnknowns, Support};
 use flexbody::structures::von_karman::LoadSteps;
 
-/// A disturbed plate with a beam below one row of edges, its line beside the nodes.
+/// A disturbed plate with a beam below one row of edges; its line is off the nodes.
 fn stiffened(numbers: &mut Numbers) -> Structure<f64> {
     let mut generated = plate([1.2, 0.8], [2, 2]);
     for node in &mut generated.nodes {

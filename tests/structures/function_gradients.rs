@@ -1,5 +1,5 @@
-//! Functions of static solutions: every derivative against the complex step through the whole solution,
-//! on a curved and distorted mesh with a fold, for both kinds of unknowns.
+//! Functions of static solutions: every derivative against the complex step through the whole
+//! solution, on a curved and distorted mesh with a fold, for both kinds of unknowns.
 
 use super::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
 use flexbody::math::{Complex64, Scalar, Vec3};
@@ -49,7 +49,7 @@ fn structure(numbers: &mut Numbers, fold: bool) -> Structure<f64> {
     structure
 }
 
-/// Two load cases, `size` times as large as those that move the panel by far less than its thickness.
+/// Two load cases, multiplied by `size`; at 1 the panel moves by far less than its thickness.
 fn cases(size: f64) -> Vec<Vec<Load<f64>>> {
     let all = || "all".to_owned();
     let cases: Vec<Vec<Load<f64>>> = vec![
@@ -91,7 +91,7 @@ fn every_function_has_exact_derivatives_by_everything() {
     check(33, true, NodeUnknowns::Six, Terms::LINEAR, 1.0);
 }
 
-/// The strains of von Karman change the displacements by more than 2 %.
+/// Von Karman's strains change the displacements by more than 2 %.
 #[test]
 fn every_function_has_exact_derivatives_with_von_karman_strains() {
     check(34, false, NodeUnknowns::Natural, Terms::VON_KARMAN, 1e3);
@@ -210,8 +210,8 @@ fn check(seed: u64, fold: bool, unknowns: NodeUnknowns, terms: Terms, size: f64)
         .collect();
     for (function, found) in functions.iter().zip(&found) {
         let name = format!("{function:?}");
-        // Beside the other support, which takes the rest, the complex step too knows a reaction no better
-        // than the forces of single elements there are rounded.
+        // This support shares the load with another one. There even the complex step has the
+        // round-off of the forces of single elements in a reaction.
         let part = matches!(function, Function::Reaction { nodes, .. } if nodes == "x0");
         let tolerance = if part { 1e-11 } else { 1e-12 };
         let exact = complex_step(&at, |x| {

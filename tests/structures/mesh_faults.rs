@@ -1,4 +1,4 @@
-//! Faults of meshes are told with their element or node; sound meshes have none.
+//! Faults of meshes are reported with the element or node. Valid meshes have none.
 
 use flexbody::math::Vec3;
 use flexbody::structures::generate::{curved_panel, cylinder, plate};
@@ -40,7 +40,7 @@ fn faults_name_the_element_and_the_node() {
     assert!(twice.contains(&MeshFault::RepeatedNode { shell: 0, node: 0 }));
     let unreal = with(&|g| g.nodes[3].y = f64::NAN);
     assert_eq!(unreal, [MeshFault::NoPlace { node: 3 }]);
-    // A corner that is pushed through the opposite one folds its element.
+    // A corner that crosses the opposite one folds its element.
     let folded = with(&|g| g.nodes[0] = Vec3::new(0.5, 0.8, 0.0));
     assert!(
         matches!(folded[..], [MeshFault::Inverted { shell: 0, .. }]),
@@ -58,7 +58,7 @@ fn faults_name_the_element_and_the_node() {
         ),
         "{middle:?}"
     );
-    // The second element wound the other way round: rows of nodes in reverse.
+    // The second element is wound in reverse: rows of nodes in reverse order.
     let wound = with(&|g| {
         let old = g.mesh.shells[1];
         g.mesh.shells[1] = [2, 1, 0, 5, 4, 3, 8, 7, 6].map(|k| old[k]);

@@ -1,4 +1,4 @@
-//! Derivatives of frequencies: against the complex step, and against differences of whole solutions.
+//! Derivatives of frequencies against the complex step, and against differences of whole solutions.
 
 use super::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
 use flexbody::math::{Complex64, Vec3};
@@ -91,7 +91,7 @@ fn separate_frequencies_have_exact_derivatives_by_everything() {
     }
 }
 
-/// The eigenvalues of other structures, so that nothing of the solution is taken for granted.
+/// The eigenvalues of changed structures check the derivatives without any part of the solution.
 #[test]
 fn frequencies_follow_their_derivatives_in_whole_solutions() {
     let structure = panel_with_masses(&mut Numbers::new(44));
@@ -145,8 +145,9 @@ fn matrix(columns: &[Vec<Complex64>]) -> Matrix {
     DMatrix::from_fn(columns.len(), columns.len(), |i, j| columns[j][i])
 }
 
-/// −(1/ρ) ln tr e^{−ρ√A/2π} by matrix functions alone, A = M⁻¹K: no eigenvalue, no vector. The square
-/// root is that of Denman & Beavers (1976), the exponential is scaled and squared.
+/// −(1/ρ) ln tr e^{−ρ√A/2π} by matrix functions only, A = M⁻¹K: without eigenvalues or
+/// eigenvectors. The square root is that of Denman & Beavers (1976), the exponential is by scaling
+/// and squaring.
 fn aggregate_of_matrices(stiffness: &Matrix, mass: &Matrix, rho: f64, shift: f64) -> Complex64 {
     let n = mass.nrows();
     let one = Matrix::identity(n, n);
@@ -173,8 +174,8 @@ fn aggregate_of_matrices(stiffness: &Matrix, mass: &Matrix, rho: f64, shift: f64
     Complex64::from(shift) - sum.trace().ln() / rho
 }
 
-/// A square plate: the second frequency stands twice. The aggregate has exact derivatives there, and in a
-/// plate of nine equal ones.
+/// A square plate has a double second frequency. The aggregate has exact derivatives there, and for
+/// nine equal plates.
 #[test]
 fn the_aggregate_of_a_cluster_has_exact_derivatives() {
     for (n, size, rho) in [
@@ -223,8 +224,8 @@ fn the_aggregate_of_a_cluster_has_exact_derivatives() {
     }
 }
 
-/// Two modes swap as a plate grows through the square, others come in at the end: the aggregate and its
-/// slope by the length have no jump.
+/// Two modes swap when the length of a plate passes the square, and others enter at the end of the
+/// range. The aggregate and its derivative in the length have no jump.
 #[test]
 fn the_aggregate_does_not_jump_where_modes_swap() {
     let supports = ["x0", "x1", "y0", "y1"].map(Support::clamp);
@@ -253,7 +254,7 @@ fn the_aggregate_does_not_jump_where_modes_swap() {
             "{k}: {} and {difference} by differences",
             line[k].1
         );
-        // Slopes lie on a smooth line too.
+        // The derivatives are smooth, too.
         let bend = line[k + 1].1 - 2.0 * line[k].1 + line[k - 1].1;
         assert!((bend / line[k].1).abs() < 1e-4, "{k}: {bend}");
     }

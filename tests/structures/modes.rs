@@ -1,4 +1,4 @@
-//! Natural frequencies against other codes and solutions, and the count that misses none.
+//! Natural frequencies against other codes and solutions, and the count that detects missed ones.
 
 use super::sample::ALUMINIUM;
 use flexbody::structures::generate::{Generated, plate};
@@ -50,7 +50,7 @@ fn assert_near(name: &str, found: &[f64], expected: &[f64], tolerance: f64) {
     assert!(found.len() >= expected.len());
 }
 
-/// The same element in an independent prototype, to the five digits it gives; the limit of series by Ritz
+/// The same element in an independent prototype, to its five digits. The limit of Ritz series
 /// (Kirchhoff) is 3.4710 8.5066 21.284 27.199.
 #[test]
 fn a_thin_cantilever_plate_has_its_frequencies() {
@@ -68,11 +68,11 @@ fn a_thin_cantilever_plate_has_its_frequencies() {
     }
 }
 
-/// ω a² √(ρh/D) of the free square plate of Kirchhoff, beside rigid motions, by Ritz with 13 Legendre
-/// polynomials a direction (Leissa 1969 gives 13.49 19.79 24.43 35.02 35.02 as upper bounds).
+/// ω a² √(ρh/D) of Kirchhoff's free square plate, without rigid motions, by Ritz with 13 Legendre
+/// polynomials per direction (Leissa 1969 gives the upper bounds 13.49 19.79 24.43 35.02 35.02).
 fn ritz_free_square() -> Vec<f64> {
     let (n, points, nu) = (13, 20, ALUMINIUM.poisson);
-    // Points and weights of Gauss by Golub & Welsch.
+    // Gauss points and weights by Golub & Welsch.
     let jacobi = DMatrix::from_fn(points, points, |i: usize, j: usize| {
         let k = i.max(j) as f64;
         if i.abs_diff(j) == 1 {
@@ -83,7 +83,7 @@ fn ritz_free_square() -> Vec<f64> {
     });
     let gauss = SymmetricEigen::new(jacobi);
     let weight = |g: usize| 2.0 * gauss.eigenvectors[(0, g)].powi(2);
-    // Normalised polynomials and two derivatives.
+    // Normalised polynomials and their first two derivatives.
     let polynomials = |x: f64| {
         let mut all = vec![[1.0, 0.0, 0.0], [x, 1.0, 0.0]];
         for k in 1..n - 1 {
@@ -121,12 +121,12 @@ fn ritz_free_square() -> Vec<f64> {
         .copied()
         .collect();
     all.sort_by(f64::total_cmp);
-    // The side is 2 here; the lowest are the three rigid motions out of the plane.
+    // The side is 2 here. The lowest three are the rigid motions out of the plane.
     all[3..].iter().map(|lambda| 4.0 * lambda.sqrt()).collect()
 }
 
-/// A free square plate has six rigid motions, which are no modes, and a pair of equal frequencies, which
-/// is found whole.
+/// A free square plate has six rigid motions, which are not modes, and a pair of equal frequencies,
+/// which is found completely.
 #[test]
 fn a_free_plate_has_six_rigid_motions() {
     let expected = ritz_free_square();
@@ -141,7 +141,8 @@ fn a_free_plate_has_six_rigid_motions() {
     }
 }
 
-/// What supports leave free is rigid: a hinge about x0, a slide along y.
+/// Rigid motions are those that the supports admit: with a hinge about x0, and with a slide along
+/// y.
 #[test]
 fn rigid_motions_are_those_that_supports_leave() {
     let none = [false; 3];
@@ -181,8 +182,8 @@ fn a_clamped_plate_agrees_with_another_code() {
     }
 }
 
-/// Many equal plates that do not touch: every frequency as often as there are plates, more than any block
-/// of vectors. The count finds what the iteration misses.
+/// Many equal separate plates: every frequency is as often as there are plates, more than any block
+/// of vectors. The count detects those that the iteration misses.
 #[test]
 fn frequencies_of_any_multiplicity_are_found() {
     for (copies, clamped) in [(3, false), (7, true), (9, true)] {
@@ -221,7 +222,7 @@ fn frequencies_of_any_multiplicity_are_found() {
     }
 }
 
-/// All modes of a coarse mesh: as many as unknowns that have mass; more are refused.
+/// All modes of a coarse mesh: as many as unknowns with mass. A request for more is rejected.
 #[test]
 fn a_structure_has_no_more_modes_than_it_has() {
     let structure = square(1, 0.1);
@@ -247,7 +248,8 @@ fn a_structure_has_no_more_modes_than_it_has() {
     );
 }
 
-/// A heavy mass at the tip of a light strip: f = √(3EI / ((m + 33/140 ρAL) L³)) / 2π (Rayleigh; 0.1 %).
+/// A heavy mass at the tip of a light strip: f = √(3EI / ((m + 33/140 ρAL) L³)) / 2π (Rayleigh; 0.1
+/// %).
 #[test]
 fn a_lumped_mass_lowers_the_frequency_as_it_should() {
     let (length, width, thickness) = (1.0, 0.05, 0.01);

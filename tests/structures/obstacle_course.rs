@@ -1,6 +1,6 @@
-//! The linear obstacle course of shells (MacNeal & Harder 1985; Belytschko et al. 1985), on one
-//! symmetric part each, n × n elements, six unknowns a node. Expected are the numbers of an independent
-//! prototype of the same element, to the digits given.
+//! The linear obstacle course of shells (MacNeal & Harder 1985; Belytschko et al. 1985): one
+//! symmetric part each, n × n elements, six unknowns per node. Expected values are those of an
+//! independent prototype of the same element, to the given digits.
 
 use flexbody::math::Vec3;
 use flexbody::structures::generate::{Generated, curved_panel, panel};
@@ -21,7 +21,7 @@ fn material(young: f64, poisson: f64) -> Material<f64> {
     }
 }
 
-/// Mirror plane across an axis: no displacement along it, no rotation about the others.
+/// Mirror plane across an axis: no displacement along it, no rotation about the other axes.
 fn mirror(nodes: &str, axis: usize) -> Support {
     let across = [0, 1, 2].map(|k| k == axis);
     Support::of(nodes, across, across.map(|x| !x))
@@ -91,7 +91,7 @@ fn hemisphere(n: usize) -> f64 {
         let ((sp, cp), (st, ct)) = ((x * quarter).sin_cos(), (y * 0.8 * quarter).sin_cos());
         Vec3::new(ct * cp, ct * sp, st) * 10.0
     });
-    // One point keeps the height; the loads stand at both ends of the equator.
+    // One point keeps its height. The loads act at both ends of the equator.
     let corner = part.mesh.node_sets["x0y0"].clone();
     let other = part.mesh.node_sets["x1y0"].clone();
     part.mesh.node_sets.insert("pull".into(), corner.clone());

@@ -1,4 +1,4 @@
-//! Patch tests on distorted meshes, and plates that do not lock.
+//! Patch tests on distorted meshes, and plates without locking.
 
 use super::sample::{ALUMINIUM, Numbers};
 use flexbody::math::Vec3;
@@ -8,8 +8,8 @@ use flexbody::structures::statics::{StaticFailure, StaticProblem};
 use flexbody::structures::structure::Structure;
 use flexbody::structures::supports::{NodeUnknowns, Support};
 
-/// A flat plate whose inner corner nodes stand anywhere near their places; middle nodes stay in the
-/// middle of straight edges.
+/// A flat plate whose inner corner nodes are displaced at random. Middle nodes are in the middle of
+/// straight edges.
 fn distorted_plate(n: usize, seed: u64, strength: f64) -> Generated<f64> {
     let mut generated = plate([1.2, 0.8], [n, n]);
     let mut numbers = Numbers::new(seed);
@@ -33,8 +33,8 @@ fn distorted_plate(n: usize, seed: u64, strength: f64) -> Generated<f64> {
     generated
 }
 
-/// A motion of constant strain, given all around, is found inside: the forces that it needs at the
-/// inner nodes vanish. Both kinds of unknowns; the energy is that of the constant strain.
+/// A motion of constant strain, prescribed on the boundary, is the solution inside: the forces at
+/// the inner nodes vanish. For both kinds of unknowns; the energy is that of the constant strain.
 #[test]
 fn constant_membrane_strain_bending_and_shear_pass_the_patch_test() {
     let thickness = 0.1;
@@ -65,7 +65,7 @@ fn constant_membrane_strain_bending_and_shear_pass_the_patch_test() {
         for (name, state) in states {
             let motion: Vec<(Place, Place)> = structure.nodes.iter().map(state).collect();
             let (forces, largest, energy) = nodal_forces(&structure, &motion);
-            // Shear without bending needs moments: its energy alone is judged.
+            // Shear without bending needs moments: only its energy is checked.
             if name == "shear" {
                 let shear = ALUMINIUM.shear_modulus() * thickness * 5.0 / 6.0;
                 let expected = 0.5 * shear * (0.01_f64.powi(2) + 0.02_f64.powi(2)) * 1.2 * 0.8;
@@ -90,9 +90,9 @@ fn constant_membrane_strain_bending_and_shear_pass_the_patch_test() {
     }
 }
 
-/// Forces (and moments, for bending about axes in the plane) that a motion needs at the nodes, and
-/// the largest force that displacements or rotations need by themselves in one element: these cancel
-/// in bending without shear; and the energy.
+/// Forces (and moments, for bending about axes in the plane) of a motion at the nodes; the largest
+/// force of displacements or rotations alone in one element (they cancel in bending without shear);
+/// and the energy.
 fn nodal_forces(
     structure: &Structure<f64>,
     motion: &[(Vec3<f64>, Vec3<f64>)],
@@ -140,9 +140,9 @@ fn nodal_forces(
     (total, largest, energy)
 }
 
-/// A cantilever strip under a tip load keeps its deflection beside the thin limit from t/L = 1e-2 to
-/// 1e-4: to 0.1 % on a regular mesh, to 2 % on one of 6 × 6 whose corners are moved by up to an eighth of
-/// the width of an element.
+/// A cantilever strip under a tip load keeps its deflection, relative to the thin limit, from t/L =
+/// 1e-2 to 1e-4: to 0.1 % on a regular mesh, to 2 % on one of 6 × 6 whose corners are displaced by
+/// up to an eighth of the width of an element.
 #[test]
 fn thin_plates_do_not_lock() {
     for (seed, tolerance) in [(None, 1e-3), (Some(21), 0.02)] {

@@ -1,4 +1,4 @@
-//! Reactions balance the loads; inertia of bodies that are known.
+//! Reactions balance the loads; bodies have their known inertia.
 
 use super::sample::{ALUMINIUM, Numbers};
 use flexbody::math::Vec3;
@@ -13,9 +13,9 @@ use flexbody::structures::structure::Structure;
 use flexbody::structures::supports::{NodeUnknowns, Support};
 use flexbody::structures::von_karman::LoadSteps;
 
-/// Forces and moments of all supports together are those of the loads, of opposite sign: in linear
-/// statics about any point; with von Karman's strains forces are, and moments of loads stand on the
-/// undeformed structure.
+/// The total forces and moments of all supports are the opposite of those of the loads: in linear
+/// statics about any point. With von Karman's strains only the forces are: moments of loads refer
+/// to the undeformed structure.
 #[test]
 fn reactions_balance_the_loads() {
     for (seed, unknowns, von_karman) in [
@@ -158,7 +158,7 @@ fn known_bodies_have_their_inertia() {
     assert!((centre - Vec3::new(0.0, 0.0, l / 2.0)).norm() < 1e-12);
     assert!((j[2][2] / (mass * r * r) - 1.0).abs() < 1e-5);
     assert!((j[0][0] / (mass * (r * r / 2.0 + l * l / 12.0)) - 1.0).abs() < 1e-5);
-    // Two lumped masses on a beam without mass, one with an inertia of its own.
+    // Two lumped masses on a massless beam, one with its own inertia.
     let generated = straight_beam([Vec3::zeros(), Vec3::x() * 2.0], Vec3::y(), 1);
     let section = Section::Rectangle {
         width: 0.1,

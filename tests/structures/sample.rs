@@ -1,4 +1,4 @@
-//! Numbers that look random and are the same in every run.
+//! Pseudo-random numbers that are the same in every run, and comparisons of derivatives.
 
 use flexbody::math::{Complex64, Scalar, Vec3};
 use flexbody::structures::material::Material;
@@ -36,7 +36,7 @@ pub const ALUMINIUM: Material<f64> = Material {
     yield_stress: 270e6,
 };
 
-/// A curved and distorted element with directors that are near its normals.
+/// A curved and distorted element whose directors are near its normals.
 pub fn distorted_element(numbers: &mut Numbers, drilling: bool) -> Shell<f64> {
     let mut geometry = Field::zeros();
     for k in 0..NODES {
@@ -64,7 +64,7 @@ pub fn random_motion(numbers: &mut Numbers) -> Motion<f64> {
     motion
 }
 
-/// All numbers of an element, in one order.
+/// All numbers of an element, in a fixed order.
 pub fn shell_numbers<S: Scalar>(shell: &Shell<S>) -> Vec<S> {
     let mut all: Vec<S> = Vec::new();
     for a in 0..NODES {
@@ -77,7 +77,7 @@ pub fn shell_numbers<S: Scalar>(shell: &Shell<S>) -> Vec<S> {
     all
 }
 
-/// The element of these numbers.
+/// The element with these numbers.
 pub fn shell_of<S: Scalar>(numbers: &[S], drilling: bool) -> Shell<S> {
     let mut geometry = Field::zeros();
     for a in 0..NODES {
@@ -117,7 +117,7 @@ pub fn motion_of<S: Scalar>(numbers: &[S]) -> Motion<S> {
     motion
 }
 
-/// All numbers of a structure, and the stretches of equal units.
+/// All numbers of a structure, and the lengths of the ranges of equal units.
 pub fn structure_numbers<S: Scalar>(structure: &Structure<S>) -> (Vec<S>, Vec<usize>) {
     let shells = structure.thickness.len();
     let mut kinds = vec![3 * structure.nodes.len(), shells, shells];
@@ -133,13 +133,13 @@ pub fn structure_numbers<S: Scalar>(structure: &Structure<S>) -> (Vec<S>, Vec<us
     (structure.values(), kinds)
 }
 
-/// The structure with other numbers.
+/// The structure with these numbers.
 pub fn with_numbers(structure: &Structure<f64>, values: &[Complex64]) -> Structure<Complex64> {
     let mut next = values.iter().copied();
     structure.map(|_| next.next().expect("as many numbers"))
 }
 
-/// Derivatives of a function of numbers by the complex step.
+/// Derivatives of a function by the complex step.
 pub fn complex_step(at: &[f64], f: impl Fn(&[Complex64]) -> Complex64) -> Vec<f64> {
     let h = 1e-30;
     let mut x: Vec<Complex64> = at.iter().map(|&x| Complex64::from(x)).collect();
@@ -153,22 +153,22 @@ pub fn complex_step(at: &[f64], f: impl Fn(&[Complex64]) -> Complex64) -> Vec<f6
         .collect()
 }
 
-/// Derivatives found, those by the complex step, and what they are derivatives of.
+/// Derivatives to check, those by the complex step, and their function.
 pub struct Compared<'a> {
     pub name: &'a str,
     /// Value of the function.
     pub value: f64,
-    /// Numbers that it was disturbed in.
+    /// Numbers in which it is differentiated.
     pub at: &'a [f64],
     pub exact: &'a [f64],
     pub found: &'a [f64],
-    /// Lengths of the stretches of numbers that share a unit.
+    /// Lengths of the ranges of numbers with equal units.
     pub kinds: &'a [usize],
 }
 
 impl Compared<'_> {
-    /// Asserts agreement relative to the largest derivative of the same unit, or, where these are
-    /// nothing but round-off, to the value over the number.
+    /// Asserts agreement relative to the largest derivative of the same unit or, if these are only
+    /// round-off, relative to the value divided by the number.
     pub fn assert(&self, tolerance: f64) {
         assert_eq!(self.exact.len(), self.found.len());
         let largest = |list: &[f64]| list.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

@@ -18,7 +18,8 @@ const TERMS: [Terms; 3] = [
     },
 ];
 
-/// Stretches of equal units in the numbers of an element: geometry, h, μ, E, ν, ρ, yield stress.
+/// Lengths of ranges of equal units in the numbers of an element: geometry, h, μ, E, ν, ρ, yield
+/// stress.
 const SHELL_KINDS: [usize; 7] = [6 * NODES, 1, 1, 1, 1, 1, 1];
 
 fn cotangent_numbers<S: Scalar>(cotangent: &ShellCotangent<S>) -> Vec<S> {
@@ -31,7 +32,7 @@ fn cotangent_numbers<S: Scalar>(cotangent: &ShellCotangent<S>) -> Vec<S> {
     })
 }
 
-/// Checks derivatives by all numbers of the element and of the motion.
+/// Checks the derivatives in all numbers of the element and of the motion.
 fn check(
     name: &str,
     shell: &Shell<f64>,
@@ -144,8 +145,8 @@ fn energies_stresses_and_masses_have_exact_derivatives() {
     }
 }
 
-/// What an adjoint needs, ψ·∂f/∂p for every number p of the element: the infinitesimal part of the
-/// derivatives of the energy at v + ε ψ.
+/// The products for an adjoint, ψ·∂f/∂p for every number p of the element, are the infinitesimal
+/// parts of the derivatives of the energy at v + ε ψ.
 #[test]
 fn dual_motions_give_the_derivatives_of_the_force_times_an_adjoint() {
     let mut numbers = Numbers::new(5);

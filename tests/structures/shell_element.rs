@@ -1,5 +1,5 @@
-//! One element against the numbers of an independent prototype (tests/data/structures/
-//! mitc9_element.json: a parallelogram and a curved element, without drilling and correction).
+//! One element against an independent prototype (tests/data/structures/mitc9_element.json: a
+//! parallelogram and a curved element, without drilling and correction).
 
 use super::sample::{Numbers, distorted_element, random_motion};
 use flexbody::math::{Dual, Vec3};
@@ -81,7 +81,7 @@ fn force(shell: &Shell<f64>, motion: &Motion<f64>, terms: Terms) -> Motion<f64> 
     force
 }
 
-/// The tangent times a motion; unknowns of the matrix are all u_a, then all θ_a.
+/// The tangent times a motion. Unknowns of the matrix are all u_a, then all θ_a.
 fn tangent_product(
     shell: &Shell<f64>,
     at: &Motion<f64>,
@@ -164,8 +164,8 @@ fn the_patch_correction_leaves_a_parallelogram_alone() {
     assert_forces("corrected", &expected, &force(&shell, &v, Terms::LINEAR));
 }
 
-/// Residual and matrix come of different formulas: the tangent times a motion must be the derivative
-/// of the force in its direction, for every choice of terms, on a curved and distorted element.
+/// Force and tangent have different formulas. The tangent times a motion is the derivative of the
+/// force in its direction, for every choice of terms, on a curved and distorted element.
 #[test]
 fn the_tangent_is_the_derivative_of_the_force() {
     for (seed, drilling) in [(1, false), (2, true)] {
@@ -202,7 +202,7 @@ fn the_tangent_is_the_derivative_of_the_force() {
     }
 }
 
-/// Six rigid motions have no energy, with folds and distortions of any kind.
+/// Six rigid motions have no strain energy, with any folds and distortions.
 #[test]
 fn rigid_motions_have_no_strain_energy() {
     let mut numbers = Numbers::new(7);

@@ -1,9 +1,9 @@
 //! A clamped plate under pressure against an independent MITC9 code (tests/data/structures/
 //! shell_plate.json), 16 × 16 elements, thickness in 4 × 4 patches.
 //!
-//! That code joins the two faces of a Gauss point by a KS function of its own with ρ = 100. Both faces
-//! of this plate have the same stress, so its KS is that over points and faces for ρ = 100 only, and
-//! for ρ = 50 it is smaller by ln 2 (1/50 − 1/100).
+//! That code aggregates the two faces of a Gauss point by its own KS function with ρ = 100. Both
+//! faces of this plate have the same stress. So its KS is that over points and faces only for ρ =
+//! 100; for ρ = 50 it is smaller by ln 2 (1/50 − 1/100).
 
 use super::sample::ALUMINIUM;
 use flexbody::math::Vec3;
@@ -114,7 +114,7 @@ fn values_and_derivatives_by_patches_agree_to_a_thousandth() {
         (peak.ratio / expected - 1.0).abs() < 1e-3,
         "{peak:?}, {expected} expected"
     );
-    // The largest stress of a clamped plate stands in the middle of an edge.
+    // The largest stress of a clamped plate is in the middle of an edge.
     assert_eq!(peak.case, 0);
     let (i, j) = (peak.shell % n, peak.shell / n);
     assert!([i, j].iter().any(|&k| k == 0 || k == n - 1), "{peak:?}");

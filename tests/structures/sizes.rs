@@ -1,5 +1,5 @@
-//! Derivatives by the sizes of generators: lengths, widths, radii, angles, places of ends, through statics and
-//! modes, against the complex step through generator and solution.
+//! Derivatives in the sizes of generators (lengths, widths, radii, angles, positions of ends)
+//! through statics and modes, against the complex step through generator and solution.
 
 use super::sample::{ALUMINIUM, complex_step};
 use flexbody::math::{Complex64, Dual, Scalar, Vec3};
@@ -18,7 +18,7 @@ use flexbody::structures::statics::StaticProblem;
 use flexbody::structures::structure::Structure;
 use flexbody::structures::supports::{NodeUnknowns, Support};
 
-/// What a generator makes of its sizes.
+/// The result of a generator.
 struct Made<S> {
     mesh: Mesh,
     nodes: Vec<Vec3<S>>,
@@ -104,7 +104,7 @@ fn lifted<S: Scalar>(made: &Made<S>) -> Structure<S> {
     all
 }
 
-/// Derivatives by the sizes from those by nodes and orientations.
+/// Derivatives in the sizes from those in nodes and orientations.
 fn by_sizes(name: &str, at: &[f64], gradient: &Structure<f64>) -> Vec<f64> {
     let one = |k: usize| {
         let seeded: Vec<Dual> = at

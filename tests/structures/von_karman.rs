@@ -1,4 +1,4 @@
-//! Von Karman statics against closed forms; loads that cannot be carried.
+//! Von Karman statics against closed forms, and loads that a structure cannot carry.
 
 use super::sample::ALUMINIUM;
 use flexbody::math::Vec3;
@@ -13,22 +13,22 @@ const NONE: [bool; 3] = [false; 3];
 const LENGTH: f64 = 1.0;
 const WIDTH: f64 = 0.1;
 
-/// Cylindrical bending: a long plate between edges that do not come nearer (Timoshenko & Woinowsky-Krieger
-/// 1959, ch. 1), with transverse shear. From the middle, with κ = θ', S the membrane force:
+/// Cylindrical bending: a long plate between fixed edges (Timoshenko & Woinowsky-Krieger 1959, ch.
+/// 1), with transverse shear. x is measured from the middle, κ = θ', S is the membrane force:
 ///
 /// ```text
 /// D (1 + S/kGh) κ'' − S κ = −q,  κ = q/S + A cosh μx,  w' = D κ'/kGh − θ,
 /// S L (1 − ν²)/(E h) = ½ ∫ w'² dx
 /// ```
 ///
-/// A follows from κ = 0 (hinged) or θ = 0 (clamped) at the edge. Gives w in the middle.
+/// A follows from κ = 0 (hinged) or θ = 0 (clamped) at the edge. Returns w in the middle.
 fn cylindrical_bending(thickness: f64, q: f64, clamped: bool) -> f64 {
     let nu = ALUMINIUM.poisson;
     let plane = ALUMINIUM.young / (1.0 - nu * nu);
     let bending = plane * thickness.powi(3) / 12.0;
     let shear = 5.0 / 6.0 * ALUMINIUM.shear_modulus() * thickness;
     let edge = LENGTH / 2.0;
-    // w' at x for a membrane force; both factors of A are divided by cosh(μ edge).
+    // w' at x for a membrane force. Both factors of A are divided by cosh(μ edge).
     let slope = |s: f64, x: f64| {
         let mu = (s / (bending * (1.0 + s / shear))).sqrt();
         let (top, sinh) = ((mu * edge).cosh(), |x: f64| (mu * x).sinh());
@@ -54,7 +54,7 @@ fn cylindrical_bending(thickness: f64, q: f64, clamped: bool) -> f64 {
             * h
             / 3.0
     };
-    // ½ ∫ w'² falls with S, its left side grows.
+    // ½ ∫ w'² decreases with S, the left side increases.
     let excess = |s: f64| simpson(&|x| slope(s, x).powi(2)) - s * LENGTH / (plane * thickness);
     let (mut low, mut high) = (1e-6 * bending, 1e6 * bending);
     for _ in 0..200 {
@@ -114,8 +114,8 @@ fn a_plate_under_pressure_deflects_as_its_closed_form() {
     }
 }
 
-/// A strip of `n` elements with a set of nodes for each row across, `row0` and so on, without Poisson's
-/// ratio; its rise is a sine.
+/// A strip of `n` elements with a set of nodes for each row across, `row0` and so on, with
+/// Poisson's ratio zero. Its rise is a sine.
 fn strip(n: usize, rise: f64, thickness: f64) -> Structure<f64> {
     let Generated { mut mesh, nodes } = panel([n, 1], false, |x, y| {
         let z = rise * (std::f64::consts::PI * x).sin();
@@ -133,15 +133,15 @@ fn strip(n: usize, rise: f64, thickness: f64) -> Structure<f64> {
     Structure::uniform(mesh, nodes, thickness, material).expect("sound")
 }
 
-/// A shallow sine arch between hinges under a sine load q(x) = p sin(πx/L) downwards, a force per length
-/// (Timoshenko & Gere 1961, 7.7): with b = a − w
+/// A shallow sine arch between hinges under a sine load q(x) = p sin(πx/L) downwards, a force per
+/// length (Timoshenko & Gere 1961, 7.7): with b = a − w
 ///
 /// ```text
 /// p = EI (π/L)⁴ w + ¼ EA (π/L)⁴ (a² − b²) b
 /// ```
 ///
-/// Its maximum is a limit point. An arch with a > 4.69 r, r² = I/A, swings sideways before, at the
-/// bifurcation where the thrust is 4π²EI/L², that is b² = a² − 16 r².
+/// Its maximum is a limit point. An arch with a > 4.69 r, r² = I/A, swings sideways before it, at
+/// the bifurcation where the thrust is 4π²EI/L², that is b² = a² − 16 r².
 #[test]
 fn a_shallow_arch_snaps_or_swings_where_it_should() {
     let (thickness, n) = (0.01, 16);
@@ -217,8 +217,8 @@ fn a_shallow_arch_snaps_or_swings_where_it_should() {
     }
 }
 
-/// Euler's column, one end free to come nearer: π²EI/L² is a bifurcation, as the straight path does no
-/// work with the bending that branches off.
+/// Euler's column with one end free to move along its axis: π²EI/L² is a bifurcation, because the
+/// straight path does no work with the buckling mode.
 #[test]
 fn a_compressed_strip_buckles_at_a_bifurcation() {
     let thickness = 0.005;

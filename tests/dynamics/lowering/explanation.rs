@@ -1,4 +1,4 @@
-//! What `optimize explain` tells.
+//! The output of `optimize explain`.
 
 use super::*;
 use flexbody::driver;
@@ -30,7 +30,7 @@ fn an_explanation_counts_what_is_left() {
     );
 }
 
-/// All that stands against a reduction is told, with every variable that does, and the normal.
+/// All violated conditions of a reduction are reported, with their variables and the normal.
 #[test]
 fn an_explanation_tells_all_obstacles() {
     let problem = changed("problems/trebuchet.json", |document| {
@@ -56,7 +56,7 @@ fn an_explanation_tells_all_obstacles() {
     assert!(found.kept.len() > 1, "{:?}", found.kept);
 }
 
-/// Why the tree of joints does not serve, and what merged bodies change, is told.
+/// The report gives the reason why the tree of joints is not used, and the effect of merging.
 #[test]
 fn an_explanation_gives_the_reasons() {
     for (file, part) in [
@@ -85,7 +85,7 @@ fn an_explanation_gives_the_reasons() {
     }
 }
 
-/// What can be told without a simulation is told where that fails.
+/// If the simulation fails, the report has all that does not need it.
 #[test]
 fn a_start_that_fails_is_explained() {
     let problem = load(
@@ -101,7 +101,7 @@ fn a_start_that_fails_is_explained() {
     assert!(found.json().expect("JSON").contains("\"failure\""));
 }
 
-/// An optimisation tells that some of its designs did not admit what others do.
+/// An optimisation reports that reductions did not apply to some of its designs.
 #[test]
 fn designs_that_ran_as_written_are_told() {
     let blown = |wind: f64| {
@@ -125,7 +125,7 @@ fn designs_that_ran_as_written_are_told() {
     let told = |warnings: &[String]| warnings.iter().any(|own| own.contains("ran as written"));
     let mut problem = blown(0.5);
     assert!(!is_planar(&problem) && !told(&run(&problem)));
-    // What could be left out without the wind.
+    // The reductions without the wind.
     let still = blown(0.0);
     assert!(is_planar(&still) && !told(&run(&still)));
     problem.lowering = still.lowering;

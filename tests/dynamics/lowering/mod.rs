@@ -1,5 +1,5 @@
-//! What is left out of a scene changes nothing but round-off: every problem of the package is run
-//! lowered and as it is written, with the same steps. What has to stay is named with its reason.
+//! Reductions change nothing but round-off: every problem of the package is run with and without
+//! them, with the same steps. Reductions that do not apply are named with the reason.
 
 mod explanation;
 mod planes;
@@ -25,7 +25,7 @@ fn load(file: &str, changes: &[&str]) -> Problem {
     Problem::load(&path(file), &changes).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// A problem of the package with its document changed.
+/// A problem of the package with changes to its document.
 fn changed(file: &str, change: impl FnOnce(&mut Value)) -> Problem {
     let text = std::fs::read_to_string(path(file)).expect("a problem file");
     let mut document: Value = serde_json::from_str(&text).expect("JSON");
@@ -84,12 +84,12 @@ fn relative(a: &[f64], b: &[f64]) -> f64 {
     if off == 0.0 { 0.0 } else { off / size }
 }
 
-/// Largest differences of the states, of the functions and of the gradients, lowered and not,
-/// relative to the largest.
+/// Largest differences of states, functions and gradients with and without reductions, relative to
+/// the largest.
 fn differences(problem: &Problem, settings: &Settings) -> [f64; 3] {
     let full = unlowered(problem);
     let (a, b) = (run(problem, settings), run(&full, settings));
-    // What is left out of the joints differs.
+    // The redundant rows of the joints differ.
     assert_eq!(a.run.grid.ends(), b.run.grid.ends());
     let which: Vec<usize> = (0..a.scene.functions.len()).collect();
     let (_, motion) = a.written(problem);
@@ -109,7 +109,7 @@ fn differences(problem: &Problem, settings: &Settings) -> [f64; 3] {
     worst
 }
 
-/// Unknowns and imposed rows of the start of a problem, lowered.
+/// Number of unknowns and of imposed rows of the reduced start of a problem.
 fn size(problem: &Problem) -> (usize, usize) {
     let model = problem.scene::<f64>(&problem.start()).model;
     let numbering = flexbody::system::Numbering::new(&model);
@@ -123,10 +123,10 @@ const BDF: Method = Method::Bdf {
     start: flexbody::integrate::Start::Radau,
 };
 
-/// The problems, whether they are planar, the methods to try, and what round-off may become: the
-/// squeezer magnifies it by turning fast, the stiff pendulum by its spring. The rows of four bars stop before their first singular
-/// position, in which they do not determine how round-off goes on (`benchmarks.rs` runs them through
-/// it, lowered).
+/// The problems, whether they are planar, the methods, and the limits of round-off. The squeezer
+/// magnifies round-off by its fast rotation, the stiff pendulum by its spring. The rows of four
+/// bars stop before their first singular position, where the motion is not determined
+/// (`benchmarks.rs` runs them through it with reductions).
 #[test]
 fn every_problem_moves_the_same_lowered() {
     let all: [(&str, bool, &[Method], f64); 14] = [
@@ -193,7 +193,7 @@ fn every_problem_moves_the_same_lowered() {
         };
         let mut problem = load(&format!("problems/{name}.json"), short);
         if problem.scene::<f64>(&problem.start()).until.is_some() {
-            // Up to the event, as the run is.
+            // Up to the event, as the run.
             let seen = flexbody::driver::simulate(&problem, &problem.start()).expect("a run");
             let end = format!("/simulation/duration={}", seen.at.run.duration);
             problem = load(&format!("problems/{name}.json"), &[&end]);
@@ -217,8 +217,8 @@ fn every_problem_moves_the_same_lowered() {
     }
 }
 
-/// The extreme scenes as their files have them, where they run: those that cannot be run lowered cannot
-/// be run as written. Most gradients of the parallelogram are zero: their round-off is not compared.
+/// The extreme scenes as in their files, if they run. A scene that fails with reductions also fails
+/// without. Most gradients of the parallelogram are zero; their round-off is not compared.
 #[test]
 fn every_extreme_scene_moves_the_same_lowered() {
     let entries = std::fs::read_dir(path("problems/extreme")).expect("a folder");

@@ -7,7 +7,8 @@ use flexbody::math::{Mat3, Vec3, rotation};
 use flexbody::model::{Axes, LoadKind, Mobility, Model};
 use serde_json::json;
 
-/// The trebuchet of five bodies has 15 unknowns and 10 rows a step in the plane, against 30 and 21.
+/// In the plane, the trebuchet of five bodies has 15 unknowns and 10 rows, against 30 and 21 in
+/// space.
 #[test]
 fn the_trebuchet_is_planar_and_the_triple_pendulum_is_not() {
     let (model, _) = reference::load("trebuchet");
@@ -28,7 +29,7 @@ fn the_trebuchet_is_planar_and_the_triple_pendulum_is_not() {
         let b = simulate(&model, duration, &settings).expect("a run");
         let off = relative(&a.q, &b.q).max(relative(&a.v, &b.v));
         assert!(off <= 1e-11, "{off:e}");
-        // No motion leaves the plane.
+        // The motion stays in the plane.
         for k in 0..=a.last() {
             for body in 0..model.bodies.len() {
                 let (q, v) = (&a.q(k)[7 * body..], &a.v(k)[6 * body..]);
@@ -86,7 +87,7 @@ fn a_variable_that_breaks_the_plane_is_named() {
         found.to_string().contains("gravity leaves the plane"),
         "{found}"
     );
-    // A variable that moves gravity in the plane breaks nothing.
+    // A variable that changes gravity in the plane violates no condition.
     let problem = changed("problems/trebuchet.json", |document| {
         document["gravity"] = json!([0, -9.81, 0]);
         document["variables"]["pull"] =
@@ -95,7 +96,7 @@ fn a_variable_that_breaks_the_plane_is_named() {
     assert!(is_planar(&problem));
 }
 
-/// The model turned as a whole about the origin.
+/// The whole model, rotated about the origin.
 fn turned(model: &Model<f64>, r: &Mat3<f64>, p: &[f64; 4]) -> Model<f64> {
     let mut model = model.clone();
     model.gravity = r * model.gravity;
@@ -135,7 +136,7 @@ fn turned(model: &Model<f64>, r: &Mat3<f64>, p: &[f64; 4]) -> Model<f64> {
     model
 }
 
-/// The Euler parameters of the turn `b` followed by `a`.
+/// The Euler parameters of the rotation `b` followed by `a`.
 fn product(a: &[f64; 4], b: &[f64; 4]) -> [f64; 4] {
     let (u, w) = (Vec3::new(a[1], a[2], a[3]), Vec3::new(b[1], b[2], b[3]));
     let v = w * a[0] + u * b[0] + u.cross(&w);
@@ -153,7 +154,7 @@ fn any_normal_will_do() {
     for name in names {
         let problem = load(&format!("problems/{name}.json"), &[]);
         let scene = problem.unlowered_scene::<f64>(&problem.start());
-        // The four bars are level, and their motion not determined, soon after.
+        // Soon after, the four bars are in line, and their motion is not determined.
         let duration = scene.duration.min(0.5);
         for (axis, angle) in [
             (Vec3::x(), 0.5 * std::f64::consts::PI),
@@ -188,7 +189,8 @@ fn any_normal_will_do() {
     }
 }
 
-/// Two bars in parallel planes: the motion is planar, the hinge carries moments across the plane.
+/// Two bars in parallel planes: the motion is planar, and the hinge carries moments across the
+/// plane.
 fn bars_in_parallel_planes(hinge: &str) -> Value {
     let axis = match hinge {
         "revolute" => json!({"between": ["first", "second"], "at": "first.end", "axis": [0, 0, 1]}),
@@ -231,7 +233,7 @@ fn moments_across_the_plane_are_recovered() {
             assert!(off <= 1e-9 * size, "{off:e} of {size}");
         }
     }
-    // A ball does not hold the second bar upright.
+    // A ball joint does not hold the second bar upright.
     let found = obstacle(&parse(&bars_in_parallel_planes("spherical")));
     assert!(
         found.what.contains("joint \"hinge\" tilts a body"),
@@ -239,7 +241,7 @@ fn moments_across_the_plane_are_recovered() {
     );
 }
 
-/// A cart that slides along x and could roll about it, with an arm that turns about z.
+/// A cart that slides along x and can roll about it, with an arm that rotates about z.
 fn cart() -> Value {
     json!({
         "version": 1, "name": "cart",
@@ -256,7 +258,7 @@ fn cart() -> Value {
     })
 }
 
-/// Whether a scene is planar does not depend on the order of its joints nor on the signs of their axes.
+/// Planarity does not depend on the order of the joints or on the signs of their axes.
 #[test]
 fn the_plane_does_not_depend_on_the_order_of_joints() {
     let read = |file: &str| -> Value {
@@ -271,14 +273,14 @@ fn the_plane_does_not_depend_on_the_order_of_joints() {
         (read("problems/triple_pendulum.json"), false),
     ] {
         let name = document["name"].clone();
-        // What names joints.
+        // The sections that name joints.
         let of_names = ["loads", "drives", "variables", "objective", "constraints"];
         let joints = document["joints"].as_object().expect("joints").clone();
         let mut normals = Vec::new();
         for shift in 0..joints.len() {
             for sign in [1.0, -1.0] {
                 let order = joints.iter().cycle().skip(shift).take(joints.len());
-                // A map keeps its keys sorted, so that names give the order.
+                // The keys of a map are sorted, so the names determine the order.
                 let renamed = order.enumerate().map(|(i, (_, joint))| {
                     let mut joint = joint.clone();
                     for kind in joint.as_object_mut().expect("a joint").values_mut() {

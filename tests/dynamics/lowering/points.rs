@@ -1,4 +1,4 @@
-//! Bodies that do not turn.
+//! Bodies that do not rotate.
 
 use super::*;
 use flexbody::driver;
@@ -67,7 +67,8 @@ fn a_ball_held_at_its_centre_is_a_point() {
     ))));
 }
 
-/// A cart that slides along an oblique axis, another on it, and a bar that hangs from that by a ball.
+/// A cart that slides along an oblique axis, another on it, and a bar that hangs on that by a ball
+/// joint.
 fn carts() -> Problem {
     parse(&json!({
         "version": 1, "name": "carts", "gravity": [0, -9.81, 0.1],
@@ -105,8 +106,8 @@ fn carts() -> Problem {
     }))
 }
 
-/// What ground keeps from turning has three unknowns and no rows for its rotation; a variable may turn
-/// it at the start, and functions may look at that.
+/// Bodies whose rotation ground holds have three unknowns and no rows for it. A variable may rotate
+/// them at the start, and functions may observe the rotation.
 #[test]
 fn a_cart_on_a_rail_does_not_turn() {
     let problem = carts();
@@ -115,7 +116,7 @@ fn a_cart_on_a_rail_does_not_turn() {
     assert_the_same(&problem);
 }
 
-/// In the plane it has two unknowns, whether its slide is driven or not, within a loop and outside.
+/// In the plane they have two unknowns, with and without a drive, inside a loop and outside.
 #[test]
 fn sliders_in_a_plane_do_not_turn() {
     for (file, written, lowered) in [
@@ -134,7 +135,7 @@ fn sliders_in_a_plane_do_not_turn() {
     }
 }
 
-/// Asserts that motion, gradients and reactions are those of the scene as it is written.
+/// Asserts that motion, gradients and reactions are those without reductions.
 fn assert_the_same(problem: &Problem) {
     for method in [Method::Dop853, RADAU, BDF] {
         let found = differences(problem, &settings(method, Spacing::Steps(200)));
@@ -146,7 +147,7 @@ fn assert_the_same(problem: &Problem) {
     }
     let derivatives = driver::check(problem, &problem.start()).expect("a run");
     for derivative in derivatives {
-        // Some vanish, as sums of terms that do not.
+        // Some derivatives vanish as sums of non-zero terms.
         let off = (derivative.adjoint - derivative.complex_step).abs();
         let size = derivative.adjoint.abs() + 1e-3 * derivative.terms;
         assert!(off <= 1e-10 * size, "{derivative:?}");

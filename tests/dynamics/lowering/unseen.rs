@@ -1,4 +1,4 @@
-//! Parts of a scene that no function asked for can see are not simulated.
+//! Parts on which no requested function depends are not simulated.
 
 use super::*;
 use flexbody::driver::integration::Integration;
@@ -13,7 +13,7 @@ fn names(document: &Value, section: &str) -> Vec<String> {
     of("bodies").chain(joints).cloned().collect()
 }
 
-/// A part of a document with every name marked, and every point of a body.
+/// A part of a document with every name and every point of a body marked.
 fn marked(part: &Value, names: &[String]) -> Value {
     let own = |text: &str| names.iter().any(|name| name == text);
     match part {
@@ -35,7 +35,7 @@ fn marked(part: &Value, names: &[String]) -> Value {
     }
 }
 
-/// A problem whose machine stands in it a second time: behind the first one, before it, or between its
+/// A problem with a second copy of its machine: after the first one, before it, or between its
 /// bodies and joints.
 fn twice(file: &str, order: &str, more: impl FnOnce(&mut Value)) -> Problem {
     changed(file, |document| {
@@ -63,7 +63,7 @@ fn twice(file: &str, order: &str, more: impl FnOnce(&mut Value)) -> Problem {
     })
 }
 
-/// A design simulated as an optimisation does, and the functions asked for.
+/// A design simulated as in an optimisation, and the requested functions.
 fn evaluated(problem: &Problem) -> (Evaluated, Vec<usize>) {
     let x = problem.start();
     let which: Vec<usize> = (0..problem.function_names.len()).collect();
@@ -72,8 +72,8 @@ fn evaluated(problem: &Problem) -> (Evaluated, Vec<usize>) {
     (at, which)
 }
 
-/// Two machines of which the functions see one take the work of one, to the last step, and give its
-/// functions and gradients to round-off.
+/// If the functions depend on one of two machines, the work is that of one, to the last step, and
+/// functions and gradients agree to round-off.
 #[test]
 fn a_machine_that_is_not_seen_costs_nothing() {
     let files = [
@@ -99,7 +99,7 @@ fn a_machine_that_is_not_seen_costs_nothing() {
                 assert!(relative(&values[..1], &values[1..]) < 1e-12, "{values:?}");
                 assert!(relative(&found[f], &gradients[f]) < 1e-12, "{file} {order}");
             }
-            // Pictures show both.
+            // Figures show both.
             let (written, motion) = at.written(&focused);
             assert_eq!(
                 written.model.bodies.len(),
@@ -115,7 +115,7 @@ fn a_machine_that_is_not_seen_costs_nothing() {
     }
 }
 
-/// With equal steps the functions are those of the whole scene, to round-off.
+/// With equal steps the functions equal those of the whole scene to round-off.
 #[test]
 fn equal_steps_give_the_functions_of_the_whole_scene() {
     let both = twice("problems/trebuchet.json", "between", |document| {
@@ -132,7 +132,7 @@ fn equal_steps_give_the_functions_of_the_whole_scene() {
     }
 }
 
-/// What a function, an event, a spring or a joint reaches is simulated.
+/// Parts that a function, an event, a spring or a joint connects are simulated.
 #[test]
 fn what_is_reached_is_kept() {
     let file = "problems/trebuchet.json";
@@ -155,12 +155,12 @@ fn what_is_reached_is_kept() {
         let all: Vec<usize> = (0..both.function_names.len()).collect();
         assert!(both.focused(&all).is_none(), "{path}");
     }
-    // Without lowering nothing is left out.
+    // Without reductions no part is left out.
     let both = twice(file, "behind", |_| ());
     assert!(unlowered(&both).focused(&[0]).is_none());
 }
 
-/// A function that is neither objective nor constraint costs nothing in an optimisation, and an
+/// A function that is neither objective nor constraint costs nothing in an optimisation. An
 /// optimisation of one of two machines ends where that of one alone does.
 #[test]
 fn an_optimisation_sees_one_of_two_machines() {

@@ -36,7 +36,7 @@ fn what_is_welded_to_ground_has_no_unknowns() {
         let bare = load(file, &[]);
         assert_eq!(size(&problem), size(&bare), "{file}");
         assert_eq!(is_planar(&problem), is_planar(&bare));
-        // Newton's method leaves up to 1e-13 in each implicit step.
+        // Newton's method leaves up to 1e-13 per implicit step.
         for (method, limit) in [(Method::Dop853, 1e-11), (RADAU, 3e-11), (BDF, 3e-11)] {
             let found = differences(&problem, &settings(method, Spacing::Steps(300)));
             for x in found {
@@ -46,8 +46,8 @@ fn what_is_welded_to_ground_has_no_unknowns() {
     }
 }
 
-/// A spatial double pendulum; the second link carries a bracket, on that a hammer, turned and beside
-/// it, on which a ball hangs. A spring pulls the hammer, a torque turns the bracket.
+/// A spatial double pendulum. The second link carries a bracket, and this a hammer, rotated and off
+/// its centre, with a ball on it. A spring acts on the hammer, a torque on the bracket.
 pub fn carried(change: impl FnOnce(&mut Value)) -> Problem {
     let mut document = json!({
         "version": 1, "name": "carried",
@@ -106,9 +106,9 @@ pub fn carried(change: impl FnOnce(&mut Value)) -> Problem {
     parse(&document)
 }
 
-/// The motion is the same but for round-off where the steps' errors are below that. An implicit method
-/// errs otherwise for a body than for its parts, whose centres of mass it marches: both come to the
-/// same motion, as fast as the order of its samples (three, of Radau's) says.
+/// The motion is the same up to round-off if the steps' errors are below it. An implicit method has
+/// another error for a merged body than for its parts, whose centres of mass it integrates. Both
+/// converge to the same motion, with the order of the samples (three for Radau).
 fn same_as_written(problem: &Problem, steps: usize) {
     let found = differences(problem, &settings(Method::Dop853, Spacing::Steps(steps)));
     assert!(found.iter().all(|&x| x <= 1e-11), "{found:?}");
@@ -130,8 +130,8 @@ fn kept(problem: &Problem) -> Vec<String> {
     lowering.kept().iter().map(|own| own.to_string()).collect()
 }
 
-/// Three bodies that are welded have six unknowns, and no rows between them; motion, functions,
-/// gradients by what moves the welds and by what is carried, and reactions are the same.
+/// Three welded bodies have six unknowns and no rows between them. Motion, functions, reactions,
+/// and gradients in variables of the welds and of the merged bodies are the same.
 #[test]
 fn bodies_that_are_welded_to_each_other_are_one() {
     let problem = carried(|_| {});
@@ -144,8 +144,8 @@ fn bodies_that_are_welded_to_each_other_are_one() {
     }
 }
 
-/// The rate of such a drive is zero at the start but for the round-off of its sine; one that starts
-/// off it by 1e-9 opens its joint.
+/// The rate of such a drive is zero at the start up to the round-off of its sine. If it starts with
+/// an error of 1e-9, it opens its joint.
 #[test]
 fn a_harmonic_drive_may_start_from_rest() {
     let driven = |phase: f64| {
@@ -191,7 +191,8 @@ fn changed_steps(mut problem: Problem) -> Problem {
     problem
 }
 
-/// What opens a weld's neighbours at the start, acts by way of it, or tells its bodies apart, leaves it.
+/// A weld is kept if its neighbours open at the start, if loads act through it, or if its bodies
+/// differ.
 #[test]
 fn a_weld_that_cannot_be_merged_stays_with_the_reason() {
     let told = |problem: &Problem, what: &str| {
@@ -201,7 +202,7 @@ fn a_weld_that_cannot_be_merged_stays_with_the_reason() {
             "{what}: {kept:?}"
         );
     };
-    // Another hinge between the same bodies.
+    // Another joint between the same bodies.
     let problem = carried(|document| {
         document["joints"]["bolt"] = json!({"spherical": {"between": ["bracket", "hammer"],
             "at": "bracket.tip"}});
@@ -211,7 +212,7 @@ fn a_weld_that_cannot_be_merged_stays_with_the_reason() {
         &problem,
         "weld \"clamp\" between bodies that move: joint \"bolt\" joins them too",
     );
-    // The rotation of two bodies is watched that are turned against each other.
+    // The rotations of two bodies with different orientations are observed.
     let problem = carried(|document| {
         document["functions"]["other"] =
             json!({"final": {"rotation": {"body": "bracket", "axis": [0, 0, 1]}}});
@@ -227,7 +228,7 @@ fn a_weld_that_cannot_be_merged_stays_with_the_reason() {
         &problem,
         "joint \"pin\" opens by the velocities that the bodies are placed with",
     );
-    // A design that opens a loop at its placement.
+    // A design that opens a loop in its placement.
     let problem = carried(|document| {
         document["joints"]["stay"] = json!({"rod": {"between": ["second", "ground"],
             "at": {"a": "end", "b": [1.5, 1, 0.5]}, "length": 1.3}});
@@ -239,7 +240,7 @@ fn a_weld_that_cannot_be_merged_stays_with_the_reason() {
     );
 }
 
-/// Welds that close a loop of welded bodies vanish as well.
+/// Welds that close a loop of welded bodies vanish, too.
 #[test]
 fn a_loop_of_welds_is_one_body() {
     let problem = carried(|document| {
@@ -251,7 +252,7 @@ fn a_loop_of_welds_is_one_body() {
     assert!(found.iter().all(|&x| x <= 1e-11), "{found:?}");
 }
 
-/// The trebuchet with its arm in two parts, and a counterweight in two.
+/// The trebuchet with its arm and its counterweight in two parts each.
 #[test]
 fn welded_bodies_in_the_plane_are_one() {
     let problem = changed("problems/trebuchet.json", |document| {
@@ -268,7 +269,7 @@ fn welded_bodies_in_the_plane_are_one() {
     same_as_written(&problem, 400);
 }
 
-/// A variable that places a stand elsewhere, with what hangs from it, does not let it move.
+/// A variable that changes the placement of a stand and of what it carries does not let it move.
 #[test]
 fn a_variable_may_move_what_is_welded_to_ground() {
     for planar in [true, false] {

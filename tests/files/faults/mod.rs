@@ -1,10 +1,10 @@
-//! Malformed problem files: the exact text that a person reads, all faults of a file at once.
+//! Malformed problem files: the exact text that a user reads, with all faults of a file at once.
 
 use flexbody::problem::{Override, Problem};
 use serde_json::Value;
 use std::path::Path;
 
-/// A sound file, which every test spoils in its own way.
+/// A valid file. Every test changes it in its own way.
 const PENDULUM: &str = r#"{
   "version": 1,
   "name": "pendulum",
@@ -39,7 +39,7 @@ const PENDULUM: &str = r#"{
 }
 "#;
 
-/// The faults of a text, as they are printed.
+/// The faults of a text, as printed.
 fn faults(text: &str) -> String {
     match Problem::parse(text, "pendulum.json", &[]) {
         Err(faults) => faults.to_string(),
@@ -47,7 +47,7 @@ fn faults(text: &str) -> String {
     }
 }
 
-/// The pendulum with each first text, which stands in it once, replaced by the second.
+/// The pendulum with each first text, which occurs once, replaced by the second.
 fn spoilt(changes: &[(&str, &str)]) -> String {
     let mut text = PENDULUM.to_owned();
     for (sound, wrong) in changes {
@@ -57,8 +57,8 @@ fn spoilt(changes: &[(&str, &str)]) -> String {
     text
 }
 
-/// Asserts the faults of the spoilt pendulum: they are those in `tests/data/faults/NAME.txt`, which
-/// the environment variable UPDATE_GOLDEN rewrites.
+/// Asserts the faults of the changed pendulum: those in `tests/data/faults/NAME.txt`. The
+/// environment variable UPDATE_GOLDEN rewrites this file.
 fn expect(name: &str, changes: &[(&str, &str)]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/data/faults/{name}.txt"));
     let found = faults(&spoilt(changes)) + "\n";
@@ -69,7 +69,7 @@ fn expect(name: &str, changes: &[(&str, &str)]) {
     assert_eq!(found, expected, "\n{found}");
 }
 
-/// A test for each name: the sound text, and what takes its place.
+/// A test for each name: the valid text, and its replacement.
 macro_rules! faults {
     ($($name:ident: $($sound:literal => $wrong:literal),+;)+) => {
         $(
@@ -288,7 +288,7 @@ fn fields_of_a_fault() {
     assert_eq!(fault.hint.as_deref(), Some("did you mean \"con_rod\"?"));
 }
 
-/// Asserts the faults of the sound pendulum under an override.
+/// Asserts the faults of the valid pendulum with an override.
 fn expect_override(change: &str, expected: &str) {
     let change = Override::parse(change).expect("an override");
     let faults = Problem::parse(PENDULUM, "pendulum.json", &[change]).expect_err("a fault");
@@ -426,7 +426,7 @@ fn every_beginning_of_a_file_is_one_fault() {
     }
 }
 
-/// A misspelt key is told once: not again as a key that is missing, or as a part that is not there.
+/// A misspelt key is reported once: not also as a missing key or part.
 #[test]
 fn a_misspelt_key_is_told_once() {
     let only = r#"{"version": 1, "name": "only", "simulation": {"duration": 1}, "bodies": {

@@ -1,4 +1,4 @@
-//! Starts of joints that cannot be.
+//! Impossible starts of joints.
 
 use super::expect;
 

@@ -1,10 +1,10 @@
-//! Evaluations of functions and gradients allowed for each problem: some 30 % more than are needed,
-//! so that a method that becomes slower fails.
+//! Largest numbers of evaluations of functions and gradients for each problem: about 30 % more than
+//! needed, so that a slower method fails.
 
 /// Evaluations of functions and of gradients.
 pub type Allowed = Option<(usize, usize)>;
 
-/// Name, interior point, trust region; none where a method does not find the least objective.
+/// Name, interior point, trust region; `None` if a method does not find the least objective.
 #[rustfmt::skip]
 pub const ALLOWED: &[(&str, Allowed, Allowed)] = &[
     ("HS1", Some((40, 37)), Some((48, 43))),

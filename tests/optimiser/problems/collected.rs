@@ -1,7 +1,7 @@
-//! Programs of other collections than that of Hock & Schittkowski: minimax problems (Lukšan & Vlček
+//! Programs of collections other than that of Hock & Schittkowski: minimax problems (Lukšan & Vlček
 //! 2000, *Test Problems for Nonsmooth Unconstrained and Linearly Constrained Optimization*),
-//! equality constraints (Boggs & Tolle 1989), and others by the names they have in CUTEst (Gould,
-//! Orban & Toint 2015), with the least objectives given there.
+//! equality constraints (Boggs & Tolle 1989), and others by their names in CUTEst (Gould, Orban &
+//! Toint 2015), with the least objectives given there.
 
 use crate::problems::dual::Dual;
 use crate::problems::problem::{INF, Problem};
@@ -137,7 +137,7 @@ fn equality_constrained() -> Vec<Problem> {
 
 fn others() -> Vec<Problem> {
     vec![
-        // Wächter & Biegler (2000): line searches that keep to the linearised rows fail.
+        // Wächter & Biegler (2000): line searches that satisfy the linearised rows fail.
         Problem::new("WB", &[-2.0, 3.0, 1.0], 1.0, |x| x[0])
             .bounds(&[-INF, 0.0, 0.0], &[INF; 3])
             .rows(0, 2, |x| vec![sq(x[0]) - x[1] - 1.0, x[0] - x[2] - 0.5]),

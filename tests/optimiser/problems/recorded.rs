@@ -1,8 +1,8 @@
-//! Records of what is asked of a program.
+//! Records of the requests to a program.
 
 use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
 
-/// A program that keeps every design it is asked for.
+/// A program that records every requested design.
 pub struct Recorded<N: Nlp> {
     pub inner: N,
     pub designs: Vec<Vec<f64>>,

@@ -1,16 +1,16 @@
-//! Residuals of the optimality conditions at the end of a run, computed from the problem alone and the
-//! multipliers that were reported.
+//! Residuals of the optimality conditions at the end of a run, computed only from the problem and
+//! the reported multipliers.
 
 use flexbody::optimiser::{Nlp, Outcome};
 
-/// Residuals in the units of the problem; those of forces and objective are divided by the larger of
-/// the given unit and ‖∇f‖∞ or |f|.
+/// Residuals in the units of the problem; those of forces and objective are divided by the larger
+/// of the given unit and ‖∇f‖∞ or |f|.
 #[derive(Debug)]
 pub struct Residuals {
     pub violation: f64,
     pub stationarity: f64,
     pub complementarity: f64,
-    /// Whether no multiplier has the wrong sign or belongs to a bound that does not exist.
+    /// Whether all multipliers have the right sign and belong to existing bounds.
     pub signs: bool,
 }
 
@@ -55,7 +55,7 @@ impl Residuals {
             found.stationarity = found.stationarity.max(force.abs());
         }
         let gradient = slopes.objective.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
-        // An objective that is constant has no unit.
+        // A constant objective has no unit.
         let unit = if gradient == 0.0 { 1.0 } else { unit };
         found.stationarity /= gradient.max(unit);
         found.complementarity /= at.objective.abs().max(unit);
