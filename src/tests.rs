@@ -8,6 +8,6 @@ mod files;
 #[path = "../tests/reference/numbers.rs"]
 mod numbers;
 #[path = "../tests/reference/mod.rs"]
-mod reference;
+pub(crate) mod reference;
 #[path = "../tests/structures/mod.rs"]
 mod structures;

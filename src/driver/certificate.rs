@@ -259,8 +259,8 @@ fn not_finite(problem: &Problem, at: &Evaluated, gradient: &[Derivative]) -> Str
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::driver::{KnownEvaluations, optimise};
-    use std::ops::ControlFlow;
+
+    use crate::tests::reference::documents::optimised;
 
     #[test]
     fn a_difference_is_judged_beside_the_gradient_and_its_round_off() {
@@ -297,15 +297,7 @@ mod tests {
             "objective": {"minimise": "angle"}}"#;
         let problem = Problem::parse(text, "swing.json", &[]);
         let problem = problem.unwrap_or_else(|faults| panic!("{faults}"));
-        let mut progress = |_: &_| ControlFlow::Continue(());
-        let done = optimise(
-            &problem,
-            "",
-            None,
-            KnownEvaluations::default(),
-            &mut progress,
-        );
-        let done = done.expect("has an objective");
+        let done = optimised(&problem);
         let found = certify(&problem, &done, 1e-12);
         assert!(found.passed && found.faults().is_empty(), "{found:?}");
         let cost = CertificateCost {

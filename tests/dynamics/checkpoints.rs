@@ -1,6 +1,7 @@
 //! Gradients with repeated steps equal those with stored steps, and repeat as many as binomial
 //! checkpointing says.
 
+use crate::tests::reference::documents::problem;
 use flexbody::adjoint::gradients;
 use flexbody::driver::evaluate::Evaluated;
 use flexbody::driver::integration::Integration;
@@ -9,7 +10,6 @@ use flexbody::integrate::schedule::{Schedule, advances};
 use flexbody::integrate::{
     MEMORY, Method, Samples, Settings, Spacing, Start, Tape, Trajectory, simulate,
 };
-use flexbody::problem::Problem;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -17,11 +17,6 @@ fn document(path: &str) -> Value {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     let text = std::fs::read_to_string(path).expect("a problem file");
     serde_json::from_str(&text).expect("JSON")
-}
-
-fn problem(document: &Value) -> Problem {
-    Problem::parse(&document.to_string(), "problem.json", &[])
-        .unwrap_or_else(|faults| panic!("{faults}"))
 }
 
 fn scene(path: &str) -> Scene<f64> {

@@ -2,15 +2,12 @@
 //! several methods, and the faults of wrong entries.
 
 use crate::tests::numbers;
+use crate::tests::reference::documents::problem;
 
 use flexbody::driver::check;
 use flexbody::problem::Problem;
 use numbers::numbers;
 use serde_json::{Value, json};
-
-fn problem(file: &Value) -> Problem {
-    Problem::parse(&file.to_string(), "scene.json", &[]).unwrap_or_else(|faults| panic!("{faults}"))
-}
 
 fn position(body: &str, direction: [f64; 3]) -> Value {
     json!({"final": {"position": {"body": body, "direction": direction}}})

@@ -4,6 +4,7 @@
 //! these steps halved again gives its uncertainty, which includes 1e-13 of the value. A number is
 //! omitted if its true error is below ten times the uncertainty: it is round-off.
 
+use crate::tests::reference::documents::problem;
 use flexbody::driver::Evaluated;
 use flexbody::driver::error::{estimate, reach};
 use flexbody::integrate::{MEMORY, Method, Samples, Settings, Spacing, Start, simulate};
@@ -26,7 +27,7 @@ fn load(file: &str, change: impl FnOnce(&mut Value)) -> Problem {
     let text = std::fs::read_to_string(path).expect("a problem file");
     let mut document: Value = serde_json::from_str(&text).expect("is JSON");
     change(&mut document);
-    Problem::parse(&document.to_string(), file, &[]).unwrap_or_else(|faults| panic!("{faults}"))
+    problem(&document)
 }
 
 fn triple_pendulum() -> Problem {
@@ -422,8 +423,7 @@ fn ranges_of_balls_of_any_size_are_exact() {
                     "gravity": [0, -9.81 * unit, 0],
                     "simulation": {"duration": 1e-4 * speed.min(1.0)},
                     "functions": {"range": {"final": {"range": {"body": "ball", "ground": 0}}}}});
-                let problem = Problem::parse(&text.to_string(), "ball.json", &[])
-                    .unwrap_or_else(|faults| panic!("{faults}"));
+                let problem = problem(&text);
                 let at = Evaluated::new(&problem, &problem.start()).expect("runs");
                 let root = (vy * vy + 2.0 * 9.81 * height).max(0.0).sqrt();
                 let exact = 2.0 + vx / 9.81 * (vy + root);

@@ -1,17 +1,13 @@
 //! Runs that end at an event: closed forms of time, position and derivatives, and gradients against
 //! the complex step by several methods.
 
+use crate::tests::reference::documents::{self, problem};
 use flexbody::driver::integration::Integration;
-use flexbody::driver::{Evaluated, KnownEvaluations, Optimisation, check, optimise, simulate};
+use flexbody::driver::{Evaluated, Optimisation, check, simulate};
 use flexbody::integrate::IntegrationFailure;
 use flexbody::problem::Problem;
 use flexbody::report::{Optimum, summary};
 use serde_json::{Value, json};
-use std::ops::ControlFlow;
-
-fn problem(file: &Value) -> Problem {
-    Problem::parse(&file.to_string(), "scene.json", &[]).unwrap_or_else(|faults| panic!("{faults}"))
-}
 
 /// A ball is thrown up and forward, until it returns to a height.
 fn throw(simulation: Value) -> Value {
@@ -167,15 +163,8 @@ fn gradients_are_those_of_the_complex_step() {
 
 fn optimised(file: &Value) -> (Problem, Optimisation) {
     let problem = problem(file);
-    let mut progress = |_: &_| ControlFlow::Continue(());
-    let done = optimise(
-        &problem,
-        "",
-        None,
-        KnownEvaluations::default(),
-        &mut progress,
-    );
-    (problem, done.expect("has an objective"))
+    let done = documents::optimised(&problem);
+    (problem, done)
 }
 
 fn design(problem: &Problem, done: &Optimisation) -> Vec<f64> {
@@ -332,7 +321,7 @@ fn the_time_of_an_event_is_a_function() {
 #[test]
 fn a_problem_of_constraints_alone_is_made_feasible() {
     let second = json!({"second": {"function": "quarter", "lower": 0.5, "upper": 0.5}});
-    let done = solved(&clock(0.3, second));
+    let done = documents::optimised(&clock(0.3, second));
     let length = done.optimum.design["length"].value;
     let at = |length: f64| {
         let problem = clock(0.3, json!({}));
@@ -345,18 +334,11 @@ fn a_problem_of_constraints_alone_is_made_feasible() {
     assert!((at(length) - 0.5).abs() < 1e-6, "{length}");
     // A feasible file stays as it is.
     let loose = json!({"loose": {"function": "quarter", "lower": 0.1, "upper": 2}});
-    let done = solved(&clock(0.3, loose));
+    let done = documents::optimised(&clock(0.3, loose));
     assert_eq!(done.optimum.status, "converged", "{}", done.optimum.message);
     assert!((done.optimum.design["length"].value - 1.3).abs() < 1e-6);
     // A file that cannot be feasible is reported so.
     let never = json!({"never": {"function": "quarter", "lower": 3}});
-    let done = solved(&clock(0.3, never));
+    let done = documents::optimised(&clock(0.3, never));
     assert_ne!(done.optimum.status, "converged", "{}", done.optimum.message);
-}
-
-fn solved(problem: &Problem) -> Optimisation {
-    optimise(problem, "", None, KnownEvaluations::default(), &mut |_| {
-        ControlFlow::Continue(())
-    })
-    .expect("constraints and variables")
 }

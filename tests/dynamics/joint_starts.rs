@@ -3,6 +3,7 @@
 //!
 //! Bodies have about 1 m, 1 kg and 1 rad/s. Differences are round-off, 1e-12.
 
+use crate::tests::reference::documents::problem;
 use crate::tests::reference::models::Numbers;
 use flexbody::driver::{check, simulate, start::notes};
 use flexbody::math::rotation::{from_axis_angle, matrix};
@@ -14,10 +15,6 @@ use flexbody::system::initial;
 use flexbody::system::kkt::SaddlePoint;
 use flexbody::system::{BodyMotion, Numbering, joints};
 use serde_json::{Value, json};
-
-pub(super) fn problem(file: &Value) -> Problem {
-    Problem::parse(&file.to_string(), "scene.json", &[]).unwrap_or_else(|faults| panic!("{faults}"))
-}
 
 /// Position and velocity of a body, ground axes.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,8 @@
 //!
 //! Mechanisms have about 1 m, 1 kg and 1 s. Differences are round-off, 1e-12, unless stated.
 
-use super::joint_starts::{State, list, named, problem, shuffle, started};
+use super::joint_starts::{State, list, named, shuffle, started};
+use crate::tests::reference::documents::problem;
 use crate::tests::reference::models::Numbers;
 use flexbody::driver::{check, simulate};
 use flexbody::integrate::IntegrationFailure;

@@ -1,13 +1,9 @@
 //! Joints and drives in problem files: motions in closed form.
 
+use crate::tests::reference::documents::problem;
 use flexbody::driver::simulate;
-use flexbody::problem::Problem;
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_4, TAU};
-
-fn problem(file: &Value) -> Problem {
-    Problem::parse(&file.to_string(), "scene.json", &[]).unwrap_or_else(|faults| panic!("{faults}"))
-}
 
 /// Values of all functions.
 fn values(file: &Value) -> Vec<f64> {

@@ -2,6 +2,7 @@
 //! Singular positions and joints that do not fit are distinguished from redundancy.
 
 use crate::tests::reference;
+use crate::tests::reference::documents::{benchmark, final_positions, problem};
 
 use flexbody::driver::{check, simulate};
 use flexbody::integrate::IntegrationFailure;
@@ -10,11 +11,6 @@ use flexbody::system::observe::Reaction;
 use reference::models::Numbers;
 use serde_json::{Value, json};
 use std::path::Path;
-
-fn problem(file: &Value) -> Problem {
-    Problem::parse(&file.to_string(), "redundant.json", &[])
-        .unwrap_or_else(|faults| panic!("{faults}"))
-}
 
 fn left_out(problem: &Problem) -> Vec<(&str, usize)> {
     let all = problem.redundant.iter();
@@ -565,35 +561,7 @@ fn permuted(file: &Value, numbers: &mut Numbers, settings: &Value) -> Value {
         }
         map.extend(entries);
     }
-    let mut file = file.clone();
-    let names: Vec<String> = file["bodies"]
-        .as_object()
-        .expect("bodies")
-        .keys()
-        .cloned()
-        .collect();
-    let map = file.as_object_mut().expect("an object");
-    map.retain(|key, _| {
-        [
-            "version",
-            "name",
-            "gravity",
-            "bodies",
-            "joints",
-            "loads",
-            "initial_velocity",
-        ]
-        .contains(&key.as_str())
-    });
-    map.insert("simulation".into(), settings.clone());
-    let function = |(body, k): (&String, usize)| {
-        let direction: Vec<f64> = (0..3).map(|i| if i == k { 1.0 } else { 0.0 }).collect();
-        let position = json!({"final": {"position": {"body": body, "direction": direction}}});
-        (format!("{body} {k}"), position)
-    };
-    let all = names.iter().flat_map(|body| (0..3).map(move |k| (body, k)));
-    let functions: serde_json::Map<_, _> = all.map(function).collect();
-    map.insert("functions".into(), functions.into());
+    let mut file = final_positions(file, settings.clone());
     shuffle(&mut file["bodies"], numbers);
     shuffle(&mut file["joints"], numbers);
     for joint in file["joints"].as_object_mut().expect("joints").values_mut() {
@@ -611,13 +579,6 @@ fn permuted(file: &Value, numbers: &mut Numbers, settings: &Value) -> Value {
         }
     }
     file
-}
-
-fn benchmark(name: &str) -> Value {
-    let path =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/benchmarks/{name}.json"));
-    let text = std::fs::read_to_string(path).expect("a problem file");
-    serde_json::from_str(&text).expect("JSON")
 }
 
 /// Final positions of the bodies, and the largest gap of their joints.

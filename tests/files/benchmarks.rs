@@ -3,12 +3,13 @@
 //! from elliptic functions; the governor from an independent integration of its three coordinates
 //! to 1e-11 (Radau).
 
+use crate::tests::reference::documents::{benchmark, bodies, final_positions, optimised, problem};
+use flexbody::driver::stability::in_units;
 use flexbody::driver::start::notes;
-use flexbody::driver::{KnownEvaluations, Simulation, optimise, simulate};
+use flexbody::driver::{Simulation, simulate};
 use flexbody::math::{Mat3, Vec3, rotation};
 use flexbody::problem::{Override, Problem};
 use serde_json::{Value, json};
-use std::ops::ControlFlow;
 use std::path::Path;
 
 fn load(name: &str, changes: &[String]) -> Problem {
@@ -175,9 +176,7 @@ fn balanced_slider_crank() {
         let paths = ["crank", "rod"].map(|body| format!("/bodies/{body}/centre_of_mass/0"));
         let changes = [0, 1].map(|i| format!("{}={}", paths[i], start[i]));
         let problem = load("balanced_slider_crank", &changes);
-        let go_on = &mut |_: &_| ControlFlow::Continue(());
-        let done =
-            optimise(&problem, "", None, KnownEvaluations::default(), go_on).expect("an objective");
+        let done = optimised(&problem);
         let design = &done.history.rows.last().expect("iterations").design;
         agree("balance", design, &[-0.075, -0.15], 1e-6);
     }
@@ -199,81 +198,24 @@ const FAMILY: [(&str, f64, f64); 9] = [
 /// A benchmark with the final positions of all centres of mass as its functions. For an
 /// `inconsistent` start, its first body has a velocity that violates its joints.
 fn plain(name: &str, (duration, tolerance): (f64, f64), inconsistent: bool) -> Value {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let path = path.join(format!("problems/benchmarks/{name}.json"));
-    let text = std::fs::read_to_string(path).expect("a problem file");
-    let mut file: Value = serde_json::from_str(&text).expect("JSON");
-    let names: Vec<String> = file["bodies"]
-        .as_object()
-        .expect("bodies")
-        .keys()
-        .cloned()
-        .collect();
-    let function = |(body, k): (&String, usize)| {
-        let direction: Vec<f64> = (0..3).map(|i| if i == k { 1.0 } else { 0.0 }).collect();
-        let position = json!({"final": {"position": {"body": body, "direction": direction}}});
-        (format!("{body} {k}"), position)
-    };
-    let all = names.iter().flat_map(|body| (0..3).map(move |k| (body, k)));
-    let functions: serde_json::Map<_, _> = all.map(function).collect();
-    let map = file.as_object_mut().expect("an object");
-    let kept = [
-        "version",
-        "name",
-        "gravity",
-        "bodies",
-        "joints",
-        "loads",
-        "initial_velocity",
-    ];
-    map.retain(|key, _| kept.contains(&key.as_str()));
     let mut simulation = json!({"duration": duration, "tolerance": tolerance});
     if ["flyball_governor", "stiff_pendulum"].contains(&name) {
         simulation["method"] = json!({"radau": {"stages": 3}});
     }
-    map.insert("simulation".into(), simulation);
-    map.insert("functions".into(), functions.into());
-    map.entry("gravity").or_insert(json!([0, -9.81, 0]));
+    let mut file = final_positions(&benchmark(name), simulation);
+    let gravity = file.as_object_mut().expect("an object").entry("gravity");
+    gravity.or_insert(json!([0, -9.81, 0]));
     if inconsistent {
         let velocity = json!({"linear": [0.3, 0.2, 0.1], "angular": [0.5, -0.4, 1.0]});
-        file["bodies"][&names[0]]["velocity"] = velocity;
+        let first = bodies(&file).swap_remove(0);
+        file["bodies"][first]["velocity"] = velocity;
     }
     file
 }
 
 fn ends(file: &Value) -> Vec<f64> {
-    let problem = Problem::parse(&file.to_string(), "family.json", &[]);
-    let problem = problem.unwrap_or_else(|faults| panic!("{faults}"));
+    let problem = problem(file);
     values(&simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}")))
-}
-
-/// Multiplies every number with a unit as if lengths were in 1/`length` m and masses in 1/`mass`
-/// kg; `unit` is the factor of the numbers below a key.
-fn in_units(value: &mut Value, unit: f64, (length, mass): (f64, f64)) {
-    match value {
-        Value::Object(map) => {
-            for (key, value) in map {
-                let unit = match key.as_str() {
-                    "gravity" | "centre_of_mass" | "points" | "at" | "put" | "size" | "radius"
-                    | "length" | "linear" | "about" | "rest_length" => length,
-                    "mass" | "stiffness" | "damping" => mass,
-                    "inertia" | "magnitude" => mass * length * length,
-                    "density" => mass / length.powi(3),
-                    "axis" | "angle" | "angular" | "direction" | "simulation" | "functions"
-                    | "version" => 1.0,
-                    _ => unit,
-                };
-                in_units(value, unit, (length, mass));
-            }
-        }
-        Value::Array(list) => list
-            .iter_mut()
-            .for_each(|x| in_units(x, unit, (length, mass))),
-        Value::Number(number) if unit != 1.0 => {
-            *value = json!(number.as_f64().expect("a number") * unit);
-        }
-        _ => {}
-    }
 }
 
 /// With lengths in 1000 m and mm, and masses in 1000 t and mg, the motions are equal except for the
@@ -292,7 +234,9 @@ fn units_do_not_matter() {
                 (1e3, 1e-6),
             ] {
                 let mut other = file.clone();
-                in_units(&mut other, 1.0, (length, mass));
+                for (path, value) in in_units(&file, (length, mass)) {
+                    *other.pointer_mut(&path).expect("a number") = value;
+                }
                 let found: Vec<f64> = ends(&other).iter().map(|x| x / length).collect();
                 agree(
                     &format!("{name}, {length}, {mass}"),

@@ -1,8 +1,7 @@
 //! The example of README.md runs and has the stated result. Paths in the documents exist.
 
-use flexbody::driver::{KnownEvaluations, optimise};
+use crate::tests::reference::documents::optimised;
 use flexbody::problem::Problem;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 #[test]
@@ -11,14 +10,7 @@ fn the_example_of_the_readme_finds_the_radius_of_gyration() {
     let (_, example) = readme.split_once("```json\n").expect("an example");
     let (example, _) = example.split_once("```").expect("its end");
     let problem = Problem::parse(example, "README.md", &[]).expect("no faults");
-    let done = optimise(
-        &problem,
-        "README.md",
-        None,
-        KnownEvaluations::default(),
-        &mut |_| ControlFlow::Continue(()),
-    )
-    .expect("has an objective");
+    let done = optimised(&problem);
     assert!(done.outcome.converged());
     let pin = done.optimum.design["pin"].value;
     // The angular acceleration m g d cos θ / (I + m d²) is largest at d² = I/m for any angle.

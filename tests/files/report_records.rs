@@ -1,6 +1,6 @@
 //! Records are read back exactly, and differences between them are reported.
 
-use flexbody::driver::{KnownEvaluations, optimise};
+use crate::tests::reference::documents::optimised;
 use flexbody::problem::Problem;
 use flexbody::report::compare::Comparison;
 use flexbody::report::history::Column;
@@ -10,7 +10,6 @@ use flexbody::report::{
     summary, write_all,
 };
 use serde_json::json;
-use std::ops::ControlFlow;
 
 fn history() -> History {
     let row = |iteration: usize, objective: f64, barrier: f64| HistoryRow {
@@ -345,15 +344,7 @@ fn multipliers_are_sensitivities_with_their_signs() {
         );
         let problem = Problem::parse(&text, "ball.json", &[]);
         let problem = problem.unwrap_or_else(|faults| panic!("{faults}"));
-        let mut progress = |_: &_| ControlFlow::Continue(());
-        let done = optimise(
-            &problem,
-            "",
-            None,
-            KnownEvaluations::default(),
-            &mut progress,
-        );
-        done.expect("has an objective").optimum
+        optimised(&problem).optimum
     };
     let limits = |function: &str, side: &str, bound: f64| {
         format!(r#""limit": {{"function": "{function}", "{side}": {bound}}}"#)

@@ -1,24 +1,16 @@
 //! The curvature at an optimum, against differences of the function, and with bounds without force.
 
+use crate::tests::reference::documents::optimised;
 use flexbody::driver::evaluate::Evaluated;
-use flexbody::driver::{KnownEvaluations, Optimisation, optimise, second_order};
+use flexbody::driver::{KnownEvaluations, Optimisation, second_order};
 use flexbody::problem::Problem;
 use flexbody::report::optimum::{Curvature, SecondOrder};
-use std::ops::ControlFlow;
 
 /// A bar that swings fastest if it is hinged at d² = I/m from its centre.
 const SWING: &str = include_str!("../data/swing.json");
 
 fn solved(problem: &Problem) -> Optimisation {
-    let mut progress = |_: &_| ControlFlow::Continue(());
-    let done = optimise(
-        problem,
-        "",
-        None,
-        KnownEvaluations::default(),
-        &mut progress,
-    );
-    let done = done.expect("has an objective");
+    let done = optimised(problem);
     assert!(done.outcome.converged());
     done
 }

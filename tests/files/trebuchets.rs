@@ -5,15 +5,15 @@
 //! With the settings of the files, both objectives agree to all digits of the reference, the
 //! designs to 1e-5 of the variables' ranges.
 
+use crate::tests::reference::documents::optimised;
+use flexbody::driver::Optimisation;
 use flexbody::driver::evaluate::Evaluated;
-use flexbody::driver::{KnownEvaluations, Optimisation, optimise};
 use flexbody::math::Vec3;
 use flexbody::problem::{Override, Problem};
 use flexbody::report::optimum::{Activity, BoundSide};
 use nalgebra::Rotation3;
 use serde_json::{Value, json};
 use std::f64::consts::PI;
-use std::ops::ControlFlow;
 use std::path::Path;
 
 /// A problem of the package; with another start if `start` is not empty.
@@ -32,13 +32,6 @@ fn problem(file: &str, start: &[f64]) -> Problem {
         changes.push(format!("{}={x}", variable.paths[0]));
     }
     load(&changes)
-}
-
-fn solve(problem: &Problem) -> Optimisation {
-    optimise(problem, "", None, KnownEvaluations::default(), &mut |_| {
-        ControlFlow::Continue(())
-    })
-    .expect("an objective and variables")
 }
 
 /// Asserts convergence with scaled residuals up to 1e-6, the active bounds, and that the barrier
@@ -109,7 +102,7 @@ fn release_time(start: &[f64]) {
     if !start.is_empty() {
         assert_feasible_start(&problem);
     }
-    let done = solve(&problem);
+    let done = optimised(&problem);
     let design = [
         500.0,
         8.0,
@@ -142,7 +135,7 @@ fn release_angle_throws_as_far_as_release_time() {
         &[461.3, 5.311, 33.51, 0.009736, 0.01573, 0.2966, -2.6],
     ] {
         let problem = problem("trebuchet_release_angle.json", start);
-        let done = solve(&problem);
+        let done = optimised(&problem);
         assert_optimal(&problem, &done, 1.408766, &design);
         assert_near("range", done.optimum.objective.value, 856.58952, 1e-8);
     }
@@ -168,7 +161,7 @@ fn aggregate(start: &[f64]) {
     if !start.is_empty() {
         assert_feasible_start(&problem);
     }
-    let done = solve(&problem);
+    let done = optimised(&problem);
     let design = [500.0, 8.0, 30.0, 0.008_178_275_3, 0.008, -0.007_160_246_8];
     assert_optimal(&problem, &done, 3.5014, &design);
     let objective = &done.optimum.objective;
@@ -294,7 +287,7 @@ fn a_scene_turned_as_a_whole_has_the_same_functions() {
 fn a_scene_turned_as_a_whole_has_the_same_optimum() {
     let [non_rotating, about] = [Vec3::zeros(), TURNS[0].into()].map(|turn| {
         let problem = turned(turn, Watched::FromPlacement, 1e-9);
-        solve(&problem).optimum.objective.value
+        optimised(&problem).optimum.objective.value
     });
     assert_near("optimum", about, non_rotating, 1e-8);
 }

@@ -5,6 +5,7 @@
 #![allow(dead_code)] // each test binary uses a part
 
 pub mod cases;
+pub mod documents;
 pub mod models;
 
 use flexbody::integrate::{Method, Multipliers, Settings, Start, Trajectory, simulate};

@@ -248,8 +248,7 @@ pub(super) fn units() -> Vec<Case> {
             (1.0, 1e-6),
             (1e3, 1e-6),
         ] {
-            let mut changes = Vec::new();
-            scale("", &own.file(), 1.0, (length, mass), &mut changes);
+            let changes = in_units(&own.file(), (length, mass));
             let name = format!("length {} mass {}", decade(length), decade(mass));
             all.push(own.case("units", &name, &changes, length));
         }
@@ -257,8 +256,15 @@ pub(super) fn units() -> Vec<Case> {
     all
 }
 
-/// All numbers with a unit, if lengths are multiplied by `length` and masses by `mass`; `unit` is what
-/// the numbers below a key are multiplied by.
+/// All numbers of a file with a unit and their pointers, with lengths counted in 1/`length` m and masses
+/// in 1/`mass` kg.
+pub(crate) fn in_units(file: &Value, (length, mass): (f64, f64)) -> Vec<Change> {
+    let mut changes = Vec::new();
+    scale("", file, 1.0, (length, mass), &mut changes);
+    changes
+}
+
+/// Adds the numbers below a key; `unit` is their factor if the key has none of its own.
 fn scale(path: &str, value: &Value, unit: f64, by: (f64, f64), changes: &mut Vec<Change>) {
     let (length, mass) = by;
     for (key, own) in value.as_object().into_iter().flatten() {

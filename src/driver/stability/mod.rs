@@ -15,6 +15,8 @@ mod scenes;
 
 use crate::report::{StabilityFamily, StabilityOutcome, StabilityRow, StabilityTable};
 use case::Case;
+#[cfg(test)]
+pub(crate) use loops::in_units;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -376,6 +376,7 @@ fn tidy(schema: &mut serde_json::Value) {
 mod tests {
     use super::*;
     use crate::problem::pointer::join;
+    use crate::tests::reference::documents::children;
     use serde_json::Value;
 
     /// Calls `judge` with the pointer and the schema of every property below `schema`.
@@ -384,16 +385,7 @@ mod tests {
         for (key, property) in properties_of.into_iter().flatten() {
             judge(&join(at, key), property);
         }
-        let inner: Vec<_> = match schema {
-            Value::Object(object) => object.iter().map(|(k, v)| (k.clone(), v)).collect(),
-            Value::Array(items) => items
-                .iter()
-                .enumerate()
-                .map(|(k, v)| (k.to_string(), v))
-                .collect(),
-            _ => Vec::new(),
-        };
-        for (key, value) in inner {
+        for (key, value) in children(schema) {
             properties(value, &join(at, key), judge);
         }
     }

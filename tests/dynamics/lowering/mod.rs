@@ -5,6 +5,7 @@ mod explanation;
 mod planes;
 mod points;
 use crate::tests::reference;
+use crate::tests::reference::documents::problem as parse;
 mod unseen;
 mod welds;
 
@@ -31,11 +32,6 @@ fn changed(file: &str, change: impl FnOnce(&mut Value)) -> Problem {
     let mut document: Value = serde_json::from_str(&text).expect("JSON");
     change(&mut document);
     parse(&document)
-}
-
-fn parse(document: &Value) -> Problem {
-    Problem::parse(&document.to_string(), "test.json", &[])
-        .unwrap_or_else(|faults| panic!("{faults}"))
 }
 
 /// A design simulated with given settings.

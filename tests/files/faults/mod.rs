@@ -1,5 +1,6 @@
 //! Malformed problem files: the exact text that a user reads, with all faults of a file at once.
 
+use crate::tests::reference::documents::children;
 use flexbody::problem::{Override, Problem};
 use serde_json::Value;
 use std::path::Path;
@@ -330,16 +331,7 @@ fn an_override_that_leaves_its_bounds() {
 
 /// The pointers of all values of a document.
 fn pointers(value: &Value, at: &str, list: &mut Vec<String>) {
-    let inner: Vec<(String, &Value)> = match value {
-        Value::Object(object) => object.iter().map(|(k, v)| (k.clone(), v)).collect(),
-        Value::Array(items) => items
-            .iter()
-            .enumerate()
-            .map(|(k, v)| (k.to_string(), v))
-            .collect(),
-        _ => Vec::new(),
-    };
-    for (key, value) in inner {
+    for (key, value) in children(value) {
         let pointer = format!("{at}/{}", key.replace('/', "~1"));
         list.push(pointer.clone());
         pointers(value, &pointer, list);

@@ -1,0 +1,77 @@
+//! Problem files as JSON values, for tests of families of scenes.
+
+use flexbody::driver::known_evaluations::KnownEvaluations;
+use flexbody::driver::{Optimisation, optimise};
+use flexbody::problem::Problem;
+use serde_json::{Map, Value, json};
+use std::ops::ControlFlow;
+use std::path::Path;
+
+/// Keys that describe the scene; the others describe the study.
+const SCENE: [&str; 7] = [
+    "version",
+    "name",
+    "gravity",
+    "bodies",
+    "joints",
+    "loads",
+    "initial_velocity",
+];
+
+/// A file of `problems/benchmarks`.
+pub fn benchmark(name: &str) -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let path = path.join(format!("problems/benchmarks/{name}.json"));
+    let text = std::fs::read_to_string(path).expect("a problem file");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+/// Names of the bodies of a file.
+pub fn bodies(file: &Value) -> Vec<String> {
+    let bodies = file["bodies"].as_object().expect("bodies");
+    bodies.keys().cloned().collect()
+}
+
+/// The scene of a file with other settings. Its functions are the final positions of all centres of mass.
+pub fn final_positions(file: &Value, simulation: Value) -> Value {
+    let function = |(body, k): (String, usize)| {
+        let direction: Vec<f64> = (0..3).map(|i| if i == k { 1.0 } else { 0.0 }).collect();
+        let position = json!({"final": {"position": {"body": body, "direction": direction}}});
+        (format!("{body} {k}"), position)
+    };
+    let all = bodies(file).into_iter();
+    let functions: Map<_, _> = all
+        .flat_map(|body| (0..3).map(move |k| (body.clone(), k)))
+        .map(function)
+        .collect();
+    let mut file = file.clone();
+    let map = file.as_object_mut().expect("an object");
+    map.retain(|key, _| SCENE.contains(&key.as_str()));
+    map.insert("simulation".into(), simulation);
+    map.insert("functions".into(), functions.into());
+    file
+}
+
+/// Keys or indices and values of an object or a list.
+pub fn children(value: &Value) -> Vec<(String, &Value)> {
+    match value {
+        Value::Object(object) => object.iter().map(|(k, v)| (k.clone(), v)).collect(),
+        Value::Array(items) => {
+            let all = items.iter().enumerate();
+            all.map(|(k, v)| (k.to_string(), v)).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The problem in a file without faults.
+pub fn problem(file: &Value) -> Problem {
+    Problem::parse(&file.to_string(), "scene.json", &[]).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// Optimises a problem from its start.
+pub fn optimised(problem: &Problem) -> Optimisation {
+    let mut progress = |_: &_| ControlFlow::Continue(());
+    let known = KnownEvaluations::default();
+    optimise(problem, "", None, known, &mut progress).expect("has an objective")
+}
