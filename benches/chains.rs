@@ -1,9 +1,9 @@
-//! Chains of N hinged bars: time a step and body, error of the whole second (of all centres of mass at
-//! 101 instants), peak memory.
+//! Chains of N hinged bars: time per step and body, error after one second (of all centres of mass
+//! at 101 instants), peak memory.
 //!
 //! `cargo bench --bench chains` prints a table; `cargo bench --bench chains -- memory 1024 1000`
-//! prints the peak resident set of one run of so many bars and steps with its adjoint. Times are the
-//! processor time of the thread where the system tells it (Linux) and wall time elsewhere.
+//! prints the peak resident set of one run with so many bars and steps and its adjoint. Times are
+//! processor times of the thread on Linux, and wall times elsewhere.
 //!
 //! Bars of 1 m and 1 kg, 0.1 m square, hinged about z, start at rest along x and fall for 1 s.
 
@@ -13,7 +13,7 @@ use flexbody::{Analysis, Problem, SimulationError, simulate};
 use serde_json::{Map, Value, json};
 use watch::fastest;
 
-/// The chain, simulated as `simulation` says.
+/// The chain with the settings `simulation`.
 fn problem(bars: usize, simulation: Value) -> Problem {
     let (mut bodies, mut joints) = (Map::new(), Map::new());
     for i in 0..bars {
@@ -68,7 +68,7 @@ fn places(problem: &Problem) -> Result<Vec<[f64; 3]>, SimulationError> {
     Ok((0..=100).flat_map(place).collect())
 }
 
-/// The largest distance of two places (m).
+/// The largest distance between two sets of positions \[m\].
 fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     let distance = |(a, b): (&[f64; 3], &[f64; 3])| {
         let square: f64 = (0..3).map(|i| (a[i] - b[i]).powi(2)).sum();
@@ -91,7 +91,7 @@ fn main() -> Result<(), SimulationError> {
     }
     println!("   N  method          steps     ms/step  us/(step body)  gradient/run");
     for bars in [16, 32, 64, 128, 256, 512, 1024] {
-        // Equal steps, so that every length of chain does the same work a step.
+        // Equal steps: the work per step and body does not depend on the length of the chain.
         let steps = 40;
         let bdf = json!({"bdf": {"order": 2, "start": "rising_order"}});
         for (name, method, duration) in [
@@ -147,7 +147,7 @@ fn memory(bars: usize, steps: usize) -> Result<(), SimulationError> {
     Ok(())
 }
 
-/// Peak resident set so far (MB); NaN where the system does not tell.
+/// Peak resident set so far \[MB\]; NaN if it is unknown.
 fn peak() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with("VmHWM"));

@@ -1,7 +1,7 @@
-//! What a gradient costs in how much memory: `cargo bench --bench memory` prints a table.
+//! Time of a gradient against its memory: `cargo bench --bench memory` prints a table.
 //!
-//! A double pendulum of rods swings for 2 s in equal steps. Steps made again are counted; times are the
-//! processor time of the thread where the system tells it (Linux) and wall time elsewhere.
+//! A double pendulum of rods swings for 2 s in equal steps. Repeated steps are counted. Times are
+//! processor times of the thread on Linux, and wall times elsewhere.
 
 mod watch;
 
@@ -11,7 +11,7 @@ use watch::fastest;
 
 /// Steps of every run.
 const STEPS: usize = 20_000;
-/// Memory for what is kept of a run \[MB\].
+/// Memory for the data of a run \[MB\].
 const MEGABYTES: [f64; 7] = [1000.0, 60.0, 20.0, 6.0, 2.0, 0.6, 0.1];
 
 fn main() -> Result<(), SimulationError> {

@@ -1,8 +1,8 @@
-//! The optimiser's own time: whole runs on a chain of discs whose evaluation costs next to nothing.
+//! The optimiser's own time: whole runs on a chain of discs with a cheap evaluation.
 //!
-//! `cargo bench --bench optimiser`; the name of each case gives the iterations, the time of one
+//! `cargo bench --bench optimiser`. The name of each case has the iterations, the time of one
 //! without the evaluations, and the share of the quadratic programs. A simulation of the trebuchet
-//! takes some 0.1 s; the share of the optimiser is its time per iteration against that.
+//! takes about 0.1 s, for comparison.
 
 use std::fmt;
 
@@ -16,7 +16,8 @@ fn main() {
     divan::main();
 }
 
-/// Minimise Σ (x_i − t_i)² + 0.1 Σ (x_i − x_{i−1})⁴ within a box; pairs stay in discs and on curves.
+/// Minimise Σ (x_i − t_i)² + 0.1 Σ (x_i − x_{i−1})⁴ within a box; pairs stay in discs and on
+/// curves.
 struct Chain {
     n: usize,
 }

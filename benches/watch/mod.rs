@@ -1,8 +1,9 @@
-//! How long a call takes: the least processor time of several.
+//! Duration of a call: the least processor time of several.
 
 use std::time::{Duration, Instant};
 
-/// Seconds of the fastest of `repeats` calls after one that does not count, and the last result.
+/// Duration of the fastest of `repeats` calls [s] after one that does not count, and the last
+/// result.
 pub fn fastest<T>(repeats: usize, mut work: impl FnMut() -> T) -> (f64, T) {
     let mut last = work();
     let mut least = Duration::MAX;
@@ -37,10 +38,10 @@ impl Watch {
     }
 }
 
-/// Time that this thread has run on a processor, the first number of its `schedstat`; `None` where the
-/// system does not tell it.
+/// Processor time of this thread, the first number of its `schedstat`; `None` if the system does
+/// not provide it.
 fn processor_time() -> Option<Duration> {
-    // The kernel brings the number up to date when it schedules.
+    // The kernel updates the number when it schedules.
     std::thread::yield_now();
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     let nanoseconds = text.split_whitespace().next()?.parse().ok()?;

@@ -119,7 +119,8 @@ fn certified(
         let name = &problem.function_names[f];
         let mut judged = pair(f, &gradients);
         if !judged.passes(tolerance) && judged.is_finite() {
-            // The motion of the complex run differs by round-off, which a sensitive motion magnifies.
+            // The motion of the complex run differs by round-off, which a sensitive motion
+            // magnifies.
             if same.is_none() {
                 let of_complex = Evaluated {
                     x: at.x.clone(),
@@ -273,15 +274,15 @@ mod tests {
         assert!(pair(0.5, 0.5 + 1e-14).passes(0.0), "round-off");
         assert!(!pair(0.5, 0.5 + 1e-12).passes(1e-13));
         assert!(pair(0.5, 0.5 + 1e-12).passes(1e-11));
-        // Small beside the gradient, and wrong by all of itself.
+        // Small relative to the gradient, and completely wrong.
         assert!(!pair(1e-9, -1e-9).passes(1e-10));
         for wrong in [f64::NAN, f64::INFINITY] {
             assert!(!pair(wrong, 0.5).passes(1e-3) && !pair(0.5, wrong).passes(1e-3));
         }
     }
 
-    /// Two balls, each moved by its own variables: gradients pass, and where nothing passes the variable
-    /// that errs most is named, with its place in the file.
+    /// Two balls, each moved by its own variables: gradients pass. If no derivative passes, the
+    /// variable with the largest error is named, with its place in the file.
     #[test]
     fn every_function_is_certified_and_what_fails_is_named() {
         let text = r#"{"version": 1, "name": "swing", "gravity": [0, -9.81, 0],

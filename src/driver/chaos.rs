@@ -1,10 +1,10 @@
 //! Chaotic motions: they magnify perturbations until derivatives lose their meaning.
 //!
 //! A change Δx of a variable, of the variable's own size, moves the bodies by T(t) in units of the
-//! scene's length, as far as the motion is linear in it. Errors of relative size ε, made in every
-//! step, grow in the same way. If ε T(t) reaches one, the computed motion differs from the true
-//! one, and its derivatives mean nothing. T is computed by one complex step, and only if a
-//! derivative is so large that ε Δx df/dx reaches the size of its function.
+//! scene's length, to first order. Errors of relative size ε, made in every step, grow in the same
+//! way. If ε T(t) reaches one, the computed motion differs from the true one, and its derivatives
+//! are meaningless. T is computed by one complex step, and only if a derivative is so large that ε
+//! Δx df/dx reaches the size of its function.
 
 use super::check::own_size;
 use super::evaluate::Evaluated;
@@ -25,7 +25,7 @@ const PARTS: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
 /// A chaotic motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Chaos {
-    /// Time from which on derivatives mean nothing \[s\].
+    /// Time from which on derivatives are meaningless \[s\].
     pub from: f64,
     /// Duration of the motion \[s\].
     pub duration: f64,
@@ -47,8 +47,8 @@ impl std::fmt::Display for Chaos {
     }
 }
 
-/// Whether the motion of the design `x` is chaotic, judged by all functions. `None` also if it cannot
-/// be simulated.
+/// Whether the motion of the design `x` is chaotic, judged by all functions. `None` also if it
+/// cannot be simulated.
 pub(crate) fn chaos(problem: &Problem, x: &[f64]) -> Option<Chaos> {
     let scene = problem.scene(x);
     let which: Vec<usize> = (0..scene.functions.len()).collect();
@@ -88,8 +88,8 @@ pub(crate) fn of_motion(problem: &Problem, at: &Evaluated, which: &[usize]) -> O
     confirm(problem, at, (i, change(i)), error)
 }
 
-/// Marches again with an infinitesimal change of variable i, and finds when it has grown to the
-/// size of the scene.
+/// Integrates again with an infinitesimal change of variable i, and finds the time at which it has
+/// grown to the size of the scene.
 fn confirm(
     problem: &Problem,
     at: &Evaluated,

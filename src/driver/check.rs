@@ -224,8 +224,8 @@ mod tests {
         assert!(!pair(0.1 + 5e-15, 0.1).differs_by_round_off());
     }
 
-    /// A zero derivative is compared with the size of the function, whatever its terms. Examples:
-    /// the event's own quantity, and a free fall in its mass.
+    /// A zero derivative is compared with the size of the function, for any terms. Examples: the
+    /// event's own quantity, and a free fall in its mass.
     #[test]
     fn what_does_not_change_passes() {
         let arm = r#"{"shape": {"box": {"size": [1, 0.2, 0.3]}}, "mass": 1,

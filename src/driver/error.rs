@@ -1,7 +1,7 @@
 //! The discretisation error of functions and gradients, by halving every step.
 //!
-//! With f_{h,c} the value on the steps in use and the cells of the sums in use, f_{h,2c} that with every
-//! cell cut in two, and f_{h/2,2c} that with every step cut in two as well, of a method of order m,
+//! Let f_{h,c} be the value with the steps and the cells of sums in use, f_{h,2c} that with every
+//! cell halved, and f_{h/2,2c} that with every step halved, too. For a method of order m,
 //!
 //! ```text
 //! f_{h,c} − f ≈ (f_{h,2c} − f_{h/2,2c}) 2ᵐ / (2ᵐ − 1) + (f_{h,c} − f_{h,2c})
@@ -229,7 +229,7 @@ impl Accuracy {
         all
     }
 
-    /// The reached accuracy beside the requested one.
+    /// The reached accuracy and the requested one.
     pub(crate) fn describe(&self, asked: f64) -> String {
         let missed = match self.error <= asked {
             true => "",
@@ -292,7 +292,7 @@ pub(crate) fn reach(
 }
 
 /// Refines steps and samples by the factors by which their errors exceed the allowed ones. `false`
-/// if nothing can be refined.
+/// if no refinement is possible.
 fn refine(
     simulation: &mut Simulation,
     run: &Trajectory<f64>,

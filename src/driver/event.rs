@@ -71,7 +71,7 @@ fn side(gaps: &[f64]) -> f64 {
 }
 
 /// The run of `scene` that ends at its event, with steps that keep their fractions. Starts near
-/// `guess` (s). Sets the scene's duration.
+/// `guess` \[s\]. Sets the scene's duration.
 ///
 /// # Errors
 /// If a run fails, or the event is not found, or not admitted.
@@ -179,8 +179,8 @@ pub(crate) fn rate(
     }))
 }
 
-/// The duration of a scene with an infinitesimal part, whose real part ends at `duration`; `rate` is
-/// ∂g/∂T. Without an event, the scene's own.
+/// The duration of a scene with an infinitesimal part, whose real part ends at `duration`; `rate`
+/// is ∂g/∂T. Without an event, the scene's own.
 ///
 /// # Errors
 /// If the run fails.

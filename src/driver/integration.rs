@@ -47,9 +47,9 @@ pub(crate) struct Integration {
     /// Number of designs that did not admit the lowering of the others.
     pub unlowered: usize,
     memory: usize,
-    /// When the event came in the last run, if the scene has one (s).
+    /// When the event came in the last run, if the scene has one \[s\].
     pub event: Option<f64>,
-    /// When it comes in the next run, if that is known to the last bit (s).
+    /// When it comes in the next run, if that is known to the last bit \[s\].
     pub settled: Option<f64>,
 }
 

@@ -51,20 +51,20 @@ struct Known {
 /// Additional data of an evaluation.
 #[derive(Default)]
 pub(crate) struct EvaluationContext {
-    /// Before: time of the event at this design with the steps in use, if known (s).
+    /// Before: time of the event at this design with the steps in use, if known \[s\].
     pub settled: Option<f64>,
     /// Before: whether another process simulated this design just before it ended. The extra
     /// simulation is not counted: a resumed run would not repeat it.
     pub repeated: bool,
     /// After: the choice of steps that it caused.
     pub refresh: Option<Refresh>,
-    /// After: time of the event in the last motion, if the scene ends at one (s).
+    /// After: time of the event in the last motion, if the scene ends at one \[s\].
     pub event: Option<f64>,
     /// After: its work.
     pub work: WorkCounts,
 }
 
-/// Steps that were chosen, or used again.
+/// Steps that were chosen, or used once more.
 struct Choice {
     steps: StepsInUse,
     /// Number of other choices before their first use.
@@ -124,7 +124,7 @@ impl<'a> KnownEvaluations<'a> {
     }
 
     /// The number of the latest requested evaluation of the record, and the time of the event in
-    /// the last motion by then (s).
+    /// the last motion by then \[s\].
     pub(crate) fn latest(&self) -> Option<(usize, Option<f64>)> {
         self.latest
     }
@@ -376,8 +376,8 @@ mod tests {
         }
     }
 
-    /// A run that leaves the course of the earlier one goes on with the steps of that time, and its
-    /// record says so.
+    /// A run that departs from the earlier one continues with the steps of that time, and its log
+    /// says so.
     #[test]
     fn steps_are_those_of_the_last_known_evaluation() {
         let (coarse, fine) = ([0.0, 1.0], [0.0, 0.5, 1.0]);
@@ -398,7 +398,7 @@ mod tests {
             assert_eq!(log.values(&[x], never), Ok(vec![x]));
         }
         assert_eq!(in_use(&log), (coarse.to_vec(), 0));
-        // Evaluations of before do not bring older steps back, later ones bring none.
+        // Earlier evaluations do not restore older steps; later ones set no steps.
         assert_eq!(log.values(&[2.0], never), Ok(vec![2.0]));
         assert_eq!(in_use(&log), (coarse.to_vec(), 0));
         drop(log);
@@ -408,7 +408,7 @@ mod tests {
             steps.reason = "as before".into();
         }
         assert_eq!(written, [again, value(3.0), value(4.0)]);
-        // Read back, the record says the same of all evaluations.
+        // The log, when read back, has the same evaluations.
         let all = [earlier, written].concat();
         let mut log = KnownEvaluations::new(all, |_| {});
         for (x, ends, refreshes) in [(1.0, &coarse[..], 0), (2.0, &fine, 1), (4.0, &coarse, 0)] {
@@ -417,8 +417,8 @@ mod tests {
         }
     }
 
-    /// Events and work are those of the evaluations that were asked for, each counted once, and the last
-    /// of them in the record says where the next event is looked for.
+    /// Events and work are those of the requested evaluations, each counted once. The last of them
+    /// in the log determines where the search for the next event starts.
     #[test]
     fn events_and_work_are_those_of_the_course() {
         let known = |x: f64, event: f64| EvaluationRecord {
@@ -440,7 +440,7 @@ mod tests {
             }
         }
         assert_eq!(log.work().steps, 20);
-        // Where the values are known, the event is where they were found.
+        // If the values are known, the event is that of their evaluation.
         let gradients = |account: &mut EvaluationContext| {
             assert_eq!(account.settled, Some(0.1));
             account.event = Some(0.1);

@@ -6,25 +6,25 @@ use crate::problem::available_memory;
 use crate::report::size;
 use crate::system::Numbering;
 
-/// Part of the available memory that gradients may use, and the limit if that is unknown (bytes).
+/// Part of the available memory that gradients may use, and the limit if that is unknown \[bytes\].
 const PART: usize = 2;
 const UNKNOWN: usize = 1 << 30;
 
-/// Memory limit of the tape of one motion (bytes), if `given` is for all concurrent motions.
+/// Memory limit of the tape of one motion \[bytes\], if `given` is for all concurrent motions.
 pub(crate) fn for_gradients(given: Option<usize>) -> usize {
     let all = given.unwrap_or_else(|| available_memory().map_or(UNKNOWN, |bytes| bytes / PART));
     (all / rayon::current_num_threads().max(1)).max(1)
 }
 
-/// Memory of a body besides its states: inertia, markers, factors (bytes).
+/// Memory of a body besides its states: inertia, markers, factors \[bytes\].
 const OF_BODY: usize = 4000;
 /// Number of stages of a step in memory.
 const STAGES: usize = 16;
-/// Memory below this is not checked (bytes).
+/// Memory below this is not checked \[bytes\].
 const LITTLE: usize = 1 << 26;
 
-/// Refuses a run that needs more memory than available. Memory for gradients counts as far as it is
-/// filled.
+/// Rejects a run that needs more memory than available. Memory for gradients counts as far as it is
+/// used.
 ///
 /// # Errors
 /// [`IntegrationFailure::Memory`].

@@ -1,4 +1,4 @@
-//! Origin of a number that is not finite, as far as known.
+//! Origin of a number that is not finite.
 
 use super::evaluate::Evaluated;
 use crate::functions::Function;

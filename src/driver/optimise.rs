@@ -216,7 +216,7 @@ struct StartOnly<'a, 'b>(&'a mut Recorder<'b>);
 
 impl Observer for StartOnly<'_, '_> {
     fn iteration(&mut self, row: &Row<'_>) -> ControlFlow<()> {
-        // The run is over, whatever the observer returns.
+        // The run ends for any return value of the observer.
         let _ = self.0.iteration(row);
         ControlFlow::Break(())
     }

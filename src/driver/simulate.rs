@@ -87,7 +87,7 @@ impl Simulation {
         self.expanded.as_ref().unwrap_or(&self.at.run)
     }
 
-    /// Largest |E(t) − E(0)| of the total energy (J).
+    /// Largest |E(t) − E(0)| of the total energy \[J\].
     pub(crate) fn energy_drift(&self) -> f64 {
         let total = |o: &Observation| o.kinetic + o.potential;
         let start = total(&self.observations[0]);

@@ -1,5 +1,5 @@
-//! What becomes of the start that a file gives: bodies that are moved so that the joints close,
-//! velocities that are changed as the joints do not admit them, and joints that leave no freedom.
+//! Changes of the start that a file gives: bodies are moved to close the joints, velocities are
+//! projected onto the joints; and notes on joints without degrees of freedom.
 
 use crate::math::{Vec3, rotation};
 use crate::model::{Model, RigidBody};
@@ -9,15 +9,15 @@ use crate::system::kkt::SaddlePoint;
 use crate::system::placement::{guess, length_scale};
 use crate::system::{BodyMotion, InMotion, Numbering, joints, redundancy};
 
-/// Change of a position or velocity, relative to the largest one, that is told.
+/// Changes of a position or velocity above this, relative to the largest one, are reported.
 const TOLD: f64 = 1e-6;
-/// Bodies that are told of.
+/// Largest number of bodies that are reported.
 const MOST: usize = 5;
-/// Dependence of unit rows, from the smallest singular value to the largest, that is told.
+/// A ratio of the smallest to the largest singular value of the unit rows below this is reported.
 const NEARLY: f64 = 1e-4;
 
-/// What a user should know of the start at the design `x`, a sentence each; none if the start is as it
-/// is given, or if there is none.
+/// Notes on the start at the design `x`, one sentence each; empty if the start is as given, or if
+/// there is none.
 pub(crate) fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
     let model = problem.unlowered_scene(x).model;
     let numbering = Numbering::new(&model);
@@ -55,7 +55,7 @@ pub(crate) fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
     notes
 }
 
-/// Bodies whose velocities of the file give way to the starts of joints.
+/// Bodies whose velocities in the file are replaced by the starts of joints.
 fn replaced(problem: &Problem, model: &Model<f64>, x: &[f64]) -> Vec<String> {
     let own = problem.own_velocities(x);
     let moving: Vec<(&RigidBody<f64>, Velocities, Velocities)> = (model.bodies.iter().zip(own))
@@ -82,7 +82,7 @@ fn replaced(problem: &Problem, model: &Model<f64>, x: &[f64]) -> Vec<String> {
     moving.iter().filter_map(one).collect()
 }
 
-/// What becomes of velocities, in words.
+/// A change of velocities as text.
 fn change((v, omega): &Velocities, (v_start, omega_start): &Velocities) -> String {
     format!(
         "it starts with {} of {} m/s and {} of {} rad/s (changed by {} m/s and {} rad/s)",
@@ -103,7 +103,7 @@ fn tell(notes: &mut Vec<String>, all: Vec<String>) {
     }
 }
 
-/// Unknown velocities less the conditions on them that are independent at most positions.
+/// Number of unknown velocities minus the conditions that are independent in most positions.
 fn degrees_of_freedom(model: &Model<f64>) -> usize {
     let imposed: usize = model
         .joints
@@ -113,7 +113,7 @@ fn degrees_of_freedom(model: &Model<f64>) -> usize {
     Numbering::new(model).unknowns().saturating_sub(imposed)
 }
 
-/// Whether the joints are closed, and admit the velocities, as the bodies are placed.
+/// Whether the placement and its velocities satisfy the joints.
 fn consistent(model: &Model<f64>, numbering: &Numbering) -> bool {
     let (q, v) = guess(model);
     let mut motions = Vec::new();

@@ -4,8 +4,8 @@ use super::number::significant;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-/// One directional derivative of every function at the start and at the optimum, computed twice: by the
-/// adjoint, Σᵢ dᵢ ∂f/∂xᵢ, and by the complex step, Im f(x + i h d)/h, on the same steps.
+/// One directional derivative of every function at the start and at the optimum, computed twice: by
+/// the adjoint, Σᵢ dᵢ ∂f/∂xᵢ, and by the complex step, Im f(x + i h d)/h, on the same steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct GradientCertificate {
@@ -42,7 +42,7 @@ pub(crate) struct CertifiedDesign {
     /// The derivatives, by function.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub functions: IndexMap<String, CertifiedDerivative>,
-    /// The fault: the function, and the variable, body, joint and step as far as known.
+    /// The fault: the function, and the variable, body, joint and step if known.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<String>,
     /// A note on derivatives that pass.

@@ -153,12 +153,12 @@ pub(crate) fn compare(new: &Optimum, baseline: &Optimum, tolerances: &Tolerances
 }
 
 impl Comparison {
-    /// Whether nothing moved beyond tolerance; warnings do not count.
+    /// Whether all quantities agree within tolerance; warnings do not count.
     pub(crate) fn passed(&self) -> bool {
         self.rows.iter().all(|row| row.verdict != Verdict::Moved)
     }
 
-    /// The verdict in a sentence and a table of what moved or is worth knowing.
+    /// The verdict in a sentence, and a table of the differences and warnings.
     pub(crate) fn text(&self) -> String {
         let count = |verdict| {
             self.rows

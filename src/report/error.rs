@@ -26,7 +26,7 @@ pub(crate) enum ReportError {
         shown(path)
     )]
     InUse {
-        /// The directory; nothing in it has changed.
+        /// The directory; it has not changed.
         path: PathBuf,
     },
     /// The operating system refused to read.

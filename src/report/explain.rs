@@ -51,7 +51,7 @@ pub(crate) struct IntegrationUse {
     /// Where lowering changes the discretisation error of the method, and not only round-off.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub merged: Option<String>,
-    /// Memory of the samples and of what is kept for gradients (bytes).
+    /// Memory of the samples and of what is kept for gradients \[bytes\].
     pub samples_bytes: usize,
     /// See above.
     pub tape_bytes: usize,
@@ -90,7 +90,7 @@ pub(crate) struct SystemSize {
 pub(crate) struct FunctionUse {
     /// Its name.
     pub name: String,
-    /// "objective", "constraint", or nothing if an optimisation never evaluates it.
+    /// "objective", "constraint", or empty if an optimisation never evaluates it.
     pub used: String,
     /// Whether it depends on the whole motion, or on its end alone.
     pub whole_motion: bool,
@@ -225,7 +225,7 @@ impl Explanation {
     }
 }
 
-/// Bytes as a person reads them.
+/// A number of bytes as text.
 pub(crate) fn size(bytes: usize) -> String {
     match bytes as f64 {
         bytes if bytes < 1e3 => format!("{bytes} B"),

@@ -135,8 +135,8 @@ fn finish(prepared: Prepared) -> Result<File, ReportError> {
     })
 }
 
-/// A directory in which no other run writes results until this is dropped or the process has ended,
-/// by whatever cause.
+/// A directory in which no other run writes results until this is dropped or the process has ended
+/// for any reason.
 #[derive(Debug)]
 #[must_use]
 pub(crate) struct HeldDirectory {
@@ -167,8 +167,8 @@ fn hold(path: &Path) -> Result<HeldDirectory, ReportError> {
 /// and removes the temporary files of killed runs.
 ///
 /// # Errors
-/// [`ReportError::InUse`] if another run holds it; nothing is changed then. [`ReportError::Write`]
-/// with the path of the directory.
+/// [`ReportError::InUse`] if another run holds it; the directory is then unchanged.
+/// [`ReportError::Write`] with the path of the directory.
 pub(crate) fn prepare_directory(path: &Path) -> Result<HeldDirectory, ReportError> {
     let fault = |source| ReportError::Write {
         path: path.to_path_buf(),

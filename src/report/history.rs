@@ -366,7 +366,7 @@ impl HistoryRow {
     }
 }
 
-/// The shortest decimal that reads back as the same number; nothing if it is not finite.
+/// The shortest decimal that reads back as the same number; empty if it is not finite.
 pub(super) fn exact(value: f64) -> String {
     if value.is_finite() {
         format!("{value:?}")
@@ -411,7 +411,8 @@ mod tests {
         }
     }
 
-    /// Every row is appended once: what stands there stays, in the same file, and is the table so far.
+    /// Every row is appended once: earlier rows stay in the same file, which holds the table so
+    /// far.
     #[test]
     fn a_table_grows_by_its_last_row() {
         let mut history = History {

@@ -1,19 +1,19 @@
-//! What a run leaves behind: records, their comparison, figures and the text at the end.
+//! Results of a run: records, their comparison, figures and the final text.
 //!
-//! Everything here is a pure function of plain `f64` data, so that the figures can be redrawn
-//! from the record; only [`files`], [`evaluations`] and [`HistoryLog`] touch the disk.
+//! All contents are pure functions of plain `f64` data, so the figures can be redrawn from the
+//! record. Only [`files`], [`evaluations`] and [`HistoryLog`] access the disk.
 //!
 //! | File | Content |
 //! |---|---|
 //! | [`files`] | files written whole or not at all |
 //! | [`evaluations`] | every evaluation, `evaluations.jsonl` |
-//! | [`explain`] | what is left out of a scene and what is left |
+//! | [`explain`] | the reductions of a scene and the reduced scene |
 //! | [`history`] | the iterations of an optimisation, `history.csv` |
 //! | [`optima`] | the distinct optima of several starts, `optima.csv` |
 //! | [`optimum`] | the end of an optimisation, `optimum.json` |
-//! | [`certificate`] | the check of the gradients that an optimisation went by |
+//! | [`certificate`] | the check of an optimisation's gradients |
 //! | [`mod@compare`] | an optimum against a committed baseline |
-//! | [`mod@summary`] | the text that a person reads at the end |
+//! | [`mod@summary`] | the final text for the user |
 //! | [`positions`] | tables of reference positions |
 //! | [`work_precision`] | error against run time, `work_precision.csv` and `orders.csv` |
 //! | [`stability`] | the stability table, `stability.md` and `stability.csv` |

@@ -4,12 +4,12 @@ use super::ReportError;
 use super::csv;
 use super::history::{Column, OBJECTIVE, VARIABLE, exact};
 
-/// An optimum that at least one start led to.
+/// An optimum that at least one start reached.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FoundOptimum {
     /// The number of the start with the best value there, from 1.
     pub start: usize,
-    /// How many starts led there.
+    /// Number of starts that reached it.
     pub starts: usize,
     /// Objective in the user's sense.
     pub objective: f64,
@@ -17,8 +17,8 @@ pub(crate) struct FoundOptimum {
     pub design: Vec<f64>,
 }
 
-/// Optima, best first, as comma separated values (RFC 4180), with the columns of `history.csv` for the
-/// objective and the variables.
+/// Optima, best first, as comma separated values (RFC 4180), with the columns of `history.csv` for
+/// objective and variables.
 ///
 /// # Errors
 /// [`ReportError::History`] if a unit contains a square bracket.

@@ -27,7 +27,7 @@ pub(crate) struct Optimum {
     pub constraints: IndexMap<String, ConstraintValue>,
     /// Lagrange multipliers of constraints and bounds.
     pub multipliers: Multipliers,
-    /// Design variables that stand on a bound, and on which.
+    /// Design variables at a bound, with its side.
     pub active_bounds: IndexMap<String, BoundSide>,
     /// Residuals of the optimality conditions.
     pub kkt: Kkt,
@@ -166,7 +166,7 @@ pub(crate) struct Aggregate {
     pub lies: Lies,
     /// The largest value over time, gate included.
     pub true_maximum: f64,
-    /// When it is attained (s).
+    /// When it is attained \[s\].
     pub time: f64,
     /// Its estimated error by the discretisation in time, absolute.
     pub error: f64,

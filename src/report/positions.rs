@@ -4,7 +4,7 @@ use super::ReportError;
 use super::csv;
 use std::path::Path;
 
-/// Positions of centres of mass (m) by index of the body.
+/// Positions of centres of mass \[m\] by index of the body.
 pub(crate) type Positions = Vec<(usize, [f64; 3])>;
 
 /// Reads a table of positions, `time,body,x,y,z` (s and m). Returns those of the instant `end` by

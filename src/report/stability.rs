@@ -1,15 +1,15 @@
-//! The stability table: what becomes of extreme scenes, as Markdown and as CSV.
+//! The stability table: results of extreme scenes, as Markdown and as CSV.
 
 use super::csv;
 
-/// What became of a case.
+/// Result of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum StabilityOutcome {
     /// The numbers agree with their judge.
     Accurate,
-    /// The numbers are off, and the program says so.
+    /// The numbers are wrong, and the program says so.
     Degraded {
-        /// By which words or numbers it says so.
+        /// The warning or number that says so.
         told: String,
     },
     /// No numbers, but a reason.
@@ -17,17 +17,17 @@ pub(crate) enum StabilityOutcome {
         /// The reason in the program's words.
         message: String,
     },
-    /// The case did not end in its time.
+    /// The case exceeded its time limit.
     TimeLimit {
-        /// The time (s).
+        /// The limit \[s\].
         seconds: f64,
     },
-    /// The program broke down.
+    /// The program panicked.
     Panicked {
-        /// Its last words.
+        /// Message of the panic.
         message: String,
     },
-    /// The numbers are off, and nothing says so.
+    /// The numbers are wrong without a warning.
     WrongAndSilent,
 }
 
@@ -44,7 +44,7 @@ impl StabilityOutcome {
         }
     }
 
-    /// Whether no program may behave so.
+    /// Whether the result is a failure of the program.
     pub(crate) fn is_failure(&self) -> bool {
         match self {
             StabilityOutcome::Accurate
@@ -56,7 +56,7 @@ impl StabilityOutcome {
         }
     }
 
-    /// What the program said, if it did.
+    /// The program's message, if any.
     pub(crate) fn words(&self) -> &str {
         match self {
             StabilityOutcome::Degraded { told } => told,
@@ -73,27 +73,27 @@ impl StabilityOutcome {
 /// One case.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct StabilityRow {
-    /// What is extreme, in one word.
+    /// The extreme property, in one word.
     pub family: String,
-    /// How extreme.
+    /// Its value.
     pub extreme: String,
     /// Problem file without its folder.
     pub scene: String,
-    /// Method that was asked for, with its tolerance or number of steps.
+    /// Requested method, with its tolerance or number of steps.
     pub method: String,
-    /// Name of the method that was in use.
+    /// Name of the method in use.
     pub by: Option<String>,
-    /// Steps that were taken.
+    /// Number of steps.
     pub steps: Option<usize>,
-    /// What became of it.
+    /// The result.
     pub outcome: StabilityOutcome,
     /// Largest error of a function relative to the size of the motion.
     pub error: Option<f64>,
-    /// Error up to which the numbers count as accurate.
+    /// Largest error of accurate numbers.
     pub bound: f64,
-    /// What the numbers are compared with.
+    /// Source of the correct numbers.
     pub judge: String,
-    /// Largest change of energy relative to the largest kinetic energy, where it is conserved.
+    /// Largest change of energy relative to the largest kinetic energy, if energy is conserved.
     pub energy_drift: Option<f64>,
     /// Largest |Φ| (m or 1).
     pub position_drift: Option<f64>,
@@ -102,9 +102,9 @@ pub(crate) struct StabilityRow {
     /// Largest difference of a derivative by the adjoint from the complex step, relative to the
     /// largest derivative of the scene (in relative changes of variables and functions).
     pub gradient_error: Option<f64>,
-    /// Why there are no derivatives of a motion that there is.
+    /// Why a motion has no derivatives.
     pub no_gradient: Option<String>,
-    /// Command that shows the same.
+    /// Command that runs the case.
     pub command: String,
 }
 
@@ -115,17 +115,17 @@ impl StabilityRow {
     }
 }
 
-/// Name of a case: what is extreme, how extreme, by which method.
+/// Name of a case: property, value and method.
 pub(crate) fn case_name(family: &str, extreme: &str, method: &str) -> String {
     format!("{family}/{extreme}/{method}")
 }
 
-/// What the cases of a family have in common.
+/// A family of cases.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct StabilityFamily {
     /// Its word.
     pub name: String,
-    /// What is tried.
+    /// Its description.
     pub about: String,
 }
 
@@ -201,7 +201,7 @@ impl StabilityTable {
         text
     }
 
-    /// The rows as Markdown, a table a family.
+    /// The rows as Markdown, one table per family.
     pub(crate) fn to_markdown(&self) -> String {
         let mut text = String::from(
             "# Stability\n\nWhat becomes of extreme scenes, as `optimize stability` finds it; how it is \
@@ -263,7 +263,7 @@ impl StabilityTable {
         format!("{} cases: {}", self.rows.len(), parts.join(", "))
     }
 
-    /// Whether a row is wrong and silent, panicked or had to be stopped.
+    /// Whether a row is wrong and silent, panicked or exceeded its time limit.
     pub(crate) fn has_failures(&self) -> bool {
         self.rows.iter().any(|row| row.outcome.is_failure())
     }
@@ -292,7 +292,7 @@ fn markdown_row(row: &StabilityRow) -> String {
     )
 }
 
-/// What the program said to the rows, the same words once.
+/// Messages of the program on the rows; equal ones once.
 fn notes(rows: &[&StabilityRow]) -> String {
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
     let mut add = |row: &StabilityRow, what: String| {

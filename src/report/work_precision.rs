@@ -1,27 +1,26 @@
-//! Error against run time: the rows of a measurement, the orders of convergence that they
-//! show.
+//! Error against run time: the rows of a measurement, and their orders of convergence.
 
 use super::csv;
 use super::number::significant;
 use super::table::render;
 use crate::integrate::WorkCounts;
 
-/// What one method does with one step size or tolerance.
+/// Result of one method with one step size or tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PrecisionRow {
     /// Name of the method.
     pub method: String,
     /// Its formal order.
     pub order: usize,
-    /// Size of its steps if all are equal (s).
+    /// Size of its steps if all are equal \[s\].
     pub step: Option<f64>,
-    /// Tolerance that its steps follow.
+    /// Tolerance of its adaptive steps.
     pub tolerance: Option<f64>,
-    /// Largest distance of a centre of mass from the reference at the end (m).
+    /// Largest distance of a centre of mass from the reference at the end \[m\].
     pub error: f64,
     /// Largest error of a gradient's component relative to the largest component.
     pub gradient_error: Option<f64>,
-    /// Largest |E(t) − E(0)| of kinetic and potential energy (J).
+    /// Largest |E(t) − E(0)| of kinetic and potential energy \[J\].
     pub energy_drift: f64,
     /// Largest |Φ| (m or 1).
     pub position_drift: f64,
@@ -29,9 +28,9 @@ pub(crate) struct PrecisionRow {
     pub velocity_drift: f64,
     /// Work of the simulation.
     pub counts: WorkCounts,
-    /// CPU time of the simulation (s).
+    /// CPU time of the simulation \[s\].
     pub cpu_seconds: f64,
-    /// CPU time of the backward march (s).
+    /// CPU time of the backward march \[s\].
     pub gradient_cpu_seconds: Option<f64>,
 }
 
@@ -40,21 +39,21 @@ pub(crate) struct PrecisionRow {
 pub(crate) struct WorkPrecision {
     /// Name of the problem.
     pub problem: String,
-    /// Length of the motion (s).
+    /// Length of the motion \[s\].
     pub duration: f64,
     /// Function whose gradient is judged.
     pub function: Option<String>,
-    /// What the errors are measured against.
+    /// Reference of the errors.
     pub reference: String,
-    /// Doubt about the reference (m); NaN if nothing is known of it.
+    /// Uncertainty of the reference \[m\]; NaN if unknown.
     pub floor: f64,
-    /// Relative doubt about the reference's gradient; NaN if nothing is known of it.
+    /// Relative uncertainty of the reference's gradient; NaN if unknown.
     pub gradient_floor: f64,
-    /// Length of the scene (m); rows with a larger error are left out.
+    /// Length of the scene \[m\]; rows with a larger error are left out.
     pub length: f64,
     /// Rows by method, from large steps to small ones.
     pub rows: Vec<PrecisionRow>,
-    /// Runs that failed or are not worth a row, and warnings.
+    /// Runs that failed or have no row, and warnings.
     pub notes: Vec<String>,
 }
 
@@ -67,7 +66,7 @@ pub(crate) struct MethodOrder {
     pub formal: usize,
     /// Median of the observed orders of the positions, and the number of halvings behind it.
     pub position: Option<(f64, usize)>,
-    /// The same of the gradient.
+    /// The same for the gradient.
     pub gradient: Option<(f64, usize)>,
 }
 
@@ -92,18 +91,18 @@ const COLUMNS: [&str; 18] = [
     "rejected",
 ];
 
-/// Errors that the summary asks the run time for (m).
+/// Errors for which the summary gives run times \[m\].
 const GOALS: [f64; 5] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10];
-/// Part of the scene's length, or of the gradient, below which errors fall by the order of the
+/// Part of the scene's length, or of the gradient, below which errors decrease by the order of the
 /// method.
 const ASYMPTOTIC: f64 = 3e-3;
-/// How far above round-off and the reference's own error an error shows an order.
+/// An error shows an order if it exceeds round-off and the reference's error by this factor.
 const CLEAR: f64 = 10.0;
-/// The part of an error that the next one is at least if it does not fall any more.
+/// An error is constant if its ratio to the one before is larger.
 const IDLE: f64 = 0.7;
-/// Part of the asymptotic range in which an error that does not fall is one of round-off.
+/// Part of the asymptotic range in which a constant error is round-off.
 const STAGNANT: f64 = 1e-3;
-/// Halvings that an order is the median of: the finest ones.
+/// Number of the finest halvings whose median is an order.
 const HALVINGS: usize = 3;
 
 impl WorkPrecision {
@@ -140,8 +139,8 @@ impl WorkPrecision {
         text
     }
 
-    /// Orders of all methods with equal steps, by the median over the finest halvings whose errors
-    /// are small beside the scene and clear of round-off.
+    /// Orders of all methods with equal steps: the median over the finest halvings whose errors are
+    /// small relative to the scene and above round-off.
     pub(crate) fn orders(&self) -> Vec<MethodOrder> {
         let mut names: Vec<&str> = Vec::new();
         for row in self.rows.iter().filter(|row| row.step.is_some()) {
@@ -199,7 +198,7 @@ impl WorkPrecision {
         text
     }
 
-    /// The text that a person reads: reference, time to an error by method, orders, notes.
+    /// The text for the user: reference, time to an error by method, orders, notes.
     pub(crate) fn text(&self) -> String {
         let mut text = format!(
             "{}: {} s, errors at the end against {}\n",
@@ -276,9 +275,9 @@ fn cells(order: Option<(f64, usize)>) -> [String; 2] {
     }
 }
 
-/// Median of log(e_k / e_{k+1}) / log(h_k / h_{k+1}) over the finest halvings with errors that are
-/// small beside `size` and clear of `floor` and of where they do not fall any more; the finest one
-/// where there are not enough for a median.
+/// Median of log(e_k / e_{k+1}) / log(h_k / h_{k+1}) over the finest halvings whose errors are
+/// small relative to `size`, above `floor`, and not constant; the finest one if there are not
+/// enough for a median.
 fn observed(errors: &[(f64, f64)], size: f64, floor: f64) -> Option<(f64, usize)> {
     let idle = |pair: &[(f64, f64)]| {
         pair[1].1 > IDLE * pair[0].1 && pair[1].1 < STAGNANT * ASYMPTOTIC * size
@@ -288,7 +287,7 @@ fn observed(errors: &[(f64, f64)], size: f64, floor: f64) -> Option<(f64, usize)
         Some((_, error)) => *error,
         None => 0.0,
     };
-    // A NaN, for a reference without a check, is no floor.
+    // NaN, for an unchecked reference, is no floor.
     let floor = CLEAR * least.max(floor);
     let mut orders: Vec<f64> = errors
         .windows(2)

@@ -1,13 +1,13 @@
-//! A case of the stability suite: a scene, how it is changed and integrated, and who judges it.
+//! A case of the stability suite: a scene, its changes, its integration, and its judge.
 
 use super::exact::Exact;
 use crate::integrate::Method;
 use crate::report::stability::case_name;
 
-/// Steps by tolerance, unless said otherwise.
+/// Default tolerance of the steps.
 pub(super) const TOLERANCE: f64 = 1e-9;
 
-/// A number for the table.
+/// Formats a number for the table.
 pub(super) fn decade(x: f64) -> String {
     match x {
         0.0 => "0".into(),
@@ -27,32 +27,32 @@ pub(super) struct SceneFile {
     pub text: &'static str,
 }
 
-/// Where steps end.
+/// The steps of a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Steps {
-    /// They follow a tolerance.
+    /// Adaptive, with this tolerance.
     Tolerance(f64),
-    /// So many equal ones.
+    /// This many equal steps.
     Equal(usize),
 }
 
-/// Method, or none if the scene chooses, and steps.
+/// Method (`None` if it is chosen for the scene) and steps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Way {
     pub method: Option<Method>,
     pub steps: Steps,
 }
 
-/// Who says what the numbers should be.
+/// The source of the correct numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Judge {
-    /// A motion that is known without the program.
+    /// A motion that is known independently of the program.
     Exact(Exact),
-    /// A run by a method of the other family with a much tighter tolerance, with so many of the changes
-    /// only, and the size (m) that its error is relative to.
+    /// A run by a method of the other family with a much smaller tolerance and only the first
+    /// `kept` changes. Its error is relative to `size` \[m\].
     OtherMethod { kept: usize, size: f64 },
-    /// The least or largest value of the objective of an optimisation, NaN if there is none, and the
-    /// size that its error is relative to.
+    /// The least or largest value of the objective of an optimisation (NaN if there is none); its
+    /// error is relative to `size`.
     Optimum { value: f64, size: f64 },
 }
 
@@ -65,36 +65,36 @@ impl From<Exact> for Judge {
 /// A case.
 #[derive(Clone, Debug)]
 pub(super) struct Case {
-    /// What is extreme, in one word.
+    /// The extreme property, in one word.
     pub family: &'static str,
-    /// How extreme.
+    /// Its value.
     pub extreme: String,
     /// The scene.
     pub scene: SceneFile,
-    /// Method and steps; `None` leaves them to the file.
+    /// Method and steps; `None` for those of the file.
     pub way: Option<Way>,
-    /// Duration (s).
+    /// Duration \[s\].
     pub duration: f64,
-    /// Changes of the file, as PATH=VALUE, besides those of method, steps and duration.
+    /// Changes of the file as PATH=VALUE, in addition to method, steps and duration.
     pub changes: Vec<String>,
-    /// Who judges.
+    /// Source of the correct numbers.
     pub judge: Judge,
-    /// What lengths are multiplied by.
+    /// Factor of lengths.
     pub length: f64,
-    /// Error, relative to the size of the motion, up to which it is accurate.
+    /// Largest error of an accurate motion, relative to its size.
     pub bound: f64,
     /// Whether energy is conserved.
     pub conservative: bool,
-    /// Whether the case is run by the fast subset of the tests.
+    /// Whether the case is too slow for the tests.
     pub slow: bool,
 }
 
-/// Errors up to which a motion counts as accurate: by a tolerance of 1e-9, and by equal steps of a
-/// method of order 2.
+/// Largest errors of an accurate motion: with a tolerance of 1e-9, and with equal steps of a method
+/// of order 2.
 const FINE: f64 = 1e-6;
 const COARSE: f64 = 1e-3;
 
-/// The bound for a method: those of order 2 cannot be had fine at ordinary steps.
+/// The bound for a method. Methods of order 2 are not accurate at ordinary steps.
 fn bound(way: Way) -> f64 {
     match way.method {
         Some(Method::Bdf { .. } | Method::GeneralisedAlpha { .. }) => COARSE,
@@ -111,15 +111,15 @@ pub(super) fn order_two() -> [Method; 2] {
     [bdf, Method::GeneralisedAlpha { radius: 0.8 }]
 }
 
-/// The methods that can follow a tolerance.
+/// The adaptive methods.
 pub(super) const ADAPTIVE: [Method; 3] = [
     Method::Dop853,
     Method::Radau { stages: 2 },
     Method::Radau { stages: 3 },
 ];
 
-/// The scene's choice, which is the explicit method unless the scene is stiff, and the implicit
-/// methods: by a `tolerance`, or else with equal steps.
+/// The method chosen for the scene (explicit unless it is stiff), and the implicit methods: with a
+/// `tolerance`, or otherwise with equal steps.
 pub(super) fn usual(tolerance: f64, steps: usize) -> Vec<Way> {
     let tolerance = Steps::Tolerance(tolerance);
     let mut all = vec![Way {
@@ -180,7 +180,7 @@ impl Way {
 }
 
 impl Case {
-    /// A case by usual bounds. It conserves energy if its motion is known.
+    /// A case with the usual bounds. It conserves energy if its motion is known.
     pub(crate) fn known(
         (family, extreme): (&'static str, String),
         scene: SceneFile,
@@ -203,7 +203,7 @@ impl Case {
         }
     }
 
-    /// With another change of the file.
+    /// Adds a change of the file.
     pub(crate) fn set(mut self, path: &str, value: impl std::fmt::Display) -> Self {
         self.changes.push(format!("{path}={value}"));
         self
@@ -229,7 +229,7 @@ impl Case {
         all
     }
 
-    /// The command that runs the same.
+    /// The command that runs the case.
     pub(crate) fn command(&self) -> String {
         let verb = match self.judge {
             Judge::Exact(_) | Judge::OtherMethod { .. } => "simulate ",

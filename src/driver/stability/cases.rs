@@ -143,8 +143,8 @@ fn many_steps() -> Vec<Case> {
     ways.into_iter().map(case).collect()
 }
 
-/// The usual ways to make so many turns. Radau IIA of order 3 is given a looser tolerance for many,
-/// and Radau IIA is left out for more.
+/// The usual methods for this number of turns. With many turns Radau IIA of order 3 has a larger
+/// tolerance; with still more Radau IIA is omitted.
 fn ways_round(turns: f64) -> Vec<Way> {
     let mut all = usual(TOLERANCE, (50.0 * turns).max(1000.0) as usize);
     let slow = Some(Method::Radau { stages: 2 });
@@ -250,7 +250,7 @@ fn open_starts() -> Vec<Case> {
         (0.0, 1e3),
     ] {
         for way in usual(TOLERANCE, 20_000) {
-            // What an impulse of the hinge leaves: ω (ℓ² + L²/12) = ℓ v, ℓ = L/2 = 1/2.
+            // After an impulse of the hinge: ω (ℓ² + L²/12) = ℓ v, ℓ = L/2 = 1/2.
             let exact = Exact::Pendulum {
                 radius: 0.0,
                 start: FRAC_PI_2,
@@ -273,7 +273,7 @@ fn lengths() -> Vec<Case> {
     let mut all = Vec::new();
     for length in [1e-6_f64, 1e-3, 1e3, 1e6] {
         for way in usual(TOLERANCE, 4000) {
-            // The mass of a rod of steel a hundredth as thick as long.
+            // The mass of a steel rod whose thickness is a hundredth of its length.
             let mass = 0.6 * length.powi(3);
             let time = 2.0 * length.sqrt();
             let exact = Exact::DoublePendulum {
@@ -320,7 +320,7 @@ fn speeds() -> Vec<Case> {
         }
     }
     for speed in [1e3, 1e6, 1e9] {
-        // Ten turns and a bit.
+        // Slightly more than ten turns.
         let (spin, time) = (2.0 * speed, 32.0 / speed);
         for way in usual(TOLERANCE, 4000) {
             let exact = Exact::Wheel { spin, time };
@@ -349,7 +349,7 @@ fn locking() -> Vec<Case> {
 }
 
 fn optima() -> Vec<Case> {
-    // Down to where it hangs from its pivot, past couplers with which nothing can be closed.
+    // Down to the hanging position, past couplers that cannot close the loop.
     let height = r#"{"final":{"position":{"body":"crank","point":"to","direction":[0,1,0]}}}"#;
     let lowest = [
         "/gravity=[0,0,0]".to_owned(),

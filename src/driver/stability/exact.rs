@@ -1,60 +1,60 @@
-//! Motions of the scenes under `problems/extreme` that are known without the program: in closed
-//! form, or from equations in minimal coordinates.
+//! Motions of the scenes in `problems/extreme` that are known independently of the program: in
+//! closed form, or from equations in minimal coordinates.
 
 use super::reference::{integrate, jacobi};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Gravity of the scenes (m/s²).
+/// Gravity of the scenes \[m/s²\].
 const G: f64 = 9.81;
-/// Angular frequency of a slow manifold from which its expansion in 1/ω² is exact to round-off.
+/// Above this angular frequency the expansion of a slow manifold in 1/ω² is exact to round-off.
 const SLOW: f64 = 2e3;
 
-/// A motion that is known.
+/// A known motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Exact {
-    /// Two rods of `length` (m) and these masses (kg) after `time` (s).
+    /// Two rods of `length` \[m\] with these masses \[kg\] after `time` \[s\].
     DoublePendulum {
         masses: [f64; 2],
         length: f64,
         time: f64,
     },
-    /// A bob on a spring of 1 m and √(k/m) = `omega` (rad/s), from rest at the horizontal.
+    /// A bob on a spring of 1 m with √(k/m) = `omega` \[rad/s\], from rest at the horizontal.
     SpringPendulum { omega: f64, time: f64 },
     /// A block on a slide with a spring of 10 rad/s and this damping ratio.
     Oscillator { ratio: f64, time: f64 },
-    /// A rod of 1 m on a hinge, so far from hanging (rad) and turning at `spin` (rad/s).
+    /// A rod of 1 m on a hinge, at an angle from hanging \[rad\], rotating at `spin` \[rad/s\].
     Pendulum {
         radius: f64,
         start: f64,
         spin: f64,
         time: f64,
     },
-    /// A cylinder free in space with this angular velocity about its axis and across it (rad/s).
+    /// A free cylinder with this angular velocity about its axis and across it \[rad/s\].
     Top { spin: f64, coning: f64, time: f64 },
-    /// A box of 1 m that turns steadily about y.
+    /// A box of 1 m that rotates steadily about y.
     Wheel { spin: f64, time: f64 },
     /// The Kreisselmeier–Steinhauser function of 0.5 cos(2π t) over one turn.
     Aggregate { rho: f64 },
     /// A plate of 1 m on a horizontal line of hinges, released at rest from the horizontal.
     Door { time: f64 },
-    /// Rods in one line that fly at a speed (m/s) and turn at 3 rad/s.
+    /// Rods in one line that fly at a speed \[m/s\] and rotate at 3 rad/s.
     Dumbbell { speed: f64, time: f64 },
-    /// A parallelogram that has turned by an angle (rad) at a speed (rad/s).
+    /// A parallelogram that has rotated by an angle \[rad\] at a speed \[rad/s\].
     Parallelogram { speed: f64, angle: f64 },
-    /// So many parallelograms in a row (MBS benchmark library, A02).
+    /// This many parallelograms in a row (MBS benchmark library, A02).
     FourBars { cells: usize, time: f64 },
     /// Bricard's mechanism (A04) after 10 s.
     Bricard,
 }
 
-/// Numbers that the functions of a scene should have, and the sizes that errors are relative to.
+/// Correct values of the functions of a scene, and the sizes to which errors are relative.
 pub(super) struct Numbers {
     pub values: Vec<f64>,
     pub sizes: Vec<f64>,
 }
 
 impl Exact {
-    /// What it is, for the table.
+    /// Description for the table.
     pub(crate) fn source(self) -> &'static str {
         match self {
             Exact::DoublePendulum { .. } => "minimal coordinates by extrapolation",
@@ -75,7 +75,7 @@ impl Exact {
         }
     }
 
-    /// The numbers, in the order of the functions of the scene.
+    /// The correct values, in the order of the functions of the scene.
     pub(crate) fn numbers(self) -> Numbers {
         let (values, size) = match self {
             Exact::DoublePendulum {
@@ -142,7 +142,7 @@ impl Exact {
 
 /// Lower end of two rods, angles a and b from the horizontal.
 fn double_pendulum([upper, lower]: [f64; 2], length: f64, time: f64) -> Vec<f64> {
-    // In lengths of a rod, times of √(l/g) and masses of the upper rod.
+    // In units of the length of a rod, √(l/g) and the mass of the upper rod.
     let ratio = lower / upper;
     let (a11, a12) = (1.0 / 3.0 + ratio, 0.5 * ratio);
     let rates = |y: &[f64; 4]| {
@@ -150,7 +150,7 @@ fn double_pendulum([upper, lower]: [f64; 2], length: f64, time: f64) -> Vec<f64>
         let (sin, cos) = (a - b).sin_cos();
         let first = -a12 * sin * v * v - (0.5 + ratio) * a.cos();
         let second = a12 * sin * u * u - 0.5 * ratio * b.cos();
-        // The second equation divided by the ratio stays of size one.
+        // The second equation, divided by the ratio, has terms of order one.
         let (b12, b22, second) = (0.5 * cos, 1.0 / 3.0, second / ratio);
         let det = a11 * b22 - a12 * cos * b12;
         [
@@ -190,7 +190,7 @@ fn slow_spring_pendulum(omega: f64, time: f64) -> Vec<f64> {
     vec![r * a.cos(), r * a.sin()]
 }
 
-/// Displacement (m) of ẍ + 2 ζ ω ẋ + ω² x = 0 from rest at 0.1 m, ω = 10 rad/s.
+/// Displacement \[m\] of ẍ + 2 ζ ω ẋ + ω² x = 0 from rest at 0.1 m, ω = 10 rad/s.
 fn oscillator(ratio: f64, time: f64) -> f64 {
     let (omega, start) = (10.0_f64, 0.1);
     let decay = ratio * omega;
@@ -218,13 +218,13 @@ fn pendulum(stiffness: f64, start: f64, spin: f64, time: f64) -> f64 {
     2.0 * (modulus * cn / dn).asin()
 }
 
-/// Tip and rim of a free cylinder: it cones at |H| / I₁ about its angular momentum H and turns about
-/// its axis besides.
+/// Tip and rim of a free cylinder. It cones at |H| / I₁ about its angular momentum H and also
+/// rotates about its axis.
 fn top(spin: f64, coning: f64, time: f64) -> Vec<f64> {
     let (mass, radius, length) = (2.0_f64, 0.1_f64, 0.5_f64);
     let across = mass * (3.0 * radius * radius + length * length) / 12.0;
     let along = 0.5 * mass * radius * radius;
-    // The axis of the cylinder stands along x, its own x axis along −z.
+    // The axis of the cylinder is along x, its own x axis along −z.
     let momentum = [along * spin, across * coning, 0.0];
     let size = momentum[0].hypot(momentum[1]);
     let axis = momentum.map(|x| x / size);
@@ -237,7 +237,7 @@ fn top(spin: f64, coning: f64, time: f64) -> Vec<f64> {
     [turn(tip), turn(rim)].concat()
 }
 
-/// p turned about the unit vector n by an angle.
+/// p rotated about the unit vector n by an angle.
 fn turned(p: [f64; 3], n: [f64; 3], angle: f64) -> [f64; 3] {
     let (sin, cos) = angle.sin_cos();
     let dot = p[0] * n[0] + p[1] * n[1] + p[2] * n[2];
@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn references_conserve_what_they_should() {
-        // A double pendulum of equal rods keeps its energy whatever its scale.
+        // A double pendulum of equal rods conserves energy at any scale.
         let near = double_pendulum([1.0, 1.0], 1.0, 2.0);
         let far = double_pendulum([3.0, 3.0], 1e6, 2e3);
         for (a, b) in near.iter().zip(&far) {

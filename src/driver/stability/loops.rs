@@ -1,5 +1,5 @@
-//! Cases of closed loops: singular positions that are passed, tolerances, and scenes that have to move
-//! as before in another order, in other units and in other axes.
+//! Cases of closed loops: passages through singular positions, tolerances, and scenes whose motion
+//! must not depend on order, units and axes.
 
 use super::case::{Case, Judge, SceneFile, Steps, TOLERANCE, Way, decade, usual};
 use super::exact::Exact;
@@ -17,11 +17,11 @@ struct Looped {
     name: &'static str,
     scene: SceneFile,
     method: Option<Method>,
-    /// Duration (s).
+    /// Duration \[s\].
     duration: f64,
     /// Body whose mass is the variable.
     mass: &'static str,
-    /// Functions in place of those of the file, if there are any.
+    /// Functions that replace those of the file, if any.
     functions: &'static str,
     judge: Judge,
 }
@@ -36,7 +36,7 @@ fn looped() -> [Looped; 6] {
         functions: "",
         judge,
     };
-    // By the file as it is; errors are relative to this size (m).
+    // Compared with the unchanged file. Errors are relative to this size [m].
     let as_it_is = |size| Judge::OtherMethod { kept: 2, size };
     let (bricard, cells) = (Judge::Exact(Exact::Bricard), 2);
     let four_bars = Judge::Exact(Exact::FourBars { cells, time: 2.0 });
@@ -60,7 +60,7 @@ fn looped() -> [Looped; 6] {
 }
 
 impl Looped {
-    /// The file with its variable, its functions, and the gravity that is not said.
+    /// The file with its variable, its functions, and explicit gravity.
     fn file(&self) -> Value {
         let mut file: Value = serde_json::from_str(self.scene.text).unwrap_or_default();
         if let Ok(functions) = serde_json::from_str(self.functions) {
@@ -74,7 +74,7 @@ impl Looped {
         file
     }
 
-    /// The scene changed so that it moves as before, but for the unit of `length`.
+    /// The scene with changes that keep its motion, except for the unit of `length`.
     fn case(&self, family: &'static str, extreme: &str, changes: &[Change], length: f64) -> Case {
         let way = Way {
             method: self.method,
@@ -98,7 +98,7 @@ type Change = (String, Value);
 
 pub(super) fn passages() -> Vec<Case> {
     let mut all = Vec::new();
-    // The other methods refuse nearly all: they are tried at the first position only.
+    // The other methods reject nearly all: they are tried only at the first position.
     let mut add = |name: String, ways: usize, speed: f64, angle: f64| {
         for way in usual(TOLERANCE, 4000).into_iter().take(ways) {
             let exact = Exact::Parallelogram { speed, angle };
@@ -212,7 +212,7 @@ pub(super) fn rotations() -> Vec<Case> {
     all
 }
 
-/// Vectors and points in ground axes, turned; the places of bodies are not among them.
+/// Rotated vectors and points in ground axes, without the placements of bodies.
 fn turn(path: &str, value: &Value, by: &Mat3<f64>, changes: &mut Vec<Change>) {
     for (key, own) in value.as_object().into_iter().flatten() {
         let path = format!("{path}/{key}");
@@ -231,7 +231,7 @@ fn turn(path: &str, value: &Value, by: &Mat3<f64>, changes: &mut Vec<Change>) {
     }
 }
 
-/// A list of three numbers, turned.
+/// A rotated list of three numbers.
 fn turned(value: &Value, by: &Mat3<f64>) -> Option<Value> {
     let list: Option<Vec<f64>> = value.as_array()?.iter().map(Value::as_f64).collect();
     let list = list.filter(|list| list.len() == 3)?;
@@ -256,15 +256,15 @@ pub(super) fn units() -> Vec<Case> {
     all
 }
 
-/// All numbers of a file with a unit and their pointers, with lengths counted in 1/`length` m and masses
-/// in 1/`mass` kg.
+/// All numbers of a file with a unit and their pointers, with lengths in 1/`length` m and masses in
+/// 1/`mass` kg.
 pub(crate) fn in_units(file: &Value, (length, mass): (f64, f64)) -> Vec<Change> {
     let mut changes = Vec::new();
     scale("", file, 1.0, (length, mass), &mut changes);
     changes
 }
 
-/// Adds the numbers below a key; `unit` is their factor if the key has none of its own.
+/// Adds the numbers below a key. `unit` is their factor if the key has none itself.
 fn scale(path: &str, value: &Value, unit: f64, by: (f64, f64), changes: &mut Vec<Change>) {
     let (length, mass) = by;
     for (key, own) in value.as_object().into_iter().flatten() {

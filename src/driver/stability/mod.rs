@@ -1,9 +1,10 @@
-//! The stability suite: extreme scenes, each judged by something that shares nothing with the method
-//! under test, so that no number is wrong without a word about it.
+//! The stability suite: extreme scenes. Each is compared with a source that is independent of the
+//! tested method, so that no number is wrong without a warning.
 //!
-//! A case is *accurate* if every function agrees with its judge, *degraded* if it does not and the
-//! program says so (by a warning, the energy drift that it prints or the estimate of `--error`),
-//! *refused* if there are no numbers but a reason, and else *wrong and silent*.
+//! A case is *accurate* if every function agrees with its judge. It is *degraded* if one does not
+//! and the program says so (by a warning, the printed energy drift or the estimate of `--error`).
+//! It is *refused* if the program gives a reason instead of numbers. Otherwise it is *wrong and
+//! silent*.
 
 mod case;
 mod cases;
@@ -23,18 +24,18 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::Duration;
 
-/// Time that a case may take (s).
+/// Time limit of a case \[s\].
 pub(crate) const LIMIT: f64 = 300.0;
 
-/// Names of all cases, in the order of the table; `fast` leaves those out that take seconds.
+/// Names of all cases in the order of the table; `fast` omits those that take seconds.
 pub(crate) fn names(fast: bool) -> Vec<String> {
     let wanted = |case: &&Case| !(fast && case.slow);
     let all = cases::all();
     all.iter().filter(wanted).map(Case::name).collect()
 }
 
-/// Runs the cases that `wanted` says of by their names, several at once; `seen` is told of every row
-/// as it is known. Rows stand in the order of the table.
+/// Runs the cases whose names `wanted` accepts, several in parallel. Calls `seen` for every row as
+/// soon as it is known. The table has its own order.
 pub(crate) fn stability(
     wanted: impl Fn(&str) -> bool,
     seconds: f64,
@@ -45,7 +46,7 @@ pub(crate) fn stability(
     let next = AtomicUsize::new(0);
     let rows: Mutex<Vec<(usize, StabilityRow)>> = Mutex::new(Vec::new());
     let workers = std::thread::available_parallelism().map_or(1, usize::from);
-    // Threads of their own: a worker waits for its case, and must not hold up those that compute.
+    // Separate threads: a worker waits for its case and must not block computing threads.
     std::thread::scope(|scope| {
         for _ in 0..workers.min(chosen.len()) {
             scope.spawn(|| {
@@ -75,17 +76,17 @@ pub(crate) fn stability(
     }
 }
 
-/// Whether `only` names a case or the beginning of its name, in whole parts.
+/// Whether `only` is a case or the beginning of its name, in whole parts.
 pub(crate) fn is_named(case: &str, only: &str) -> bool {
     let rest = case.strip_prefix(only.trim_end_matches('/'));
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 
-/// The row of a case, which may break down and may take so long.
+/// The row of a case, which may panic or exceed the time limit.
 fn limited(case: &Case, seconds: f64) -> StabilityRow {
     let (send, receive) = mpsc::channel();
     let own = case.clone();
-    // A case that does not end cannot be stopped: it is left behind until the program ends.
+    // A case that does not end cannot be stopped. It runs until the program ends.
     let started = std::thread::Builder::new().spawn(move || {
         let row = catch_unwind(AssertUnwindSafe(|| run::run(&own)));
         let _ = send.send(row);

@@ -1,10 +1,10 @@
-//! An integrator of its own for the references of the stability suite: extrapolation of the modified
-//! midpoint rule (Gragg, Bulirsch & Stoer; Hairer, Nørsett & Wanner 1993, section II.9) on equations
-//! in minimal coordinates. It shares nothing with the methods that it judges.
+//! An independent integrator for the references of the stability suite: extrapolation of the
+//! modified midpoint rule (Gragg, Bulirsch & Stoer; Hairer, Nørsett & Wanner 1993, section II.9) on
+//! equations in minimal coordinates. It shares no code with the tested methods.
 
 /// Substeps of the midpoint rule in the columns of the extrapolation.
 const SUBSTEPS: [usize; 8] = [2, 4, 6, 8, 10, 12, 14, 16];
-/// Error allowed in a step, relative to the largest component.
+/// Largest error of a step, relative to the largest component.
 const TOLERANCE: f64 = 1e-14;
 
 /// y(`end`) of ẏ = f(y) with y(0) = `start`.
@@ -91,7 +91,7 @@ pub(super) fn jacobi(u: f64, k: f64) -> [f64; 3] {
         b = (last * b).sqrt();
     }
     let n = a.len() - 1;
-    // Whole periods 4 K = 2 π / a_N are taken off first: 2^N a_N u then keeps its digits.
+    // Whole periods 4 K = 2 π / a_N are subtracted first, so that 2^N a_N u keeps its digits.
     let period = 2.0 * std::f64::consts::PI / a[n];
     let mut phi = 2.0_f64.powi(n as i32) * a[n] * (u % period);
     let mut first = phi;

@@ -1,4 +1,4 @@
-//! One case: what the program says of it, and whether that is true.
+//! Runs one case and judges what the program reports.
 
 use super::case::{Case, Judge};
 use crate::driver::check::{CheckedDerivative, check};
@@ -9,9 +9,9 @@ use crate::problem::{Override, Problem};
 use crate::report::{StabilityOutcome, StabilityRow};
 use std::ops::ControlFlow;
 
-/// Part of an error that a number has to reach to tell of it.
+/// A reported number indicates an error if it is at least this part of it.
 const TELLING: f64 = 0.1;
-/// Steps beyond which no gradient is asked for: the check keeps the stages of three runs in memory.
+/// With more steps no gradient is computed: the check stores the stages of three runs.
 const MOST_STEPS: usize = 100_000;
 /// Tolerances of the runs that judge runs of the other family: explicit, implicit.
 const TIGHT: (f64, f64) = (1e-13, 1e-11);
@@ -42,7 +42,7 @@ fn read(case: &Case, kept: usize) -> Result<Problem, String> {
         .map_err(|faults| one_line(&faults.to_string()))
 }
 
-/// The row of a case of which nothing is known.
+/// The row of a case without results.
 pub(super) fn blank(case: &Case) -> StabilityRow {
     let judge = match case.judge {
         Judge::Exact(exact) => exact.source().into(),
@@ -134,8 +134,8 @@ fn motion(row: &mut StabilityRow, case: &Case, problem: &Problem) {
 }
 
 /// Largest difference of a derivative from the complex step, relative to the largest derivative of
-/// the scene; each times its variable (one, where that is zero) and divided by the size of its
-/// function, so that units do not count.
+/// the scene. Each is multiplied by its variable (one, if that is zero) and divided by the size of
+/// its function, so that units do not matter.
 fn gradient_error(all: &[CheckedDerivative], x: &[f64], sizes: &[f64]) -> f64 {
     let unit = |d: &CheckedDerivative| match x[d.variable] {
         0.0 => 1.0 / sizes[d.function],
@@ -146,7 +146,7 @@ fn gradient_error(all: &[CheckedDerivative], x: &[f64], sizes: &[f64]) -> f64 {
         / largest(all.iter().map(|d| d.complex_step.abs() * unit(d)))
 }
 
-/// What the functions should be, and the sizes that errors are relative to.
+/// Correct values of the functions, and the sizes to which errors are relative.
 fn known(case: &Case) -> Result<(Vec<f64>, Vec<f64>), String> {
     let (values, sizes) = match case.judge {
         Judge::Exact(exact) => {
@@ -176,8 +176,8 @@ fn known(case: &Case) -> Result<(Vec<f64>, Vec<f64>), String> {
     Ok((scaled(values), scaled(sizes)))
 }
 
-/// How the program tells that a motion is off by `error`: a warning, the energy that it prints, a joint
-/// that it leaves out altogether, or the estimate of `--error`.
+/// How the program reports that a motion has the error `error`: a warning, the printed energy
+/// drift, a joint that is left out completely, or the estimate of `--error`.
 fn told(
     row: &StabilityRow,
     problem: &Problem,

@@ -44,7 +44,7 @@ pub(super) const SQUEEZER: SceneFile = scene!("benchmarks", "andrews_squeezer");
 pub(super) const SLIDER_CRANK: SceneFile = scene!("benchmarks", "balanced_slider_crank");
 pub(super) const GOVERNOR: SceneFile = scene!("benchmarks", "flyball_governor");
 
-/// The families with what they try.
+/// The families with their descriptions.
 pub(super) const FAMILIES: [(&str, &str); 19] = [
     (
         "mass-ratio",

@@ -14,7 +14,7 @@ use crate::problem::Problem;
 use crate::report::PrecisionRow;
 use std::hint::black_box;
 
-/// The scene that is run again and again.
+/// The scene that is run repeatedly.
 pub(crate) struct Bench<'a> {
     problem: &'a Problem,
     x: &'a [f64],
@@ -34,12 +34,12 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// What a simulation may take.
+    /// Limits of a simulation.
     pub(crate) fn limits(&self) -> Limits {
         self.problem.simulation.limits.clone()
     }
 
-    /// Whether the function sums over the motion, so that its gradient needs samples of it.
+    /// Whether the function is a sum over the motion, so that its gradient needs samples.
     pub(crate) fn sums(&self) -> bool {
         self.function
             .is_some_and(|f| looks_at_the_whole(&self.scene.functions[f]))
@@ -48,7 +48,7 @@ impl<'a> Bench<'a> {
     /// Gradient of the function in the design variables.
     ///
     /// # Errors
-    /// If a step's equations are singular.
+    /// The equations of a step are singular.
     pub(crate) fn gradient(
         &self,
         run: Trajectory<f64>,
@@ -63,7 +63,7 @@ impl<'a> Bench<'a> {
     /// The row of the runs by `method` with `spacing`; times are the least of `runs`.
     ///
     /// # Errors
-    /// If a simulation or a gradient fails.
+    /// A simulation or a gradient fails.
     pub(crate) fn row(
         &self,
         (method, spacing): (Method, &Spacing),
@@ -117,7 +117,7 @@ impl<'a> Bench<'a> {
         }
         if let (Some(exact), Some(function)) = (&reference.gradient, self.function) {
             let run = match summed {
-                // As an optimisation samples it.
+                // Sampled as in an optimisation.
                 true => {
                     let asked = [function];
                     let integration =
@@ -139,7 +139,7 @@ impl<'a> Bench<'a> {
         Ok(row)
     }
 
-    /// Largest drift of energy (J), position and velocity constraints over a run.
+    /// Largest drift of energy \[J\], position and velocity constraints over a run.
     fn drift(&self, run: Trajectory<f64>) -> ([f64; 3], Trajectory<f64>) {
         let seen = Simulation::of(self.problem, self.at(run));
         let (position, velocity) = seen.constraint_drift();

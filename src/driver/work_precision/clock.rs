@@ -1,13 +1,13 @@
 //! The clock of work-precision measurements.
 
-/// CPU time that this process has used (s).
+/// CPU time of this process \[s\].
 #[cfg(unix)]
 pub(crate) fn cpu_seconds() -> f64 {
     let now = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     now.tv_sec as f64 + 1e-9 * now.tv_nsec as f64
 }
 
-/// Wall time since the first call (s), where CPU time is not to be had.
+/// Wall time since the first call \[s\], if CPU time is not available.
 #[cfg(not(unix))]
 pub fn cpu_seconds() -> f64 {
     use std::sync::OnceLock;
@@ -16,14 +16,14 @@ pub fn cpu_seconds() -> f64 {
     START.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// A run longer than this (s) counts by itself.
+/// A longer run is not repeated \[s\].
 const LONG: f64 = 2.0;
 
-/// Least CPU time (s) of `runs` runs after one that does not count; if that one is long, it is the
-/// only one.
+/// Least CPU time of `runs` runs \[s\] after one that does not count. If that one is long, it is
+/// the only one.
 ///
 /// # Errors
-/// That of the first run that fails.
+/// The error of the first run that fails.
 pub(crate) fn fastest<E>(runs: usize, mut work: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
     let mut timed = || {
         let start = cpu_seconds();

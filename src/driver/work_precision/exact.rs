@@ -1,23 +1,23 @@
-//! What counts as exact, and how far a run is from it.
+//! Exact results, and the distance of a run from them.
 
 use crate::integrate::Trajectory;
 use crate::report::positions::Positions;
 
-/// Positions at the end and a gradient that count as exact.
+/// Final positions and a gradient that count as exact.
 pub(crate) struct Reference {
-    /// Centres of mass at the end by body (m).
+    /// Centres of mass at the end, by body \[m\].
     pub positions: Positions,
-    /// Gradient of the function in question.
+    /// Gradient of the measured function.
     pub gradient: Option<Vec<f64>>,
-    /// Distance of the positions from those of an independent run (m); NaN if there is none.
+    /// Distance of the positions from those of an independent run \[m\]; NaN if there is none.
     pub difference: f64,
-    /// The same of the gradient, relative.
+    /// Relative difference of the gradient; NaN if there is none.
     pub gradient_difference: f64,
-    /// Where positions and gradient come from and how far they are from an independent run.
+    /// Origin of positions and gradient, and their difference from an independent run.
     pub description: String,
 }
 
-/// Centres of mass at the end of a run (m).
+/// Centres of mass at the end of a run \[m\].
 pub(crate) fn positions(run: &Trajectory<f64>) -> Vec<[f64; 3]> {
     let q = run.q(run.last());
     let place = |body: usize| {
@@ -27,7 +27,7 @@ pub(crate) fn positions(run: &Trajectory<f64>) -> Vec<[f64; 3]> {
     (0..run.numbering.bodies()).map(place).collect()
 }
 
-/// Largest distance of a body from where it should be (m); NaN if one is nowhere.
+/// Largest distance of a body from its exact position \[m\]; NaN if a position is NaN.
 pub(crate) fn distance(exact: &[(usize, [f64; 3])], found: &[[f64; 3]]) -> f64 {
     let away = |(body, exact): &(usize, [f64; 3])| -> f64 {
         let found = &found[*body];

@@ -1,10 +1,10 @@
 //! Error against run time for all methods, orders and step sizes or tolerances.
 //!
-//! Errors are those of the centres of mass at the end, against a run at tight tolerance or a file.
-//! Times are CPU times of the stepping alone, and of the backward march alone: the least of several
-//! runs after one that does not count (Rackauckas & Nie 2017, *DifferentialEquations.jl*, take the
-//! same measure). A method's runs end when they get too dear for its share of time, or when its
-//! error does not fall any more.
+//! Errors are those of the centres of mass at the end, relative to a run with a tight tolerance or
+//! to a file. Times are CPU times of stepping, and of the backward march: the least of several runs
+//! after one that does not count (as in Rackauckas & Nie 2017, *DifferentialEquations.jl*). The
+//! runs of a method end when they become too expensive for its share of time, or when its error no
+//! longer decreases.
 
 mod bench;
 mod clock;
@@ -21,34 +21,34 @@ use bench::Bench;
 use clock::cpu_seconds;
 use exact::Reference;
 
-/// What is measured, and how thoroughly.
+/// Settings of a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Campaign {
-    /// CPU time that the runs of one method with equal steps, or with chosen ones, may take (s).
+    /// CPU time of the runs of one method with equal or with adaptive steps \[s\].
     pub seconds: f64,
-    /// Runs of which the fastest counts.
+    /// Number of runs of which the fastest counts.
     pub runs: usize,
-    /// Function whose gradient is judged, by index.
+    /// Index of the function whose gradient is measured.
     pub function: Option<usize>,
-    /// Name of a file and its positions by body at the end (m), instead of those of a run.
+    /// Name of a file and its final positions by body \[m\], instead of those of a run.
     pub reference: Option<(String, Positions)>,
 }
 
 /// Decades of the tolerances.
 const TOLERANCES: std::ops::RangeInclusive<i32> = 3..=12;
-/// Most halvings of the step.
+/// Largest number of halvings of the step.
 const HALVINGS: u32 = 22;
-/// Fewest steps.
+/// Smallest number of steps.
 const FEWEST: usize = 10;
-/// Tolerance of the run whose number of steps the equal steps start from half of.
+/// Equal steps start at half the number of steps with this tolerance.
 const USUAL: f64 = 1e-6;
-/// Part of the scene's length below which an error that does not fall is one of round-off, and the
-/// part of the error before it that is no fall.
+/// Below this part of the scene's length, a constant error is round-off; and the ratio of errors
+/// above which an error is constant.
 const STAGNANT: (f64, f64) = (1e-6, 0.7);
-/// Factor by which the next run of a method is dearer, about.
+/// Approximate ratio of the costs of consecutive runs of a method.
 const DEARER: f64 = 2.0;
 
-/// All methods: those that can follow a tolerance first.
+/// All methods, adaptive ones first.
 pub(crate) fn methods() -> Vec<Method> {
     let bdf = |order, start| Method::Bdf { order, start };
     let mut all = vec![
@@ -62,10 +62,10 @@ pub(crate) fn methods() -> Vec<Method> {
     all
 }
 
-/// Measures all methods on `problem` at the design `x`; `seen` is told of every row.
+/// Measures all methods on `problem` at the design `x`. Calls `seen` for every row.
 ///
 /// # Errors
-/// If no reference run reaches the end; a method that fails is noted and left out.
+/// No reference run reaches the end. A method that fails is noted and omitted.
 pub(crate) fn work_precision(
     problem: &Problem,
     x: &[f64],
@@ -112,8 +112,8 @@ pub(crate) fn work_precision(
     })
 }
 
-/// Whether the explicit method refuses the scene, and the steps of a usual tolerance by the method that
-/// suits it.
+/// Whether the explicit method rejects the scene; and the number of steps with the usual tolerance
+/// by the method that suits it.
 fn usual(bench: &Bench) -> Result<(bool, usize), IntegrationFailure> {
     let (model, duration) = (&bench.scene.model, bench.scene.duration);
     let steps = |method| {
@@ -130,8 +130,8 @@ fn usual(bench: &Bench) -> Result<(bool, usize), IntegrationFailure> {
     }
 }
 
-/// The number of equal steps that halvings start from: half of those that a usual tolerance needs,
-/// and a power of two part of those that the problem asks for, if it does.
+/// The number of equal steps before halving: half of those with the usual tolerance, or the number
+/// in the problem divided by a power of two.
 fn fewest(problem: &Problem, usual: usize) -> usize {
     let half = (usual / 2).max(FEWEST);
     match problem.simulation.spacing {
@@ -145,7 +145,7 @@ fn fewest(problem: &Problem, usual: usize) -> usize {
     }
 }
 
-/// A measurement under way.
+/// A measurement in progress.
 struct Measurement<'a> {
     plan: &'a Campaign,
     bench: &'a Bench<'a>,
@@ -157,7 +157,7 @@ struct Measurement<'a> {
 }
 
 impl Measurement<'_> {
-    /// Adds the rows of one method with one spacing after the other.
+    /// Adds the rows of one method with consecutive spacings.
     fn series(&mut self, method: Method, spacings: impl Iterator<Item = Spacing>) {
         let begin = cpu_seconds();
         let (mut last, mut best, mut idle) = (0.0, f64::INFINITY, 0);

@@ -1,4 +1,4 @@
-//! What the runs of a work-precision measurement are compared with.
+//! References of a work-precision measurement.
 
 use super::Campaign;
 use super::bench::Bench;
@@ -8,11 +8,11 @@ use crate::integrate::{IntegrationFailure, Method, Samples, Settings, Spacing, s
 
 /// Tolerance of the explicit reference.
 const EXPLICIT: f64 = 1e-13;
-/// Tolerances of the implicit reference, of which the first that can be kept is taken.
+/// Tolerances of the implicit reference. The first that succeeds is used.
 const IMPLICIT: [f64; 3] = [1e-11, 1e-10, 1e-9];
-/// How much looser the run is that the reference of a stiff scene is checked by.
+/// Ratio of the tolerances of the run that checks a stiff reference and of the reference.
 const LOOSER: f64 = 10.0;
-/// Samples of the reference for functions that sum over the motion.
+/// Number of samples of the reference for functions that are sums over the motion.
 const SAMPLES: usize = 20_000;
 
 /// One run that could be the reference.
@@ -23,12 +23,12 @@ struct Candidate {
     gradient: Option<Vec<f64>>,
 }
 
-/// The reference: a file's positions if the plan has some, and a run at tight tolerance by the method
-/// that suits the scene. Both are compared with a run by another method or, if the scene is stiff, by
-/// the same one with a looser tolerance.
+/// The reference: positions of a file if the plan has them, and a run with a tight tolerance by the
+/// method that suits the scene. Both are compared with a run by another method or, if the scene is
+/// stiff, by the same method with a larger tolerance.
 ///
 /// # Errors
-/// If no run reaches the end.
+/// No run reaches the end.
 pub(crate) fn reference(
     bench: &Bench,
     plan: &Campaign,
@@ -66,7 +66,7 @@ pub(crate) fn reference(
     match &check {
         Some(check) => {
             let away = distance(&positions, &check.positions);
-            // What looser steps err by bounds what tight ones do.
+            // The error with a larger tolerance bounds that with a tight one.
             difference = if difference.is_nan() {
                 away
             } else {
@@ -106,7 +106,7 @@ fn candidate(
     };
     let (model, duration) = (&bench.scene.model, bench.scene.duration);
     let chosen = simulate(model, duration, &settings)?;
-    // Halves of its steps err less by two to the power of the order.
+    // The error with halved steps is smaller by two to the power of the order.
     let halves = Settings {
         spacing: Spacing::Frozen(chosen.grid.halved()),
         ..settings

@@ -28,7 +28,8 @@ pub(crate) struct Head {
     pub functions: Vec<String>,
     /// The rest of the document. Another run may change it and still use the evaluations.
     pub settings: Map<String, Value>,
-    /// Whether every line ends with the hash of itself and all lines before it; older versions wrote none.
+    /// Whether every line ends with the hash of itself and all lines before it; older versions
+    /// wrote none.
     #[serde(default, skip_serializing_if = "is_false")]
     pub chained: bool,
 }
@@ -99,7 +100,7 @@ pub(crate) struct EvaluationRecord {
     /// Its results.
     #[serde(flatten)]
     pub found: Found,
-    /// Time of the event in the last motion so far, if the scene ends at one (s).
+    /// Time of the event in the last motion so far, if the scene ends at one \[s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub event: Option<f64>,
     /// Its work.
@@ -107,7 +108,7 @@ pub(crate) struct EvaluationRecord {
     pub work: Work,
 }
 
-/// Work of an evaluation: nothing for one that failed.
+/// Work of an evaluation; zero for one that failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Work {

@@ -42,7 +42,7 @@ impl Axis {
     pub(crate) fn exact(low: f64, high: f64, count: usize, label: &str) -> Axis {
         let mut ticks = linear_ticks(low, high, nice_step((high - low) / count as f64));
         if ticks.len() < 2 {
-            // A range tells nothing by a single number.
+            // A single number at the ticks does not show a range.
             ticks = linear_ticks(low, high, nice_step((high - low) / 5.0));
         }
         Axis {

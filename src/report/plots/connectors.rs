@@ -1,17 +1,17 @@
-//! What connects the bodies in a picture of the motion: joints, rods, springs, and arms to points
-//! beside their bodies.
+//! Connectors of the bodies in a picture of the motion: joints, rods, springs, and arms to points
+//! outside their bodies.
 
 use super::canvas::{BLACK, Canvas, INK, Pixel};
 use super::panel::{Key, Panel};
 use plotters::style::RGBColor;
 
-/// A point of the plane that is drawn: horizontal and vertical coordinate (m).
+/// A point of the plane that is drawn: horizontal and vertical coordinate \[m\].
 pub(crate) type Point = [f64; 2];
 
-/// What a connector is.
+/// Kind of connector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ConnectorKind {
-    /// A joint that turns, at the first of its points.
+    /// A joint that rotates, at the first of its points.
     Hinge,
     /// A joint that slides, at its first point along the line to the second.
     Slider,
@@ -19,7 +19,7 @@ pub(crate) enum ConnectorKind {
     Rod,
     /// A spring between its points.
     Spring,
-    /// From a body's centre to a point of it that lies beside its outline.
+    /// From a body's centre to a point outside its outline.
     Arm {
         /// Number of the body.
         body: usize,
@@ -33,7 +33,7 @@ pub(crate) struct Connector {
     pub kind: ConnectorKind,
     /// Whether it joins a body to ground.
     pub to_ground: bool,
-    /// Its two points at each instant (m).
+    /// Its two points at each instant \[m\].
     pub ends: Vec<[Point; 2]>,
 }
 
@@ -60,8 +60,8 @@ pub(super) fn legend(connectors: &[Connector]) -> Vec<(Key, String)> {
     .collect()
 }
 
-/// Draws one frame of a connector, `late` in (0, 1]; joints in the last frame alone. `color` is that
-/// of each body.
+/// Draws one frame of a connector, `late` in (0, 1]; joints only in the last frame. `color` is the
+/// colour of each body.
 pub(super) fn draw(
     canvas: &mut Canvas,
     panel: &Panel,

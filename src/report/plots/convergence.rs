@@ -1,4 +1,4 @@
-//! How an optimisation converged: objective, residuals and barrier parameter.
+//! Convergence of an optimisation: objective, residuals and barrier parameter.
 
 use super::axis::{Axis, Scale};
 use super::canvas::{Canvas, PALETTE};

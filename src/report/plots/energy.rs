@@ -1,4 +1,4 @@
-//! Energies of simulations against time, and how far their sum drifts.
+//! Energies of simulations against time, and the drift of their sum.
 
 use super::axis::Axis;
 use super::canvas::{Anchor, BLACK, Canvas, PALETTE};
@@ -11,16 +11,16 @@ use plotters::style::RGBColor;
 pub(crate) struct EnergyRun {
     /// What was simulated, such as `initial design`; may be empty for a single run.
     pub title: String,
-    /// Instants (s).
+    /// Instants \[s\].
     pub time: Vec<f64>,
-    /// Kinetic energy (J).
+    /// Kinetic energy \[J\].
     pub kinetic: Vec<f64>,
-    /// Potential energy (J).
+    /// Potential energy \[J\].
     pub potential: Vec<f64>,
 }
 
 /// Kinetic, potential and total energy against time and, below, the drift of the total from its
-/// start on an axis of its own; the runs stand side by side with the same axes. An SVG text.
+/// start on a separate axis. The runs are side by side with the same axes. An SVG text.
 ///
 /// # Errors
 /// [`ReportError::NothingToDraw`] if there is no run, or if a run has no instants or not one

@@ -1,7 +1,7 @@
 //! Figures as SVG texts, pure functions of data.
 //!
-//! Pictures are white, their colours can be told apart with any colour vision, legends stand
-//! beside the data. The same data give the same bytes.
+//! Pictures are white. Their colours are distinct for any colour vision, legends are outside the
+//! data. The same data give the same bytes.
 
 mod axis;
 mod canvas;

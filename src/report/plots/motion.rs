@@ -19,11 +19,11 @@ pub(crate) struct BodyMotion {
 /// A projectile at the instant of its release; from here it falls freely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Flight {
-    /// Place of the release (m).
+    /// Place of the release \[m\].
     pub position: Point,
-    /// Velocity at the release (m/s).
+    /// Velocity at the release \[m/s\].
     pub velocity: Point,
-    /// Gravity, downwards positive (m/s²).
+    /// Gravity, downwards positive \[m/s²\].
     pub gravity: f64,
 }
 
@@ -45,16 +45,16 @@ pub(crate) struct Motion {
 /// A barrier that the projectile must clear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Barrier {
-    /// Horizontal coordinate (m).
+    /// Horizontal coordinate \[m\].
     pub distance: f64,
-    /// Vertical coordinate of its top (m).
+    /// Vertical coordinate of its top \[m\].
     pub top: f64,
 }
 
 /// The fixed scenery, and the names of the directions.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Scenery {
-    /// Height of the ground (m), if a projectile lands on it.
+    /// Height of the ground \[m\], if a projectile lands on it.
     pub ground: Option<f64>,
     /// The barrier, if there is one.
     pub barrier: Option<Barrier>,
@@ -226,7 +226,7 @@ fn equal_axes(points: &[Point], scenery: &Scenery, widths: [f64; 2], heights: [f
     let aspect = (north - south) / (east - west);
     let width = (heights[1] / aspect).clamp(widths[0], widths[1]);
     let height = (aspect * width).clamp(heights[0], heights[1]);
-    // Free height goes above: things stand on the ground.
+    // Free height is added above: objects rest on the ground.
     north += ((height / width) * (east - west) - (north - south)).max(0.0);
     let missing = ((north - south) * width / height - (east - west)).max(0.0);
     (west, east) = (west - missing / 2.0, east + missing / 2.0);

@@ -1,4 +1,4 @@
-//! A frame with two axes in which curves are drawn, and legends beside frames.
+//! A frame with two axes for curves, and legends outside frames.
 
 use super::axis::{Axis, Scale};
 use super::canvas::{Anchor, Canvas, GRID, INK, Pixel, text_width};

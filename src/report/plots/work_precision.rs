@@ -1,4 +1,4 @@
-//! Error against run time, one curve a method.
+//! Error against run time, one curve per method.
 
 use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, INK, PALETTE, Pixel};
@@ -15,7 +15,7 @@ const MARGIN: f64 = 14.0;
 const TITLE: f64 = 24.0;
 const WHITE: RGBColor = RGBColor(255, 255, 255);
 
-/// Colours of the BDF by order, none of which another method has (Tol 2021, muted, and greys).
+/// Colours of the BDF by order; no other method has them (Tol 2021, muted, and greys).
 const ORDERS: [RGBColor; 6] = [
     RGBColor(51, 34, 136),
     RGBColor(136, 34, 85),
@@ -51,7 +51,7 @@ pub(crate) fn work_precision(measured: &WorkPrecision) -> Result<String, ReportE
     let position = |row: &PrecisionRow| Some((row.cpu_seconds, row.error));
     let gradient = |row: &PrecisionRow| {
         let seconds = row.cpu_seconds + row.gradient_cpu_seconds?;
-        // A completely wrong result says nothing about the method.
+        // The size of a completely wrong result has no meaning.
         let error = row.gradient_error.filter(|&error| error <= 1.0)?;
         Some((seconds, error))
     };
@@ -126,7 +126,7 @@ fn curves(rows: &[PrecisionRow]) -> Vec<Curve<'_>> {
     all
 }
 
-/// Colour of a method and what stands in its markers.
+/// Colour of a method, and the text in its markers.
 fn look(method: &str) -> (RGBColor, &'static str) {
     match method {
         "dop853" => (PALETTE[0], ""),
