@@ -67,8 +67,8 @@ fn a_ball_held_at_its_centre_is_a_point() {
     ))));
 }
 
-/// A cart that slides along an oblique axis, another on it, and a bar that hangs on that by a ball
-/// joint.
+/// A cart slides along an oblique axis and carries a second cart. A ball joint joins a bar to the
+/// second cart.
 fn carts() -> Problem {
     parse(&json!({
         "version": 1, "name": "carts", "gravity": [0, -9.81, 0.1],

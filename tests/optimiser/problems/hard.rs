@@ -64,8 +64,7 @@ pub fn unbounded_concave() -> Problem {
     Problem::new("concave", &[1.0], 0.0, |x| -(x[0].powi(2)))
 }
 
-/// Steps overshoot into x ≤ 0, where the functions are not numbers; the optimum x = 1e-3 lies beside
-/// that region.
+/// Steps overshoot into x ≤ 0, where the functions are not numbers. The optimum x = 1e-3 is near it.
 pub fn logarithm() -> Problem {
     Problem::new("logarithm", &[0.9, 0.0], 1.0 + 1e3_f64.ln(), |x| {
         1e3 * x[0] - x[0].ln() + (x[1] - 1.0).powi(2)
