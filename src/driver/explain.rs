@@ -119,7 +119,7 @@ pub(crate) fn explain(problem: &Problem) -> Explanation {
         Some(_) => "neither the objective nor a constraint",
         None => "no function",
     };
-    let line = format!("{bodies} {told} and what joins {they}: {who} sees {they}");
+    let line = format!("{bodies} {told} with their joints: {who} depends on {they}");
     found.left_out.insert(0, line);
     (found.bodies, found.joints) = (model.bodies.len(), model.joints.len());
     found.loads = model.loads.len();
@@ -304,7 +304,7 @@ fn told(model: &Model<f64>, why: FallbackReason) -> String {
             match principal.min() <= f64::EPSILON * principal.max() {
                 true => format!("body \"{name}\" has no inertia of its own about some axis"),
                 false => format!(
-                    "the inertia of body \"{name}\" loses five digits beside that of what hangs from it"
+                    "the inertia of body \"{name}\" is five decades below that of the bodies that it carries"
                 ),
             }
         }

@@ -155,7 +155,7 @@ impl Solved {
             .extend(chaotic.map(|found| found.to_string()));
         if self.unlowered > 0 {
             optimum.warnings.push(format!(
-                "{} of the designs did not admit what is left out at the others, and ran as written",
+                "{} designs do not fulfil the conditions of the reduction of the scene and ran without it",
                 self.unlowered
             ));
         }

@@ -316,7 +316,7 @@ fn cannot_assemble(failure: &AssemblyFailure) -> Finding {
         ),
         AssemblyFailure::SingularPosition { .. } => (
             "/joints".to_owned(),
-            "a placement at which the joints are independent, as they are beside it",
+            "a placement at which the joints are independent, as in its neighbourhood",
             "place the bodies away from straight or folded positions",
         ),
         AssemblyFailure::Redundant { .. } => (

@@ -263,7 +263,7 @@ fn curvature(second: &SecondOrder, optimum: &Optimum) -> String {
         Curvature::NoOptimum => "no local optimum: it improves along a free direction",
         Curvature::Flat => "flat within the accuracy of the differences",
         Curvature::NotDecided => {
-            "not decided: the curvature is negative only where bounds without force stand against it"
+            "not decided: the curvature is negative only along directions that bounds without force block"
         }
     };
     let mut text = format!("Second order: {verdict}");
@@ -310,7 +310,7 @@ fn work(optimum: &Optimum) -> String {
     };
     let again = match counts.recomputed_steps {
         0 => String::new(),
-        n => format!(" (and {} made again for gradients)", grouped(n)),
+        n => format!(" (and {} recomputed for gradients)", grouped(n)),
     };
     format!(
         "Work: {} iterations, {} simulations{failed}, {} gradients\n      {} time steps{again}, \

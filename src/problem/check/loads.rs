@@ -30,7 +30,7 @@ impl Checker<'_> {
                 if force.point.is_some() && force.at.is_some() {
                     let finding = Finding::new(
                         join(pointer, "at"),
-                        "\"at\" beside \"point\"",
+                        "\"at\" and \"point\"",
                         "one of them, as each says where the force acts",
                     );
                     self.fault(finding.of_key());

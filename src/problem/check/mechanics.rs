@@ -41,13 +41,13 @@ impl Checker<'_> {
         };
         match (&body.shape, &body.density, &body.mass) {
             (Some(_), Some(_), Some(_)) => {
-                wrong("density", "\"density\" beside \"mass\"", "one of them");
+                wrong("density", "\"density\" and \"mass\"", "one of them");
             }
             (Some(_), None, None) => {
                 wrong(
                     "shape",
                     "\"shape\" alone",
-                    "\"mass\" or \"density\" beside it",
+                    "\"mass\" or \"density\" with it",
                 );
             }
             (None, Some(_), _) => {
@@ -81,7 +81,7 @@ impl Checker<'_> {
                 ("centre_of_mass", body.centre_of_mass.is_some()),
             ];
             for (key, _) in extra.into_iter().filter(|(_, given)| *given) {
-                let found = format!("\"{key}\" beside \"shape\"");
+                let found = format!("\"{key}\" and \"shape\"");
                 let expected = "one of them, as the shape gives it";
                 self.fault(Finding::new(join(pointer, key), found, expected).of_key());
             }

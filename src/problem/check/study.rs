@@ -70,7 +70,7 @@ impl Checker<'_> {
         }
         if let (Some(_), Some(tolerance)) = (simulation.steps, simulation.tolerance) {
             let expected = "either \"steps\" or \"tolerance\"";
-            let found = format!("the tolerance {tolerance} beside a number of steps");
+            let found = format!("the tolerance {tolerance} and a number of steps");
             self.fault(Finding::new("/simulation/tolerance", found, expected).of_key());
         }
         let (name, equal) = match &simulation.method {
@@ -252,7 +252,7 @@ impl Checker<'_> {
             || gate.from.is_some();
         match &gate.joint {
             Some(_) if part => {
-                let found = "\"joint\" beside the rotation of a body";
+                let found = "\"joint\" and the rotation of a body";
                 let expected = "\"joint\", or \"body\" and \"axis\"";
                 self.fault(Finding::new(join(pointer, "joint"), found, expected).of_key());
             }
