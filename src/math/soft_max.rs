@@ -2,12 +2,13 @@
 
 use super::Scalar;
 
-/// The softmax of values g_k with quadrature weights c_k, Σ c_k = 1.
+/// The softmax of values g_k with quadrature weights c_k: KS = (1/ρ) ln Σ c_k e^{ρ g_k}, with
+/// ∂KS/∂g_k = w_k. Σ c_k = 1 for quadratures in time.
 ///
 /// Every exponent ρ (g_k − g_m) is ≤ 0 for the largest value g_m, so none overflows.
 #[derive(Clone, Debug)]
 pub(crate) struct SoftMax<S> {
-    /// Weights w_k = c_k e^{ρ(g_k − g_m)} / Σ, Σ w_k = 1.
+    /// Weights w_k = ∂KS/∂g_k = c_k e^{ρ(g_k − g_m)} / Σ, Σ w_k = 1.
     pub weights: Vec<S>,
     /// g_m + (1/ρ) ln Σ c_k e^{ρ(g_k − g_m)} (Kennedy & Hicken 2015, eq. 10).
     pub ks: S,

@@ -11,6 +11,9 @@
 //! Distance         ½(d·d/L−L)  d · ḋ / L            (d · d̈ + ḋ · ḋ) / L
 //! ```
 //!
+//! [`crate::model::JointKind::rows`] lists the rows of each joint: a revolute has Coincident 0, 1, 2 and
+//! two Perpendicular rows. [`super::reaction`] has ∂(Gᵀλ)/∂q.
+//!
 //! A drive moves the markers on body B (see [`super::side`]). Then the rate is G v + Φ_t. The
 //! acceleration term of the index-1 equations is γ = −bias, where the bias is Φ̈ at v̇ = 0.
 
