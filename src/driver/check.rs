@@ -156,7 +156,19 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
         Instant::Acceleration { .. } => length / (time * time),
         Instant::SpeedSquared { .. } => length * length / (time * time),
         Instant::Rotation(_) => 1.0,
-        Instant::Energy(_) => {
+        Instant::Deformation { flexible, form, .. } => {
+            // By the largest coordinate of the motion.
+            let body = &model.flexible[*flexible];
+            let (numbering, run) = (&at.run.numbering, &at.run);
+            let places = body.places().zip(&form.linear);
+            let terms = places.map(|((carrier, k), b)| {
+                let place = numbering.position(carrier) + k;
+                let most = (0..=run.last()).fold(0.0_f64, |m, i| m.max(run.q(i)[place].abs()));
+                b.abs() * most
+            });
+            terms.fold(0.0, f64::max)
+        }
+        Instant::Energy(_) | Instant::StrainEnergy(_) => {
             let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
             mass * length * (model.gravity.norm() + length / (time * time))
         }

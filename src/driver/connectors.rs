@@ -62,7 +62,7 @@ pub(super) fn connectors(
                 ConnectorKind::Hinge
             }
             // Welded bodies, and bodies that slide in a plane, have no common point.
-            JointKind::Weld | JointKind::Planar => continue,
+            JointKind::Weld | JointKind::Planar | JointKind::Attachment => continue,
         };
         held.extend(both.iter().filter_map(|(body, point)| {
             let follows = kind != ConnectorKind::Slider;

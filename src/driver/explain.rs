@@ -297,6 +297,7 @@ pub(crate) fn merged_errs(problem: &Problem, at: &Evaluated) -> Option<&'static 
 fn told(model: &Model<f64>, why: FallbackReason) -> String {
     match why {
         FallbackReason::Loops => "loops of joints reach far and overlap".into(),
+        FallbackReason::Flexible => "a body is flexible".into(),
         FallbackReason::Body(body) => {
             let body = &model.bodies[body];
             let principal = body.inertia.symmetric_eigenvalues();

@@ -123,7 +123,7 @@ impl<S: Scalar> Function<S> {
                 | Instant::Acceleration { body, point, .. }
                 | Instant::Speed { body, point }
                 | Instant::SpeedSquared { body, point } => visit(body, Some(point)),
-                Instant::Energy(_) => {}
+                Instant::Energy(_) | Instant::StrainEnergy(_) | Instant::Deformation { .. } => {}
                 Instant::Rotation(rotation) => {
                     rotation.for_each_body(&mut |body| visit(body, None))
                 }

@@ -2,6 +2,7 @@
 
 use super::turning::Rotation;
 use crate::math::{Scalar, Vec3, parameters};
+use crate::model::flexible::Quadratic;
 
 /// A thrown point and the definition of its range. Up is against gravity.
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +49,40 @@ pub(crate) enum EnergyPart {
     Potential,
     /// Kinetic plus potential.
     Total,
+}
+
+/// What a quadratic form in the elastic coordinates measures.
+#[allow(dead_code)] // until problem files have flexible bodies
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DeformationKind {
+    /// A displacement relative to the frame \[m\].
+    Displacement,
+    /// A force on a section \[N\].
+    Force,
+    /// A moment on a section \[N m\].
+    Moment,
+    /// A stress \[Pa\].
+    Stress,
+}
+
+impl DeformationKind {
+    fn unit(self) -> &'static str {
+        match self {
+            DeformationKind::Displacement => "m",
+            DeformationKind::Force => "N",
+            DeformationKind::Moment => "N m",
+            DeformationKind::Stress => "Pa",
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            DeformationKind::Displacement => "elastic displacement",
+            DeformationKind::Force => "section force",
+            DeformationKind::Moment => "section moment",
+            DeformationKind::Stress => "stress",
+        }
+    }
 }
 
 /// A quantity at an instant. Points are from the centre of mass in body axes \[m\]. Directions are
@@ -98,6 +133,19 @@ pub(crate) enum Instant<S> {
     },
     /// Energy of the whole model \[J\].
     Energy(EnergyPart),
+    /// Strain energy of a flexible body \[J\], an index into those of the model.
+    #[cfg_attr(not(test), allow(dead_code))] // until problem files have flexible bodies
+    StrainEnergy(usize),
+    /// A quadratic form in the elastic coordinates of a flexible body.
+    #[cfg_attr(not(test), allow(dead_code))] // until problem files have flexible bodies
+    Deformation {
+        /// The flexible body, an index into those of the model.
+        flexible: usize,
+        /// What it measures.
+        kind: DeformationKind,
+        /// The form.
+        form: Quadratic<S>,
+    },
     /// Rotation of a body about an axis, continuous in time and in (−2π, 2π] at t = 0 \[rad\].
     Rotation(Rotation<S>),
     /// Range of a projectile that is released at this instant \[m\], times the gate if there is
@@ -122,6 +170,8 @@ parameters!(enum Instant {
     Speed { body; point },
     SpeedSquared { body; point },
     Energy(part;),
+    StrainEnergy(body;),
+    Deformation { flexible, kind; form },
     Rotation(; rotation),
     Range {; projectile, gate },
 });
@@ -134,7 +184,8 @@ impl<S: Scalar> Instant<S> {
             Instant::Velocity { .. } | Instant::Speed { .. } => "m/s",
             Instant::Acceleration { .. } => "m/s²",
             Instant::SpeedSquared { .. } => "m²/s²",
-            Instant::Energy(_) => "J",
+            Instant::Energy(_) | Instant::StrainEnergy(_) => "J",
+            Instant::Deformation { kind, .. } => kind.unit(),
             Instant::Rotation(_) => "rad",
         }
     }
@@ -158,6 +209,8 @@ impl<S: Scalar> Instant<S> {
             Instant::Speed { .. } => "speed",
             Instant::SpeedSquared { .. } => "speed squared",
             Instant::Energy(_) => "energy",
+            Instant::StrainEnergy(_) => "strain energy",
+            Instant::Deformation { kind, .. } => kind.name(),
             Instant::Rotation(_) => "rotation",
             Instant::Range { .. } => "range",
         }

@@ -8,7 +8,7 @@ use crate::math::{Scalar, Vec3};
 use crate::model::Model;
 use crate::system::bodies::add6;
 use crate::system::marker::{self, MarkerKinematics};
-use crate::system::{BodyMotion, Numbering, loads};
+use crate::system::{BodyMotion, Numbering, flexible, loads};
 
 /// A point is at rest below this speed \[m/s\]. There the derivative of its speed is set to zero.
 const REST: f64 = 1e-25;
@@ -51,6 +51,11 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
         let mut motions = Vec::with_capacity(self.numbering.bodies());
         BodyMotion::all(self.numbering, self.q, self.v, &mut motions);
         motions
+    }
+
+    /// Elastic coordinates of a flexible body.
+    fn coordinates(&self, flexible: usize) -> Vec<S> {
+        flexible::coordinates(&self.model.flexible[flexible], &self.motions())
     }
 
     /// The flight of a projectile that is released now.
@@ -132,6 +137,14 @@ impl<S: Scalar> Instant<S> {
                 velocity.dot(&velocity)
             }
             Instant::Energy(part) => energy(at, *part),
+            Instant::StrainEnergy(body) => {
+                flexible::strain_energy(&at.model.flexible[*body], &at.motions())
+            }
+            Instant::Deformation {
+                flexible: body,
+                form,
+                ..
+            } => form.value(&at.coordinates(*body)),
             Instant::Rotation(rotation) => at.rotation(rotation, turns),
             Instant::Range { projectile, gate } => {
                 at.flight(projectile).range(projectile.ground) * at.openness(gate, turns)
@@ -154,8 +167,12 @@ pub(crate) fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
             sum -= at.model.gravity.dot(&motion.position) * body.mass;
         }
     }
+    let held = flexible::held(at.model, &motions);
+    if part != EnergyPart::Potential {
+        sum += held.kinetic;
+    }
     if part != EnergyPart::Kinetic {
-        sum += loads::potential(at.model, &motions);
+        sum += held.potential + loads::potential(at.model, &motions);
     }
     sum
 }
@@ -243,6 +260,26 @@ impl Instant<f64> {
                 *by_point += pull_point(at, *body, point, [ZERO, by, ZERO], out);
             }
             (Instant::Energy(part), _) => pull_energy(at, *part, weight, out),
+            (Instant::StrainEnergy(body), _) => {
+                let of = (at.model, at.numbering);
+                let part = (*body, weight);
+                flexible::pull_strain_energy(of, &at.motions(), part, out.y, out.model);
+            }
+            (
+                Instant::Deformation {
+                    flexible: body,
+                    form,
+                    ..
+                },
+                Instant::Deformation { form: by_form, .. },
+            ) => {
+                let q = at.coordinates(*body);
+                let mut by_q = vec![0.0; q.len()];
+                form.add_gradient(&q, weight, &mut by_q);
+                form.pull_value(&q, weight, by_form);
+                let body = &at.model.flexible[*body];
+                flexible::add_coordinates(at.numbering, body, &by_q, out.y);
+            }
             (Instant::Rotation(rotation), Instant::Rotation(own)) => {
                 rotation.pull_back((at.numbering, at.q), weight, out.y, own);
             }
@@ -341,4 +378,11 @@ fn pull_energy(at: &Snapshot<f64>, part: EnergyPart, weight: f64, out: &mut Snap
         let (model, numbering) = (at.model, at.numbering);
         loads::pull_potential(model, numbering, &motions, weight, out.y, out.model);
     }
+    let parts = match part {
+        EnergyPart::Kinetic => [weight, 0.0],
+        EnergyPart::Potential => [0.0, weight],
+        EnergyPart::Total => [weight, weight],
+    };
+    let of = (at.model, at.numbering);
+    flexible::pull_energies(of, &motions, parts, (out.y, out.v), out.model);
 }

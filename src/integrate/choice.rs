@@ -7,7 +7,7 @@ use super::{IntegrationFailure, simulate_watching};
 use crate::linalg::SolveScalar;
 use crate::math::{Scalar, Vec3};
 use crate::model::load::LoadKind;
-use crate::model::{Model, RigidBody};
+use crate::model::{FlexibleBody, Load, Model, RigidBody};
 
 /// The method for scenes that are not stiff.
 pub(crate) const NON_STIFF: Method = Method::Dop853;
@@ -116,17 +116,34 @@ pub(crate) fn warning(model: &Model<f64>, method: Method, h: f64) -> Option<Stri
         return None;
     };
     let (low, high) = *AMPLIFIED.get(order.checked_sub(3)?)?;
-    model.loads.iter().find_map(|load| {
-        let (omega, ratio) = vibration(model, &load.kind)?;
+    let judge = |what: &str, name: &str, (omega, ratio): (f64, f64)| {
         let z = omega * h;
         (ratio < DAMPED && z > low.max(SLOW) && z < high).then(|| {
             format!(
                 "bdf of order {order} amplifies undamped vibration with omega h between {low} and \
-                 {high}, and load \"{}\" vibrates with omega h = {z:.2} (omega = {omega:.3e} \
-                 rad/s); take radau, or bdf of order 2",
-                load.name
+                 {high}, and {what} \"{name}\" vibrates with omega h = {z:.2} (omega = \
+                 {omega:.3e} rad/s); take radau, or bdf of order 2"
             )
         })
+    };
+    let of_load = |load: &Load<f64>| judge("load", &load.name, vibration(model, &load.kind)?);
+    let of_body = |body: &FlexibleBody<f64>| {
+        let mut all = vibrations(body);
+        all.find_map(|vibration| judge("body", &body.name, vibration))
+    };
+    let loads = model.loads.iter().find_map(of_load);
+    loads.or_else(|| model.flexible.iter().find_map(of_body))
+}
+
+/// Angular frequency \[rad/s\] and damping ratio of each elastic coordinate of a body by itself.
+fn vibrations(body: &FlexibleBody<f64>) -> impl Iterator<Item = (f64, f64)> + '_ {
+    let m = body.modes();
+    (0..m).map(move |i| {
+        let diagonal = i * (m + 1);
+        let (stiffness, damping) = (body.stiffness.linear[diagonal], body.damping[diagonal]);
+        let mass = body.inertia.products[body.inertia.place(i, i).0].trace();
+        let omega = (stiffness / mass).sqrt();
+        (omega, 0.5 * damping / (mass * omega))
     })
 }
 

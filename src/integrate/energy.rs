@@ -14,7 +14,7 @@ use super::settings::{Settings, Spacing};
 use crate::math::Scalar;
 use crate::model::Model;
 use crate::model::load::LoadKind;
-use crate::system::{BodyMotion, loads};
+use crate::system::{BodyMotion, flexible, loads};
 
 /// Smallest change of energy that can reject a run, relative to X + K.
 const PART: f64 = 1e-3;
@@ -90,10 +90,16 @@ impl Ledger {
             | LoadKind::BallDamping { .. }
             | LoadKind::Friction { .. } => 0.0,
         });
+        let square = scale.length * scale.length;
+        let elastic = model.flexible.iter().map(|body| {
+            let modes = body.modes();
+            let diagonal = (0..modes).map(|i| body.stiffness.linear[i * (modes + 1)].re().abs());
+            0.5 * square * diagonal.sum::<f64>()
+        });
         Some(Self {
             tolerance,
             at_speed: bodies.sum(),
-            stiff: springs.sum(),
+            stiff: springs.sum::<f64>() + elastic.sum::<f64>(),
             looks: Vec::new(),
         })
     }
@@ -118,6 +124,11 @@ impl Ledger {
             potential.push(-(mass * model.gravity.dot(&motion.position)).re());
         }
         potential.push(loads::potential(model, motions).re());
+        if !model.flexible.is_empty() {
+            let held = flexible::held(model, motions);
+            kinetic += held.kinetic.re();
+            potential.push(held.potential.re());
+        }
         self.looks.push(Look {
             time,
             kinetic,

@@ -84,6 +84,10 @@ impl Lowering {
         variables: &[Range],
     ) -> Self {
         let mut designs = Designs::new(real, dual, variables);
+        let deforms = designs.start.model.flexible.first();
+        if let Some(deforms) = deforms.map(|body| body.name.clone()) {
+            return Self::of_flexible(&designs, &deforms);
+        }
         let (welded, mut kept) = Welded::find(&designs);
         if !welded.is_empty() {
             designs.change(|scene| welded.apply(scene), |scene| welded.apply(scene));
@@ -94,31 +98,8 @@ impl Lowering {
         let mut points = Vec::new();
         // A planar body has three unknowns already.
         if plane.is_err() {
-            let model = &designs.start.model;
-            let characteristic_length = Reach::new(model);
-            for (index, body) in model.bodies.iter().enumerate() {
-                let held = fixed.holds_end(Some(index)) || non_rotating.contains(index);
-                if held || body.mobility == Mobility::fixed() {
-                    continue;
-                }
-                // If the start violates the conditions, other designs need no examination.
-                let start = point::holds(&designs.start, &characteristic_length, index, 0.0);
-                let verdict = start.and_then(|()| {
-                    designs.ask(
-                        |scene| point::holds(scene, &Reach::new(&scene.model), index, 0.0),
-                        |scene, change| {
-                            point::holds(scene, &Reach::new(&scene.model), index, change)
-                        },
-                    )
-                });
-                match verdict {
-                    Ok(()) => points.push(index),
-                    Err(obstacles) => kept.push(Kept {
-                        reduction: format!("the rotation of body \"{}\"", body.name),
-                        obstacles,
-                    }),
-                }
-            }
+            let held = |body| fixed.holds_end(Some(body)) || non_rotating.contains(body);
+            points = find_points(&designs, held, &mut kept);
         }
         kept.extend(of_fixed.into_iter().chain(of_non_rotating));
         let mut found = Self {
@@ -138,6 +119,28 @@ impl Lowering {
             found.redundant = joints.map(|joint| joint.redundant).collect();
         }
         found
+    }
+
+    /// What can be left out of scenes with flexible bodies: the rotation of bodies that are points. All
+    /// else takes bodies as rigid.
+    fn of_flexible(designs: &Designs, deforms: &str) -> Self {
+        let model = &designs.start.model;
+        let mut kept = Vec::new();
+        let points = find_points(designs, |body| model.is_of_flexible(body), &mut kept);
+        Self {
+            welded: Welded::default(),
+            plane: Err(Kept {
+                reduction: "motion across a plane".into(),
+                obstacles: vec![ViolatedCondition::plain(format!(
+                    "body \"{deforms}\" is flexible"
+                ))],
+            }),
+            points,
+            non_rotating: NonRotating::default(),
+            fixed: Fixed::default(),
+            kept,
+            redundant: Vec::new(),
+        }
     }
 
     /// The reductions that are not made, with their violated conditions.
@@ -210,4 +213,37 @@ impl Lowering {
     ) -> Option<Trajectory<f64>> {
         (!self.welded.is_empty()).then(|| self.welded.expand(written, run))
     }
+}
+
+/// Bodies whose rotation nothing turns or looks at, but for those that `held` names. What stands against
+/// others is added to `kept`.
+fn find_points(
+    designs: &Designs,
+    held: impl Fn(usize) -> bool,
+    kept: &mut Vec<Kept>,
+) -> Vec<usize> {
+    let mut points = Vec::new();
+    let model = &designs.start.model;
+    let characteristic_length = Reach::new(model);
+    for (index, body) in model.bodies.iter().enumerate() {
+        if held(index) || body.mobility == Mobility::fixed() {
+            continue;
+        }
+        // What the start says is enough.
+        let start = point::holds(&designs.start, &characteristic_length, index, 0.0);
+        let verdict = start.and_then(|()| {
+            designs.ask(
+                |scene| point::holds(scene, &Reach::new(&scene.model), index, 0.0),
+                |scene, change| point::holds(scene, &Reach::new(&scene.model), index, change),
+            )
+        });
+        match verdict {
+            Ok(()) => points.push(index),
+            Err(obstacles) => kept.push(Kept {
+                reduction: format!("the rotation of body \"{}\"", body.name),
+                obstacles,
+            }),
+        }
+    }
+    points
 }

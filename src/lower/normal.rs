@@ -43,7 +43,8 @@ pub(super) fn candidates(model: &Model<f64>) -> Vec<Vec3<f64>> {
         | JointKind::Prismatic
         | JointKind::Universal
         | JointKind::Rod
-        | JointKind::Weld => false,
+        | JointKind::Weld
+        | JointKind::Attachment => false,
     };
     let joints = model.joints.iter().filter(turns);
     let mut axes: Vec<(usize, Vec3<f64>)> = Vec::new();

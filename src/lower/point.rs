@@ -55,7 +55,8 @@ pub(super) fn holds<S: Scalar>(
                 | JointKind::Planar
                 | JointKind::Cylindrical
                 | JointKind::Universal
-                | JointKind::Weld => {
+                | JointKind::Weld
+                | JointKind::Attachment => {
                     vanishes(None, &|| format!("joint \"{name}\" turns it"));
                 }
             }
@@ -130,6 +131,7 @@ fn looks_at<S: Scalar>(function: &Function<S>) -> Vec<(usize, Option<Vec3<S>>)> 
             | Instant::SpeedSquared { body, point } => vec![(*body, Some(*point))],
             // The energy depends on angular velocities, which are zero, and on heights of centres.
             Instant::Energy(_) => Vec::new(),
+            Instant::StrainEnergy(_) | Instant::Deformation { .. } => Vec::new(),
             Instant::Rotation(rotation) => turned(rotation).collect(),
             Instant::Range { projectile, gate } => {
                 let thrown = (projectile.body, Some(projectile.point));

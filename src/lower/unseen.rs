@@ -52,8 +52,8 @@ impl Seen {
             }
             (function.clone()).for_each_place(&mut |body, _| seen[*body] = true);
         }
-        // The duration depends on no body, but a scene needs one.
-        if !seen.contains(&true) {
+        // The duration depends on no body, but a scene needs one. No joint joins carriers.
+        if !seen.contains(&true) || !model.flexible.is_empty() {
             seen.fill(true);
         }
         let all = 0..model.bodies.len();

@@ -47,6 +47,14 @@ impl<S: Scalar, P: Parameters<S>> Parameters<S> for Vec<P> {
     }
 }
 
+impl<S: Scalar, A: Parameters<S>, B: Parameters<S>> Parameters<S> for (A, B) {
+    type Of<T: Scalar> = (A::Of<T>, B::Of<T>);
+
+    fn map<T: Scalar>(&self, f: &mut impl FnMut(S) -> T) -> Self::Of<T> {
+        (self.0.map(f), self.1.map(f))
+    }
+}
+
 impl<S: Scalar, P: Parameters<S>> Parameters<S> for Option<P> {
     type Of<T: Scalar> = Option<P::Of<T>>;
 

@@ -15,6 +15,7 @@
 //! Jacobians and pull-backs of the rows are in `system::constraint`.
 
 use super::drive::{DegreeOfFreedom, Drive};
+use super::flexible::Modes;
 use crate::math::{Scalar, Vec3, parameters};
 
 impl DegreeOfFreedom {
@@ -121,6 +122,8 @@ pub(crate) enum JointKind {
     Rod,
     /// Two bodies move as one: 6 rows.
     Weld,
+    /// Body B is the interface of a point of the flexible body whose frame is body A: 6 rows.
+    Attachment,
 }
 
 use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
@@ -162,7 +165,7 @@ impl JointKind {
                 Perpendicular { a: 2, b: 0 },
             ],
             JointKind::Rod => &[Distance],
-            JointKind::Weld => &[
+            JointKind::Weld | JointKind::Attachment => &[
                 Coincident(0),
                 Coincident(1),
                 Coincident(2),
@@ -179,7 +182,11 @@ impl JointKind {
             JointKind::Revolute | JointKind::Planar => &[DegreeOfFreedom::Rotation],
             JointKind::Prismatic => &[DegreeOfFreedom::Translation],
             JointKind::Cylindrical => &[DegreeOfFreedom::Rotation, DegreeOfFreedom::Translation],
-            JointKind::Spherical | JointKind::Universal | JointKind::Rod | JointKind::Weld => &[],
+            JointKind::Spherical
+            | JointKind::Universal
+            | JointKind::Rod
+            | JointKind::Weld
+            | JointKind::Attachment => &[],
         }
     }
 
@@ -188,7 +195,7 @@ impl JointKind {
         match self {
             JointKind::Spherical | JointKind::Universal | JointKind::Rod => &[],
             JointKind::Revolute | JointKind::Planar | JointKind::Cylindrical => &[2],
-            JointKind::Prismatic | JointKind::Weld => &[0, 1, 2],
+            JointKind::Prismatic | JointKind::Weld | JointKind::Attachment => &[0, 1, 2],
         }
     }
 
@@ -203,6 +210,7 @@ impl JointKind {
             JointKind::Universal => "universal",
             JointKind::Rod => "rod",
             JointKind::Weld => "weld",
+            JointKind::Attachment => "attachment",
         }
     }
 }
@@ -261,6 +269,8 @@ pub(crate) struct Joint<S> {
     /// Trivially satisfied rows: they hold in all motions that the bodies' mobility admits, and are
     /// not imposed.
     pub trivial_rows: Vec<ConstraintRow>,
+    /// How the frame on body A moves with its elastic coordinates; of attachments only.
+    pub modes: Option<Modes<S>>,
 }
 
 impl<S> Joint<S> {
@@ -295,5 +305,5 @@ parameters!(struct JointFrame {; point, axes, length });
 
 parameters!(struct Joint {
     name, kind, body_a, body_b, redundant, trivial_rows;
-    frame_a, frame_b, drives
+    frame_a, frame_b, drives, modes
 });

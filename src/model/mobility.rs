@@ -53,6 +53,14 @@ impl Mobility {
         Self::spatial().without_rotation()
     }
 
+    /// Translation alone along the first `count` axes: that of a body that carries elastic coordinates,
+    /// three or one.
+    pub(crate) fn carrier(count: usize) -> Self {
+        let mut some = Self::point();
+        some.translation.free = count;
+        some
+    }
+
     /// No unknowns.
     pub(crate) fn fixed() -> Self {
         let mut none = Self::point();

@@ -5,6 +5,7 @@
 //! each parameter.
 
 pub(crate) mod drive;
+pub(crate) mod flexible;
 pub(crate) mod joint;
 pub(crate) mod load;
 pub(crate) mod mobility;
@@ -13,6 +14,7 @@ pub(crate) mod table;
 pub(crate) mod time_function;
 
 pub(crate) use drive::{DegreeOfFreedom, Drive};
+pub(crate) use flexible::{FlexibleBody, ModalInertia, ModalStiffness, Modes};
 pub(crate) use joint::{ConstraintRow, Joint, JointFrame, JointKind};
 pub(crate) use load::{Axes, Load, LoadKind};
 pub(crate) use mobility::Mobility;
@@ -20,22 +22,24 @@ pub(crate) use rigid_body::RigidBody;
 pub(crate) use table::{Interpolation, Smoothness};
 pub(crate) use time_function::TimeFunction;
 
-use crate::math::{Scalar, Vec3, parameters};
+use crate::math::{Scalar, Vec3, parameters, rotation};
 
 /// Bodies, joints, loads and gravity of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Model<S> {
     /// Gravitational acceleration in ground axes \[m/s²\].
     pub gravity: Vec3<S>,
-    /// Bodies in the order of the problem file.
+    /// Bodies in the order of the problem file, then those without mass that flexible bodies need.
     pub bodies: Vec<RigidBody<S>>,
-    /// Joints in the order of the problem file.
+    /// Joints in the order of the problem file, then the attachments of flexible bodies.
     pub joints: Vec<Joint<S>>,
     /// Loads in the order of the problem file.
     pub loads: Vec<Load<S>>,
+    /// What deforms: flexible bodies, each beside the body that is its frame.
+    pub flexible: Vec<FlexibleBody<S>>,
 }
 
-parameters!(struct Model {; gravity, bodies, joints, loads });
+parameters!(struct Model {; gravity, bodies, joints, loads, flexible });
 
 impl<S: Scalar> Model<S> {
     /// Whether energy is conserved: only springs and gravity do work.
@@ -51,6 +55,115 @@ impl<S: Scalar> Model<S> {
             LoadKind::Force { .. } | LoadKind::Torque { .. } => false,
         };
         let driven = self.joints.iter().any(|joint| !joint.drives.is_empty());
-        !driven && self.loads.iter().all(conserves)
+        let undamped = |body: &FlexibleBody<S>| body.damping.iter().all(|x| x.re() == 0.0);
+        !driven && self.loads.iter().all(conserves) && self.flexible.iter().all(undamped)
+    }
+
+    /// Whether a body is the frame, a carrier or an interface of a flexible body.
+    pub(crate) fn is_of_flexible(&self, body: usize) -> bool {
+        let own = |flexible: &FlexibleBody<S>| {
+            flexible.frame == body || flexible.carriers().contains(&body)
+        };
+        self.flexible.iter().any(own) || self.is_interface(body)
+    }
+
+    /// Whether a body stands for a point of a flexible body.
+    pub(crate) fn is_interface(&self, body: usize) -> bool {
+        let of = |joint: &Joint<S>| joint.modes.is_some() && joint.body_b == Some(body);
+        self.joints.iter().any(of)
+    }
+
+    /// Adds a flexible body whose frame is body `frame`, with the start of its coordinates and their rates;
+    /// its index among the flexible ones. The carriers come after all bodies there are.
+    #[cfg_attr(not(test), allow(dead_code))] // until problem files have flexible bodies
+    pub(crate) fn add_flexible(
+        &mut self,
+        frame: usize,
+        (elastic, elastic_rate): (&[S], &[S]),
+        inertia: ModalInertia<S>,
+        stiffness: ModalStiffness<S>,
+        damping: Vec<S>,
+    ) -> usize {
+        let name = self.bodies[frame].name.clone();
+        let carriers = self.bodies.len();
+        let mut at = 0;
+        for count in flexible::carriers(elastic.len()) {
+            let mut carrier = RigidBody::massless(format!("{name}, coordinates from {}", at + 1));
+            carrier.mobility = Mobility::carrier(count);
+            for k in 0..count {
+                carrier.position[k] = elastic[at + k];
+                carrier.velocity[k] = elastic_rate[at + k];
+            }
+            at += count;
+            self.bodies.push(carrier);
+        }
+        self.flexible.push(FlexibleBody {
+            name,
+            frame,
+            carriers,
+            inertia,
+            stiffness,
+            damping,
+        });
+        self.flexible.len() - 1
+    }
+
+    /// Adds the interface of a point X of flexible body `flexible` with the displacements N_I and the
+    /// rotations Θ_I there, and the joint that holds it: the index of the body. It starts where the
+    /// deformed point does, its axes turned by the section.
+    #[cfg_attr(not(test), allow(dead_code))] // until problem files have flexible bodies
+    pub(crate) fn attach(
+        &mut self,
+        flexible: usize,
+        name: &str,
+        point: Vec3<S>,
+        (displacement, rotation): (Vec<Vec3<S>>, Vec<Vec3<S>>),
+    ) -> usize {
+        let body = &self.flexible[flexible];
+        let (frame, carriers) = (body.frame, body.carriers);
+        let sum = |modes: &[Vec3<S>], of: fn(&RigidBody<S>) -> &Vec3<S>| {
+            let all = modes.iter().zip(body.places());
+            all.fold(Vec3::zeros(), |sum: Vec3<S>, (mode, (carrier, k))| {
+                sum + mode * of(&self.bodies[carrier])[k]
+            })
+        };
+        let place = point + sum(&displacement, |carrier| &carrier.position);
+        let speed = sum(&displacement, |carrier| &carrier.velocity);
+        let spin = sum(&rotation, |carrier| &carrier.velocity);
+        let host = &self.bodies[frame];
+        let turned = rotation::matrix(&host.orientation);
+        let mut interface = RigidBody::massless(format!("{}, {name}", host.name));
+        interface.position = host.position + turned * place;
+        interface.orientation = host.orientation;
+        interface.velocity = host.velocity + turned * (host.angular_velocity.cross(&place) + speed);
+        interface.angular_velocity = host.angular_velocity + spin;
+        let axis = |k: usize| {
+            let mut axis = Vec3::zeros();
+            axis[k] = S::one();
+            axis
+        };
+        let at = |point: Vec3<S>| JointFrame {
+            point,
+            axes: [axis(0), axis(1), axis(2)],
+            length: S::zero(),
+        };
+        self.bodies.push(interface);
+        self.joints.push(Joint {
+            name: self.bodies[self.bodies.len() - 1].name.clone(),
+            kind: JointKind::Attachment,
+            body_a: frame,
+            body_b: Some(self.bodies.len() - 1),
+            frame_a: at(point),
+            frame_b: at(Vec3::zeros()),
+            drives: Vec::new(),
+            redundant: Vec::new(),
+            trivial_rows: Vec::new(),
+            modes: Some(Modes {
+                carriers,
+                displacement,
+                rotation,
+            }),
+        });
+        self.bodies.len() - 1
     }
 }

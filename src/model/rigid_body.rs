@@ -2,7 +2,7 @@
 
 use super::Mobility;
 use crate::math::rotation::Quat;
-use crate::math::{Mat3, Vec3, parameters};
+use crate::math::{Mat3, Scalar, Vec3, parameters};
 
 /// A violation of the conditions of a solid up to this fraction of the largest moment is round-off.
 const ROUNDING: f64 = 1e-12;
@@ -33,6 +33,23 @@ parameters!(struct RigidBody {
     name, mobility;
     mass, inertia, position, orientation, velocity, angular_velocity
 });
+
+impl<S: Scalar> RigidBody<S> {
+    /// A body without mass at rest in the origin.
+    pub(crate) fn massless(name: String) -> Self {
+        let (zero, one) = (S::zero(), S::one());
+        RigidBody {
+            name,
+            mass: zero,
+            inertia: Mat3::zeros(),
+            position: Vec3::zeros(),
+            orientation: [one, zero, zero, zero],
+            velocity: Vec3::zeros(),
+            angular_velocity: Vec3::zeros(),
+            mobility: Mobility::spatial(),
+        }
+    }
+}
 
 impl RigidBody<f64> {
     /// Whether mass and inertia are those of a solid: a positive mass, and [`is_inertia_of_solid`].

@@ -104,6 +104,7 @@ fn joint<S: Scalar>(
         drives: Vec::new(),
         redundant: Vec::new(),
         trivial_rows: Vec::new(),
+        modes: None,
     }
 }
 

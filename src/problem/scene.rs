@@ -34,6 +34,7 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
         bodies: bodies.collect(),
         joints: super::joints::joints(document, &assembly),
         loads: super::loads::loads(document, &assembly),
+        flexible: Vec::new(),
     };
     let unstarted = start(document, &assembly, &mut model, x).err();
     let builder = Builder {

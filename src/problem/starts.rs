@@ -289,6 +289,7 @@ impl<S: Scalar> Starts<S> {
             bodies: all.iter().map(|&body| model.bodies[body].clone()).collect(),
             joints: joints.iter().map(joint).collect(),
             loads: Vec::new(),
+            flexible: Vec::new(),
         };
         let (moving, held) = part.bodies.split_at_mut(bodies.len());
         for held in held {

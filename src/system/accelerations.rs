@@ -8,10 +8,11 @@
 
 use super::bodies::{self, BodyMotion, all_force_balances, velocities_of};
 use super::constraint::RowGradient;
+use super::flexible::{self, StateCotangent};
 use super::in_motion::InMotion;
 use super::initial::mass;
 use super::joints::{self, JointCotangent, RowCotangents};
-use super::kkt::{EliminationSummary, SaddlePoint};
+use super::kkt::{EliminationSummary, Metric, SaddlePoint};
 use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
 use super::planar::PlanarJoints;
@@ -69,6 +70,8 @@ pub(crate) struct Memory {
 pub(crate) enum FallbackReason {
     /// Loops of joints are so long and overlap so much that sparse LU costs less.
     Loops,
+    /// A body is flexible: its mass matrix couples it with its carriers.
+    Flexible,
     /// A body, with the bodies that it carries, has a motion without inertia, or with an inertia
     /// that loses five digits relative to the others.
     Body(usize),
@@ -81,7 +84,13 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     pub(crate) fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
         let (solver, left_to_sparse) = match Tree::plan(model, numbering) {
             Some(tree) => (Solver::Tree(Box::new(tree)), None),
-            None => (Self::sparse(model, numbering), Some(FallbackReason::Loops)),
+            None => {
+                let why = match model.flexible.is_empty() {
+                    true => FallbackReason::Loops,
+                    false => FallbackReason::Flexible,
+                };
+                (Self::sparse(model, numbering), Some(why))
+            }
         };
         Self {
             model,
@@ -240,7 +249,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             unreachable!("the tree was left above");
         };
         let at = InMotion::new(self.model, self.numbering, &self.motions, self.time);
-        saddle.factorise(&at, zeros, mass(self.model))
+        saddle.factorise(&at, zeros, mass(self.model), Metric::Mass)
     }
 
     /// Solves [M Gᵀ; G 0] (x, λ) = (f, g) in place; `rhs` has length n_v + n_c.
@@ -310,6 +319,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         let (upper, lower) = rhs.split_at_mut(nv);
         a.fill(S::zero());
         all_force_balances(self.model, self.numbering, &self.motions, a, upper);
+        flexible::add_force_balances(self.model, self.numbering, &self.motions, a, upper);
         match &self.planar {
             Some(planar) => planar.accelerations(self.numbering, lower),
             None => {
@@ -408,6 +418,12 @@ impl Accelerations<'_, f64> {
                 v[o + 3 + k] += by_omega[k];
             }
         }
+        let mut bars = StateCotangent {
+            y: Some(&mut *y),
+            v: Some(&mut *v),
+        };
+        let here = (&self.motions[..], a);
+        flexible::pull_force_balances((model, numbering), here, &psi[..nv], &mut bars, cot);
         // χᵀ (G a + bias) and λᵀ G ψ in one pass.
         let cotangents = RowCotangents {
             acceleration: Some(&psi[nv..]),

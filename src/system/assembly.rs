@@ -10,9 +10,10 @@
 
 use super::bodies::{self, BodyMotion, positions_of};
 use super::failure::AssemblyFailure;
+use super::flexible;
 use super::in_motion::InMotion;
 use super::joints;
-use super::kkt::{BodyBlocks, SaddlePoint};
+use super::kkt::{BodyBlocks, Metric, SaddlePoint};
 use super::numbering::Numbering;
 use super::placement::length_scale;
 use super::redundancy;
@@ -72,15 +73,17 @@ pub(super) fn assemble<S: SolveScalar>(
             *x = -*x;
         }
         let metric = displacement_metric(model, numbering, &q);
-        saddle.factorise(&at, &s, metric).map_err(|_| {
-            // Joints that are redundant seldom meet exactly before assembly.
-            let meet = least <= NEARLY_CLOSED * scale && iteration == 0;
-            if meet || least <= CLOSED * scale.max(1.0) {
-                super::rank::explain(model, &q)
-            } else {
-                open(model, numbering, &best, iteration)
-            }
-        })?;
+        saddle
+            .factorise(&at, &s, metric, Metric::Displacement)
+            .map_err(|_| {
+                // Joints that are redundant seldom meet exactly before assembly.
+                let meet = least <= NEARLY_CLOSED * scale && iteration == 0;
+                if meet || least <= CLOSED * scale.max(1.0) {
+                    super::rank::explain(model, &q)
+                } else {
+                    open(model, numbering, &best, iteration)
+                }
+            })?;
         saddle.solve(&mut rhs);
         if !finite(&rhs) {
             return Err(open(model, numbering, &best, iteration));
@@ -144,6 +147,7 @@ pub(super) fn add_displacement<S: Scalar>(
         let linear = (r - body.position) * body.mass;
         bodies::add6(&mut out[numbering.velocity(i)..], &linear, &axial(&turned));
     }
+    flexible::add_displacement(model, numbering, q, out);
 }
 
 /// E_yy: m, and tr(X) 1 − Xᵀ with X = S R_gᵀ R. The latter is computed as J + tr(Y) 1 − Yᵀ with

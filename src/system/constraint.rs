@@ -17,8 +17,9 @@
 //! A drive moves the markers on body B (see [`super::side`]). Then the rate is G v + Φ_t. The
 //! acceleration term of the index-1 equations is γ = −bias, where the bias is Φ̈ at v̇ = 0.
 
+use super::frame_motion::FrameMotion;
 use super::marker::{self, MarkerKinematics};
-use super::side::{FrameMotion, JointSide};
+use super::side::JointSide;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, JointFrame};
 use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
@@ -165,6 +166,49 @@ pub(crate) struct RowGradient<S> {
     pub torque_a: Vec3<S>,
     /// In ω_B (body axes of B).
     pub torque_b: Vec3<S>,
+    /// By the rate of the point on body A (body axes), if the body deforms under the joint.
+    pub local_force: Vec3<S>,
+    /// By the rate of the section's rotation on body A (body axes) likewise.
+    pub local_torque: Vec3<S>,
+}
+
+impl<S: Scalar> RowGradient<S> {
+    /// Force and torque on the section of body A.
+    pub(crate) fn local(&self) -> (Vec3<S>, Vec3<S>) {
+        (self.local_force, self.local_torque)
+    }
+
+    /// All zero.
+    pub(crate) fn zero() -> Self {
+        let zero = Vec3::zeros();
+        Self {
+            force: zero,
+            torque_a: zero,
+            torque_b: zero,
+            local_force: zero,
+            local_torque: zero,
+        }
+    }
+}
+
+/// What a row does to the section of body A that deforms, in body axes: force at its point, and torque.
+fn local_gradient<S: Scalar>(
+    row: ConstraintRow,
+    a: &JointSide<S>,
+    b: &JointSide<S>,
+    undeformed: &JointFrame<S>,
+) -> (Vec3<S>, Vec3<S>) {
+    let ra = &a.motion.rotation;
+    let zero = Vec3::zeros();
+    match row {
+        Coincident(k) => (ra.row(k).transpose(), zero),
+        Perpendicular { a: i, b: j } => (zero, undeformed.axes[i].cross(&ra.tr_mul(&b.axis(j)))),
+        Sliding { a: i } => {
+            let d = ra.tr_mul(&(a.point() - b.point()));
+            (a.frame.axes[i], undeformed.axes[i].cross(&d))
+        }
+        Distance => (ra.tr_mul(&((a.point() - b.point()) / a.frame.length)), zero),
+    }
 }
 
 /// Gradient of a row.
@@ -175,39 +219,40 @@ pub(crate) fn gradient<S: Scalar>(
 ) -> RowGradient<S> {
     let (ra, rb) = (&a.motion.rotation, &b.motion.rotation);
     let (sa, sb) = (&a.frame.point, &b.frame.point);
-    match row {
+    let mut out = RowGradient::zero();
+    if let Some(undeformed) = &a.undeformed {
+        (out.local_force, out.local_torque) = local_gradient(row, a, b, undeformed);
+    }
+    (out.force, out.torque_a, out.torque_b) = match row {
         Coincident(k) => {
             let mut force = Vec3::zeros();
             force[k] = S::one();
-            RowGradient {
+            (
                 force,
-                torque_a: sa.cross(&ra.row(k).transpose()),
-                torque_b: -sb.cross(&rb.row(k).transpose()),
-            }
+                sa.cross(&ra.row(k).transpose()),
+                -sb.cross(&rb.row(k).transpose()),
+            )
         }
-        Perpendicular { a: i, b: j } => RowGradient {
-            force: Vec3::zeros(),
-            torque_a: a.frame.axes[i].cross(&ra.tr_mul(&b.axis(j))),
-            torque_b: b.frame.axes[j].cross(&rb.tr_mul(&a.axis(i))),
-        },
+        Perpendicular { a: i, b: j } => (
+            Vec3::zeros(),
+            a.frame.axes[i].cross(&ra.tr_mul(&b.axis(j))),
+            b.frame.axes[j].cross(&rb.tr_mul(&a.axis(i))),
+        ),
         Sliding { a: i } => {
             let (e, u) = (&a.frame.axes[i], a.axis(i));
             let d = a.point() - b.point();
-            RowGradient {
-                force: u,
-                torque_a: e.cross(&ra.tr_mul(&d)) + sa.cross(e),
-                torque_b: -sb.cross(&rb.tr_mul(&u)),
-            }
+            (
+                u,
+                e.cross(&ra.tr_mul(&d)) + sa.cross(e),
+                -sb.cross(&rb.tr_mul(&u)),
+            )
         }
         Distance => {
             let u = (a.point() - b.point()) / a.frame.length;
-            RowGradient {
-                force: u,
-                torque_a: sa.cross(&ra.tr_mul(&u)),
-                torque_b: -sb.cross(&rb.tr_mul(&u)),
-            }
+            (u, sa.cross(&ra.tr_mul(&u)), -sb.cross(&rb.tr_mul(&u)))
         }
-    }
+    };
+    out
 }
 
 /// Cotangents of one side of a joint.
@@ -359,6 +404,7 @@ fn pull_axis<S: Scalar>(
     if let Some(moving) = &mut out.moving {
         moving.rate.axes[i] += by.local.rate;
         moving.acceleration.axes[i] += by.local.acceleration;
+        moving.virtual_rate.axes[i] += by.local.virtual_rate;
     }
 }
 
@@ -377,5 +423,6 @@ fn pull_point<S: Scalar>(
     if let Some(moving) = &mut out.moving {
         moving.rate.point += by.local.rate;
         moving.acceleration.point += by.local.acceleration;
+        moving.virtual_rate.point += by.local.virtual_rate;
     }
 }

@@ -14,9 +14,10 @@
 use super::assembly::{assemble, displacement_metric, finite, second_moment, turned_by};
 use super::bodies::{self, BodyMotion, all_force_balances, positions_of, velocities_of};
 use super::failure::AssemblyFailure;
+use super::flexible::{self, StateCotangent};
 use super::in_motion::InMotion;
 use super::joints::{self, JointCotangent, RowCotangents};
-use super::kkt::{BodyBlocks, SaddlePoint};
+use super::kkt::{BodyBlocks, Metric, SaddlePoint};
 use super::loads::{self, LoadCotangent};
 use super::numbering::Numbering;
 use super::placement::guess;
@@ -73,12 +74,13 @@ pub(crate) fn solve<S: SolveScalar>(
     let zeros = vec![S::zero(); nc];
     let singular = |_| super::rank::explain(model, &q);
     saddle
-        .factorise(&at, &zeros, mass(model))
+        .factorise(&at, &zeros, mass(model), Metric::Mass)
         .map_err(singular)?;
     let mut rates = vec![S::zero(); nc];
     joints::rates(&at, &mut rates);
     let mut rhs = vec![S::zero(); nv];
     bodies::mass_product(model, numbering, &held, &mut rhs);
+    flexible::add_mass_product(model, numbering, &motions, &held, &mut rhs);
     rhs.extend(rates.into_iter().map(|rate| -rate));
     saddle.solve(&mut rhs);
     let sigma = rhs.split_off(nv);
@@ -96,6 +98,8 @@ pub(crate) fn solve<S: SolveScalar>(
         &vec![S::zero(); nv],
         &mut balance,
     );
+    let still = vec![S::zero(); nv];
+    flexible::add_force_balances(model, numbering, &motions, &still, &mut balance);
     let mut forces = vec![S::zero(); nv];
     loads::add_forces(&at, &mut forces);
     for (balance, &force) in balance.iter_mut().zip(&forces) {
@@ -138,7 +142,7 @@ fn choose_left_out<S: SolveScalar>(
     let zeros = vec![S::zero(); numbering.constraints()];
     let at = InMotion::new(model, numbering, &motions, S::zero());
     for _ in 0..numbering.constraints() {
-        let factorised = saddle.factorise(&at, &zeros, mass(model));
+        let factorised = saddle.factorise(&at, &zeros, mass(model), Metric::Mass);
         if factorised.is_err() {
             return;
         }
@@ -218,7 +222,7 @@ pub(crate) fn pull_back(
     };
 
     saddle
-        .factorise(&at, &zeros, mass(model))
+        .factorise(&at, &zeros, mass(model), Metric::Mass)
         .map_err(singular)?;
     if a_bar.iter().any(|&x| x != 0.0) {
         let (psi, chi) = transposed(saddle, a_bar);
@@ -239,6 +243,12 @@ pub(crate) fn pull_back(
                 v_bar[o + 3 + k] += by_omega[k];
             }
         }
+        let mut bars = StateCotangent {
+            y: Some(&mut y_bar),
+            v: Some(&mut v_bar),
+        };
+        let here = (&motions[..], &state.a[..]);
+        flexible::pull_force_balances((model, numbering), here, &psi, &mut bars, cot);
         let minus: Vec<f64> = psi.iter().map(|x| -x).collect();
         let mut out = LoadCotangent {
             y: Some(&mut y_bar),
@@ -284,10 +294,25 @@ pub(crate) fn pull_back(
         );
     }
 
+    if !model.flexible.is_empty() {
+        let (_, guess) = guess(model);
+        let by: Vec<f64> = state.v.iter().zip(&guess).map(|(v, g)| v - g).collect();
+        let at = (model, numbering);
+        flexible::pull_mass_product(at, &motions, (&psi, &by), &mut y_bar, cot);
+        let mut product = vec![0.0; nv];
+        flexible::add_mass_product(model, numbering, &motions, &psi, &mut product);
+        v_guess_bar
+            .iter_mut()
+            .zip(&product)
+            .for_each(|(v, x)| *v -= x);
+    }
+
     // The assembly leaves out the redundant rows of the joints.
     saddle.leave_out(&RedundantRows::of(model, numbering));
     let metric = displacement_metric(model, numbering, &state.q);
-    saddle.factorise(&at, &state.s, metric).map_err(singular)?;
+    saddle
+        .factorise(&at, &state.s, metric, Metric::Displacement)
+        .map_err(singular)?;
     let (psi, chi) = transposed(saddle, &y_bar);
     // Through the positions that stay as placed.
     pull_rate(&psi, &state.s, &mut y_bar, cot);
@@ -297,6 +322,7 @@ pub(crate) fn pull_back(
     };
     pull(&motions, &cotangents, &mut y_bar, cot);
     reduce::constrain_cotangent(numbering, &mut y_bar);
+    flexible::pull_displacement(model, numbering, (&state.q, &psi), cot);
 
     for (i, body) in cot.bodies.iter_mut().enumerate() {
         let o = numbering.velocity(i);

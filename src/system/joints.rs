@@ -1,5 +1,6 @@
 //! The joints of a model in motion: constraint vectors, reactions and pull-backs over all rows.
 
+use super::attachment;
 use super::bodies::{BodyMotion, add6, velocities_of};
 use super::constraint::{self, RowCotangent, RowGradient, SideCotangent, gradient};
 use super::in_motion::InMotion;
@@ -7,7 +8,7 @@ use super::numbering::Numbering;
 use super::reaction::{self, ReactionJacobian};
 use super::side::{JointSide, pull_driven_frame, sides};
 use crate::math::{Scalar, Vec3};
-use crate::model::{ConstraintRow, Joint, Model};
+use crate::model::{ConstraintRow, Joint, Model, Modes};
 use std::ops::Range;
 
 /// Largest number of rows of a joint.
@@ -66,6 +67,11 @@ pub(crate) fn rates_from_gradients<S: Scalar>(
         for i in numbering.rows(j) {
             let g = &gradients[i];
             out[i] = g.force.dot(&relative) + g.torque_a.dot(&omega_a) + g.torque_b.dot(&omega_b);
+            if let Some(modes) = &joint.modes {
+                for (slot, x) in attachment::elastic_gradient(modes, numbering, g.local()) {
+                    out[i] += x * v[slot];
+                }
+            }
         }
     }
 }
@@ -127,11 +133,7 @@ pub(crate) fn add_reactions<S: Scalar>(
     out: &mut [S],
 ) {
     for (j, joint) in model.joints.iter().enumerate() {
-        let mut total = RowGradient {
-            force: Vec3::zeros(),
-            torque_a: Vec3::zeros(),
-            torque_b: Vec3::zeros(),
-        };
+        let mut total = RowGradient::zero();
         for i in numbering.rows(j) {
             total.force += gradients[i].force * lambda[i];
             total.torque_a += gradients[i].torque_a * lambda[i];
@@ -149,6 +151,15 @@ pub(crate) fn add_reactions<S: Scalar>(
                 &total.torque_b,
             );
         }
+        if let Some(modes) = &joint.modes {
+            for i in numbering.rows(j) {
+                total.local_force += gradients[i].local_force * lambda[i];
+                total.local_torque += gradients[i].local_torque * lambda[i];
+            }
+            for (slot, x) in attachment::elastic_gradient(modes, numbering, total.local()) {
+                out[slot] += x;
+            }
+        }
     }
 }
 
@@ -165,6 +176,32 @@ pub(crate) fn reaction_jacobian<S: Scalar>(
         reaction::add_reaction_jacobian(row, l, &a, &b, &mut out);
     }
     out
+}
+
+/// Derivatives of the torques of G(q)ᵀ λ of an attachment in each elastic coordinate, on body A and on
+/// body B, with the place of the coordinate among the velocities; those of the elastic forces in the
+/// rotations are the same numbers, and there are no others.
+pub(crate) fn elastic_reactions<S: Scalar>(
+    joint: &Joint<S>,
+    modes: &Modes<S>,
+    at: &InMotion<S>,
+    lambda: &[S],
+) -> Vec<(usize, Vec3<S>, Vec3<S>)> {
+    let ground = BodyMotion::ground();
+    let (a, b) = sides(joint, at.motions, &ground, at.time);
+    let mut turned = reaction::ElasticReaction::zero();
+    for (row, &l) in joint.rows().zip(lambda) {
+        reaction::add_elastic_reaction(row, l, (&a, &joint.frame_a), &b, &mut turned);
+    }
+    let shapes = modes.displacement.iter().zip(&modes.rotation);
+    let places = shapes.zip(modes.places());
+    places
+        .map(|((n, t), (carrier, k))| {
+            let slot = at.numbering.velocity(carrier) + k;
+            let by_a = n.cross(&turned.force) + turned.a_by_rotation * t;
+            (slot, by_a, turned.b_by_rotation * t)
+        })
+        .collect()
 }
 
 /// Derivative of the rate of one row in the tangent positions of its two bodies.
@@ -245,7 +282,16 @@ pub(crate) fn pull_back(
             }
         }
         let target = &mut out.model.joints[j];
-        target.frame_a.add(&by_a.frame);
+        match (&joint.modes, &by_a.moving) {
+            (Some(modes), Some(motion)) => attachment::pull_frame(
+                (joint, modes),
+                (numbering, at.motions),
+                (&by_a.frame, motion),
+                (out.y.as_deref_mut(), out.v.as_deref_mut()),
+                target,
+            ),
+            _ => target.frame_a.add(&by_a.frame),
+        }
         match &by_b.moving {
             None => target.frame_b.add(&by_b.frame),
             Some(motion) => {

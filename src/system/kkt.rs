@@ -1,8 +1,10 @@
 //! The saddle-point systems [B Gᵀ; G 0] of projections and accelerations, and their transposed
 //! derivatives.
 
+use super::attachment;
 use super::bodies::BodyMotion;
 use super::constraint::RowGradient;
+use super::flexible;
 use super::in_motion::InMotion;
 use super::joints;
 use super::numbering::Numbering;
@@ -39,6 +41,11 @@ pub(crate) fn emit_transposed_gradients<S: Scalar>(
                     emit.add_column(at, column + i, &(g.force * -scale));
                 }
                 emit.add_column(at + 3, column + i, &(g.torque_b * scale));
+            }
+            if let Some(modes) = &joint.modes {
+                for (slot, x) in attachment::elastic_gradient(modes, numbering, g.local()) {
+                    emit.add(row + slot, column + i, x * scale);
+                }
             }
         }
     }
@@ -113,6 +120,15 @@ pub(crate) fn emit_reaction_jacobian<S: Scalar>(
                 emit.add_block(rb + 3, ca + 3, &(k.b_by_a * scale));
             }
         }
+        let Some(modes) = &joint.modes else { continue };
+        for (slot, by_a, by_b) in joints::elastic_reactions(joint, modes, at, lambda) {
+            let body_b = joint.body_b.map(|body| (body, by_b));
+            for (body, by) in [(joint.body_a, by_a)].into_iter().chain(body_b) {
+                let place = numbering.velocity(body) + 3;
+                emit.add_column(row + place, column + slot, &(by * scale));
+                emit.add_row(row + slot, column + place, &(by * scale));
+            }
+        }
     }
 }
 
@@ -122,6 +138,15 @@ pub(crate) struct BodyBlocks<S> {
     pub linear: S,
     /// Angular.
     pub angular: Mat3<S>,
+}
+
+/// What flexible bodies have in the upper left block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Metric {
+    /// Their mass matrix.
+    Mass,
+    /// The second derivative of the displacement that the assembly makes least.
+    Displacement,
 }
 
 /// Summary of the elimination of a matrix of the index-1 equations.
@@ -169,7 +194,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
         let pattern = Pattern::record(order, |emit: &mut dyn Emit<S>| {
             emit_reduced(numbering, 1, emit, |emit| {
                 let rows = (&gradients[..], &left_out);
-                emit_saddle_point(&at, rows, &zeros, block, emit);
+                emit_saddle_point(&at, rows, &zeros, (block, Metric::Mass), emit);
             });
         });
         let factors = SparseLu::new(&pattern);
@@ -202,6 +227,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
         at: &InMotion<S>,
         multipliers: &[S],
         block: impl Fn(usize) -> BodyBlocks<S>,
+        metric: Metric,
     ) -> Result<(), SingularMatrix> {
         let (gradients, left_out) = (&mut self.gradients, &self.left_out);
         joints::gradients(at, gradients);
@@ -209,7 +235,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
         self.matrix.assemble(|emit| {
             emit_reduced(at.numbering, 1, emit, |emit| {
                 let rows = (&gradients[..], left_out);
-                emit_saddle_point(at, rows, multipliers, block, emit);
+                emit_saddle_point(at, rows, multipliers, (block, metric), emit);
             });
         });
         self.factorisations += 1;
@@ -266,7 +292,7 @@ fn emit_saddle_point<S: Scalar>(
     here: &InMotion<S>,
     (gradients, left_out): (&[RowGradient<S>], &RedundantRows),
     multipliers: &[S],
-    block: impl Fn(usize) -> BodyBlocks<S>,
+    (block, metric): (impl Fn(usize) -> BodyBlocks<S>, Metric),
     emit: &mut dyn Emit<S>,
 ) {
     let (model, numbering) = (here.model, here.numbering);
@@ -276,6 +302,12 @@ fn emit_saddle_point<S: Scalar>(
         let at = numbering.velocity(body);
         emit.add_identity(at, at, linear);
         emit.add_block(at + 3, at + 3, &angular);
+    }
+    match metric {
+        Metric::Mass => {
+            flexible::emit_mass((model, numbering), here.motions, (0, 0), S::one(), emit);
+        }
+        Metric::Displacement => flexible::emit_displacement(model, numbering, emit),
     }
     emit_reaction_jacobian(here, multipliers, (0, 0), S::one(), emit);
     emit_transposed_gradients(model, numbering, gradients, (0, n), S::one(), emit);

@@ -30,6 +30,8 @@ pub(crate) struct RelativeMotion<S> {
     pub rate: Vec3<S>,
     /// ë.
     pub acceleration: Vec3<S>,
+    /// The rate of e that the virtual velocities make.
+    pub virtual_rate: Vec3<S>,
 }
 
 impl<S: Scalar> MarkerKinematics<S> {
@@ -61,11 +63,12 @@ impl<S: Scalar> MarkerKinematics<S> {
     ) -> Self {
         let (r, w) = (&motion.rotation, &motion.omega);
         let (rate, acceleration) = derivatives(motion, e, local);
+        let virtual_rate = virtual_derivative(motion, e, local);
         MarkerKinematics {
             x: r * e,
             rate: r * rate,
             acceleration: r * (w.cross(&rate) + acceleration),
-            virtual_rate: r * motion.virtual_omega.cross(e),
+            virtual_rate: r * virtual_rate,
         }
     }
 
@@ -127,6 +130,16 @@ fn derivatives<S: Scalar>(
     (rate, acceleration)
 }
 
+/// In body axes: the virtual rate ω' × e + ė'.
+fn virtual_derivative<S: Scalar>(
+    motion: &BodyMotion<S>,
+    e: &Vec3<S>,
+    local: Option<&RelativeMotion<S>>,
+) -> Vec3<S> {
+    let turned = motion.virtual_omega.cross(e);
+    local.map_or(turned, |local| turned + local.virtual_rate)
+}
+
 /// Cotangents of a body from those of a marker. For a point, the cotangents of r, ṙ and r̈ are
 /// those of the marker itself.
 #[derive(Clone, Copy, Debug)]
@@ -174,7 +187,7 @@ pub(crate) fn pull_back_moving<S: Scalar>(
         theta: e.cross(&x)
             + first.cross(&rate)
             + (w.cross(&first) + rest).cross(&second)
-            + motion.virtual_omega.cross(e).cross(&virtually),
+            + virtual_derivative(motion, e, local).cross(&virtually),
         omega,
         alpha: e.cross(&second),
         vector: x
@@ -184,6 +197,7 @@ pub(crate) fn pull_back_moving<S: Scalar>(
         local: RelativeMotion {
             rate: by_first + second.cross(w),
             acceleration: second,
+            virtual_rate: virtually,
         },
     }
 }

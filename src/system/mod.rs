@@ -8,10 +8,15 @@
 
 pub(crate) mod accelerations;
 pub(crate) mod assembly;
+pub(crate) mod attachment;
 pub(crate) mod bodies;
 pub(crate) mod constraint;
+mod elastic;
 pub(crate) mod emit_bodies;
 pub(crate) mod failure;
+pub(crate) mod flexible;
+mod flexing;
+pub(crate) mod frame_motion;
 pub(crate) mod in_motion;
 pub(crate) mod initial;
 pub(crate) mod joints;

@@ -14,10 +14,11 @@
 use super::assembly::{add_displacement, displacement_metric};
 use super::bodies::{self, BodyMotion};
 use super::failure::AssemblyFailure;
+use super::flexible;
 use super::in_motion::InMotion;
 use super::initial::{self, InitialState};
 use super::joints;
-use super::kkt::SaddlePoint;
+use super::kkt::{Metric, SaddlePoint};
 use super::numbering::Numbering;
 use super::placement::guess;
 use super::redundant_rows::RedundantRows;
@@ -116,7 +117,7 @@ impl<S: Scalar> FirstOrder<'_, S> {
         self.saddle
             .leave_out(&RedundantRows::of(self.real, numbering));
         let at = InMotion::new(self.real, numbering, &here, 0.0);
-        let found = (self.saddle).factorise(&at, &self.state.s, metric);
+        let found = (self.saddle).factorise(&at, &self.state.s, metric, Metric::Displacement);
         found.map_err(|_| self.singular())?;
         let change = self.change(&residual);
         let mut increment = vec![S::zero(); q.len()];
@@ -134,6 +135,7 @@ impl<S: Scalar> FirstOrder<'_, S> {
         let by: Vec<S> = v.iter().zip(&given).map(|(&v, &g)| v - g).collect();
         let mut residual = vec![S::zero(); numbering.velocities()];
         bodies::mass_product(model, numbering, &by, &mut residual);
+        flexible::add_mass_product(model, numbering, &motions, &by, &mut residual);
         let sigma: Vec<S> = self.state.sigma.iter().map(|&s| s.into()).collect();
         joints::add_reactions(model, numbering, &gradients, &sigma, &mut residual);
         let mut rates = vec![S::zero(); numbering.constraints()];
@@ -145,7 +147,7 @@ impl<S: Scalar> FirstOrder<'_, S> {
         self.saddle.leave_out(&self.state.left_out);
         let metric = initial::mass(self.real);
         let at = InMotion::new(self.real, numbering, &here, 0.0);
-        let found = (self.saddle).factorise(&at, &zeros, metric);
+        let found = (self.saddle).factorise(&at, &zeros, metric, Metric::Mass);
         found.map_err(|_| self.singular())?;
         let change = self.change(&residual);
         v.iter_mut().zip(&change).for_each(|(v, &by)| *v += by);

@@ -2,6 +2,7 @@
 
 use super::bodies::{BodyMotion, add6};
 use super::constraint::gradient;
+use super::flexible;
 use super::in_motion::InMotion;
 use super::joints;
 use super::loads;
@@ -66,6 +67,11 @@ pub(crate) fn observe(
         seen.momentum += momentum;
         seen.angular_momentum += motion.position.cross(&momentum) + motion.rotation * spin;
     }
+    let held = flexible::held(model, &motions);
+    seen.kinetic += held.kinetic;
+    seen.potential += held.potential;
+    seen.momentum += held.momentum;
+    seen.angular_momentum += held.angular_momentum;
     seen.potential += loads::potential(model, &motions);
     let mut rows = vec![0.0; numbering.constraints()];
     let at = InMotion::new(model, numbering, &motions, time);
@@ -113,8 +119,8 @@ pub(crate) fn reactions(
         let about_centre = Vec3::new(total[3], total[4], total[5]);
         let r = &motions[joint.body_a].rotation;
         let force = r.tr_mul(&force_ground);
-        let torque = about_centre - joint.frame_a.point.cross(&force);
-        let in_joint = |x: &Vec3<f64>| Vec3::from(joint.frame_a.axes.map(|axis| axis.dot(x)));
+        let torque = about_centre - a.frame.point.cross(&force);
+        let in_joint = |x: &Vec3<f64>| Vec3::from(a.frame.axes.map(|axis| axis.dot(x)));
         Reaction {
             force: in_joint(&force),
             torque: in_joint(&torque),

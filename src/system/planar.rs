@@ -312,6 +312,7 @@ impl<S: Scalar> PlanarJoints<S> {
                     force,
                     torque_a,
                     torque_b,
+                    ..RowGradient::zero()
                 });
             }
         }

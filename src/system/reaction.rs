@@ -3,8 +3,8 @@
 
 use super::side::JointSide;
 use crate::math::scalar::skew;
-use crate::math::{Mat3, Scalar};
-use crate::model::ConstraintRow;
+use crate::math::{Mat3, Scalar, Vec3};
+use crate::model::{ConstraintRow, JointFrame};
 use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
 /// Derivative of Gᵀλ of one row in the tangent positions (δr_A, δθ_A, δr_B, δθ_B); components in
@@ -100,5 +100,49 @@ pub(crate) fn add_reaction_jacobian<S: Scalar>(
             out.b_by_a += mixed.transpose();
             out.b_by_b -= sb * (skew(&rb.tr_mul(&d)) + sb) * l;
         }
+    }
+}
+
+/// How the torques of Gᵀλ of an attachment turn with the deformation of its section.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ElasticReaction<S> {
+    /// Force on the section, axes of body A: a displacement n adds the torque n × f on body A.
+    pub force: Vec3<S>,
+    /// Torque on body A by the rotation of the section.
+    pub a_by_rotation: Mat3<S>,
+    /// Torque on body B likewise.
+    pub b_by_rotation: Mat3<S>,
+}
+
+impl<S: Scalar> ElasticReaction<S> {
+    /// All zero.
+    pub(crate) fn zero() -> Self {
+        Self {
+            force: Vec3::zeros(),
+            a_by_rotation: Mat3::zeros(),
+            b_by_rotation: Mat3::zeros(),
+        }
+    }
+}
+
+/// Adds those of λ (row of G)ᵀ to `out`, the frame on the undeformed body A being `undeformed`.
+pub(crate) fn add_elastic_reaction<S: Scalar>(
+    row: ConstraintRow,
+    lambda: S,
+    (a, undeformed): (&JointSide<S>, &JointFrame<S>),
+    b: &JointSide<S>,
+    out: &mut ElasticReaction<S>,
+) {
+    let (ra, rb) = (&a.motion.rotation, &b.motion.rotation);
+    match row {
+        Coincident(k) => out.force += ra.row(k).transpose() * lambda,
+        Perpendicular { a: i, b: j } => {
+            let e = skew(&undeformed.axes[i]);
+            let w = skew(&ra.tr_mul(&b.axis(j)));
+            out.a_by_rotation += w * e * lambda;
+            out.b_by_rotation -= skew(&b.frame.axes[j]) * rb.tr_mul(ra) * e * lambda;
+        }
+        // No attachment has such a row.
+        Sliding { .. } | Distance => {}
     }
 }

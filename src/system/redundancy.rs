@@ -7,6 +7,7 @@
 //! process on the rows of G chooses the rows to keep: the first in the order of the joints whose
 //! part across the rows kept so far is not small relative to the largest such part.
 
+use super::attachment;
 use super::bodies::{self, BodyMotion};
 use super::constraint;
 use super::in_motion::InMotion;
@@ -214,6 +215,12 @@ impl<'a> Rows<'a> {
                 if let Some(b) = joint.body_b.map(|b| self.numbering.velocity(b)) {
                     put(b, &row.force, -1.0);
                     put(b + 3, &row.torque_b, 1.0 / self.length);
+                }
+                if let Some(modes) = &joint.modes {
+                    let local = row.local();
+                    for (slot, x) in attachment::elastic_gradient(modes, &self.numbering, local) {
+                        g[(slot, i)] += x;
+                    }
                 }
                 i += 1;
             }

@@ -5,6 +5,7 @@
 //! imposed rows become dependent. Before that, it is exchanged for a row of larger weight. The
 //! choice does not affect the motion as long as all joints are closed.
 
+use super::attachment;
 use super::bodies::add6;
 use super::constraint::RowGradient;
 use super::in_motion::InMotion;
@@ -107,10 +108,7 @@ impl RedundantRows {
     /// Sets the gradients of redundant rows to zero.
     pub(crate) fn clear_gradients<S: Scalar>(&self, gradients: &mut [RowGradient<S>]) {
         for i in self.numbers() {
-            let row = &mut gradients[i];
-            row.force.fill(S::zero());
-            row.torque_a.fill(S::zero());
-            row.torque_b.fill(S::zero());
+            gradients[i] = RowGradient::zero();
         }
     }
 
@@ -158,6 +156,11 @@ impl RedundantRows {
             add6(&mut rhs[a..], &-g.force, &-g.torque_a);
             if let Some(body) = joint.body_b {
                 add6(&mut rhs[numbering.velocity(body)..], &g.force, &-g.torque_b);
+            }
+            if let Some(modes) = &joint.modes {
+                for (slot, x) in attachment::elastic_gradient(modes, numbering, g.local()) {
+                    rhs[slot] -= x;
+                }
             }
             solve(rhs);
             let weights = rhs[nv..].iter().zip(&*sizes).enumerate();

@@ -7,8 +7,10 @@
 //! ė1 = φ̇ e2,  ë1 = φ̈ e2 − φ̇² e1,  ė2 = −φ̇ e1,  ë2 = −φ̈ e1 − φ̇² e2,  ṡ = σ̇ e3,  s̈ = σ̈ e3
 //! ```
 
+use super::attachment::deformed_frame;
 use super::bodies::BodyMotion;
-use super::marker::{MarkerKinematics, RelativeMotion};
+use super::frame_motion::FrameMotion;
+use super::marker::MarkerKinematics;
 use crate::math::{Scalar, Vec3};
 use crate::model::{DegreeOfFreedom, Joint, JointFrame};
 
@@ -21,41 +23,8 @@ pub(crate) struct JointSide<'a, S> {
     pub frame: JointFrame<S>,
     /// Motion of the frame on the body, if it moves.
     pub moving: Option<FrameMotion<S>>,
-}
-
-/// First and second derivatives in time of a frame, body axes.
-#[derive(Clone, Debug)]
-pub(crate) struct FrameMotion<S> {
-    /// First derivative.
-    pub rate: JointFrame<S>,
-    /// Second derivative.
-    pub acceleration: JointFrame<S>,
-}
-
-impl<S: Scalar> FrameMotion<S> {
-    /// The zero motion.
-    pub(crate) fn zero() -> Self {
-        Self {
-            rate: JointFrame::zero(),
-            acceleration: JointFrame::zero(),
-        }
-    }
-
-    /// The motion of axis i.
-    pub(crate) fn axis(&self, i: usize) -> RelativeMotion<S> {
-        RelativeMotion {
-            rate: self.rate.axes[i],
-            acceleration: self.acceleration.axes[i],
-        }
-    }
-
-    /// The motion of the point.
-    pub(crate) fn point(&self) -> RelativeMotion<S> {
-        RelativeMotion {
-            rate: self.rate.point,
-            acceleration: self.acceleration.point,
-        }
-    }
+    /// The frame on the undeformed body, if the body deforms under it.
+    pub undeformed: Option<JointFrame<S>>,
 }
 
 impl<'a, S: Scalar> JointSide<'a, S> {
@@ -65,6 +34,7 @@ impl<'a, S: Scalar> JointSide<'a, S> {
             motion,
             frame,
             moving: None,
+            undeformed: None,
         }
     }
 
@@ -105,7 +75,14 @@ pub(crate) fn sides<'a, S: Scalar>(
         b.frame = frame;
         b.moving = Some(moving);
     }
-    (JointSide::fixed(&motions[joint.body_a], joint.frame_a), b)
+    let mut a = JointSide::fixed(&motions[joint.body_a], joint.frame_a);
+    if let Some(modes) = &joint.modes {
+        let (frame, moving) = deformed_frame(&joint.frame_a, modes, motions);
+        a.undeformed = Some(joint.frame_a);
+        a.frame = frame;
+        a.moving = Some(moving);
+    }
+    (a, b)
 }
 
 /// The prescribed motions of the joint at `time`: (rotation, displacement), zero without a drive.

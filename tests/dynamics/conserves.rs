@@ -175,6 +175,7 @@ fn a_free_top_follows_the_exact_solution() {
         bodies: vec![body.clone()],
         joints: Vec::new(),
         loads: Vec::new(),
+        flexible: Vec::new(),
     };
     let errors = [2e-3, 1e-3, 5e-4].map(|h| {
         let run = bdf(&model, DURATION, h, 2);

@@ -6,7 +6,7 @@ use flexbody::model::Model;
 use flexbody::problem::Problem;
 use flexbody::system::accelerations::Accelerations;
 use flexbody::system::initial::mass;
-use flexbody::system::kkt::SaddlePoint;
+use flexbody::system::kkt::{Metric, SaddlePoint};
 use flexbody::system::{BodyMotion, InMotion, Numbering};
 use std::path::Path;
 
@@ -64,7 +64,9 @@ fn differences<S: SolveScalar>(name: &str, model: &Model<S>, closing: usize) -> 
     BodyMotion::all(&numbering, &q, &v, &mut motions);
     let zeros = vec![S::zero(); numbering.constraints()];
     let at = InMotion::new(model, &numbering, &motions, S::zero());
-    saddle.factorise(&at, &zeros, mass(model)).expect("regular");
+    saddle
+        .factorise(&at, &zeros, mass(model), Metric::Mass)
+        .expect("regular");
     let mut right: Vec<S> = spread(v.len() + zeros.len())
         .into_iter()
         .map(S::from)

@@ -66,6 +66,7 @@ fn scene(seed: u64, unit: f64) -> (Model<f64>, f64) {
         bodies,
         joints,
         loads,
+        flexible: Vec::new(),
     };
     let duration = 0.5 + 0.4 * numbers.next();
     in_lengths_of(&mut model, unit);
@@ -259,6 +260,7 @@ fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance()
             joints: vec![hinge],
             bodies,
             loads: Vec::new(),
+            flexible: Vec::new(),
         };
         assert!(Ledger::open(&model, &by, &scale).is_some());
         let kept = settings(RADAU, Spacing::Frozen(Grid::uniform(3)));

@@ -12,7 +12,7 @@ use flexbody::math::{Complex64, Parameters, Vec3, scalar::COMPLEX_STEP};
 use flexbody::model::{JointKind, Model};
 
 /// Every instant quantity and every reduction, at least once each.
-fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
+pub(super) fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
     let (point, direction) = (Vec3::new(0.1, 0.4, -0.2), Vec3::new(0.6, 0.64, -0.48));
     let projectile = Projectile {
         body,
@@ -177,7 +177,7 @@ fn scene(model: &Model<f64>, duration: f64) -> Scene<f64> {
     }
 }
 
-fn compare(scene: &Scene<f64>, settings: &Settings, directions: &[Vec<f64>]) {
+pub(super) fn compare(scene: &Scene<f64>, settings: &Settings, directions: &[Vec<f64>]) {
     let (exact, run) = complex_steps(scene, settings, directions);
     let which: Vec<usize> = (0..scene.functions.len()).collect();
     let adjoint = gradients(scene, &run, &which).expect("differentiates");
@@ -223,7 +223,7 @@ fn complex_steps(
 
 /// Settings of the explicit method for each scene: given and frozen adaptive grids, samples at the
 /// ends of steps and inside.
-fn explicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
+pub(super) fn explicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
     let mut chosen = Settings::steps(Method::Dop853, steps);
     let fixed = chosen.clone();
     chosen.spacing = Spacing::Tolerance(1e-7);
@@ -248,7 +248,7 @@ fn explicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
 
 /// Every implicit method with equal steps and, if adaptive, on a frozen grid with samples inside
 /// the steps.
-fn implicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
+pub(super) fn implicit(model: &Model<f64>, duration: f64, steps: usize) -> Vec<Settings> {
     let bdf = |order| Method::Bdf {
         order,
         start: Start::Radau,

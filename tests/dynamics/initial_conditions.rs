@@ -250,6 +250,7 @@ fn roof(span: f64) -> Model<f64> {
         bodies,
         joints,
         loads: Vec::new(),
+        flexible: Vec::new(),
     }
 }
 
@@ -293,6 +294,7 @@ fn redundant_constraints_are_named() {
         ],
         bodies: bodies.clone(),
         loads: Vec::new(),
+        flexible: Vec::new(),
     };
     let failure = solve(&model).expect_err("is redundant");
     assert_eq!(
@@ -323,6 +325,7 @@ fn a_frame_turned_by_half_a_turn_is_refused() {
                 bodies,
                 joints: vec![hinge],
                 loads: Vec::new(),
+                flexible: Vec::new(),
             };
             let outcome = solve(&model);
             if degrees < 90.0 {

@@ -59,6 +59,7 @@ fn a_joint_carries_the_weight_that_hangs_from_it() {
             bodies,
             joints,
             loads: Vec::new(),
+            flexible: Vec::new(),
         };
         let found = reactions_at_start(&model);
         // The upper body is body A: the ceiling holds it, and the lower body pulls it down.
@@ -93,6 +94,7 @@ fn bodies_at_rest_stay_at_rest() {
                 bodies: bodies[..count].to_vec(),
                 joints: joints[..count].to_vec(),
                 loads: Vec::new(),
+                flexible: Vec::new(),
             };
             for method in [
                 Method::Dop853,
@@ -139,6 +141,7 @@ fn a_slide_and_a_plane_carry_weight_and_moment() {
         bodies: bodies.clone(),
         joints: vec![slide],
         loads: Vec::new(),
+        flexible: Vec::new(),
     };
     let found = reactions_at_start(&model)[0];
     let weight = 2.0 * 9.81;

@@ -50,6 +50,7 @@ pub fn case(kind: JointKind, body_b: Option<usize>, seed: u64) -> Case {
         bodies,
         joints: vec![joint],
         loads: Vec::new(),
+        flexible: Vec::new(),
     };
     let (q, v) = placement::guess(&model);
     Case {

@@ -6,6 +6,7 @@
 
 pub mod cases;
 pub mod documents;
+pub mod flexible;
 pub mod models;
 
 use flexbody::integrate::{Method, Multipliers, Settings, Start, Trajectory, simulate};
@@ -131,6 +132,7 @@ fn model(scene: &Value) -> Model<f64> {
         bodies,
         joints,
         loads: Vec::new(),
+        flexible: Vec::new(),
     }
 }
 

@@ -95,6 +95,7 @@ pub fn joint(
         drives: Vec::new(),
         redundant: Vec::new(),
         trivial_rows: Vec::new(),
+        modes: None,
         name: name.into(),
         kind,
         body_a,
@@ -137,5 +138,6 @@ pub fn free_pair(kind: JointKind, seed: u64) -> Model<f64> {
         joints: vec![joint(&bodies, ("joint", kind), between, &point, &axis)],
         bodies,
         loads: Vec::new(),
+        flexible: Vec::new(),
     }
 }

@@ -7,6 +7,7 @@ use crate::math::{Vec3, rotation};
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::bodies::{self, positions_of, velocities_of};
+use crate::system::flexible;
 
 /// Largest number of refinement steps. A correction of 1e-6 needs two.
 const REFINEMENTS: usize = 40;
@@ -53,6 +54,9 @@ pub(super) fn pull_back(
         body.inertia += psi_theta * d_theta.transpose();
     }
     let mut more = workspace.zeros(nv);
+    let at = (field.model, numbering);
+    let pair = (&psi[..nv], data.delta);
+    flexible::pull_mass_product(at, &field.motions, pair, &mut more, cot);
     let mut by_time = field.pull_rate(&psi[..nv], data.sigma, &mut more, cot);
     by_time += field.pull_rates(&psi[nv..], &mut more, cot);
     y.iter_mut().zip(&more).for_each(|(y, &m)| *y += m);
@@ -93,6 +97,12 @@ pub(super) fn pull_back(
     by_time += field.pull_rate(&psi[..nv], data.s, &mut unused, cot);
     by_time += field.pull_constraints(&psi[nv..], &mut unused, cot);
     *by_duration += fraction * by_time;
+    if !field.model.flexible.is_empty() {
+        let away = flexible::distance(numbering, to.q, data.q_raw);
+        let at = (field.model, numbering);
+        let pair = (&psi[..nv], &away[..]);
+        flexible::pull_mass_product(at, &field.motions, pair, &mut unused, cot);
+    }
     workspace.back([rest, change, first, unused]);
     let mut change = workspace.zeros(nq);
     bodies::rates_cotangent(numbering, to.q, &more, &mut change);
@@ -128,11 +138,22 @@ fn add_difference(
 ) {
     let numbering = field.numbering;
     field.pull_rate(psi, data.s, out, scratch);
+    let mut product = Vec::new();
+    if !field.model.flexible.is_empty() {
+        let (model, away) = (field.model, flexible::distance(numbering, to.q, data.q_raw));
+        let pair = (psi, &away[..]);
+        flexible::pull_mass_product((model, numbering), &field.motions, pair, out, scratch);
+        product.resize(psi.len(), 0.0);
+        flexible::add_mass_product(model, numbering, &field.motions, psi, &mut product);
+    }
     for (i, body) in field.model.bodies.iter().enumerate() {
         let (o, u) = (numbering.position(i), numbering.velocity(i));
         let (_, p) = positions_of(&to.q[o..]);
         let (_, raw) = positions_of(&data.q_raw[o..]);
-        let w = body.inertia.tr_mul(&velocities_of(&psi[u..]).1);
+        let mut w = body.inertia.tr_mul(&velocities_of(&psi[u..]).1);
+        if !product.is_empty() {
+            w += velocities_of(&product[u..]).1;
+        }
         let turned = rotation::rate_product(&p, &rotation::rate_transposed(&raw, &w)) - w;
         bodies::add6(&mut out[u..], &Vec3::zeros(), &turned);
     }

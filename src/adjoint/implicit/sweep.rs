@@ -10,6 +10,7 @@ use crate::integrate::implicit::radau::Scheme;
 use crate::integrate::{Method, Trajectory};
 use crate::system::Numbering;
 use crate::system::bodies;
+use crate::system::flexible;
 
 /// Cotangents of positions (seven coordinates per body) and velocities, or of their increments or
 /// rates.
@@ -151,6 +152,7 @@ pub(super) fn rates_of(
     let nv = numbering.velocities();
     bodies::rates_cotangent(numbering, q, &psi[..nv], &mut by.0);
     bodies::mass_product(model, numbering, &psi[nv..2 * nv], &mut by.1);
+    flexible::add_mass_product_at(model, numbering, q, &psi[nv..2 * nv], &mut by.1);
 }
 
 /// Adds `scale` times a pair.

@@ -7,7 +7,7 @@ use crate::math::{Vec3, rotation};
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::bodies::{self, add6, positions_of};
-use crate::system::{Numbering, placement};
+use crate::system::{Numbering, flexible, placement};
 
 /// Largest number of iterations of the position projection.
 const ITERATIONS: usize = 12;
@@ -195,6 +195,12 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             upper.fill(S::zero());
             if iteration > 0 {
                 metric(field.model, numbering, q, &data.q_raw, upper);
+                flexible::add_metric(
+                    (field.model, numbering),
+                    &field.motions,
+                    (q, &data.q_raw),
+                    upper,
+                );
                 field.add_reactions(&data.s, upper);
             }
             self.residual.iter_mut().for_each(|x| *x = -*x);

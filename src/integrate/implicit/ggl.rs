@@ -16,11 +16,13 @@
 use crate::linalg::{Emit, Pattern};
 use crate::math::{Mat3, Scalar};
 use crate::model::Model;
+use crate::system::attachment::by_coordinates;
 use crate::system::bodies::{
     self, BodyMotion, all_force_balances, velocities_of, velocity_of_rates,
 };
 use crate::system::constraint::RowGradient;
 use crate::system::emit_bodies::{Rates, emit_force_balance, emit_kinematics};
+use crate::system::flexible::{self, StateCotangent};
 use crate::system::in_motion::InMotion;
 use crate::system::joints::{self, JointCotangent, RowCotangents};
 use crate::system::kkt::{
@@ -167,6 +169,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
         }
         joints::add_reactions(model, numbering, &self.gradients, at.mu, out1);
         all_force_balances(model, numbering, &self.motions, at.vdot, out2);
+        flexible::add_force_balances(model, numbering, &self.motions, at.vdot, out2);
         joints::add_reactions(model, numbering, &self.gradients, at.lambda, out2);
         self.loads.fill(S::zero());
         let here = InMotion::new(model, numbering, &self.motions, at.time);
@@ -197,8 +200,8 @@ impl<'a, S: Scalar> Equations<'a, S> {
     }
 
     /// Records the pattern of [`Equations::emit_rates`].
-    pub(crate) fn pattern_of_rates(&self) -> Pattern {
-        self.record(|emit| self.emit_own_rates(emit))
+    pub(crate) fn pattern_of_rates(&self, q: &[S]) -> Pattern {
+        self.record(|emit| self.emit_own_rates(q, emit))
     }
 
     fn record(&self, assemble: impl FnOnce(&mut dyn Emit<S>)) -> Pattern {
@@ -226,6 +229,10 @@ impl<'a, S: Scalar> Equations<'a, S> {
         emit_reaction_jacobian(&here, at.mu, (f1, y), h, emit);
         let by_mass = &mut Times(emit, S::from(1.0 / self.mass));
         emit_force_balance(&here, (f2, v), rates, by_mass);
+        let of = (model, numbering);
+        flexible::emit_mass(of, motions, (f2, v), c * h, by_mass);
+        let (here_at, by) = ((&motions[..], at.vdot), (h * h, h));
+        flexible::emit_force_balances(of, here_at, (f2, y, v), by, by_mass);
         let to = LoadEntries {
             row: f2,
             y,
@@ -248,6 +255,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
             let (a, b) = sides(joint, motions, &ground, at.time);
             for (i, row) in numbering.rows(j).zip(joint.rows()) {
                 let (by_a, by_b) = rate_by_position(row, &a, &b);
+                let of_frame = by_a.frame;
                 // Zeros are emitted, because the pattern serves every choice of rows.
                 let h = if self.left_out.contains(i) {
                     S::zero()
@@ -262,6 +270,10 @@ impl<'a, S: Scalar> Equations<'a, S> {
                     }
                     emit.add_row(f4 + i, column + 3, &(by.theta * h));
                 }
+                let Some(modes) = &joint.modes else { continue };
+                for (slot, x) in by_coordinates(joint, modes, numbering, &of_frame) {
+                    emit.add(f4 + i, y + slot, x * h);
+                }
             }
         }
     }
@@ -269,18 +281,28 @@ impl<'a, S: Scalar> Equations<'a, S> {
     /// Emits the scaled derivative of F in the unknowns of another stage with positions `other`,
     /// through h times the rates at the positions `q`: (P(q) T(q'), M).
     pub(crate) fn emit_rates(&self, q: &[S], other: &[S], emit: &mut dyn Emit<S>) {
-        self.emit_rates_turned(emit, |i| {
+        self.emit_rates_turned(q, emit, |i| {
             let o = self.numbering.position(i);
             bodies::turn_between(&q[o..], &other[o..])
         });
     }
 
-    /// [`Equations::emit_rates`] for the stage itself: (1, M).
-    pub(crate) fn emit_own_rates(&self, emit: &mut dyn Emit<S>) {
-        self.emit_rates_turned(emit, |_| Mat3::identity());
+    /// As [`Equations::emit_rates`] for the stage itself: (1, M(q)).
+    pub(crate) fn emit_own_rates(&self, q: &[S], emit: &mut dyn Emit<S>) {
+        self.emit_rates_turned(q, emit, |_| Mat3::identity());
     }
 
-    fn emit_rates_turned(&self, emit: &mut dyn Emit<S>, turned: impl Fn(usize) -> Mat3<S>) {
+    /// Whether M depends on the positions.
+    pub(crate) fn mass_varies(&self) -> bool {
+        !self.model.flexible.is_empty()
+    }
+
+    fn emit_rates_turned(
+        &self,
+        q: &[S],
+        emit: &mut dyn Emit<S>,
+        turned: impl Fn(usize) -> Mat3<S>,
+    ) {
         let [y, v, ..] = self.starts();
         let by_mass = S::from(1.0 / self.mass);
         for (i, body) in self.model.bodies.iter().enumerate() {
@@ -290,6 +312,8 @@ impl<'a, S: Scalar> Equations<'a, S> {
             emit.add_identity(v + u, v + u, body.mass * by_mass);
             emit.add_block(v + u + 3, v + u + 3, &(body.inertia * by_mass));
         }
+        let of = (self.model, self.numbering);
+        flexible::emit_mass_at(of, q, (v, v), by_mass, emit);
     }
 
     /// Multiplies an unscaled cotangent of the unknowns by the column scaling.
@@ -391,6 +415,12 @@ impl Equations<'_, f64> {
                 &mut cot.gravity,
             );
         }
+        let mut bars = StateCotangent {
+            y: wanted.then_some(&mut y[..]),
+            v: None,
+        };
+        let here_at = (&self.motions[..], at.vdot);
+        flexible::pull_force_balances((model, numbering), here_at, psi2, &mut bars, cot);
         for (minus, psi) in self.loads.iter_mut().zip(psi2) {
             *minus = -psi;
         }

@@ -1,5 +1,5 @@
-//! The iteration matrix as a sum: a part with fixed rates, and the constant derivative in the
-//! rates.
+//! The iteration matrix as a sum: the derivative in the state, and that in the rates, which is constant
+//! in rigid scenes.
 
 use super::Stage;
 use super::ggl::{Equations, StepState};
@@ -23,8 +23,8 @@ impl SplitMatrix {
     /// Plans the matrix of `equations`; `zero` is any of their stages.
     pub(crate) fn new(equations: &mut Equations<f64>, zero: &Stage<f64>) -> Self {
         let held = SparseMatrix::new(equations.pattern(&zero.instant()));
-        let mut rates = SparseMatrix::new(equations.pattern_of_rates());
-        rates.assemble(|emit| equations.emit_own_rates(emit));
+        let mut rates = SparseMatrix::new(equations.pattern_of_rates(&zero.q));
+        rates.assemble(|emit| equations.emit_own_rates(&zero.q, emit));
         Self {
             slots: held.pattern.slots_of(&rates.pattern),
             held,
@@ -36,6 +36,10 @@ impl SplitMatrix {
     pub(crate) fn assemble(&mut self, equations: &mut Equations<f64>, at: &StepState<f64>, h: f64) {
         self.held
             .assemble(|emit| equations.jacobian(at, h, 0.0, emit));
+        if equations.mass_varies() {
+            self.rates
+                .assemble(|emit| equations.emit_own_rates(at.q, emit));
+        }
     }
 
     /// Sets `out`, which has the pattern of H, to H + c h B.

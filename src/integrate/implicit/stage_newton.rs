@@ -11,7 +11,7 @@ use crate::integrate::work::WorkCounts;
 use crate::linalg::{Pivots, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::{Complex64, Scalar};
 use crate::model::Model;
-use crate::system::{Numbering, RedundantRows, bodies};
+use crate::system::{Numbering, RedundantRows, bodies, flexible};
 use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
@@ -478,6 +478,8 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         f1.iter_mut().for_each(|x| *x /= *first);
         // Rows of the dynamics are scaled by h² / m, those of the kinematics by h.
         bodies::mass_product(self.real.model(), numbering, dv, &mut rest[..nv]);
+        let model = self.real.model();
+        flexible::add_mass_product_at(model, numbering, end, dv, &mut rest[..nv]);
         let scale = h / (first * self.real.mass());
         rest[..nv].iter_mut().for_each(|x| *x *= scale);
         if let Some((_, factors)) = &mut self.real_mode {

@@ -50,8 +50,11 @@ pub(crate) enum Tree<S> {
 
 impl<S: Scalar> Tree<S> {
     /// Plans the elimination; `None` if so many joints of `model` close loops that sparse LU costs
-    /// less.
+    /// less, or a body is flexible.
     pub(crate) fn plan(model: &Model<S>, numbering: &Numbering) -> Option<Self> {
+        if !model.flexible.is_empty() {
+            return None;
+        }
         let forest = links::forest(model, numbering);
         let small = forest
             .links

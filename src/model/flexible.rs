@@ -1,0 +1,217 @@
+//! Flexible bodies: a frame that moves as a body does, and elastic coordinates q that deform the
+//! body beside it.
+//!
+//! A point X of the body stands at x = X + Σ_I q_I X_I(X) in the axes of the frame; X_I is the shape of
+//! mode I. What the motion needs of the shapes are integrals over the mass (Shabana 2013, *Dynamics of
+//! Multibody Systems*, ch. 5), with mode 0 the undeformed position X, of which mass and inertia are those
+//! of the frame:
+//!
+//! ```text
+//! p_I = ∫ X_I dm                              (3)
+//! S_IJ = ∫ X_I X_Jᵀ dm + ∫ T_I T_Jᵀ di        (3 × 3; T_I turns the section's directors, di its inertia)
+//! U = ½ qᵀ K q + ½ Σ_p k_p e_p²,     e_p = b_p · q + ½ Σ_s c_ps (g_ps · q)²
+//! ```
+//!
+//! e_p are von Karman's strains at points with weights, so U is a quartic polynomial.
+//!
+//! The elastic coordinates stand in the states as positions of *carriers*: bodies without mass that are
+//! listed in [`super::Model::bodies`], cannot turn, and have three coordinates or one each. So states,
+//! steps and their adjoints have one layout for all bodies. A point of the deformed body that carries
+//! joints, loads or functions is a body without mass as well, its *interface*, held by a joint of kind
+//! `Attachment` (see [`Modes`]).
+
+use crate::math::{Mat3, Scalar, Vec3, parameters};
+
+/// A flexible body. Coordinates I = 1 … m stand at index I − 1.
+#[derive(Clone, Debug)]
+pub(crate) struct FlexibleBody<S> {
+    /// Name in the problem file.
+    pub name: String,
+    /// The body that is the floating frame: its position is the frame's origin; its mass is ∫dm, and its
+    /// inertia that of the undeformed body about the origin.
+    pub frame: usize,
+    /// The first of the carriers of the elastic coordinates, which stand one after the other.
+    pub carriers: usize,
+    /// Integrals of the shapes.
+    pub inertia: ModalInertia<S>,
+    /// Strain energy U.
+    pub stiffness: ModalStiffness<S>,
+    /// Damping D: the force D q̇ acts against the coordinates; symmetric, m × m by rows.
+    pub damping: Vec<S>,
+}
+
+/// Integrals of the shapes over the mass.
+#[derive(Clone, Debug)]
+pub(crate) struct ModalInertia<S> {
+    /// p_0 = ∫ X dm \[kg m\].
+    pub centre: Vec3<S>,
+    /// p_I \[kg m, for shapes without unit\].
+    pub static_moments: Vec<Vec3<S>>,
+    /// S_0I = ∫ X X_Iᵀ dm \[kg m²\].
+    pub with_position: Vec<Mat3<S>>,
+    /// S_IJ for J ≥ I, by rows of the upper triangle; S_JI = S_IJᵀ \[kg m²\].
+    pub products: Vec<Mat3<S>>,
+}
+
+/// Strain energy as a quartic polynomial.
+#[derive(Clone, Debug)]
+pub(crate) struct ModalStiffness<S> {
+    /// K, symmetric, m × m by rows \[N/m for coordinates in metres\].
+    pub linear: Vec<S>,
+    /// Strains e_p with their weights k_p.
+    pub strains: Vec<Strain<S>>,
+}
+
+/// A strain with its weight in the energy.
+#[derive(Clone, Debug)]
+pub(crate) struct Strain<S> {
+    /// k_p, for example E A times the weight of the quadrature.
+    pub weight: S,
+    /// e_p.
+    pub strain: Quadratic<S>,
+}
+
+/// A quadratic form without constant term, e = b · q + ½ Σ c_s (g_s · q)²: a strain, a section force or
+/// a stress.
+#[derive(Clone, Debug)]
+pub(crate) struct Quadratic<S> {
+    /// b.
+    pub linear: Vec<S>,
+    /// (c_s, g_s).
+    pub squares: Vec<(S, Vec<S>)>,
+}
+
+/// How an attachment's frame moves with the elastic coordinates: in the axes of the body, its point at
+/// s = X + Σ q_I N_I, and its axes at e + Σ q_I Θ_I × e. X and e are the joint's frame A.
+#[derive(Clone, Debug)]
+pub(crate) struct Modes<S> {
+    /// The first of the bodies that carry the coordinates.
+    pub carriers: usize,
+    /// N_I.
+    pub displacement: Vec<Vec3<S>>,
+    /// Θ_I.
+    pub rotation: Vec<Vec3<S>>,
+}
+
+/// How many carriers have three coordinates; the others have one.
+fn triples(count: usize) -> usize {
+    count / 3
+}
+
+/// The carriers of `count` elastic coordinates: how many coordinates each has.
+pub(crate) fn carriers(count: usize) -> impl Iterator<Item = usize> {
+    let full = std::iter::repeat_n(3, triples(count));
+    full.chain(std::iter::repeat_n(1, count % 3))
+}
+
+/// The body that carries each of `count` coordinates whose first carrier is `first`, and the component
+/// of its position.
+pub(crate) fn places(first: usize, count: usize) -> impl Iterator<Item = (usize, usize)> + Clone {
+    let full = triples(count);
+    (0..count).map(move |i| match i / 3 < full {
+        true => (first + i / 3, i % 3),
+        false => (first + full + (i - 3 * full), 0),
+    })
+}
+
+impl<S: Scalar> FlexibleBody<S> {
+    /// Number m of elastic coordinates.
+    pub(crate) fn modes(&self) -> usize {
+        self.inertia.static_moments.len()
+    }
+
+    /// The bodies that carry the coordinates.
+    pub(crate) fn carriers(&self) -> std::ops::Range<usize> {
+        self.carriers..self.carriers + carriers(self.modes()).count()
+    }
+
+    /// The body that carries each coordinate, and the component of its position.
+    pub(crate) fn places(&self) -> impl Iterator<Item = (usize, usize)> + Clone + use<S> {
+        places(self.carriers, self.modes())
+    }
+}
+
+parameters!(struct FlexibleBody {
+    name, frame, carriers;
+    inertia, stiffness, damping
+});
+
+parameters!(struct ModalInertia {; centre, static_moments, with_position, products });
+
+parameters!(struct ModalStiffness {; linear, strains });
+
+parameters!(struct Strain {; weight, strain });
+
+parameters!(struct Quadratic {; linear, squares });
+
+parameters!(struct Modes { carriers; displacement, rotation });
+
+impl<S: Scalar> ModalInertia<S> {
+    /// Where S_IJ stands among the products, and whether it is transposed.
+    pub(crate) fn place(&self, i: usize, j: usize) -> (usize, bool) {
+        let m = self.static_moments.len();
+        let (low, high) = (i.min(j), i.max(j));
+        (low * m - low * (low + 1) / 2 + high, j < i)
+    }
+}
+
+impl<S: Scalar> Quadratic<S> {
+    /// Its value.
+    pub(crate) fn value(&self, q: &[S]) -> S {
+        let half = S::from(0.5);
+        let squares = self.squares.iter().map(|(c, g)| {
+            let w = product(g, q);
+            *c * w * w * half
+        });
+        squares.fold(product(&self.linear, q), |sum, x| sum + x)
+    }
+
+    /// Adds `scale` times its gradient b + Σ c_s (g_s · q) g_s to `out`.
+    pub(crate) fn add_gradient(&self, q: &[S], scale: S, out: &mut [S]) {
+        add(scale, &self.linear, out);
+        for (c, g) in &self.squares {
+            add(scale * *c * product(g, q), g, out);
+        }
+    }
+
+    /// Adds the derivative of scale · value by the parameters to `cot`.
+    pub(crate) fn pull_value(&self, q: &[S], scale: S, cot: &mut Self) {
+        add(scale, q, &mut cot.linear);
+        for ((c, g), (by_c, by_g)) in self.squares.iter().zip(&mut cot.squares) {
+            let w = product(g, q);
+            *by_c += scale * w * w * S::from(0.5);
+            add(scale * *c * w, q, by_g);
+        }
+    }
+
+    /// Adds the derivative of scale · ψ · gradient by the parameters to `cot`.
+    pub(crate) fn pull_gradient(&self, q: &[S], psi: &[S], scale: S, cot: &mut Self) {
+        add(scale, psi, &mut cot.linear);
+        for ((c, g), (by_c, by_g)) in self.squares.iter().zip(&mut cot.squares) {
+            let (w, along) = (product(g, q), product(g, psi));
+            *by_c += scale * w * along;
+            add(scale * *c * along, q, by_g);
+            add(scale * *c * w, psi, by_g);
+        }
+    }
+}
+
+impl<S: Scalar> Modes<S> {
+    /// The body that carries each coordinate, and the component of its position.
+    pub(crate) fn places(&self) -> impl Iterator<Item = (usize, usize)> + Clone + use<S> {
+        places(self.carriers, self.displacement.len())
+    }
+}
+
+/// a · b.
+pub(crate) fn product<S: Scalar>(a: &[S], b: &[S]) -> S {
+    let terms = a.iter().zip(b);
+    terms.fold(S::zero(), |sum, (&a, &b)| sum + a * b)
+}
+
+/// Adds scale · x.
+pub(crate) fn add<S: Scalar>(scale: S, x: &[S], out: &mut [S]) {
+    for (out, &x) in out.iter_mut().zip(x) {
+        *out += scale * x;
+    }
+}

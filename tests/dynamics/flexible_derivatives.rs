@@ -1,0 +1,457 @@
+//! Inertial and elastic forces of flexible bodies against sums over points with masses, and every
+//! derivative against the complex step, at random states of random bodies of 1 to 7 coordinates.
+
+use crate::tests::reference;
+
+use flexbody::functions::instant::DeformationKind;
+use flexbody::functions::measure::{Snapshot, SnapshotCotangent};
+use flexbody::functions::{EnergyPart, Instant};
+use flexbody::integrate::implicit::ggl::{Equations, StepState};
+use flexbody::linalg::SparseMatrix;
+use flexbody::math::{Complex64, Parameters, Scalar, Vec3};
+use flexbody::model::Model;
+use flexbody::system::bodies::{BodyMotion, all_force_balances, rates, velocity_of_rates};
+use flexbody::system::kkt::SaddlePoint;
+use flexbody::system::marker::{MarkerKinematics, RelativeMotion};
+use flexbody::system::{InMotion, Numbering, flexible, initial, joints, placement};
+use reference::cases::{Case, TIME, dot, lift, parameters, slopes, step, unit};
+use reference::flexible::{Points, quadratic, stiffness, swing_of};
+use reference::models::Numbers;
+
+/// Swings at random states, their attachments a little open.
+fn cases() -> Vec<Case> {
+    let case = |(seed, modes): (u64, usize)| {
+        let mut model = swing_of(seed, modes, 40.0);
+        let mut numbers = Numbers(seed + 100);
+        for i in 0..model.bodies.len() {
+            let count = model.bodies[i].mobility.translation.free();
+            for k in 0..count {
+                model.bodies[i].position[k] += 0.2 * numbers.next();
+                model.bodies[i].velocity[k] += numbers.next();
+            }
+            if model.bodies[i].mobility.has_rotation() {
+                model.bodies[i].orientation = numbers.orientation();
+                model.bodies[i].angular_velocity += numbers.vector();
+            }
+        }
+        let (q, v) = placement::guess(&model);
+        Case {
+            name: format!("swing {seed} of {modes}"),
+            numbering: Numbering::new(&model),
+            model,
+            q,
+            v,
+            numbers,
+        }
+    };
+    [(1, 1), (2, 2), (3, 3), (4, 5), (5, 7)].map(case).into()
+}
+
+/// Velocity coordinates that the mobilities admit.
+fn admitted(case: &Case) -> Vec<usize> {
+    let numbering = &case.numbering;
+    let own = |body: usize| {
+        let (o, mobility) = (numbering.velocity(body), numbering.mobility(body));
+        let turns = if mobility.has_rotation() { 3 } else { 0 };
+        (0..mobility.translation.free())
+            .chain(3..3 + turns)
+            .map(move |k| o + k)
+    };
+    (0..numbering.bodies()).flat_map(own).collect()
+}
+
+/// M v̇ − f(q, v).
+fn balance<S: Scalar>(case: &Case, model: &Model<S>, q: &[S], v: &[S], a: &[S]) -> Vec<S> {
+    let motions = case.motions(q, v);
+    let mut out = vec![S::zero(); v.len()];
+    all_force_balances(model, &case.numbering, &motions, a, &mut out);
+    flexible::add_force_balances(model, &case.numbering, &motions, a, &mut out);
+    out
+}
+
+/// The virtual power of the forces is the sum over the points of m (ẍ − g) · δx, their accelerations
+/// and virtual velocities by the kinematics of markers.
+#[test]
+fn inertial_forces_are_those_of_the_points() {
+    for modes in [1, 2, 3, 5] {
+        let mut numbers = Numbers(40 + modes as u64);
+        let points = Points::any(&mut numbers, 10, modes);
+        let mut frame = numbers.body("body");
+        (frame.mass, frame.inertia) = points.rigid();
+        let mut model = Model {
+            gravity: numbers.vector() * 9.0,
+            bodies: vec![frame],
+            joints: Vec::new(),
+            loads: Vec::new(),
+            flexible: Vec::new(),
+        };
+        let (q, rate) = (numbers.list(modes), numbers.list(modes));
+        let mut stiff = stiffness(&mut numbers, modes, 0.0);
+        stiff.strains.clear();
+        model.add_flexible(
+            0,
+            (&q, &rate),
+            points.inertia(),
+            stiff,
+            vec![0.0; modes * modes],
+        );
+        let numbering = Numbering::new(&model);
+        let (q, v) = placement::guess(&model);
+        let (a, w) = (numbers.list(v.len()), numbers.list(v.len()));
+        let mut motions = Vec::new();
+        BodyMotion::all(&numbering, &q, &v, &mut motions);
+        let mut forces = vec![0.0; v.len()];
+        all_force_balances(&model, &numbering, &motions, &a, &mut forces);
+        flexible::add_force_balances(&model, &numbering, &motions, &a, &mut forces);
+        let places: Vec<usize> = (0..6)
+            .chain(
+                model.flexible[0]
+                    .places()
+                    .map(|(b, k)| numbering.velocity(b) + k),
+            )
+            .collect();
+        let power: f64 = places.iter().map(|&i| forces[i] * w[i]).sum();
+        let elastic = |of: &[f64], offset: &dyn Fn(usize) -> usize| -> Vec<f64> {
+            let all = model.flexible[0].places();
+            all.map(|(b, k)| of[offset(b) + k]).collect()
+        };
+        let by_v = |b: usize| numbering.velocity(b);
+        let (x, xdot) = (elastic(&q, &|b| numbering.position(b)), elastic(&v, &by_v));
+        let (xddot, xw) = (elastic(&a, &by_v), elastic(&w, &by_v));
+        let motion = motions[0].accelerated(&a).virtually(&w);
+        let mut exact = 0.0;
+        for (k, m) in points.masses.iter().enumerate() {
+            let sum = |x: &[f64]| {
+                let terms = points.shapes.iter().zip(x);
+                terms.fold(Vec3::zeros(), |sum, (shape, x)| sum + shape[k] * *x)
+            };
+            let local = RelativeMotion {
+                rate: sum(&xdot),
+                acceleration: sum(&xddot),
+                virtual_rate: sum(&xw),
+            };
+            let place = points.places[k] + sum(&x);
+            let at = MarkerKinematics::moving_point(&motion, &place, Some(&local));
+            exact += m * (at.acceleration - model.gravity).dot(&at.virtual_rate);
+        }
+        assert!(
+            (power - exact).abs() <= 1e-13 * exact.abs().max(10.0),
+            "{power} {exact}"
+        );
+        // Energy and momenta likewise.
+        let held = flexible::held(&model, &motions);
+        let body = &model.bodies[0];
+        let spin = body.inertia * motion.omega;
+        let kinetic = held.kinetic
+            + 0.5 * (body.mass * motion.velocity.norm_squared() + spin.dot(&motion.omega));
+        let momentum = held.momentum + motion.velocity * body.mass;
+        let angular = held.angular_momentum
+            + motion.position.cross(&motion.velocity) * body.mass
+            + motion.rotation * spin;
+        let (mut energy, mut linear, mut turning) = (0.0, Vec3::zeros(), Vec3::zeros());
+        for (k, m) in points.masses.iter().enumerate() {
+            let sum = |x: &[f64]| {
+                let terms = points.shapes.iter().zip(x);
+                terms.fold(Vec3::zeros(), |sum, (shape, x)| sum + shape[k] * *x)
+            };
+            let local = RelativeMotion {
+                rate: sum(&xdot),
+                acceleration: Vec3::zeros(),
+                virtual_rate: Vec3::zeros(),
+            };
+            let place = points.places[k] + sum(&x);
+            let at = MarkerKinematics::moving_point(&motion, &place, Some(&local));
+            energy += 0.5 * m * at.rate.norm_squared();
+            linear += at.rate * *m;
+            turning += at.x.cross(&at.rate) * *m;
+        }
+        assert!((kinetic - energy).abs() <= 1e-13 * energy.max(1.0));
+        assert!((momentum - linear).norm() <= 1e-13 * linear.norm().max(10.0));
+        assert!((angular - turning).norm() <= 1e-13 * turning.norm().max(10.0));
+    }
+}
+
+/// Rows of attachments: gradients, rates, biases and their pull-backs.
+#[test]
+fn rows_of_attachments() {
+    for mut case in cases() {
+        let (nv, rows) = (case.v.len(), case.numbering.constraints());
+        let (model, v) = (case.lifted(), lift(&case.v));
+        let mut gradients = Vec::new();
+        let motions = case.motions(&case.q, &case.v);
+        let at = InMotion::new(&case.model, &case.numbering, &motions, TIME);
+        joints::gradients(&at, &mut gradients);
+        let (mut given, mut by_value) = (Vec::new(), Vec::new());
+        for j in admitted(&case) {
+            let e = unit(nv, j);
+            let mut column = vec![0.0; rows];
+            joints::rates_from_gradients(&case.model, &case.numbering, &gradients, &e, &mut column);
+            given.extend(column);
+            by_value.extend(&case.constraints(&model, &case.moved(&e), &v)[..rows]);
+        }
+        case.assert("G by Φ", &given, &by_value);
+        let lambda = case.numbers.list(rows);
+        let product: Vec<f64> = given
+            .chunks(rows)
+            .map(|column| dot(column, &lambda))
+            .collect();
+        let all = case.reactions(&case.model, &case.q, &lambda);
+        let reactions: Vec<f64> = admitted(&case).into_iter().map(|i| all[i]).collect();
+        case.assert("Gᵀλ", &reactions, &product);
+        let now = step((&TIME, &1.0));
+        let in_time = case.constraints_at(&model, &case.moved(&case.v), &v, now);
+        let (mut rate, mut bias) = (vec![0.0; rows], vec![0.0; rows]);
+        joints::rates(&at, &mut rate);
+        joints::accelerations(&at, &mut bias);
+        case.assert("rate", &rate, &in_time[..rows]);
+        case.assert("bias", &bias, &in_time[rows..2 * rows]);
+    }
+}
+
+/// ψᵀ(M v̇ − f) by positions, velocities and parameters; ψᵀ M x by positions and parameters.
+#[test]
+fn pull_backs_of_the_forces() {
+    for mut case in cases() {
+        let nv = case.v.len();
+        let (a, psi) = (case.numbers.list(nv), case.numbers.list(nv));
+        let places = admitted(&case);
+        let motions = case.motions(&case.q, &case.v);
+        let (mut y, mut v) = (vec![0.0; nv], vec![0.0; nv]);
+        let mut cot = case.model.map(&mut |_| 0.0);
+        let of = (&case.model, &case.numbering);
+        let mut state = flexible::StateCotangent {
+            y: Some(&mut y),
+            v: Some(&mut v),
+        };
+        flexible::pull_force_balances(of, (&motions, &a), &psi, &mut state, &mut cot);
+        let forces = |model: &Model<Complex64>, q: &[Complex64], v: &[Complex64]| {
+            let motions = case.motions(q, v);
+            let mut out = vec![Complex64::from(0.0); nv];
+            let a = lift(&a);
+            flexible::add_force_balances(model, &case.numbering, &motions, &a, &mut out);
+            dot(&slopes(&out), &psi)
+        };
+        let model = case.lifted();
+        let pick = |x: &[f64]| -> Vec<f64> { places.iter().map(|&i| x[i]).collect() };
+        let by_y = |&j: &usize| forces(&model, &case.moved(&unit(nv, j)), &lift(&case.v));
+        let exact: Vec<f64> = places.iter().map(by_y).collect();
+        case.assert("forces by positions", &pick(&y), &exact);
+        let by_v = |&j: &usize| {
+            let v: Vec<_> = case.v.iter().zip(&unit(nv, j)).map(step).collect();
+            forces(&model, &lift(&case.q), &v)
+        };
+        let exact: Vec<f64> = places.iter().map(by_v).collect();
+        case.assert("forces by velocities", &pick(&v), &exact);
+        let (q, v) = (lift(&case.q), lift(&case.v));
+        let exact = case.by_parameters(|model| forces(model, &q, &v));
+        case.assert("forces by parameters", &parameters(&cot), &exact);
+
+        let (mut y, mut cot) = (vec![0.0; nv], case.model.map(&mut |_| 0.0));
+        flexible::pull_mass_product(of, &motions, (&psi, &a), &mut y, &mut cot);
+        let product = |model: &Model<Complex64>, q: &[Complex64]| {
+            let mut out = vec![Complex64::from(0.0); nv];
+            flexible::add_mass_product_at(model, &case.numbering, q, &lift(&a), &mut out);
+            dot(&slopes(&out), &psi)
+        };
+        let by_y = |&j: &usize| product(&model, &case.moved(&unit(nv, j)));
+        let exact: Vec<f64> = places.iter().map(by_y).collect();
+        case.assert("M x by positions", &pick(&y), &exact);
+        let exact = case.by_parameters(|model| product(model, &q));
+        case.assert("M x by parameters", &parameters(&cot), &exact);
+    }
+}
+
+/// The scaled iteration matrix of the stabilised equations, M(q) and ∂(M v̇)/∂q in it, and its parts.
+#[test]
+fn iteration_matrix() {
+    let (h, c) = (0.03, 40.0);
+    for mut case in cases() {
+        let rows = case.numbering.constraints();
+        let (nq, nv) = (case.q.len(), case.v.len());
+        let (lambda, mu) = (case.numbers.list(rows), case.numbers.list(rows));
+        let (qdot, vdot) = (case.numbers.list(nq), case.numbers.list(nv));
+        let mut equations = Equations::new(&case.model, &case.numbering);
+        let at = StepState {
+            q: &case.q,
+            v: &case.v,
+            lambda: &lambda,
+            mu: &mu,
+            qdot: &qdot,
+            vdot: &vdot,
+            time: TIME,
+        };
+        let mut matrix = SparseMatrix::new(equations.pattern(&at));
+        matrix.assemble(|emit| equations.jacobian(&at, h, c, emit));
+        let (model, order, length) = (case.lifted(), equations.order(), equations.length());
+        for column in 0..order {
+            let reduced = unit(order, column);
+            let mut e = reduced.clone();
+            e.resize(length, 0.0);
+            equations.expand(&mut e);
+            let moved = |x: &[f64], from: usize, scale: f64| -> Vec<Complex64> {
+                let part = e[from..].iter().map(|e| e * scale);
+                x.iter().zip(part).map(|(x, e)| step((x, &e))).collect()
+            };
+            let mut dq = vec![0.0; nq];
+            rates(&case.numbering, &case.q, &e[..nv], &mut dq);
+            let by_q = qdot.iter().zip(&dq).map(|(x, d)| step((x, &(c * d))));
+            let (q, v) = (case.moved(&e[..nv]), moved(&case.v, nv, 1.0 / h));
+            let lambda = moved(&lambda, 2 * nv, equations.mass() / (h * h));
+            let mu = moved(&mu, 2 * nv + rows, 1.0 / h);
+            let (qdot, vdot) = (by_q.collect::<Vec<_>>(), moved(&vdot, nv, c / h));
+            let at = StepState {
+                q: &q,
+                v: &v,
+                lambda: &lambda,
+                mu: &mu,
+                qdot: &qdot,
+                vdot: &vdot,
+                time: TIME.into(),
+            };
+            let mut lifted = Equations::new(&model, &case.numbering);
+            let mut out = vec![Complex64::from(0.0); length];
+            lifted.residual(&at, h.into(), &mut out);
+            let mut exact = slopes(&out);
+            equations.compress(&mut exact);
+            let given = matrix.multiply(&reduced);
+            case.assert(&format!("column {column}"), &given, &exact[..order]);
+        }
+    }
+}
+
+/// Assembly, projected velocities and initial accelerations by every parameter, with attachments that
+/// are open at the placement.
+#[test]
+fn pull_back_of_the_initial_conditions() {
+    for (seed, modes) in [(11, 2), (12, 4)] {
+        let mut model = swing_of(seed, modes, 40.0);
+        let mut numbers = Numbers(seed);
+        model.bodies[1].position += numbers.vector() * 0.05;
+        let tip = model.bodies.len() - 2;
+        model.bodies[tip].position += numbers.vector() * 0.03;
+        let (q, v) = placement::guess(&model);
+        let case = Case {
+            name: format!("start of {modes}"),
+            numbering: Numbering::new(&model),
+            model,
+            q,
+            v,
+            numbers,
+        };
+        let numbering = &case.numbering;
+        let nv = case.v.len();
+        let places = admitted(&case);
+        let mut saddle = SaddlePoint::new(&case.model, numbering);
+        let state = initial::solve(&case.model, numbering, &mut saddle).expect("is consistent");
+        let mut numbers = Numbers(7);
+        let bars = [(); 3].map(|()| {
+            let mut bar = vec![0.0; nv];
+            places.iter().for_each(|&i| bar[i] = numbers.next());
+            bar
+        });
+        let mut cot = case.model.map(&mut |_| 0.0);
+        let given = (&bars[0][..], &bars[1][..], &bars[2][..]);
+        initial::pull_back(&case.model, numbering, &mut saddle, &state, given, &mut cot)
+            .expect("is regular");
+        let exact = case.by_parameters(|model| {
+            let mut saddle = SaddlePoint::new(model, numbering);
+            let state = initial::solve(model, numbering, &mut saddle).expect("is consistent");
+            let q: Vec<f64> = state.q.iter().map(|q| q.re).collect();
+            let mut y = vec![0.0; nv];
+            velocity_of_rates(numbering, &q, &slopes(&state.q), &mut y);
+            dot(&y, &bars[0]) + dot(&slopes(&state.v), &bars[1]) + dot(&slopes(&state.a), &bars[2])
+        });
+        case.assert("initial state by parameters", &parameters(&cot), &exact);
+    }
+}
+
+/// Energies, strain energy and forms in the coordinates, by state and parameters.
+#[test]
+fn pull_backs_of_quantities() {
+    for mut case in cases() {
+        let modes = case.model.flexible[0].modes();
+        let instants = [
+            Instant::Energy(EnergyPart::Kinetic),
+            Instant::Energy(EnergyPart::Potential),
+            Instant::Energy(EnergyPart::Total),
+            Instant::StrainEnergy(0),
+            Instant::Deformation {
+                flexible: 0,
+                kind: DeformationKind::Stress,
+                form: quadratic(&mut case.numbers, modes),
+            },
+        ];
+        let nv = case.v.len();
+        let places = admitted(&case);
+        let still = vec![0.0; nv];
+        for instant in &instants {
+            let (mut y, mut v, mut a) = (still.clone(), still.clone(), still.clone());
+            let mut cot = case.model.map(&mut |_| 0.0);
+            let mut own = instant.map(&mut |_| 0.0);
+            let at = Snapshot {
+                model: &case.model,
+                numbering: &case.numbering,
+                q: &case.q,
+                v: &case.v,
+                a: &still,
+            };
+            let mut out = SnapshotCotangent {
+                y: &mut y,
+                v: &mut v,
+                a: &mut a,
+                model: &mut cot,
+            };
+            instant.pull_back(&at, 0.0, 1.0, &mut out, &mut own);
+            let zero = lift(&still);
+            let value = |model: &Model<Complex64>,
+                         instant: &Instant<Complex64>,
+                         q: &[Complex64],
+                         v: &[Complex64]| {
+                let at = Snapshot {
+                    model,
+                    numbering: &case.numbering,
+                    q,
+                    v,
+                    a: &zero,
+                };
+                slopes(&[instant.value(&at, 0.0)])[0]
+            };
+            let (model, lifted) = (case.lifted(), instant.map(&mut Complex64::from));
+            let (q, w) = (lift(&case.q), lift(&case.v));
+            let what = instant.describe();
+            let pick = |x: &[f64]| -> Vec<f64> { places.iter().map(|&i| x[i]).collect() };
+            let by_y = |&j: &usize| value(&model, &lifted, &case.moved(&unit(nv, j)), &w);
+            let exact: Vec<f64> = places.iter().map(by_y).collect();
+            case.assert(&format!("{what} by positions"), &pick(&y), &exact);
+            let by_v = |&j: &usize| {
+                let w: Vec<_> = case.v.iter().zip(&unit(nv, j)).map(step).collect();
+                value(&model, &lifted, &q, &w)
+            };
+            let exact: Vec<f64> = places.iter().map(by_v).collect();
+            case.assert(&format!("{what} by velocities"), &pick(&v), &exact);
+            let exact = case.by_parameters(|model| value(model, &lifted, &q, &w));
+            case.assert(&format!("{what} by parameters"), &parameters(&cot), &exact);
+            let mut given = Vec::new();
+            own.map(&mut |x| {
+                given.push(x);
+                x
+            });
+            let exact: Vec<f64> = (0..given.len())
+                .map(|wanted| {
+                    let mut i = 0;
+                    let moved = instant.map(&mut |x| {
+                        i += 1;
+                        step((&x, &if i == wanted + 1 { 1.0 } else { 0.0 }))
+                    });
+                    value(&model, &moved, &q, &w)
+                })
+                .collect();
+            case.assert(&format!("{what} by its own"), &given, &exact);
+        }
+        let (q, v) = (lift(&case.q), lift(&case.v));
+        let a = lift(&case.numbers.list(nv));
+        // The balance is finite and real where all is real.
+        let found = balance(&case, &case.lifted(), &q, &v, &a);
+        assert!(found.iter().all(|x| x.is_finite() && x.im == 0.0));
+    }
+}
