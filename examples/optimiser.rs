@@ -2,9 +2,8 @@
 //! `cargo run --release --example optimiser`.
 
 use flexbody::optimiser::{
-    Evaluation, EvaluationFailure, Gradients, Nlp, Options, Silent, Status, solve,
+    Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp, Options, Silent, Status, solve,
 };
-use nalgebra::DMatrix;
 
 /// Minimise (1 − x)² + 100 (y − x²)² subject to x² + y² ≤ 1.
 struct Rosenbrock;
@@ -42,7 +41,7 @@ impl Nlp for Rosenbrock {
         let (a, b) = (1.0 - x[0], x[1] - x[0] * x[0]);
         Ok(Gradients {
             objective: vec![-2.0 * a - 400.0 * b * x[0], 200.0 * b],
-            jacobian: DMatrix::from_row_slice(1, 2, &[2.0 * x[0], 2.0 * x[1]]),
+            jacobian: Jacobian::dense(1, 2, vec![2.0 * x[0], 2.0 * x[1]]),
         })
     }
 }

@@ -6,10 +6,9 @@ use super::known_evaluations::{EvaluationContext, KnownEvaluations, bits};
 use super::not_finite;
 use super::speculation::SpeculativeCache;
 use crate::integrate::IntegrationFailure;
-use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
+use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
 use crate::problem::{Problem, Sense};
 use crate::report::evaluations::Work;
-use nalgebra::DMatrix;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -288,7 +287,7 @@ impl Nlp for Evaluator<'_> {
         let n = x.len();
         Ok(Gradients {
             objective: (0..n).map(|i| self.sign * scaled(0, i)).collect(),
-            jacobian: DMatrix::from_fn(functions.len() - 1, n, |j, i| scaled(j + 1, i)),
+            jacobian: Jacobian::from_fn(functions.len() - 1, n, |j, i| scaled(j + 1, i)),
         })
     }
 }

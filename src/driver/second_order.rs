@@ -102,7 +102,8 @@ pub(crate) fn second_order(
             }
             let mut beside = |length: f64| -> Result<DVector<f64>, EvaluationFailure> {
                 let g = program.gradients(&place(j, length))?;
-                let all = DVector::from_vec(g.objective) + g.jacobian.tr_mul(&multipliers);
+                let all = DVector::from_vec(g.objective)
+                    + DVector::from_vec(g.jacobian.weighted_sum(multipliers.as_slice()));
                 Ok(all.select_rows(&free))
             };
             if stopped() {
@@ -203,7 +204,8 @@ fn active(
         let Some(bound) = all.find(|a| a.name == constraint.name) else {
             continue;
         };
-        let row = slopes.jacobian.row(j).transpose();
+        let n = outcome.x.len();
+        let row = DVector::from_fn(n, |i, _| slopes.jacobian[(j, i)]);
         let inner = row.select_rows(&free);
         let held = bound.multiplier * row.amax() > force;
         match bound.side {

@@ -1,6 +1,6 @@
 //! The primal–dual Newton step of the barrier problem.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::iterate::{Iterate, Layout};
 use super::kkt_system::KktSystem;
@@ -56,7 +56,7 @@ impl NewtonSystem {
 
     /// δ that was added to dependent rows.
     pub(crate) fn regularisation(&self) -> f64 {
-        self.system.regularisation
+        self.system.regularisation()
     }
 
     /// Step towards the point of the central path with parameter `mu`, where the rows have the
@@ -76,7 +76,7 @@ impl NewtonSystem {
         for (k, &j) in layout.slack_rows.iter().enumerate() {
             q[j] -= force[n + k] / self.sigma[n + k];
         }
-        let a: &DMatrix<f64> = &at.slopes.a;
+        let a = &at.slopes.a;
         let (x, y) = self.system.solve(b, a, &p, &q);
         // Near a bound Σ is large and dy/Σ is accurate; far away Σ is tiny and only the rows are.
         let moved = a * &x;
@@ -175,7 +175,7 @@ impl Direction {
                 continue;
             }
             found = true;
-            let own = system.sigma[i] + if i < layout.n { b.dense()[(i, i)] } else { 0.0 };
+            let own = system.sigma[i] + if i < layout.n { b.diagonal(i) } else { 0.0 };
             stiffness[i] += own * (d.abs() / (REACH * room) - 1.0);
         }
         found.then_some(stiffness)

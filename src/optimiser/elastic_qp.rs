@@ -4,8 +4,9 @@ use std::time::Instant;
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
+use super::jacobian::Jacobian;
 use super::outcome::Counts;
 use super::qp::{Hessian, QpData, QpStep, settings};
 use super::refined_qp::refine;
@@ -25,6 +26,8 @@ pub(super) struct ElasticQp {
     has_lower: Vec<bool>,
     has_upper: Vec<bool>,
     solver: Option<DefaultSolver<f64>>,
+    /// The Jacobian of the last subproblem, for its pattern.
+    last: Option<Jacobian>,
 }
 
 impl ElasticQp {
@@ -36,6 +39,7 @@ impl ElasticQp {
             has_lower: finite(row_lower),
             has_upper: finite(row_upper),
             solver: None,
+            last: None,
         }
     }
 
@@ -89,11 +93,15 @@ impl ElasticQp {
             .max(data.penalty.amax())
             .max(radius * data.b.amax())
             .max(1e-100);
-        let norms = DVector::from_fn(m, |j, _| data.a.row(j).amax().max(1e-8));
+        let norms = DVector::from_fn(m, |j, _| data.a.row_amax(j).max(1e-8));
         let rhs = self.right_hand_side(data, &norms, radius);
         let q: Vec<f64> = (data.g.iter().map(|g| g / force))
             .chain((0..m).map(|j| data.penalty[j] * norms[j] / force))
             .collect();
+        if self.last.as_ref().is_none_or(|a| !a.has_pattern_of(data.a)) {
+            self.solver = None;
+            self.last = Some(data.a.clone());
+        }
         let values = self.row_values(data.a, &norms);
         let (status, t, z) = match data.b {
             Hessian::Dense(b) => {
@@ -106,7 +114,7 @@ impl ElasticQp {
                         solver.update_data(&p, &q, &values, &rhs).ok()?;
                         solver
                     }
-                    None => self.new_solver(p, &q, values, &rhs)?,
+                    None => self.new_solver(data.a, p, &q, values, &rhs)?,
                 };
                 let solver = self.solver.insert(solver);
                 solver.solve();
@@ -114,7 +122,7 @@ impl ElasticQp {
                 (found.status, found.x.clone(), found.z.clone())
             }
             Hessian::Split(b) => {
-                let rows = self.pattern(values);
+                let rows = self.pattern(data.a, values);
                 split_qp::solve(&rows, b, radius / force, &q, &rhs)?
             }
         };
@@ -148,7 +156,7 @@ impl ElasticQp {
         let m = self.has_lower.len();
         let mut rhs = Vec::new();
         for j in 0..m {
-            let reach = data.a.row(j).iter().map(|v| v.abs()).sum::<f64>() / norms[j] + 1.0;
+            let reach = data.a.row(j).map(|(_, v)| v.abs()).sum::<f64>() / norms[j] + 1.0;
             let above = data.above[j] / (norms[j] * radius);
             let below = data.below[j] / (norms[j] * radius);
             let excess = (-above - reach).max(-below - reach).max(0.0);
@@ -169,12 +177,13 @@ impl ElasticQp {
     }
 
     /// Non-zero values of the constraint matrix, column by column.
-    fn row_values(&self, a: &DMatrix<f64>, norms: &DVector<f64>) -> Vec<f64> {
+    fn row_values(&self, a: &Jacobian, norms: &DVector<f64>) -> Vec<f64> {
         let m = self.has_lower.len();
         let mut values = Vec::new();
+        let (starts, places) = a.by_columns();
         for i in 0..self.n {
-            for j in 0..m {
-                let v = a[(j, i)] / norms[j];
+            for &(j, k) in &places[starts[i]..starts[i + 1]] {
+                let v = a.values()[k] / norms[j];
                 if self.has_upper[j] {
                     values.push(v);
                 }
@@ -193,6 +202,7 @@ impl ElasticQp {
 
     fn new_solver(
         &self,
+        a: &Jacobian,
         p: Vec<f64>,
         q: &[f64],
         values: Vec<f64>,
@@ -207,30 +217,35 @@ impl ElasticQp {
         }
         pointers.extend(std::iter::repeat_n(indices.len(), m));
         let p = CscMatrix::new(n + m, n + m, pointers, indices, p);
-        let a = self.pattern(values);
+        let a = self.pattern(a, values);
         let cones = [NonnegativeConeT(a.m)];
         DefaultSolver::new(&p, q, &a, rhs, &cones, settings()?).ok()
     }
 
     /// The constraint matrix with the given values; zeros stay in the pattern.
-    fn pattern(&self, values: Vec<f64>) -> CscMatrix<f64> {
+    fn pattern(&self, a: &Jacobian, values: Vec<f64>) -> CscMatrix<f64> {
         let (n, m) = (self.n, self.has_lower.len());
         let sides = |j: usize| usize::from(self.has_upper[j]) + usize::from(self.has_lower[j]);
         let bounded: usize = (0..m).map(sides).sum();
         let total = bounded + m + 2 * n;
         let mut pointers = vec![0];
         let mut indices = Vec::new();
+        let mut firsts = vec![0];
+        for j in 0..m {
+            firsts.push(firsts[j] + sides(j));
+        }
+        let (starts, places) = a.by_columns();
         for i in 0..n {
-            indices.extend(0..bounded);
+            for &(j, _) in &places[starts[i]..starts[i + 1]] {
+                indices.extend(firsts[j]..firsts[j + 1]);
+            }
             indices.extend([bounded + m + 2 * i, bounded + m + 2 * i + 1]);
             pointers.push(indices.len());
         }
-        let mut first = 0;
         for j in 0..m {
-            indices.extend(first..first + sides(j));
+            indices.extend(firsts[j]..firsts[j + 1]);
             indices.push(bounded + j);
             pointers.push(indices.len());
-            first += sides(j);
         }
         CscMatrix::new(total, n + m, pointers, indices, values)
     }

@@ -76,7 +76,7 @@ impl Program<'_> {
             let size = |bound: f64| if bound.is_finite() { bound.abs() } else { 0.0 };
             let bound = size(self.user_row_lower[j]).max(size(self.user_row_upper[j]));
             let by = |i: usize| if bound > 0.0 { x[i].abs() } else { largest_x };
-            let change: f64 = (0..x.len()).map(|i| slopes.a[(k, i)].abs() * by(i)).sum();
+            let change: f64 = slopes.a.row(k).map(|(i, v)| v.abs() * by(i)).sum();
             let size = bound.max(change / self.scaling.constraints[j]);
             let largest = &mut self.largest_rows[j];
             *largest = largest.max(size);

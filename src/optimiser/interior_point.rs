@@ -29,6 +29,10 @@ const LONGEST_CRAWL: usize = 4;
 const CRAWLING: f64 = 1e-4;
 const LEAVE_CRAWL: f64 = 0.1;
 
+/// After so many iterations within this distance, relative to the size of the point, a run ends.
+const LONGEST_STAY: usize = 30;
+const NEARBY: f64 = 1e-8;
+
 /// Number of successive steps that may gain less than rounding.
 const LOST_STEPS: usize = 4;
 
@@ -44,6 +48,8 @@ pub(super) struct InteriorPoint {
     filter: Filter,
     theta_small: f64,
     short_steps: usize,
+    /// A point that the iteration has not left by more than `NEARBY`, and for how many iterations.
+    anchor: (DVector<f64>, usize),
     /// Variables on which nothing has depended so far. They have no barrier, so they stay.
     idle: Vec<usize>,
 }
@@ -57,7 +63,8 @@ impl InteriorPoint {
         push: f64,
     ) -> InteriorPoint {
         let mut layout = Layout::new(program);
-        let idle: Vec<usize> = (0..layout.n).filter(|&k| slopes.is_idle(k)).collect();
+        let is_idle = slopes.idle();
+        let idle: Vec<usize> = (0..layout.n).filter(|&k| is_idle[k]).collect();
         for &k in &idle {
             (layout.lower[k], layout.upper[k]) = (f64::NEG_INFINITY, f64::INFINITY);
         }
@@ -83,7 +90,7 @@ impl InteriorPoint {
         at.estimate_multipliers(&layout, LARGEST_ESTIMATE);
         let theta = infeasibility(&layout.residual(&at.point.c, &at.s), &at.point.c);
         // The first step is no longer than the point, or 1.
-        let mut b = QuasiNewton::new(n, options.dense_limit, options.memory);
+        let mut b = QuasiNewton::new(n, options.dense_limit, options.memory).with_diagonal();
         let force = at.lagrangian_slope(&layout).rows(0, n).amax();
         b.set_scale((force / at.point.x.amax().max(1.0)).max(1.0));
         InteriorPoint {
@@ -92,6 +99,7 @@ impl InteriorPoint {
             filter: Filter::new(1e2 * theta.max(1.0)),
             theta_small: 1e-4 * theta.max(1.0),
             short_steps: 0,
+            anchor: (at.point.x.clone(), 0),
             idle,
             layout,
             at,
@@ -152,7 +160,7 @@ impl InteriorPoint {
             } else {
                 0
             };
-            if lost > LOST_STEPS {
+            if lost > LOST_STEPS || self.stays() {
                 return Ok(Ending::Stalled);
             }
             if program.is_unbounded(&self.at.point) {
@@ -199,11 +207,25 @@ impl InteriorPoint {
         }
     }
 
+    /// Whether the point has stayed in one place for many iterations.
+    fn stays(&mut self) -> bool {
+        let (anchor, count) = &mut self.anchor;
+        let x = &self.at.point.x;
+        if (x - &*anchor).amax() > NEARBY * x.amax().max(1.0) {
+            self.anchor = (x.clone(), 0);
+            return false;
+        }
+        *count += 1;
+        *count > LONGEST_STAY
+    }
+
     /// Adds barriers for the idle variables on which something depends at this point.
     fn activate_bounds(&mut self, program: &Program<'_>) {
-        let slopes = &self.at.slopes;
-        let (idle, woken): (Vec<usize>, Vec<usize>) =
-            self.idle.iter().partition(|&&k| slopes.is_idle(k));
+        if self.idle.is_empty() {
+            return;
+        }
+        let is_idle = self.at.slopes.idle();
+        let (idle, woken): (Vec<usize>, Vec<usize>) = self.idle.iter().partition(|&&k| is_idle[k]);
         self.idle = idle;
         for &k in &woken {
             let x = self.at.point.x[k];

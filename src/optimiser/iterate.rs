@@ -1,7 +1,9 @@
 //! A primal–dual point of the barrier problem and the quantities derived from it.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DVector, Dyn};
 
+use super::jacobian::Jacobian;
+use super::kkt_sparse::SparseKkt;
 use super::program::{Derivatives, Point, Program};
 
 /// Rows, slacks and bounds of the barrier problem.
@@ -201,31 +203,64 @@ impl Iterate {
     /// if their system cannot be solved.
     pub(crate) fn least_squares_multipliers(&self, layout: &Layout) -> Option<DVector<f64>> {
         let a = &self.slopes.a;
-        let m = a.nrows();
+        let (m, _) = a.shape();
         let force = |i: usize| self.zu[i] - self.zl[i];
         let x = DVector::from_fn(layout.n, |i, _| self.slopes.g[i] + force(i));
-        let mut normal: DMatrix<f64> = a * a.transpose();
+        let factor = NormalEquations::factor(layout, a)?;
+        // Iterative refinement removes the errors of the squared condition number and of the small
+        // shift.
+        let mut y = DVector::zeros(m);
+        for _ in 0..3 {
+            let rest = &x + a.tr_mul(&y);
+            let mut rhs = -(a * &rest);
+            for (k, &j) in layout.slack_rows.iter().enumerate() {
+                rhs[j] += force(layout.n + k) - y[j];
+            }
+            y += factor.solve(a, &rhs);
+        }
+        y.iter().all(|v| v.is_finite()).then_some(y)
+    }
+}
+
+/// Factors of A Aᵀ + 1 for each row that has a slack. They are dense for few rows.
+enum NormalEquations {
+    Dense(Cholesky<f64, Dyn>),
+    Sparse(Box<SparseKkt>),
+}
+
+impl NormalEquations {
+    fn factor(layout: &Layout, a: &Jacobian) -> Option<NormalEquations> {
+        let (m, n) = a.shape();
+        if m.max(n) > SMALL {
+            let mut d = DVector::zeros(m);
+            for &j in &layout.slack_rows {
+                d[j] = 1.0;
+            }
+            let factor = SparseKkt::factor(&DVector::from_element(n, 1.0), None, a, &d)?;
+            return Some(NormalEquations::Sparse(Box::new(factor)));
+        }
+        let dense = a.to_dense();
+        let mut normal = &dense * dense.transpose();
         for &j in &layout.slack_rows {
             normal[(j, j)] += 1.0;
         }
         for j in 0..m {
             normal[(j, j)] += 1e-12 * (1.0 + normal[(j, j)]);
         }
-        let factor = Cholesky::new(normal)?;
-        // Iterative refinement removes the errors of the squared condition number and of the small
-        // shift.
-        let mut y = DVector::zeros(m);
-        for _ in 0..3 {
-            let rest = &x + a.tr_mul(&y);
-            let mut rhs = -(a * rest);
-            for (k, &j) in layout.slack_rows.iter().enumerate() {
-                rhs[j] += force(layout.n + k) - y[j];
-            }
-            y += factor.solve(&rhs);
+        Cholesky::new(normal).map(NormalEquations::Dense)
+    }
+
+    fn solve(&self, a: &Jacobian, r: &DVector<f64>) -> DVector<f64> {
+        match self {
+            NormalEquations::Dense(factor) => factor.solve(r),
+            // [I Aᵀ; A −D] (x, y) = (0, −r) has (A Aᵀ + D) y = r.
+            NormalEquations::Sparse(factor) => factor.solve(&DVector::zeros(a.shape().1), &-r).1,
         }
-        y.iter().all(|v| v.is_finite()).then_some(y)
     }
 }
+
+/// Number of rows and variables up to which least-squares multipliers come from dense matrices.
+const SMALL: usize = 200;
 
 /// A variable counts as inside if its distance to a bound exceeds this share of [`margin`].
 const INSIDE: f64 = 1e-3;

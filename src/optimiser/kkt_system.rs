@@ -1,11 +1,18 @@
 //! Solution of the linear system of a primal–dual step.
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::cmp::Ordering;
 
-use super::quasi_newton::{Factor, QuasiNewton};
+use nalgebra::DVector;
 
-/// Relative size of a pivot of the Schur complement below which rows count as dependent.
-const DEPENDENT: f64 = 1e-14;
+use super::jacobian::Jacobian;
+use super::kkt_dense::DenseKkt;
+use super::kkt_sparse::SparseKkt;
+use super::quasi_newton::QuasiNewton;
+
+/// Residual, relative to the right-hand side, at which refinement ends, and the largest number of
+/// refinements.
+const EXACT: f64 = 1e-13;
+const REFINEMENTS: usize = 5;
 
 /// Factors of
 ///
@@ -14,93 +21,83 @@ const DEPENDENT: f64 = 1e-14;
 /// [ A      −D  ] [dy] = [q]
 /// ```
 ///
-/// with B + Σ positive definite and D ≥ 0 diagonal. Elimination of dx leaves the Schur complement
-/// S = A (B + Σ)⁻¹ Aᵀ + D, so the inertia is (n, m, 0) whenever S has a Cholesky factor; where
-/// equality rows are dependent it has none and δ is added to D.
+/// with B + Σ positive definite and D ≥ 0 diagonal.
 pub(super) struct KktSystem {
-    hessian: Factor,
-    schur: Cholesky<f64, Dyn>,
-    reduced: DMatrix<f64>,
+    factors: Factors,
     sigma: DVector<f64>,
     d: DVector<f64>,
-    /// δ that was added to the rows.
-    pub regularisation: f64,
+}
+
+enum Factors {
+    Dense(Box<DenseKkt>),
+    Sparse(Box<SparseKkt>),
 }
 
 impl KktSystem {
-    /// Factors the system; `None` if B + Σ or S cannot be made positive definite.
+    /// Factors the system; `None` if it cannot be made regular.
     pub(crate) fn factor(
         b: &mut QuasiNewton,
         sigma: DVector<f64>,
-        a: &DMatrix<f64>,
+        a: &Jacobian,
         d: DVector<f64>,
     ) -> Option<KktSystem> {
-        let hessian = b.factor(&sigma)?;
-        let mut reduced = a.transpose();
-        hessian.solve_mut(&mut reduced);
-        let mut schur = a * &reduced;
-        for j in 0..d.len() {
-            schur[(j, j)] += d[j];
-        }
-        let mut delta = 0.0;
-        loop {
-            let mut s = schur.clone();
-            for j in 0..d.len() {
-                s[(j, j)] += delta * (1.0 + schur[(j, j)]);
-            }
-            let diagonal = s.diagonal();
-            if let Some(schur) = Cholesky::new(s) {
-                let l = schur.l_dirty();
-                let independent = |j: usize| l[(j, j)].powi(2) > DEPENDENT * diagonal[j];
-                if (0..d.len()).all(independent) {
-                    let regularisation = delta;
-                    return Some(KktSystem {
-                        hessian,
-                        schur,
-                        reduced,
-                        sigma,
-                        d,
-                        regularisation,
-                    });
-                }
-            }
-            delta = if delta == 0.0 { 1e-12 } else { delta * 100.0 };
-            if delta > 1.0 {
-                return None;
-            }
+        let factors = if b.is_dense() {
+            Factors::Dense(Box::new(DenseKkt::factor(b, &sigma, a, &d)?))
+        } else {
+            let h = &sigma + b.base();
+            Factors::Sparse(Box::new(SparseKkt::factor(&h, b.compact(), a, &d)?))
+        };
+        Some(KktSystem { factors, sigma, d })
+    }
+
+    /// δ that was added to dependent rows.
+    pub(crate) fn regularisation(&self) -> f64 {
+        match &self.factors {
+            Factors::Dense(dense) => dense.regularisation,
+            Factors::Sparse(_) => 0.0,
         }
     }
 
-    /// Solves for dx and dy, with iterative refinement where no δ was added.
+    /// Solves for dx and dy, with iterative refinement as long as it helps.
     pub(crate) fn solve(
         &self,
         b: &mut QuasiNewton,
-        a: &DMatrix<f64>,
+        a: &Jacobian,
         p: &DVector<f64>,
         q: &DVector<f64>,
     ) -> (DVector<f64>, DVector<f64>) {
-        let (mut dx, mut dy) = self.solve_once(p, q);
-        for _ in 0..2 {
+        let (mut dx, mut dy) = self.solve_once(a, p, q);
+        let size = p.amax().max(q.amax());
+        let mut last = f64::INFINITY;
+        let most = match &self.factors {
+            Factors::Dense(dense) => dense.refinements(),
+            Factors::Sparse(_) => REFINEMENTS,
+        };
+        for _ in 0..most {
             let rp = p - b.multiply(&dx) - self.sigma.component_mul(&dx) - a.tr_mul(&dy);
             let rq = q - a * &dx + self.d.component_mul(&dy);
-            let size = p.amax().max(q.amax());
-            if rp.amax().max(rq.amax()) <= 1e-13 * size || self.regularisation > 0.0 {
+            let residual = rp.amax().max(rq.amax());
+            let stands = residual.partial_cmp(&last) != Some(Ordering::Less);
+            if residual <= EXACT * size || stands {
                 break;
             }
-            let (ex, ey) = self.solve_once(&rp, &rq);
+            last = residual;
+            let (ex, ey) = self.solve_once(a, &rp, &rq);
             dx += ex;
             dy += ey;
         }
         (dx, dy)
     }
 
-    fn solve_once(&self, p: &DVector<f64>, q: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
-        // S dy = (A (B + Σ)⁻¹) p − q;  dx = (B + Σ)⁻¹ (p − Aᵀ dy).
-        let mut dy = self.reduced.tr_mul(p) - q;
-        self.schur.solve_mut(&mut dy);
-        let mut h = DMatrix::from_column_slice(p.len(), 1, p.as_slice());
-        self.hessian.solve_mut(&mut h);
-        let dx = h.column(0) - &self.reduced * &dy;
-        (dx, dy)
+    fn solve_once(
+        &self,
+        a: &Jacobian,
+        p: &DVector<f64>,
+        q: &DVector<f64>,
+    ) -> (DVector<f64>, DVector<f64>) {
+        match &self.factors {
+            Factors::Dense(dense) => dense.solve(a, &self.d, p, q),
+            Factors::Sparse(sparse) => sparse.solve(p, q),
+        }
     }
 }

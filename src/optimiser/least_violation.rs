@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::elastic_qp::ElasticQp;
+use super::jacobian::Jacobian;
 use super::observer::Phase;
 use super::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use super::qp::{Hessian, QpData};
@@ -125,13 +126,13 @@ fn step(
 ) -> Option<(DVector<f64>, f64)> {
     let (n, m) = (point.x.len(), sides.0.len());
     // The last variable is t = worst·(1 − τ), 0 ≤ τ ≤ 1, on the scale of the box.
-    let mut a = DMatrix::zeros(m, n + 1);
+    let row = |&(k, sign, unit): &(usize, f64, f64)| {
+        let entries = slopes.a.row(k).map(|(i, v)| (i, sign * v / unit));
+        entries.chain([(n, worst / radius)]).collect()
+    };
+    let a = Jacobian::from_rows(n + 1, sides.0.iter().map(row));
     let mut above = DVector::zeros(m);
-    for (side, &(k, sign, unit)) in sides.0.iter().enumerate() {
-        for i in 0..n {
-            a[(side, i)] = sign * slopes.a[(k, i)] / unit;
-        }
-        a[(side, n)] = worst / radius;
+    for side in 0..m {
         above[side] = worst - sides.excess(program, &point.c, side);
     }
     let mut g = DVector::zeros(n + 1);
@@ -146,8 +147,10 @@ fn step(
         _ => radius,
     });
     let sigma = CURVATURE * worst / (radius * radius);
-    let diagonal = DMatrix::from_diagonal_element(n + 1, n + 1, sigma);
-    let b = if n <= program.options.dense_limit {
+    let dense = n <= program.options.dense_subproblems();
+    let diagonal;
+    let b = if dense {
+        diagonal = DMatrix::from_diagonal_element(n + 1, n + 1, sigma);
         Hessian::Dense(&diagonal)
     } else {
         Hessian::Split(Spectrum {
@@ -171,7 +174,10 @@ fn step(
     let found = ElasticQp::new(n + 1, &none, &zero).solve(&data, &mut program.counts)?;
     let d = found.d.rows(0, n).into_owned();
     let promised = (0..m)
-        .map(|side| worst - above[side] + (a.row(side).columns(0, n) * &d)[0])
+        .map(|side| {
+            let row = a.row(side).filter(|&(i, _)| i < n);
+            worst - above[side] + row.map(|(i, v)| v * d[i]).sum::<f64>()
+        })
         .fold(0.0, f64::max);
     Some((d, promised))
 }

@@ -8,6 +8,9 @@ mod feasibility;
 mod filter;
 mod interior_point;
 mod iterate;
+mod jacobian;
+mod kkt_dense;
+mod kkt_sparse;
 mod kkt_system;
 mod least_violation;
 mod line_search;
@@ -30,6 +33,7 @@ mod trust_region;
 mod verdict;
 mod well_posed;
 
+pub use jacobian::Jacobian;
 pub use nlp::{Evaluation, EvaluationFailure, Gradients, Nlp};
 pub use observer::{Observer, Phase, Row, Silent};
 pub use options::{Barrier, Method, Options};

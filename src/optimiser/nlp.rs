@@ -1,7 +1,8 @@
 //! The smooth nonlinear program that the optimiser solves.
 
-use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
+
+use super::jacobian::Jacobian;
 
 /// A smooth nonlinear program, minimise f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///
@@ -73,8 +74,8 @@ pub struct Evaluation {
 pub struct Gradients {
     /// Gradient ∇f, of length n.
     pub objective: Vec<f64>,
-    /// Jacobian ∂c/∂x, m × n.
-    pub jacobian: DMatrix<f64>,
+    /// Jacobian ∂c/∂x, m × n. Rows that touch few variables may be sparse.
+    pub jacobian: Jacobian,
 }
 
 /// The functions could not be evaluated at a point.
@@ -123,7 +124,7 @@ pub(super) fn fault_of_gradients(
         ));
     }
     if g.jacobian.shape() != (m, n) {
-        return Some(wrong_length("Jacobian", g.jacobian.len(), m * n));
+        return Some(wrong_length("Jacobian", g.jacobian.entries(), m * n));
     }
     if let Some(i) = g.objective.iter().position(|v| !v.is_finite()) {
         let what = format!(
@@ -132,9 +133,8 @@ pub(super) fn fault_of_gradients(
         );
         return Some(not_finite(what, g.objective[i]));
     }
-    for i in 0..n {
-        for &j in rows {
-            let value = g.jacobian[(j, i)];
+    for &j in rows {
+        for (i, value) in g.jacobian.row(j) {
             if !value.is_finite() {
                 let (row, column) = (nlp.constraint_name(j), nlp.variable_name(i));
                 return Some(not_finite(

@@ -60,13 +60,21 @@ pub struct Options {
     /// Least distance of the start from a bound, relative to max(1, |bound|) and to the distance
     /// of the two bounds (default 1e-2).
     pub bound_push: f64,
-    /// Number of variables above which the quasi-Newton matrix is kept in limited memory
-    /// (default 300).
+    /// Number of variables above which the interior point keeps the quasi-Newton matrix in limited
+    /// memory (default 20). The trust region does so above fifteen times as many.
     pub dense_limit: usize,
     /// Pairs of steps and gradient differences kept in limited memory (default 30).
     pub memory: usize,
     /// First radius of the trust region in scaled variables (default 1).
     pub initial_radius: f64,
+}
+
+impl Options {
+    /// Number of variables up to which subproblems of the trust region have a dense matrix. They
+    /// cost more than the matrix.
+    pub(super) fn dense_subproblems(&self) -> usize {
+        15 * self.dense_limit
+    }
 }
 
 impl Default for Options {
@@ -84,7 +92,7 @@ impl Default for Options {
             barrier: Barrier::default(),
             initial_barrier: 0.1,
             bound_push: 1e-2,
-            dense_limit: 300,
+            dense_limit: 20,
             memory: 30,
             initial_radius: 1.0,
         }

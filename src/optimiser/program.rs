@@ -4,8 +4,9 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
+use super::jacobian::Jacobian;
 use super::nlp::{
     Evaluation, EvaluationFailure, Gradients, Nlp, fault_of_evaluation, fault_of_gradients,
 };
@@ -33,16 +34,20 @@ pub(super) struct Point {
 #[derive(Clone, Debug)]
 pub(super) struct Derivatives {
     pub g: DVector<f64>,
-    pub a: DMatrix<f64>,
+    pub a: Jacobian,
     /// Derivatives in the fixed variables, in the user's units of these.
     pub fixed_g: DVector<f64>,
-    pub fixed_a: DMatrix<f64>,
+    pub fixed_a: Jacobian,
 }
 
 impl Derivatives {
-    /// Whether neither objective nor rows depend on variable `k` here.
-    pub(crate) fn is_idle(&self, k: usize) -> bool {
-        self.g[k] == 0.0 && self.a.column(k).iter().all(|v| *v == 0.0)
+    /// Whether neither objective nor rows depend on a variable here, for each of them.
+    pub(crate) fn idle(&self) -> Vec<bool> {
+        let touched = self.a.touched().into_iter();
+        touched
+            .zip(self.g.iter())
+            .map(|(touched, g)| !touched && *g == 0.0)
+            .collect()
     }
 }
 
@@ -274,16 +279,35 @@ impl<'a> Program<'a> {
         let Gradients {
             objective,
             jacobian,
-        } = result.map_err(|failure| self.record(full, failure))?;
+        } = result.map_err(|failure| self.record(full.clone(), failure))?;
         let (free, rows, scaling) = (&self.free, &self.rows, &self.scaling);
         let g = free
             .iter()
             .map(|&i| objective[i] * scaling.objective * scaling.variables[i]);
         let mut g = DVector::from_iterator(free.len(), g);
-        let mut a = DMatrix::from_fn(rows.len(), free.len(), |r, k| {
-            let (j, i) = (rows[r], free[k]);
-            jacobian[(j, i)] * scaling.constraints[j] * scaling.variables[i]
-        });
+        // The place of each variable among the free or the fixed ones.
+        let mut place = vec![0; full.len()];
+        let mut is_free = vec![false; full.len()];
+        for (k, &i) in free.iter().enumerate() {
+            (place[i], is_free[i]) = (k, true);
+        }
+        for (k, &i) in self.fixed.iter().enumerate() {
+            place[i] = k;
+        }
+        let part = |of_free: bool, columns: usize| {
+            let row = |&j: &usize| {
+                let entries = jacobian.row(j).filter(|&(i, _)| is_free[i] == of_free);
+                let unit = |i: usize| if of_free { scaling.variables[i] } else { 1.0 };
+                let scaled = |(i, v): (usize, f64)| {
+                    let factor = scaling.constraints[j];
+                    (place[i], v * factor * unit(i))
+                };
+                entries.map(scaled).collect()
+            };
+            Jacobian::from_rows(columns, rows.iter().map(row))
+        };
+        let mut a = part(true, free.len());
+        let fixed_a = part(false, self.fixed.len());
         let norm = free
             .iter()
             .map(|&i| (objective[i] / self.units_judged[i]).abs())
@@ -292,19 +316,17 @@ impl<'a> Program<'a> {
             let width = self.upper[k] - self.lower[k];
             width.min(x[k].abs().max(1.0))
         });
-        drop_rounding(&mut g, &reach);
+        let all: Vec<usize> = (0..free.len()).collect();
+        drop_rounding(&all, g.as_mut_slice(), &reach);
         for r in 0..rows.len() {
-            let mut row = a.row(r).transpose();
-            drop_rounding(&mut row, &reach);
-            a.row_mut(r).copy_from(&row.transpose());
+            let (index, row) = a.row_mut(r);
+            drop_rounding(index, row, &reach);
         }
         let fixed = &self.fixed;
         let fixed_g = fixed.iter().map(|&i| objective[i] * scaling.objective);
         let slopes = Derivatives {
             fixed_g: DVector::from_iterator(fixed.len(), fixed_g),
-            fixed_a: DMatrix::from_fn(rows.len(), fixed.len(), |r, k| {
-                jacobian[(rows[r], fixed[k])] * scaling.constraints[rows[r]]
-            }),
+            fixed_a,
             g,
             a,
         };
@@ -453,10 +475,11 @@ impl<'a> Program<'a> {
 
 /// Sets derivatives to zero that are rounding errors. Over the `reach` of its variable such a
 /// derivative changes the function by less than the rounding of its largest change.
-fn drop_rounding(slopes: &mut DVector<f64>, reach: &DVector<f64>) {
-    let largest = slopes.component_mul(reach).amax();
-    for (slope, reach) in slopes.iter_mut().zip(reach.iter()) {
-        if slope.abs() * reach <= f64::EPSILON * largest {
+fn drop_rounding(index: &[usize], slopes: &mut [f64], reach: &DVector<f64>) {
+    let changes = index.iter().zip(slopes.iter());
+    let largest = changes.fold(0.0_f64, |a, (&i, v)| a.max((v * reach[i]).abs()));
+    for (&i, slope) in index.iter().zip(slopes) {
+        if slope.abs() * reach[i] <= f64::EPSILON * largest {
             *slope = 0.0;
         }
     }

@@ -3,6 +3,7 @@
 use clarabel::solver::{DefaultSettings, DefaultSettingsBuilder};
 use nalgebra::{DMatrix, DVector};
 
+use super::jacobian::Jacobian;
 use super::quasi_newton::Spectrum;
 
 /// Tolerance asked of Clarabel, in scaled units.
@@ -41,7 +42,7 @@ impl Hessian<'_> {
 pub(super) struct QpData<'a> {
     pub g: &'a DVector<f64>,
     pub b: &'a Hessian<'a>,
-    pub a: &'a DMatrix<f64>,
+    pub a: &'a Jacobian,
     /// Room c_U − c and c − c_L of every row; infinite where there is no bound.
     pub above: &'a DVector<f64>,
     pub below: &'a DVector<f64>,

@@ -12,6 +12,10 @@ const FLATTER: f64 = 0.1;
 /// Least scale. It allows steps of 1e20 gradients in an unbounded program.
 const FLATTEST: f64 = 1e-20;
 
+/// Least and largest entry of the diagonal of a limited memory.
+const FLATTEST_BASE: f64 = 1e-10;
+const STEEPEST_BASE: f64 = 1e12;
+
 /// Largest number of pairs from which a dense matrix is rebuilt.
 const DENSE_PAIRS: usize = 200;
 
@@ -24,12 +28,42 @@ const DENSE_PAIRS: usize = 200;
 pub struct QuasiNewton {
     n: usize,
     dense: bool,
+    /// Whether the limited memory starts from a diagonal.
+    #[serde(default)]
+    diagonal: bool,
     memory: usize,
     sigma: f64,
+    /// Diagonal that takes the place of σ I; empty if there is none.
+    #[serde(default)]
+    base: Vec<f64>,
     pairs: Vec<Pair>,
     skipped: usize,
     #[serde(skip)]
-    matrix: Option<DMatrix<f64>>,
+    cached: Cached,
+}
+
+/// What follows from the pairs and is computed once.
+#[derive(Clone, Debug, Default)]
+struct Cached {
+    dense: Option<DMatrix<f64>>,
+    compact: Option<Compact>,
+}
+
+/// Two matrices of the same pairs are equal, whatever is cached.
+impl PartialEq for Cached {
+    fn eq(&self, _: &Cached) -> bool {
+        true
+    }
+}
+
+/// B = D − U M⁻¹ Uᵀ with U = [D S, Y] (Byrd, Nocedal & Schnabel 1994, eq. 2.17). D is σ I or the
+/// diagonal.
+#[derive(Clone, Debug)]
+pub(super) struct Compact {
+    base: DVector<f64>,
+    pub u: DMatrix<f64>,
+    pub middle: DMatrix<f64>,
+    factors: LU<f64, Dyn, Dyn>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,17 +85,6 @@ pub(super) struct Spectrum {
 /// Least eigenvalue kept, relative to σ.
 const LEAST_EIGENVALUE: f64 = 1e-10;
 
-/// B + diag(d), ready to be solved with.
-pub(super) enum Factor {
-    Dense(Cholesky<f64, Dyn>),
-    LowRank {
-        diagonal: DVector<f64>,
-        u: DMatrix<f64>,
-        inner: LU<f64, Dyn, Dyn>,
-    },
-    Diagonal(DVector<f64>),
-}
-
 impl QuasiNewton {
     /// The identity, of order `n`, kept dense up to `dense_limit`.
     pub(super) fn new(n: usize, dense_limit: usize, memory: usize) -> QuasiNewton {
@@ -71,19 +94,22 @@ impl QuasiNewton {
         QuasiNewton {
             n,
             dense,
+            diagonal: false,
             memory,
             sigma: 1.0,
+            base: Vec::new(),
             pairs,
             skipped: 0,
-            matrix: None,
+            cached: Cached::default(),
         }
     }
 
     /// The matrix without cached values.
     pub(super) fn stored(&self) -> QuasiNewton {
         QuasiNewton {
-            matrix: None,
+            cached: Cached::default(),
             pairs: self.pairs.clone(),
+            base: self.base.clone(),
             ..*self
         }
     }
@@ -92,6 +118,7 @@ impl QuasiNewton {
     pub(super) fn times(&self, factor: f64) -> QuasiNewton {
         let mut b = self.stored();
         b.sigma *= factor;
+        b.base.iter_mut().for_each(|d| *d *= factor);
         for pair in &mut b.pairs {
             pair.y *= factor;
         }
@@ -107,7 +134,8 @@ impl QuasiNewton {
     /// Sets the scale σ that B has without pairs.
     pub(super) fn set_scale(&mut self, sigma: f64) {
         self.sigma = sigma;
-        self.matrix = None;
+        self.base.clear();
+        self.cached = Cached::default();
     }
 
     /// The fault of a matrix that was read, for a program of at most `variables` free variables.
@@ -145,8 +173,30 @@ impl QuasiNewton {
     /// Forgets all pairs; the scale of B remains.
     pub(super) fn reset(&mut self) {
         self.pairs.clear();
+        self.base.clear();
         self.skipped = 0;
-        self.matrix = None;
+        self.cached = Cached::default();
+    }
+
+    /// Lets the limited memory start from a diagonal that keeps the curvature of all pairs.
+    pub(super) fn with_diagonal(mut self) -> QuasiNewton {
+        self.diagonal = !self.dense;
+        self
+    }
+
+    /// The diagonal of the BFGS update of D (Gilbert & Lemaréchal 1989, section 4).
+    fn update_base(&mut self, s: &DVector<f64>, y: &DVector<f64>) {
+        let sy = s.dot(y);
+        if self.base.is_empty() {
+            self.base = vec![self.sigma; self.n];
+        }
+        let base = &mut self.base;
+        let sds: f64 = (0..s.len()).map(|i| s[i] * s[i] * base[i]).sum();
+        for i in 0..s.len() {
+            let d = base[i];
+            base[i] = (d - (d * s[i]).powi(2) / sds + y[i] * y[i] / sy)
+                .clamp(FLATTEST_BASE, STEEPEST_BASE);
+        }
     }
 
     /// Adds a pair.
@@ -165,11 +215,14 @@ impl QuasiNewton {
         }
         self.skipped = 0;
         self.sigma = (sy / ss).clamp(1e-8, 1e8);
+        if self.diagonal {
+            self.update_base(&s, &y);
+        }
         self.pairs.push(Pair { s, y });
         if self.pairs.len() > self.memory {
             self.pairs.remove(0);
         }
-        self.matrix = None;
+        self.cached = Cached::default();
     }
 
     /// Whether B is kept as a dense matrix.
@@ -178,28 +231,29 @@ impl QuasiNewton {
     }
 
     /// B by the eigenvalues that differ from σ, and their eigenvectors.
-    pub(super) fn spectrum(&self) -> Spectrum {
+    pub(super) fn spectrum(&mut self) -> Spectrum {
+        let sigma = self.sigma;
+        let n = self.n;
         let none = Spectrum {
-            sigma: self.sigma,
-            vectors: DMatrix::zeros(self.n, 0),
+            sigma,
+            vectors: DMatrix::zeros(n, 0),
             values: DVector::zeros(0),
         };
-        if self.pairs.is_empty() {
+        let Some(compact) = self.compact() else {
             return none;
-        }
-        let (u, middle) = self.compact();
-        let (q, r) = u.qr().unpack();
-        let Some(inner) = middle.lu().solve(&r.transpose()) else {
+        };
+        let (q, r) = compact.u.clone().qr().unpack();
+        let Some(inner) = compact.factors.solve(&r.transpose()) else {
             return none;
         };
         let mut core = -(r * inner);
         for i in 0..core.nrows() {
-            core[(i, i)] += self.sigma;
+            core[(i, i)] += sigma;
         }
         let eigen = ((&core + core.transpose()) * 0.5).symmetric_eigen();
-        let least = LEAST_EIGENVALUE * self.sigma;
+        let least = LEAST_EIGENVALUE * sigma;
         Spectrum {
-            sigma: self.sigma,
+            sigma,
             vectors: q * eigen.eigenvectors,
             values: eigen.eigenvalues.map(|v| v.max(least)),
         }
@@ -208,7 +262,7 @@ impl QuasiNewton {
     /// B as a dense matrix.
     pub(super) fn dense(&mut self) -> &DMatrix<f64> {
         let (n, sigma, pairs) = (self.n, self.sigma, &self.pairs);
-        self.matrix.get_or_insert_with(|| {
+        self.cached.dense.get_or_insert_with(|| {
             let mut b = DMatrix::from_diagonal_element(n, n, sigma);
             for Pair { s, y } in pairs {
                 let bs = &b * s;
@@ -224,93 +278,114 @@ impl QuasiNewton {
         if self.dense {
             return self.dense() * v;
         }
-        if self.pairs.is_empty() {
-            return v * self.sigma;
-        }
-        let (u, middle) = self.compact();
-        match middle.lu().solve(&(u.transpose() * v)) {
-            Some(inner) => v * self.sigma - u * inner,
-            None => v * self.sigma,
+        let sigma = self.sigma;
+        match self.compact() {
+            Some(compact) => compact.multiply(v),
+            None => v * sigma,
         }
     }
 
-    /// B = σ I − U M⁻¹ Uᵀ with U = [σ S, Y] (Byrd, Nocedal & Schnabel 1994, eq. 2.17).
-    fn compact(&self) -> (DMatrix<f64>, DMatrix<f64>) {
-        let (n, k) = (self.n, self.pairs.len());
-        let mut u = DMatrix::zeros(n, 2 * k);
-        for (p, pair) in self.pairs.iter().enumerate() {
-            u.column_mut(p).axpy(self.sigma, &pair.s, 0.0);
-            u.column_mut(k + p).copy_from(&pair.y);
+    /// Diagonal entry `i` of B.
+    pub(super) fn diagonal(&mut self, i: usize) -> f64 {
+        if self.dense {
+            return self.dense()[(i, i)];
         }
-        let mut middle = DMatrix::zeros(2 * k, 2 * k);
-        for i in 0..k {
-            for j in 0..k {
-                middle[(i, j)] = self.sigma * self.pairs[i].s.dot(&self.pairs[j].s);
-                if i > j {
-                    let l = self.pairs[i].s.dot(&self.pairs[j].y);
-                    middle[(i, k + j)] = l;
-                    middle[(k + j, i)] = l;
-                }
+        let sigma = self.sigma;
+        match self.compact() {
+            Some(compact) => {
+                let row = compact.u.row(i).transpose();
+                let inner = compact.factors.solve(&row);
+                compact.base[i] - inner.map_or(0.0, |inner| row.dot(&inner))
             }
-            middle[(k + i, k + i)] = -self.pairs[i].s.dot(&self.pairs[i].y);
+            None => sigma,
         }
-        (u, middle)
+    }
+
+    /// The diagonal D of the compact form.
+    pub(super) fn base(&self) -> DVector<f64> {
+        if self.base.is_empty() {
+            DVector::from_element(self.n, self.sigma)
+        } else {
+            DVector::from_column_slice(&self.base)
+        }
+    }
+
+    /// B in its compact form; `None` without pairs.
+    pub(super) fn compact(&mut self) -> Option<&Compact> {
+        if self.pairs.is_empty() {
+            return None;
+        }
+        let base = self.base();
+        let (n, pairs) = (self.n, &self.pairs);
+        let compact = self.cached.compact.get_or_insert_with(|| {
+            let k = pairs.len();
+            let mut s = DMatrix::zeros(n, k);
+            let mut u = DMatrix::zeros(n, 2 * k);
+            for (p, pair) in pairs.iter().enumerate() {
+                s.set_column(p, &pair.s);
+                u.set_column(p, &pair.s.component_mul(&base));
+                u.column_mut(k + p).copy_from(&pair.y);
+            }
+            let products = s.transpose() * &u;
+            let mut middle = DMatrix::zeros(2 * k, 2 * k);
+            for i in 0..k {
+                for j in 0..k {
+                    middle[(i, j)] = products[(i, j)];
+                    if i > j {
+                        let l = products[(i, k + j)];
+                        middle[(i, k + j)] = l;
+                        middle[(k + j, i)] = l;
+                    }
+                }
+                middle[(k + i, k + i)] = -products[(i, k + i)];
+            }
+            let factors = middle.clone().lu();
+            Compact {
+                base,
+                u,
+                middle,
+                factors,
+            }
+        });
+        Some(compact)
+    }
+
+    /// B + diag(`d`) as a matrix.
+    pub(super) fn dense_plus(&mut self, d: &DVector<f64>) -> DMatrix<f64> {
+        let mut h = self.dense().clone();
+        for i in 0..self.n {
+            h[(i, i)] += d[i];
+        }
+        h
     }
 
     /// B⁻¹ `force`; `None` if rounding has destroyed the definiteness of B.
     pub(super) fn newton_step(&mut self, force: &DVector<f64>) -> Option<DVector<f64>> {
-        let mut step = DMatrix::from_column_slice(self.n, 1, force.as_slice());
-        self.factor(&DVector::zeros(self.n))?.solve_mut(&mut step);
-        Some(step.column(0).into_owned())
-    }
-
-    /// Factors B + diag(`d`), d ≥ 0; `None` if rounding has destroyed its definiteness.
-    pub(super) fn factor(&mut self, d: &DVector<f64>) -> Option<Factor> {
         if self.dense {
-            let mut h = self.dense().clone();
-            for i in 0..self.n {
-                h[(i, i)] += d[i];
-            }
-            return Cholesky::new(h).map(Factor::Dense);
+            return Cholesky::new(self.dense().clone()).map(|factor| factor.solve(force));
         }
-        let diagonal = d.map(|v| v + self.sigma);
-        if self.pairs.is_empty() {
-            return Some(Factor::Diagonal(diagonal));
+        let sigma = self.sigma;
+        let Some(compact) = self.compact() else {
+            return Some(force / sigma);
+        };
+        // (D − U M⁻¹ Uᵀ)⁻¹ = D⁻¹ + D⁻¹ U (M − Uᵀ D⁻¹ U)⁻¹ Uᵀ D⁻¹
+        let (u, middle) = (&compact.u, &compact.middle);
+        let mut divided = u.clone();
+        for mut column in divided.column_iter_mut() {
+            column.component_div_assign(&compact.base);
         }
-        let (u, middle) = self.compact();
-        let mut scaled = u.clone();
-        for i in 0..self.n {
-            scaled.row_mut(i).scale_mut(1.0 / diagonal[i]);
-        }
-        let inner = (middle - u.transpose() * scaled).lu();
-        inner
-            .is_invertible()
-            .then_some(Factor::LowRank { diagonal, u, inner })
+        let inner = (middle - u.transpose() * &divided).lu();
+        let small = inner.solve(&divided.tr_mul(force))?;
+        Some(force.component_div(&compact.base) + divided * small)
     }
 }
 
-impl Factor {
-    /// Solves (B + diag d) X = `rhs` in place.
-    pub(super) fn solve_mut(&self, rhs: &mut DMatrix<f64>) {
-        match self {
-            Factor::Dense(cholesky) => cholesky.solve_mut(rhs),
-            Factor::Diagonal(d) => divide_rows(rhs, d),
-            Factor::LowRank { diagonal, u, inner } => {
-                divide_rows(rhs, diagonal);
-                let mut small = u.transpose() * &*rhs;
-                if inner.solve_mut(&mut small) {
-                    let mut correction = u * small;
-                    divide_rows(&mut correction, diagonal);
-                    *rhs += correction;
-                }
-            }
+impl Compact {
+    fn multiply(&self, v: &DVector<f64>) -> DVector<f64> {
+        match self.factors.solve(&self.u.tr_mul(v)) {
+            Some(inner) => v.component_mul(&self.base) - &self.u * inner,
+            None => v.component_mul(&self.base),
         }
-    }
-}
-
-fn divide_rows(m: &mut DMatrix<f64>, d: &DVector<f64>) {
-    for mut column in m.column_iter_mut() {
-        column.component_div_assign(d);
     }
 }
 

@@ -45,7 +45,7 @@ pub(super) fn refine(data: &QpData<'_>, found: &QpStep) -> Option<QpStep> {
     for j in 0..m {
         let (above, below) = (data.above[j] - reached[j], data.below[j] + reached[j]);
         let y = found.y[j];
-        let norm = data.a.row(j).amax().max(1e-100);
+        let norm = data.a.row_amax(j).max(1e-100);
         let pushes =
             |room: f64| y.abs() * norm * norm * radius > room * force.max(f64::MIN_POSITIVE);
         if y.abs() >= HELD * data.penalty[j] {
@@ -62,7 +62,7 @@ pub(super) fn refine(data: &QpData<'_>, found: &QpStep) -> Option<QpStep> {
     }
     // Scales rows and forces to entries of the same size.
     let unit = b.amax().max(f64::MIN_POSITIVE);
-    let norm = |j: usize| data.a.row(j).amax().max(1e-100);
+    let norm = |j: usize| data.a.row_amax(j).max(1e-100);
     let fixed_force = data.g + *b * &d;
     let fixed_rows = data.a * &d;
     let matrix = DMatrix::from_fn(p + q, p + q, |r, c| match (r < p, c < p) {
@@ -109,7 +109,7 @@ fn is_valid(data: &QpData<'_>, found: &QpStep, refined: &QpStep, radius: f64, fo
             && (d[i] == data.upper[i] || push >= -weak)
     });
     let rows = (0..y.len()).all(|j| {
-        let slack = small * data.a.row(j).amax();
+        let slack = small * data.a.row_amax(j);
         let equality = data.above[j] == -data.below[j];
         let found = found.y[j];
         reached[j] <= data.above[j] + slack

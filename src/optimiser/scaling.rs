@@ -49,7 +49,7 @@ impl Program<'_> {
             1.0
         };
         for (k, &j) in self.rows.iter().enumerate() {
-            let norm = slopes.a.row(k).amax() / self.scaling.constraints[j];
+            let norm = slopes.a.row_amax(k) / self.scaling.constraints[j];
             units.constraints[j] = if norm > limit {
                 (limit / norm).max(1e-8)
             } else {
@@ -157,8 +157,8 @@ impl Program<'_> {
         for (k, &j) in self.rows.iter().enumerate() {
             let factor = units.constraints[j] / self.scaling.constraints[j];
             point.c[k] *= factor;
-            slopes.a.row_mut(k).scale_mut(factor * length);
-            slopes.fixed_a.row_mut(k).scale_mut(factor);
+            slopes.a.scale_row(k, factor * length);
+            slopes.fixed_a.scale_row(k, factor);
         }
         self.set_units(units);
     }
@@ -190,8 +190,8 @@ impl Program<'_> {
             .fold(0.0, f64::max);
         self.scaling.constraint_gradients = vec![0.0; self.scaling.constraints.len()];
         for (r, &j) in self.rows.iter().enumerate() {
-            let norm = (0..n)
-                .map(|k| in_user_units(slopes.a[(r, k)], k))
+            let norm = (slopes.a.row(r))
+                .map(|(k, v)| in_user_units(v, k))
                 .fold(0.0, f64::max);
             self.scaling.constraint_gradients[j] = norm;
             if norm == 0.0 {
@@ -199,8 +199,8 @@ impl Program<'_> {
                 self.scaling.zero_rows.push(name);
             }
         }
-        for k in 0..n {
-            if slopes.is_idle(k) {
+        for (k, idle) in slopes.idle().into_iter().enumerate() {
+            if idle {
                 let name = self.nlp().variable_name(self.free[k]);
                 self.scaling.zero_columns.push(name);
             }

@@ -23,8 +23,8 @@ use super::well_posed;
 
 /// Shares of iterations and evaluations at which [`Method::Auto`] changes: from the interior point
 /// to the trust region from its best point, then to the trust region from the start.
-const FIRST_SHARE: f64 = 0.5;
-const SECOND_SHARE: f64 = 0.75;
+const FIRST_SHARE: f64 = 0.75;
+const SECOND_SHARE: f64 = 0.9;
 
 /// How often a run continues from a point near one that seems infeasible.
 const ESCAPES: usize = 3;
@@ -41,8 +41,9 @@ const LARGEST_MULTIPLIER: f64 = 1e20;
 /// Minimises f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///
 /// ```
-/// use flexbody::optimiser::{solve, Evaluation, EvaluationFailure, Gradients, Nlp, Options, Silent};
-/// use nalgebra::dmatrix;
+/// use flexbody::optimiser::{
+///     Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp, Options, Silent, solve,
+/// };
 ///
 /// /// Minimise (x − 2)² + y² subject to x² + y² ≤ 1.
 /// struct Disc;
@@ -63,7 +64,7 @@ const LARGEST_MULTIPLIER: f64 = 1e20;
 ///     }
 ///     fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
 ///         let objective = vec![2.0 * (x[0] - 2.0), 2.0 * x[1]];
-///         Ok(Gradients { objective, jacobian: dmatrix![2.0 * x[0], 2.0 * x[1]] })
+///         Ok(Gradients { objective, jacobian: Jacobian::dense(1, 2, vec![2.0 * x[0], 2.0 * x[1]]) })
 ///     }
 /// }
 ///

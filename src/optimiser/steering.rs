@@ -100,7 +100,7 @@ impl TrustRegion {
     }
 
     fn linear_row_violation(&self, program: &Program<'_>, d: &DVector<f64>, k: usize) -> f64 {
-        let value = self.point.c[k] + self.slopes.a.row(k).transpose().dot(d);
+        let value = self.point.c[k] + self.slopes.a.row_dot(k, d);
         (program.row_lower[k] - value)
             .max(value - program.row_upper[k])
             .max(0.0)

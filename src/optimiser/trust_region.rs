@@ -56,7 +56,7 @@ impl TrustRegion {
         let (n, m) = (point.x.len(), point.c.len());
         let options = program.options;
         let point_size = point.x.amax().max(1.0);
-        let mut b = QuasiNewton::new(n, options.dense_limit, options.memory);
+        let mut b = QuasiNewton::new(n, options.dense_subproblems(), options.memory);
         if goal == Goal::Feasibility {
             b.set_scale(1e-4 * slopes.a.amax().max(1e-8));
         }

@@ -2,6 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::jacobian::Jacobian;
+use super::kkt_sparse::SparseKkt;
 use super::outcome::{ActiveBound, BoundSide, Kkt};
 use super::program::{Derivatives, Point, Program};
 use super::quasi_newton::QuasiNewton;
@@ -96,6 +98,9 @@ impl ScaledMultipliers {
     }
 }
 
+/// Entries up to which the multipliers come from a singular value decomposition.
+const LARGEST_SVD: usize = 40_000;
+
 /// Multipliers of the active rows that balance the force on the variables between their bounds.
 fn least_squares(
     program: &Program<'_>,
@@ -120,11 +125,33 @@ fn least_squares(
     if rows.is_empty() || variables.is_empty() {
         return None;
     }
-    let a = DMatrix::from_fn(variables.len(), rows.len(), |i, k| {
-        slopes.a[(rows[k], variables[i])]
-    });
     let g = DVector::from_fn(variables.len(), |i, _| -slopes.g[variables[i]]);
-    let fitted = a.svd(true, true).solve(&g, 1e-12).ok()?;
+    let fitted = if variables.len() * rows.len() > LARGEST_SVD {
+        let mut place = vec![usize::MAX; point.x.len()];
+        for (k, &i) in variables.iter().enumerate() {
+            place[i] = k;
+        }
+        let row = |&k: &usize| {
+            let entries = slopes.a.row(k).map(|(i, v)| (place[i], v));
+            entries.filter(|&(i, _)| i != usize::MAX).collect()
+        };
+        let a = Jacobian::from_rows(variables.len(), rows.iter().map(row));
+        let ones = DVector::from_element(variables.len(), 1.0);
+        let zeros = DVector::zeros(rows.len());
+        // The least-squares solution of Aᵀ y = g is that of [I Aᵀ; A 0] (r, y) = (g, 0).
+        let factor = SparseKkt::factor(&ones, None, &a, &zeros)?;
+        let mut y = zeros.clone();
+        for _ in 0..3 {
+            let rest = &g - a.tr_mul(&y);
+            y += factor.solve(&rest, &zeros).1;
+        }
+        y
+    } else {
+        let a = DMatrix::from_fn(variables.len(), rows.len(), |i, k| {
+            slopes.a[(rows[k], variables[i])]
+        });
+        a.svd(true, true).solve(&g, 1e-12).ok()?
+    };
     let mut all = DVector::zeros(y.len());
     for (value, &k) in fitted.iter().zip(&rows) {
         all[k] = *value;
@@ -390,9 +417,10 @@ pub(super) fn scaled_multipliers(program: &Program<'_>, user: &Multipliers) -> S
 pub(super) fn steepness(program: &Program<'_>, slopes: &Derivatives) -> Vec<f64> {
     let mut all = vec![1e-300; program.scaling.constraints.len()];
     for (k, &j) in program.rows.iter().enumerate() {
-        for (column, &i) in program.free.iter().enumerate() {
-            let unit = program.scaling.constraints[j] * program.scaling.variables[i];
-            all[j] = (slopes.a[(k, column)] / unit).abs().max(all[j]);
+        for (column, value) in slopes.a.row(k) {
+            let variable = program.scaling.variables[program.free[column]];
+            let unit = program.scaling.constraints[j] * variable;
+            all[j] = (value / unit).abs().max(all[j]);
         }
     }
     all

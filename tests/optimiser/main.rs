@@ -5,6 +5,7 @@ mod far_starts;
 mod feasibility;
 mod hard_cases;
 mod hock_schittkowski;
+mod large;
 mod problems;
 mod restart;
 mod scales;

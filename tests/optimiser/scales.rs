@@ -65,7 +65,7 @@ impl Nlp for Stretched {
     fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
         let mut found = self.inner.gradients(&self.inside(x))?;
         found.objective.iter_mut().for_each(|v| *v *= self.unit);
-        found.jacobian *= self.unit;
+        found.jacobian.scale(self.unit);
         Ok(found)
     }
 }

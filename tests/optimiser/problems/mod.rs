@@ -15,6 +15,8 @@ pub mod problem;
 pub mod recorded;
 pub mod residuals;
 pub mod scaled;
+pub mod separable;
+pub mod truss;
 
 use problem::Problem;
 

@@ -1,7 +1,6 @@
 //! A test problem, given by formulas in dual numbers.
 
-use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
-use nalgebra::DMatrix;
+use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
 
 use super::dual::Dual;
 
@@ -125,17 +124,18 @@ impl Nlp for Problem {
     fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
         let n = x.len();
         let mut objective = vec![0.0; n];
-        let mut jacobian = DMatrix::zeros(self.row_lower.len(), n);
+        let m = self.row_lower.len();
+        let mut jacobian = vec![0.0; m * n];
         for i in 0..n {
             let x = dual(x, i);
             objective[i] = (self.objective)(&x).slope;
             for (j, c) in (self.rows)(&x).iter().enumerate() {
-                jacobian[(j, i)] = c.slope;
+                jacobian[j * n + i] = c.slope;
             }
         }
         Ok(Gradients {
             objective,
-            jacobian,
+            jacobian: Jacobian::dense(m, n, jacobian),
         })
     }
 }
