@@ -17,10 +17,55 @@ fn fastest<S: Scalar>(model: &Model<S>, characteristic_length: &Reach, change: f
         })
     };
     let bodies = model.bodies.iter().enumerate();
+    let bodies = bodies.filter(|(i, _)| !model.is_carrier(*i));
     bodies.fold(0.0, |most, (i, body)| {
         let swing = size(&body.velocity) / characteristic_length.of([Some(i), None]);
         most.max(size(&body.angular_velocity)).max(swing)
     })
+}
+
+/// Shapes of flexible bodies that leave the plane: their integrals across it, and displacements and
+/// rotations of attachments.
+fn shapes<S: Scalar>(model: &Model<S>, turned: &Turned<S>, examiner: &mut ConditionChecker) {
+    for body in &model.flexible {
+        let (name, n) = (&body.name, turned.normals[body.frame]);
+        let what = || {
+            let what = format!("the deformation of body \"{name}\" leaves the plane");
+            (what, "kg m²")
+        };
+        let inertia = &body.inertia;
+        let moments = || std::iter::once(&inertia.centre).chain(&inertia.static_moments);
+        let scale = moments().map(largest).fold(0.0, f64::max);
+        for p in moments() {
+            examiner.zero(n.dot(p), scale, what);
+        }
+        let products = || inertia.with_position.iter().chain(&inertia.products);
+        let entries = products().flat_map(|s| s.iter().map(|x| x.re().abs()));
+        let scale = entries.fold(0.0, f64::max);
+        for s in products() {
+            examiner.vanishes((s * n).as_slice(), scale, what);
+            examiner.vanishes(s.tr_mul(&n).as_slice(), scale, what);
+        }
+    }
+    for joint in &model.joints {
+        let Some(modes) = &joint.modes else { continue };
+        let (name, n) = (&joint.name, turned.normals[joint.body_a]);
+        let what = || {
+            (
+                format!("the deformation at \"{name}\" leaves the plane"),
+                "m",
+            )
+        };
+        let of = |all: &[Vec3<S>]| all.iter().map(largest).fold(0.0, f64::max);
+        let scale = of(&modes.displacement);
+        for shape in &modes.displacement {
+            examiner.zero(n.dot(shape), scale, what);
+        }
+        let scale = of(&modes.rotation);
+        for shape in &modes.rotation {
+            examiner.vanishes((shape - n * n.dot(shape)).as_slice(), scale, what);
+        }
+    }
 }
 
 impl Plane {
@@ -42,6 +87,7 @@ impl Plane {
             &mut examiner,
         );
         self.loads(model, &turned, &characteristic_length, &mut examiner);
+        shapes(model, &turned, &mut examiner);
         self.upright(model, &characteristic_length, &mut examiner);
         examiner.verdict()
     }
@@ -57,7 +103,8 @@ impl Plane {
         examiner.zero(along(&model.gravity, &self.normal), gravity, || {
             ("gravity leaves the plane".into(), "m/s²")
         });
-        for (i, body) in model.bodies.iter().enumerate() {
+        let bodies = model.bodies.iter().enumerate();
+        for (i, body) in bodies.filter(|(i, _)| !model.is_carrier(*i)) {
             let (normal, height) = &self.bodies[i];
             let own: Vec3<S> = lift3(normal);
             let name = &body.name;

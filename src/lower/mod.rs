@@ -84,9 +84,8 @@ impl Lowering {
         variables: &[Range],
     ) -> Self {
         let mut designs = Designs::new(real, dual, variables);
-        let deforms = designs.start.model.flexible.first();
-        if let Some(deforms) = deforms.map(|body| body.name.clone()) {
-            return Self::of_flexible(&designs, &deforms);
+        if !designs.start.model.flexible.is_empty() {
+            return Self::of_flexible(&designs);
         }
         let (welded, mut kept) = Welded::find(&designs);
         if !welded.is_empty() {
@@ -121,20 +120,18 @@ impl Lowering {
         found
     }
 
-    /// What can be left out of scenes with flexible bodies: the rotation of bodies that are points. All
-    /// else takes bodies as rigid.
-    fn of_flexible(designs: &Designs, deforms: &str) -> Self {
+    /// The reductions of scenes with flexible bodies: a plane, or else the rotation of bodies that are
+    /// points. The others take bodies as rigid.
+    fn of_flexible(designs: &Designs) -> Self {
         let model = &designs.start.model;
-        let mut kept = Vec::new();
-        let points = find_points(designs, |body| model.is_of_flexible(body), &mut kept);
+        let (mut points, mut kept) = (Vec::new(), Vec::new());
+        let plane = Plane::find(designs);
+        if plane.is_err() {
+            points = find_points(designs, |body| model.is_of_flexible(body), &mut kept);
+        }
         Self {
             welded: Welded::default(),
-            plane: Err(Kept {
-                reduction: "motion across a plane".into(),
-                obstacles: vec![ViolatedCondition::plain(format!(
-                    "body \"{deforms}\" is flexible"
-                ))],
-            }),
+            plane,
             points,
             non_rotating: NonRotating::default(),
             fixed: Fixed::default(),

@@ -94,7 +94,8 @@ fn spanned(model: &Model<f64>) -> Option<Vec3<f64>> {
 fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
     let (mut across, mut inside) = (Vec::new(), vec![model.gravity]);
     let turn = |body: usize| rotation::matrix(&model.bodies[body].orientation);
-    for (i, body) in model.bodies.iter().enumerate() {
+    let bodies = model.bodies.iter().enumerate();
+    for (i, body) in bodies.filter(|(i, _)| !model.is_carrier(*i)) {
         across.push(turn(i) * body.angular_velocity);
         inside.push(body.velocity);
     }

@@ -5,7 +5,8 @@
 //!   height;
 //! - n is a principal axis of every inertia;
 //! - gravity, forces and velocities lie in the plane, torques and angular velocities are along n;
-//! - forces on bodies that no joint holds upright act at the height of the centre of mass.
+//! - forces on bodies that no joint holds upright act at the height of the centre of mass;
+//! - shapes of flexible bodies lie in the plane, and so do their centres.
 //!
 //! Rows of a joint by the axes that they use, along n \[N\] or across it (P):
 //!
@@ -250,10 +251,18 @@ impl Plane {
 
     /// Reduces a model that satisfies the conditions of this plane.
     pub(crate) fn apply<S: Scalar>(&self, model: &mut Model<S>) {
+        let carries: Vec<bool> = (0..model.bodies.len())
+            .map(|i| model.is_carrier(i))
+            .collect();
         let moving = |(body, _): &(&mut RigidBody<S>, _)| body.mobility != Mobility::fixed();
-        let bodies = model.bodies.iter_mut().zip(&self.bodies);
-        for (body, (normal, _)) in bodies.filter(moving) {
-            body.mobility = Mobility::planar(self.along, *normal);
+        let bodies = model
+            .bodies
+            .iter_mut()
+            .zip(self.bodies.iter().zip(&carries));
+        for (body, ((normal, _), carries)) in bodies.filter(moving) {
+            if !carries {
+                body.mobility = Mobility::planar(self.along, *normal);
+            }
         }
         for (j, own) in self.joints.iter().enumerate() {
             let joint = &mut model.joints[j];
@@ -276,7 +285,7 @@ fn turn_to(joint: &Joint<f64>, normal: &Vec3<f64>) -> Option<Mat3<f64>> {
         return None;
     }
     let third = match joint.kind {
-        JointKind::Weld => {
+        JointKind::Weld | JointKind::Attachment => {
             // Any direction across the normal.
             let mut farthest = Vec3::zeros();
             farthest[n.iamin()] = 1.0;

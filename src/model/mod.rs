@@ -59,12 +59,16 @@ impl<S: Scalar> Model<S> {
         !driven && self.loads.iter().all(conserves) && self.flexible.iter().all(undamped)
     }
 
+    /// Whether a body carries elastic coordinates.
+    pub(crate) fn is_carrier(&self, body: usize) -> bool {
+        let mut all = self.flexible.iter();
+        all.any(|flexible| flexible.carriers().contains(&body))
+    }
+
     /// Whether a body is the frame, a carrier or an interface of a flexible body.
     pub(crate) fn is_of_flexible(&self, body: usize) -> bool {
-        let own = |flexible: &FlexibleBody<S>| {
-            flexible.frame == body || flexible.carriers().contains(&body)
-        };
-        self.flexible.iter().any(own) || self.is_interface(body)
+        let frame = self.flexible.iter().any(|flexible| flexible.frame == body);
+        frame || self.is_carrier(body) || self.is_interface(body)
     }
 
     /// Whether a body stands for a point of a flexible body.

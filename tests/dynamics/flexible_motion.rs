@@ -3,12 +3,16 @@
 
 use crate::tests::reference;
 
+use flexbody::adjoint::gradients;
+use flexbody::functions::{Function, Instant, Reduction, Scene};
 use flexbody::integrate::{Method, Settings, Spacing, Trajectory, simulate};
+use flexbody::lower::Plane;
 use flexbody::math::{Vec3, rotation};
 use flexbody::model::flexible::ModalStiffness;
 use flexbody::model::{Mobility, Model};
+use flexbody::system::Numbering;
 use flexbody::system::observe::{Observation, observe};
-use reference::flexible::{Points, stiffness, swing_from, swing_of};
+use reference::flexible::{Points, planar_swing, stiffness, swing_from, swing_of};
 use reference::models::Numbers;
 
 const RADAU: Method = Method::Radau { stages: 3 };
@@ -197,4 +201,61 @@ fn stiff_bodies_are_nearly_rigid() {
         stiff < 1e-4 && (order - 1.0).abs() < 0.15,
         "{soft:e} {stiff:e}"
     );
+}
+
+/// In its plane a body has three unknowns beside its coordinates; motion and gradients are those in space.
+#[test]
+fn planes_are_found() {
+    for (seed, modes) in [(51, 2), (52, 3), (53, 5)] {
+        let model = planar_swing(seed, modes);
+        let plane = Plane::of(&model).expect("is planar");
+        let mut lowered = model.clone();
+        plane.apply(&mut lowered);
+        assert_eq!(Numbering::new(&lowered).unknowns(), 3 * 3 + modes);
+        let tip = (0..model.bodies.len()).find(|&body| model.is_interface(body));
+        for method in [Method::Dop853, RADAU] {
+            let all = [&model, &lowered].map(|model| {
+                let run = run(model, 0.3, method, Spacing::Steps(40));
+                let scene = Scene {
+                    model: model.clone(),
+                    duration: 0.3,
+                    until: None,
+                    functions: vec![Function::Reduced {
+                        instant: Instant::SpeedSquared {
+                            body: tip.expect("has an interface"),
+                            point: Vec3::new(0.1, 0.2, 0.0),
+                        },
+                        reduction: Reduction::Integral,
+                    }],
+                    unstarted: None,
+                };
+                let found = gradients(&scene, &run, &[0]).expect("differentiates");
+                let by = found.gradients[0].model.flexible[0].clone();
+                let inertia = by
+                    .inertia
+                    .products
+                    .iter()
+                    .flat_map(|s| [s[(0, 0)], s[(1, 0)]]);
+                let stiff = by.stiffness.linear.iter().copied();
+                let by: Vec<f64> = inertia.chain(stiff).collect();
+                (run.q(run.last()).to_vec(), by)
+            });
+            let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let off = |x: &[f64], y: &[f64]| {
+                let pairs = x.iter().zip(y);
+                largest(&pairs.map(|(x, y)| x - y).collect::<Vec<_>>())
+            };
+            let [(q, by), (q_lowered, by_lowered)] = &all;
+            assert!(off(q, q_lowered) <= 1e-11, "{:e}", off(q, q_lowered));
+            let relative = off(by, by_lowered) / largest(by);
+            assert!(relative <= 1e-10, "{relative:e}");
+        }
+        // A mode that leaves the plane is told.
+        let mut tilted = model.clone();
+        tilted.flexible[0].inertia.static_moments[0].z = 1e-6;
+        let kept = Plane::of(&tilted)
+            .expect_err("leaves the plane")
+            .to_string();
+        assert!(kept.contains("the deformation of body \"arm\""), "{kept}");
+    }
 }

@@ -187,3 +187,70 @@ pub fn swing_from(seed: u64, modes: usize, size: f64, start: f64) -> Model<f64> 
     });
     model
 }
+
+/// A swing of which everything lies and moves in the plane across z, with a rigid body on a hinge at its
+/// tip and a spring.
+pub fn planar_swing(seed: u64, modes: usize) -> Model<f64> {
+    let mut numbers = Numbers(seed);
+    let flat = |v: Vec3<f64>| Vec3::new(v.x, v.y, 0.0);
+    let along = |v: Vec3<f64>| Vec3::new(0.0, 0.0, v.z);
+    let mut points = Points::any(&mut numbers, 12, modes);
+    points.places.iter_mut().for_each(|x| *x = flat(*x));
+    points
+        .shapes
+        .iter_mut()
+        .flatten()
+        .for_each(|x| *x = flat(*x));
+    let mut body = |name: &str| {
+        let mut body = numbers.body(name);
+        body.inertia = Mat3::from_diagonal(&Vec3::new(0.3, 0.4, 0.6));
+        body.orientation = rotation::from_axis_angle(&Vec3::z(), 2.0 * numbers.next());
+        body.position = flat(body.position);
+        body.velocity = flat(body.velocity);
+        body.angular_velocity = along(body.angular_velocity);
+        body
+    };
+    let (mut frame, load) = (body("arm"), body("load"));
+    (frame.mass, frame.inertia) = points.rigid();
+    let origin = frame.position;
+    let mut model = Model {
+        gravity: Vec3::new(1.0, -9.0, 0.0),
+        bodies: vec![frame, load],
+        joints: Vec::new(),
+        loads: Vec::new(),
+        flexible: Vec::new(),
+    };
+    let ball = ("ball", JointKind::Spherical);
+    let ball = joint(&model.bodies, ball, (0, None), &origin, &Vec3::x());
+    model.joints.push(ball);
+    let small = |x: Vec<f64>, by: f64| -> Vec<f64> { x.iter().map(|x| x * by).collect() };
+    let start = (
+        small(numbers.list(modes), 0.05),
+        small(numbers.list(modes), 0.2),
+    );
+    let stiff = stiffness(&mut numbers, modes, 100.0);
+    let damping = definite(&mut numbers, modes, 0.5);
+    model.add_flexible(0, (&start.0, &start.1), points.inertia(), stiff, damping);
+    let displacement = (0..modes).map(|_| flat(numbers.vector()) * 0.5).collect();
+    let turning = (0..modes).map(|_| along(numbers.vector()) * 0.5).collect();
+    let point = flat(numbers.vector());
+    let tip = model.attach(0, "tip", point, (displacement, turning));
+    let place = model.bodies[tip].position;
+    let hinge = ("hinge", JointKind::Revolute);
+    let hinge = joint(&model.bodies, hinge, (1, Some(tip)), &place, &Vec3::z());
+    model.joints.push(hinge);
+    model.loads.push(Load {
+        name: "spring".into(),
+        kind: LoadKind::Spring {
+            body_a: tip,
+            body_b: None,
+            point_a: Vec3::new(0.05, -0.02, 0.0),
+            point_b: place + Vec3::new(0.4, 1.1, 0.0),
+            rest_length: 0.8,
+            stiffness: 20.0,
+            cubic: 3.0,
+            damping: 0.4,
+        },
+    });
+    model
+}
