@@ -9,6 +9,7 @@ use crate::integrate::{
 };
 use crate::math::{Dual, Parameters};
 use crate::model::RigidBody;
+use crate::model::flexible::FlexibleBody;
 use crate::problem::{Focus, Problem};
 use std::borrow::Cow;
 
@@ -43,8 +44,14 @@ impl Evaluated {
         x: &[f64],
     ) -> Result<(Self, Option<Refresh>), IntegrationFailure> {
         let mut scene = problem.unlowered_scene::<f64>(x);
-        let not_solid = |body: &&RigidBody<f64>| !body.is_solid();
-        if let Some(body) = scene.model.bodies.iter().find(not_solid) {
+        // Coordinates and points of flexible bodies have no mass of their own.
+        let model = &scene.model;
+        let not_solid = |(k, body): &(usize, &RigidBody<f64>)| {
+            let frame = |flexible: &FlexibleBody<f64>| flexible.frame == *k;
+            let own = !model.is_of_flexible(*k) || model.flexible.iter().any(frame);
+            own && !body.is_solid()
+        };
+        if let Some((_, body)) = model.bodies.iter().enumerate().find(not_solid) {
             return Err(IntegrationFailure::Unphysical {
                 body: body.name.clone(),
             });

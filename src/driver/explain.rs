@@ -182,9 +182,10 @@ fn explain_seen(problem: &Problem) -> Explanation {
         start.unwrap_or_else(|| [placement::guess(&written), placement::guess(&scene.model)]);
     Explanation {
         name: problem.name.clone(),
-        bodies: written.bodies.len(),
-        joints: written.joints.len(),
+        bodies: problem.body_count(),
+        joints: problem.joint_count(),
         loads: written.loads.len(),
+        flexible: problem.flexible_bodies(&x),
         left_out,
         kept,
         start: super::start::notes(problem, &x),

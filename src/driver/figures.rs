@@ -8,6 +8,7 @@ use crate::functions::measure::Snapshot;
 use crate::functions::turning::turns;
 use crate::functions::{Function, Instant, Reduction};
 use crate::math::Vec3;
+use crate::model::Model;
 use crate::problem::{Drawing, Outline, Problem};
 use crate::report::plots::{
     Barrier, BodyMotion, EnergyRun, Flight, Motion, Scenery, convergence, energy, motion,
@@ -206,8 +207,10 @@ fn lapse(
             outlines: instants
                 .iter()
                 .map(|&k| {
-                    let motion = Snapshot::of(model, run, k).motion(body);
-                    outline(&drawing.outlines[body], |s| flat(&motion.point(s)))
+                    let at = Snapshot::of(model, run, k);
+                    let motion = at.motion(body);
+                    let q = elastic(model, &at, body);
+                    outline(&drawing.outlines[body], &q, |s| flat(&motion.point(s)))
                 })
                 .collect(),
         })
@@ -241,9 +244,27 @@ fn lapse(
     }
 }
 
-/// The silhouette of a body whose points are shown by `place`.
-fn outline(outline: &Outline, place: impl Fn(&Vec3<f64>) -> [f64; 2]) -> Vec<[f64; 2]> {
+/// Elastic coordinates of a body; none of a rigid one.
+fn elastic(model: &Model<f64>, at: &Snapshot<f64>, body: usize) -> Vec<f64> {
+    let own = model
+        .flexible
+        .iter()
+        .filter(|flexible| flexible.frame == body);
+    let places = own.flat_map(|flexible| flexible.places());
+    places
+        .map(|(carrier, k)| at.motion(carrier).point(&Vec3::zeros())[k])
+        .collect()
+}
+
+/// The silhouette of a body with elastic coordinates `q` whose points are shown by `place`.
+fn outline(outline: &Outline, q: &[f64], place: impl Fn(&Vec3<f64>) -> [f64; 2]) -> Vec<[f64; 2]> {
     match outline {
+        Outline::Deformed(line) => (line.points.iter())
+            .map(|(point, modes)| {
+                let moved = modes.iter().zip(q).fold(*point, |sum, (n, &q)| sum + n * q);
+                place(&moved)
+            })
+            .collect(),
         Outline::Hull(corners) => hull(corners.iter().map(place).collect()),
         Outline::Sphere(radius) => {
             let [x, y] = place(&Vec3::zeros());

@@ -52,7 +52,6 @@ pub(crate) enum EnergyPart {
 }
 
 /// What a quadratic form in the elastic coordinates measures.
-#[allow(dead_code)] // until problem files have flexible bodies
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum DeformationKind {
     /// A displacement relative to the frame \[m\].
@@ -134,10 +133,8 @@ pub(crate) enum Instant<S> {
     /// Energy of the whole model \[J\].
     Energy(EnergyPart),
     /// Strain energy of a flexible body \[J\], an index into those of the model.
-    #[cfg_attr(not(test), allow(dead_code))] // until problem files have flexible bodies
     StrainEnergy(usize),
     /// A quadratic form in the elastic coordinates of a flexible body.
-    #[cfg_attr(not(test), allow(dead_code))] // until problem files have flexible bodies
     Deformation {
         /// The flexible body, an index into those of the model.
         flexible: usize,

@@ -1,5 +1,6 @@
 //! Scalars, vectors, rotations and smooth maxima: mathematics without mechanics.
 
+pub(crate) mod legendre;
 pub(crate) mod parameters;
 pub(crate) mod rotation;
 pub(crate) mod scalar;

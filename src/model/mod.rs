@@ -79,7 +79,6 @@ impl<S: Scalar> Model<S> {
 
     /// Adds a flexible body whose frame is body `frame`, with the start of its coordinates and their rates;
     /// its index among the flexible ones. The carriers come after all bodies there are.
-    #[cfg_attr(not(test), allow(dead_code))] // until problem files have flexible bodies
     pub(crate) fn add_flexible(
         &mut self,
         frame: usize,
@@ -115,7 +114,6 @@ impl<S: Scalar> Model<S> {
     /// Adds the interface of a point X of flexible body `flexible` with the displacements N_I and the
     /// rotations Θ_I there, and the joint that holds it: the index of the body. It starts where the
     /// deformed point does, its axes turned by the section.
-    #[cfg_attr(not(test), allow(dead_code))] // until problem files have flexible bodies
     pub(crate) fn attach(
         &mut self,
         flexible: usize,

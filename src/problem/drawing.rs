@@ -6,10 +6,14 @@ use super::schema::functions::Function;
 use super::schema::mechanics::{Body, Shape};
 use super::schema::{Document, View};
 use crate::math::Vec3;
+use crate::model::Model;
+use crate::structures::modal::FlexibleBeam;
 use std::f64::consts::TAU;
 
 /// Default number of instants of the time lapse.
 const SNAPSHOTS: usize = 12;
+/// Straight pieces of a side of a beam.
+const SLICES: usize = 24;
 /// Number of corners of the polygon that approximates a circle.
 const CORNERS: usize = 32;
 
@@ -20,8 +24,17 @@ pub(crate) enum Outline {
     Hull(Vec<Vec3<f64>>),
     /// The silhouette is a circle of this radius about the centre of mass.
     Sphere(f64),
+    /// A beam: a closed line of points of the deformed body.
+    Deformed(DeformedLine),
     /// A body without a shape: lines from the centre of mass to these points.
     Spokes(Vec<Vec3<f64>>),
+}
+
+/// A closed line of points that move on their body.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct DeformedLine {
+    /// Its points: where they are in the undeformed body (m), and their displacements by each coordinate.
+    pub points: Vec<(Vec3<f64>, Vec<Vec3<f64>>)>,
 }
 
 /// A barrier across the direction of flight.
@@ -88,16 +101,50 @@ pub(crate) fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawin
         right,
         up,
         snapshots: document.plot.snapshots.unwrap_or(SNAPSHOTS),
-        outlines: document
-            .bodies
-            .values()
-            .zip(&assembly.poses)
-            .map(|(body, pose)| outline(body, pose.centre, x))
-            .collect(),
+        outlines: outlines(document, &assembly, &scene.model, right.cross(&up), x),
         traces: traces.collect(),
         // Heights appear only if gravity points down in the view.
         ground: ground.filter(|_| falls),
         barrier: barrier.filter(|_| falls),
+    }
+}
+
+/// Outlines of all bodies of a model. Those that a file does not have are not seen.
+fn outlines(
+    document: &Document,
+    assembly: &Assembly<f64>,
+    model: &Model<f64>,
+    towards: Vec3<f64>,
+    x: &[f64],
+) -> Vec<Outline> {
+    let written = document.bodies.values().zip(&assembly.poses);
+    let mut all: Vec<Outline> = written
+        .map(|(body, pose)| match &body.beam {
+            Some(beam) => {
+                let sight = pose.rotation.tr_mul(&towards);
+                Outline::Deformed(beam_outline(&super::beam::beam(beam, x), &sight))
+            }
+            None => outline(body, pose.centre, x),
+        })
+        .collect();
+    all.resize(model.bodies.len(), Outline::Spokes(Vec::new()));
+    all
+}
+
+/// The sides of a beam that is seen along `sight`, in its own axes.
+fn beam_outline(beam: &FlexibleBeam<f64>, sight: &Vec3<f64>) -> DeformedLine {
+    // The side that is seen best: along y or z.
+    let along_y = sight.z.abs() >= sight.y.abs();
+    let [y, z] = beam.half_sizes().unwrap_or([0.0; 2]);
+    let side = if along_y { [y, 0.0] } else { [0.0, z] };
+    let at = |k: usize, sign: f64| {
+        let modes = beam.point(k as f64 / SLICES as f64, side.map(|x| x * sign));
+        (modes.position, modes.displacement)
+    };
+    let there = (0..=SLICES).map(|k| at(k, 1.0));
+    let back = (0..=SLICES).rev().map(|k| at(k, -1.0));
+    DeformedLine {
+        points: there.chain(back).collect(),
     }
 }
 

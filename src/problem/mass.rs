@@ -18,6 +18,14 @@ pub(crate) struct MassProperties<S> {
 /// Mass properties at the design `x`. Missing entries of a checked file are zero.
 pub(crate) fn mass_properties<S: Scalar>(body: &Body, x: &[S]) -> MassProperties<S> {
     let number = |quantity: &Option<Quantity>| quantity.map_or(S::zero(), |q| q.get(x));
+    if body.beam.is_some() {
+        // Those of a beam follow from its shapes; its places are from its start.
+        return MassProperties {
+            mass: S::zero(),
+            centre: Vec3::zeros(),
+            inertia: Mat3::zeros(),
+        };
+    }
     let mass = match (&body.shape, &body.density) {
         (Some(shape), Some(density)) => density.get(x) * volume(shape, x),
         _ => number(&body.mass),

@@ -4,12 +4,14 @@
 //! of names, numbers and design variables. Each step reports all faults that it finds. Only a
 //! document without a fault becomes a [`Problem`].
 
+mod beam;
 mod blocks;
 mod bounds;
 mod check;
 mod drawing;
 mod fault;
 mod finding;
+mod flexible;
 mod focus;
 mod joints;
 mod loads;
@@ -278,6 +280,21 @@ impl Problem {
     /// for this body.
     pub(crate) fn own_velocities(&self, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
         scene::own_velocities(&self.written, x)
+    }
+
+    /// Number of bodies in the file.
+    pub(crate) fn body_count(&self) -> usize {
+        self.written.bodies.len()
+    }
+
+    /// Number of joints in the file.
+    pub(crate) fn joint_count(&self) -> usize {
+        self.written.joints.len()
+    }
+
+    /// The flexible bodies at the design `x`: their coordinates and natural frequencies.
+    pub(crate) fn flexible_bodies(&self, x: &[f64]) -> Vec<String> {
+        flexible::described(&self.written, x)
     }
 
     /// The objective, if the file states it.

@@ -168,8 +168,15 @@ impl<'a, S: Scalar> Assembly<'a, S> {
 
     /// A named point of a body, from the origin of its axes \[m\].
     fn point(&self, body: &str, point: &str) -> Vec3<S> {
-        let points = &self.document.bodies.get(body).expect(CHECKED).points;
-        vector(points.get(point).expect(CHECKED), self.x)
+        let body = self.document.bodies.get(body).expect(CHECKED);
+        match (body.points.get(point), &body.beam) {
+            (Some(point), _) => vector(point, self.x),
+            (None, beam) => {
+                let beam = beam.as_ref().expect(CHECKED);
+                let part = beam.station(point).expect(CHECKED).get(self.x);
+                Vec3::new(part * beam.length.get(self.x), S::zero(), S::zero())
+            }
+        }
     }
 
     /// A point of a body or of ground, from the origin of its axes \[m\].

@@ -1,4 +1,4 @@
-//! Joints and loads that a point mass does not admit: they need extent or rotation.
+//! Places that bodies do not have: those beside a point mass, and those beyond the ends of a beam.
 
 use super::Problem;
 use super::finding::Finding;
@@ -13,6 +13,23 @@ use crate::system::placement::length_scale;
 
 /// Two points are the same up to this distance, relative to the length scale.
 const SAME: f64 = 1e-9;
+
+/// The first beam that something holds beyond its ends, where its shapes say nothing.
+pub(super) fn off_beams(problem: &Problem) -> Option<Finding> {
+    let model = problem.scene(&problem.start()).model;
+    model.joints.iter().find_map(|joint| {
+        joint.modes.as_ref()?;
+        let (name, body) = problem.written.bodies.get_index(joint.body_a)?;
+        let length = body.beam.as_ref()?.length.value;
+        let x = joint.frame_a.point.x;
+        let beyond = x < -SAME * length || x > length * (1.0 + SAME);
+        beyond.then(|| {
+            let found = format!("a joint, load or function at x = {x:.6} m of \"{name}\"");
+            let expected = format!("places on the beam, x from 0 to {length} m");
+            Finding::new(join(&join("/bodies", name), "beam"), found, expected)
+        })
+    })
+}
 
 /// The first joint or load that a point mass does not admit.
 pub(super) fn beside(problem: &Problem) -> Option<Finding> {

@@ -135,6 +135,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
                 .or_else(|| collapsed(&problem))
                 .or_else(|| oblique(&problem))
                 .or_else(|| points::beside(&problem))
+                .or_else(|| points::off_beams(&problem))
                 .or_else(|| driven_twice(&problem))
                 .or_else(|| unassembled(&problem));
             match finding {

@@ -1,5 +1,6 @@
 //! The map from a design to a scene, analytic in the design.
 
+use super::flexible::{FlexibleBodies, station};
 use super::mass::mass_properties;
 use super::placement::{Assembly, GROUND};
 use super::quantity::{Vector, vector};
@@ -37,25 +38,33 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
         flexible: Vec::new(),
     };
     let unstarted = start(document, &assembly, &mut model, x).err();
+    let mut flexible = FlexibleBodies::add(document, &mut model, x);
     let builder = Builder {
         document,
         assembly: &assembly,
         gravity,
+        flexible: &flexible,
+        ends: (model.joints.iter())
+            .map(|joint| (joint.body_a, joint.body_b))
+            .collect(),
         x,
     };
+    let mut functions: Vec<Function<S>> = document
+        .functions
+        .values()
+        .map(|f| builder.function(f))
+        .collect();
+    let mut until = document
+        .simulation
+        .until
+        .as_ref()
+        .map(|until| TerminalEvent::new(builder.instant(&until.measure), until.reaches.get(x)));
+    flexible.move_functions(&mut model, &mut functions, &mut until);
     Scene {
         model,
         duration: document.simulation.duration.get(x),
-        until: document
-            .simulation
-            .until
-            .as_ref()
-            .map(|until| TerminalEvent::new(builder.instant(&until.measure), until.reaches.get(x))),
-        functions: document
-            .functions
-            .values()
-            .map(|f| builder.function(f))
-            .collect(),
+        until,
+        functions,
         unstarted,
     }
 }
@@ -158,6 +167,9 @@ struct Builder<'a, S> {
     document: &'a Document,
     assembly: &'a Assembly<'a, S>,
     gravity: Vec3<S>,
+    flexible: &'a FlexibleBodies<S>,
+    /// The bodies of the joints, first the one that is not ground.
+    ends: Vec<(usize, Option<usize>)>,
     x: &'a [S],
 }
 
@@ -262,6 +274,21 @@ impl<S: Scalar> Builder<'_, S> {
                 projectile: self.projectile(range),
                 gate: range.gate.as_ref().map(|gate| self.gate(gate)),
             },
+            I::ElasticDisplacement(of) => {
+                let point = self.assembly.in_body(&of.body, &of.point);
+                let direction = vector(&of.direction, self.x);
+                (self.flexible).displacement(self.body(&of.body), point, direction)
+            }
+            I::StrainEnergy(of) => Instant::StrainEnergy(self.flexible.index(self.body(&of.body))),
+            I::SectionForce(of) => {
+                let station = station(self.document, self.assembly, &of.body, &of.station);
+                (self.flexible).section(self.body(&of.body), of.component, station)
+            }
+            I::FibreStress(of) => {
+                let station = station(self.document, self.assembly, &of.body, &of.station);
+                let fibre = of.fibre.map(S::from);
+                (self.flexible).stress(self.body(&of.body), station, fibre)
+            }
         }
     }
 
@@ -328,7 +355,13 @@ impl<S: Scalar> Builder<'_, S> {
         };
         let axis = joint.axes()[0].expect("a joint with an angle has an axis");
         let axis = self.assembly.axis(axis);
-        self.rotation(bodies, axis, Some(CountedFrom::Placement))
+        let mut rotation = self.rotation(bodies, axis, Some(CountedFrom::Placement));
+        // On beams it is that of the sections that the joint holds.
+        let index = self.document.joints.get_index_of(name);
+        let (own, other) = self.ends[index.expect("joints are checked")];
+        rotation.body = own;
+        rotation.relative_to = other;
+        rotation
     }
 
     fn gate(&self, gate: &written::Gate) -> Gate<S> {

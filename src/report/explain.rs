@@ -16,6 +16,9 @@ pub(crate) struct Explanation {
     pub joints: usize,
     /// See above.
     pub loads: usize,
+    /// The flexible bodies: their coordinates and natural frequencies.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub flexible: Vec<String>,
     /// The reductions made, and why they are allowed.
     pub left_out: Vec<String>,
     /// The reductions that failed, and the violated conditions.
@@ -107,6 +110,7 @@ impl Explanation {
             self.name, self.bodies, self.joints, self.loads
         );
         for (title, lines) in [
+            ("flexible bodies", &self.flexible),
             ("left out", &self.left_out),
             ("not left out", &self.kept),
             ("start", &self.start),

@@ -13,6 +13,7 @@ pub mod loads;
 pub mod lumped_mass;
 pub mod material;
 pub mod mesh;
+pub(crate) mod modal;
 pub mod modes;
 pub mod quality;
 mod reactions;

@@ -5,6 +5,7 @@ mod beams;
 mod beams_in_structures;
 mod function_gradients;
 mod mesh_faults;
+mod modal_beams;
 mod mode_gradients;
 mod modes;
 mod obstacle_course;

@@ -20,13 +20,17 @@ impl Checker<'_> {
     }
 
     fn joint(&mut self, pointer: &str, name: &str, joint: &Joint) {
+        let document = self.document;
         let between = joint.between();
         self.between(&join(pointer, "between"), between);
         self.point_masses(pointer, joint);
         let at = join(pointer, "at");
         match (joint, joint.place()) {
             (_, Some(JointPlace::Named(text))) => self.location(&at, text),
-            (_, Some(JointPlace::Each(pair))) => self.pair(&at, between, pair),
+            (_, Some(JointPlace::Each(pair))) => {
+                self.pair(&at, between, pair);
+                self.held(&at, between, pair);
+            }
             (Joint::Rod(rod), _) => {
                 if let Ends::Each(pair) = &rod.at {
                     self.pair(&at, between, pair);
@@ -46,7 +50,13 @@ impl Checker<'_> {
             }
         }
         if let Some(start) = joint.start() {
-            self.start(&join(pointer, "start"), (name, joint), start);
+            let pointer = join(pointer, "start");
+            if document.bodies.values().any(|body| body.beam.is_some()) {
+                let found = "a start of a joint in a scene with beams";
+                let expected = "bodies that are placed, with their velocities";
+                self.fault(Finding::new(&pointer, found, expected).of_key());
+            }
+            self.start(&pointer, (name, joint), start);
         }
     }
 

@@ -38,6 +38,11 @@ impl Checker<'_> {
             }
             Load::Torque(torque) => {
                 self.moving(pointer, &torque.body, &None);
+                if self.is_beam(&torque.body) {
+                    let found = format!("a torque on the beam \"{}\"", torque.body);
+                    let expected = "a torque on a rigid body, which may be welded to the beam";
+                    self.fault(Finding::new(join(pointer, "body"), found, expected));
+                }
                 self.direction(&join(pointer, "direction"), &torque.direction);
                 self.course(&join(pointer, "magnitude"), torque.magnitude.parts());
             }

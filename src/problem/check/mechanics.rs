@@ -22,7 +22,10 @@ impl Checker<'_> {
                 let expected = "a name that is not \"ground\" and has no dot";
                 self.fault(Finding::new(&pointer, found, expected).of_key());
             }
-            self.mass(&pointer, body);
+            match &body.beam {
+                Some(beam) => self.beam(&pointer, body, beam),
+                None => self.mass(&pointer, body),
+            }
             self.place(&join(&pointer, "place"), name, &body.place);
         }
         if let Err(circle) = placement_order(document) {
@@ -68,7 +71,7 @@ impl Checker<'_> {
                 let finding = Finding::new(
                     pointer,
                     "a body without its mass properties",
-                    "\"shape\" and \"mass\" or \"density\", or else \"mass\" and \"inertia\"",
+                    "\"shape\" and \"mass\" or \"density\", or else \"mass\" and \"inertia\", or else \"beam\"",
                 );
                 self.fault(finding.of_key());
                 return;

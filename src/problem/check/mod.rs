@@ -1,5 +1,6 @@
 //! Checks the meaning of a document: names, numbers, and faults that a schema cannot express.
 
+mod beams;
 mod joints;
 mod loads;
 mod mechanics;
@@ -54,13 +55,17 @@ impl<'a> Checker<'a> {
 
     /// Checks that a body has a point; `whole` is the text in the file.
     fn named_point(&mut self, pointer: &str, body: &Body, name: &str, whole: &str) {
-        if body.points.contains_key(name) {
+        let beam = body.beam.as_ref();
+        let is_station = beam.is_some_and(|beam| beam.station(name).is_some());
+        if body.points.contains_key(name) || is_station {
             return;
         }
         let prefix = whole.strip_suffix(name).unwrap_or_default();
         let names: Vec<String> = body
             .points
             .keys()
+            .map(String::as_str)
+            .chain(beam.iter().flat_map(|beam| beam.station_names()))
             .map(|key| format!("{prefix}{key}"))
             .collect();
         let hint = advice(whole, "points", names.iter().map(String::as_str));

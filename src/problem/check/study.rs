@@ -166,6 +166,20 @@ impl Checker<'_> {
             }
             Instant::Angle(angle) => self.angle(&join(pointer, "angle"), &angle.joint),
             Instant::Range(range) => self.range(&join(pointer, "range"), range),
+            Instant::ElasticDisplacement(of) => {
+                let pointer = join(pointer, "elastic_displacement");
+                if self.measured_beam(&pointer, &of.body).is_some() {
+                    self.point(&join(&pointer, "point"), &of.body, &of.point);
+                }
+                self.direction(&join(&pointer, "direction"), &of.direction);
+            }
+            Instant::StrainEnergy(of) => {
+                self.measured_beam(&join(pointer, "strain_energy"), &of.body);
+            }
+            Instant::SectionForce(of) => {
+                self.station(&join(pointer, "section_force"), &of.body, &of.station);
+            }
+            Instant::FibreStress(of) => self.fibre(&join(pointer, "fibre_stress"), of),
         }
     }
 

@@ -88,6 +88,93 @@ pub(crate) enum Instant {
     Angle(JointAngle),
     /// Range of a projectile that is released at this instant [m].
     Range(Range),
+    /// Displacement of a beam's point from where it is in the undeformed beam (m).
+    ElasticDisplacement(ElasticDisplacement),
+    /// Strain energy of a beam (J).
+    StrainEnergy(OfBeam),
+    /// Force (N) or moment (N m) in a section of a beam.
+    SectionForce(SectionForce),
+    /// Stress of bending and stretch along a fibre of a beam (Pa).
+    FibreStress(FibreStress),
+}
+
+/// A beam.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OfBeam {
+    /// The beam.
+    pub body: String,
+}
+
+/// A point of a beam and a direction.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ElasticDisplacement {
+    /// The beam.
+    pub body: String,
+    /// Its point, by name or in body axes.
+    pub point: Point,
+    /// Direction in body axes, used as it is given: a unit vector gives a component.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+}
+
+/// A force or moment in a section.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SectionForce {
+    /// The beam.
+    pub body: String,
+    /// Where the section is.
+    pub station: SectionPlace,
+    /// Which of its forces and moments.
+    pub component: SectionComponent,
+}
+
+/// A section of a beam.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum SectionPlace {
+    /// Name of a station, "start" or "end".
+    Named(String),
+    /// Fraction of the length.
+    #[schemars(extend("unit" = "1", "minimum" = 0))]
+    Fraction(Quantity),
+}
+
+/// A force or moment in a section, by the beam's axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum SectionComponent {
+    /// Axial force, positive in tension.
+    Axial,
+    /// Shear force along y.
+    ShearY,
+    /// Shear force along z.
+    ShearZ,
+    /// Torsion moment.
+    Torsion,
+    /// Bending moment about y.
+    BendingY,
+    /// Bending moment about z.
+    BendingZ,
+}
+
+/// Stress along a fibre.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FibreStress {
+    /// The beam.
+    pub body: String,
+    /// Where the section is.
+    pub station: SectionPlace,
+    /// Where the fibre is in it along y and z, in parts of half the section's size: [1, 0] is outermost
+    /// along y.
+    #[schemars(extend(
+        "unit" = "1",
+        "design_variable" = "a fibre says what is asked, not what is built"
+    ))]
+    pub fibre: [f64; 2],
 }
 
 /// A point of a body and a direction.

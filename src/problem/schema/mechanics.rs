@@ -1,12 +1,13 @@
 //! Bodies in a file.
 
+use super::flexible::Beam;
 use crate::problem::quantity::{Quantity, Vector};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A rigid body: a shape with its mass or density, or an explicit mass, centre of mass and
-/// inertia.
+/// A body: a shape with its mass or density, or an explicit mass, centre of mass and inertia, or a beam
+/// with elastic coordinates.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Body {
@@ -23,7 +24,9 @@ pub(crate) struct Body {
     pub centre_of_mass: Option<Vector>,
     /// Inertia of a body without a shape.
     pub inertia: Option<Inertia>,
-    /// Named points in body axes from their origin (the centre of the shape).
+    /// A beam with elastic coordinates, instead of all above.
+    pub beam: Option<Box<Beam>>,
+    /// Named points in body axes from their origin (the centre of the shape, the start of a beam).
     #[serde(default)]
     #[schemars(extend("unit" = "m"))]
     pub points: IndexMap<String, Vector>,
@@ -180,7 +183,7 @@ pub(crate) struct Turn {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BodyVelocity {
-    /// Velocity of the centre of mass in ground axes, default 0.
+    /// Velocity of the centre of mass (of a beam's start) in ground axes, default 0.
     #[schemars(extend("unit" = "m/s"))]
     pub linear: Option<Vector>,
     /// Angular velocity in ground axes, default 0.

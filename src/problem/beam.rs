@@ -1,0 +1,153 @@
+//! From the beams of a file to bodies with elastic coordinates.
+
+use super::quantity::Quantity;
+use super::schema::flexible::{Beam, BeamSection, Damping, Frame, Functions, Strain};
+use crate::math::Scalar;
+use crate::structures::beam::{Section, SectionValues};
+use crate::structures::damping::RayleighDamping;
+use crate::structures::material::Material;
+use crate::structures::modal::{
+    BeamDamping, BeamFrame, BeamModes, BendingFunctions, FlexibleBeam, StrainMeasure,
+};
+
+/// Functions of bending in each plane where a file gives no number.
+const BENDING: u32 = 4;
+/// Functions of torsion likewise.
+const TORSION: u32 = 2;
+/// Functions of stretch likewise, if the strain is linear.
+const LINEAR_STRETCH: usize = 2;
+/// Poisson's ratio where a file gives none.
+const POISSON: f64 = 0.3;
+
+/// How many functions a beam has.
+pub(crate) fn modes(beam: &Beam) -> BeamModes {
+    let number = |written: Option<u32>, default| written.unwrap_or(default) as usize;
+    let bending = [
+        number(beam.modes.bending_y, BENDING),
+        number(beam.modes.bending_z, BENDING),
+    ];
+    let stretch = match beam.strain {
+        Strain::VonKarman => BeamModes::companions(bending),
+        Strain::Linear => LINEAR_STRETCH,
+    };
+    BeamModes {
+        bending,
+        torsion: number(beam.modes.torsion, TORSION),
+        stretch: beam.modes.stretch.map_or(stretch, |n| n as usize),
+    }
+}
+
+/// Whether the sections of a beam shear.
+pub(crate) fn shears(beam: &Beam) -> bool {
+    match &beam.section {
+        BeamSection::Given(given) => given.ga_y.is_some() || given.ga_z.is_some(),
+        _ => beam.shear.unwrap_or(true),
+    }
+}
+
+/// The beam at the design `x`. What a checked file cannot lack counts as one here.
+pub(crate) fn beam<S: Scalar>(written: &Beam, x: &[S]) -> FlexibleBeam<S> {
+    let get = |quantity: &Quantity| quantity.get(x);
+    let or = |quantity: &Option<Quantity>, default: f64| {
+        quantity.as_ref().map_or(S::from(default), |q| q.get(x))
+    };
+    let section = match &written.section {
+        BeamSection::Rectangle { width, height } => Section::Rectangle {
+            width: get(width),
+            height: get(height),
+        },
+        BeamSection::Tube { radius, wall } => Section::Tube {
+            radius: get(radius),
+            wall: get(wall),
+        },
+        BeamSection::I {
+            width,
+            height,
+            flange,
+            web,
+        } => Section::I {
+            width: get(width),
+            height: get(height),
+            flange: get(flange),
+            web: get(web),
+        },
+        // Axis 3 of a section is y, its axis 2 is z. EI2 resists what bends along axis 3.
+        BeamSection::Given(given) => {
+            let (along_y, along_z) = (or(&given.ga_y, 1.0), or(&given.ga_z, 1.0));
+            Section::Given(SectionValues {
+                stiffness: [
+                    get(&given.ea),
+                    along_z,
+                    along_y,
+                    or(&given.gj, 1.0),
+                    or(&given.ei_y, 1.0),
+                    or(&given.ei_z, 1.0),
+                ],
+                inertia: [
+                    get(&given.mass_per_length),
+                    get(&given.inertia_y),
+                    get(&given.inertia_z),
+                ],
+            })
+        }
+    };
+    let material = written.material.as_ref();
+    let material = Material {
+        young: material.map_or(S::one(), |material| get(&material.young)),
+        poisson: material.map_or(S::zero(), |material| or(&material.poisson, POISSON)),
+        density: material.map_or(S::one(), |material| or(&material.density, 1.0)),
+        yield_stress: S::zero(),
+    };
+    FlexibleBeam {
+        length: get(&written.length),
+        section,
+        material,
+        frame: match written.frame {
+            Frame::Chord => BeamFrame::Chord,
+            Frame::Clamped => BeamFrame::Clamped,
+        },
+        functions: match written.functions {
+            Functions::Polynomial => BendingFunctions::Polynomial,
+            Functions::Sine => BendingFunctions::Sine,
+        },
+        modes: modes(written),
+        strain: match written.strain {
+            Strain::VonKarman => StrainMeasure::VonKarman,
+            Strain::Linear => StrainMeasure::Linear,
+        },
+        shear: shears(written),
+        damping: damping(written.damping.as_ref(), x),
+    }
+}
+
+fn damping<S: Scalar>(written: Option<&Damping>, x: &[S]) -> BeamDamping<S> {
+    let get = |quantity: Option<Quantity>| quantity.map(|quantity| quantity.get(x));
+    let of = |key: fn(&Damping) -> Option<Quantity>| get(written.and_then(key));
+    let all = of(|damping| damping.ratio).unwrap_or(S::zero());
+    BeamDamping {
+        ratios: [
+            all,
+            of(|damping| damping.torsion_ratio).unwrap_or(all),
+            of(|damping| damping.stretch_ratio).unwrap_or(all),
+        ],
+        rayleigh: RayleighDamping {
+            mass: of(|damping| damping.mass).unwrap_or(S::zero()),
+            stiffness: of(|damping| damping.stiffness).unwrap_or(S::zero()),
+        },
+    }
+}
+
+/// Elastic coordinates and their rates at the start.
+pub(crate) fn start<S: Scalar>(written: &Beam, x: &[S]) -> [Vec<S>; 2] {
+    let count = modes(written).count();
+    let row = |given: Option<&Vec<Quantity>>| {
+        let mut all: Vec<S> = given.into_iter().flatten().map(|q| q.get(x)).collect();
+        all.resize(count, S::zero());
+        all
+    };
+    let start = written.start.as_ref();
+    [
+        row(start.and_then(|start| start.coordinates.as_ref())),
+        row(start.and_then(|start| start.rates.as_ref())),
+    ]
+}

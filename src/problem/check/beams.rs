@@ -1,0 +1,263 @@
+//! Beams with elastic coordinates, and what is measured of them.
+
+use super::Checker;
+use crate::problem::beam::{modes, shears};
+use crate::problem::finding::Finding;
+use crate::problem::pointer::{advice, join};
+use crate::problem::quantity::{Quantity, Vector};
+use crate::problem::schema::flexible::{Beam, BeamSection, Functions, Strain};
+use crate::problem::schema::functions::{FibreStress, SectionPlace};
+use crate::problem::schema::joints::PointPair;
+use crate::problem::schema::mechanics::{Body, Point};
+
+/// Part of the length by which a point may lie beyond an end.
+const BEYOND: f64 = 1e-9;
+
+impl Checker<'_> {
+    pub(super) fn beam(&mut self, pointer: &str, body: &Body, beam: &Beam) {
+        let extra = [
+            ("shape", body.shape.is_some()),
+            ("density", body.density.is_some()),
+            ("mass", body.mass.is_some()),
+            ("centre_of_mass", body.centre_of_mass.is_some()),
+            ("inertia", body.inertia.is_some()),
+        ];
+        for (key, _) in extra.into_iter().filter(|(_, given)| *given) {
+            let found = format!("\"{key}\" beside \"beam\"");
+            let expected = "one of them, as section and material of the beam give it";
+            self.fault(Finding::new(join(pointer, key), found, expected).of_key());
+        }
+        for (name, point) in &body.points {
+            self.on_beam(&join(&join(pointer, "points"), name), beam, point);
+        }
+        let pointer = &join(pointer, "beam");
+        for (name, station) in &beam.stations {
+            self.part(&join(&join(pointer, "stations"), name), station.value);
+            if body.points.contains_key(name) {
+                let found = format!("\"{name}\", which \"points\" has too");
+                let place = join(&join(pointer, "stations"), name);
+                self.fault(Finding::new(place, found, "a name once").of_key());
+            }
+        }
+        self.section(pointer, beam);
+        let modes = modes(beam);
+        let count = modes.count();
+        if count == 0 {
+            let found = "a beam without elastic coordinates";
+            let hint = "a rigid body has \"shape\" and \"mass\" or \"density\"".to_owned();
+            let finding = Finding::new(join(pointer, "modes"), found, "at least one function");
+            self.fault(finding.hint(Some(hint)));
+        }
+        if beam.functions == Functions::Sine && beam.strain != Strain::Linear {
+            let found = "sines with von Karman's strain";
+            let hint =
+                "no function of stretch lets a beam that is bent by sines shorten without strain";
+            let finding = Finding::new(
+                join(pointer, "functions"),
+                found,
+                "\"polynomial\", or \"strain\": \"linear\"",
+            );
+            self.fault(finding.hint(Some(hint.into())));
+        }
+        if let Some(start) = &beam.start {
+            for (key, row) in [("coordinates", &start.coordinates), ("rates", &start.rates)] {
+                let Some(row) = row.as_ref().filter(|row| row.len() != count) else {
+                    continue;
+                };
+                let [y, z, torsion, stretch] = modes.ranges().map(|range| range.len());
+                let found = format!("a list of {}", row.len());
+                let expected = format!(
+                    "a list of {count} numbers: {y} of bending along y, {z} along z, {torsion} of \
+                     torsion, {stretch} of stretch"
+                );
+                let place = join(&join(pointer, "start"), key);
+                self.fault(Finding::new(place, found, expected));
+            }
+        }
+    }
+
+    /// Checks that a section has what its functions and its inertia need.
+    fn section(&mut self, pointer: &str, beam: &Beam) {
+        let place = join(pointer, "section");
+        let modes = modes(beam);
+        let material = beam.material.as_ref();
+        if let BeamSection::Given(given) = &beam.section {
+            let needed = [
+                ("ei_y", modes.bending[0] > 0, given.ei_y.is_some()),
+                ("ei_z", modes.bending[1] > 0, given.ei_z.is_some()),
+                ("gj", modes.torsion > 0, given.gj.is_some()),
+                (
+                    "ga_y",
+                    shears(beam) && modes.bending[0] > 0,
+                    given.ga_y.is_some(),
+                ),
+                (
+                    "ga_z",
+                    shears(beam) && modes.bending[1] > 0,
+                    given.ga_z.is_some(),
+                ),
+            ];
+            for (key, _, _) in needed.iter().filter(|(_, needed, given)| *needed && !given) {
+                let found = format!("a given section without \"{key}\"");
+                let expected = format!("\"{key}\", as the beam has functions that need it");
+                let finding = Finding::new(join(&place, "given"), found, expected);
+                self.fault(finding.of_key());
+            }
+            let turns = given.inertia_y.value + given.inertia_z.value > 0.0;
+            if modes.torsion > 0 && !turns {
+                let found = "torsion of sections without inertia";
+                let expected = "\"inertia_y\" or \"inertia_z\", or no functions of torsion";
+                self.fault(Finding::new(join(&place, "given"), found, expected).of_key());
+            }
+            if beam.shear.is_some() {
+                let found = "\"shear\" beside given stiffnesses";
+                let expected = "\"ga_y\" and \"ga_z\" in the section, or neither";
+                self.fault(Finding::new(join(pointer, "shear"), found, expected).of_key());
+            }
+            return;
+        }
+        match material {
+            None => {
+                let found = "a beam without material";
+                self.fault(Finding::new(pointer, found, "\"material\"").of_key());
+            }
+            Some(material) if material.density.is_none() => {
+                let finding = Finding::new(
+                    join(pointer, "material"),
+                    "a material without density",
+                    "\"density\", which gives the beam its mass",
+                );
+                self.fault(finding.of_key());
+            }
+            Some(_) => {}
+        }
+        if let BeamSection::Tube { radius, wall } = &beam.section
+            && wall.value > radius.value
+        {
+            let found = format!("a wall of {} m", wall.value);
+            let expected = format!("one that is not above the radius, {} m", radius.value);
+            let place = join(&join(&place, "tube"), "wall");
+            self.fault(Finding::new(place, found, expected));
+        }
+        if let BeamSection::I {
+            width,
+            height,
+            flange,
+            web,
+        } = &beam.section
+        {
+            let sizes = [
+                (
+                    "flange",
+                    flange.value,
+                    "half the height",
+                    0.5 * height.value,
+                ),
+                ("web", web.value, "the width", width.value),
+            ];
+            for (key, size, what, most) in sizes {
+                if size > most {
+                    let found = format!("{size} m");
+                    let expected = format!("not above {what}, {most} m");
+                    let place = join(&join(&place, "i"), key);
+                    self.fault(Finding::new(place, found, expected));
+                }
+            }
+        }
+    }
+
+    fn part(&mut self, pointer: &str, part: f64) {
+        if !(-BEYOND..=1.0 + BEYOND).contains(&part) {
+            let finding = Finding::new(
+                pointer,
+                format!("{part}"),
+                "a fraction of the length, 0 to 1",
+            );
+            self.fault(finding);
+        }
+    }
+
+    fn on_beam(&mut self, pointer: &str, beam: &Beam, point: &Vector) {
+        let (x, length) = (point[0].value, beam.length.value);
+        if !(-BEYOND..=1.0 + BEYOND).contains(&(x / length)) {
+            let found = format!("a point at x = {x} m");
+            let expected = format!("one on the beam, x from 0 to {length} m");
+            self.fault(Finding::new(pointer, found, expected));
+        }
+    }
+
+    /// The beam of this name, for what is measured of beams only.
+    pub(super) fn measured_beam(&mut self, pointer: &str, name: &str) -> Option<&Beam> {
+        let place = join(pointer, "body");
+        let body = self.document.bodies.get(name);
+        if let Some(beam) = body.and_then(|body| body.beam.as_ref()) {
+            return Some(beam);
+        }
+        if !self.damage.holds("bodies", name) {
+            let bodies = self.document.bodies.iter();
+            let beams = bodies.filter(|(_, body)| body.beam.is_some());
+            let hint = advice(name, "beams", beams.map(|(name, _)| name.as_str()));
+            let found = format!("\"{name}\"");
+            self.fault(Finding::new(place, found, "the name of a beam").hint(hint));
+        }
+        None
+    }
+
+    /// Checks where a section of a beam is.
+    pub(super) fn station(&mut self, pointer: &str, name: &str, place: &SectionPlace) {
+        let Some(beam) = self.measured_beam(pointer, name) else {
+            return;
+        };
+        let at = join(pointer, "station");
+        match place {
+            SectionPlace::Fraction(Quantity { value, .. }) => self.part(&at, *value),
+            SectionPlace::Named(text) if beam.station(text).is_some() => {}
+            SectionPlace::Named(text) => {
+                let names: Vec<&str> = beam.station_names().collect();
+                let hint = advice(text, "stations", names);
+                let expected = "the name of a station, or a fraction of the length";
+                self.fault(Finding::new(at, format!("\"{text}\""), expected).hint(hint));
+            }
+        }
+    }
+
+    /// Checks that a section has stresses, and that the fibre is in it.
+    pub(super) fn fibre(&mut self, pointer: &str, stress: &FibreStress) {
+        self.station(pointer, &stress.body, &stress.station);
+        let body = self.document.bodies.get(&stress.body);
+        if let Some(beam) = body.and_then(|body| body.beam.as_ref())
+            && matches!(beam.section, BeamSection::Given(_))
+        {
+            let found = format!("stress in \"{}\", which has given stiffnesses", stress.body);
+            let expected = "a beam whose section has sizes";
+            self.fault(Finding::new(join(pointer, "body"), found, expected));
+        }
+        let [y, z] = stress.fibre;
+        if stress.fibre.iter().any(|part| part.abs() > 1.0) {
+            let finding = Finding::new(
+                join(pointer, "fibre"),
+                format!("the fibre [{y}, {z}]"),
+                "parts of half the section's size along y and z, from -1 to 1",
+            );
+            self.fault(finding);
+        }
+    }
+
+    /// Whether the body of this name is a beam.
+    pub(super) fn is_beam(&self, name: &str) -> bool {
+        let body = self.document.bodies.get(name);
+        body.is_some_and(|body| body.beam.is_some())
+    }
+
+    /// Checks where a joint holds a beam, if the file says it in the beam's own axes.
+    pub(super) fn held(&mut self, pointer: &str, between: &[String; 2], pair: &PointPair) {
+        for (key, name, point) in [("a", &between[0], &pair.a), ("b", &between[1], &pair.b)] {
+            let body = self.document.bodies.get(name);
+            if let (Some(beam), Point::Coordinates(point)) =
+                (body.and_then(|body| body.beam.as_ref()), point)
+            {
+                self.on_beam(&join(pointer, key), beam, point);
+            }
+        }
+    }
+}

@@ -1,0 +1,294 @@
+//! Bodies with elastic coordinates in a scene: the body that is their frame, their coordinates, and the
+//! points that joints, loads and functions hold on to.
+
+use super::beam;
+use super::placement::Assembly;
+use super::schema::Document;
+use super::schema::functions::{SectionComponent, SectionPlace};
+use crate::functions::instant::DeformationKind;
+use crate::functions::{Function, Instant, TerminalEvent};
+use crate::math::{Scalar, Vec3};
+use crate::model::flexible::Quadratic;
+use crate::model::{LoadKind, Model};
+use crate::structures::modal::FlexibleBeam;
+use crate::structures::modal::frequencies::{Held, frequencies};
+use crate::structures::modal::sections::SectionForce;
+
+/// A body with elastic coordinates.
+struct Elastic<S> {
+    /// The body that is its frame.
+    frame: usize,
+    /// Its index among those of the model.
+    flexible: usize,
+    beam: FlexibleBeam<S>,
+}
+
+/// A point that something holds on to.
+struct Interface<S> {
+    flexible: usize,
+    point: Vec3<S>,
+    /// The body that stands for the point.
+    body: usize,
+}
+
+/// The bodies with elastic coordinates of a scene.
+pub(crate) struct FlexibleBodies<S> {
+    bodies: Vec<Elastic<S>>,
+    interfaces: Vec<Interface<S>>,
+}
+
+impl<S: Scalar> FlexibleBodies<S> {
+    /// Gives the beams of a document their elastic coordinates, and moves joints and loads from them to
+    /// their points. The bodies of `model` are at their start.
+    pub(crate) fn add(document: &Document, model: &mut Model<S>, x: &[S]) -> Self {
+        let mut all = Self {
+            bodies: Vec::new(),
+            interfaces: Vec::new(),
+        };
+        for (frame, body) in document.bodies.values().enumerate() {
+            let Some(written) = &body.beam else {
+                continue;
+            };
+            let beam = beam::beam(written, x);
+            let numbers = beam.numbers();
+            let [elastic, rates] = beam::start(written, x);
+            model.bodies[frame].mass = numbers.mass;
+            model.bodies[frame].inertia = numbers.inertia;
+            let flexible = model.add_flexible(
+                frame,
+                (&elastic, &rates),
+                numbers.shapes,
+                numbers.stiffness,
+                numbers.damping,
+            );
+            all.bodies.push(Elastic {
+                frame,
+                flexible,
+                beam,
+            });
+        }
+        if !all.bodies.is_empty() {
+            all.move_joints(model);
+            all.move_loads(model);
+        }
+        all
+    }
+
+    /// The body that stands for a point of body `body`: itself, unless its points move on it.
+    fn hold(&mut self, model: &mut Model<S>, body: usize, point: Vec3<S>) -> Option<usize> {
+        let elastic = self.bodies.iter().find(|elastic| elastic.frame == body)?;
+        let flexible = elastic.flexible;
+        let known = (self.interfaces.iter())
+            .find(|known| known.flexible == flexible && known.point == point);
+        if let Some(known) = known {
+            return Some(known.body);
+        }
+        let modes = (elastic.beam).point(point.x / elastic.beam.length, [point.y, point.z]);
+        let still = |all: &[Vec3<S>]| all.iter().all(|v| v.iter().all(|x| *x == S::zero()));
+        if still(&modes.displacement) && still(&modes.rotation) {
+            return None;
+        }
+        let [px, py, pz] = [point.x, point.y, point.z].map(|x| (x.re() * 1e6).round() / 1e6);
+        let name = format!("point [{px}, {py}, {pz}]");
+        let modes = (modes.displacement, modes.rotation);
+        let body = model.attach(flexible, &name, point, modes);
+        self.interfaces.push(Interface {
+            flexible,
+            point,
+            body,
+        });
+        Some(body)
+    }
+
+    /// Moves a place to the body that stands for it.
+    fn move_place(&mut self, model: &mut Model<S>, body: &mut usize, point: &mut Vec3<S>) {
+        if let Some(interface) = self.hold(model, *body, *point) {
+            *body = interface;
+            *point = Vec3::zeros();
+        }
+    }
+
+    fn move_joints(&mut self, model: &mut Model<S>) {
+        for k in 0..model.joints.len() {
+            if model.joints[k].modes.is_some() {
+                continue;
+            }
+            let (mut body, mut point) = (model.joints[k].body_a, model.joints[k].frame_a.point);
+            self.move_place(model, &mut body, &mut point);
+            (model.joints[k].body_a, model.joints[k].frame_a.point) = (body, point);
+            if let Some(mut body) = model.joints[k].body_b {
+                let mut point = model.joints[k].frame_b.point;
+                self.move_place(model, &mut body, &mut point);
+                model.joints[k].body_b = Some(body);
+                model.joints[k].frame_b.point = point;
+            }
+        }
+    }
+
+    fn move_loads(&mut self, model: &mut Model<S>) {
+        for k in 0..model.loads.len() {
+            let mut kind = model.loads[k].kind.clone();
+            match &mut kind {
+                LoadKind::Force { body, point, .. } => self.move_place(model, body, point),
+                LoadKind::Spring {
+                    body_a,
+                    body_b,
+                    point_a,
+                    point_b,
+                    ..
+                } => {
+                    self.move_place(model, body_a, point_a);
+                    if let Some(body) = body_b {
+                        self.move_place(model, body, point_b);
+                    }
+                }
+                // These act on joints, which have moved. A file has no torque on a beam.
+                LoadKind::Torque { .. }
+                | LoadKind::TorsionSpring { .. }
+                | LoadKind::Damping { .. }
+                | LoadKind::BallDamping { .. }
+                | LoadKind::Friction { .. } => {}
+            }
+            model.loads[k].kind = kind;
+        }
+    }
+
+    /// Moves what functions look at to the points of these bodies.
+    pub(crate) fn move_functions(
+        &mut self,
+        model: &mut Model<S>,
+        functions: &mut [Function<S>],
+        until: &mut Option<TerminalEvent<S>>,
+    ) {
+        if self.bodies.is_empty() {
+            return;
+        }
+        let mut visit = |body: &mut usize, point: Option<&mut Vec3<S>>| {
+            if let Some(point) = point {
+                self.move_place(model, body, point);
+            }
+        };
+        for function in functions {
+            function.for_each_place(&mut visit);
+        }
+        if let Some(until) = until {
+            until.measure.for_each_place(&mut visit);
+        }
+    }
+
+    fn of(&self, body: usize) -> &Elastic<S> {
+        let found = self.bodies.iter().find(|elastic| elastic.frame == body);
+        found.expect("a function of elastic coordinates is of such a body, which is checked")
+    }
+
+    /// Its index among the flexible bodies of the model.
+    pub(crate) fn index(&self, body: usize) -> usize {
+        self.of(body).flexible
+    }
+
+    /// The displacement of a point from where it is in the undeformed body, along a direction in the
+    /// body's axes.
+    pub(crate) fn displacement(
+        &self,
+        body: usize,
+        point: Vec3<S>,
+        direction: Vec3<S>,
+    ) -> Instant<S> {
+        let Elastic { flexible, beam, .. } = self.of(body);
+        let modes = beam.point(point.x / beam.length, [point.y, point.z]);
+        Instant::Deformation {
+            flexible: *flexible,
+            kind: DeformationKind::Displacement,
+            form: Quadratic {
+                linear: modes
+                    .displacement
+                    .iter()
+                    .map(|n| n.dot(&direction))
+                    .collect(),
+                squares: Vec::new(),
+            },
+        }
+    }
+
+    /// A section force or moment.
+    pub(crate) fn section(
+        &self,
+        body: usize,
+        component: SectionComponent,
+        station: S,
+    ) -> Instant<S> {
+        use DeformationKind::{Force, Moment};
+        let Elastic { flexible, beam, .. } = self.of(body);
+        let (force, kind) = match component {
+            SectionComponent::Axial => (SectionForce::Axial, Force),
+            SectionComponent::ShearY => (SectionForce::ShearY, Force),
+            SectionComponent::ShearZ => (SectionForce::ShearZ, Force),
+            SectionComponent::Torsion => (SectionForce::Torsion, Moment),
+            SectionComponent::BendingY => (SectionForce::BendingY, Moment),
+            SectionComponent::BendingZ => (SectionForce::BendingZ, Moment),
+        };
+        Instant::Deformation {
+            flexible: *flexible,
+            kind,
+            form: beam.section_force(force, station),
+        }
+    }
+
+    /// The stress along a fibre, at parts of half the section's height and width.
+    pub(crate) fn stress(&self, body: usize, station: S, fibre: [S; 2]) -> Instant<S> {
+        let Elastic { flexible, beam, .. } = self.of(body);
+        let half = beam
+            .half_sizes()
+            .expect("a section with stresses has a size, which is checked");
+        Instant::Deformation {
+            flexible: *flexible,
+            kind: DeformationKind::Stress,
+            form: beam.fibre_stress(station, [half[0] * fibre[0], half[1] * fibre[1]]),
+        }
+    }
+}
+
+/// Natural frequencies that are told of a body.
+const TOLD: usize = 4;
+
+/// Coordinates and natural frequencies of the beams of a document.
+pub(crate) fn described(document: &Document, x: &[f64]) -> Vec<String> {
+    let beams = document.bodies.iter();
+    let beams = beams.filter_map(|(name, body)| Some((name, body.beam.as_ref()?)));
+    let told = |held, beam: &FlexibleBeam<f64>| {
+        let all = frequencies(&beam.numbers(), held)?;
+        let told = all.iter().take(TOLD).map(|f| format!("{f:.4e}"));
+        Some(told.collect::<Vec<String>>().join(", "))
+    };
+    let unknown = || "none, as its stiffness or mass is singular".to_owned();
+    beams
+        .map(|(name, written)| {
+            let beam = beam::beam(written, x);
+            let [y, z, torsion, stretch] = beam.modes.ranges().map(|range| range.len());
+            let held = told(Held::Axes, &beam).unwrap_or_else(unknown);
+            let free = told(Held::Nothing, &beam).unwrap_or_else(unknown);
+            format!(
+                "beam \"{name}\": {} coordinates ({y} of bending along y, {z} along z, {torsion} of \
+                 torsion, {stretch} of stretch); frequencies with its axes held {held} Hz, free {free} Hz",
+                beam.modes.count()
+            )
+        })
+        .collect()
+}
+
+/// Where a section is, as a fraction of the length.
+pub(crate) fn station<S: Scalar>(
+    document: &Document,
+    assembly: &Assembly<S>,
+    body: &str,
+    place: &SectionPlace,
+) -> S {
+    match place {
+        SectionPlace::Fraction(fraction) => assembly.quantity(fraction),
+        SectionPlace::Named(name) => {
+            let beam = document.bodies[body].beam.as_ref();
+            let station = beam.and_then(|beam| beam.station(name));
+            assembly.quantity(&station.expect("stations are checked"))
+        }
+    }
+}

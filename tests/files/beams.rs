@@ -1,0 +1,351 @@
+//! Problems with beams: spin-up (Simo & Vu-Quoc 1986) against a planar geometrically exact model; slider-crank
+//! with an elastic rod (Simeon 1996; crank.f of the IVP test set); beams that are nearly rigid; derivatives in
+//! every parameter; what files may not say.
+
+use flexbody::driver::{Simulation, check, simulate};
+use flexbody::problem::Problem;
+use serde_json::{Value, json};
+use std::path::Path;
+
+fn document(name: &str) -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/flexible/{name}.json"));
+    let text = std::fs::read_to_string(path).expect("a problem");
+    serde_json::from_str(&text).expect("valid JSON")
+}
+
+fn parsed(document: &Value) -> Problem {
+    Problem::parse(&document.to_string(), "beams", &[]).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+fn run(document: &Value) -> Simulation {
+    let problem = parsed(document);
+    simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"))
+}
+
+fn value(document: &Value, function: &str) -> f64 {
+    let motion = run(document);
+    let names = parsed(document).function_names;
+    let index = names
+        .iter()
+        .position(|name| name == function)
+        .expect("a function");
+    motion.at.function(index).value
+}
+
+/// Tip displacement in the turning axes: an independent Reissner beam of finite elements, converged to 3e-5 m.
+/// The steady extension is ρA ω² L³ / 3EA = 5.1429e-4 m.
+#[test]
+fn a_beam_lags_behind_its_spin_up_and_is_straightened() {
+    let mut document = document("spin_up");
+    for (duration, lag) in [(3.0, -0.217267), (6.0, -0.543599), (7.0, -0.571317)] {
+        document["simulation"]["duration"] = json!(duration);
+        let found = value(&document, "lag");
+        assert!((found / lag - 1.0).abs() < 5e-3, "{duration} s: {found}");
+    }
+    document["simulation"]["duration"] = json!(15);
+    let motion = run(&document);
+    let deepest = motion.at.function(2).maximum.expect("an aggregate").value;
+    assert!((deepest / 0.57383 - 1.0).abs() < 5e-3, "{deepest}");
+    let extension = motion.at.function(1).value;
+    assert!((extension / 5.1429e-4 - 1.0).abs() < 5e-3, "{extension}");
+}
+
+/// Without von Karman's terms rotation softens a beam: at √(EI/ρA L⁴) 3.516 = 3.8 rad/s it gives way.
+#[test]
+fn a_beam_with_linear_strain_fails_to_spin_up() {
+    let mut document = document("spin_up");
+    document["bodies"]["beam"]["beam"]["strain"] = json!("linear");
+    document["simulation"] =
+        json!({"duration": 12, "steps": 2400, "method": {"radau": {"stages": 2}}});
+    let problem = parsed(&document);
+    // The bent beam flies off, or the run ends in failure.
+    if let Ok(motion) = simulate(&problem, &problem.start()) {
+        let lag = motion.at.function(0).value;
+        assert!(lag.abs() > 5.0, "{lag}");
+    }
+}
+
+/// Values after 0.1 s of the test set's reference. Their rod adds the rotary inertia of its section, 1.8e-4 of
+/// the whole, to its rigid rotation and not to its bending, which a file cannot say.
+#[test]
+fn a_slider_crank_bends_its_rod_as_in_the_test_set() {
+    let motion = run(&document("slider_crank_flexible"));
+    for (function, exact, tolerance) in [
+        (0, -0.331_173_498_825_626, 1e-6),
+        (1, 0.169_737_332_842_786, 1e-6),
+        (2, 1.893_192_899_613_509e-4, 2e-4),
+    ] {
+        let found = motion.at.function(function).value;
+        assert!(
+            (found / exact - 1.0).abs() < tolerance,
+            "{function}: {found}"
+        );
+    }
+}
+
+/// A pendulum of a stiff beam: (stiffness, position of its end). The rigid one is a box of the same mass.
+fn pendulum(young: Option<f64>) -> f64 {
+    let bar = match young {
+        Some(young) => json!({
+            "beam": {
+                "length": 1, "section": {"rectangle": {"width": 0.1, "height": 0.05}},
+                "material": {"young": young, "density": 200},
+                "modes": {"bending_y": 2, "bending_z": 0, "torsion": 0}, "damping": {"ratio": 0.2}
+            },
+            "place": {"put": "start", "at": [0, 0, 0]}
+        }),
+        None => json!({
+            "shape": {"box": {"size": [1, 0.05, 0.1]}}, "mass": 1,
+            "points": {"start": [-0.5, 0, 0], "end": [0.5, 0, 0]},
+            "place": {"put": "start", "at": [0, 0, 0]}
+        }),
+    };
+    let document = json!({
+        "version": 1, "name": "pendulum", "bodies": {"bar": bar},
+        "joints": {"hinge": {"revolute": {"between": ["bar", "ground"], "at": "bar.start", "axis": [0, 0, 1]}}},
+        "simulation": {"duration": 1, "tolerance": 1e-9, "method": {"radau": {"stages": 3}}},
+        "functions": {"end": {"final": {"position": {"body": "bar", "point": "end", "direction": [1, 0, 0]}}}}
+    });
+    value(&document, "end")
+}
+
+/// The difference from the rigid motion falls as 1/E.
+#[test]
+fn a_stiff_beam_moves_as_a_rigid_body() {
+    let rigid = pendulum(None);
+    let [soft, stiff] = [1e9, 1e10].map(|young| (pendulum(Some(young)) - rigid).abs());
+    println!("{soft:e} {stiff:e}");
+    assert!(soft < 1e-4, "{soft:e}");
+    let order = (soft / stiff).log10();
+    assert!(
+        (order - 1.0).abs() < 0.2,
+        "{soft:e} {stiff:e}: order {order}"
+    );
+}
+
+/// A free pair of beams in space, with every kind of number of the format as a variable.
+fn pair(section: Value, frame: &str, simulation: Value) -> Value {
+    let beam = |young: f64| {
+        json!({
+            "length": 1.2, "section": section, "frame": frame,
+            "material": {"young": young, "poisson": 0.3, "density": 1500},
+            "modes": {"bending_y": 2, "bending_z": 1, "torsion": 1},
+            "damping": {"ratio": 0.01, "torsion_ratio": 0.02, "stretch_ratio": 0.05, "mass": 0.3, "stiffness": 1e-4},
+            "stations": {"middle": 0.45}
+        })
+    };
+    let mut document = json!({
+        "version": 1, "name": "pair",
+        "bodies": {
+            "first": {"beam": beam(3e7), "place": {"put": "start", "at": [0, 0, 0],
+                      "turn": {"axis": [0, 0, 1], "angle": 0.3}}, "velocity": {"angular": [0.1, 0.2, 2]}},
+            "second": {"beam": beam(5e7), "place": {"put": "start", "at": "first.end",
+                       "turn": {"axis": [1, 2, 3], "angle": 0.7}}},
+            "weight": {"shape": "point", "mass": 0.7, "place": {"at": "second.end"}}
+        },
+        "joints": {
+            "root": {"revolute": {"between": ["first", "ground"], "at": "first.start", "axis": [0, 0, 1]}},
+            "elbow": {"universal": {"between": ["second", "first"], "at": "first.end", "axis": [0, 0, 1],
+                      "cross": [1, 0, 0]}},
+            "tip": {"spherical": {"between": ["weight", "second"], "at": "second.end"}}
+        },
+        "loads": {
+            "spring": {"spring": {"between": ["second", "ground"], "at": {"a": "middle", "b": [1, 1, 1]},
+                       "rest_length": 0.5, "stiffness": 40, "damping": 0.1}},
+            "push": {"force": {"body": "first", "point": "middle", "direction": [0, 1, 1],
+                     "magnitude": {"harmonic": {"amplitude": 3, "frequency": 2}}}}
+        },
+        "functions": {
+            "weight": {"final": {"position": {"body": "weight", "direction": [1, 2, 3]}}},
+            "bend": {"integral": {"elastic_displacement": {"body": "second", "point": "middle", "direction": [0, 1, 1]}}},
+            "moment": {"ks": {"rho": 1, "of": {"section_force": {"body": "first", "station": 0.3, "component": "bending_z"}}}},
+            "axial": {"final": {"section_force": {"body": "second", "station": "middle", "component": "axial"}}},
+            "stress": {"induced_exponential": {"rho": 1e-5, "of": {"fibre_stress": {"body": "first", "station": 0.1, "fibre": [1, -1]}}}},
+            "strain energy": {"final": {"strain_energy": {"body": "first"}}}
+        }
+    });
+    document["simulation"] = simulation;
+    let mut variables = serde_json::Map::new();
+    let mut numbers = vec![
+        "length".to_owned(),
+        "material/young".into(),
+        "material/poisson".into(),
+        "material/density".into(),
+        "stations/middle".into(),
+    ];
+    for key in [
+        "ratio",
+        "torsion_ratio",
+        "stretch_ratio",
+        "mass",
+        "stiffness",
+    ] {
+        numbers.push(format!("damping/{key}"));
+    }
+    let kind = section
+        .as_object()
+        .expect("one kind")
+        .iter()
+        .next()
+        .expect("one kind");
+    let sizes = kind.1.as_object().expect("sizes").keys();
+    numbers.extend(sizes.map(|size| format!("section/{}/{size}", kind.0)));
+    for number in numbers {
+        let path = format!("/bodies/first/beam/{number}");
+        variables.insert(number, json!({"path": path, "lower": 1e-6}));
+    }
+    document["variables"] = Value::Object(variables);
+    document
+}
+
+#[test]
+fn every_number_of_a_beam_has_an_exact_derivative() {
+    let sections = [
+        json!({"rectangle": {"width": 0.04, "height": 0.03}}),
+        json!({"tube": {"radius": 0.02, "wall": 0.005}}),
+        json!({"i": {"width": 0.04, "height": 0.05, "flange": 0.006, "web": 0.005}}),
+    ];
+    let methods = [
+        json!({"duration": 0.15, "steps": 60, "method": {"radau": {"stages": 3}}}),
+        json!({"duration": 0.15, "steps": 200, "method": {"bdf": {"order": 2}}}),
+        json!({"duration": 0.15, "steps": 150, "method": {"generalised_alpha": {"radius": 0.8}}}),
+    ];
+    for ((section, simulation), frame) in sections
+        .into_iter()
+        .zip(methods)
+        .zip(["chord", "clamped", "chord"])
+    {
+        let problem = parsed(&pair(section, frame, simulation.clone()));
+        let found = check(&problem, &problem.start()).expect("runs");
+        assert_eq!(
+            found.len(),
+            problem.function_names.len() * problem.variables.len()
+        );
+        for f in 0..problem.function_names.len() {
+            let scaled = |i: usize, x: f64| x * problem.variables[i].start.abs();
+            let of: Vec<_> = found.iter().filter(|d| d.function == f).collect();
+            let gradient = of
+                .iter()
+                .fold(0.0_f64, |m, d| m.hypot(scaled(d.variable, d.complex_step)));
+            assert!(gradient > 0.0);
+            for d in of {
+                let off = scaled(d.variable, d.adjoint - d.complex_step).abs() / gradient;
+                assert!(off <= 1e-12, "{simulation} {d:?}: {off:e}");
+            }
+        }
+    }
+}
+
+/// What stands in the file against a part of the fault's text.
+#[test]
+fn files_are_told_what_a_beam_cannot_be() {
+    let base = || {
+        pair(
+            json!({"rectangle": {"width": 0.04, "height": 0.03}}),
+            "chord",
+            json!({"duration": 0.1}),
+        )
+    };
+    let told = |change: &dyn Fn(&mut Value), expected: &str| {
+        let mut document = base();
+        document["variables"] = json!({});
+        change(&mut document);
+        let faults = Problem::parse(&document.to_string(), "beams", &[]).err();
+        let text = faults.map(|faults| faults.to_string()).unwrap_or_default();
+        assert!(
+            text.contains(expected),
+            "{text:?} says nothing of {expected:?}"
+        );
+    };
+    let beam = "first";
+    told(
+        &|d| d["bodies"][beam]["mass"] = json!(3),
+        "\"mass\" beside \"beam\"",
+    );
+    told(
+        &|d| {
+            d["bodies"][beam]["beam"]
+                .as_object_mut()
+                .expect("a beam")
+                .remove("material");
+        },
+        "a beam without material",
+    );
+    told(
+        &|d| {
+            d["bodies"][beam]["beam"]["material"]
+                .as_object_mut()
+                .expect("one")
+                .remove("density");
+        },
+        "a material without density",
+    );
+    told(
+        &|d| d["bodies"][beam]["beam"]["functions"] = json!("sine"),
+        "sines with von Karman's strain",
+    );
+    told(
+        &|d| d["bodies"][beam]["beam"]["stations"]["far"] = json!(1.5),
+        "a fraction of the length, 0 to 1",
+    );
+    told(
+        &|d| d["bodies"][beam]["points"] = json!({"off": [2, 0, 0]}),
+        "a point at x = 2 m",
+    );
+    told(
+        &|d| d["bodies"][beam]["beam"]["start"] = json!({"coordinates": [0, 1]}),
+        "a list of 9 numbers",
+    );
+    told(
+        &|d| {
+            d["bodies"][beam]["beam"]["section"] =
+                json!({"given": {"ea": 1e5, "mass_per_length": 1}})
+        },
+        "a given section without \"ei_y\"",
+    );
+    told(
+        &|d| d["bodies"][beam]["beam"]["section"] = json!({"tube": {"radius": 0.1, "wall": 0.2}}),
+        "a wall of 0.2 m",
+    );
+    told(
+        &|d| d["bodies"][beam]["beam"]["section"]["rectangle"]["width"] = json!(-1),
+        "-1",
+    );
+    told(
+        &|d| {
+            d["bodies"][beam]["beam"]["modes"] =
+                json!({"bending_y": 0, "bending_z": 0, "torsion": 0, "stretch": 0})
+        },
+        "without elastic coordinates",
+    );
+    told(
+        &|d| d["functions"]["weight"] = json!({"final": {"strain_energy": {"body": "weight"}}}),
+        "the name of a beam",
+    );
+    told(
+        &|d| d["functions"]["axial"]["final"]["section_force"]["station"] = json!("midle"),
+        "middle",
+    );
+    told(
+        &|d| {
+            d["functions"]["stress"]["induced_exponential"]["of"]["fibre_stress"]["fibre"] =
+                json!([2, 0])
+        },
+        "from -1 to 1",
+    );
+    told(
+        &|d| d["joints"]["root"]["revolute"]["at"] = json!([3, 0, 0]),
+        "places on the beam",
+    );
+    told(
+        &|d| d["joints"]["root"]["revolute"]["start"] = json!({"turn": {"angle": 0.1}}),
+        "in a scene with beams",
+    );
+    told(
+        &|d| {
+            d["loads"]["push"] =
+                json!({"torque": {"body": "first", "direction": [0, 0, 1], "magnitude": 1}})
+        },
+        "a torque on the beam",
+    );
+}
