@@ -156,6 +156,11 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
         Instant::Acceleration { .. } => length / (time * time),
         Instant::SpeedSquared { .. } => length * length / (time * time),
         Instant::Rotation(_) => 1.0,
+        Instant::AngularVelocity { .. } => 1.0 / time,
+        Instant::Momentum { .. } => {
+            let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
+            mass * length / time
+        }
         Instant::Deformation { flexible, form, .. } => {
             // By the largest coordinate of the motion.
             let body = &model.flexible[*flexible];

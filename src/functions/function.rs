@@ -123,7 +123,11 @@ impl<S: Scalar> Function<S> {
                 | Instant::Acceleration { body, point, .. }
                 | Instant::Speed { body, point }
                 | Instant::SpeedSquared { body, point } => visit(body, Some(point)),
-                Instant::Energy(_) | Instant::StrainEnergy(_) | Instant::Deformation { .. } => {}
+                Instant::AngularVelocity { body, .. } => visit(body, None),
+                Instant::Energy(_)
+                | Instant::Momentum { .. }
+                | Instant::StrainEnergy(_)
+                | Instant::Deformation { .. } => {}
                 Instant::Rotation(rotation) => {
                     rotation.for_each_body(&mut |body| visit(body, None))
                 }

@@ -130,6 +130,18 @@ pub(crate) enum Instant<S> {
         /// The point.
         point: Vec3<S>,
     },
+    /// Component of the angular velocity of a body \[rad/s\].
+    AngularVelocity {
+        /// The body.
+        body: usize,
+        /// The direction.
+        direction: Vec3<S>,
+    },
+    /// Component of the linear momentum of the whole model \[kg m/s\].
+    Momentum {
+        /// The direction.
+        direction: Vec3<S>,
+    },
     /// Energy of the whole model \[J\].
     Energy(EnergyPart),
     /// Strain energy of a flexible body \[J\], an index into those of the model.
@@ -166,6 +178,8 @@ parameters!(enum Instant {
     Acceleration { body; point, direction },
     Speed { body; point },
     SpeedSquared { body; point },
+    AngularVelocity { body; direction },
+    Momentum {; direction },
     Energy(part;),
     StrainEnergy(body;),
     Deformation { flexible, kind; form },
@@ -181,6 +195,8 @@ impl<S: Scalar> Instant<S> {
             Instant::Velocity { .. } | Instant::Speed { .. } => "m/s",
             Instant::Acceleration { .. } => "m/s²",
             Instant::SpeedSquared { .. } => "m²/s²",
+            Instant::AngularVelocity { .. } => "rad/s",
+            Instant::Momentum { .. } => "kg m/s",
             Instant::Energy(_) | Instant::StrainEnergy(_) => "J",
             Instant::Deformation { kind, .. } => kind.unit(),
             Instant::Rotation(_) => "rad",
@@ -193,6 +209,8 @@ impl<S: Scalar> Instant<S> {
             "m/s" => "m".into(),
             "m/s²" => "m/s".into(),
             "m²/s²" => "m²/s".into(),
+            "rad/s" => "rad".into(),
+            "kg m/s" => "kg m".into(),
             unit => format!("{unit} s"),
         }
     }
@@ -205,6 +223,8 @@ impl<S: Scalar> Instant<S> {
             Instant::Acceleration { .. } => "acceleration",
             Instant::Speed { .. } => "speed",
             Instant::SpeedSquared { .. } => "speed squared",
+            Instant::AngularVelocity { .. } => "angular velocity",
+            Instant::Momentum { .. } => "momentum",
             Instant::Energy(_) => "energy",
             Instant::StrainEnergy(_) => "strain energy",
             Instant::Deformation { kind, .. } => kind.name(),

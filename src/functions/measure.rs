@@ -136,6 +136,11 @@ impl<S: Scalar> Instant<S> {
                 let velocity = at.motion(*body).point_velocity(point);
                 velocity.dot(&velocity)
             }
+            Instant::AngularVelocity { body, direction } => {
+                let motion = at.motion(*body);
+                direction.dot(&(motion.rotation * motion.omega))
+            }
+            Instant::Momentum { direction } => direction.dot(&momentum(at)),
             Instant::Energy(part) => energy(at, *part),
             Instant::StrainEnergy(body) => {
                 flexible::strain_energy(&at.model.flexible[*body], &at.motions())
@@ -151,6 +156,14 @@ impl<S: Scalar> Instant<S> {
             }
         }
     }
+}
+
+/// Linear momentum of the model in a snapshot, ground axes \[kg m/s\].
+fn momentum<S: Scalar>(at: &Snapshot<S>) -> Vec3<S> {
+    let motions = at.motions();
+    let bodies = at.model.bodies.iter().zip(&motions);
+    let own = flexible::held(at.model, &motions).momentum;
+    bodies.fold(own, |sum, (body, motion)| sum + motion.velocity * body.mass)
 }
 
 /// Energy of the model in a snapshot \[J\].
@@ -258,6 +271,36 @@ impl Instant<f64> {
             ) => {
                 let by = at.motion(*body).point_velocity(point) * (2.0 * weight);
                 *by_point += pull_point(at, *body, point, [ZERO, by, ZERO], out);
+            }
+            (
+                Instant::AngularVelocity { body, direction },
+                Instant::AngularVelocity {
+                    direction: by_direction,
+                    ..
+                },
+            ) => {
+                let motion = at.motion(*body);
+                *by_direction += motion.rotation * motion.omega * weight;
+                let own = motion.rotation.tr_mul(direction) * weight;
+                let o = at.numbering.velocity(*body);
+                add6(&mut out.y[o..], &ZERO, &motion.omega.cross(&own));
+                add6(&mut out.v[o..], &ZERO, &own);
+            }
+            (
+                Instant::Momentum { direction },
+                Instant::Momentum {
+                    direction: by_direction,
+                },
+            ) => {
+                *by_direction += momentum(at) * weight;
+                let (motions, along) = (at.motions(), direction * weight);
+                for (i, (body, motion)) in at.model.bodies.iter().zip(&motions).enumerate() {
+                    let o = at.numbering.velocity(i);
+                    add6(&mut out.v[o..], &(along * body.mass), &ZERO);
+                    out.model.bodies[i].mass += along.dot(&motion.velocity);
+                }
+                let of = (at.model, at.numbering);
+                flexible::pull_momentum(of, &motions, &along, (out.y, out.v), out.model);
             }
             (Instant::Energy(part), _) => pull_energy(at, *part, weight, out),
             (Instant::StrainEnergy(body), _) => {

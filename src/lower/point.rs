@@ -131,7 +131,10 @@ fn looks_at<S: Scalar>(function: &Function<S>) -> Vec<(usize, Option<Vec3<S>>)> 
             | Instant::SpeedSquared { body, point } => vec![(*body, Some(*point))],
             // The energy depends on angular velocities, which are zero, and on heights of centres.
             Instant::Energy(_) => Vec::new(),
-            Instant::StrainEnergy(_) | Instant::Deformation { .. } => Vec::new(),
+            Instant::Momentum { .. } | Instant::StrainEnergy(_) | Instant::Deformation { .. } => {
+                Vec::new()
+            }
+            Instant::AngularVelocity { body, .. } => vec![(*body, None)],
             Instant::Rotation(rotation) => turned(rotation).collect(),
             Instant::Range { projectile, gate } => {
                 let thrown = (projectile.body, Some(projectile.point));

@@ -44,7 +44,7 @@ impl Seen {
         let event = scene.until.iter().map(|until| &until.measure);
         for function in functions.iter().map(|&f| &scene.functions[f]).chain(event) {
             if let Function::Reduced {
-                instant: Instant::Energy(_),
+                instant: Instant::Energy(_) | Instant::Momentum { .. },
                 ..
             } = function
             {

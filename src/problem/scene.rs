@@ -259,6 +259,13 @@ impl<S: Scalar> Builder<'_, S> {
                 body: self.body(&moving.body),
                 point: self.point(&moving.body, &moving.point),
             },
+            I::AngularVelocity(spinning) => Instant::AngularVelocity {
+                body: self.body(&spinning.body),
+                direction: vector(&spinning.direction, self.x),
+            },
+            I::Momentum(momentum) => Instant::Momentum {
+                direction: vector(&momentum.direction, self.x),
+            },
             I::Energy(part) => Instant::Energy(match part {
                 Energy::Kinetic => EnergyPart::Kinetic,
                 Energy::Potential => EnergyPart::Potential,

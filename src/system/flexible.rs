@@ -464,6 +464,43 @@ pub(crate) fn pull_energies(
     }
 }
 
+/// Adds the derivatives of the linear momentum of the flexible bodies, as in [`held`], along a vector in
+/// ground axes.
+pub(crate) fn pull_momentum(
+    (model, numbering): (&Model<f64>, &Numbering),
+    motions: &[BodyMotion<f64>],
+    along: &Vec3<f64>,
+    (y, v): (&mut [f64], &mut [f64]),
+    cot: &mut Model<f64>,
+) {
+    let still = Vec3::zeros();
+    for (body, own) in model.flexible.iter().zip(&mut cot.flexible) {
+        let (frame, at) = (&motions[body.frame], at_rest(body, motions));
+        // R (ω × p + ṗ) · d with p = Σ q_I p_I.
+        let own_along = frame.rotation.tr_mul(along);
+        let turned = own_along.cross(&at.omega);
+        let p = flexing::first_moment(body, &at.q);
+        let nu = Vec3::zeros();
+        let momentum = flexing::moving(&body.inertia, &at, &nu).momentum;
+        let moments = &body.inertia.static_moments;
+        let by_q: Vec<f64> = moments.iter().map(|p| p.dot(&turned)).collect();
+        let by_rate: Vec<f64> = moments.iter().map(|p| p.dot(&own_along)).collect();
+        add_part(
+            numbering,
+            body,
+            (&still, &momentum.cross(&own_along)),
+            &by_q,
+            y,
+        );
+        add_part(numbering, body, (&still, &p.cross(&own_along)), &by_rate, v);
+        own.inertia.centre += turned;
+        let rates = at.q.iter().zip(&at.rate);
+        for (by, (q, rate)) in own.inertia.static_moments.iter_mut().zip(rates) {
+            *by += turned * *q + own_along * *rate;
+        }
+    }
+}
+
 /// The motion of a flexible body without accelerations.
 fn at_rest<S: Scalar>(body: &FlexibleBody<S>, motions: &[BodyMotion<S>]) -> Flexing<S> {
     let frame = &motions[body.frame];

@@ -375,6 +375,13 @@ fn pull_backs_of_quantities() {
             Instant::Energy(EnergyPart::Potential),
             Instant::Energy(EnergyPart::Total),
             Instant::StrainEnergy(0),
+            Instant::AngularVelocity {
+                body: 0,
+                direction: Vec3::new(0.4, -0.7, 0.9),
+            },
+            Instant::Momentum {
+                direction: Vec3::new(-0.4, 0.7, 0.3),
+            },
             Instant::Deformation {
                 flexible: 0,
                 kind: DeformationKind::Stress,

@@ -77,6 +77,14 @@ pub(super) fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
             Reduction::InducedExponential { rho: 0.2 },
         ),
         Function::Duration,
+        reduced(
+            Instant::AngularVelocity { body, direction },
+            Reduction::Ks {
+                rho: 0.9,
+                bound: Bound::Above,
+            },
+        ),
+        reduced(Instant::Momentum { direction }, Reduction::Integral),
         reduced(Instant::Energy(EnergyPart::Kinetic), Reduction::Integral),
         reduced(
             Instant::Energy(EnergyPart::Potential),

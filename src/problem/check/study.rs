@@ -157,6 +157,15 @@ impl Checker<'_> {
                 let pointer = join(pointer, "speed_squared");
                 self.moving(&pointer, &moving.body, &moving.point);
             }
+            Instant::AngularVelocity(spinning) => {
+                let pointer = join(pointer, "angular_velocity");
+                self.moving(&pointer, &spinning.body, &None);
+                self.direction(&join(&pointer, "direction"), &spinning.direction);
+            }
+            Instant::Momentum(momentum) => {
+                let pointer = join(pointer, "momentum/direction");
+                self.direction(&pointer, &momentum.direction);
+            }
             Instant::Energy(_) => {}
             Instant::Rotation(rotation) => {
                 let pointer = join(pointer, "rotation");

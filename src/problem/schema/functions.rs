@@ -80,6 +80,10 @@ pub(crate) enum Instant {
     Speed(Moving),
     /// Square of the speed of a point [m²/s²], which is smooth at rest too.
     SpeedSquared(Moving),
+    /// Component of the angular velocity of a body [rad/s]; of a beam, that of its frame.
+    AngularVelocity(Spinning),
+    /// Component of the linear momentum of the whole scene [kg m/s].
+    Momentum(Momentum),
     /// Energy of the whole scene [J].
     Energy(Energy),
     /// Rotation of a body about an axis [rad], counted over whole turns.
@@ -185,6 +189,26 @@ pub(crate) struct Component {
     pub body: String,
     /// Its point, by name or in body axes; default the centre of mass.
     pub point: Option<Point>,
+    /// Direction in ground axes. It is not normalised; a unit vector gives a component.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+}
+
+/// A body and a direction.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Spinning {
+    /// The body.
+    pub body: String,
+    /// Direction in ground axes. It is not normalised; a unit vector gives a component.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+}
+
+/// A direction.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Momentum {
     /// Direction in ground axes. It is not normalised; a unit vector gives a component.
     #[schemars(extend("unit" = "1"))]
     pub direction: Vector,
