@@ -121,7 +121,7 @@ pub(crate) fn explain(problem: &Problem) -> Explanation {
     };
     let line = format!("{bodies} {told} with their joints: {who} depends on {they}");
     found.left_out.insert(0, line);
-    (found.bodies, found.joints) = (model.bodies.len(), model.joints.len());
+    (found.bodies, found.joints) = (problem.body_count(), problem.joint_count());
     found.loads = model.loads.len();
     found.written = size(model, placement::guess(model));
     let mut known = found.functions.into_iter();
@@ -253,7 +253,8 @@ fn lowering(
             all => format!("bodies {}: they are welded to body {host}", all.join(", ")),
         });
     }
-    for (i, body) in lowered.bodies.iter().enumerate() {
+    let bodies = lowered.bodies.iter().enumerate();
+    for (i, body) in bodies.filter(|(i, _)| !written.is_internal(*i)) {
         let name = name(&i);
         if lowering.non_rotating.contains(i) {
             left_out.push(format!("the rotation of body {name}: its joints hold it"));

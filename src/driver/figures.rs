@@ -202,6 +202,7 @@ fn lapse(
         .bodies
         .iter()
         .enumerate()
+        .filter(|(body, _)| !model.is_internal(*body))
         .map(|(body, rigid)| BodyMotion {
             name: rigid.name.clone(),
             outlines: instants

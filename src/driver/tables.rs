@@ -81,25 +81,41 @@ fn observations(simulation: &Simulation, axes: ReactionAxes) -> String {
 }
 
 /// Position of the centre of mass, Euler parameters (body axes to ground, p0 first), velocity and
-/// angular velocity of every body, all in ground axes.
+/// angular velocity of every body, all in ground axes; of a flexible body those of its frame. Then the
+/// elastic coordinates of each flexible body and their rates.
 fn motion(simulation: &Simulation) -> String {
     let (model, run) = (&simulation.written.model, simulation.motion());
+    let all = 0..model.bodies.len();
+    let bodies: Vec<usize> = all.filter(|&body| !model.is_internal(body)).collect();
     let mut header = vec!["time [s]".to_owned()];
-    for body in &model.bodies {
-        let named = |what: &str| format!("{}: {what}", body.name);
+    for &body in &bodies {
+        let named = |what: &str| format!("{}: {what}", model.bodies[body].name);
         header.extend(components(&named("position"), "m"));
         header.extend([0, 1, 2, 3].map(|k| named(&format!("p{k}"))));
         header.extend(components(&named("velocity"), "m/s"));
         header.extend(components(&named("angular velocity"), "rad/s"));
     }
+    for flexible in &model.flexible {
+        let named = |what: &str, unit: &str, i: usize| {
+            format!("{}: elastic {what} {i} [{unit}]", flexible.name)
+        };
+        let modes = 1..=flexible.modes();
+        header.extend(modes.clone().map(|i| named("coordinate", "m", i)));
+        header.extend(modes.map(|i| named("rate", "m/s", i)));
+    }
     let rows = run.shown().into_iter().map(|k| {
+        let at = Snapshot::of(model, run, k);
         let mut row = vec![run.time(k)];
-        for body in 0..model.bodies.len() {
-            let motion = Snapshot::of(model, run, k).motion(body);
+        for &body in &bodies {
+            let motion = at.motion(body);
             row.extend(motion.position.iter());
             row.extend(motion.orientation);
             row.extend(motion.velocity.iter());
             row.extend((motion.rotation * motion.omega).iter());
+        }
+        for flexible in &model.flexible {
+            row.extend((flexible.places()).map(|(carrier, i)| at.motion(carrier).position[i]));
+            row.extend((flexible.places()).map(|(carrier, i)| at.motion(carrier).velocity[i]));
         }
         row
     });

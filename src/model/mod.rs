@@ -77,6 +77,12 @@ impl<S: Scalar> Model<S> {
         self.joints.iter().any(of)
     }
 
+    /// Whether a body is none of the problem file: it carries elastic coordinates or is a point of a
+    /// flexible body.
+    pub(crate) fn is_internal(&self, body: usize) -> bool {
+        self.is_carrier(body) || self.is_interface(body)
+    }
+
     /// Adds a flexible body whose frame is body `frame`, with the start of its coordinates and their rates;
     /// its index among the flexible ones. The carriers come after all bodies there are.
     pub(crate) fn add_flexible(
