@@ -84,6 +84,9 @@ pub(crate) struct Job {
     /// second simulation with steps of half the size.
     #[arg(long)]
     pub error: bool,
+    /// Writes the fields of structures to fields.vtu beside the results, for ParaView and meshio.
+    #[arg(long)]
+    pub vtu: bool,
     /// Refines steps or samples until the estimated relative error of the objective at the start is
     /// below this value. They are never coarser than in the file.
     #[arg(long, value_name = "ERROR", value_parser = positive)]

@@ -11,6 +11,9 @@ pub(crate) fn explain(job: &Job, json: bool) -> Result<u8, Failure> {
         return Err(Failure::bad_input(what));
     }
     let problem = load(job)?;
+    if problem.statics.is_some() {
+        return super::statics::explain(&problem, json);
+    }
     let explanation = driver::explain(&problem);
     match json {
         true => print(&explanation.json().map_err(Failure::numerical)?)?,

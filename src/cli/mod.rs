@@ -10,6 +10,7 @@ mod records;
 mod simulate;
 mod stability;
 mod starts;
+mod statics;
 mod work_precision;
 
 use crate::driver::{error, figures};
@@ -215,6 +216,12 @@ fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
         let code = unread.map_or(BAD_INPUT, |error| code_of_reading(&error));
         Failure::new(code, faults)
     })?;
+    if job.vtu && problem.statics.is_none() {
+        return Err(Failure::bad_input(format!(
+            "{}: found --vtu, expected a problem of structures without a motion",
+            shown(&job.problem)
+        )));
+    }
     if job.no_lowering {
         problem.lowering = None;
     }
@@ -230,6 +237,13 @@ fn refine(job: &Job, problem: Problem) -> Result<Problem, Failure> {
     let Some(accuracy) = job.accuracy else {
         return Ok(problem);
     };
+    if problem.statics.is_some() {
+        return Err(Failure::bad_input(format!(
+            "{}: found --accuracy, expected none: structures have no time steps; set the numbers of \
+             elements, and see --error",
+            shown(&job.problem)
+        )));
+    }
     let Some(objective) = problem.stated_objective() else {
         return Err(Failure::bad_input(format!(
             "{}: found --accuracy, expected a problem with an objective; set /simulation/tolerance \

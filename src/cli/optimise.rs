@@ -126,6 +126,10 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     if recorded {
         draw(&directory, figures::of_optimisation(&problem, &done));
     }
+    if let (true, true, Some(driver::Simulated::Statics(end))) = (recorded, job.vtu, &done.end) {
+        let fields = driver::statics::figures::fields(end).into_bytes();
+        write_all(&[(directory.join("fields.vtu"), fields)])?;
+    }
     if let Some(error) = unwritten {
         return Err(error.into());
     }
@@ -134,7 +138,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     }
     checked?;
     if let (true, Some(end)) = (job.error, &done.end) {
-        print(&super::simulate::errors(&problem, &end.at)?)?;
+        print(&super::simulate::errors(&problem, end)?)?;
     }
     if stopped() {
         return Ok(INTERRUPTED);

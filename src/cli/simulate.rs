@@ -3,7 +3,9 @@
 use super::arguments::Job;
 use super::{DONE, Failure, NOT_REACHED, draw, load, print, read, refine, shown, tell};
 use crate::driver::tables::ReactionAxes;
-use crate::driver::{self, CheckedDerivative, Evaluated, Simulation, error, figures, tables};
+use crate::driver::{
+    self, CheckedDerivative, Evaluated, Simulated, Simulation, error, figures, tables,
+};
 use crate::functions::evaluate::ungated_maximum;
 use crate::functions::peak::Maximum;
 use crate::problem::Problem;
@@ -21,6 +23,9 @@ pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Fa
         None => None,
     };
     let problem = refine(job, problem)?;
+    if problem.statics.is_some() {
+        return super::statics::simulate(job, &problem, json);
+    }
     let simulation = driver::simulate(&problem, &problem.start()).map_err(Failure::numerical)?;
     if json {
         print(&as_json(&problem, &simulation, job.error)?)?;
@@ -29,7 +34,9 @@ pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Fa
             print(&summary(&problem, &simulation))?;
         }
         if job.error {
-            print(&errors(&problem, &simulation.at)?)?;
+            let found = error::estimate(&problem, &simulation.at, &all(&problem), true);
+            let text = table(&problem, &found.map_err(Failure::numerical)?);
+            print(&(text + &warned(&problem, &simulation.at)))?;
         }
     }
     if let Some(directory) = &job.output {
@@ -199,10 +206,28 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     text
 }
 
+fn all(problem: &Problem) -> Vec<usize> {
+    (0..problem.function_names.len()).collect()
+}
+
 /// A table of the estimated discretisation errors of all functions and their gradients.
-pub(crate) fn errors(problem: &Problem, at: &Evaluated) -> Result<String, Failure> {
-    let all: Vec<usize> = (0..problem.function_names.len()).collect();
-    let found = error::estimate(problem, at, &all, true).map_err(Failure::numerical)?;
+pub(crate) fn errors(problem: &Problem, at: &Simulated) -> Result<String, Failure> {
+    let found = at.estimate(problem, &all(problem), true);
+    let text = table(problem, &found.map_err(Failure::numerical)?);
+    Ok(match at {
+        Simulated::Motion(simulation) => text + &warned(problem, &simulation.at),
+        Simulated::Statics(_) => text,
+    })
+}
+
+/// A warning of a motion that magnifies round-off.
+fn warned(problem: &Problem, at: &Evaluated) -> String {
+    let chaos = driver::chaos::of_motion(problem, at, &all(problem));
+    chaos.map_or_else(String::new, |chaos| format!("warning: {chaos}\n"))
+}
+
+/// The table of estimated errors.
+pub(crate) fn table(problem: &Problem, found: &[error::FunctionError]) -> String {
     let names = |all: &mut dyn Iterator<Item = &String>| {
         let longest = all.map(|name| name.chars().count()).max();
         longest.unwrap_or(0).max(9)
@@ -229,7 +254,7 @@ pub(crate) fn errors(problem: &Problem, at: &Evaluated) -> Result<String, Failur
             of.value
         );
     };
-    for found in &found {
+    for found in found {
         let name = &problem.function_names[found.function];
         line(name, "", &found.value);
         if let Some(maximum) = &found.maximum {
@@ -239,10 +264,7 @@ pub(crate) fn errors(problem: &Problem, at: &Evaluated) -> Result<String, Failur
             line(name, &variable.name, derivative);
         }
     }
-    if let Some(chaos) = driver::chaos::of_motion(problem, at, &all) {
-        let _ = writeln!(text, "warning: {chaos}");
-    }
-    Ok(text)
+    text
 }
 
 /// Checks all gradients of a problem at its start.
@@ -252,8 +274,7 @@ pub(crate) fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
         return Err(Failure::bad_input(what));
     }
     let mut problem = load(job)?;
-    let all: Vec<usize> = (0..problem.function_names.len()).collect();
-    if let Some(focused) = problem.focused(&all) {
+    if let Some(focused) = problem.focused(&all(&problem)) {
         problem = focused;
     }
     if problem.variables.is_empty() {
@@ -262,7 +283,10 @@ pub(crate) fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
             shown(&job.problem)
         )));
     }
-    let chaos = driver::chaos(&problem, &problem.start());
+    let chaos = match problem.statics {
+        Some(_) => None,
+        None => driver::chaos(&problem, &problem.start()),
+    };
     let derivatives = match (driver::check(&problem, &problem.start()), &chaos) {
         (Ok(derivatives), _) => derivatives,
         // Runs that differ by round-off diverge, and the steps of one do not suit the other.
@@ -326,10 +350,12 @@ pub(crate) fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
         .filter(|d| !d.is_round_off())
         .map(CheckedDerivative::noise)
         .fold(0.0, f64::max);
-    let _ = writeln!(
-        text,
-        "where Newton's method stops moves the derivatives by up to {noise:.1e}"
-    );
+    if problem.statics.is_none() {
+        let _ = writeln!(
+            text,
+            "where Newton's method stops moves the derivatives by up to {noise:.1e}"
+        );
+    }
     if let Some(chaos) = &chaos {
         let _ = writeln!(text, "warning: {chaos}");
     }

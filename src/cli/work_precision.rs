@@ -16,6 +16,9 @@ pub(crate) fn measure(asked: &Measurement) -> Result<u8, Failure> {
         return Err(Failure::bad_input(what));
     }
     let problem = read(job)?;
+    if problem.statics.is_some() {
+        return super::statics::measure(job, &problem, asked.function.as_deref(), asked.runs);
+    }
     let plan = plan(asked, &problem)?;
     let directory = match &job.output {
         Some(directory) => directory.clone(),

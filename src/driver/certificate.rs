@@ -6,12 +6,14 @@
 //! gᵢdᵢ − Im f(x + ihd)/h|. The difference is compared with Σ |gᵢdᵢ|, or with the round-off of the
 //! terms of the gradient.
 
+use super::analysed::{AnalysisFailure, Simulated};
 use super::check::{complex_step, own_size};
 use super::evaluate::{Derivative, Evaluated};
 use super::event;
 use super::integration::{Integration, KeptSteps};
 use super::not_finite::{body, variable};
 use super::optimise::Optimisation;
+use super::statics::{self, StaticDesign, StaticsFailure};
 use crate::integrate::{IntegrationFailure, Settings, Spacing};
 use crate::problem::Problem;
 use crate::report::optimum::{
@@ -36,9 +38,19 @@ pub(crate) fn certify(
 ) -> GradientCertificate {
     let direction = direction(problem, SEED);
     let mut cost = CertificateCost::default();
-    let mut at = |simulation: &Option<super::Simulation>| match simulation {
-        Some(simulation) => {
-            let found = certified(problem, &simulation.at, &direction, tolerance, &mut cost);
+    let mut at = |simulated: &Option<Simulated>| match simulated {
+        Some(simulated) => {
+            let found = match simulated {
+                Simulated::Motion(simulation) => {
+                    let at = &simulation.at;
+                    certified(problem, at, &direction, tolerance, &mut cost)
+                        .map_err(AnalysisFailure::from)
+                }
+                Simulated::Statics(at) => {
+                    certified_statics(problem, at, &direction, tolerance, &mut cost)
+                        .map_err(AnalysisFailure::from)
+                }
+            };
             found.unwrap_or_else(|failure| CertifiedDesign {
                 faults: vec![format!("a run of the check failed: {failure}")],
                 ..CertifiedDesign::default()
@@ -155,13 +167,37 @@ fn certified(
                 judged.adjoint, judged.complex_step
             ));
         }
-        let finite = |x: f64| Some(x).filter(|x| x.is_finite());
-        let derivative = CertifiedDerivative {
-            adjoint: finite(judged.adjoint),
-            complex_step: finite(judged.complex_step),
-            difference: finite(judged.relative()),
+        found.functions.insert(name.clone(), judged.recorded());
+    }
+    Ok(found)
+}
+
+/// The derivatives of all functions of structures at a design.
+fn certified_statics(
+    problem: &Problem,
+    at: &StaticDesign,
+    direction: &[f64],
+    tolerance: f64,
+    cost: &mut CertificateCost,
+) -> Result<CertifiedDesign, StaticsFailure> {
+    let all = statics::check::directional(problem, at, direction)?;
+    cost.gradients += 1;
+    cost.complex_runs += 1;
+    let mut found = CertifiedDesign::default();
+    for (name, [adjoint, complex_step, size, terms]) in problem.function_names.iter().zip(all) {
+        let judged = Pair {
+            adjoint,
+            complex_step,
+            size,
+            terms,
         };
-        found.functions.insert(name.clone(), derivative);
+        if !judged.passes(tolerance) {
+            found.faults.push(format!(
+                "the derivative of \"{name}\" is {adjoint:.15e} by the adjoint and {complex_step:.15e} by \
+                 the complex step; optimize check names the variable"
+            ));
+        }
+        found.functions.insert(name.clone(), judged.recorded());
     }
     Ok(found)
 }
@@ -212,6 +248,16 @@ impl Pair {
 
     fn is_finite(&self) -> bool {
         self.adjoint.is_finite() && self.complex_step.is_finite()
+    }
+
+    /// As the record has it.
+    fn recorded(&self) -> CertifiedDerivative {
+        let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+        CertifiedDerivative {
+            adjoint: finite(self.adjoint),
+            complex_step: finite(self.complex_step),
+            difference: finite(self.relative()),
+        }
     }
 
     /// False if a number is NaN.
@@ -318,7 +364,10 @@ mod tests {
         }
         assert_eq!(certify(&problem, &done, 1e-12), found, "the same direction");
         // A gradient that is wrong in the second variable.
-        let at = &done.start.as_ref().expect("ran").at;
+        let Some(Simulated::Motion(start)) = &done.start else {
+            panic!("the start is a motion");
+        };
+        let at = &start.at;
         let (mut gradients, _) = at.derivatives(&problem, &[0]).expect("a gradient");
         gradients[0][1].value *= 1.0 + 1e-6;
         let along = direction(&problem, SEED);

@@ -1,11 +1,9 @@
 //! A problem as a nonlinear program for the optimiser.
 
-use super::evaluate::Evaluated;
+use super::analysed::{Analysed, AnalysisFailure};
 use super::integration::Integration;
 use super::known_evaluations::{EvaluationContext, KnownEvaluations, bits};
-use super::not_finite;
 use super::speculation::SpeculativeCache;
-use crate::integrate::IntegrationFailure;
 use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
 use crate::problem::{Problem, Sense};
 use crate::report::evaluations::Work;
@@ -32,7 +30,7 @@ pub(crate) struct Evaluator<'a> {
     problem: &'a Problem,
     objective: usize,
     sign: f64,
-    last: Option<Evaluated>,
+    last: Option<Analysed>,
     /// The steps in use.
     pub integration: Integration,
     /// Number of designs that did not admit the lowering of the others.
@@ -51,7 +49,6 @@ impl<'a> Evaluator<'a> {
     /// The program that `problem` states, or `None` if it has no objective.
     pub(crate) fn new(problem: &'a Problem, log: KnownEvaluations<'a>) -> Option<Self> {
         let objective = problem.objective?;
-        let scene = problem.scene(&problem.start());
         let sign = match objective.sense {
             Sense::Minimise => 1.0,
             Sense::Maximise => -1.0,
@@ -62,7 +59,7 @@ impl<'a> Evaluator<'a> {
             objective: objective.function,
             sign,
             last: None,
-            integration: Integration::new(problem, &scene, Some(&asked), true),
+            integration: Integration::of(problem, Some(&asked), true),
             unlowered: 0,
             log,
             speculative: SpeculativeCache::default(),
@@ -137,23 +134,23 @@ fn asked(problem: &Problem, objective: usize) -> Vec<usize> {
 
 /// The simulated design `x`: the last one, or a new one.
 fn at<'e>(
-    (last, speculative): (&'e mut Option<Evaluated>, &mut SpeculativeCache),
+    (last, speculative): (&'e mut Option<Analysed>, &mut SpeculativeCache),
     (integration, account): (&mut Integration, &mut EvaluationContext),
-    problem: &Problem,
+    (problem, functions): (&Problem, &[usize]),
     x: &[f64],
-) -> Result<&'e Evaluated, IntegrationFailure> {
-    let found = match last.take().filter(|last| last.x == x) {
+) -> Result<&'e Analysed, AnalysisFailure> {
+    let found = match last.take().filter(|last| last.x() == x) {
         Some(known) => Ok(known),
         None => {
             integration.settled = account.settled;
             let found = match speculative.take(integration, x) {
                 Some(found) => found.map(|evaluated| (evaluated, None)),
-                None => Evaluated::with(integration, problem, x),
+                None => Analysed::with(integration, problem, x, functions),
             };
             found.map(|(evaluated, refresh)| {
                 account.refresh = refresh;
                 if !account.repeated {
-                    account.work += evaluated.run.counts;
+                    account.work += evaluated.counts();
                 }
                 evaluated
             })
@@ -219,19 +216,20 @@ impl Nlp for Evaluator<'_> {
         let found = self.log.values(&x, |account| {
             known = false;
             let steps = (&mut *integration, account);
-            let at = at(made, steps, problem, &x).map_err(|failure| failure.to_string())?;
+            let asked = (problem, &functions[..]);
+            let at = at(made, steps, asked, &x).map_err(|failure| failure.to_string())?;
             let mut values = Vec::with_capacity(functions.len());
             for &f in &functions {
-                let value = at.function(f).value;
+                let value = at.value(f);
                 if !value.is_finite() {
-                    return Err(not_finite::value(problem, at, f, value));
+                    return Err(at.not_finite_value(problem, f, value));
                 }
                 values.push(value);
             }
             Ok(values)
         });
         self.unlowered += match known {
-            true => usize::from(!problem.lowered_scene(&x).1),
+            true => usize::from(problem.statics.is_none() && !problem.lowered_scene(&x).1),
             false => integration.unlowered - before,
         };
         self.follow();
@@ -251,8 +249,10 @@ impl Nlp for Evaluator<'_> {
 
     fn foresee(&mut self, points: &[Vec<f64>]) {
         let designs = self.unknown(points, false);
-        let (problem, integration) = (self.problem, &self.integration);
-        self.speculative.simulate(problem, integration, &designs);
+        let functions = self.functions();
+        let asked = (self.problem, &functions[..]);
+        self.speculative
+            .simulate(asked, &self.integration, &designs);
     }
 
     fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
@@ -270,13 +270,14 @@ impl Nlp for Evaluator<'_> {
                 return Ok(gradients);
             }
             let (made, steps) = ((last, speculative), (integration, &mut *account));
-            let at = at(made, steps, problem, &x).map_err(|failure| failure.to_string())?;
+            let asked = (problem, &functions[..]);
+            let at = at(made, steps, asked, &x).map_err(|failure| failure.to_string())?;
             let found = at.gradients(problem, &functions);
             let (gradients, work) = found.map_err(|failure| failure.to_string())?;
             account.work += work;
             for (&f, gradient) in functions.iter().zip(&gradients) {
                 if let Some(i) = gradient.iter().position(|d| !d.is_finite()) {
-                    return Err(not_finite::derivative(problem, at, (f, i), gradient[i]));
+                    return Err(at.not_finite_derivative(problem, (f, i), gradient[i]));
                 }
             }
             Ok(gradients)

@@ -1,8 +1,10 @@
 //! The figures of a simulation and of an optimisation.
 
+use super::analysed::Simulated;
 use super::connectors::connectors;
 use super::optimise::Optimisation;
-use super::simulate::{Simulation, simulate};
+use super::simulate::Simulation;
+use super::statics::figures as of_structures;
 use crate::functions::evaluate::sample;
 use crate::functions::measure::Snapshot;
 use crate::functions::turning::turns;
@@ -35,13 +37,30 @@ pub(crate) enum RedrawError {
 /// Figures of an optimisation. Empty ones are left out.
 pub(crate) fn of_optimisation(problem: &Problem, done: &Optimisation) -> Vec<NamedFile> {
     let ends = [
-        ("initial design", &done.start),
-        ("optimal design", &done.end),
+        ("initial design", done.start.as_ref()),
+        ("optimal design", done.end.as_ref()),
     ];
-    let ends = ends
-        .iter()
-        .filter_map(|(title, end)| end.as_ref().map(|end| (*title, end)));
-    figures(problem, &ends.collect::<Vec<_>>(), Some(&done.history))
+    of_ends(problem, &ends, &done.history)
+}
+
+/// Figures of the two ends of an optimisation.
+fn of_ends(
+    problem: &Problem,
+    ends: &[(&str, Option<&Simulated>); 2],
+    history: &History,
+) -> Vec<NamedFile> {
+    let (mut motions, mut structures) = (Vec::new(), Vec::new());
+    for (title, end) in ends {
+        match end {
+            Some(Simulated::Motion(simulation)) => motions.push((*title, &**simulation)),
+            Some(Simulated::Statics(at)) => structures.push((*title, &**at)),
+            None => {}
+        }
+    }
+    match problem.statics {
+        Some(_) => of_structures::figures(problem, &structures, Some(history)),
+        None => figures(problem, &motions, Some(history)),
+    }
 }
 
 /// Figures of a simulation.
@@ -70,17 +89,13 @@ pub(crate) fn of_record(
                 .ok_or_else(|| RedrawError::Design(v.name.clone()))
         })
         .collect::<Result<Vec<f64>, _>>()?;
-    let start = simulate(&problem, &problem.start()).ok();
-    let end = simulate(&problem, &design).ok();
+    let start = Simulated::of(&problem, &problem.start()).ok();
+    let end = Simulated::of(&problem, &design).ok();
     let ends = [
         ("initial design", start.as_ref()),
         ("optimal design", end.as_ref()),
     ];
-    let ends: Vec<_> = ends
-        .iter()
-        .filter_map(|(title, end)| end.map(|end| (*title, end)))
-        .collect();
-    Ok(figures(&problem, &ends, Some(history)))
+    Ok(of_ends(&problem, &ends, history))
 }
 
 fn figures(

@@ -124,6 +124,28 @@ impl Integration {
         }
     }
 
+    /// As [`Integration::new`] for the scene of the start; of structures nothing is integrated, and it stays
+    /// as it is.
+    pub(crate) fn of(problem: &Problem, asked: Option<&[usize]>, gradients: bool) -> Self {
+        if problem.statics.is_none() {
+            return Self::new(problem, &problem.scene(&problem.start()), asked, gradients);
+        }
+        Self {
+            method: None,
+            spacing: problem.simulation.spacing.clone(),
+            samples: Samples::Uniform(1),
+            limits: problem.simulation.limits.clone(),
+            shown: SAMPLES,
+            summed: Vec::new(),
+            chosen: None,
+            refreshes: 0,
+            unlowered: 0,
+            memory: 0,
+            event: None,
+            settled: None,
+        }
+    }
+
     /// The method that the problem requests, if any.
     pub(super) fn method(&self) -> Option<Method> {
         self.method

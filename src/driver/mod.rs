@@ -1,6 +1,7 @@
 //! What the program does with a problem: simulate it, check its gradients, optimise it, measure the
 //! methods on it, and test extreme scenes.
 
+pub(crate) mod analysed;
 pub(crate) mod certificate;
 pub(crate) mod chaos;
 pub(crate) mod check;
@@ -23,15 +24,17 @@ pub(crate) mod simulate;
 mod speculation;
 pub(crate) mod stability;
 pub(crate) mod start;
+pub(crate) mod statics;
 mod stretch;
 pub(crate) mod tables;
 pub(crate) mod warm_start;
 pub(crate) mod work_precision;
 
+pub(crate) use analysed::check;
+pub(crate) use analysed::{Analysed, AnalysisFailure, Simulated};
 pub(crate) use certificate::certify;
 pub(crate) use chaos::chaos;
 pub use check::CheckedDerivative;
-pub(crate) use check::check;
 pub(crate) use evaluate::Evaluated;
 pub(crate) use explain::{explain, merged_errs};
 pub(crate) use known_evaluations::KnownEvaluations;

@@ -1,12 +1,12 @@
 //! Optimisation of a problem: the optimiser's outcome, its history, and the simulations at both
 //! ends.
 
+use super::analysed::Simulated;
 use super::chaos;
 use super::evaluator::{Evaluator, Judgements, unscaled};
 use super::integration::Integration;
 use super::known_evaluations::{KnownEvaluations, bits};
 use super::record::record;
-use super::simulate::{Simulation, simulate, simulate_with};
 use crate::optimiser::{self, Observer, Options, Outcome, Phase, Row, SavedState, Status};
 use crate::problem::Problem;
 use crate::report::evaluations::Work;
@@ -38,9 +38,9 @@ pub(crate) struct Optimisation {
     /// The steps in use at the end.
     pub integration: Integration,
     /// The simulated start, unless it failed.
-    pub start: Option<Simulation>,
+    pub start: Option<Simulated>,
     /// The simulated optimum, unless it failed.
-    pub end: Option<Simulation>,
+    pub end: Option<Simulated>,
 }
 
 /// Optimises `problem`, from its start or from the state of another run. `log` has the known
@@ -135,8 +135,8 @@ impl Solved {
         whole.see_whole();
         let x = unscaled(problem, &self.outcome.x);
         let (start, end) = rayon::join(
-            || simulate(problem, &problem.start()),
-            || simulate_with(&mut whole, problem, &x).ok(),
+            || Simulated::of(problem, &problem.start()),
+            || Simulated::with(&mut whole, problem, &x).ok(),
         );
         let mut optimum = record(
             problem,
@@ -146,10 +146,13 @@ impl Solved {
             (self.counts, refreshes),
             (&start, end.as_ref()),
         );
-        let chaotic = end.as_ref().and_then(|end| {
-            let all: Vec<usize> = asked(problem).collect();
-            chaos::of_motion(problem, &end.at, &all)
-        });
+        let chaotic = match &end {
+            Some(Simulated::Motion(end)) => {
+                let all: Vec<usize> = asked(problem).collect();
+                chaos::of_motion(problem, &end.at, &all)
+            }
+            Some(Simulated::Statics(_)) | None => None,
+        };
         optimum
             .warnings
             .extend(chaotic.map(|found| found.to_string()));

@@ -1,17 +1,12 @@
 //! The record of an optimisation: the optimiser's outcome in the user's names, signs and units.
 
-use super::error;
+use super::analysed::{AnalysisFailure, Simulated, notes_of_start};
 use super::evaluator::unscaled;
-use super::simulate::Simulation;
-use crate::functions::evaluate::ungated_maximum;
-use crate::functions::{Bound, Function, Reduction};
-use crate::integrate::IntegrationFailure;
 use crate::optimiser::{self, Outcome, Status};
 use crate::problem::{Problem, Sense};
 use crate::report::evaluations::Work;
-use crate::report::optimum as report;
 use crate::report::optimum::{
-    Activity, Aggregate, BoundSide, ConstraintValue, Counts, DesignValue, Kkt, KktResiduals, Lies,
+    Activity, Aggregate, BoundSide, ConstraintValue, Counts, DesignValue, Kkt, KktResiduals,
     Multipliers, Objective, Optimum, ProblemRecord, RowScaling, Scaling, Sense as RecordedSense,
 };
 use indexmap::IndexMap;
@@ -65,7 +60,7 @@ pub(super) fn record(
     outcome: &Outcome,
     sign: f64,
     (work, refreshes): (Work, usize),
-    (start, end): (&Result<Simulation, IntegrationFailure>, Option<&Simulation>),
+    (start, end): (&Result<Simulated, AnalysisFailure>, Option<&Simulated>),
 ) -> Optimum {
     let (status, sentence) = verdict(&outcome.status);
     let x = unscaled(problem, &outcome.x);
@@ -73,11 +68,10 @@ pub(super) fn record(
         .objective
         .expect("only a problem with an objective is optimised");
     let maximise = objective.sense == Sense::Maximise;
-    let at_end = end.map(|end| end.at.function(objective.function));
     let value = sign * outcome.objective;
     let mut warnings = Vec::new();
     let start_objective = match start {
-        Ok(start) => Ok(start.at.function(objective.function).value),
+        Ok(start) => Ok(start.value(objective.function)),
         Err(failure) => Err(failure.to_string()),
     };
     let start_objective = start_objective
@@ -87,15 +81,15 @@ pub(super) fn record(
         })
         .map_err(|why| warnings.push(format!("the objective is not known at the start: {why}")))
         .ok();
-    let aggregates = |f: &usize| end.is_some_and(|end| end.at.function(*f).maximum.is_some());
+    let aggregates = |f: &usize| end.is_some_and(|end| end.maximum(*f).is_some());
     let constrained = problem.constraints.iter().map(|c| c.function);
     let judged: Vec<usize> = std::iter::once(objective.function)
         .chain(constrained.filter(aggregates))
         .collect();
-    let estimates = end.and_then(|end| error::estimate(problem, &end.at, &judged, false).ok());
+    let estimates = end.and_then(|end| end.estimate(problem, &judged, false).ok());
     let estimates = estimates.unwrap_or_default();
     let estimate = estimates.first().map(|found| found.value);
-    let aggregate = |f: usize| end.and_then(|end| aggregate(end, f, &estimates));
+    let aggregate = |f: usize| end.and_then(|end| end.aggregate(problem, f, &estimates));
     let scales = problem.variables.iter().map(|v| v.scale);
     let bounds = |z: &[f64]| -> IndexMap<String, f64> {
         let names = problem.variables.iter().map(|v| v.name.clone());
@@ -113,23 +107,14 @@ pub(super) fn record(
         lower_bounds: bounds(&outcome.multipliers.lower_bounds),
         upper_bounds: bounds(&outcome.multipliers.upper_bounds),
     };
-    if let Some(end) = &at_end
-        && end.peak_sharpness > 1.0
-    {
-        warnings.push(format!(
-            "the peak of \"{}\" is narrower than the distance of samples (rho x curvature x h^2 \
-             = {:.1}): take more samples or lower rho",
-            problem.function_names[objective.function], end.peak_sharpness
-        ));
-    }
-    warnings.extend(super::start::notes(problem, &problem.start()));
-    warnings.extend(end.and_then(|end| end.warning.clone()));
+    warnings.extend(end.and_then(|end| end.narrow_peak(problem, objective.function)));
+    warnings.extend(notes_of_start(problem, &problem.start()));
     if let Some(end) = end {
         let constrained = problem.constraints.iter().map(|c| c.function);
         let mut used: Vec<usize> = constrained.chain([objective.function]).collect();
         used.sort_unstable();
         used.dedup();
-        warnings.extend(end.at.kinks(problem, used.into_iter()));
+        warnings.extend(end.warnings(problem, &used));
     }
     let scaling = &outcome.scaling;
     let zero = |names: &[String], what: &str| {
@@ -155,9 +140,7 @@ pub(super) fn record(
             },
             value,
             unit: Some(problem.function_unit(objective.function)),
-            true_maximum: at_end
-                .and_then(|end| end.maximum)
-                .map(|maximum| maximum.value),
+            true_maximum: end.and_then(|end| end.maximum(objective.function)),
             aggregate: aggregate(objective.function),
             estimated_error: estimate.map(|e| e.error),
         },
@@ -195,12 +178,7 @@ pub(super) fn record(
         scaling: scaling_record(problem, outcome),
         second_order: None,
         gradient_certificate: None,
-        integration: end.map(|end| report::Integration {
-            method: end.at.run.method.name(),
-            reason: end.reason.clone(),
-            steps: end.at.run.grid.steps() as u64,
-            refreshes: refreshes as u64,
-        }),
+        integration: end.and_then(|end| end.integration(refreshes)),
         counts: Counts {
             iterations: outcome.counts.iterations as u64,
             function_evaluations: outcome.counts.evaluations as u64,
@@ -224,42 +202,15 @@ pub(super) fn record(
     }
 }
 
-/// The aggregated quantity of function f at the end, if it is an aggregate.
-fn aggregate(end: &Simulation, f: usize, estimates: &[error::FunctionError]) -> Option<Aggregate> {
-    let function = &end.at.scene.functions[f];
-    let maximum = end.at.function(f).maximum?;
-    let above = matches!(
-        function,
-        Function::Reduced {
-            reduction: Reduction::Ks {
-                bound: Bound::Above,
-                ..
-            },
-            ..
-        }
-    );
-    let known = estimates.iter().find(|found| found.function == f);
-    let of_steps = known
-        .and_then(|found| found.maximum)
-        .map_or(0.0, |m| m.error);
-    Some(Aggregate {
-        lies: if above { Lies::Above } else { Lies::Below },
-        true_maximum: maximum.value,
-        time: maximum.time,
-        error: maximum.error.max(of_steps),
-        ungated: ungated_maximum(function, &end.at.scene.model, &end.at.run),
-    })
-}
-
 fn constraints(
     problem: &Problem,
     outcome: &Outcome,
     maximise: bool,
-    start: Option<&Simulation>,
+    start: Option<&Simulated>,
     aggregate: impl Fn(usize) -> Option<Aggregate>,
 ) -> IndexMap<String, ConstraintValue> {
     let at_start = |function: usize| {
-        let value = start?.at.function(function).value;
+        let value = start?.value(function);
         value.is_finite().then_some(value)
     };
     let active = |name: &str| {

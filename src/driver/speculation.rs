@@ -3,10 +3,10 @@
 //! They use the steps in use. If the steps change before a result is requested, it is discarded. So
 //! a run finds the same numbers, in the same order, on any number of processors.
 
-use super::evaluate::Evaluated;
+use super::analysed::{Analysed, AnalysisFailure};
 use super::integration::Integration;
 use super::known_evaluations::bits;
-use crate::integrate::{IntegrationFailure, WorkCounts};
+use crate::integrate::WorkCounts;
 use crate::problem::Problem;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -19,25 +19,28 @@ pub(super) type Derived = (Vec<Vec<f64>>, [WorkCounts; 2]);
 pub(super) struct SpeculativeCache {
     /// How often the steps had been chosen at that time.
     refreshes: usize,
-    simulated: HashMap<Vec<u64>, Result<Evaluated, IntegrationFailure>>,
+    simulated: HashMap<Vec<u64>, Result<Analysed, AnalysisFailure>>,
     derived: HashMap<Vec<u64>, Derived>,
 }
 
 /// Whether simulations may run side by side: steps are in use, and there is no event whose search
 /// starts at the last one.
 fn is_possible(problem: &Problem, integration: &Integration) -> bool {
+    if problem.statics.is_some() {
+        return rayon::current_num_threads() > 1;
+    }
     let event = problem.scene::<f64>(&problem.start()).until.is_some();
     rayon::current_num_threads() > 1 && integration.chosen().is_some() && !event
 }
 
 /// The design `x` simulated with the steps of `integration`, or `None` if it needs others.
 fn simulated(
-    problem: &Problem,
+    (problem, functions): (&Problem, &[usize]),
     integration: &Integration,
     x: &[f64],
-) -> Option<Result<Evaluated, IntegrationFailure>> {
+) -> Option<Result<Analysed, AnalysisFailure>> {
     let mut own = integration.clone();
-    let found = Evaluated::with(&mut own, problem, x);
+    let found = Analysed::with(&mut own, problem, x, functions);
     let same = own.refreshes == integration.refreshes && own.unlowered == integration.unlowered;
     match found {
         Ok((evaluated, None)) if same => Some(Ok(evaluated)),
@@ -50,17 +53,17 @@ impl SpeculativeCache {
     /// Simulates the first of `designs`, as many as there are processors.
     pub(crate) fn simulate(
         &mut self,
-        problem: &Problem,
+        asked: (&Problem, &[usize]),
         integration: &Integration,
         designs: &[Vec<f64>],
     ) {
-        if !is_possible(problem, integration) {
+        if !is_possible(asked.0, integration) {
             return;
         }
         self.keep(integration);
         let few = designs.par_iter().take(rayon::current_num_threads());
         let new = few.filter(|x| !self.simulated.contains_key(&bits(x)));
-        let found = new.filter_map(|x| Some((bits(x), simulated(problem, integration, x)?)));
+        let found = new.filter_map(|x| Some((bits(x), simulated(asked, integration, x)?)));
         let found: Vec<_> = found.collect();
         self.simulated.extend(found);
     }
@@ -77,9 +80,9 @@ impl SpeculativeCache {
         }
         self.keep(integration);
         let gradients = |x: &Vec<f64>| {
-            let at = simulated(problem, integration, x)?.ok()?;
+            let at = simulated((problem, functions), integration, x)?.ok()?;
             let (found, work) = at.gradients(problem, functions).ok()?;
-            Some((bits(x), (found, [at.run.counts, work])))
+            Some((bits(x), (found, [at.counts(), work])))
         };
         let found: Vec<_> = designs.par_iter().filter_map(gradients).collect();
         self.derived.extend(found);
@@ -90,7 +93,7 @@ impl SpeculativeCache {
         &mut self,
         integration: &Integration,
         x: &[f64],
-    ) -> Option<Result<Evaluated, IntegrationFailure>> {
+    ) -> Option<Result<Analysed, AnalysisFailure>> {
         self.keep(integration);
         self.simulated.remove(&bits(x))
     }

@@ -4,7 +4,7 @@ use crate::system::failure::AssemblyFailure;
 
 /// The reason why a simulation did not reach its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum IntegrationFailure {
+pub(crate) enum IntegrationFailure {
     /// There is no consistent start.
     #[error(transparent)]
     Assembly(#[from] AssemblyFailure),

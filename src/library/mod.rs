@@ -5,8 +5,7 @@
 //! Bindings to other languages use only them.
 
 use crate::driver::integration::Integration;
-use crate::driver::{self, Evaluated, KnownEvaluations, Simulation};
-use crate::integrate::IntegrationFailure;
+use crate::driver::{self, Analysed, AnalysisFailure, KnownEvaluations, Simulation};
 use crate::problem::Problem;
 use crate::report::optimum::Optimum as Record;
 use std::ops::ControlFlow;
@@ -17,14 +16,18 @@ pub(crate) use crate::integrate::WorkCounts;
 /// The reason why a design could not be simulated or differentiated, with time and place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(transparent)]
-pub struct SimulationError(#[from] IntegrationFailure);
+pub struct SimulationError(#[from] AnalysisFailure);
 
 /// Simulates the design `x`: one number per variable, in the units of the problem file.
 ///
 /// # Errors
-/// The joints cannot be closed, or the motion cannot be integrated to its end.
+/// The joints cannot be closed, the motion cannot be integrated to its end, or the problem is one of
+/// structures without a motion.
 pub fn simulate(problem: &Problem, x: &[f64]) -> Result<Motion, SimulationError> {
-    let simulation = driver::simulate(problem, x)?;
+    if problem.statics.is_some() {
+        return Err(AnalysisFailure::NoMotion.into());
+    }
+    let simulation = driver::simulate(problem, x).map_err(AnalysisFailure::from)?;
     Ok(Motion { simulation })
 }
 
@@ -74,7 +77,9 @@ impl Motion {
 
     /// Value of every function, in the order of [`Problem::functions`].
     pub fn values(&self) -> Vec<f64> {
-        values(&self.simulation.at)
+        let at = &self.simulation.at;
+        let count = at.scene.functions.len();
+        (0..count).map(|f| at.function(f).value).collect()
     }
 
     /// Largest |E(t) − E(0)| of kinetic and potential energy \[J\].
@@ -94,11 +99,6 @@ impl Motion {
     }
 }
 
-fn values(at: &Evaluated) -> Vec<f64> {
-    let count = at.scene.functions.len();
-    (0..count).map(|f| at.function(f).value).collect()
-}
-
 /// Simulates consecutive designs and differentiates them.
 ///
 /// It keeps the time steps from design to design. So values are smooth in the design, and gradients
@@ -111,8 +111,7 @@ pub struct Analysis<'a> {
 impl<'a> Analysis<'a> {
     /// An analysis of all functions of `problem`.
     pub fn new(problem: &'a Problem) -> Self {
-        let scene = problem.scene(&problem.start());
-        let integration = Integration::new(problem, &scene, None, true);
+        let integration = Integration::of(problem, None, true);
         Self {
             problem,
             integration,
@@ -124,7 +123,9 @@ impl<'a> Analysis<'a> {
     /// # Errors
     /// The joints cannot be closed, or the motion cannot be integrated to its end.
     pub fn at(&mut self, x: &[f64]) -> Result<Design<'a>, SimulationError> {
-        let (evaluated, _) = Evaluated::with(&mut self.integration, self.problem, x)?;
+        let all: Vec<usize> = (0..self.problem.functions().len()).collect();
+        let found = Analysed::with(&mut self.integration, self.problem, x, &all);
+        let (evaluated, _) = found?;
         Ok(Design {
             problem: self.problem,
             evaluated,
@@ -135,13 +136,14 @@ impl<'a> Analysis<'a> {
 /// A simulated design, with values and gradients.
 pub struct Design<'a> {
     problem: &'a Problem,
-    evaluated: Evaluated,
+    evaluated: Analysed,
 }
 
 impl Design<'_> {
     /// Value of every function, in the order of [`Problem::functions`].
     pub fn values(&self) -> Vec<f64> {
-        values(&self.evaluated)
+        let count = self.problem.functions().len();
+        (0..count).map(|f| self.evaluated.value(f)).collect()
     }
 
     /// Exact gradients of the functions with the indices `which`: one row per function, one number
@@ -167,7 +169,7 @@ impl Design<'_> {
 
     /// Work of the simulation.
     pub fn work(&self) -> WorkCounts {
-        self.evaluated.run.counts
+        self.evaluated.counts()
     }
 }
 

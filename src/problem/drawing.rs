@@ -148,6 +148,12 @@ fn beam_outline(beam: &FlexibleBeam<f64>, sight: &Vec3<f64>) -> DeformedLine {
     }
 }
 
+/// The axes to the right and up of the file's view, or of another one if it has none.
+pub(super) fn view_or(document: &Document, other: View) -> [[f64; 3]; 2] {
+    let (right, up) = axes(document.plot.view.unwrap_or(other));
+    [right.into(), up.into()]
+}
+
 /// The axes of a view that point right and up.
 fn axes(view: View) -> (Vec3<f64>, Vec3<f64>) {
     let (ex, ey, ez) = (Vec3::x(), Vec3::y(), Vec3::z());

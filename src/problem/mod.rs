@@ -29,6 +29,7 @@ mod schema;
 mod source;
 mod start_rates;
 mod starts;
+mod statics;
 mod structure;
 mod syntax;
 #[cfg(test)]
@@ -42,6 +43,7 @@ pub(crate) use focus::Focus;
 pub(crate) use memory::available as available_memory;
 pub use overrides::{Override, OverrideError};
 pub(crate) use schema::schema;
+pub(crate) use statics::{Asked, Moved, StaticScene, Statics, Workspace};
 pub(crate) use text::{visible, visible_lines};
 pub use variables::Variable;
 
@@ -51,9 +53,13 @@ use crate::lower::Lowering;
 use crate::math::{Scalar, Vec3};
 use crate::model::ConstraintRow;
 use crate::optimiser::Method;
+use crate::structures::loads::Load;
+use crate::structures::quality::MeshFault;
+use crate::structures::structure::Structure;
 use crate::system::redundancy::Redundancy;
-use schema::Document;
+use schema::{Document, View};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Direction of the optimisation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -172,6 +178,8 @@ pub struct Problem {
     pub(crate) lowering: Option<Lowering>,
     /// The requested functions and the bodies on which they depend; `None` for all.
     pub(crate) focus: Option<Focus>,
+    /// Structures under load cases; then nothing moves, and there are no scenes.
+    pub(crate) statics: Option<Arc<Statics>>,
 }
 
 impl Problem {
@@ -232,7 +240,54 @@ impl Problem {
     /// # Panics
     /// If there is no such function.
     pub(crate) fn function_unit(&self, index: usize) -> String {
-        self.scene(&self.start()).functions[index].unit()
+        match &self.statics {
+            Some(statics) => statics.functions[index].unit().to_owned(),
+            None => self.scene(&self.start()).functions[index].unit(),
+        }
+    }
+
+    /// Structures and load cases at the design `x`, analytic in `x`.
+    pub(crate) fn static_scene<S: Scalar>(&self, statics: &Statics, x: &[S]) -> StaticScene<S> {
+        statics.scene(&self.written, x)
+    }
+
+    /// The structures with every element cut in `cuts` along each direction.
+    ///
+    /// # Errors
+    /// The faults of the finer meshes.
+    pub(crate) fn cut_statics(&self, cuts: usize) -> Result<Statics, Vec<(String, MeshFault)>> {
+        Statics::new(&self.written, &self.start(), cuts)
+    }
+
+    /// Σ ((x − x0)/scale)² of a design of a file without objective.
+    pub(crate) fn distance_from_start<S: Scalar>(&self, x: &[S]) -> S {
+        let start = self.nearest_to.iter().flatten();
+        let terms = x.iter().zip(start).zip(&self.variables);
+        terms.fold(S::zero(), |sum, ((&x, &x0), variable)| {
+            let change = (x - x0) / variable.scale;
+            sum + change * change
+        })
+    }
+
+    /// How the numbers of structures beside thickness and sections move with the design.
+    pub(crate) fn moved(&self, statics: &Statics, x: &[f64]) -> Moved {
+        let moves = |variable: &Variable| {
+            let mut paths = variable.paths.iter();
+            !paths.all(|path| statics::expand::is_direct(path))
+        };
+        let all = self.variables.iter().enumerate();
+        let which: Vec<usize> = all.filter(|(_, v)| moves(v)).map(|(i, _)| i).collect();
+        statics.moved(&self.written, x, &which)
+    }
+
+    /// Derivatives by the design variables, from those by structure and loads.
+    pub(crate) fn pull_back(
+        &self,
+        statics: &Statics,
+        moved: &Moved,
+        gradient: (&Structure<f64>, &[Vec<Load<f64>>]),
+    ) -> statics::PulledBack {
+        statics.pull_back(&self.written, self.variables.len(), moved, gradient)
     }
 
     /// The reduced scene at the design `x`, analytic in `x`. `x` has one component per variable, in
@@ -262,12 +317,8 @@ impl Problem {
         for (joint, left_out) in scene.model.joints.iter_mut().zip(&self.left_out) {
             joint.redundant.clone_from(left_out);
         }
-        if let Some(start) = &self.nearest_to {
-            let terms = x.iter().zip(start).zip(&self.variables);
-            let distance = terms.fold(S::zero(), |sum, ((&x, &x0), variable)| {
-                let change = (x - x0) / variable.scale;
-                sum + change * change
-            });
+        if self.nearest_to.is_some() {
+            let distance = self.distance_from_start(x);
             scene.functions.push(Function::OfDesign(distance));
         }
         if let Some(focus) = &self.focus {
@@ -295,6 +346,11 @@ impl Problem {
     /// The flexible bodies at the design `x`: their coordinates and natural frequencies.
     pub(crate) fn flexible_bodies(&self, x: &[f64]) -> Vec<String> {
         flexible::described(&self.written, x)
+    }
+
+    /// The axes to the right and up in pictures of structures: those of the file, else x and z.
+    pub(crate) fn view_of_structures(&self) -> [[f64; 3]; 2] {
+        drawing::view_or(&self.written, View::Xz)
     }
 
     /// The objective, if the file states it.

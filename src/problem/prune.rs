@@ -7,11 +7,14 @@ use serde_json::{Map, Value, json};
 use std::collections::HashSet;
 
 /// Sections with named entries that are independent of each other.
-const NAMED: [&str; 7] = [
+const NAMED: [&str; 10] = [
     "bodies",
     "joints",
     "loads",
     "drives",
+    "structures",
+    "materials",
+    "load_cases",
     "functions",
     "variables",
     "constraints",
@@ -64,7 +67,10 @@ pub(super) fn prune(document: &mut Map<String, Value>, findings: &[Finding]) -> 
         ("bodies", json!({})),
         ("simulation", json!({"duration": 1, "steps": 1})),
     ];
-    for (key, value) in required {
+    // Structures without a motion need neither bodies nor a simulation.
+    let fixed = document.contains_key("structures") || damage.touches("structures");
+    let count = if fixed { 2 } else { required.len() };
+    for (key, value) in required.into_iter().take(count) {
         if !document.contains_key(key) {
             document.insert(key.to_owned(), value);
             damage.sections.insert(key.to_owned());

@@ -12,6 +12,8 @@ use super::points;
 use super::prune::prune;
 use super::schema::{self, Document};
 use super::source::{Duplicate, Source};
+use super::statics::expand::expand;
+use super::statics::{Asked, Statics};
 use super::structure::walk;
 use super::syntax;
 use super::text;
@@ -22,6 +24,7 @@ use crate::lower::{self, Lowering};
 use crate::math::Dual;
 use crate::model::{Joint, JointKind, RigidBody};
 use crate::optimiser::Method;
+use crate::structures::quality::MeshFault;
 use crate::system::failure::AssemblyFailure;
 use crate::system::kkt::SaddlePoint;
 use crate::system::placement::length_scale;
@@ -30,6 +33,7 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::io::ErrorKind;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Default error per step, if the file gives neither steps nor a tolerance.
 const TOLERANCE: f64 = 1e-9;
@@ -106,11 +110,24 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     if !findings.is_empty() {
         return faults(findings);
     }
+    let variables = match written.structures.is_empty() {
+        true => variables,
+        false => match expand(&written, &mut sound, variables) {
+            Ok(variables) => variables,
+            Err(finding) => return faults(vec![finding]),
+        },
+    };
     bind(&mut sound, &variables);
     let order = placement_order(&written).expect("a checked document has no circle of places");
     match deserialise(&sound) {
         Ok(written) => {
             let mut problem = problem(document, written, order, variables);
+            if !problem.written.structures.is_empty() {
+                return match of_structures(&mut problem) {
+                    Ok(()) => Ok(problem),
+                    Err(findings) => faults(findings),
+                };
+            }
             let scene = problem.unlowered_scene(&problem.start());
             if let Some(until) = &scene.until {
                 let value = |variable: &&mut Variable| {
@@ -149,6 +166,37 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
         Err(finding) => faults(vec![finding]),
     }
 }
+
+/// Completes a problem of structures, or says what is wrong with their meshes and supports.
+fn of_structures(problem: &mut Problem) -> Result<(), Vec<Finding>> {
+    let start = problem.start();
+    let mut statics = Statics::new(&problem.written, &start, 1).map_err(|found| {
+        let of = |(name, fault): &(String, MeshFault)| {
+            let pointer = join(&join("/structures", name), "mesh");
+            let expected = "a mesh of sound elements";
+            Finding::new(pointer, fault.to_string(), expected).of_key()
+        };
+        found
+            .iter()
+            .take(MOST_MESH_FAULTS)
+            .map(of)
+            .collect::<Vec<_>>()
+    })?;
+    if problem.nearest_to.is_some() {
+        statics.functions.push(Asked::DistanceFromStart);
+    }
+    if let Some((name, failure)) = statics.mechanism(&problem.written, &start) {
+        let pointer = join("/structures", &name);
+        let expected = "supports that hold every part of it";
+        let finding = Finding::new(pointer, failure.to_string(), expected);
+        return Err(vec![finding.of_key()]);
+    }
+    problem.statics = Some(Arc::new(statics));
+    Ok(())
+}
+
+/// Most faults of meshes that are told.
+const MOST_MESH_FAULTS: usize = 5;
 
 /// The fault of too many variables for the memory. Reductions examine the derivative of a scene by
 /// each variable, and an optimisation needs square matrices of their number.
@@ -415,7 +463,7 @@ fn problem(
     });
     Problem {
         name: written.name.clone(),
-        simulation: simulation(&written.simulation),
+        simulation: simulation(written.simulation.as_ref()),
         variables,
         objective: objective.or(nearest),
         nearest_to,
@@ -445,11 +493,13 @@ fn problem(
         left_out: Vec::new(),
         lowering: None,
         focus: None,
+        statics: None,
     }
 }
 
-fn simulation(written: &schema::Simulation) -> Simulation {
-    let method = written.method.as_ref().map(|method| match *method {
+fn simulation(written: Option<&schema::Simulation>) -> Simulation {
+    let method = written.and_then(|written| written.method.as_ref());
+    let method = method.map(|method| match *method {
         schema::Method::Dop853 => integrate::Method::Dop853,
         schema::Method::Radau { stages } => integrate::Method::Radau { stages },
         schema::Method::Bdf { order, start } => integrate::Method::Bdf {
@@ -465,14 +515,14 @@ fn simulation(written: &schema::Simulation) -> Simulation {
     });
     Simulation {
         method,
-        spacing: match (written.steps, written.tolerance) {
+        spacing: match written.map_or((None, None), |written| (written.steps, written.tolerance)) {
             (Some(steps), _) => Spacing::Steps(steps),
             (None, tolerance) => Spacing::Tolerance(tolerance.unwrap_or(TOLERANCE)),
         },
         memory: None,
-        samples: written.samples,
+        samples: written.and_then(|written| written.samples),
         limits: integrate::Limits {
-            seconds: written.seconds,
+            seconds: written.and_then(|written| written.seconds),
             progress: None,
         },
     }

@@ -54,15 +54,16 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
         .values()
         .map(|f| builder.function(f))
         .collect();
-    let mut until = document
-        .simulation
+    let simulation = document.simulation.as_ref();
+    let simulation = simulation.expect("a scene has a simulation, which is checked before");
+    let mut until = simulation
         .until
         .as_ref()
         .map(|until| TerminalEvent::new(builder.instant(&until.measure), until.reaches.get(x)));
     flexible.move_functions(&mut model, &mut functions, &mut until);
     Scene {
         model,
-        duration: document.simulation.duration.get(x),
+        duration: simulation.duration.get(x),
         until,
         functions,
         unstarted,
@@ -194,6 +195,19 @@ impl<S: Scalar> Builder<'_, S> {
             Written::Final(instant) => reduced(instant, Reduction::Final),
             Written::Clearance(clearance) => self.clearance(clearance),
             Written::Duration => Function::Duration,
+            Written::Mass
+            | Written::CentreOfMass(_)
+            | Written::MomentOfInertia(_)
+            | Written::StrainEnergy(_)
+            | Written::Compliance(_)
+            | Written::Displacement(_)
+            | Written::Reaction(_)
+            | Written::ReactionMoment(_)
+            | Written::VonMises(_)
+            | Written::Frequency(_)
+            | Written::LowestFrequency(_) => {
+                unreachable!("functions of structures are refused before")
+            }
         }
     }
 
@@ -407,7 +421,20 @@ pub(crate) fn released<'a>(
         Written::Ks(ks) => (&ks.of, Some(ks.rho)),
         Written::InducedExponential(aggregate) => (&aggregate.of, Some(aggregate.rho)),
         Written::Final(instant) => (instant, None),
-        Written::Integral(_) | Written::Clearance(_) | Written::Duration => return None,
+        Written::Integral(_)
+        | Written::Clearance(_)
+        | Written::Duration
+        | Written::Mass
+        | Written::CentreOfMass(_)
+        | Written::MomentOfInertia(_)
+        | Written::StrainEnergy(_)
+        | Written::Compliance(_)
+        | Written::Displacement(_)
+        | Written::Reaction(_)
+        | Written::ReactionMoment(_)
+        | Written::VonMises(_)
+        | Written::Frequency(_)
+        | Written::LowestFrequency(_) => return None,
     };
     match instant {
         written::Instant::Range(range) => Some((range, rho)),

@@ -138,7 +138,14 @@ impl<'a> Walker<'a> {
                 }
             }
         }
-        for key in schema["required"].as_array().into_iter().flatten() {
+        let has = |key: &Value| key.as_str().is_some_and(|key| object.contains_key(key));
+        let condition = schema["if"]["required"].as_array();
+        let branch = condition.map(|keys| match keys.iter().all(has) {
+            true => &schema["then"]["required"],
+            false => &schema["else"]["required"],
+        });
+        let required = [Some(&schema["required"]), branch].into_iter().flatten();
+        for key in required.filter_map(Value::as_array).flatten() {
             let key = key.as_str().unwrap_or_default();
             // A misspelt key is not missing.
             if !object.contains_key(key) && !misspelt.contains(&key) {

@@ -16,6 +16,8 @@
 //! | [`mod@summary`] | the final text for the user |
 //! | [`positions`] | tables of reference positions |
 //! | [`work_precision`] | error against run time, `work_precision.csv` and `orders.csv` |
+//! | [`mesh_precision`] | error of structures against run time and mesh, `work_precision.csv` |
+//! | [`vtu`] | fields of structures, `fields.vtu` |
 //! | [`stability`] | the stability table, `stability.md` and `stability.csv` |
 //! | [`plots`] | figures as SVG |
 
@@ -27,6 +29,7 @@ pub(crate) mod evaluations;
 pub(crate) mod explain;
 pub(crate) mod files;
 pub(crate) mod history;
+pub(crate) mod mesh_precision;
 mod number;
 pub(crate) mod optima;
 pub(crate) mod optimum;
@@ -35,6 +38,7 @@ pub(crate) mod positions;
 pub(crate) mod stability;
 pub(crate) mod summary;
 mod table;
+pub(crate) mod vtu;
 pub(crate) mod work_precision;
 
 pub(crate) use compare::{Tolerances, compare};
@@ -43,6 +47,7 @@ pub(crate) use error::ReportError;
 pub(crate) use explain::{Explanation, FunctionUse, IntegrationUse, SystemSize, size};
 pub(crate) use files::{atomic_write, prepare_directory, read_text, write_all};
 pub(crate) use history::{History, HistoryLog, HistoryRow};
+pub(crate) use mesh_precision::{MeshRow, PrecisionOfMesh};
 pub(crate) use optima::{FoundOptimum, optima_csv};
 pub(crate) use optimum::Optimum;
 pub(crate) use stability::{StabilityFamily, StabilityOutcome, StabilityRow, StabilityTable};

@@ -158,16 +158,20 @@ pub(crate) struct ConstraintValue {
     pub aggregate: Option<Aggregate>,
 }
 
-/// A smooth aggregate and the largest value over time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// A smooth aggregate and the largest value over time, or over a structure.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Aggregate {
     /// The side of the largest value on which the aggregate always lies.
     pub lies: Lies,
     /// The largest value over time, gate included.
     pub true_maximum: f64,
-    /// When it is attained \[s\].
-    pub time: f64,
+    /// When it is attained \[s\], in a motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time: Option<f64>,
+    /// Where it is attained, in a structure.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub place: Option<String>,
     /// Its estimated error by the discretisation in time, absolute.
     pub error: f64,
     /// The largest value while the gate is more open than closed, without the gate's factor, if

@@ -202,11 +202,14 @@ fn constraints(optimum: &Optimum) -> String {
     )
 }
 
-/// Time and accuracy of the largest value, and the effect of a gate on it.
+/// Time or place and accuracy of the largest value, and the effect of a gate on it.
 fn attained(aggregate: &Aggregate, unit: &str) -> String {
+    let time = aggregate.time;
+    let at = time.map(|time| format!("at t = {} s", significant(time, 6)));
+    let at = at.or_else(|| aggregate.place.as_ref().map(|place| format!("at {place}")));
     let mut text = format!(
-        "(at t = {} s, to about {}{unit}",
-        significant(aggregate.time, 6),
+        "({}, to about {}{unit}",
+        at.unwrap_or_default(),
         significant(aggregate.error, 2),
     );
     if let Some(ungated) = aggregate.ungated {

@@ -9,6 +9,12 @@ use super::structure::Structure;
 use super::supports::{NodeUnknowns, Rotations, Support, Unknowns};
 use crate::linalg::cholesky::{SymmetricPattern, fill_reducing_order};
 use crate::math::Scalar;
+use rayon::prelude::*;
+
+/// Shells from which on their matrices are made side by side.
+const SIDE_BY_SIDE: usize = 64;
+/// Matrices of elements that each processor makes before they are added.
+const AT_ONCE: usize = 16;
 
 /// A slot of an unknown that is fixed.
 const FIXED: u32 = u32::MAX;
@@ -65,16 +71,15 @@ impl Assembly {
         values: &mut [f64],
     ) {
         values.fill(0.0);
-        let mut matrix = ElementMatrix::new();
         let shells = &configuration.structure.topology.mesh.shells;
-        for (index, element) in shells.iter().enumerate() {
+        self.add_shells(shells.len(), values, |index, matrix| {
             let axes = configuration.element_axes(index);
-            let motion = motion_all.of_element(element);
+            let motion = motion_all.of_element(&shells[index]);
             configuration
                 .shell(index)
-                .tangent(&axes, &motion, terms, &mut matrix);
-            self.scatter(index, &matrix, values);
-        }
+                .tangent(&axes, &motion, terms, matrix);
+        });
+        let mut matrix = ElementMatrix::new();
         for (index, _) in configuration.beams() {
             configuration.beam_tangent(index, motion_all, terms, &mut matrix);
             self.scatter(shells.len() + index, &matrix, values);
@@ -84,13 +89,12 @@ impl Assembly {
     /// Writes the mass matrix into `values`.
     pub(crate) fn mass(&self, configuration: &Configuration<f64>, values: &mut [f64]) {
         values.fill(0.0);
-        let mut matrix = ElementMatrix::new();
         let topology = &configuration.structure.topology;
-        for index in 0..topology.mesh.shells.len() {
+        self.add_shells(topology.mesh.shells.len(), values, |index, matrix| {
             let axes = configuration.element_axes(index);
-            configuration.shell(index).mass_matrix(&axes, &mut matrix);
-            self.scatter(index, &matrix, values);
-        }
+            configuration.shell(index).mass_matrix(&axes, matrix);
+        });
+        let mut matrix = ElementMatrix::new();
         for (index, _) in configuration.beams() {
             configuration.beam(index).mass_matrix(&mut matrix);
             self.scatter(topology.mesh.shells.len() + index, &matrix, values);
@@ -125,6 +129,35 @@ impl Assembly {
         for (k, i) in self.unknowns.rotations_of(node).enumerate() {
             for (l, j) in self.unknowns.rotations_of(node).enumerate().take(k + 1) {
                 add(i, j, axes[k].dot(&mass.momentum(&axes[l])));
+            }
+        }
+    }
+
+    /// Adds the matrices of all shells. They are made side by side, some at a time, and added in order, so
+    /// the sums are the same on any number of processors.
+    fn add_shells(
+        &self,
+        count: usize,
+        values: &mut [f64],
+        make: impl Fn(usize, &mut ElementMatrix<f64>) + Sync,
+    ) {
+        let threads = rayon::current_num_threads();
+        if threads == 1 || count < SIDE_BY_SIDE {
+            let mut matrix = ElementMatrix::new();
+            for index in 0..count {
+                make(index, &mut matrix);
+                self.scatter(index, &matrix, values);
+            }
+            return;
+        }
+        let mut matrices: Vec<ElementMatrix<f64>> = Vec::new();
+        matrices.resize_with((AT_ONCE * threads).min(count), ElementMatrix::new);
+        for first in (0..count).step_by(matrices.len()) {
+            let some = matrices.len().min(count - first);
+            let made = matrices[..some].par_iter_mut().with_min_len(4).enumerate();
+            made.for_each(|(k, matrix)| make(first + k, matrix));
+            for (k, matrix) in matrices[..some].iter().enumerate() {
+                self.scatter(first + k, matrix, values);
             }
         }
     }

@@ -243,7 +243,7 @@ fn beam_shape(beam: usize, x: &[Vec3<f64>; 3]) -> Option<MeshFault> {
 }
 
 /// Orientations that are missing or run along their beams. The mesh has no other faults.
-pub(super) fn orientation_faults(
+pub(crate) fn orientation_faults(
     mesh: &Mesh,
     nodes: &[Vec3<f64>],
     orientations: &[Vec3<f64>],

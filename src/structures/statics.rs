@@ -126,10 +126,28 @@ impl StaticProblem {
     /// # Errors
     /// [`StaticFailure::Mechanism`] if it is singular.
     pub fn factorise(&mut self, structure: &Structure<f64>) -> Result<(), StaticFailure> {
+        self.assemble(structure);
+        self.factorise_assembled(structure)
+    }
+
+    /// Assembles the linear stiffness.
+    pub fn assemble(&mut self, structure: &Structure<f64>) {
         let configuration = self.assembly.configuration(structure);
         let rest = NodalMotion::zeros(structure.nodes.len());
         self.assembly
             .tangent(&configuration, &rest, Terms::LINEAR, &mut self.values);
+    }
+
+    /// Solves K x = b once with the factors, without refinement.
+    pub fn solve_once(&mut self, b: &mut [f64]) {
+        self.solver.solve(b);
+    }
+
+    /// Factorises the stiffness that was assembled last, that of `structure`.
+    ///
+    /// # Errors
+    /// [`StaticFailure::Mechanism`] if it is singular.
+    pub fn factorise_assembled(&mut self, structure: &Structure<f64>) -> Result<(), StaticFailure> {
         self.solver
             .factorise(&self.assembly.pattern, &self.values)
             .map_err(|failure| mechanism(&self.assembly, structure, &failure))
@@ -156,10 +174,8 @@ impl StaticProblem {
         self.solver.solve(&mut x);
         let mut rest = vec![0.0; b.len()];
         for _ in 0..2 {
-            self.assembly.pattern.multiply(&self.values, &x, &mut rest);
-            for (r, &b) in rest.iter_mut().zip(b) {
-                *r = b - *r;
-            }
+            let pattern = &self.assembly.pattern;
+            pattern.exact_residual(&self.values, &x, b, &mut rest);
             self.solver.solve(&mut rest);
             for (x, d) in x.iter_mut().zip(&rest) {
                 *x += d;
@@ -234,6 +250,31 @@ impl StaticProblem {
             }
         }
         Ok(x)
+    }
+
+    /// The solution of a structure with an infinitesimal part, from the solution `x` of its real part and the
+    /// factors of the tangent there: x + K⁻¹ δ(f − F(x)). The tangent is the one that adjoints have, so both
+    /// agree to the rounding of f and F.
+    ///
+    /// # Errors
+    /// [`UnknownSet`] if a load names no set of the mesh.
+    pub(crate) fn infinitesimal_solution<S: Scalar>(
+        &mut self,
+        structure: &Structure<S>,
+        case: &[Load<S>],
+        x: &[f64],
+        terms: Terms,
+    ) -> Result<Vec<S>, UnknownSet> {
+        let load = self.load_vector(structure, case)?;
+        let still: Vec<S> = x.iter().map(|&x| S::from(x)).collect();
+        let force = self.internal_force(structure, &still, terms);
+        let pairs = load.iter().zip(&force);
+        let rest: Vec<f64> = pairs.map(|(&f, &g)| (f - g).infinitesimal()).collect();
+        let change = self.solve_refined(&rest);
+        let pairs = x.iter().zip(change);
+        Ok(pairs
+            .map(|(&x, d)| S::from(x) + S::of_infinitesimal(d))
+            .collect())
     }
 }
 

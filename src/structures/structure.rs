@@ -25,6 +25,25 @@ pub struct Topology {
     pub mass_nodes: Vec<usize>,
 }
 
+impl Topology {
+    /// A mesh of shells and beams with their materials and the nodes of masses; sheets are found where the
+    /// nodes stand.
+    pub fn new(
+        mesh: Mesh,
+        nodes: &[Vec3<f64>],
+        [material, beam_material]: [Vec<usize>; 2],
+        mass_nodes: Vec<usize>,
+    ) -> Self {
+        Self {
+            sheets: Sheets::new(&mesh, nodes, FOLD_ANGLE),
+            mesh,
+            material,
+            beam_material,
+            mass_nodes,
+        }
+    }
+}
+
 /// The numbers of a structure. A structure of zeros collects the derivatives by them.
 #[derive(Clone, Debug)]
 pub struct Structure<S> {
@@ -137,13 +156,12 @@ impl Structure<f64> {
         }
         let (shells, beams) = (mesh.shells.len(), mesh.beams.len());
         Ok(Self {
-            topology: Arc::new(Topology {
-                sheets: Sheets::new(&mesh, &nodes, FOLD_ANGLE),
+            topology: Arc::new(Topology::new(
                 mesh,
-                material: vec![0; shells],
-                beam_material: vec![0; beams],
-                mass_nodes: Vec::new(),
-            }),
+                &nodes,
+                [vec![0; shells], vec![0; beams]],
+                Vec::new(),
+            )),
             nodes,
             thickness: vec![thickness; shells],
             surface_mass: vec![0.0; shells],

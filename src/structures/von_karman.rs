@@ -133,6 +133,16 @@ impl StaticProblem {
         self.solver.factorise(&self.assembly.pattern, &self.values)
     }
 
+    /// As [`StaticProblem::factorise_at`], with a failure that names what moves.
+    pub(crate) fn factorise_for(
+        &mut self,
+        structure: &Structure<f64>,
+        x: &[f64],
+    ) -> Result<(), StaticFailure> {
+        self.factorise_at(structure, x)
+            .map_err(|failure| super::statics::mechanism(&self.assembly, structure, &failure))
+    }
+
     fn potential(&self, structure: &Structure<f64>, load: &[f64], t: f64, x: &[f64]) -> f64 {
         let configuration = self.assembly.configuration(structure);
         let energy = configuration.strain_energy(&configuration.spread(x), Terms::VON_KARMAN);

@@ -2,7 +2,7 @@
 
 /// The reason why a model has no consistent initial conditions.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum AssemblyFailure {
+pub(crate) enum AssemblyFailure {
     /// The joints cannot be closed near the given placement.
     #[error(
         "joint \"{joint}\" cannot be assembled: its {row} stays open by {gap:.3e} at iteration \

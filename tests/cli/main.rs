@@ -10,4 +10,5 @@ mod restart;
 mod results_are_kept;
 mod several_starts;
 mod stability;
+mod statics;
 mod work_precision;

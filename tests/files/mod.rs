@@ -11,4 +11,5 @@ mod report_plots;
 mod report_records;
 mod second_order;
 mod stability;
+mod statics;
 mod trebuchets;

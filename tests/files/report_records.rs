@@ -545,11 +545,12 @@ fn summary_tells_the_true_maximum_behind_an_aggregate() {
     let mut aggregate = Aggregate {
         lies: Lies::Below,
         true_maximum: 0.90644,
-        time: 0.25,
+        time: Some(0.25),
+        place: None,
         error: 1e-9,
         ungated: None,
     };
-    constraint.aggregate = Some(aggregate);
+    constraint.aggregate = Some(aggregate.clone());
     let back = Optimum::from_json(&optimum.to_json().expect("finite")).expect("is a record");
     assert_eq!(back, optimum);
     let text = summary(&optimum);

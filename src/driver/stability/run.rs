@@ -1,6 +1,7 @@
 //! Runs one case and judges what the program reports.
 
 use super::case::{Case, Judge};
+use crate::driver::analysed::Simulated;
 use crate::driver::check::{CheckedDerivative, check};
 use crate::driver::{KnownEvaluations, Simulation, error, optimise, simulate};
 use crate::integrate::{Method, Spacing};
@@ -232,7 +233,10 @@ fn optimisation(
         row.outcome = StabilityOutcome::Refused { message };
         return;
     }
-    row.steps = done.end.as_ref().map(|end| end.at.run.grid.steps());
+    row.steps = done.end.as_ref().and_then(|end| match end {
+        Simulated::Motion(end) => Some(end.at.run.grid.steps()),
+        Simulated::Statics(_) => None,
+    });
     let found = done.optimum.objective.value;
     let error = (found - optimum).abs() / size;
     row.error = Some(error).filter(|error| error.is_finite());

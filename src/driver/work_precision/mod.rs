@@ -7,7 +7,7 @@
 //! longer decreases.
 
 mod bench;
-mod clock;
+pub(crate) mod clock;
 mod exact;
 mod reference;
 

@@ -12,7 +12,7 @@ impl Checker<'_> {
     pub(super) fn mechanics(&mut self) {
         let document = self.document;
         self.names("bodies", document.bodies.keys());
-        if document.bodies.is_empty() && !self.damage.touches("bodies") {
+        if !self.is_static() && document.bodies.is_empty() && !self.damage.touches("bodies") {
             self.fault(Finding::new("/bodies", "no body", "at least one"));
         }
         for (name, body) in &document.bodies {

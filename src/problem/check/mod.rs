@@ -2,8 +2,10 @@
 
 mod beams;
 mod joints;
+mod load_cases;
 mod loads;
 mod mechanics;
+mod structures;
 mod study;
 
 use super::finding::Finding;
@@ -20,11 +22,13 @@ pub(super) fn check(document: &Document, damage: &Damage) -> Vec<Finding> {
         document,
         damage,
         findings: Vec::new(),
+        sets: structures::Sets::default(),
     };
     checker.mechanics();
     checker.joints();
     checker.loads();
     checker.drives();
+    checker.structures();
     checker.study();
     checker.findings
 }
@@ -34,6 +38,7 @@ struct Checker<'a> {
     document: &'a Document,
     damage: &'a Damage,
     findings: Vec<Finding>,
+    sets: structures::Sets,
 }
 
 impl<'a> Checker<'a> {

@@ -23,7 +23,10 @@ impl Checker<'_> {
         self.names("constraints", document.constraints.keys());
         self.problem_name();
         for (name, function) in &document.functions {
-            self.function(&join("/functions", name), function);
+            match self.is_static() {
+                true => self.static_function(&join("/functions", name), function),
+                false => self.function(&join("/functions", name), function),
+            }
         }
         if let Some(objective) = &document.objective {
             let (key, name) = match objective {
@@ -64,7 +67,9 @@ impl Checker<'_> {
 
     /// Checks steps, tolerance and method.
     fn simulation(&mut self) {
-        let simulation = &self.document.simulation;
+        let Some(simulation) = &self.document.simulation else {
+            return;
+        };
         if let Some(until) = &simulation.until {
             self.instant("/simulation/until/measure", &until.measure);
         }
@@ -122,6 +127,20 @@ impl Checker<'_> {
                 self.clearance(&format!("{pointer}/clearance"), clearance);
             }
             Function::Duration => {}
+            Function::Mass
+            | Function::CentreOfMass(_)
+            | Function::MomentOfInertia(_)
+            | Function::StrainEnergy(_)
+            | Function::Compliance(_)
+            | Function::Displacement(_)
+            | Function::Reaction(_)
+            | Function::ReactionMoment(_)
+            | Function::VonMises(_)
+            | Function::Frequency(_)
+            | Function::LowestFrequency(_) => {
+                let expected = "a function of a motion, or \"structures\" without a \"simulation\"";
+                self.fault(Finding::new(pointer, "a function of structures", expected));
+            }
         }
     }
 

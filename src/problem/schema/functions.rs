@@ -1,6 +1,10 @@
 //! Functions of interest in a file.
 
 use super::mechanics::Point;
+use super::statics::{
+    CentreOfMass, Displacement, Frequency, LowestFrequency, MomentOfInertia, OfCase,
+    ReactionMoment, StaticReaction, Stress,
+};
 use crate::problem::quantity::{Quantity, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -21,6 +25,28 @@ pub(crate) enum Function {
     Clearance(Clearance),
     /// Duration of the run; with `until`, the time of the event [s].
     Duration,
+    /// Mass of all structures (kg).
+    Mass,
+    /// Coordinate of the centre of mass of all structures (m).
+    CentreOfMass(CentreOfMass),
+    /// Moment of inertia of all structures about an axis through their centre of mass (kg m²).
+    MomentOfInertia(MomentOfInertia),
+    /// Strain energy of a load case (J).
+    StrainEnergy(OfCase),
+    /// Work of the loads of a case in its displacements (J).
+    Compliance(OfCase),
+    /// Mean displacement of a set of nodes (m).
+    Displacement(Displacement),
+    /// Force of the supports on a set of nodes (N).
+    Reaction(StaticReaction),
+    /// Moment of the supports on a set of nodes (N m).
+    ReactionMoment(ReactionMoment),
+    /// Aggregate of von Mises stress by yield stress.
+    VonMises(Stress),
+    /// A natural frequency (Hz).
+    Frequency(Frequency),
+    /// Smooth lower bound of the natural frequencies (Hz).
+    LowestFrequency(LowestFrequency),
 }
 
 /// Aggregated quantity, sharpness, and side of the maximum.

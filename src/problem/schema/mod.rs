@@ -6,6 +6,8 @@ pub(crate) mod functions;
 pub(crate) mod joints;
 pub(crate) mod loads;
 pub(crate) mod mechanics;
+pub(crate) mod statics;
+pub(crate) mod structures;
 
 use super::quantity::{Quantity, Vector};
 use drives::Drive;
@@ -16,15 +18,25 @@ use loads::Load;
 use mechanics::{AssemblyVelocity, Body};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use statics::{CaseLoad, Statics};
+use structures::{Material, Structure};
 
 /// Version of the format.
 pub(crate) const VERSION: u64 = 1;
 
-/// A multibody scene with its functions and design variables. Units are SI, angles are in radians.
-/// The keys of bodies, joints, loads, drives, functions, variables and constraints are their names.
+/// A multibody scene in motion, or structures under load cases; what is asked of them and what may be
+/// designed. Units are SI, angles are in radians; the keys of bodies, joints, loads, drives, structures,
+/// materials, load cases, functions, variables and constraints are their names.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(title = "flexbody problem")]
+#[schemars(
+    title = "flexbody problem",
+    extend(
+        "if" = {"required": ["structures"]},
+        "then" = {"required": ["materials"]},
+        "else" = {"required": ["bodies", "simulation"]}
+    )
+)]
 pub(crate) struct Document {
     /// Address of this schema, for editors.
     #[serde(rename = "$schema")]
@@ -45,6 +57,7 @@ pub(crate) struct Document {
     #[schemars(extend("unit" = "m/s²"))]
     pub gravity: Option<Vector>,
     /// Bodies by name.
+    #[serde(default)]
     pub bodies: IndexMap<String, Body>,
     /// Velocity of the whole assembly at the start, default at rest.
     pub initial_velocity: Option<AssemblyVelocity>,
@@ -58,7 +71,18 @@ pub(crate) struct Document {
     #[serde(default)]
     pub drives: IndexMap<String, Drive>,
     /// Duration and accuracy of the simulation.
-    pub simulation: Simulation,
+    pub simulation: Option<Simulation>,
+    /// Structures of shells and beams by name, which do not move.
+    #[serde(default)]
+    pub structures: IndexMap<String, Structure>,
+    /// Materials by name.
+    #[serde(default)]
+    pub materials: IndexMap<String, Material>,
+    /// Load cases by name: the loads of each, by name.
+    #[serde(default)]
+    pub load_cases: IndexMap<String, IndexMap<String, CaseLoad>>,
+    /// How structures are analysed.
+    pub statics: Option<Statics>,
     /// Functions of interest by name.
     #[serde(default)]
     pub functions: IndexMap<String, Function>,

@@ -10,10 +10,12 @@ mod convergence;
 mod energy;
 mod motion;
 mod panel;
+mod structure;
 mod work_precision;
 
 pub(crate) use connectors::{Connector, ConnectorKind};
 pub(crate) use convergence::convergence;
 pub(crate) use energy::{EnergyRun, energy};
 pub(crate) use motion::{Barrier, BodyMotion, Flight, Motion, Scenery, motion};
+pub(crate) use structure::{Camera, StructureView, structure};
 pub(crate) use work_precision::work_precision;

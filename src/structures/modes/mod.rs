@@ -16,7 +16,7 @@ pub use frequencies::{
 use super::assembly::Assembly;
 use super::mesh::UnknownSet;
 use super::state::NodalMotion;
-use super::statics::StaticFailure;
+use super::statics::{StaticFailure, StaticProblem, most_moved};
 use super::structure::Structure;
 use super::supports::{NodeUnknowns, Support};
 use crate::linalg::cholesky::SparseCholesky;
@@ -140,4 +140,18 @@ impl ModalProblem {
     pub fn motion(&self, structure: &Structure<f64>, mode: &[f64]) -> NodalMotion<f64> {
         self.assembly.configuration(structure).spread(mode)
     }
+}
+
+/// A rigid motion that the supports leave to a part of a structure, as the node that moves most in it.
+pub(crate) fn loose_part(
+    problem: &StaticProblem,
+    structure: &Structure<f64>,
+) -> Option<StaticFailure> {
+    let motions = rigid::rigid_motions(&problem.assembly.configuration(structure));
+    let (node, dof) = most_moved(&problem.assembly, motions.first()?);
+    Some(StaticFailure::Mechanism {
+        node,
+        place: structure.nodes[node].into(),
+        dof,
+    })
 }

@@ -11,7 +11,7 @@ use super::basis::{GAUSS_POINTS, NODES, TABLES};
 use super::energy::{Motion, Shell, ShellCotangent};
 use super::field::{AtPoint, Field, add_interpolate_transpose, add_sum_transpose, sum};
 use super::frame;
-use super::tangent::{ElementMatrix, RotationAxes};
+use super::matrix::{ElementMatrix, RotationAxes};
 use crate::math::{Scalar, Vec3};
 
 /// Scalar nodal masses of an element.

@@ -6,6 +6,7 @@ mod energy;
 mod field;
 mod frame;
 mod mass;
+mod matrix;
 #[cfg(test)]
 mod pairs;
 mod strain;
@@ -18,6 +19,6 @@ pub use energy::{EnergyParts, Motion, Shell, ShellCotangent};
 pub use field::Field;
 pub(crate) use mass::SECOND;
 pub use mass::{MassMoments, NodalMasses};
+pub use matrix::{ElementMatrix, MOST_UNKNOWNS, RotationAxes};
 pub use strain::Terms;
 pub use stress::STRESS_POINTS;
-pub use tangent::{ElementMatrix, MOST_UNKNOWNS, RotationAxes};

@@ -1,0 +1,349 @@
+//! A design with the values of its functions: a motion, or structures under load cases.
+
+use super::evaluate::Evaluated;
+use super::integration::{Integration, Refresh};
+use super::simulate::{Simulation, simulate, simulate_with};
+use super::statics::{StaticDesign, StaticsFailure};
+use super::{error, not_finite, start, statics};
+use crate::functions::evaluate::ungated_maximum;
+use crate::functions::{Bound, Function, Reduction};
+use crate::integrate::{IntegrationFailure, WorkCounts};
+use crate::problem::{Asked, Problem};
+use crate::report::optimum::{Aggregate, Integration as IntegrationRecord, Lies};
+use crate::structures::functions::{self, Peak};
+
+/// A design that was analysed.
+pub(crate) enum Analysed {
+    /// A scene in motion.
+    Motion(Box<Evaluated>),
+    /// Structures that do not move.
+    Statics(Box<StaticDesign>),
+}
+
+/// Why a design has no values or no gradients.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum AnalysisFailure {
+    /// The motion.
+    #[error(transparent)]
+    Motion(#[from] IntegrationFailure),
+    /// The structures.
+    #[error(transparent)]
+    Statics(#[from] StaticsFailure),
+    /// A motion is asked for, and nothing moves.
+    #[error("the problem has structures that do not move, so there is no motion to simulate")]
+    NoMotion,
+}
+
+impl Analysed {
+    /// Analyses the design `x` for the functions `asked` (a motion for all); of a motion with the steps in
+    /// use, and also says if these changed.
+    ///
+    /// # Errors
+    /// If the analysis fails.
+    pub(crate) fn with(
+        integration: &mut Integration,
+        problem: &Problem,
+        x: &[f64],
+        asked: &[usize],
+    ) -> Result<(Self, Option<Refresh>), AnalysisFailure> {
+        Ok(match &problem.statics {
+            Some(statics) => {
+                let design = StaticDesign::of(problem, statics, x, Some(asked))?;
+                (Self::Statics(Box::new(design)), None)
+            }
+            None => {
+                let (evaluated, refresh) = Evaluated::with(integration, problem, x)?;
+                (Self::Motion(Box::new(evaluated)), refresh)
+            }
+        })
+    }
+
+    /// The design.
+    pub(crate) fn x(&self) -> &[f64] {
+        match self {
+            Self::Motion(at) => &at.x,
+            Self::Statics(at) => &at.x,
+        }
+    }
+
+    /// The value of a function.
+    pub(crate) fn value(&self, f: usize) -> f64 {
+        match self {
+            Self::Motion(at) => at.function(f).value,
+            Self::Statics(at) => at.function(f).value,
+        }
+    }
+
+    /// The work of the analysis.
+    pub(crate) fn counts(&self) -> WorkCounts {
+        match self {
+            Self::Motion(at) => at.run.counts,
+            Self::Statics(at) => at.counts,
+        }
+    }
+
+    /// Exact gradients of the functions `which`, and the work they took.
+    ///
+    /// # Errors
+    /// If a function has no gradient there.
+    pub(crate) fn gradients(
+        &self,
+        problem: &Problem,
+        which: &[usize],
+    ) -> Result<(Vec<Vec<f64>>, WorkCounts), AnalysisFailure> {
+        Ok(match self {
+            Self::Motion(at) => at.gradients(problem, which)?,
+            Self::Statics(at) => {
+                let (found, counts) = at.derivatives(problem, which)?;
+                let values = |row: Vec<_>| {
+                    row.into_iter()
+                        .map(|d: super::evaluate::Derivative| d.value)
+                };
+                (
+                    found.into_iter().map(|row| values(row).collect()).collect(),
+                    counts,
+                )
+            }
+        })
+    }
+
+    /// What is known of a value that is not finite.
+    pub(super) fn not_finite_value(&self, problem: &Problem, f: usize, value: f64) -> String {
+        match self {
+            Self::Motion(at) => not_finite::value(problem, at, f, value),
+            Self::Statics(_) => {
+                format!("the function \"{}\" is {value}", problem.function_names[f])
+            }
+        }
+    }
+
+    /// What is known of a derivative that is not finite.
+    pub(super) fn not_finite_derivative(
+        &self,
+        problem: &Problem,
+        (f, i): (usize, usize),
+        value: f64,
+    ) -> String {
+        match self {
+            Self::Motion(at) => not_finite::derivative(problem, at, (f, i), value),
+            Self::Statics(_) => format!(
+                "the derivative of the function \"{}\" in the variable {} is {value}",
+                problem.function_names[f],
+                not_finite::variable(problem, i)
+            ),
+        }
+    }
+}
+
+/// A design with all that a record and figures show of it.
+pub(crate) enum Simulated {
+    /// A motion with its observations.
+    Motion(Box<Simulation>),
+    /// Structures with all load cases.
+    Statics(Box<StaticDesign>),
+}
+
+impl Simulated {
+    /// Analyses the design `x` for all functions; a motion with steps of its own.
+    ///
+    /// # Errors
+    /// If the analysis fails.
+    pub(crate) fn of(problem: &Problem, x: &[f64]) -> Result<Self, AnalysisFailure> {
+        Ok(match &problem.statics {
+            Some(statics) => Self::Statics(Box::new(StaticDesign::of(problem, statics, x, None)?)),
+            None => Self::Motion(Box::new(simulate(problem, x)?)),
+        })
+    }
+
+    /// The structures of a problem that has some, for all load cases and functions.
+    ///
+    /// # Errors
+    /// If the analysis fails.
+    pub(crate) fn of_statics(
+        problem: &Problem,
+        x: &[f64],
+    ) -> Result<Option<StaticDesign>, AnalysisFailure> {
+        let Some(statics) = &problem.statics else {
+            return Ok(None);
+        };
+        Ok(Some(StaticDesign::of(problem, statics, x, None)?))
+    }
+
+    /// As [`Simulated::of`], with the steps in use.
+    ///
+    /// # Errors
+    /// If the analysis fails.
+    pub(crate) fn with(
+        integration: &mut Integration,
+        problem: &Problem,
+        x: &[f64],
+    ) -> Result<Self, AnalysisFailure> {
+        match problem.statics {
+            Some(_) => Self::of(problem, x),
+            None => {
+                let found = simulate_with(integration, problem, x)?;
+                Ok(Self::Motion(Box::new(found)))
+            }
+        }
+    }
+
+    /// The value of a function.
+    pub(crate) fn value(&self, f: usize) -> f64 {
+        match self {
+            Self::Motion(simulation) => simulation.at.function(f).value,
+            Self::Statics(at) => at.function(f).value,
+        }
+    }
+
+    /// The largest value of the quantity that a function aggregates.
+    pub(crate) fn maximum(&self, f: usize) -> Option<f64> {
+        match self {
+            Self::Motion(simulation) => simulation.at.function(f).maximum.map(|m| m.value),
+            Self::Statics(at) => at.function(f).peak.map(|peak| peak.ratio),
+        }
+    }
+
+    /// Errors of the functions `which`, and of their gradients if `gradients`.
+    ///
+    /// # Errors
+    /// If the finer analysis fails.
+    pub(crate) fn estimate(
+        &self,
+        problem: &Problem,
+        which: &[usize],
+        gradients: bool,
+    ) -> Result<Vec<error::FunctionError>, AnalysisFailure> {
+        Ok(match self {
+            Self::Motion(simulation) => error::estimate(problem, &simulation.at, which, gradients)?,
+            Self::Statics(at) => statics::error::estimate(problem, at, which, gradients)?,
+        })
+    }
+
+    /// What a user should know of the result; `used` are the functions that matter.
+    pub(super) fn warnings(&self, problem: &Problem, used: &[usize]) -> Vec<String> {
+        match self {
+            Self::Motion(simulation) => {
+                let kinks = simulation.at.kinks(problem, used.iter().copied());
+                simulation.warning.iter().cloned().chain(kinks).collect()
+            }
+            Self::Statics(_) => Vec::new(),
+        }
+    }
+
+    /// A warning of a peak that samples do not resolve.
+    pub(super) fn narrow_peak(&self, problem: &Problem, f: usize) -> Option<String> {
+        let Self::Motion(simulation) = self else {
+            return None;
+        };
+        let sharpness = simulation.at.function(f).peak_sharpness;
+        (sharpness > 1.0).then(|| {
+            format!(
+                "the peak of \"{}\" is narrower than the distance of samples (rho x curvature x h^2 \
+                 = {sharpness:.1}): take more samples or lower rho",
+                problem.function_names[f]
+            )
+        })
+    }
+
+    /// How a motion was integrated.
+    pub(super) fn integration(&self, refreshes: usize) -> Option<IntegrationRecord> {
+        let Self::Motion(end) = self else {
+            return None;
+        };
+        Some(IntegrationRecord {
+            method: end.at.run.method.name(),
+            reason: end.reason.clone(),
+            steps: end.at.run.grid.steps() as u64,
+            refreshes: refreshes as u64,
+        })
+    }
+
+    /// The aggregated quantity of a function, if it is an aggregate.
+    pub(super) fn aggregate(
+        &self,
+        problem: &Problem,
+        f: usize,
+        estimates: &[error::FunctionError],
+    ) -> Option<Aggregate> {
+        let known = estimates.iter().find(|found| found.function == f);
+        let known = known
+            .and_then(|found| found.maximum)
+            .map_or(0.0, |m| m.error);
+        match self {
+            Self::Motion(end) => {
+                let function = &end.at.scene.functions[f];
+                let maximum = end.at.function(f).maximum?;
+                let above = matches!(
+                    function,
+                    Function::Reduced {
+                        reduction: Reduction::Ks {
+                            bound: Bound::Above,
+                            ..
+                        },
+                        ..
+                    }
+                );
+                Some(Aggregate {
+                    lies: if above { Lies::Above } else { Lies::Below },
+                    true_maximum: maximum.value,
+                    time: Some(maximum.time),
+                    place: None,
+                    error: maximum.error.max(known),
+                    ungated: ungated_maximum(function, &end.at.scene.model, &end.at.run),
+                })
+            }
+            Self::Statics(end) => {
+                let peak = end.function(f).peak?;
+                let statics = problem.statics.as_ref()?;
+                let above = matches!(
+                    &statics.functions[f],
+                    Asked::OfSolutions(functions::Function::Stress {
+                        aggregate: functions::Aggregate::Ks,
+                        ..
+                    })
+                );
+                Some(Aggregate {
+                    lies: if above { Lies::Above } else { Lies::Below },
+                    true_maximum: peak.ratio,
+                    time: None,
+                    place: Some(place(&statics.cases, &peak)),
+                    error: known,
+                    ungated: None,
+                })
+            }
+        }
+    }
+}
+
+/// Every derivative at the design `x`, by the adjoint and by the complex step.
+///
+/// # Errors
+/// If the analysis fails.
+pub(crate) fn check(
+    problem: &Problem,
+    x: &[f64],
+) -> Result<Vec<super::CheckedDerivative>, AnalysisFailure> {
+    Ok(match Simulated::of_statics(problem, x)? {
+        Some(at) => statics::check::check(problem, &at)?,
+        None => super::check::check(problem, x)?,
+    })
+}
+
+/// Where a stress is largest, in words.
+pub(crate) fn place(cases: &[String], peak: &Peak) -> String {
+    format!(
+        "shell {}, Gauss point {}, {} face, load case \"{}\"",
+        peak.shell,
+        peak.point,
+        if peak.upper { "upper" } else { "lower" },
+        cases[peak.case]
+    )
+}
+
+/// What a user should know of the start at the design `x`, a sentence each.
+pub(super) fn notes_of_start(problem: &Problem, x: &[f64]) -> Vec<String> {
+    match problem.statics {
+        Some(_) => Vec::new(),
+        None => start::notes(problem, x),
+    }
+}

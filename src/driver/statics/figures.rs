@@ -1,0 +1,335 @@
+//! Pictures of structures: thickness, deformed shape with stress, mode shapes; and their fields for files.
+
+use super::StaticDesign;
+use crate::math::Vec3;
+use crate::problem::Problem;
+use crate::report::History;
+use crate::report::plots::{Camera, StructureView, convergence, structure};
+use crate::report::vtu::{Fields, vtu};
+use crate::structures::mesh::Mesh;
+use std::f64::consts::PI;
+
+/// Part of the size of a structure that its largest displacement takes in a picture.
+const SHOWN: f64 = 0.1;
+/// Load cases and modes that are drawn at most.
+const MOST_CASES: usize = 3;
+const MOST_MODES: usize = 4;
+
+/// The figures of designs, and the history of an optimisation.
+pub(crate) fn figures(
+    problem: &Problem,
+    designs: &[(&str, &StaticDesign)],
+    history: Option<&History>,
+) -> Vec<(&'static str, Vec<u8>)> {
+    let mut all = Vec::new();
+    if let Some(history) = history {
+        all.push(("convergence.svg", convergence(history)));
+    }
+    let view = problem.view_of_structures();
+    let camera = Camera::oblique(view[0], view[1]);
+    let above = match designs.first().and_then(|(_, design)| flat_axes(design)) {
+        Some([right, up]) => Camera::along(right, up),
+        None => camera,
+    };
+    let thickness: Vec<Vec<StructureView>> = designs
+        .iter()
+        .map(|(title, design)| thickness(title, design).into_iter().collect())
+        .collect();
+    if thickness.iter().any(|row: &Vec<_>| !row.is_empty()) {
+        all.push(("thickness.svg", structure(&in_one_row(thickness), &above)));
+    }
+    let deformed: Vec<Vec<StructureView>> = designs
+        .iter()
+        .map(|(title, design)| deformed(title, design))
+        .collect();
+    if deformed.iter().any(|row| !row.is_empty()) {
+        all.push(("deformed.svg", structure(&deformed, &camera)));
+    }
+    if let Some((_, design)) = designs.last() {
+        let modes = modes(design);
+        if !modes.is_empty() {
+            let rows: Vec<Vec<StructureView>> = in_pairs(modes);
+            all.push(("modes.svg", structure(&rows, &camera)));
+        }
+    }
+    all.into_iter()
+        .filter_map(|(name, svg)| Some((name, svg.ok()?.into_bytes())))
+        .collect()
+}
+
+/// Rows of one view each as one row.
+fn in_one_row(rows: Vec<Vec<StructureView>>) -> Vec<Vec<StructureView>> {
+    let mut all: Vec<StructureView> = rows.into_iter().flatten().collect();
+    let low = all.iter().map(|v| v.range[0]).fold(f64::INFINITY, f64::min);
+    let high = all
+        .iter()
+        .map(|v| v.range[1])
+        .fold(f64::NEG_INFINITY, f64::max);
+    all.iter_mut().for_each(|view| view.range = [low, high]);
+    vec![all]
+}
+
+fn in_pairs(views: Vec<StructureView>) -> Vec<Vec<StructureView>> {
+    let mut rows: Vec<Vec<StructureView>> = Vec::new();
+    for view in views {
+        match rows.last_mut() {
+            Some(row) if row.len() < 2 => row.push(view),
+            _ => rows.push(vec![view]),
+        }
+    }
+    rows
+}
+
+/// The axes of the plane that all nodes lie in, if it is across an axis.
+fn flat_axes(design: &StaticDesign) -> Option<[[f64; 3]; 2]> {
+    let extents = extents(design);
+    let small = 1e-9 * extents.iter().fold(0.0_f64, |m, x| m.max(*x));
+    let unit = |k: usize| std::array::from_fn(|i| f64::from(u8::from(i == k)));
+    let flat = (0..3).find(|&k| extents[k] <= small)?;
+    Some(match flat {
+        0 => [unit(1), unit(2)],
+        1 => [unit(0), unit(2)],
+        _ => [unit(0), unit(1)],
+    })
+}
+
+/// Largest extent along an axis \[m\].
+fn size(design: &StaticDesign) -> f64 {
+    extents(design).into_iter().fold(0.0, f64::max)
+}
+
+/// Extents along the axes \[m\].
+fn extents(design: &StaticDesign) -> [f64; 3] {
+    let nodes = &design.scene.structure.nodes;
+    std::array::from_fn(|k| {
+        let all = nodes.iter().map(|x| x[k]);
+        let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+            (l.min(x), h.max(x))
+        });
+        high - low
+    })
+}
+
+/// A view of a mesh with its nodes at `places`; `value` gives the colour of the quarter (i, j) of a shell,
+/// or of a beam.
+fn view(
+    mesh: &Mesh,
+    places: &[Vec3<f64>],
+    (title, label): (String, &str),
+    of_shell: impl Fn(usize, usize, usize) -> f64,
+    of_beam: impl Fn(usize) -> f64,
+) -> StructureView {
+    let at = |node: usize| -> [f64; 3] { places[node].into() };
+    let mut faces = Vec::with_capacity(4 * mesh.shells.len());
+    let mut edges = Vec::new();
+    for (index, nodes) in mesh.shells.iter().enumerate() {
+        for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let corner = |di: usize, dj: usize| at(nodes[3 * (j + dj) + i + di]);
+            let corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+            faces.push((corners, of_shell(index, i, j)));
+        }
+        edges.push([0, 1, 2, 5, 8, 7, 6, 3, 0].map(|k| at(nodes[k])).to_vec());
+    }
+    let lines = mesh.beams.iter().enumerate();
+    let lines: Vec<(Vec<[f64; 3]>, f64)> = lines
+        .map(|(index, nodes)| (nodes.map(at).to_vec(), of_beam(index)))
+        .collect();
+    let values = faces.iter().map(|f| f.1).chain(lines.iter().map(|l| l.1));
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+        (l.min(x), h.max(x))
+    });
+    StructureView {
+        title,
+        faces,
+        lines,
+        edges,
+        label: label.to_owned(),
+        range: [low, high],
+    }
+}
+
+/// The thickness of the shells, if there are some.
+fn thickness(title: &str, design: &StaticDesign) -> Option<StructureView> {
+    let structure = &design.scene.structure;
+    let mesh = &structure.topology.mesh;
+    let h = &structure.thickness;
+    if mesh.shells.is_empty() {
+        return None;
+    }
+    let text = match title.is_empty() {
+        true => "thickness".to_owned(),
+        false => format!("thickness, {title}"),
+    };
+    let least = h.iter().copied().fold(f64::INFINITY, f64::min);
+    let mm = |index: usize| 1e3 * h[index];
+    let mut view = view(
+        mesh,
+        &structure.nodes,
+        (text, "h [mm]"),
+        |index, _, _| mm(index),
+        |_| 1e3 * least,
+    );
+    if view.range[1] - view.range[0] < 1e-9 * view.range[1] {
+        view.range = [0.0, view.range[1]];
+    }
+    Some(view)
+}
+
+/// Displacements of the nodes and the factor that makes them visible.
+fn magnified(design: &StaticDesign, u: &[Vec3<f64>]) -> (Vec<Vec3<f64>>, f64) {
+    let largest = u.iter().map(|u| u.norm()).fold(0.0, f64::max);
+    let factor = if largest > 0.0 {
+        SHOWN * size(design) / largest
+    } else {
+        0.0
+    };
+    let pairs = design.scene.structure.nodes.iter().zip(u);
+    (pairs.map(|(x, u)| x + u * factor).collect(), factor)
+}
+
+/// The deformed shape of the first load cases, with the stress of shells in colour.
+fn deformed(title: &str, design: &StaticDesign) -> Vec<StructureView> {
+    let mesh = &design.scene.structure.topology.mesh;
+    let solved = design
+        .solutions
+        .iter()
+        .enumerate()
+        .filter(|(_, x)| !x.is_empty());
+    let cases = solved.map(|(case, _)| case).take(MOST_CASES);
+    let one = |case: usize| {
+        let (motion, stress) = design.with_solved(|solved| {
+            let x = &solved.solutions[case];
+            let motion = solved.problem.motion(solved.structure, x);
+            (motion, solved.stress_field(case))
+        })?;
+        let (places, factor) = magnified(design, &motion.displacement);
+        let yields = yield_stresses(design);
+        // The larger of both faces at the four Gauss points of a quarter, in MPa.
+        let of_shell = |index: usize, i: usize, j: usize| {
+            let points = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
+            let sum: f64 = points
+                .iter()
+                .map(|(i, j)| {
+                    let g = 3 * j + i;
+                    stress[index][2 * g].max(stress[index][2 * g + 1])
+                })
+                .sum();
+            0.25 * sum * yields[index] * 1e-6
+        };
+        let name = &design.statics.cases[case];
+        let own = if title.is_empty() {
+            String::new()
+        } else {
+            format!("{title}: ")
+        };
+        let text = format!("{own}{name}, displacements × {factor:.3}");
+        let label = if mesh.shells.is_empty() {
+            ""
+        } else {
+            "σ_v [MPa]"
+        };
+        Some(view(mesh, &places, (text, label), of_shell, |_| 0.0))
+    };
+    cases.filter_map(one).collect()
+}
+
+/// Yield stress of each shell \[Pa\], which stresses are relative to.
+fn yield_stresses(design: &StaticDesign) -> Vec<f64> {
+    let structure = &design.scene.structure;
+    let numbers = structure.topology.material.iter();
+    numbers
+        .map(|&m| structure.materials[m].yield_stress)
+        .collect()
+}
+
+/// The lowest modes that were found.
+fn modes(design: &StaticDesign) -> Vec<StructureView> {
+    let mesh = &design.scene.structure.topology.mesh;
+    let Some(found) = design.some_modes() else {
+        return Vec::new();
+    };
+    let pairs = found
+        .vectors
+        .iter()
+        .zip(&found.eigenvalues)
+        .take(MOST_MODES);
+    let one = |(k, (x, lambda)): (usize, (&Vec<f64>, &f64))| {
+        let motion = design.motion_of_mode(x)?;
+        let (places, factor) = magnified(design, &motion);
+        let f = lambda.sqrt() / (2.0 * PI);
+        let text = format!("mode {}, {f:.2} Hz", k + 1);
+        let size = |node: usize| factor * motion[node].norm() / (SHOWN * size(design));
+        let of_shell = |index: usize, i: usize, j: usize| {
+            let nodes = &mesh.shells[index];
+            let corners = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
+            corners
+                .iter()
+                .map(|(i, j)| size(nodes[3 * j + i]))
+                .sum::<f64>()
+                * 0.25
+        };
+        let of_beam = |index: usize| size(mesh.beams[index][1]);
+        let mut view = view(mesh, &places, (text, "|u| [-]"), of_shell, of_beam);
+        view.range = [0.0, 1.0];
+        Some(view)
+    };
+    pairs.enumerate().filter_map(one).collect()
+}
+
+/// Fields of a design: displacements of each load case, modes, thickness, stresses.
+pub(crate) fn fields(design: &StaticDesign) -> String {
+    let structure = &design.scene.structure;
+    let mesh = &structure.topology.mesh;
+    let list = |all: &[Vec3<f64>]| all.iter().map(|v| (*v).into()).collect::<Vec<[f64; 3]>>();
+    let mut fields = Fields {
+        nodes: list(&structure.nodes),
+        shells: mesh.shells.clone(),
+        beams: mesh.beams.clone(),
+        ..Fields::default()
+    };
+    let with_beams = |of_shells: Vec<f64>| {
+        let beams = std::iter::repeat_n(0.0, mesh.beams.len());
+        of_shells.into_iter().chain(beams).collect::<Vec<f64>>()
+    };
+    let thickness = with_beams(structure.thickness.clone());
+    fields.of_elements.push(("thickness [m]".into(), thickness));
+    for (case, name) in design.statics.cases.iter().enumerate() {
+        if design.solutions[case].is_empty() {
+            continue;
+        }
+        let found = design.with_solved(|solved| {
+            let motion = solved
+                .problem
+                .motion(solved.structure, &solved.solutions[case]);
+            (motion, solved.stress_field(case))
+        });
+        let Some((motion, stress)) = found else {
+            continue;
+        };
+        let displacement = list(&motion.displacement);
+        fields
+            .vectors
+            .push((format!("displacement, {name} [m]"), displacement));
+        let rotation = list(&motion.rotation);
+        fields
+            .vectors
+            .push((format!("rotation, {name} [rad]"), rotation));
+        let pairs = stress.iter().zip(yield_stresses(design));
+        let largest = pairs.map(|(all, y)| y * all.iter().copied().fold(0.0, f64::max));
+        let largest = with_beams(largest.collect());
+        fields
+            .of_elements
+            .push((format!("largest von Mises stress, {name} [Pa]"), largest));
+    }
+    if let Some(found) = design.some_modes() {
+        for (k, x) in found.vectors.iter().enumerate() {
+            let f = found.eigenvalues[k].sqrt() / (2.0 * PI);
+            if let Some(motion) = design.motion_of_mode(x) {
+                fields
+                    .vectors
+                    .push((format!("mode {}, {f:.6} Hz", k + 1), list(&motion)));
+            }
+        }
+    }
+    vtu(&fields)
+}

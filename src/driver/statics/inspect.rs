@@ -1,0 +1,50 @@
+//! What a solved design shows of itself.
+
+use super::StaticDesign;
+use crate::math::Vec3;
+use crate::structures::modes::Modes;
+use crate::structures::statics::StaticProblem;
+use std::sync::PoisonError;
+
+impl StaticDesign {
+    /// Modes that were found for some function.
+    pub(crate) fn some_modes(&self) -> Option<&Modes> {
+        let lowest = self.lowest.iter().flatten().map(|found| &found.modes);
+        let all = self.modes.iter().chain(lowest);
+        all.max_by_key(|modes| modes.vectors.len())
+    }
+
+    /// The displacements of the nodes in a mode.
+    pub(super) fn motion_of_mode(&self, x: &[f64]) -> Option<Vec<Vec3<f64>>> {
+        let workspace = self
+            .workspace
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let modal = workspace.modal.as_ref()?;
+        Some(modal.motion(&self.scene.structure, x).displacement)
+    }
+
+    /// Number of unknowns.
+    pub(crate) fn unknowns(&self) -> usize {
+        let workspace = self
+            .workspace
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        workspace
+            .statics
+            .as_ref()
+            .map_or(0, StaticProblem::unknowns)
+    }
+
+    /// Entries of the factor of the stiffness, if it was made.
+    pub(crate) fn factor_entries(&self) -> Option<usize> {
+        let workspace = self
+            .workspace
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        workspace
+            .statics
+            .as_ref()
+            .map(StaticProblem::factor_entries)
+    }
+}

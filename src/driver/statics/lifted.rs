@@ -1,0 +1,111 @@
+//! Functions of structures along a direction of the design, by the complex step.
+
+use super::{StaticDesign, StaticsFailure, cases_of, of_cases, of_modes};
+use crate::math::scalar::COMPLEX_STEP;
+use crate::math::soft_max::SoftMax;
+use crate::math::{Complex64, Scalar};
+use crate::problem::{Asked, Problem, StaticScene};
+use crate::structures::functions::Solved;
+use crate::structures::lifted::eigenvalue_rates;
+use crate::structures::modes::{ModalFailure, Modes};
+use crate::structures::statics::StaticFailure;
+use std::f64::consts::PI;
+
+/// Derivatives of the functions `which` of a solved design along a direction, Im f(x + i h d) / h. Matrices
+/// and modes are those of the design; a workspace of its own serves each call, so calls run side by side.
+pub(super) fn along(
+    problem: &Problem,
+    at: &StaticDesign,
+    which: &[usize],
+    direction: &[f64],
+) -> Result<Vec<f64>, StaticsFailure> {
+    let pairs = at.x.iter().zip(direction);
+    let x: Vec<Complex64> = pairs
+        .map(|(&x, d)| Complex64::new(x, COMPLEX_STEP * d))
+        .collect();
+    let statics = &at.statics;
+    let scene: StaticScene<Complex64> = problem.static_scene(statics, &x);
+    let real = &at.scene.structure;
+    let mut own = at.copied_workspace()?;
+    let mut needed: Vec<usize> = which
+        .iter()
+        .flat_map(|&f| cases_of(&statics.functions[f]))
+        .copied()
+        .collect();
+    needed.sort_unstable();
+    needed.dedup();
+    let mut solutions = vec![Vec::new(); scene.cases.len()];
+    for case in needed {
+        let matrices = of_cases(&mut own, statics, real)?;
+        let (loads, x) = (&scene.cases[case], &at.solutions[case]);
+        if statics.terms.von_karman {
+            matrices
+                .factorise_for(real, x)
+                .map_err(ModalFailure::from)?;
+        }
+        let found = matrices.infinitesimal_solution(&scene.structure, loads, x, statics.terms);
+        solutions[case] = found.map_err(|unknown| StaticsFailure::Case {
+            case: statics.cases[case].clone(),
+            failure: unknown.into(),
+        })?;
+    }
+    let mut all = Vec::with_capacity(which.len());
+    for &f in which {
+        let value = match &statics.functions[f] {
+            Asked::DistanceFromStart => problem.distance_from_start(&x).infinitesimal(),
+            Asked::OfSolutions(function) => {
+                let solved = Solved {
+                    problem: of_cases(&mut own, statics, real)?,
+                    structure: &scene.structure,
+                    cases: &scene.cases,
+                    solutions: &solutions,
+                    terms: statics.terms,
+                };
+                let found = solved.value(function);
+                found
+                    .map_err(|unknown| ModalFailure::from(StaticFailure::from(unknown)))?
+                    .infinitesimal()
+            }
+            Asked::Frequency(mode) => {
+                let modes = at.modes.as_ref().expect("modes were found before");
+                let modal = of_modes(&mut own, statics, real)?;
+                let rates = eigenvalue_rates(modal, &scene.structure, modes);
+                frequency_rates(modes, &rates)[*mode]
+            }
+            Asked::LowestFrequency(rho) => {
+                let found = at.lowest[f].as_ref().expect("it was found before");
+                let modal = of_modes(&mut own, statics, real)?;
+                let rates = eigenvalue_rates(modal, &scene.structure, &found.modes);
+                let rates = frequency_rates(&found.modes, &rates);
+                let negative: Vec<f64> = found.modes.frequencies().iter().map(|f| -f).collect();
+                let weights = SoftMax::new(&negative, |_| 1.0, *rho).weights;
+                weights.iter().zip(&rates).map(|(w, rate)| w * rate).sum()
+            }
+        };
+        all.push(value / COMPLEX_STEP);
+    }
+    at.statics.workspaces.give(own);
+    Ok(all)
+}
+
+/// Rates of frequencies from those of eigenvalues, f = √λ / 2π.
+fn frequency_rates(modes: &Modes, rates: &[f64]) -> Vec<f64> {
+    let pairs = modes.eigenvalues.iter().zip(rates);
+    pairs
+        .map(|(lambda, rate)| rate / (4.0 * PI * lambda.sqrt()))
+        .collect()
+}
+
+impl StaticDesign {
+    /// A workspace of the same design for another thread.
+    fn copied_workspace(&self) -> Result<crate::problem::Workspace, StaticsFailure> {
+        let mut own = self.statics.workspaces.take();
+        if !self.statics.terms.von_karman && self.solutions.iter().any(|x| !x.is_empty()) {
+            let matrices = of_cases(&mut own, &self.statics, &self.scene.structure)?;
+            matrices
+                .factorise(&self.scene.structure)
+                .map_err(ModalFailure::from)?;
+        }
+        Ok(own)
+    }
+}

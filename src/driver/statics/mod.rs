@@ -1,0 +1,413 @@
+//! Structures under load cases at a design: solutions, modes, functions, exact gradients.
+
+pub(crate) mod check;
+pub(crate) mod error;
+pub(crate) mod figures;
+mod inspect;
+mod lifted;
+pub(crate) mod precision;
+
+use super::evaluate::Derivative;
+use crate::integrate::WorkCounts;
+use crate::problem::{Asked, Problem, StaticScene, Statics, Workspace};
+use crate::structures::functions::{Function, Peak, Solved};
+use crate::structures::gradient::{gradient, gradient_von_karman};
+use crate::structures::loads::Load;
+use crate::structures::modes::{
+    LowestFrequency, ModalFailure, ModalProblem, Modes, frequency_gradient, lowest_frequency,
+};
+use crate::structures::quality::{MeshFault, faults};
+use crate::structures::statics::{StaticFailure, StaticProblem};
+use crate::structures::structure::Structure;
+use crate::structures::von_karman::LoadSteps;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Why structures have no solution or no gradient at a design.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum StaticsFailure {
+    /// The mesh of this design.
+    #[error("the mesh is not sound at this design: {0}")]
+    Mesh(#[from] MeshFault),
+    /// A load case.
+    #[error("load case \"{case}\": {failure}")]
+    Case {
+        /// Its name.
+        case: String,
+        /// What is wrong.
+        failure: StaticFailure,
+    },
+    /// Modes.
+    #[error(transparent)]
+    Modal(#[from] ModalFailure),
+    /// Something that is no number.
+    #[error("load case \"{case}\": the displacements are not finite")]
+    NotFinite {
+        /// The case.
+        case: String,
+    },
+}
+
+/// The value of a function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StaticValue {
+    /// The value.
+    pub value: f64,
+    /// The largest stress ratio and where it is, of an aggregate of stresses.
+    pub peak: Option<Peak>,
+}
+
+/// Structures at a design with their solutions.
+pub(crate) struct StaticDesign {
+    /// The design.
+    pub x: Vec<f64>,
+    /// Structures and loads there.
+    pub scene: StaticScene<f64>,
+    /// What no design changes.
+    pub statics: Arc<Statics>,
+    /// The solution of each load case; empty if no function needs them.
+    pub solutions: Vec<Vec<f64>>,
+    /// The lowest modes, if single frequencies are asked for.
+    pub modes: Option<Modes>,
+    lowest: Vec<Option<LowestFrequency>>,
+    values: Vec<Option<StaticValue>>,
+    workspace: Mutex<Workspace>,
+    /// The work of the solutions.
+    pub counts: WorkCounts,
+}
+
+impl Drop for StaticDesign {
+    fn drop(&mut self) {
+        let own = self
+            .workspace
+            .get_mut()
+            .unwrap_or_else(PoisonError::into_inner);
+        self.statics.workspaces.give(std::mem::take(own));
+    }
+}
+
+/// The matrices of load cases, analysed when they are needed first.
+fn of_cases<'w>(
+    workspace: &'w mut Workspace,
+    statics: &Statics,
+    structure: &Structure<f64>,
+) -> Result<&'w mut StaticProblem, ModalFailure> {
+    if workspace.statics.is_none() {
+        let new = StaticProblem::new(structure, &statics.supports, statics.node_unknowns);
+        workspace.statics = Some(new.map_err(StaticFailure::from)?);
+    }
+    Ok(workspace.statics.as_mut().expect("it was made"))
+}
+
+/// The matrices of modes, likewise.
+fn of_modes<'w>(
+    workspace: &'w mut Workspace,
+    statics: &Statics,
+    structure: &Structure<f64>,
+) -> Result<&'w mut ModalProblem, ModalFailure> {
+    if workspace.modal.is_none() {
+        let new = ModalProblem::new(structure, &statics.supports, statics.node_unknowns);
+        workspace.modal = Some(new.map_err(StaticFailure::from)?);
+    }
+    Ok(workspace.modal.as_mut().expect("it was made"))
+}
+
+/// The load cases that a function needs.
+fn cases_of(function: &Asked) -> &[usize] {
+    match function {
+        Asked::OfSolutions(function) => match function {
+            Function::Mass
+            | Function::Centre(_)
+            | Function::SecondMoment(..)
+            | Function::Inertia(..) => &[],
+            Function::Reaction { case, .. }
+            | Function::ReactionMoment { case, .. }
+            | Function::StrainEnergy { case }
+            | Function::Compliance { case }
+            | Function::Displacement { case, .. } => std::slice::from_ref(case),
+            Function::Stress { cases, .. } => cases,
+        },
+        Asked::Frequency(_) | Asked::LowestFrequency(_) | Asked::DistanceFromStart => &[],
+    }
+}
+
+impl StaticDesign {
+    /// Solves the design `x` for the functions `asked`, or for all load cases and functions.
+    ///
+    /// # Errors
+    /// [`StaticsFailure`] if the mesh is not sound, a load is not carried, or modes are not found.
+    pub(crate) fn of(
+        problem: &Problem,
+        statics: &Arc<Statics>,
+        x: &[f64],
+        asked: Option<&[usize]>,
+    ) -> Result<Self, StaticsFailure> {
+        let scene: StaticScene<f64> = problem.static_scene(statics, x);
+        let moves = |path: &String| path.contains("/mesh/");
+        if problem.variables.iter().any(|v| v.paths.iter().any(moves))
+            && let Some(fault) = faults(statics.mesh(), &scene.structure.nodes)
+                .into_iter()
+                .next()
+        {
+            return Err(fault.into());
+        }
+        let all: Vec<usize> = (0..statics.functions.len()).collect();
+        let which = asked.unwrap_or(&all);
+        let needed = which.iter().flat_map(|&f| cases_of(&statics.functions[f]));
+        let mut needed: Vec<usize> = match asked {
+            Some(_) => needed.copied().collect(),
+            None => (0..statics.cases.len()).collect(),
+        };
+        needed.sort_unstable();
+        needed.dedup();
+        let mut design = Self {
+            x: x.to_vec(),
+            solutions: vec![Vec::new(); statics.cases.len()],
+            modes: None,
+            lowest: vec![None; statics.functions.len()],
+            values: vec![None; statics.functions.len()],
+            workspace: Mutex::new(statics.workspaces.take()),
+            counts: WorkCounts::default(),
+            statics: statics.clone(),
+            scene,
+        };
+        design.solve(&needed)?;
+        design.find_modes(which)?;
+        for &f in which {
+            design.values[f] = Some(design.value_of(problem, f)?);
+        }
+        Ok(design)
+    }
+
+    fn workspace(&mut self) -> &mut Workspace {
+        self.workspace
+            .get_mut()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn solve(&mut self, needed: &[usize]) -> Result<(), StaticsFailure> {
+        let mut workspace = std::mem::take(self.workspace());
+        let found = self.solve_in(&mut workspace, needed);
+        *self.workspace() = workspace;
+        found
+    }
+
+    fn solve_in(
+        &mut self,
+        workspace: &mut Workspace,
+        needed: &[usize],
+    ) -> Result<(), StaticsFailure> {
+        let (statics, structure) = (&self.statics, &self.scene.structure);
+        let matrices = of_cases(workspace, statics, structure)?;
+        let name = |case: usize| statics.cases[case].clone();
+        if let (Some(&first), false) = (needed.first(), statics.terms.von_karman) {
+            matrices
+                .factorise(structure)
+                .map_err(|failure| StaticsFailure::Case {
+                    case: name(first),
+                    failure,
+                })?;
+            self.counts.factorisations += 1;
+        }
+        for &case in needed {
+            let loads = &self.scene.cases[case];
+            let found = match statics.terms.von_karman {
+                true => {
+                    let found = matrices.solve_von_karman(structure, loads, &LoadSteps::default());
+                    found.map(|found| {
+                        self.counts.factorisations += found.work.tangents;
+                        self.counts.newton_iterations += found.work.tangents;
+                        self.counts.solves += found.work.tangents;
+                        found.x
+                    })
+                }
+                false => {
+                    self.counts.solves += 3;
+                    let found = matrices.solve_linear(structure, loads);
+                    found.map_err(StaticFailure::from)
+                }
+            };
+            let x = found.map_err(|failure| StaticsFailure::Case {
+                case: name(case),
+                failure,
+            })?;
+            if x.iter().any(|x| !x.is_finite()) {
+                return Err(StaticsFailure::NotFinite { case: name(case) });
+            }
+            self.solutions[case] = x;
+        }
+        Ok(())
+    }
+
+    fn find_modes(&mut self, which: &[usize]) -> Result<(), StaticsFailure> {
+        let statics = self.statics.clone();
+        let highest = which.iter().filter_map(|&f| match statics.functions[f] {
+            Asked::Frequency(mode) => Some(mode),
+            _ => None,
+        });
+        let highest = highest.max();
+        let lowest = which.iter().filter_map(|&f| match statics.functions[f] {
+            Asked::LowestFrequency(rho) => Some((f, rho)),
+            _ => None,
+        });
+        for (f, rho) in lowest {
+            let structure = self.scene.structure.clone();
+            let modal = of_modes(self.workspace(), &statics, &structure)?;
+            let found = lowest_frequency(modal, &structure, rho)?;
+            self.counts.factorisations += found.modes.work.factorisations;
+            self.counts.solves += found.modes.work.solves;
+            self.lowest[f] = Some(found);
+        }
+        if let Some(highest) = highest {
+            let structure = self.scene.structure.clone();
+            let modal = of_modes(self.workspace(), &statics, &structure)?;
+            let found = modal.solve(&structure, highest + 2)?;
+            self.counts.factorisations += found.work.factorisations;
+            self.counts.solves += found.work.solves;
+            self.modes = Some(found);
+        }
+        Ok(())
+    }
+
+    /// Calls `with` with the solutions, as structures know them.
+    pub(crate) fn with_solved<T>(&self, with: impl FnOnce(&Solved<f64>) -> T) -> Option<T> {
+        let workspace = self
+            .workspace
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        Some(with(&Solved {
+            problem: workspace.statics.as_ref()?,
+            structure: &self.scene.structure,
+            cases: &self.scene.cases,
+            solutions: &self.solutions,
+            terms: self.statics.terms,
+        }))
+    }
+
+    fn value_of(&self, problem: &Problem, f: usize) -> Result<StaticValue, StaticsFailure> {
+        let plain = |value| StaticValue { value, peak: None };
+        Ok(match &self.statics.functions[f] {
+            Asked::DistanceFromStart => plain(problem.distance_from_start(&self.x)),
+            Asked::LowestFrequency(_) => {
+                let found = self.lowest[f].as_ref();
+                plain(found.expect("it was found before").value)
+            }
+            Asked::Frequency(mode) => {
+                let found = self.modes.as_ref().expect("modes were found before");
+                plain(found.frequencies()[*mode])
+            }
+            Asked::OfSolutions(function) => {
+                let found = self.with_solved(|solved| {
+                    let value = solved.value(function)?;
+                    let peak = match function {
+                        Function::Stress { cases, faces, .. } => Some(solved.peak(cases, faces)?),
+                        _ => None,
+                    };
+                    Ok(StaticValue { value, peak })
+                });
+                let found = found.expect("the matrices were made before");
+                found.map_err(|unknown| ModalFailure::from(StaticFailure::UnknownSet(unknown)))?
+            }
+        })
+    }
+
+    /// The value of a function that was asked for.
+    ///
+    /// # Panics
+    /// If it was not asked for.
+    pub(crate) fn function(&self, f: usize) -> StaticValue {
+        self.values[f].expect("the function was asked for")
+    }
+
+    /// The derivatives of a function by structure and loads.
+    fn by_structure(
+        &self,
+        f: usize,
+        counts: &mut WorkCounts,
+    ) -> Result<(Structure<f64>, Vec<Vec<Load<f64>>>), StaticsFailure> {
+        let mut workspace = self
+            .workspace
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let (statics, structure) = (&self.statics, &self.scene.structure);
+        let none = || self.scene.cases.iter().map(|case| zeros(case)).collect();
+        Ok(match &statics.functions[f] {
+            Asked::DistanceFromStart => (structure.zeros(), none()),
+            Asked::LowestFrequency(_) => {
+                let found = self.lowest[f].as_ref().expect("it was found before");
+                (found.gradient.clone(), none())
+            }
+            Asked::Frequency(mode) => {
+                let found = self.modes.as_ref().expect("modes were found before");
+                let modal = of_modes(&mut workspace, statics, structure)?;
+                (frequency_gradient(modal, structure, found, *mode)?, none())
+            }
+            Asked::OfSolutions(function) => {
+                let solved = cases_of(&statics.functions[f]).len();
+                counts.solves += solved;
+                let matrices = of_cases(&mut workspace, statics, structure)?;
+                let (cases, solutions) = (&self.scene.cases, &self.solutions);
+                let found = match statics.terms.von_karman {
+                    true => {
+                        counts.factorisations += solved;
+                        gradient_von_karman(matrices, structure, cases, solutions, function)
+                            .map_err(ModalFailure::from)?
+                    }
+                    false => gradient(matrices, structure, cases, solutions, function)
+                        .map_err(|unknown| ModalFailure::from(StaticFailure::from(unknown)))?,
+                };
+                (found.structure, found.cases)
+            }
+        })
+    }
+
+    /// Exact derivatives of the functions `which` in the design variables, and the work they took.
+    ///
+    /// # Errors
+    /// [`StaticsFailure`] if a function has no derivative there.
+    pub(crate) fn derivatives(
+        &self,
+        problem: &Problem,
+        which: &[usize],
+    ) -> Result<(Vec<Vec<Derivative>>, WorkCounts), StaticsFailure> {
+        let moved = problem.moved(&self.statics, &self.x);
+        let mut counts = WorkCounts::default();
+        let mut all: Vec<Vec<Derivative>> = Vec::with_capacity(which.len());
+        for (k, &f) in which.iter().enumerate() {
+            if let Some(known) = which[..k].iter().position(|&other| other == f) {
+                all.push(all[known].clone());
+                continue;
+            }
+            if self.statics.functions[f] == Asked::DistanceFromStart {
+                all.push(distance_derivatives(problem, &self.x));
+                continue;
+            }
+            let (by, loads) = self.by_structure(f, &mut counts)?;
+            let found = problem.pull_back(&self.statics, &moved, (&by, &loads));
+            let pairs = found.values.into_iter().zip(found.terms);
+            all.push(
+                pairs
+                    .map(|(value, terms)| Derivative { value, terms })
+                    .collect(),
+            );
+        }
+        Ok((all, counts))
+    }
+}
+
+fn zeros(case: &[Load<f64>]) -> Vec<Load<f64>> {
+    case.iter().map(|load| load.map(|_| 0.0)).collect()
+}
+
+/// Derivatives of Σ ((x − x0)/scale)².
+fn distance_derivatives(problem: &Problem, x: &[f64]) -> Vec<Derivative> {
+    let one = |i: usize| {
+        let seeded = x.iter().enumerate();
+        let seeded = seeded.map(|(j, &x)| crate::math::Dual::new(x, f64::from(u8::from(i == j))));
+        let value = problem.distance_from_start(&seeded.collect::<Vec<_>>()).du;
+        Derivative {
+            value,
+            terms: value.abs(),
+        }
+    };
+    (0..x.len()).map(one).collect()
+}

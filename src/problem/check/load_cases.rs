@@ -1,0 +1,161 @@
+//! Load cases of structures, and functions of them.
+
+use super::Checker;
+use super::structures::Kind;
+use crate::problem::finding::Finding;
+use crate::problem::pointer::{advice, join};
+use crate::problem::schema::functions::Function;
+use crate::problem::schema::statics::{CaseLoad, Stress};
+use crate::problem::schema::structures::Material;
+use std::collections::BTreeSet;
+
+impl Checker<'_> {
+    pub(super) fn case_load(&mut self, pointer: &str, load: &CaseLoad) {
+        match load {
+            CaseLoad::Point {
+                nodes,
+                force,
+                moment,
+            } => {
+                let pointer = join(pointer, "point");
+                self.set(&join(&pointer, "nodes"), nodes, Kind::Nodes);
+                if force.is_none() && moment.is_none() {
+                    let expected = "\"force\", \"moment\" or both";
+                    self.fault(Finding::new(&pointer, "no force", expected).of_key());
+                }
+            }
+            CaseLoad::Edge { edges, .. } => {
+                self.set(&format!("{pointer}/edge/edges"), edges, Kind::Edges);
+            }
+            CaseLoad::Line { beams, .. } => {
+                self.set(&format!("{pointer}/line/beams"), beams, Kind::Beams);
+            }
+            CaseLoad::Pressure { faces, .. } => {
+                self.set(&format!("{pointer}/pressure/faces"), faces, Kind::Faces);
+            }
+            CaseLoad::Area { faces, .. } => {
+                self.set(&format!("{pointer}/area/faces"), faces, Kind::Faces);
+            }
+            CaseLoad::Gravity { .. } => self.densities("weight"),
+        }
+    }
+
+    /// Every material that is used has a density, as something asks for it.
+    fn densities(&mut self, what: &str) {
+        self.property(what, "density", |m| m.density.is_none());
+    }
+
+    fn property(&mut self, what: &str, key: &str, lacks: fn(&Material) -> bool) {
+        let used: BTreeSet<&String> = self
+            .document
+            .structures
+            .values()
+            .map(|s| &s.material)
+            .collect();
+        for name in used {
+            let pointer = join("/materials", name);
+            let told =
+                |finding: &Finding| finding.pointer == pointer && finding.found.contains(key);
+            let lacking = self.document.materials.get(name).is_some_and(lacks);
+            if lacking && !self.findings.iter().any(told) {
+                let found = format!("no \"{key}\"");
+                let expected = format!("\"{key}\", as {what} needs it");
+                self.fault(Finding::new(&pointer, found, expected).of_key());
+            }
+        }
+    }
+
+    fn case(&mut self, pointer: &str, name: &str) {
+        let cases = &self.document.load_cases;
+        if !cases.contains_key(name) && !self.damage.holds("load_cases", name) {
+            let hint = advice(name, "load cases", cases.keys().map(String::as_str));
+            let found = format!("\"{name}\"");
+            self.fault(Finding::new(pointer, found, "the name of a load case").hint(hint));
+        }
+    }
+
+    fn of_nodes(
+        &mut self,
+        pointer: &str,
+        case: &str,
+        nodes: &str,
+        (key, along): (&str, &[f64; 3]),
+    ) {
+        self.case(&join(pointer, "case"), case);
+        self.set(&join(pointer, "nodes"), nodes, Kind::Nodes);
+        self.nonzero(&join(pointer, key), *along);
+    }
+
+    /// A function of structures.
+    pub(super) fn static_function(&mut self, pointer: &str, function: &Function) {
+        let at = |key: &str| join(pointer, key);
+        match function {
+            Function::Mass => self.densities("the mass"),
+            Function::CentreOfMass(centre) => {
+                self.densities("the centre of mass");
+                self.nonzero(
+                    &format!("{pointer}/centre_of_mass/direction"),
+                    centre.direction,
+                );
+            }
+            Function::MomentOfInertia(inertia) => {
+                self.densities("the moment of inertia");
+                self.nonzero(&format!("{pointer}/moment_of_inertia/axis"), inertia.axis);
+            }
+            Function::StrainEnergy(of) => {
+                self.case(&format!("{pointer}/strain_energy/case"), &of.case);
+            }
+            Function::Compliance(of) => self.case(&format!("{pointer}/compliance/case"), &of.case),
+            Function::Displacement(of) => {
+                let along = ("direction", &of.direction);
+                self.of_nodes(&at("displacement"), &of.case, &of.nodes, along);
+            }
+            Function::Reaction(of) => {
+                let along = ("direction", &of.direction);
+                self.of_nodes(&at("reaction"), &of.case, &of.nodes, along);
+            }
+            Function::ReactionMoment(of) => {
+                let along = ("axis", &of.axis);
+                self.of_nodes(&at("reaction_moment"), &of.case, &of.nodes, along);
+            }
+            Function::VonMises(stress) => self.stress(&at("von_mises"), stress),
+            Function::Frequency(_) | Function::LowestFrequency(_) => self.densities("a frequency"),
+            Function::Ks(_)
+            | Function::InducedExponential(_)
+            | Function::Integral(_)
+            | Function::Final(_)
+            | Function::Clearance(_)
+            | Function::Duration => {
+                let expected = "a function of structures, such as \"mass\", or a \"simulation\"";
+                self.fault(Finding::new(pointer, "a function of a motion", expected));
+            }
+        }
+    }
+
+    fn stress(&mut self, pointer: &str, stress: &Stress) {
+        self.property("a stress", "yield_stress", |m| m.yield_stress.is_none());
+        for (k, case) in stress.cases.iter().flatten().enumerate() {
+            self.case(&join(&join(pointer, "cases"), k), case);
+        }
+        let none = match &stress.cases {
+            Some(cases) => cases.is_empty(),
+            None => self.document.load_cases.is_empty() && !self.damage.touches("load_cases"),
+        };
+        if none {
+            let finding = Finding::new(pointer, "a stress of no load case", "one case at least");
+            self.fault(finding.of_key());
+        }
+        let shells = self.document.structures.values();
+        let shells = shells
+            .filter(|structure| !structure.mesh.is_of_beams())
+            .count();
+        match &stress.elements {
+            Some(set) => self.set(&join(pointer, "elements"), set, Kind::Faces),
+            None if shells == 0 && !self.sets.unknown => {
+                let expected = "shells, whose stresses these are";
+                self.fault(Finding::new(pointer, "structures of beams alone", expected).of_key());
+            }
+            None => {}
+        }
+    }
+}

@@ -1,0 +1,471 @@
+//! Structures: their meshes, properties, sets and supports.
+
+use super::Checker;
+use crate::problem::finding::Finding;
+use crate::problem::pointer::{advice, join};
+use crate::problem::schema::structures::{
+    Mesh, Per, Set, Structure, Thickness, VariedSection, VariedThickness,
+};
+use crate::problem::statics::expand::{section_count, thickness_count};
+use crate::problem::statics::mesh::{element_count, panel_elements, part};
+use std::collections::BTreeSet;
+
+/// Most elements of a structure.
+const MOST_ELEMENTS: usize = 200_000;
+
+/// Names of the sets of all structures.
+#[derive(Default)]
+pub(super) struct Sets {
+    nodes: BTreeSet<String>,
+    edges: BTreeSet<String>,
+    faces: BTreeSet<String>,
+    beams: BTreeSet<String>,
+    /// A structure is at fault, so its sets are not known.
+    pub unknown: bool,
+}
+
+/// A kind of set.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Nodes,
+    Edges,
+    Faces,
+    Beams,
+}
+
+impl Kind {
+    fn plural(self) -> &'static str {
+        match self {
+            Self::Nodes => "sets of nodes",
+            Self::Edges => "sets of edges",
+            Self::Faces => "sets of faces",
+            Self::Beams => "sets of beams",
+        }
+    }
+
+    fn wanted(self) -> &'static str {
+        match self {
+            Self::Nodes => "the name of a set of nodes",
+            Self::Edges => "the name of a set of edges",
+            Self::Faces => "the name of a set of faces",
+            Self::Beams => "the name of a set of beams",
+        }
+    }
+}
+
+impl Sets {
+    fn of(&self, kind: Kind) -> &BTreeSet<String> {
+        match kind {
+            Kind::Nodes => &self.nodes,
+            Kind::Edges => &self.edges,
+            Kind::Faces => &self.faces,
+            Kind::Beams => &self.beams,
+        }
+    }
+}
+
+impl Checker<'_> {
+    /// Whether the document has structures and no motion.
+    pub(super) fn is_static(&self) -> bool {
+        self.document.simulation.is_none()
+    }
+
+    pub(super) fn structures(&mut self) {
+        let document = self.document;
+        self.names("structures", document.structures.keys());
+        self.names("materials", document.materials.keys());
+        self.names("load_cases", document.load_cases.keys());
+        if !self.is_static() {
+            let used = [
+                ("structures", !document.structures.is_empty()),
+                ("load_cases", !document.load_cases.is_empty()),
+                ("statics", document.statics.is_some()),
+            ];
+            for (key, _) in used.iter().filter(|(_, used)| *used) {
+                let found = format!("\"{key}\" beside a motion");
+                let expected = "structures without \"simulation\", as they do not move";
+                self.fault(Finding::new(join("", key), found, expected).of_key());
+            }
+            return;
+        }
+        let moving = [
+            ("bodies", !document.bodies.is_empty()),
+            ("joints", !document.joints.is_empty()),
+            ("loads", !document.loads.is_empty()),
+            ("drives", !document.drives.is_empty()),
+        ];
+        for (key, _) in moving.iter().filter(|(_, used)| *used) {
+            let found = format!("\"{key}\" beside structures without a motion");
+            let hint =
+                (*key == "loads").then(|| "loads of structures are in \"load_cases\"".into());
+            let finding = Finding::new(join("", key), found, "structures alone").hint(hint);
+            self.fault(finding.of_key());
+        }
+        if document.structures.is_empty() && !self.damage.touches("structures") {
+            let finding = Finding::new("/structures", "no structure", "one at least");
+            self.fault(finding.of_key());
+        }
+        self.sets.unknown = self.damage.touches("structures");
+        for (name, structure) in &document.structures {
+            self.structure(name, structure);
+        }
+        for (case, loads) in &document.load_cases {
+            let pointer = join("/load_cases", case);
+            if loads.is_empty() {
+                let finding = Finding::new(&pointer, "no load", "one load at least");
+                self.fault(finding.of_key());
+            }
+            for (name, load) in loads {
+                self.case_load(&join(&pointer, name), load);
+            }
+        }
+    }
+
+    fn structure(&mut self, name: &str, structure: &Structure) {
+        let pointer = join("/structures", name);
+        let before = self.findings.len();
+        let materials = &self.document.materials;
+        let material = &structure.material;
+        if !materials.contains_key(material) && !self.damage.holds("materials", material) {
+            let hint = advice(material, "materials", materials.keys().map(String::as_str));
+            let found = format!("\"{material}\"");
+            let finding = Finding::new(join(&pointer, "material"), found, "the name of a material");
+            self.fault(finding.hint(hint));
+        }
+        self.mesh(&join(&pointer, "mesh"), &structure.mesh);
+        self.properties(&pointer, structure);
+        for (set, written) in &structure.sets {
+            self.written_set(&join(&join(&pointer, "sets"), set), written);
+        }
+        if self.findings.len() > before {
+            self.sets.unknown = true;
+            return;
+        }
+        let part = part::<f64>(structure, &[], 1);
+        let several = self.document.structures.len() > 1;
+        let named = |set: &String| match several {
+            true => format!("{name}.{set}"),
+            false => set.clone(),
+        };
+        let own = Sets {
+            nodes: part.mesh.node_sets.keys().cloned().collect(),
+            edges: part.mesh.edge_sets.keys().cloned().collect(),
+            faces: part.mesh.face_sets.keys().cloned().collect(),
+            beams: part.mesh.beam_sets.keys().cloned().collect(),
+            unknown: false,
+        };
+        self.sets.nodes.extend(own.nodes.iter().map(named));
+        self.sets.edges.extend(own.edges.iter().map(named));
+        self.sets.faces.extend(own.faces.iter().map(named));
+        self.sets.beams.extend(own.beams.iter().map(named));
+        if let (true, false) = (several, structure.mesh.is_of_beams()) {
+            self.sets.faces.insert("all".into());
+        } else if several {
+            self.sets.beams.insert("all".into());
+        }
+        self.groups(
+            &pointer,
+            structure,
+            &part.mesh.face_sets,
+            &part.mesh.beam_sets,
+        );
+        for (support, written) in &structure.supports {
+            let list = join(&join(&join(&pointer, "supports"), support), "nodes");
+            if written.nodes.is_empty() {
+                self.fault(Finding::new(
+                    &list,
+                    "an empty list",
+                    "one set of nodes at least",
+                ));
+            }
+            for (k, set) in written.nodes.iter().enumerate() {
+                self.set_among(&join(&list, k), set, Kind::Nodes, &own);
+            }
+            if written.held.as_ref().is_some_and(Vec::is_empty) {
+                let place = join(&join(&join(&pointer, "supports"), support), "held");
+                let expected = "x, y, z, rx, ry, rz, or no \"held\" for all of them";
+                self.fault(Finding::new(place, "an empty list", expected));
+            }
+        }
+        for (mass, written) in &structure.masses {
+            let place = join(&join(&join(&pointer, "masses"), mass), "nodes");
+            self.set_among(&place, &written.nodes, Kind::Nodes, &own);
+        }
+    }
+
+    fn mesh(&mut self, pointer: &str, mesh: &Mesh) {
+        if element_count(mesh) > MOST_ELEMENTS {
+            let found = format!("{} elements", element_count(mesh));
+            let expected = format!("at most {MOST_ELEMENTS}");
+            self.fault(Finding::new(pointer, found, expected));
+        }
+        match mesh {
+            Mesh::Panel { points, .. } if points.len() != 4 && points.len() != 9 => {
+                let found = format!("{} points", points.len());
+                let expected = "4 corners, or 9 points, row by row along x";
+                self.fault(Finding::new(
+                    format!("{pointer}/panel/points"),
+                    found,
+                    expected,
+                ));
+            }
+            Mesh::Cylinder { elements, .. } if elements[0] < 3 => {
+                let found = format!("{} elements around", elements[0]);
+                let place = format!("{pointer}/cylinder/elements/0");
+                self.fault(Finding::new(place, found, "at least 3"));
+            }
+            Mesh::Frame { points, members } => {
+                if members.is_empty() {
+                    let place = format!("{pointer}/frame/members");
+                    self.fault(Finding::new(place, "no member", "one at least"));
+                }
+                for (name, member) in members {
+                    let place = join(&join(&format!("{pointer}/frame/members"), name), "between");
+                    for (k, point) in member.between.iter().enumerate() {
+                        if !points.contains_key(point) {
+                            let hint = advice(point, "points", points.keys().map(String::as_str));
+                            let found = format!("\"{point}\"");
+                            let expected = "the name of a point of the frame";
+                            self.fault(Finding::new(join(&place, k), found, expected).hint(hint));
+                        }
+                    }
+                    if member.between[0] == member.between[1] {
+                        let found = format!("\"{}\" twice", member.between[0]);
+                        self.fault(Finding::new(&place, found, "two different points"));
+                    }
+                }
+            }
+            Mesh::Plate { .. }
+            | Mesh::Panel { .. }
+            | Mesh::CurvedPanel { .. }
+            | Mesh::Cylinder { .. }
+            | Mesh::StraightBeam { .. }
+            | Mesh::CurvedBeam { .. } => {}
+        }
+    }
+
+    fn properties(&mut self, pointer: &str, structure: &Structure) {
+        let beams = structure.mesh.is_of_beams();
+        let there = [
+            ("thickness", structure.thickness.is_some(), false),
+            ("surface_mass", structure.surface_mass.is_some(), false),
+            ("section", structure.section.is_some(), true),
+            ("sections", structure.sections.is_some(), true),
+            ("line_mass", structure.line_mass.is_some(), true),
+            ("offset", structure.offset.is_some(), true),
+        ];
+        for (key, _, _) in there.iter().filter(|(_, there, of)| *there && *of != beams) {
+            let (found, expected) = match beams {
+                true => (format!("\"{key}\" of a mesh of beams"), "a \"section\""),
+                false => (format!("\"{key}\" of a mesh of shells"), "a \"thickness\""),
+            };
+            self.fault(Finding::new(join(pointer, key), found, expected).of_key());
+        }
+        if !beams && structure.thickness.is_none() {
+            let expected = "a thickness of the shells";
+            self.fault(Finding::new(pointer, "no \"thickness\"", expected).of_key());
+        }
+        match (&structure.section, &structure.sections) {
+            (None, None) if beams => {
+                let expected = "a cross section of the beams";
+                self.fault(Finding::new(pointer, "no \"section\"", expected).of_key());
+            }
+            (Some(_), Some(_)) => {
+                let place = join(pointer, "sections");
+                let found = "\"sections\" beside \"section\"";
+                self.fault(Finding::new(place, found, "one of them").of_key());
+            }
+            _ => {}
+        }
+        if let Some(Thickness::Varied(varied)) = &structure.thickness {
+            self.varied_thickness(&join(pointer, "thickness"), structure, varied);
+        }
+        if let Some(varied) = &structure.sections {
+            self.varied_section(&join(pointer, "sections"), structure, varied);
+        }
+    }
+
+    fn varied_thickness(&mut self, pointer: &str, structure: &Structure, of: &VariedThickness) {
+        let keys = [
+            ("along", of.along.is_some(), Per::Band),
+            ("bands", of.bands.is_some(), Per::Band),
+            ("patches", of.patches.is_some(), Per::Patch),
+            ("groups", of.groups.is_some(), Per::Group),
+        ];
+        for (key, there, per) in keys {
+            if there && per != of.per {
+                let found = format!("\"{key}\" with another \"per\"");
+                let finding = Finding::new(join(pointer, key), found, "no such key here");
+                self.fault(finding.of_key());
+            }
+            if !there && per == of.per && ["patches", "groups"].contains(&key) {
+                let found = format!("no \"{key}\"");
+                let expected = format!("\"{key}\", as \"per\" asks for them");
+                self.fault(Finding::new(pointer, found, expected).of_key());
+            }
+        }
+        if let Some([nx, ny]) = panel_elements(&structure.mesh) {
+            let [px, py] = of.patches.unwrap_or([1, 1]);
+            if !nx.is_multiple_of(px) || !ny.is_multiple_of(py) {
+                let found = format!("{px} × {py} patches of {nx} × {ny} elements");
+                let expected = "numbers that divide those of the elements";
+                self.fault(Finding::new(join(pointer, "patches"), found, expected));
+            }
+            if let Some(bands) = of.bands {
+                let count = match of.along {
+                    Some(crate::problem::schema::structures::Direction::X) => nx,
+                    _ => ny,
+                };
+                if !count.is_multiple_of(bands) {
+                    let found = format!("{bands} bands of {count} elements");
+                    let expected = "a number that divides that of the elements";
+                    self.fault(Finding::new(join(pointer, "bands"), found, expected));
+                }
+            }
+        }
+        let count = thickness_count(structure, of);
+        self.values(
+            pointer,
+            of.value.is_some(),
+            of.values.as_ref().map(Vec::len),
+            count,
+        );
+    }
+
+    fn varied_section(&mut self, pointer: &str, structure: &Structure, of: &VariedSection) {
+        match (of.per, &of.groups) {
+            (Per::Group, None) => {
+                let expected = "\"groups\", as \"per\" asks for them";
+                self.fault(Finding::new(pointer, "no \"groups\"", expected).of_key());
+            }
+            (Per::Element, Some(_)) => {
+                let place = join(pointer, "groups");
+                let found = "\"groups\" with another \"per\"";
+                self.fault(Finding::new(place, found, "no such key here").of_key());
+            }
+            (Per::Band | Per::Patch, _) => {
+                let place = join(pointer, "per");
+                let found = "a band or patch of beams";
+                self.fault(Finding::new(place, found, "\"element\" or \"group\""));
+            }
+            (Per::Group, Some(_)) | (Per::Element, None) => {}
+        }
+        let count = section_count(structure);
+        self.values(
+            pointer,
+            of.value.is_some(),
+            of.values.as_ref().map(Vec::len),
+            count,
+        );
+    }
+
+    /// One value, or as many as are needed.
+    fn values(&mut self, pointer: &str, value: bool, values: Option<usize>, count: usize) {
+        match (value, values) {
+            (true, None) => {}
+            (false, Some(found)) if found == count => {}
+            (false, Some(found)) => {
+                let (found, expected) = (format!("{found} values"), format!("{count} values"));
+                self.fault(Finding::new(join(pointer, "values"), found, expected));
+            }
+            (true, Some(_)) => {
+                let expected = "\"value\" or \"values\"";
+                self.fault(
+                    Finding::new(pointer, "both \"value\" and \"values\"", expected).of_key(),
+                );
+            }
+            (false, None) => {
+                let found = "neither \"value\" nor \"values\"";
+                self.fault(Finding::new(pointer, found, "one of them").of_key());
+            }
+        }
+    }
+
+    fn written_set(&mut self, pointer: &str, set: &Set) {
+        match set {
+            Set::Node { at } => {
+                if at.iter().any(|t| !(0.0..=1.0).contains(t)) {
+                    let found = format!("[{}, {}]", at[0], at[1]);
+                    let place = format!("{pointer}/node/at");
+                    self.fault(Finding::new(place, found, "two numbers from 0 to 1"));
+                }
+            }
+            Set::Elements { from, to } => {
+                if (0..2).any(|k| from[k] >= to[k]) {
+                    let found = format!("from {from:?} to {to:?}");
+                    let place = format!("{pointer}/elements/to");
+                    self.fault(Finding::new(
+                        place,
+                        found,
+                        "more than \"from\" in both directions",
+                    ));
+                }
+            }
+        }
+    }
+
+    /// Groups exist, and every element has one.
+    fn groups(
+        &mut self,
+        pointer: &str,
+        structure: &Structure,
+        faces: &std::collections::BTreeMap<String, Vec<usize>>,
+        beams: &std::collections::BTreeMap<String, Vec<usize>>,
+    ) {
+        let (key, groups, sets) = match (&structure.thickness, &structure.sections) {
+            (Some(Thickness::Varied(varied)), _) => ("thickness", &varied.groups, faces),
+            (_, Some(varied)) => ("sections", &varied.groups, beams),
+            _ => return,
+        };
+        let Some(groups) = groups else {
+            return;
+        };
+        let pointer = join(&join(pointer, key), "groups");
+        let mut held = vec![false; element_count(&structure.mesh)];
+        let mut known = true;
+        for (k, group) in groups.iter().enumerate() {
+            match sets.get(group) {
+                Some(set) => set.iter().for_each(|&e| held[e] = true),
+                None => {
+                    known = false;
+                    let hint = advice(group, "sets", sets.keys().map(String::as_str));
+                    let found = format!("\"{group}\"");
+                    let expected = "the name of a set of elements of this structure";
+                    self.fault(Finding::new(join(&pointer, k), found, expected).hint(hint));
+                }
+            }
+        }
+        if let (true, Some(e)) = (known, held.iter().position(|held| !held)) {
+            let found = format!("no group with element {e}");
+            self.fault(Finding::new(
+                &pointer,
+                found,
+                "groups that hold every element",
+            ));
+        }
+    }
+
+    fn set_among(&mut self, pointer: &str, name: &str, kind: Kind, sets: &Sets) {
+        let known = sets.of(kind);
+        if !known.contains(name) {
+            let hint = advice(name, kind.plural(), known.iter().map(String::as_str));
+            self.fault(Finding::new(pointer, format!("\"{name}\""), kind.wanted()).hint(hint));
+        }
+    }
+
+    /// A set of the whole, unless some are not known.
+    pub(super) fn set(&mut self, pointer: &str, name: &str, kind: Kind) {
+        if !self.sets.unknown {
+            let sets = std::mem::take(&mut self.sets);
+            self.set_among(pointer, name, kind, &sets);
+            self.sets = sets;
+        }
+    }
+}
+
+impl Mesh {
+    /// Whether it has beams, and not shells.
+    pub(crate) fn is_of_beams(&self) -> bool {
+        panel_elements(self).is_none()
+    }
+}

@@ -1,0 +1,110 @@
+//! What a file asks of structures.
+
+use super::mesh::of_file;
+use crate::math::Vec3;
+use crate::problem::schema::Document;
+use crate::problem::schema::functions::Function as Written;
+use crate::problem::schema::statics::StressAggregate;
+use crate::structures::functions::{Aggregate, Function};
+
+/// A function of structures.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Asked {
+    /// Of the structure and its static solutions.
+    OfSolutions(Function),
+    /// Natural frequency of this number from 0 \[Hz\].
+    Frequency(usize),
+    /// Smooth lower bound of all frequencies with this ρ \[Hz\].
+    LowestFrequency(f64),
+    /// Σ ((x − x0)/scale)² of the design.
+    DistanceFromStart,
+}
+
+impl Asked {
+    /// SI unit of its values.
+    pub(crate) fn unit(&self) -> &'static str {
+        match self {
+            Self::OfSolutions(function) => match function {
+                Function::Mass => "kg",
+                Function::Centre(_) | Function::Displacement { .. } => "m",
+                Function::SecondMoment(..) | Function::Inertia(..) => "kg m²",
+                Function::Reaction { .. } => "N",
+                Function::ReactionMoment { .. } => "N m",
+                Function::StrainEnergy { .. } | Function::Compliance { .. } => "J",
+                Function::Stress { .. } => "1",
+            },
+            Self::Frequency(_) | Self::LowestFrequency(_) => "Hz",
+            Self::DistanceFromStart => "1",
+        }
+    }
+}
+
+/// The functions of a checked document.
+pub(super) fn asked(document: &Document, cuts: usize) -> Vec<Asked> {
+    let functions = document.functions.values();
+    functions
+        .map(|function| of(document, function, cuts))
+        .collect()
+}
+
+fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
+    let case = |name: &str| {
+        let index = document.load_cases.get_index_of(name);
+        index.expect("names are checked before")
+    };
+    let v = |direction: &[f64; 3]| Vec3::from(*direction);
+    Asked::OfSolutions(match function {
+        Written::Mass => Function::Mass,
+        Written::CentreOfMass(centre) => Function::Centre(v(&centre.direction)),
+        Written::MomentOfInertia(inertia) => {
+            let other = inertia.other.as_ref().unwrap_or(&inertia.axis);
+            Function::Inertia(v(&inertia.axis), v(other))
+        }
+        Written::StrainEnergy(of) => Function::StrainEnergy {
+            case: case(&of.case),
+        },
+        Written::Compliance(of) => Function::Compliance {
+            case: case(&of.case),
+        },
+        Written::Displacement(of) => Function::Displacement {
+            case: case(&of.case),
+            nodes: of_file(&of.nodes, cuts),
+            direction: v(&of.direction),
+        },
+        Written::Reaction(of) => Function::Reaction {
+            case: case(&of.case),
+            nodes: of.nodes.clone(),
+            direction: v(&of.direction),
+        },
+        Written::ReactionMoment(of) => Function::ReactionMoment {
+            case: case(&of.case),
+            nodes: of.nodes.clone(),
+            axis: v(&of.axis),
+            about: of.about.as_ref().map_or(Vec3::zeros(), v),
+        },
+        Written::VonMises(stress) => {
+            let cases = match &stress.cases {
+                Some(names) => names.iter().map(|name| case(name)).collect(),
+                None => (0..document.load_cases.len()).collect(),
+            };
+            let aggregate = match stress.aggregate {
+                StressAggregate::Ks => Aggregate::Ks,
+                StressAggregate::InducedExponential => Aggregate::InducedExponential,
+            };
+            Function::Stress {
+                cases,
+                faces: stress.elements.clone().unwrap_or_else(|| "all".into()),
+                rho: stress.rho,
+                aggregate,
+            }
+        }
+        Written::Frequency(frequency) => return Asked::Frequency(frequency.mode - 1),
+        Written::LowestFrequency(lowest) => return Asked::LowestFrequency(lowest.rho),
+        Written::Ks(_)
+        | Written::InducedExponential(_)
+        | Written::Integral(_)
+        | Written::Final(_)
+        | Written::Clearance(_)
+        | Written::Duration => unreachable!("functions of a motion are refused before"),
+    })
+}

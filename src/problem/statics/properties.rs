@@ -1,0 +1,123 @@
+//! Thickness and sections of a structure: which value each element has, and its quantity.
+
+use super::mesh::{Part, panel_elements};
+use crate::math::Scalar;
+use crate::problem::quantity::Quantity;
+use crate::problem::schema::structures::{self as written, Per, Section as WrittenSection};
+use crate::structures::beam::{Section, SectionValues};
+
+/// Which value of its structure each element has.
+pub(super) fn slots(structure: &written::Structure, part: &Part<f64>) -> Vec<usize> {
+    let panel = panel_elements(&structure.mesh);
+    let of_groups = |groups: &[String], e: usize| {
+        let sets = match panel {
+            Some(_) => &part.mesh.face_sets,
+            None => &part.mesh.beam_sets,
+        };
+        let has = |name: &String| sets.get(name).is_some_and(|set| set.contains(&e));
+        groups.iter().position(has).unwrap_or(0)
+    };
+    let one = |e: usize| -> usize {
+        let p = part.parent[e];
+        let Some([nx, ny]) = panel else {
+            return match &structure.sections {
+                None => 0,
+                Some(varied) => match varied.per {
+                    Per::Group => of_groups(varied.groups.as_deref().unwrap_or(&[]), e),
+                    Per::Element | Per::Band | Per::Patch => p,
+                },
+            };
+        };
+        let Some(written::Thickness::Varied(varied)) = &structure.thickness else {
+            return 0;
+        };
+        let (i, j) = (p % nx, p / nx);
+        match varied.per {
+            Per::Element => p,
+            Per::Group => of_groups(varied.groups.as_deref().unwrap_or(&[]), e),
+            Per::Band => match varied.along.unwrap_or(written::Direction::Y) {
+                written::Direction::X => i * varied.bands.unwrap_or(nx) / nx,
+                written::Direction::Y => j * varied.bands.unwrap_or(ny) / ny,
+            },
+            Per::Patch => {
+                let [px, py] = varied.patches.unwrap_or([1, 1]);
+                (i * px / nx) + px * (j * py / ny)
+            }
+        }
+    };
+    (0..part.parent.len()).map(one).collect()
+}
+
+/// The thickness of this number.
+pub(super) fn thickness(structure: &written::Structure, slot: usize) -> Quantity {
+    let none = Quantity::fixed(0.0);
+    match &structure.thickness {
+        None => none,
+        Some(written::Thickness::Uniform(one)) => *one,
+        Some(written::Thickness::Varied(varied)) => match &varied.values {
+            Some(values) => values[slot],
+            None => varied.value.unwrap_or(none),
+        },
+    }
+}
+
+/// The section of this number.
+pub(super) fn section(structure: &written::Structure, slot: usize) -> Option<&WrittenSection> {
+    match (&structure.section, &structure.sections) {
+        (Some(one), _) => Some(one),
+        (None, Some(varied)) => match &varied.values {
+            Some(values) => values.get(slot),
+            None => varied.value.as_ref(),
+        },
+        (None, None) => None,
+    }
+}
+
+/// The quantities of a section, in the order of [`Section::map`].
+pub(super) fn quantities(section: &WrittenSection) -> Vec<Quantity> {
+    match section {
+        WrittenSection::Rectangle { width, height } => vec![*width, *height],
+        WrittenSection::Tube { radius, wall } => vec![*radius, *wall],
+        WrittenSection::I {
+            width,
+            height,
+            flange,
+            web,
+        } => vec![*width, *height, *flange, *web],
+        WrittenSection::Given {
+            axial_and_shear,
+            torsion_and_bending,
+            mass,
+            inertia,
+        } => {
+            let stiffness = axial_and_shear.iter().chain(torsion_and_bending);
+            stiffness.chain([mass]).chain(inertia).copied().collect()
+        }
+    }
+}
+
+pub(super) fn section_at<S: Scalar>(section: Option<&WrittenSection>, x: &[S]) -> Section<S> {
+    let Some(section) = section else {
+        return Section::Given(SectionValues::zeros());
+    };
+    let all = quantities(section);
+    let mut next = all.iter().map(|q| q.get(x));
+    let shape: Section<f64> = match section {
+        WrittenSection::Rectangle { .. } => Section::Rectangle {
+            width: 0.0,
+            height: 0.0,
+        },
+        WrittenSection::Tube { .. } => Section::Tube {
+            radius: 0.0,
+            wall: 0.0,
+        },
+        WrittenSection::I { .. } => Section::I {
+            width: 0.0,
+            height: 0.0,
+            flange: 0.0,
+            web: 0.0,
+        },
+        WrittenSection::Given { .. } => Section::Given(SectionValues::zeros()),
+    };
+    shape.map(&mut |_| next.next().unwrap_or_else(S::zero))
+}

@@ -1,0 +1,41 @@
+//! Static problems and problems of modes whose analysis is done once and that designs take one after the
+//! other, as many as are computed at a time.
+
+use crate::structures::modes::ModalProblem;
+use crate::structures::statics::StaticProblem;
+use std::fmt;
+use std::sync::{Arc, Mutex};
+
+/// Matrices of one design at a time.
+#[derive(Default)]
+pub(crate) struct Workspace {
+    /// For load cases; made when it is needed first.
+    pub statics: Option<StaticProblem>,
+    /// For frequencies; made when it is needed first.
+    pub modal: Option<ModalProblem>,
+}
+
+/// Workspaces that no design uses at present.
+#[derive(Clone, Default)]
+pub(crate) struct Workspaces(Arc<Mutex<Vec<Workspace>>>);
+
+impl Workspaces {
+    /// One that is free, or a new one.
+    pub(crate) fn take(&self) -> Workspace {
+        let free = self.0.lock().ok().and_then(|mut all| all.pop());
+        free.unwrap_or_default()
+    }
+
+    /// Gives one back.
+    pub(crate) fn give(&self, workspace: Workspace) {
+        if let Ok(mut all) = self.0.lock() {
+            all.push(workspace);
+        }
+    }
+}
+
+impl fmt::Debug for Workspaces {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Workspaces")
+    }
+}

@@ -1,0 +1,242 @@
+//! Problems of structures, run as a user runs them.
+
+use super::program::{expect, scratch};
+use serde_json::Value;
+use std::path::Path;
+
+/// A clamped plate of 4 × 4 elements whose thickness differs from patch to patch.
+const PLATE: &str = r#"{
+    "version": 1, "name": "plate",
+    "materials": {"metal": {"young": 70e9, "poisson": 0.3, "density": 2700, "yield_stress": 270e6}},
+    "structures": {"plate": {
+        "mesh": {"plate": {"length": 1, "width": 1, "elements": [4, 4]}},
+        "material": "metal", "thickness": {"per": "patch", "patches": [2, 2], "value": 0.012},
+        "sets": {"middle": {"node": {"at": [0.5, 0.5]}}},
+        "supports": {"edges": {"nodes": ["x0", "x1", "y0", "y1"]}}
+    }},
+    "load_cases": {"pressure": {"p": {"pressure": {"faces": "all", "pressure": 1e5}}}},
+    "functions": {
+        "mass": "mass", "stress": {"von_mises": {"rho": 100}},
+        "deflection": {"displacement": {"case": "pressure", "nodes": "middle", "direction": [0, 0, 1]}},
+        "lowest": {"lowest_frequency": {"rho": 0.5}}
+    },
+    "variables": {"h": {"path": "/structures/plate/thickness/value", "lower": 0.002, "upper": 0.03}},
+    "objective": {"minimise": "mass"},
+    "constraints": {"yield": {"function": "stress", "upper": 1}}
+}"#;
+
+fn written(directory: &Path) {
+    std::fs::write(directory.join("plate.json"), PLATE).expect("is written");
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).expect("JSON")
+}
+
+#[test]
+fn a_simulation_tells_functions_errors_and_places() {
+    let scratch = scratch();
+    let directory = scratch.path();
+    written(directory);
+    let ran = expect(
+        0,
+        directory,
+        &["simulate", "plate.json", "--json", "--error"],
+    );
+    let found = json(&ran.out);
+    assert_eq!(found["mesh"]["shells"], 16);
+    let mass = found["functions"]["mass"]["value"]
+        .as_f64()
+        .expect("a number");
+    assert!((mass - 32.4).abs() < 1e-9, "{mass}");
+    let stress = &found["functions"]["stress"];
+    let place = stress["true_maximum"]["place"].as_str().expect("a place");
+    assert!(place.contains("load case \"pressure\""), "{place}");
+    assert!(stress["error"].as_f64().expect("a number") > 0.0);
+    assert!(
+        stress["gradient"]["h[3]"]["value"]
+            .as_f64()
+            .expect("a number")
+            < 0.0
+    );
+    let text = expect(
+        0,
+        directory,
+        &["simulate", "plate.json", "--output", "out", "--vtu"],
+    );
+    assert!(
+        text.out.contains("true maximum") && text.out.contains("Hz"),
+        "{}",
+        text.out
+    );
+    for file in ["thickness.svg", "deformed.svg", "modes.svg", "fields.vtu"] {
+        assert!(directory.join("out").join(file).exists(), "{file}");
+    }
+}
+
+#[test]
+fn gradients_are_checked_and_dependences_explained() {
+    let scratch = scratch();
+    let directory = scratch.path();
+    written(directory);
+    let ran = expect(
+        0,
+        directory,
+        &["check", "plate.json", "--tolerance", "1e-9"],
+    );
+    assert!(
+        ran.out.contains("16 derivatives") && ran.out.contains("0 above"),
+        "{}",
+        ran.out
+    );
+    let ran = expect(0, directory, &["explain", "plate.json"]);
+    assert!(
+        ran.out.contains("stress depends on all 4 variables"),
+        "{}",
+        ran.out
+    );
+    let ran = expect(0, directory, &["explain", "plate.json", "--json"]);
+    assert_eq!(json(&ran.out)["mesh"]["nodes"], 81);
+}
+
+/// An optimisation leaves what others leave, goes on where it was stopped, and repeats itself to the bit.
+#[test]
+fn an_optimisation_has_records_and_figures_and_goes_on() {
+    let scratch = scratch();
+    let directory = scratch.path();
+    written(directory);
+    expect(
+        0,
+        directory,
+        &["plate.json", "--output", "whole", "--error"],
+    );
+    let optimum = std::fs::read_to_string(directory.join("whole/optimum.json")).expect("a record");
+    let record = json(&optimum);
+    assert_eq!(record["status"], "converged");
+    assert_eq!(record["gradient_certificate"]["passed"], true);
+    let aggregate = &record["constraints"]["yield"]["aggregate"];
+    assert!(
+        aggregate["place"]
+            .as_str()
+            .is_some_and(|place| place.contains("face")),
+        "{aggregate}"
+    );
+    for file in [
+        "history.csv",
+        "evaluations.jsonl",
+        "state.json",
+        "convergence.svg",
+        "thickness.svg",
+    ] {
+        assert!(directory.join("whole").join(file).exists(), "{file}");
+    }
+    let part = [
+        "plate.json",
+        "--output",
+        "part",
+        "--set",
+        "/optimiser={\"iterations\": 3}",
+    ];
+    expect(1, directory, &part);
+    expect(0, directory, &["plate.json", "--resume", "part"]);
+    expect(0, directory, &["compare", "part", "whole"]);
+    let design = |of: &str| {
+        let text = std::fs::read_to_string(directory.join(of).join("optimum.json"));
+        json(&text.expect("a record"))["design"].clone()
+    };
+    assert_eq!(design("part"), design("whole"));
+    std::fs::remove_file(directory.join("whole/thickness.svg")).expect("a figure");
+    expect(0, directory, &["plot", "whole"]);
+    assert!(directory.join("whole/thickness.svg").exists());
+    let several = expect(
+        0,
+        directory,
+        &["plate.json", "--starts", "3", "--output", "several"],
+    );
+    assert!(
+        several.out.contains("to 1 distinct optima"),
+        "{}",
+        several.out
+    );
+    expect(0, directory, &["compare", "several", "whole"]);
+}
+
+#[test]
+fn error_is_measured_against_time_and_mesh() {
+    let scratch = scratch();
+    let directory = scratch.path();
+    written(directory);
+    let ran = expect(
+        0,
+        directory,
+        &[
+            "work-precision",
+            "plate.json",
+            "--runs",
+            "1",
+            "--output",
+            "wp",
+        ],
+    );
+    assert!(ran.out.contains("error of stress"), "{}", ran.out);
+    let table = std::fs::read_to_string(directory.join("wp/work_precision.csv")).expect("a table");
+    let column = |line: &str, k: usize| line.split(',').nth(k).and_then(|x| x.parse::<f64>().ok());
+    let names: Vec<&str> = table.lines().next().expect("a header").split(',').collect();
+    let at = names
+        .iter()
+        .position(|name| *name == "error of deflection")
+        .expect("a column");
+    let errors: Vec<f64> = table
+        .lines()
+        .skip(1)
+        .filter_map(|line| column(line, at))
+        .collect();
+    assert!(
+        errors.len() >= 3 && errors.windows(2).all(|pair| pair[1] < pair[0]),
+        "{errors:?}"
+    );
+}
+
+#[test]
+fn options_and_failures_of_structures_are_told() {
+    let scratch = scratch();
+    let directory = scratch.path();
+    written(directory);
+    let ran = expect(
+        2,
+        directory,
+        &["simulate", "plate.json", "--accuracy", "1e-3"],
+    );
+    assert!(ran.err.contains("no time steps"), "{}", ran.err);
+    let ran = expect(2, directory, &["simulate", "plate.json", "--vtu"]);
+    assert!(ran.err.contains("--output"), "{}", ran.err);
+    let misspelt = [
+        "simulate",
+        "plate.json",
+        "--set",
+        "/structures/plate/supports/edges/nodes/0=\"x9\"",
+    ];
+    let ran = expect(2, directory, &misspelt);
+    assert!(
+        ran.err.contains("\"x9\"") && ran.err.contains("plate.json"),
+        "{}",
+        ran.err
+    );
+    // A wide plate under a pressure in its plane buckles.
+    let buckled = [
+        "simulate",
+        "plate.json",
+        "--set",
+        "/statics={\"strains\": \"von_karman\"}",
+        "--set",
+        "/structures/plate/supports/edges/nodes=[\"x0\"]",
+        "--set",
+        "/load_cases/pressure/p={\"edge\": {\"edges\": \"x1\", \"force\": [-1e7, 0, 0]}}",
+    ];
+    let ran = expect(3, directory, &buckled);
+    assert!(
+        ran.err.contains("load case \"pressure\"") && ran.err.contains("of the load"),
+        "{}",
+        ran.err
+    );
+}
