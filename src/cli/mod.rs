@@ -2,6 +2,7 @@
 
 mod arguments;
 mod compare;
+mod error_table;
 mod explain;
 mod interrupt;
 mod optimise;

@@ -1,6 +1,7 @@
 //! `optimize simulate` and `optimize check`.
 
 use super::arguments::Job;
+use super::error_table::table;
 use super::{DONE, Failure, NOT_REACHED, draw, load, print, read, refine, shown, tell};
 use crate::driver::tables::ReactionAxes;
 use crate::driver::{
@@ -9,7 +10,6 @@ use crate::driver::{
 use crate::functions::evaluate::ungated_maximum;
 use crate::functions::peak::Maximum;
 use crate::problem::Problem;
-use crate::report::summary::is_rounding;
 use crate::report::{prepare_directory, write_all};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -224,47 +224,6 @@ pub(crate) fn errors(problem: &Problem, at: &Simulated) -> Result<String, Failur
 fn warned(problem: &Problem, at: &Evaluated) -> String {
     let chaos = driver::chaos::of_motion(problem, at, &all(problem));
     chaos.map_or_else(String::new, |chaos| format!("warning: {chaos}\n"))
-}
-
-/// The table of estimated errors.
-pub(crate) fn table(problem: &Problem, found: &[error::FunctionError]) -> String {
-    let names = |all: &mut dyn Iterator<Item = &String>| {
-        let longest = all.map(|name| name.chars().count()).max();
-        longest.unwrap_or(0).max(9)
-    };
-    let f_width = names(&mut problem.function_names.iter());
-    let v_width = names(&mut problem.variables.iter().map(|v| &v.name));
-    let mut text = format!(
-        "estimated discretisation errors\n{:f_width$}  {:v_width$}  {:>16}  {:>9}  {:>9}\n",
-        "function", "variable", "value", "error", "relative"
-    );
-    let mut line = |function: &str, variable: &str, of: &error::Estimate| {
-        let relative = of.error / of.value.abs();
-        let relative = match relative.is_finite() && !is_rounding(of.error, of.value) {
-            true => format!("{relative:.1e}"),
-            false => "-".into(),
-        };
-        let error = match is_rounding(of.error, of.value) {
-            true => "rounding".into(),
-            false => format!("{:.1e}", of.error),
-        };
-        let _ = writeln!(
-            text,
-            "{function:f_width$}  {variable:v_width$}  {:>16.9e}  {error:>9}  {relative:>9}",
-            of.value
-        );
-    };
-    for found in found {
-        let name = &problem.function_names[found.function];
-        line(name, "", &found.value);
-        if let Some(maximum) = &found.maximum {
-            line(name, "(maximum)", maximum);
-        }
-        for (variable, derivative) in problem.variables.iter().zip(&found.gradient) {
-            line(name, &variable.name, derivative);
-        }
-    }
-    text
 }
 
 /// Checks all gradients of a problem at its start.

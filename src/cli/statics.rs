@@ -1,7 +1,7 @@
 //! `optimize simulate`, `explain` and `work-precision` of structures.
 
 use super::arguments::Job;
-use super::simulate::table;
+use super::error_table::table;
 use super::{DONE, Failure, draw, print, shown, tell};
 use crate::driver::analysed::place;
 use crate::driver::statics::{StaticDesign, error, figures, precision};

@@ -281,16 +281,15 @@ impl<'a> Walker<'a> {
                 };
                 format!("a list{} {what}", count.unwrap_or_else(|| " of".into()))
             }
-            _ => match schema["required"].as_array() {
-                Some(keys) if !keys.is_empty() => {
-                    let keys: Vec<String> = keys
-                        .iter()
-                        .map(|key| key.to_string().replace('"', ""))
-                        .collect();
-                    format!("an object with {}", keys.join(", "))
+            _ => {
+                let usual = [&schema["required"], &schema["else"]["required"]];
+                let keys = usual.into_iter().filter_map(Value::as_array).flatten();
+                let keys: Vec<&str> = keys.filter_map(Value::as_str).collect();
+                match keys.is_empty() {
+                    true => "an object".into(),
+                    false => format!("an object with {}", keys.join(", ")),
                 }
-                _ => "an object".into(),
-            },
+            }
         }
     }
 }
