@@ -11,7 +11,7 @@ use super::evaluate::Derivative;
 use crate::integrate::WorkCounts;
 use crate::problem::{Asked, Problem, StaticScene, Statics, Workspace};
 use crate::structures::functions::{Function, Peak, Solved};
-use crate::structures::gradient::{gradient, gradient_von_karman};
+use crate::structures::gradient::{Gradient, gradient, gradient_von_karman};
 use crate::structures::loads::Load;
 use crate::structures::modes::{
     LowestFrequency, ModalFailure, ModalProblem, Modes, frequency_gradient, lowest_frequency,
@@ -319,34 +319,33 @@ impl StaticDesign {
     }
 
     /// The derivatives of a function by structure and loads.
-    fn by_structure(
-        &self,
-        f: usize,
-        counts: &mut WorkCounts,
-    ) -> Result<(Structure<f64>, Vec<Vec<Load<f64>>>), StaticsFailure> {
+    fn by_structure(&self, f: usize, counts: &mut WorkCounts) -> Result<Gradient, StaticsFailure> {
         let mut workspace = self
             .workspace
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
         let (statics, structure) = (&self.statics, &self.scene.structure);
-        let none = || self.scene.cases.iter().map(|case| zeros(case)).collect();
+        let of_structure = |structure| Gradient {
+            structure,
+            cases: self.scene.cases.iter().map(|case| zeros(case)).collect(),
+        };
         Ok(match &statics.functions[f] {
-            Asked::DistanceFromStart => (structure.zeros(), none()),
+            Asked::DistanceFromStart => of_structure(structure.zeros()),
             Asked::LowestFrequency(_) => {
                 let found = self.lowest[f].as_ref().expect("it was found before");
-                (found.gradient.clone(), none())
+                of_structure(found.gradient.clone())
             }
             Asked::Frequency(mode) => {
                 let found = self.modes.as_ref().expect("modes were found before");
                 let modal = of_modes(&mut workspace, statics, structure)?;
-                (frequency_gradient(modal, structure, found, *mode)?, none())
+                of_structure(frequency_gradient(modal, structure, found, *mode)?)
             }
             Asked::OfSolutions(function) => {
                 let solved = cases_of(&statics.functions[f]).len();
                 counts.solves += solved;
                 let matrices = of_cases(&mut workspace, statics, structure)?;
                 let (cases, solutions) = (&self.scene.cases, &self.solutions);
-                let found = match statics.terms.von_karman {
+                match statics.terms.von_karman {
                     true => {
                         counts.factorisations += solved;
                         gradient_von_karman(matrices, structure, cases, solutions, function)
@@ -354,8 +353,7 @@ impl StaticDesign {
                     }
                     false => gradient(matrices, structure, cases, solutions, function)
                         .map_err(|unknown| ModalFailure::from(StaticFailure::from(unknown)))?,
-                };
-                (found.structure, found.cases)
+                }
             }
         })
     }
@@ -381,8 +379,8 @@ impl StaticDesign {
                 all.push(distance_derivatives(problem, &self.x));
                 continue;
             }
-            let (by, loads) = self.by_structure(f, &mut counts)?;
-            let found = problem.pull_back(&self.statics, &moved, (&by, &loads));
+            let by = self.by_structure(f, &mut counts)?;
+            let found = problem.pull_back(&self.statics, &moved, (&by.structure, &by.cases));
             let pairs = found.values.into_iter().zip(found.terms);
             all.push(
                 pairs
