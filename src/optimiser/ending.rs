@@ -170,6 +170,10 @@ pub(super) fn best_of(program: &mut Program<'_>, finish: FinalIterate) -> FinalI
         return finish;
     };
     let Ok(slopes) = program.gradients(&point.x) else {
+        // Its values count, but nothing is known of its residuals.
+        let mut finish = FinalIterate { point, ..finish };
+        finish.slopes.g.fill(f64::NAN);
+        finish.scaled = f64::NAN;
         return finish;
     };
     let y = &finish.multipliers.y;
@@ -188,6 +192,52 @@ pub(super) fn best_of(program: &mut Program<'_>, finish: FinalIterate) -> FinalI
         scaled,
         ..finish
     }
+}
+
+/// Distance from the first point, relative to its size, beyond which a solution is doubted, and how
+/// often this distance is then doubled.
+const DOUBTFUL: f64 = 1e4;
+const DOUBLINGS: i32 = 6;
+
+/// A solution very far from the first point becomes [`Status::Unbounded`] if the objective falls on
+/// whenever the distance is doubled, each time by at least half of the first fall.
+pub(super) fn unless_it_falls(program: &mut Program<'_>, mut finish: FinalIterate) -> FinalIterate {
+    let Some((first, _)) = program.first.clone() else {
+        return finish;
+    };
+    let mut way = &finish.point.x - &first;
+    let length = way.amax();
+    let doubtful = length > DOUBTFUL * first.amax().max(1.0);
+    let solved = finish.status == Status::Converged || finish.is_solved(program);
+    if !doubtful || !solved {
+        return finish;
+    }
+    // Only the variables that went far go on.
+    way.iter_mut()
+        .filter(|v| v.abs() <= length / DOUBTFUL)
+        .for_each(|v| *v = 0.0);
+    let unit = finish.point.f.abs().max(program.scaling.objective);
+    let mut least = program.options.tolerance * unit;
+    let mut f = finish.point.f;
+    for k in 1..=DOUBLINGS {
+        let x = &finish.point.x + &way * (2.0_f64.powi(k) - 1.0);
+        let x = DVector::from_fn(x.len(), |i, _| {
+            x[i].clamp(program.lower[i], program.upper[i])
+        });
+        let Ok(next) = program.evaluate(&x) else {
+            return finish;
+        };
+        let fall = f - next.f;
+        if fall <= least || !program.is_feasible(&next.c) {
+            return finish;
+        }
+        if k == 1 {
+            least = least.max(0.5 * fall);
+        }
+        f = next.f;
+    }
+    finish.status = Status::Unbounded;
+    finish
 }
 
 /// The outcome if all variables are fixed.
@@ -349,7 +399,14 @@ pub(super) fn untried(nlp: &dyn Nlp, status: Status) -> Outcome {
         objective: f64::NAN,
         constraints: vec![f64::NAN; nlp.constraints()],
         multipliers: Default::default(),
-        kkt: Kkt::default(),
+        kkt: Kkt {
+            violation: f64::NAN,
+            stationarity: f64::NAN,
+            relative_stationarity: f64::NAN,
+            complementarity: f64::NAN,
+            relative_complementarity: f64::NAN,
+            scaled: f64::NAN,
+        },
         active_bounds: Vec::new(),
         active_constraints: Vec::new(),
         counts: Counts::default(),

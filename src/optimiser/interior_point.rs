@@ -8,6 +8,7 @@ use super::filter::Filter;
 use super::iterate::{Iterate, Layout};
 use super::line_search::{Accepted, LineSearch, infeasibility};
 use super::observer::Phase;
+use super::outcome::Counts;
 use super::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use super::quasi_newton::QuasiNewton;
 use super::steering::{Goal, TrustRegion};
@@ -29,8 +30,10 @@ const LONGEST_CRAWL: usize = 4;
 const CRAWLING: f64 = 1e-4;
 const LEAVE_CRAWL: f64 = 0.1;
 
-/// After so many iterations within this distance, relative to the size of the point, a run ends.
+/// After so many iterations or evaluations within this distance, relative to the size of the point,
+/// a run ends.
 const LONGEST_STAY: usize = 30;
+const MOST_TRIALS: usize = 120;
 const NEARBY: f64 = 1e-8;
 
 /// Number of successive steps that may gain less than rounding.
@@ -48,8 +51,8 @@ pub(super) struct InteriorPoint {
     filter: Filter,
     theta_small: f64,
     short_steps: usize,
-    /// A point that the iteration has not left by more than `NEARBY`, and for how many iterations.
-    anchor: (DVector<f64>, usize),
+    /// A point that the iteration has not left by more than `NEARBY`, and the work done before.
+    anchor: (DVector<f64>, Counts),
     /// Variables on which nothing has depended so far. They have no barrier, so they stay.
     idle: Vec<usize>,
 }
@@ -99,7 +102,7 @@ impl InteriorPoint {
             filter: Filter::new(1e2 * theta.max(1.0)),
             theta_small: 1e-4 * theta.max(1.0),
             short_steps: 0,
-            anchor: (at.point.x.clone(), 0),
+            anchor: (at.point.x.clone(), program.counts),
             idle,
             layout,
             at,
@@ -160,7 +163,7 @@ impl InteriorPoint {
             } else {
                 0
             };
-            if lost > LOST_STEPS || self.stays() {
+            if lost > LOST_STEPS || self.stays(program) {
                 return Ok(Ending::Stalled);
             }
             if program.is_unbounded(&self.at.point) {
@@ -208,15 +211,16 @@ impl InteriorPoint {
     }
 
     /// Whether the point has stayed in one place for many iterations.
-    fn stays(&mut self) -> bool {
-        let (anchor, count) = &mut self.anchor;
+    fn stays(&mut self, program: &Program<'_>) -> bool {
+        let (anchor, before) = &self.anchor;
+        let now = program.counts;
         let x = &self.at.point.x;
-        if (x - &*anchor).amax() > NEARBY * x.amax().max(1.0) {
-            self.anchor = (x.clone(), 0);
+        if (x - anchor).amax() > NEARBY * x.amax().max(1.0) {
+            self.anchor = (x.clone(), now);
             return false;
         }
-        *count += 1;
-        *count > LONGEST_STAY
+        now.iterations - before.iterations > LONGEST_STAY
+            || now.evaluations - before.evaluations > MOST_TRIALS
     }
 
     /// Adds barriers for the idle variables on which something depends at this point.

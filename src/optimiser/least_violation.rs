@@ -10,7 +10,7 @@ use super::qp::{Hessian, QpData};
 use super::quasi_newton::Spectrum;
 
 /// Largest number of steps.
-const STEPS: usize = 30;
+const STEPS: usize = 100;
 /// A step is tried only if it promises this part of the violation.
 const WORTHWHILE: f64 = 1e-6;
 /// Share of the promised reduction for which a step is accepted.
@@ -52,24 +52,28 @@ impl Sides {
 
 /// Descends from `point` until the largest violation of a row, in the units of the user, is least
 /// to first order. Each trust-region step minimises t subject to excess + ∇excess·d ≤ t (Madsen &
-/// Schjær-Jacobsen 1978). Returns the last point, also if a limit ends the search.
+/// Schjær-Jacobsen 1978). Returns the last point, and whether the violation is least there. It is
+/// not known to be if a limit ends the search.
 pub(super) fn least_violation(
     program: &mut Program<'_>,
     mut point: Point,
     mut slopes: Derivatives,
-) -> (Point, Derivatives) {
+) -> (Point, Derivatives, bool) {
     let sides = Sides::of(program);
     let mut radius = point.x.amax().max(1.0);
+    let mut least = false;
     for _ in 0..STEPS {
         let worst = program.worst_violation(&point.c).0;
         if program.is_feasible(&point.c) || program.next_iteration().is_err() {
             break;
         }
         let Some((d, promised)) = step(program, &sides, &point, &slopes, worst, radius) else {
+            least = true;
             break;
         };
         let gain = worst - promised;
         if gain <= WORTHWHILE * worst {
+            least = true;
             break;
         }
         let x = DVector::from_fn(d.len(), |i, _| {
@@ -112,7 +116,7 @@ pub(super) fn least_violation(
             break;
         }
     }
-    (point, slopes)
+    (point, slopes, least)
 }
 
 /// Step in x and its predicted largest violation.

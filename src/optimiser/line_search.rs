@@ -57,7 +57,7 @@ pub(super) struct Accepted {
 }
 
 /// Smallest relative change of a variable that exceeds rounding.
-const RESOLUTION: f64 = 1e-16;
+const RESOLUTION: f64 = 1e-15;
 
 /// Data of one search.
 pub(super) struct LineSearch<'s> {

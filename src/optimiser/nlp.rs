@@ -88,20 +88,12 @@ pub struct EvaluationFailure {
     pub reason: String,
 }
 
-/// Finds the first value that is not finite, among the objective and `rows`, or the first wrong
-/// length.
+/// Finds the first value that is not finite, among the objective and `rows`.
 pub(super) fn fault_of_evaluation(
     nlp: &dyn Nlp,
     rows: &[usize],
     e: &Evaluation,
 ) -> Option<EvaluationFailure> {
-    if e.constraints.len() != nlp.constraints() {
-        return Some(wrong_length(
-            "constraints",
-            e.constraints.len(),
-            nlp.constraints(),
-        ));
-    }
     if !e.objective.is_finite() {
         return Some(not_finite("the objective".into(), e.objective));
     }
@@ -115,17 +107,6 @@ pub(super) fn fault_of_gradients(
     rows: &[usize],
     g: &Gradients,
 ) -> Option<EvaluationFailure> {
-    let (n, m) = (nlp.variables(), nlp.constraints());
-    if g.objective.len() != n {
-        return Some(wrong_length(
-            "gradient of the objective",
-            g.objective.len(),
-            n,
-        ));
-    }
-    if g.jacobian.shape() != (m, n) {
-        return Some(wrong_length("Jacobian", g.jacobian.entries(), m * n));
-    }
     if let Some(i) = g.objective.iter().position(|v| !v.is_finite()) {
         let what = format!(
             "the derivative of the objective in {}",
@@ -154,10 +135,26 @@ fn not_finite(what: String, value: f64) -> EvaluationFailure {
     }
 }
 
-fn wrong_length(what: &str, found: usize, expected: usize) -> EvaluationFailure {
-    let reason = format!("it has {found} entries where {expected} are expected");
-    EvaluationFailure {
-        what: format!("the {what}"),
-        reason,
-    }
+/// Names the list of values whose length is wrong.
+pub(super) fn length_of_evaluation(nlp: &dyn Nlp, e: &Evaluation) -> Option<String> {
+    wrong_length(
+        "list of constraints",
+        e.constraints.len(),
+        nlp.constraints(),
+    )
+}
+
+/// Names the list of derivatives whose length is wrong.
+pub(super) fn length_of_gradients(nlp: &dyn Nlp, g: &Gradients) -> Option<String> {
+    let (n, m) = (nlp.variables(), nlp.constraints());
+    wrong_length("gradient of the objective", g.objective.len(), n).or_else(|| {
+        let (rows, columns) = g.jacobian.shape();
+        let shape = (rows, columns) == (m, n);
+        (!shape).then(|| format!("the Jacobian is {rows} × {columns} where {m} × {n} is expected"))
+    })
+}
+
+fn wrong_length(what: &str, found: usize, expected: usize) -> Option<String> {
+    (found != expected)
+        .then(|| format!("the {what} has {found} entries where {expected} are expected"))
 }

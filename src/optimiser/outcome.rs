@@ -24,7 +24,8 @@ pub enum Status {
         /// first order. Half the distance of bounds that cross.
         violation: f64,
     },
-    /// The program or the options make no sense; nothing was evaluated.
+    /// The program or the options make no sense. Nothing was evaluated, or a list of values or
+    /// derivatives has a wrong length.
     IllPosed {
         /// What is wrong, by name.
         what: String,

@@ -9,6 +9,7 @@ use nalgebra::DVector;
 use super::jacobian::Jacobian;
 use super::nlp::{
     Evaluation, EvaluationFailure, Gradients, Nlp, fault_of_evaluation, fault_of_gradients,
+    length_of_evaluation, length_of_gradients,
 };
 use super::observer::{Observer, Phase, Row};
 use super::options::Options;
@@ -236,6 +237,11 @@ impl<'a> Program<'a> {
         self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
         self.counts.evaluations += 1;
         if let Ok(e) = &result
+            && let Some(what) = length_of_evaluation(self.nlp, e)
+        {
+            return Err(EarlyExit::Halt(Status::IllPosed { what }));
+        }
+        if let Ok(e) = &result
             && let Some(fault) = fault_of_evaluation(self.nlp, &self.rows, e)
         {
             result = Err(fault);
@@ -271,6 +277,11 @@ impl<'a> Program<'a> {
         let mut result = self.nlp.gradients(&full);
         self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
         self.counts.gradients += 1;
+        if let Ok(g) = &result
+            && let Some(what) = length_of_gradients(self.nlp, g)
+        {
+            return Err(EarlyExit::Halt(Status::IllPosed { what }));
+        }
         if let Ok(g) = &result
             && let Some(fault) = fault_of_gradients(self.nlp, &self.rows, g)
         {

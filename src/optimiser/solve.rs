@@ -3,8 +3,8 @@
 use nalgebra::DVector;
 
 use super::ending::{
-    FinalIterate, best_of, outcome, state_of, status_of, unfinished, untried, without_freedom,
-    without_values,
+    FinalIterate, best_of, outcome, state_of, status_of, unfinished, unless_it_falls, untried,
+    without_freedom, without_values,
 };
 use super::interior_point::InteriorPoint;
 use super::least_violation::least_violation;
@@ -163,6 +163,7 @@ fn run(
     };
     let state = state_of(&program, &finish);
     let finish = best_of(&mut program, finish);
+    let finish = unless_it_falls(&mut program, finish);
     outcome(&program, finish, state)
 }
 
@@ -206,10 +207,13 @@ fn attempt(
                 break;
             }
             Ok(Neighbourhood::More) | Err(EarlyExit::Failed(_)) => {
-                let (point, slopes) =
+                let (point, slopes, least) =
                     least_violation(program, finish.point.clone(), finish.slopes.clone());
                 if !program.is_feasible(&point.c) {
                     finish = finish.infeasible_at(program, point, slopes);
+                    if !least {
+                        finish.status = Status::Stalled;
+                    }
                     break;
                 }
                 finish = run(program, (point, slopes), None);

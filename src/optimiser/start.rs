@@ -13,7 +13,7 @@ const START_TRIALS: usize = 12;
 /// Points tried near one that seems infeasible, and their distances relative to the size of the
 /// point if there are no bounds.
 const ESCAPE_TRIALS: usize = REACHES.len();
-const REACHES: [f64; 6] = [0.2, 1.0, 5.0, 0.5, 50.0, 500.0];
+const REACHES: [f64; 7] = [0.2, 1.0, 5.0, 0.5, 50.0, 500.0, 1e-3];
 
 /// A nearby violation is less if it differs by this part, and unchanged if it differs by less than
 /// the second part.

@@ -3,6 +3,7 @@
 mod endings;
 mod far_starts;
 mod feasibility;
+mod gives_up;
 mod hard_cases;
 mod hock_schittkowski;
 mod large;
