@@ -15,6 +15,12 @@ const POWER: f64 = 1.5;
 const HISTORY: usize = 6;
 const PROGRESS: f64 = 0.9999;
 
+/// The adaptive μ lies between this part of the residual of the conditions and the residual itself:
+/// a smaller one lets the iterates run into the bounds, a larger one leads away. It never exceeds
+/// `LARGEST`.
+const FLOOR: f64 = 1e-5;
+const LARGEST: f64 = 10.0;
+
 /// How often the adaptive rule may return after the monotone rule took over.
 const RETURNS: usize = 1;
 
@@ -81,7 +87,7 @@ impl BarrierRule {
         if self.history.len() == HISTORY && error > PROGRESS * worst {
             self.free = false;
             self.history.clear();
-            self.mu = (0.8 * average).clamp(self.least, 1e5);
+            self.mu = (0.8 * average).clamp(self.least, LARGEST);
             return;
         }
         if self.history.len() == HISTORY {
@@ -99,7 +105,8 @@ impl BarrierRule {
                 }
                 None => LINEAR,
             };
-        self.mu = (centring * average).clamp(self.least, 1e5);
+        let band = (FLOOR * error).clamp(self.least, LARGEST)..=error.clamp(self.least, LARGEST);
+        self.mu = (centring * average).clamp(*band.start(), *band.end());
     }
 }
 

@@ -8,6 +8,8 @@ use super::iterate::{Iterate, Layout};
 use super::program::{Derivatives, EarlyExit, Point, Program};
 use super::quasi_newton::QuasiNewton;
 
+/// Longest step, relative to the size of the point.
+const LONGEST: f64 = 100.0;
 /// Part of the longest step below which the search ends.
 const VANISHED: f64 = 1e-16;
 /// A step is accepted for the residual of the conditions alone if the residual falls by this
@@ -33,7 +35,7 @@ const THETA_POWER: f64 = 1.1;
 /// The search ends below this share of the least sensible step.
 const LEAST_STEP: f64 = 0.05;
 /// Second-order corrections tried, and the factor by which each must reduce the infeasibility.
-const CORRECTIONS: usize = 2;
+const CORRECTIONS: usize = 1;
 const CORRECTION_GAIN: f64 = 0.99;
 
 /// Below this sum of scaled residuals a point counts as feasible. The residuals are then mostly
@@ -108,7 +110,11 @@ impl LineSearch<'_> {
             ),
             slope: self.slope(&direction),
         };
-        let longest = direction.primal_limit(self.at, self.layout, self.tau);
+        let room = LONGEST * self.at.point.x.amax().max(1.0);
+        let cap = room / direction.x.amax().max(f64::MIN_POSITIVE);
+        let longest = direction
+            .primal_limit(self.at, self.layout, self.tau)
+            .min(cap);
         let mut first = None;
         let least = self.least_step(&here).min(1e-3 * longest);
         let mut alpha = longest;
