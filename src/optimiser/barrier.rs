@@ -15,11 +15,12 @@ const POWER: f64 = 1.5;
 const HISTORY: usize = 6;
 const PROGRESS: f64 = 0.9999;
 
-/// The adaptive μ lies between this part of the residual of the conditions and the residual itself:
-/// a smaller one lets the iterates run into the bounds, a larger one leads away. It never exceeds
-/// `LARGEST`.
+/// The adaptive μ is at least this part of the residual of the conditions, as far as that is below
+/// one: a smaller μ lets the iterates run into the bounds. A larger μ than `LARGEST` leads away.
 const FLOOR: f64 = 1e-5;
 const LARGEST: f64 = 10.0;
+/// Largest μ with which the monotone rule takes over.
+const LARGEST_MONOTONE: f64 = 1e5;
 
 /// How often the adaptive rule may return after the monotone rule took over.
 const RETURNS: usize = 1;
@@ -87,7 +88,7 @@ impl BarrierRule {
         if self.history.len() == HISTORY && error > PROGRESS * worst {
             self.free = false;
             self.history.clear();
-            self.mu = (0.8 * average).clamp(self.least, LARGEST);
+            self.mu = (0.8 * average).clamp(self.least, LARGEST_MONOTONE);
             return;
         }
         if self.history.len() == HISTORY {
@@ -105,8 +106,8 @@ impl BarrierRule {
                 }
                 None => LINEAR,
             };
-        let band = (FLOOR * error).clamp(self.least, LARGEST)..=error.clamp(self.least, LARGEST);
-        self.mu = (centring * average).clamp(*band.start(), *band.end());
+        let floor = (FLOOR * error.min(1.0)).max(self.least);
+        self.mu = (centring * average).clamp(floor, LARGEST);
     }
 }
 

@@ -40,7 +40,7 @@ const NEARBY: f64 = 1e-8;
 const LOST_STEPS: usize = 4;
 
 /// How often entries may be stiffened in one iteration.
-const STIFFENINGS: usize = 4;
+const STIFFENINGS: usize = 8;
 
 /// State of the iteration.
 pub(super) struct InteriorPoint {

@@ -35,7 +35,7 @@ const THETA_POWER: f64 = 1.1;
 /// The search ends below this share of the least sensible step.
 const LEAST_STEP: f64 = 0.05;
 /// Second-order corrections tried, and the factor by which each must reduce the infeasibility.
-const CORRECTIONS: usize = 1;
+const CORRECTIONS: usize = 2;
 const CORRECTION_GAIN: f64 = 0.99;
 
 /// Below this sum of scaled residuals a point counts as feasible. The residuals are then mostly
