@@ -1,11 +1,13 @@
 //! Optimiser for smooth nonlinear programs of which only first derivatives are known.
 
 mod barrier;
+mod derivatives;
 mod direction;
 mod elastic_qp;
 mod ending;
 mod feasibility;
 mod filter;
+mod functions;
 mod interior_point;
 mod iterate;
 mod jacobian;
@@ -33,9 +35,11 @@ mod trust_region;
 mod verdict;
 mod well_posed;
 
+pub use derivatives::{DerivativeError, derivative_errors};
+pub use functions::Functions;
 pub use jacobian::Jacobian;
 pub use nlp::{Evaluation, EvaluationFailure, Gradients, Nlp};
-pub use observer::{Observer, Phase, Row, Silent};
+pub use observer::{Observer, Phase, Printed, Row, Silent};
 pub use options::{Barrier, Method, Options};
 pub use outcome::{ActiveBound, BoundSide, Counts, FailedDesign, Kkt, Outcome, Status};
 pub use quasi_newton::QuasiNewton;

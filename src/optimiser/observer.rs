@@ -1,5 +1,6 @@
 //! What the optimiser reports while it runs.
 
+use std::io::Write;
 use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
@@ -72,6 +73,47 @@ pub struct Silent;
 
 impl Observer for Silent {
     fn iteration(&mut self, _row: &Row<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// An observer that writes a line for each iteration: objective, largest violation, residual,
+/// barrier parameter, length and part of the step, evaluations.
+///
+/// ```
+/// use flexbody::optimiser::{Functions, Options, Printed, solve};
+/// let mut parabola = Functions::new(&[3.0], |x| (x[0] * x[0], vec![2.0 * x[0]]));
+/// let mut lines = Vec::new();
+/// let outcome = solve(&mut parabola, &Options::default(), &mut Printed(&mut lines));
+/// assert!(outcome.converged());
+/// let text = String::from_utf8_lossy(&lines);
+/// assert_eq!(text.lines().count(), outcome.counts.iterations + 2);
+/// ```
+#[derive(Debug)]
+pub struct Printed<W>(pub W);
+
+impl<W: Write> Observer for Printed<W> {
+    fn iteration(&mut self, row: &Row<'_>) -> ControlFlow<()> {
+        let head = match row.iteration {
+            0 => {
+                "iteration objective        violation residual  barrier     step     part evaluations\n"
+            }
+            _ => "",
+        };
+        let line = writeln!(
+            self.0,
+            "{head}{:9} {:<16.9e} {:9.1e} {:8.1e} {:8.1e} {:8.1e} {:8.1e} {:11}",
+            row.iteration,
+            row.objective,
+            row.infeasibility,
+            row.optimality,
+            row.barrier,
+            row.step,
+            row.primal_step,
+            row.evaluations
+        );
+        // Without a reader the run goes on.
+        drop(line);
         ControlFlow::Continue(())
     }
 }

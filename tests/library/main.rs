@@ -4,6 +4,8 @@
 mod gradients;
 #[path = "../../examples/optimiser.rs"]
 mod optimiser;
+#[path = "../../examples/rosenbrock.rs"]
+mod rosenbrock;
 #[path = "../../examples/simulate.rs"]
 mod simulate;
 
@@ -16,6 +18,7 @@ fn the_examples_run() {
     simulate::main().expect("runs");
     gradients::main().expect("runs");
     optimiser::main();
+    rosenbrock::main();
 }
 
 fn trebuchet() -> Problem {

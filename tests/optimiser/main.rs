@@ -1,5 +1,6 @@
 //! The optimiser on programs with known optima.
 
+mod derivatives;
 mod endings;
 mod far_starts;
 mod feasibility;
