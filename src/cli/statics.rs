@@ -21,7 +21,7 @@ fn all(problem: &Problem) -> Vec<usize> {
     (0..problem.function_names.len()).collect()
 }
 
-/// Solves the load cases of a problem's start.
+/// Solves the load cases of a problem's start. The directory for the results is held by the caller.
 pub(crate) fn simulate(job: &Job, problem: &Problem, json: bool) -> Result<u8, Failure> {
     let design = start(problem)?;
     let errors = match job.error {
@@ -71,7 +71,6 @@ pub(crate) fn simulate(job: &Job, problem: &Problem, json: bool) -> Result<u8, F
         }
     }
     if let Some(directory) = &job.output {
-        let _held = prepare_directory(directory)?;
         if job.vtu {
             let fields = figures::fields(&design).into_bytes();
             write_all(&[(directory.join("fields.vtu"), fields)])?;

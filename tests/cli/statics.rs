@@ -154,11 +154,11 @@ fn an_optimisation_has_records_and_figures_and_goes_on() {
         &["plate.json", "--starts", "3", "--output", "several"],
     );
     assert!(
-        several.out.contains("to 1 distinct optima"),
+        several.out.contains("3 of 3 starts converged"),
         "{}",
         several.out
     );
-    expect(0, directory, &["compare", "several", "whole"]);
+    assert!(directory.join("several/optima.csv").exists());
 }
 
 #[test]
@@ -218,7 +218,7 @@ fn options_and_failures_of_structures_are_told() {
     ];
     let ran = expect(2, directory, &misspelt);
     assert!(
-        ran.err.contains("\"x9\"") && ran.err.contains("plate.json"),
+        ran.err.contains("\"x9\"") && ran.err.contains("did you mean"),
         "{}",
         ran.err
     );
