@@ -33,7 +33,7 @@ pub(crate) struct Evaluator<'a> {
     last: Option<Analysed>,
     /// The steps in use.
     pub integration: Integration,
-    /// Number of designs that did not admit the lowering of the others.
+    /// Number of designs that do not fulfil the conditions of the lowering.
     pub unlowered: usize,
     log: KnownEvaluations<'a>,
     speculative: SpeculativeCache,

@@ -47,7 +47,7 @@ pub(crate) struct Integration {
     chosen: Option<(Settings, String)>,
     /// How often the steps were chosen anew.
     pub refreshes: usize,
-    /// Number of designs that did not admit the lowering of the others.
+    /// Number of designs that do not fulfil the conditions of the lowering.
     pub unlowered: usize,
     memory: usize,
     /// When the event came in the last run, if the scene has one \[s\].
