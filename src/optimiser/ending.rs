@@ -93,12 +93,14 @@ impl FinalIterate {
         }
         let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
         let kkt = self.kkt(program);
-        // Unbounded multipliers show in the complementarity products even if forces vanish.
-        let holds = kkt.relative_complementarity <= program.options.tolerance
-            && is_solved_in_user_units(program, point, slopes, &kkt);
-        if (holds || is_at_precision(program, point, slopes, z, &mut self.b))
-            && !self.falls_nearby(program)
-        {
+        let absolute = is_solved_in_user_units(program, point, slopes, &kkt);
+        // Unbounded multipliers show in the complementarity products even if forces vanish. Where
+        // all multipliers vanish, these products say nothing.
+        let tolerance = program.options.tolerance;
+        let vanish = [&z.y, &z.zl, &z.zu].iter().all(|z| z.amax() <= tolerance);
+        let precise = is_at_precision(program, point, slopes, z, &mut self.b);
+        let holds = absolute && (kkt.relative_complementarity <= tolerance || precise && vanish);
+        if (holds || precise) && !self.falls_nearby(program) {
             self.confirmed = holds;
             if !holds {
                 self.status = Status::AtPrecision;

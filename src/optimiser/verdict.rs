@@ -330,9 +330,10 @@ pub(super) fn is_solved_in_user_units(
         && kkt.complementarity <= tolerance * f.abs().max(1.0)
 }
 
-/// Whether the objective can show no further gain. The residuals meet the tolerances relative to
-/// the gradients of the run. The step −B⁻¹∇L gains less than the rounding of f, or changes only the
-/// last digits of x.
+/// Whether the objective can show no further gain: the residuals meet the tolerances relative to
+/// the gradients of the run and the step −B⁻¹∇L gains less than the rounding of f; or they meet them
+/// in the units of the user and the step changes only the last digits of x. A run that starts at its
+/// solution has no gradients to compare with.
 pub(super) fn is_at_precision(
     program: &Program<'_>,
     point: &Point,
@@ -341,12 +342,13 @@ pub(super) fn is_at_precision(
     b: &mut QuasiNewton,
 ) -> bool {
     let kkt = kkt(program, point, slopes, z, 0.0);
-    if !is_solved_in_scaled_units(program, point, &kkt) {
+    let relative = is_solved_in_scaled_units(program, point, &kkt);
+    if !relative && !is_solved_in_user_units(program, point, slopes, &kkt) {
         return false;
     }
     let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
     b.newton_step(&force).is_some_and(|step| {
-        0.5 * step.dot(&force) <= f64::EPSILON * point.f.abs()
+        relative && 0.5 * step.dot(&force) <= f64::EPSILON * point.f.abs()
             || step.amax() <= LAST_DIGITS * f64::EPSILON * point.x.amax()
     })
 }

@@ -69,7 +69,7 @@ fn below(directory: &Path, all: &mut Vec<String>) {
 fn paths_and_links_of_the_documents_exist() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folders = [
-        "src", "tests", "docs", "problems", "benches", "results", ".ci",
+        "src", "tests", "docs", "problems", "benches", "examples", "results", ".ci",
     ];
     let mut known = Vec::new();
     for folder in folders {
