@@ -103,6 +103,11 @@ fn gradient_of(
     } = solved.partial(&configuration, function)?;
     let mut rights = Vec::with_capacity(cases.len());
     for ((motion, x), psi) in motions.iter().zip(solutions).zip(&virtual_motions) {
+        // A case that no function needs has no solution.
+        if x.is_empty() {
+            rights.push(Vec::new());
+            continue;
+        }
         let mut right = vec![0.0; x.len()];
         configuration.add_spread_transpose(x, motion, &mut right, &mut to.directors);
         if let Some(psi) = psi {

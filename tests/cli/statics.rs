@@ -240,3 +240,22 @@ fn options_and_failures_of_structures_are_told() {
         ran.err
     );
 }
+
+/// A load case that neither objective nor constraints use has no part in an optimisation.
+#[test]
+fn a_load_case_that_nothing_needs_changes_nothing() {
+    let scratch = scratch();
+    let directory = scratch.path();
+    written(directory);
+    let mut file = json(PLATE);
+    file["functions"]["stress"]["von_mises"]["cases"] = Value::from(vec!["pressure"]);
+    file["load_cases"]["idle"] = json(r#"{"p": {"pressure": {"faces": "all", "pressure": 5e5}}}"#);
+    std::fs::write(directory.join("idle.json"), file.to_string()).expect("is written");
+    let optimum = |name: &str| {
+        let file = format!("{name}.json");
+        expect(0, directory, &[&file, "--output", name, "--error"]);
+        let path = directory.join(name).join("optimum.json");
+        json(&std::fs::read_to_string(path).expect("a record"))["objective"]["value"].clone()
+    };
+    assert_eq!(optimum("plate"), optimum("idle"));
+}
