@@ -2,6 +2,8 @@
 //!
 //! Springs without damping, gravity and joints at rest conserve E = T + V. A step with the error ε
 //! relative to the scene's lengths L and speeds U changes E by about
+//!
+//! ```text
 //! ε (X + K) + ε √(X S) + ε² S,      K = Σ (½ m U² + ½ tr J Ω²),      S = Σ ½ k L²,
 //! ```
 //!
