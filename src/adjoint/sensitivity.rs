@@ -102,15 +102,3 @@ impl<'a> Sensitivity<'a> {
         Ok(())
     }
 }
-
-/// Adds `scale` times `x`.
-pub(super) fn add_scaled(out: &mut [f64], scale: f64, x: &[f64]) {
-    for (out, x) in out.iter_mut().zip(x) {
-        *out += scale * x;
-    }
-}
-
-/// The sum of products.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}

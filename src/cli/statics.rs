@@ -107,15 +107,19 @@ fn size(design: &StaticDesign) -> Value {
     })
 }
 
-fn summary(problem: &Problem, design: &StaticDesign) -> String {
+/// Numbers of elements, nodes and unknowns, for messages.
+fn counts(design: &StaticDesign) -> String {
     let mesh = design.statics.mesh();
+    let (shells, beams) = (mesh.shells.len(), mesh.beams.len());
+    let (nodes, unknowns) = (mesh.nodes, design.unknowns());
+    format!("{shells} shells, {beams} beams, {nodes} nodes, {unknowns} unknowns")
+}
+
+fn summary(problem: &Problem, design: &StaticDesign) -> String {
     let mut text = format!(
-        "{}: {} shells, {} beams, {} nodes, {} unknowns; {} load cases ({} factorisations, {} solves)\n",
+        "{}: {}; {} load cases ({} factorisations, {} solves)\n",
         problem.name,
-        mesh.shells.len(),
-        mesh.beams.len(),
-        mesh.nodes,
-        design.unknowns(),
+        counts(design),
         design.statics.cases.len(),
         design.counts.factorisations,
         design.counts.solves,
@@ -178,14 +182,10 @@ pub(crate) fn explain(problem: &Problem, json: bool) -> Result<u8, Failure> {
         print(&(text + "\n"))?;
         return Ok(DONE);
     }
-    let mesh = design.statics.mesh();
     let mut text = format!(
-        "{}: structures that do not move\n  mesh: {} shells, {} beams, {} nodes, {} unknowns\n",
+        "{}: structures that do not move\n  mesh: {}\n",
         problem.name,
-        mesh.shells.len(),
-        mesh.beams.len(),
-        mesh.nodes,
-        design.unknowns(),
+        counts(&design),
     );
     if let Some(entries) = design.factor_entries() {
         let _ = writeln!(

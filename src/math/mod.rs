@@ -4,6 +4,7 @@ pub(crate) mod legendre;
 pub(crate) mod parameters;
 pub(crate) mod rotation;
 pub(crate) mod scalar;
+pub(crate) mod slices;
 pub(crate) mod soft_max;
 
 pub(crate) use parameters::{Parameters, parameters};

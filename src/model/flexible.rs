@@ -20,6 +20,7 @@
 //! joints, loads or functions is a body without mass as well, its *interface*, held by a joint of kind
 //! `Attachment` (see [`Modes`]).
 
+use crate::math::slices::{add_scaled, dot};
 use crate::math::{Mat3, Scalar, Vec3, parameters};
 
 /// A flexible body. Coordinates I = 1 … m stand at index I − 1.
@@ -160,38 +161,38 @@ impl<S: Scalar> Quadratic<S> {
     pub(crate) fn value(&self, q: &[S]) -> S {
         let half = S::from(0.5);
         let squares = self.squares.iter().map(|(c, g)| {
-            let w = product(g, q);
+            let w = dot(g, q);
             *c * w * w * half
         });
-        squares.fold(product(&self.linear, q), |sum, x| sum + x)
+        squares.fold(dot(&self.linear, q), |sum, x| sum + x)
     }
 
     /// Adds `scale` times its gradient b + Σ c_s (g_s · q) g_s to `out`.
     pub(crate) fn add_gradient(&self, q: &[S], scale: S, out: &mut [S]) {
-        add(scale, &self.linear, out);
+        add_scaled(out, scale, &self.linear);
         for (c, g) in &self.squares {
-            add(scale * *c * product(g, q), g, out);
+            add_scaled(out, scale * *c * dot(g, q), g);
         }
     }
 
     /// Adds the derivative of scale · value by the parameters to `cot`.
     pub(crate) fn pull_value(&self, q: &[S], scale: S, cot: &mut Self) {
-        add(scale, q, &mut cot.linear);
+        add_scaled(&mut cot.linear, scale, q);
         for ((c, g), (by_c, by_g)) in self.squares.iter().zip(&mut cot.squares) {
-            let w = product(g, q);
+            let w = dot(g, q);
             *by_c += scale * w * w * S::from(0.5);
-            add(scale * *c * w, q, by_g);
+            add_scaled(by_g, scale * *c * w, q);
         }
     }
 
     /// Adds the derivative of scale · ψ · gradient by the parameters to `cot`.
     pub(crate) fn pull_gradient(&self, q: &[S], psi: &[S], scale: S, cot: &mut Self) {
-        add(scale, psi, &mut cot.linear);
+        add_scaled(&mut cot.linear, scale, psi);
         for ((c, g), (by_c, by_g)) in self.squares.iter().zip(&mut cot.squares) {
-            let (w, along) = (product(g, q), product(g, psi));
+            let (w, along) = (dot(g, q), dot(g, psi));
             *by_c += scale * w * along;
-            add(scale * *c * along, q, by_g);
-            add(scale * *c * w, psi, by_g);
+            add_scaled(by_g, scale * *c * along, q);
+            add_scaled(by_g, scale * *c * w, psi);
         }
     }
 }
@@ -200,18 +201,5 @@ impl<S: Scalar> Modes<S> {
     /// The body that carries each coordinate, and the component of its position.
     pub(crate) fn places(&self) -> impl Iterator<Item = (usize, usize)> + Clone + use<S> {
         places(self.carriers, self.displacement.len())
-    }
-}
-
-/// a · b.
-pub(crate) fn product<S: Scalar>(a: &[S], b: &[S]) -> S {
-    let terms = a.iter().zip(b);
-    terms.fold(S::zero(), |sum, (&a, &b)| sum + a * b)
-}
-
-/// Adds scale · x.
-pub(crate) fn add<S: Scalar>(scale: S, x: &[S], out: &mut [S]) {
-    for (out, &x) in out.iter_mut().zip(x) {
-        *out += scale * x;
     }
 }

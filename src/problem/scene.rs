@@ -5,7 +5,7 @@ use super::mass::mass_properties;
 use super::placement::{Assembly, GROUND};
 use super::quantity::{Vector, vector};
 use super::schema::Document;
-use super::schema::functions::{self as written, CountedFrom, Function as Written};
+use super::schema::functions::{self as written, CountedFrom, Function as Written, OfMotion};
 use super::schema::mechanics::{Body, Point, Shape};
 use super::start_rates;
 use super::starts::Starts;
@@ -180,34 +180,24 @@ impl<S: Scalar> Builder<'_, S> {
             instant: self.instant(instant),
             reduction,
         };
+        let Some(function) = function.of_motion() else {
+            unreachable!("functions of structures are refused before");
+        };
         match function {
-            Written::Ks(ks) => {
+            OfMotion::Ks(ks) => {
                 let bound = match ks.bound {
                     None | Some(written::Bound::Below) => Bound::Below,
                     Some(written::Bound::Above) => Bound::Above,
                 };
                 reduced(&ks.of, Reduction::Ks { rho: ks.rho, bound })
             }
-            Written::InducedExponential(ie) => {
+            OfMotion::InducedExponential(ie) => {
                 reduced(&ie.of, Reduction::InducedExponential { rho: ie.rho })
             }
-            Written::Integral(instant) => reduced(instant, Reduction::Integral),
-            Written::Final(instant) => reduced(instant, Reduction::Final),
-            Written::Clearance(clearance) => self.clearance(clearance),
-            Written::Duration => Function::Duration,
-            Written::Mass
-            | Written::CentreOfMass(_)
-            | Written::MomentOfInertia(_)
-            | Written::StrainEnergy(_)
-            | Written::Compliance(_)
-            | Written::Displacement(_)
-            | Written::Reaction(_)
-            | Written::ReactionMoment(_)
-            | Written::VonMises(_)
-            | Written::Frequency(_)
-            | Written::LowestFrequency(_) => {
-                unreachable!("functions of structures are refused before")
-            }
+            OfMotion::Integral(instant) => reduced(instant, Reduction::Integral),
+            OfMotion::Final(instant) => reduced(instant, Reduction::Final),
+            OfMotion::Clearance(clearance) => self.clearance(clearance),
+            OfMotion::Duration => Function::Duration,
         }
     }
 
@@ -417,24 +407,11 @@ pub(crate) fn released<'a>(
     document: &'a Document,
     name: &str,
 ) -> Option<(&'a written::Range, Option<f64>)> {
-    let (instant, rho) = match document.functions.get(name)? {
-        Written::Ks(ks) => (&ks.of, Some(ks.rho)),
-        Written::InducedExponential(aggregate) => (&aggregate.of, Some(aggregate.rho)),
-        Written::Final(instant) => (instant, None),
-        Written::Integral(_)
-        | Written::Clearance(_)
-        | Written::Duration
-        | Written::Mass
-        | Written::CentreOfMass(_)
-        | Written::MomentOfInertia(_)
-        | Written::StrainEnergy(_)
-        | Written::Compliance(_)
-        | Written::Displacement(_)
-        | Written::Reaction(_)
-        | Written::ReactionMoment(_)
-        | Written::VonMises(_)
-        | Written::Frequency(_)
-        | Written::LowestFrequency(_) => return None,
+    let (instant, rho) = match document.functions.get(name)?.of_motion()? {
+        OfMotion::Ks(ks) => (&ks.of, Some(ks.rho)),
+        OfMotion::InducedExponential(aggregate) => (&aggregate.of, Some(aggregate.rho)),
+        OfMotion::Final(instant) => (instant, None),
+        OfMotion::Integral(_) | OfMotion::Clearance(_) | OfMotion::Duration => return None,
     };
     match instant {
         written::Instant::Range(range) => Some((range, rho)),

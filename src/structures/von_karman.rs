@@ -12,6 +12,7 @@ use super::statics::{Critical, StaticFailure, StaticProblem, most_moved};
 use super::structure::Structure;
 use crate::linalg::cholesky::NotPositiveDefinite;
 use crate::math::Scalar;
+use crate::math::slices::dot;
 
 /// How the load is put on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -275,8 +276,4 @@ impl StaticProblem {
         }
         Ok(x)
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

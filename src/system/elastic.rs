@@ -2,13 +2,14 @@
 
 use super::flexing::Block;
 use crate::math::Scalar;
-use crate::model::flexible::{FlexibleBody, ModalStiffness, add, product};
+use crate::math::slices::{add_scaled, dot};
+use crate::model::flexible::{FlexibleBody, ModalStiffness};
 
 /// Strain energy U \[J\].
 pub(crate) fn energy<S: Scalar>(stiffness: &ModalStiffness<S>, q: &[S]) -> S {
     let mut linear = vec![S::zero(); q.len()];
     add_product(&stiffness.linear, q, &mut linear);
-    let mut sum = product(&linear, q);
+    let mut sum = dot(&linear, q);
     for strain in &stiffness.strains {
         let e = strain.strain.value(q);
         sum += strain.weight * e * e;
@@ -26,7 +27,7 @@ pub(crate) fn pull_energy(
 ) {
     let mut force = vec![0.0; q.len()];
     add_stiffness(stiffness, q, &mut force);
-    add(scale, &force, by_q);
+    add_scaled(by_q, scale, &force);
     add_outer(0.5 * scale, q, q, &mut cot.linear);
     for (strain, cot) in stiffness.strains.iter().zip(&mut cot.strains) {
         let e = strain.strain.value(q);
@@ -104,10 +105,10 @@ pub(crate) fn pull_forces(
         let (form, k) = (&strain.strain, strain.weight);
         gradient.fill(0.0);
         form.add_gradient(q, 1.0, &mut gradient);
-        let (e, along) = (form.value(q), product(&gradient, psi));
-        add(k * along, &gradient, by_q);
+        let (e, along) = (form.value(q), dot(&gradient, psi));
+        add_scaled(by_q, k * along, &gradient);
         for (c, g) in &form.squares {
-            add(k * e * c * product(g, psi), g, by_q);
+            add_scaled(by_q, k * e * c * dot(g, psi), g);
         }
         cot.weight += e * along;
         form.pull_value(q, k * along, &mut cot.strain);
@@ -118,20 +119,20 @@ pub(crate) fn pull_forces(
 /// Adds A x, A by rows.
 fn add_product<S: Scalar>(a: &[S], x: &[S], out: &mut [S]) {
     for (out, row) in out.iter_mut().zip(a.chunks_exact(x.len().max(1))) {
-        *out += product(row, x);
+        *out += dot(row, x);
     }
 }
 
 /// Adds Aᵀ x.
 fn add_transposed(a: &[f64], x: &[f64], out: &mut [f64]) {
     for (&x, row) in x.iter().zip(a.chunks_exact(out.len().max(1))) {
-        add(x, row, out);
+        add_scaled(out, x, row);
     }
 }
 
 /// Adds scale · x yᵀ.
 fn add_outer(scale: f64, x: &[f64], y: &[f64], out: &mut [f64]) {
     for (&x, row) in x.iter().zip(out.chunks_exact_mut(y.len().max(1))) {
-        add(scale * x, y, row);
+        add_scaled(row, scale * x, y);
     }
 }

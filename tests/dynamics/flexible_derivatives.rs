@@ -13,8 +13,8 @@ use flexbody::model::Model;
 use flexbody::system::bodies::{BodyMotion, all_force_balances, rates, velocity_of_rates};
 use flexbody::system::kkt::SaddlePoint;
 use flexbody::system::marker::{MarkerKinematics, RelativeMotion};
-use flexbody::system::{InMotion, Numbering, flexible, initial, joints, placement};
-use reference::cases::{Case, TIME, dot, lift, parameters, slopes, step, unit};
+use flexbody::system::{Numbering, flexible, initial, placement};
+use reference::cases::{Case, TIME, dot, lift, parameters, rows_agree, slopes, step, unit};
 use reference::flexible::{Points, quadratic, stiffness, swing_of};
 use reference::models::Numbers;
 
@@ -175,36 +175,8 @@ fn inertial_forces_are_those_of_the_points() {
 #[test]
 fn rows_of_attachments() {
     for mut case in cases() {
-        let (nv, rows) = (case.v.len(), case.numbering.constraints());
-        let (model, v) = (case.lifted(), lift(&case.v));
-        let mut gradients = Vec::new();
-        let motions = case.motions(&case.q, &case.v);
-        let at = InMotion::new(&case.model, &case.numbering, &motions, TIME);
-        joints::gradients(&at, &mut gradients);
-        let (mut given, mut by_value) = (Vec::new(), Vec::new());
-        for j in admitted(&case) {
-            let e = unit(nv, j);
-            let mut column = vec![0.0; rows];
-            joints::rates_from_gradients(&case.model, &case.numbering, &gradients, &e, &mut column);
-            given.extend(column);
-            by_value.extend(&case.constraints(&model, &case.moved(&e), &v)[..rows]);
-        }
-        case.assert("G by Φ", &given, &by_value);
-        let lambda = case.numbers.list(rows);
-        let product: Vec<f64> = given
-            .chunks(rows)
-            .map(|column| dot(column, &lambda))
-            .collect();
-        let all = case.reactions(&case.model, &case.q, &lambda);
-        let reactions: Vec<f64> = admitted(&case).into_iter().map(|i| all[i]).collect();
-        case.assert("Gᵀλ", &reactions, &product);
-        let now = step((&TIME, &1.0));
-        let in_time = case.constraints_at(&model, &case.moved(&case.v), &v, now);
-        let (mut rate, mut bias) = (vec![0.0; rows], vec![0.0; rows]);
-        joints::rates(&at, &mut rate);
-        joints::accelerations(&at, &mut bias);
-        case.assert("rate", &rate, &in_time[..rows]);
-        case.assert("bias", &bias, &in_time[rows..2 * rows]);
+        let admitted = admitted(&case);
+        rows_agree(&mut case, &admitted);
     }
 }
 

@@ -23,32 +23,17 @@ struct Far {
 }
 
 impl Nlp for Far {
-    fn variables(&self) -> usize {
-        self.inner.variables()
-    }
-
-    fn constraints(&self) -> usize {
-        self.inner.constraints()
-    }
-
-    fn variable_bounds(&self) -> (Vec<f64>, Vec<f64>) {
-        self.inner.variable_bounds()
-    }
-
-    fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>) {
-        self.inner.constraint_bounds()
-    }
+    crate::problems::inner!(
+        variables,
+        constraints,
+        variable_bounds,
+        constraint_bounds,
+        evaluate,
+        gradients
+    );
 
     fn start(&self) -> Vec<f64> {
         self.inner.start().iter().map(|x| x * self.times).collect()
-    }
-
-    fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
-        self.inner.evaluate(x)
-    }
-
-    fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
-        self.inner.gradients(x)
     }
 }
 

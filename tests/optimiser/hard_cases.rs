@@ -175,21 +175,15 @@ struct Announced {
 }
 
 impl Nlp for Announced {
-    fn variables(&self) -> usize {
-        self.inner.variables()
-    }
-    fn constraints(&self) -> usize {
-        self.inner.constraints()
-    }
-    fn variable_bounds(&self) -> (Vec<f64>, Vec<f64>) {
-        self.inner.variable_bounds()
-    }
-    fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>) {
-        self.inner.constraint_bounds()
-    }
-    fn start(&self) -> Vec<f64> {
-        self.inner.start()
-    }
+    crate::problems::inner!(
+        variables,
+        constraints,
+        variable_bounds,
+        constraint_bounds,
+        start,
+        gradients
+    );
+
     fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
         if let Some(points) = self.next.take() {
             assert_eq!(points[0], x, "another point was announced");
@@ -202,9 +196,6 @@ impl Nlp for Announced {
     fn foresee(&mut self, points: &[Vec<f64>]) {
         assert!(self.failed, "announced where nothing failed");
         self.next = Some(points.to_vec());
-    }
-    fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
-        self.inner.gradients(x)
     }
 }
 

@@ -37,21 +37,11 @@ impl Stretched {
 }
 
 impl Nlp for Stretched {
-    fn variables(&self) -> usize {
-        self.inner.variables()
-    }
-
-    fn constraints(&self) -> usize {
-        self.inner.constraints()
-    }
+    crate::problems::inner!(variables, constraints, constraint_bounds);
 
     fn variable_bounds(&self) -> (Vec<f64>, Vec<f64>) {
         let (lower, upper) = self.inner.variable_bounds();
         (self.outside(&lower), self.outside(&upper))
-    }
-
-    fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>) {
-        self.inner.constraint_bounds()
     }
 
     fn start(&self) -> Vec<f64> {

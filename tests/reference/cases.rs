@@ -219,3 +219,41 @@ pub fn parameters(model: &Model<f64>) -> Vec<f64> {
     });
     all
 }
+
+/// Asserts that the gradients, rates, biases and reactions of all rows are those of the constraints,
+/// for the velocities `admitted`.
+pub fn rows_agree(case: &mut Case, admitted: &[usize]) {
+    let (nv, rows) = (case.v.len(), case.numbering.constraints());
+    let (model, v) = (case.lifted(), lift(&case.v));
+    let mut gradients = Vec::new();
+    let motions = case.motions(&case.q, &case.v);
+    let at = InMotion::new(&case.model, &case.numbering, &motions, TIME);
+    joints::gradients(&at, &mut gradients);
+    // G by columns, from the values and from the rates.
+    let (mut given, mut by_value, mut by_rate) = (Vec::new(), Vec::new(), Vec::new());
+    for &j in admitted {
+        let e = unit(nv, j);
+        let mut column = vec![0.0; rows];
+        joints::rates_from_gradients(&case.model, &case.numbering, &gradients, &e, &mut column);
+        given.extend(column);
+        by_value.extend(&case.constraints(&model, &case.moved(&e), &v)[..rows]);
+        let faster: Vec<_> = case.v.iter().zip(&e).map(step).collect();
+        by_rate.extend(&case.constraints(&model, &lift(&case.q), &faster)[rows..2 * rows]);
+    }
+    case.assert("G by Φ", &given, &by_value);
+    case.assert("G by G v", &given, &by_rate);
+    let lambda = case.numbers.list(rows);
+    let columns = given.chunks(rows).map(|column| dot(column, &lambda));
+    let product: Vec<f64> = columns.collect();
+    let all = case.reactions(&case.model, &case.q, &lambda);
+    let reactions: Vec<f64> = admitted.iter().map(|&i| all[i]).collect();
+    case.assert("Gᵀλ", &reactions, &product);
+    // Along the motion, at constant v.
+    let now = step((&TIME, &1.0));
+    let in_time = case.constraints_at(&model, &case.moved(&case.v), &v, now);
+    let (mut rate, mut bias) = (vec![0.0; rows], vec![0.0; rows]);
+    joints::rates(&at, &mut rate);
+    joints::accelerations(&at, &mut bias);
+    case.assert("rate", &rate, &in_time[..rows]);
+    case.assert("bias", &bias, &in_time[rows..2 * rows]);
+}

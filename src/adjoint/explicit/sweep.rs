@@ -1,13 +1,14 @@
 //! The cotangents of one function during the backward march through a step.
 
 use super::row;
-use crate::adjoint::sensitivity::{Sensitivity, add_scaled, dot};
+use crate::adjoint::sensitivity::Sensitivity;
 use crate::adjoint::workspace::Workspace;
 use crate::functions::Scene;
 use crate::integrate::Trajectory;
 use crate::integrate::explicit::tableau::{ALL, B, END, dense_weights};
 use crate::integrate::explicit::{NodeView, StepView, add_rows};
 use crate::integrate::grid::SamplePlace;
+use crate::math::slices::{add_scaled, dot};
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
 use crate::system::bodies;

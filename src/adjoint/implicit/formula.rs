@@ -1,13 +1,13 @@
 //! A backward step of a one-stage formula.
 
 use super::sweep::{Pair, Sweep, add, add_state, clear, copy, move_back, pair, rates_of, work};
-use crate::adjoint::sensitivity::add_scaled;
 use crate::integrate::WorkCounts;
 use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::formula::Formula;
 use crate::integrate::implicit::ggl::Equations;
 use crate::integrate::implicit::split::SplitMatrix;
 use crate::linalg::{REFINED_SOLVES, SparseLu, SparseMatrix};
+use crate::math::slices::add_scaled;
 use crate::model::Model;
 use crate::system::RedundantRows;
 use crate::system::{Numbering, bodies};

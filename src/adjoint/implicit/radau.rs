@@ -1,13 +1,13 @@
 //! A backward step of Radau IIA: the coupled system of all stages.
 
 use super::sweep::{Pair, Sweep, add, add_state, clear, copy, move_back, pair, rates_of, work};
-use crate::adjoint::sensitivity::add_scaled;
 use crate::integrate::WorkCounts;
 use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::ggl::Equations;
 use crate::integrate::implicit::radau::Scheme;
 use crate::integrate::implicit::split::SplitMatrix;
 use crate::linalg::{Emit, Pattern, REFINED_SOLVES, SparseLu, SparseMatrix};
+use crate::math::slices::add_scaled;
 use crate::model::Model;
 use crate::system::RedundantRows;
 use crate::system::{Numbering, bodies};

@@ -1,6 +1,6 @@
 //! The cotangents of one function during the backward march through implicit steps.
 
-use crate::adjoint::sensitivity::{Sensitivity, add_scaled, dot};
+use crate::adjoint::sensitivity::Sensitivity;
 use crate::functions::Scene;
 use crate::integrate::grid::SamplePlace;
 use crate::integrate::implicit::Stage;
@@ -8,6 +8,7 @@ use crate::integrate::implicit::formula::memory_size;
 use crate::integrate::implicit::predict::dense;
 use crate::integrate::implicit::radau::Scheme;
 use crate::integrate::{Method, Trajectory};
+use crate::math::slices::{add_scaled, dot};
 use crate::system::Numbering;
 use crate::system::bodies;
 use crate::system::flexible;

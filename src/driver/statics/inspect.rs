@@ -4,7 +4,6 @@ use super::StaticDesign;
 use crate::math::Vec3;
 use crate::structures::modes::Modes;
 use crate::structures::statics::StaticProblem;
-use std::sync::PoisonError;
 
 impl StaticDesign {
     /// Modes that were found for some function.
@@ -16,20 +15,14 @@ impl StaticDesign {
 
     /// The displacements of the nodes in a mode.
     pub(super) fn motion_of_mode(&self, x: &[f64]) -> Option<Vec<Vec3<f64>>> {
-        let workspace = self
-            .workspace
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let workspace = self.shared();
         let modal = workspace.modal.as_ref()?;
         Some(modal.motion(&self.scene.structure, x).displacement)
     }
 
     /// Number of unknowns.
     pub(crate) fn unknowns(&self) -> usize {
-        let workspace = self
-            .workspace
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let workspace = self.shared();
         workspace
             .statics
             .as_ref()
@@ -38,10 +31,7 @@ impl StaticDesign {
 
     /// Entries of the factor of the stiffness, if it was made.
     pub(crate) fn factor_entries(&self) -> Option<usize> {
-        let workspace = self
-            .workspace
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let workspace = self.shared();
         workspace
             .statics
             .as_ref()

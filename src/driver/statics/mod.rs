@@ -20,7 +20,7 @@ use crate::structures::quality::{MeshFault, faults};
 use crate::structures::statics::{StaticFailure, StaticProblem};
 use crate::structures::structure::Structure;
 use crate::structures::von_karman::LoadSteps;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Why structures have no solution or no gradient at a design.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -77,11 +77,8 @@ pub(crate) struct StaticDesign {
 
 impl Drop for StaticDesign {
     fn drop(&mut self) {
-        let own = self
-            .workspace
-            .get_mut()
-            .unwrap_or_else(PoisonError::into_inner);
-        self.statics.workspaces.give(std::mem::take(own));
+        let own = std::mem::take(self.workspace());
+        self.statics.workspaces.give(own);
     }
 }
 
@@ -178,6 +175,13 @@ impl StaticDesign {
         Ok(design)
     }
 
+    /// The workspace, which threads share.
+    fn shared(&self) -> MutexGuard<'_, Workspace> {
+        self.workspace
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn workspace(&mut self) -> &mut Workspace {
         self.workspace
             .get_mut()
@@ -270,10 +274,7 @@ impl StaticDesign {
 
     /// Calls `with` with the solutions, as structures know them.
     pub(crate) fn with_solved<T>(&self, with: impl FnOnce(&Solved<f64>) -> T) -> Option<T> {
-        let workspace = self
-            .workspace
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let workspace = self.shared();
         Some(with(&Solved {
             problem: workspace.statics.as_ref()?,
             structure: &self.scene.structure,
@@ -320,10 +321,7 @@ impl StaticDesign {
 
     /// The derivatives of a function by structure and loads.
     fn by_structure(&self, f: usize, counts: &mut WorkCounts) -> Result<Gradient, StaticsFailure> {
-        let mut workspace = self
-            .workspace
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let mut workspace = self.shared();
         let (statics, structure) = (&self.statics, &self.scene.structure);
         let of_structure = |structure| Gradient {
             structure,

@@ -8,7 +8,9 @@ use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join};
 use crate::problem::quantity::values;
 use crate::problem::scene::{GRAVITY, released};
-use crate::problem::schema::functions::{Clearance, Component, Function, Gate, Instant, Range};
+use crate::problem::schema::functions::{
+    Clearance, Component, Function, Gate, Instant, OfMotion, Range,
+};
 use crate::problem::schema::mechanics::Point;
 use crate::problem::schema::{Method, Objective};
 
@@ -116,31 +118,22 @@ impl Checker<'_> {
     }
 
     fn function(&mut self, pointer: &str, function: &Function) {
+        let Some(function) = function.of_motion() else {
+            let expected = "a function of a motion, or \"structures\" without a \"simulation\"";
+            self.fault(Finding::new(pointer, "a function of structures", expected));
+            return;
+        };
         match function {
-            Function::Ks(aggregate) => self.instant(&format!("{pointer}/ks/of"), &aggregate.of),
-            Function::InducedExponential(aggregate) => {
+            OfMotion::Ks(aggregate) => self.instant(&format!("{pointer}/ks/of"), &aggregate.of),
+            OfMotion::InducedExponential(aggregate) => {
                 self.instant(&format!("{pointer}/induced_exponential/of"), &aggregate.of);
             }
-            Function::Integral(instant) => self.instant(&join(pointer, "integral"), instant),
-            Function::Final(instant) => self.instant(&join(pointer, "final"), instant),
-            Function::Clearance(clearance) => {
+            OfMotion::Integral(instant) => self.instant(&join(pointer, "integral"), instant),
+            OfMotion::Final(instant) => self.instant(&join(pointer, "final"), instant),
+            OfMotion::Clearance(clearance) => {
                 self.clearance(&format!("{pointer}/clearance"), clearance);
             }
-            Function::Duration => {}
-            Function::Mass
-            | Function::CentreOfMass(_)
-            | Function::MomentOfInertia(_)
-            | Function::StrainEnergy(_)
-            | Function::Compliance(_)
-            | Function::Displacement(_)
-            | Function::Reaction(_)
-            | Function::ReactionMoment(_)
-            | Function::VonMises(_)
-            | Function::Frequency(_)
-            | Function::LowestFrequency(_) => {
-                let expected = "a function of a motion, or \"structures\" without a \"simulation\"";
-                self.fault(Finding::new(pointer, "a function of structures", expected));
-            }
+            OfMotion::Duration => {}
         }
     }
 

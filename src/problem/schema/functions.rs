@@ -49,6 +49,41 @@ pub(crate) enum Function {
     LowestFrequency(LowestFrequency),
 }
 
+/// A function of a motion.
+pub(crate) enum OfMotion<'a> {
+    Ks(&'a Ks),
+    InducedExponential(&'a Aggregate),
+    Integral(&'a Instant),
+    Final(&'a Instant),
+    Clearance(&'a Clearance),
+    Duration,
+}
+
+impl Function {
+    /// The function, if it is one of a motion and not of structures.
+    pub(crate) fn of_motion(&self) -> Option<OfMotion<'_>> {
+        match self {
+            Self::Ks(own) => Some(OfMotion::Ks(own)),
+            Self::InducedExponential(own) => Some(OfMotion::InducedExponential(own)),
+            Self::Integral(own) => Some(OfMotion::Integral(own)),
+            Self::Final(own) => Some(OfMotion::Final(own)),
+            Self::Clearance(own) => Some(OfMotion::Clearance(own)),
+            Self::Duration => Some(OfMotion::Duration),
+            Self::Mass
+            | Self::CentreOfMass(_)
+            | Self::MomentOfInertia(_)
+            | Self::StrainEnergy(_)
+            | Self::Compliance(_)
+            | Self::Displacement(_)
+            | Self::Reaction(_)
+            | Self::ReactionMoment(_)
+            | Self::VonMises(_)
+            | Self::Frequency(_)
+            | Self::LowestFrequency(_) => None,
+        }
+    }
+}
+
 /// Aggregated quantity, sharpness, and side of the maximum.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -4,6 +4,7 @@
 //! The operator is A = (K + sM)⁻¹ M in the inner product of M. The basis V is M-orthonormal, H = VᵀMAV
 //! is kept whole, so a restart puts Ritz vectors in the place of V and their values on the diagonal of H.
 
+use crate::math::slices::dot;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Vectors of a block.
@@ -30,10 +31,6 @@ pub(super) trait Operator {
 pub(super) struct Basis {
     pub vectors: Vec<Vec<f64>>,
     pub products: Vec<Vec<f64>>,
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl Basis {

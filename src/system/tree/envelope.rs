@@ -3,6 +3,7 @@
 
 use super::dense::SINGULAR;
 use crate::math::Scalar;
+use crate::math::slices::dot;
 
 /// A = L D Lᵀ in its envelope (Jennings 1966): L below the diagonal, D⁻¹ on the diagonal.
 #[derive(Clone)]
@@ -68,7 +69,7 @@ impl<S: Scalar> Envelope<S> {
                 let other = &above[self.start[j]..self.start[j + 1]];
                 let from = first.max(self.first[j]);
                 let l = &other[from - self.first[j]..j - self.first[j]];
-                let sum = product(&row[from - first..j - first], l);
+                let sum = dot(&row[from - first..j - first], l);
                 row[j - first] -= sum;
             }
             let mut pivot = row[i - first];
@@ -91,7 +92,7 @@ impl<S: Scalar> Envelope<S> {
         let row = |i: usize| &self.entries[self.start[i]..self.start[i + 1]];
         for i in 0..b.len() {
             let (known, rest) = b.split_at_mut(i);
-            rest[0] -= product(&known[self.first[i]..], row(i));
+            rest[0] -= dot(&known[self.first[i]..], row(i));
         }
         for (i, b) in b.iter_mut().enumerate() {
             *b *= self.entries[self.start[i + 1] - 1];
@@ -103,10 +104,4 @@ impl<S: Scalar> Envelope<S> {
             }
         }
     }
-}
-
-/// Σ a_i b_i over the common indices.
-pub(super) fn product<S: Scalar>(a: &[S], b: &[S]) -> S {
-    let products = a.iter().zip(b);
-    products.fold(S::zero(), |sum, (&a, &b)| sum + a * b)
 }

@@ -19,10 +19,11 @@
 
 use super::blocks::{Factors, reduced, size, unknowns};
 use super::dense::{axpy, block, dot, solve};
-use super::envelope::{Envelope, product};
+use super::envelope::Envelope;
 use super::links::Link;
 use crate::linalg::SingularMatrix;
 use crate::math::Scalar;
+use crate::math::slices;
 use crate::model::Model;
 use crate::system::constraint::RowGradient;
 use crate::system::numbering::Numbering;
@@ -313,7 +314,7 @@ impl<S: Scalar, const N: usize> Loops<S, N> {
                         &block(&x[numbering.unknown(link.body)..], m),
                     );
                     if let Some((joint, ..)) = link.joint {
-                        sum -= product(&multipliers[numbering.rows(joint)], &wave.gap);
+                        sum -= slices::dot(&multipliers[numbering.rows(joint)], &wave.gap);
                     }
                 }
                 self.rhs[closing.rows.start + i] = sum;

@@ -36,25 +36,13 @@ fn failure() -> EvaluationFailure {
 }
 
 impl<N: Nlp> Nlp for Faulty<N> {
-    fn variables(&self) -> usize {
-        self.inner.variables()
-    }
-
-    fn constraints(&self) -> usize {
-        self.inner.constraints()
-    }
-
-    fn variable_bounds(&self) -> (Vec<f64>, Vec<f64>) {
-        self.inner.variable_bounds()
-    }
-
-    fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>) {
-        self.inner.constraint_bounds()
-    }
-
-    fn start(&self) -> Vec<f64> {
-        self.inner.start()
-    }
+    crate::problems::inner!(
+        variables,
+        constraints,
+        variable_bounds,
+        constraint_bounds,
+        start
+    );
 
     fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
         let mut values = self.inner.evaluate(x)?;

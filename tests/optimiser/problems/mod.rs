@@ -1,5 +1,46 @@
 //! Test problems with known optima.
 
+/// Methods of [`flexbody::optimiser::Nlp`] that the field `inner` answers.
+macro_rules! inner {
+    ($($method:ident),*) => { $($crate::problems::inner!(@ $method);)* };
+    (@ variables) => {
+        fn variables(&self) -> usize {
+            self.inner.variables()
+        }
+    };
+    (@ constraints) => {
+        fn constraints(&self) -> usize {
+            self.inner.constraints()
+        }
+    };
+    (@ variable_bounds) => {
+        fn variable_bounds(&self) -> (Vec<f64>, Vec<f64>) {
+            self.inner.variable_bounds()
+        }
+    };
+    (@ constraint_bounds) => {
+        fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>) {
+            self.inner.constraint_bounds()
+        }
+    };
+    (@ start) => {
+        fn start(&self) -> Vec<f64> {
+            self.inner.start()
+        }
+    };
+    (@ evaluate) => {
+        fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
+            self.inner.evaluate(x)
+        }
+    };
+    (@ gradients) => {
+        fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
+            self.inner.gradients(x)
+        }
+    };
+}
+pub(crate) use inner;
+
 pub mod allowed;
 pub mod collected;
 pub mod dual;

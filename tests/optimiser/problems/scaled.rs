@@ -10,25 +10,13 @@ pub struct Scaled {
 }
 
 impl Nlp for Scaled {
-    fn variables(&self) -> usize {
-        self.inner.variables()
-    }
-
-    fn constraints(&self) -> usize {
-        self.inner.constraints()
-    }
-
-    fn variable_bounds(&self) -> (Vec<f64>, Vec<f64>) {
-        self.inner.variable_bounds()
-    }
-
-    fn constraint_bounds(&self) -> (Vec<f64>, Vec<f64>) {
-        self.inner.constraint_bounds()
-    }
-
-    fn start(&self) -> Vec<f64> {
-        self.inner.start()
-    }
+    crate::problems::inner!(
+        variables,
+        constraints,
+        variable_bounds,
+        constraint_bounds,
+        start
+    );
 
     fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
         let mut found = self.inner.evaluate(x)?;
