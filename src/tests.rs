@@ -5,6 +5,8 @@
 mod dynamics;
 #[path = "../tests/files/mod.rs"]
 mod files;
+#[path = "../tests/optimiser/filter.rs"]
+mod filter;
 #[path = "../tests/reference/numbers.rs"]
 mod numbers;
 #[path = "../tests/reference/mod.rs"]

@@ -67,6 +67,7 @@ impl Case {
         let gave_up = matches!(
             outcome.status,
             Status::Stalled
+                | Status::Inconsistent { .. }
                 | Status::AtPrecision
                 | Status::IterationLimit
                 | Status::EvaluationLimit

@@ -37,6 +37,10 @@ fn verdict(status: &Status) -> (&'static str, String) {
             "undefined_start",
             format!("the start cannot be evaluated: {what}"),
         ),
+        Status::Inconsistent { what } => {
+            let text = format!("values and gradients disagree: {what}");
+            ("inconsistent", text)
+        }
         Status::Stalled => (
             "stalled",
             "no further progress; the best design that was found is kept".into(),

@@ -18,6 +18,17 @@ use super::verdict::{
 /// within it.
 const NEARBY: f64 = 1e-6;
 
+/// What evaluations near a final iterate say of a claim that it solves the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Claim {
+    /// Nothing: the residuals decide.
+    Untested,
+    /// The conditions hold in the units of the user and no descent was found nearby.
+    Confirmed,
+    /// The residuals mean nothing here.
+    Refuted,
+}
+
 /// The final iterate of a method.
 pub(super) struct FinalIterate {
     pub status: Status,
@@ -25,8 +36,7 @@ pub(super) struct FinalIterate {
     pub slopes: Derivatives,
     pub multipliers: ScaledMultipliers,
     pub scaled: f64,
-    /// Whether the conditions hold in the units of the user and no descent was found nearby.
-    pub confirmed: bool,
+    pub claim: Claim,
     /// The units of these numbers.
     pub units: Units,
     pub b: QuasiNewton,
@@ -101,8 +111,9 @@ impl FinalIterate {
         let precise = is_at_precision(program, point, slopes, z, &mut self.b);
         let holds = absolute && (kkt.relative_complementarity <= tolerance || precise && vanish);
         if (holds || precise) && !self.falls_nearby(program) {
-            self.confirmed = holds;
-            if !holds {
+            if holds {
+                self.claim = Claim::Confirmed;
+            } else {
                 self.status = Status::AtPrecision;
             }
         }
@@ -132,14 +143,12 @@ impl FinalIterate {
 
     /// Whether the conditions hold, whatever the status of the method.
     pub(crate) fn is_solved(&self, program: &Program<'_>) -> bool {
-        self.confirmed
-            || is_solved_at_end(
-                program,
-                &self.point,
-                &self.slopes,
-                &self.multipliers,
-                self.scaled,
-            )
+        let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
+        match self.claim {
+            Claim::Confirmed => true,
+            Claim::Refuted => false,
+            Claim::Untested => is_solved_at_end(program, point, slopes, z, self.scaled),
+        }
     }
 }
 
@@ -196,52 +205,6 @@ pub(super) fn best_of(program: &mut Program<'_>, finish: FinalIterate) -> FinalI
     }
 }
 
-/// Distance from the first point, relative to its size, beyond which a solution is doubted, and how
-/// often this distance is then doubled.
-const DOUBTFUL: f64 = 1e4;
-const DOUBLINGS: i32 = 6;
-
-/// A solution very far from the first point becomes [`Status::Unbounded`] if the objective falls on
-/// whenever the distance is doubled, each time by at least half of the first fall.
-pub(super) fn unless_it_falls(program: &mut Program<'_>, mut finish: FinalIterate) -> FinalIterate {
-    let Some((first, _)) = program.first.clone() else {
-        return finish;
-    };
-    let mut way = &finish.point.x - &first;
-    let length = way.amax();
-    let doubtful = length > DOUBTFUL * first.amax().max(1.0);
-    let solved = finish.status == Status::Converged || finish.is_solved(program);
-    if !doubtful || !solved {
-        return finish;
-    }
-    // Only the variables that went far go on.
-    way.iter_mut()
-        .filter(|v| v.abs() <= length / DOUBTFUL)
-        .for_each(|v| *v = 0.0);
-    let unit = finish.point.f.abs().max(program.scaling.objective);
-    let mut least = program.options.tolerance * unit;
-    let mut f = finish.point.f;
-    for k in 1..=DOUBLINGS {
-        let x = &finish.point.x + &way * (2.0_f64.powi(k) - 1.0);
-        let x = DVector::from_fn(x.len(), |i, _| {
-            x[i].clamp(program.lower[i], program.upper[i])
-        });
-        let Ok(next) = program.evaluate(&x) else {
-            return finish;
-        };
-        let fall = f - next.f;
-        if fall <= least || !program.is_feasible(&next.c) {
-            return finish;
-        }
-        if k == 1 {
-            least = least.max(0.5 * fall);
-        }
-        f = next.f;
-    }
-    finish.status = Status::Unbounded;
-    finish
-}
-
 /// The outcome if all variables are fixed.
 pub(super) fn without_freedom(
     program: &Program<'_>,
@@ -273,7 +236,7 @@ pub(super) fn unfinished(program: &Program<'_>, point: Point, slopes: Derivative
         status: Status::Interrupted,
         b: QuasiNewton::new(point.x.len(), options.dense_limit, options.memory),
         scaled: scaled_residual(program, &point, &slopes, &multipliers),
-        confirmed: false,
+        claim: Claim::Untested,
         units: program.units(),
         multipliers,
         point,

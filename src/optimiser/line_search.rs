@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::direction::{Direction, NewtonSystem};
-use super::filter::{Filter, MARGIN};
+use super::filter::{Filter, MARGIN, Measure, SLOPE_POWER, THETA_POWER};
 use super::iterate::{Iterate, Layout};
 use super::program::{Derivatives, EarlyExit, Point, Program};
 use super::quasi_newton::QuasiNewton;
@@ -28,10 +28,6 @@ const SHORTEST: f64 = 0.1;
 const UNDEFINED: f64 = 0.5;
 const FORESEEN: i32 = 16;
 
-const ARMIJO: f64 = 1e-4;
-/// Exponents of the switching condition, of the directional derivative and of the infeasibility.
-const SLOPE_POWER: f64 = 2.3;
-const THETA_POWER: f64 = 1.1;
 /// The search ends below this share of the least sensible step.
 const LEAST_STEP: f64 = 0.05;
 /// Second-order corrections tried, and the factor by which each must reduce the infeasibility.
@@ -83,12 +79,6 @@ enum Trial {
     Undefined,
 }
 
-struct Measure {
-    theta: f64,
-    phi: f64,
-    slope: f64,
-}
-
 impl LineSearch<'_> {
     /// Searches along `direction`; `None` if the step becomes too small. The filter is augmented
     /// when a step is accepted for its feasibility.
@@ -109,6 +99,7 @@ impl LineSearch<'_> {
                 self.mu,
             ),
             slope: self.slope(&direction),
+            theta_small: self.theta_small,
         };
         let room = LONGEST * self.at.point.x.amax().max(1.0);
         let cap = room / direction.x.amax().max(f64::MIN_POSITIVE);
@@ -142,7 +133,8 @@ impl LineSearch<'_> {
                 return Ok(None);
             }
             trials += 1;
-            let trial = self.attempt(program, filter, &here, &direction, alpha, alpha)?;
+            let lengths = (alpha, alpha);
+            let trial = self.attempt(program, filter, &here, &direction, lengths)?;
             let mut last = None;
             if let Trial::Refused {
                 theta, phi, point, ..
@@ -155,9 +147,15 @@ impl LineSearch<'_> {
             }
             match trial {
                 Trial::Accepted(found) => {
-                    return Ok(Some(
-                        self.accept(filter, &here, direction, *found, alpha, trials),
-                    ));
+                    let (point, slopes, s) = *found;
+                    return Ok(Some(Accepted {
+                        point,
+                        slopes,
+                        s,
+                        alpha,
+                        direction,
+                        trials,
+                    }));
                 }
                 Trial::Refused { theta, c, .. } if trials == 1 && theta >= here.theta => {
                     let start = (alpha, theta, c);
@@ -262,15 +260,16 @@ impl LineSearch<'_> {
         LEAST_STEP * least
     }
 
-    /// Evaluates the point at `alpha`; the tests use `alpha_test`, which differs in corrections.
+    /// Evaluates the point at `alpha` and, if the tests accept it, its gradients. The tests use
+    /// `alpha_test`: for a correction that is the length of the refused step (Wächter & Biegler 2006,
+    /// steps ).
     fn attempt(
         &self,
         program: &mut Program<'_>,
-        filter: &Filter,
+        filter: &mut Filter,
         here: &Measure,
         direction: &Direction,
-        alpha: f64,
-        alpha_test: f64,
+        (alpha, alpha_test): (f64, f64),
     ) -> Result<Trial, EarlyExit> {
         let x = &self.at.point.x + &direction.x * alpha;
         let s = &self.at.s + &direction.s * alpha;
@@ -285,7 +284,7 @@ impl LineSearch<'_> {
         if !phi.is_finite() {
             return Ok(Trial::Undefined);
         }
-        if !(self.is_acceptable(here, theta, phi, alpha_test) && filter.accepts(theta, phi)) {
+        if !(here.accepts(theta, phi, alpha_test) && filter.accepts(theta, phi)) {
             return Ok(Trial::Refused {
                 theta,
                 phi,
@@ -294,45 +293,12 @@ impl LineSearch<'_> {
             });
         }
         match program.gradients(&x) {
-            Ok(slopes) => Ok(Trial::Accepted(Box::new((point, slopes, s)))),
+            Ok(slopes) => {
+                filter.leave(here, alpha_test);
+                Ok(Trial::Accepted(Box::new((point, slopes, s))))
+            }
             Err(EarlyExit::Failed(_)) => Ok(Trial::Undefined),
             Err(halt) => Err(halt),
-        }
-    }
-
-    fn is_acceptable(&self, here: &Measure, theta: f64, phi: f64, alpha: f64) -> bool {
-        let rounding = 10.0 * f64::EPSILON * here.phi.abs();
-        if self.decides_by_objective(here, alpha) {
-            return phi - here.phi - rounding <= ARMIJO * alpha * here.slope;
-        }
-        theta <= (1.0 - MARGIN) * here.theta || phi - rounding <= here.phi - MARGIN * here.theta
-    }
-
-    fn decides_by_objective(&self, here: &Measure, alpha: f64) -> bool {
-        here.slope < 0.0
-            && here.theta <= self.theta_small
-            && alpha * (-here.slope).powf(SLOPE_POWER) > here.theta.powf(THETA_POWER)
-    }
-
-    fn accept(
-        &self,
-        filter: &mut Filter,
-        here: &Measure,
-        direction: Direction,
-        (point, slopes, s): (Point, Derivatives, DVector<f64>),
-        alpha: f64,
-        trials: usize,
-    ) -> Accepted {
-        if !self.decides_by_objective(here, alpha) {
-            filter.add(here.theta, here.phi);
-        }
-        Accepted {
-            point,
-            slopes,
-            s,
-            alpha,
-            direction,
-            trials,
         }
     }
 
@@ -356,11 +322,18 @@ impl LineSearch<'_> {
             }
             alpha = direction.primal_limit(self.at, self.layout, self.tau);
             *trials += 1;
-            match self.attempt(program, filter, here, &direction, alpha, alpha_test)? {
+            let lengths = (alpha, alpha_test);
+            match self.attempt(program, filter, here, &direction, lengths)? {
                 Trial::Accepted(found) => {
-                    return Ok(Some(
-                        self.accept(filter, here, direction, *found, alpha, *trials),
-                    ));
+                    let (point, slopes, s) = *found;
+                    return Ok(Some(Accepted {
+                        point,
+                        slopes,
+                        s,
+                        alpha,
+                        direction,
+                        trials: *trials,
+                    }));
                 }
                 Trial::Refused { theta, c: next, .. } if theta <= CORRECTION_GAIN * last => {
                     last = theta;

@@ -3,6 +3,7 @@
 mod barrier;
 mod derivatives;
 mod direction;
+mod doubts;
 mod elastic_qp;
 mod ending;
 mod feasibility;
@@ -34,6 +35,9 @@ mod steering;
 mod trust_region;
 mod verdict;
 mod well_posed;
+
+#[cfg(test)]
+pub(crate) use filter::{Filter, Measure};
 
 pub use derivatives::{DerivativeError, derivative_errors};
 pub use functions::Functions;

@@ -37,6 +37,11 @@ pub enum Status {
         /// Which function, and why.
         what: String,
     },
+    /// Values and gradients disagree where the run could not go on.
+    Inconsistent {
+        /// Which function, and its slopes by values and by gradients.
+        what: String,
+    },
     /// No step makes progress although the conditions are violated. The best point is returned.
     Stalled,
     /// The limit of iterations was reached.

@@ -2,8 +2,9 @@
 
 use nalgebra::DVector;
 
+use super::doubts::doubted;
 use super::ending::{
-    FinalIterate, best_of, outcome, state_of, status_of, unfinished, unless_it_falls, untried,
+    Claim, FinalIterate, best_of, outcome, state_of, status_of, unfinished, untried,
     without_freedom, without_values,
 };
 use super::interior_point::InteriorPoint;
@@ -163,7 +164,7 @@ fn run(
     };
     let state = state_of(&program, &finish);
     let finish = best_of(&mut program, finish);
-    let finish = unless_it_falls(&mut program, finish);
+    let finish = doubted(&mut program, finish);
     outcome(&program, finish, state)
 }
 
@@ -251,7 +252,8 @@ fn auto(
                 | Status::AtPrecision
                 | Status::Infeasible { .. }
         );
-        if !hopeless || kept.is_solved(program) {
+        let large = program.free.len() > well_posed::LARGEST_TRUST_REGION;
+        if !hopeless || large || kept.is_solved(program) {
             break;
         }
         // At the best point the rows cannot be improved.
@@ -355,7 +357,7 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
         status,
         multipliers,
         scaled,
-        confirmed: false,
+        claim: Claim::Untested,
         units: program.units(),
         point,
         slopes,
@@ -408,7 +410,7 @@ fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> Fi
         status,
         multipliers: method.multipliers(program),
         scaled: method.optimality(program),
-        confirmed: false,
+        claim: Claim::Untested,
         units: program.units(),
         point: method.point,
         slopes: method.slopes,

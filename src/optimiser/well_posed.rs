@@ -1,14 +1,25 @@
 //! Faults of a program or of the options that are found before any evaluation.
 
 use super::nlp::Nlp;
-use super::options::Options;
+use super::options::{Method, Options};
 use super::outcome::Status;
+
+/// Largest number of variables for the trust region. Above it the subproblems take much longer than
+/// the iterations of the interior point.
+pub(super) const LARGEST_TRUST_REGION: usize = 2000;
 
 /// Status of a run on `nlp` that cannot begin. `None` if the program and the options make sense.
 pub(super) fn fault(nlp: &dyn Nlp, options: &Options) -> Option<Status> {
     let ill_posed = |what| Some(Status::IllPosed { what });
     if let Some(what) = fault_of_options(options).or_else(|| fault_of_lengths(nlp)) {
         return ill_posed(what);
+    }
+    let n = nlp.variables();
+    if options.method == Method::TrustRegion && n > LARGEST_TRUST_REGION {
+        return ill_posed(format!(
+            "the trust region is meant for at most {LARGEST_TRUST_REGION} variables and the \
+             program has {n}; use the interior point"
+        ));
     }
     let start = nlp.start();
     if let Some(i) = start.iter().position(|v| !v.is_finite()) {

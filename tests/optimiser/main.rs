@@ -1,6 +1,7 @@
 //! The optimiser on programs with known optima.
 
 mod derivatives;
+mod disagree;
 mod endings;
 mod far_starts;
 mod feasibility;

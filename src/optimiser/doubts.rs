@@ -1,0 +1,182 @@
+//! Checks of a run's end by further evaluations: a solution that is none, gradients that are wrong.
+
+use nalgebra::DVector;
+
+use super::ending::{Claim, FinalIterate};
+use super::outcome::Status;
+use super::program::{Point, Program};
+use super::verdict::user_multipliers;
+
+/// Distance from the first point, relative to its size, beyond which a solution is doubted, and how
+/// often this distance is then doubled.
+const DOUBTFUL: f64 = 1e4;
+const DOUBLINGS: i32 = 6;
+
+/// A solution very far from the first point becomes [`Status::Unbounded`] if the objective falls on
+/// whenever the distance is doubled, each time by at least half of the first fall.
+fn unless_it_falls(program: &mut Program<'_>, mut finish: FinalIterate) -> FinalIterate {
+    let Some((first, _)) = program.first.clone() else {
+        return finish;
+    };
+    let mut way = &finish.point.x - &first;
+    let length = way.amax();
+    let doubtful = length > DOUBTFUL * first.amax().max(1.0);
+    let solved = finish.status == Status::Converged || finish.is_solved(program);
+    if !doubtful || !solved {
+        return finish;
+    }
+    // Only the variables that went far go on.
+    way.iter_mut()
+        .filter(|v| v.abs() <= length / DOUBTFUL)
+        .for_each(|v| *v = 0.0);
+    let unit = finish.point.f.abs().max(program.scaling.objective);
+    let mut least = program.options.tolerance * unit;
+    let mut f = finish.point.f;
+    for k in 1..=DOUBLINGS {
+        let x = &finish.point.x + &way * (2.0_f64.powi(k) - 1.0);
+        let x = DVector::from_fn(x.len(), |i, _| {
+            x[i].clamp(program.lower[i], program.upper[i])
+        });
+        let Ok(next) = program.evaluate(&x) else {
+            return finish;
+        };
+        let fall = f - next.f;
+        if fall <= least || !program.is_feasible(&next.c) {
+            return finish;
+        }
+        if k == 1 {
+            least = least.max(0.5 * fall);
+        }
+        f = next.f;
+    }
+    finish.status = Status::Unbounded;
+    finish
+}
+
+/// Distance of the points near a final iterate, relative to max(1, ‖x‖∞).
+const NEARBY: f64 = 1e-6;
+
+/// Share of a derivative by which it must differ from a difference to be doubted.
+const DOUBTED: f64 = 0.5;
+
+/// A solution is no solution if the multiplier of a row is huge and the derivative of this row
+/// changes by its own size nearby. Then the derivative vanishes, as that of x² = 0 does at x = 0,
+/// and no multipliers exist. A multiplier is huge if a violation within the tolerance changes the
+/// objective by its own size.
+fn unless_multipliers_fail(program: &mut Program<'_>, mut finish: FinalIterate) -> FinalIterate {
+    if !(finish.status == Status::Converged || finish.is_solved(program)) {
+        return finish;
+    }
+    let y = user_multipliers(program, &finish.slopes, &finish.multipliers).constraints;
+    let rows = 0..program.rows.len();
+    let steep = |k: &usize| y[program.rows[*k]].abs();
+    let Some(k) = rows.max_by(|a, b| steep(a).total_cmp(&steep(b))) else {
+        return finish;
+    };
+    let f = (finish.point.f / program.scaling.objective).abs().max(1.0);
+    if steep(&k) * program.options.constraint_tolerance <= f {
+        return finish;
+    }
+    let x = &finish.point.x;
+    let length = NEARBY * x.amax().max(1.0);
+    let mut moved = x.clone();
+    for (i, slope) in finish.slopes.a.row(k) {
+        moved[i] = (x[i] + length * slope.signum()).clamp(program.lower[i], program.upper[i]);
+    }
+    let expected = finish.slopes.a.row_dot(k, &(&moved - x));
+    let Ok(trial) = program.evaluate(&moved) else {
+        return finish;
+    };
+    let change = trial.c[k] - finish.point.c[k];
+    let rounding = 10.0 * f64::EPSILON * trial.c[k].abs().max(finish.point.c[k].abs());
+    if (change - expected).abs() > DOUBTED * expected.abs() + rounding {
+        finish.claim = Claim::Refuted;
+        finish.status = Status::Stalled;
+    }
+    finish
+}
+
+/// Steps of the differences that test derivatives, relative to max(1, ‖x‖∞).
+const STEPS: [f64; 2] = [1e-4, 1e-5];
+
+/// Differences by different steps agree to this share of their distance to the derivative.
+const AGREE: f64 = 0.1;
+
+/// A run without a solution becomes [`Status::Inconsistent`] if the derivative of a function along
+/// one direction differs from its central differences. These must agree for two steps, and the
+/// differences to either side must come nearer to each other with the step: then the function is
+/// smooth here.
+fn unless_gradients_are_wrong(program: &mut Program<'_>, mut finish: FinalIterate) -> FinalIterate {
+    let undecided = matches!(
+        finish.status,
+        Status::Stalled | Status::AtPrecision | Status::IterationLimit | Status::Infeasible { .. }
+    );
+    if !undecided || finish.claim == Claim::Refuted || finish.is_solved(program) {
+        return finish;
+    }
+    let at = &finish.point;
+    let size = at.x.amax().max(1.0);
+    let direction = DVector::from_fn(at.x.len(), |i, _| {
+        let room = (at.x[i] - program.lower[i]).min(program.upper[i] - at.x[i]);
+        // Weyl sequence: no derivative has a zero share.
+        let phase = ((i + 1) as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        if room > 2.0 * STEPS[0] * size {
+            phase.signum() * (0.5 + phase.abs())
+        } else {
+            0.0
+        }
+    });
+    let mut differences: Vec<[Point; 2]> = Vec::new();
+    for step in STEPS {
+        let length = step * size;
+        let ahead = program.evaluate(&(&at.x + &direction * length));
+        let behind = program.evaluate(&(&at.x - &direction * length));
+        let (Ok(ahead), Ok(behind)) = (ahead, behind) else {
+            return finish;
+        };
+        differences.push([ahead, behind]);
+    }
+    let disagrees = |value: &dyn Fn(&Point) -> f64, slope: f64| {
+        let here = value(at);
+        let of = |k: usize| {
+            let (length, [ahead, behind]) = (STEPS[k] * size, &differences[k]);
+            let (ahead, behind) = (value(ahead), value(behind));
+            let bend = (ahead - here) - (here - behind);
+            (0.5 * (ahead - behind) / length, (bend / length).abs())
+        };
+        let ((coarse, coarse_bend), (fine, fine_bend)) = (of(0), of(1));
+        let gap = (fine - slope).abs();
+        let rounding = 1e3 * f64::EPSILON * here.abs() / (STEPS[1] * size);
+        let wrong = gap > AGREE * fine.abs().max(slope.abs()) && gap > rounding;
+        let smooth = fine_bend <= 0.5 * coarse_bend + rounding;
+        (wrong && smooth && (coarse - fine).abs() <= AGREE * gap).then_some(fine)
+    };
+    let unit = program.scaling.objective;
+    let slope = finish.slopes.g.dot(&direction);
+    let objective =
+        disagrees(&|p| p.f, slope).map(|fine| ("the objective".into(), slope / unit, fine / unit));
+    let row = |k: usize| {
+        let j = program.rows[k];
+        let (unit, slope) = (
+            program.scaling.constraints[j],
+            finish.slopes.a.row_dot(k, &direction),
+        );
+        let fine = disagrees(&|p| p.c[k], slope)?;
+        Some((program.constraint_name(j), slope / unit, fine / unit))
+    };
+    let found = objective.or_else(|| (0..program.rows.len()).find_map(row));
+    if let Some((name, slope, fine)) = found {
+        let what = format!(
+            "along one direction the slope of {name} is {fine:.4e} by values and {slope:.4e} by gradients"
+        );
+        finish.status = Status::Inconsistent { what };
+    }
+    finish
+}
+
+/// The final iterate after all checks.
+pub(super) fn doubted(program: &mut Program<'_>, finish: FinalIterate) -> FinalIterate {
+    let finish = unless_it_falls(program, finish);
+    let finish = unless_multipliers_fail(program, finish);
+    unless_gradients_are_wrong(program, finish)
+}
