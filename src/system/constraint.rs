@@ -19,87 +19,32 @@
 
 use super::frame_motion::FrameMotion;
 use super::marker::{self, MarkerKinematics};
+use super::rows::{Markers, MarkersUsed, Rows};
 use super::side::JointSide;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, JointFrame};
 use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
 
 /// The markers of the rows of a joint; each is evaluated once.
-struct Markers<S> {
-    distance: MarkerKinematics<S>,
-    axes_a: [MarkerKinematics<S>; 3],
-    axes_b: [MarkerKinematics<S>; 3],
+fn markers<S: Scalar>(used: &MarkersUsed, a: &JointSide<S>, b: &JointSide<S>) -> Markers<S, 3> {
+    let distance = || a.point_jet().minus(&b.point_jet());
+    Markers::of(used, distance, |i| a.axis_jet(i), |i| b.axis_jet(i))
 }
 
-impl<S: Scalar> Markers<S> {
-    fn of(rows: impl Iterator<Item = ConstraintRow>, a: &JointSide<S>, b: &JointSide<S>) -> Self {
-        let used = MarkersUsed::by(rows);
-        let axis = |side: &JointSide<S>, used: bool, i: usize| match used {
-            true => side.axis_jet(i),
-            false => MarkerKinematics::zero(),
-        };
-        Self {
-            distance: match used.points {
-                true => a.point_jet().minus(&b.point_jet()),
-                false => MarkerKinematics::zero(),
-            },
-            axes_a: std::array::from_fn(|i| axis(a, used.axes_a[i], i)),
-            axes_b: std::array::from_fn(|i| axis(b, used.axes_b[i], i)),
-        }
-    }
-
-    /// The vectors u, w and the factor of a row: its derivatives are those of factor · u · w.
-    /// `length` is the length of the rod.
-    fn factors(
-        &self,
-        row: ConstraintRow,
-        length: S,
-    ) -> (MarkerKinematics<S>, MarkerKinematics<S>, S) {
-        let one = S::one();
-        match row {
-            Coincident(k) => (MarkerKinematics::fixed(unit(k)), self.distance, one),
-            Perpendicular { a, b } => (self.axes_a[a], self.axes_b[b], one),
-            Sliding { a } => (self.axes_a[a], self.distance, one),
-            Distance => (self.distance, self.distance, S::from(0.5) / length),
-        }
-    }
-}
-
-/// The markers that the rows of a joint need.
-struct MarkersUsed {
-    points: bool,
-    axes_a: [bool; 3],
-    axes_b: [bool; 3],
-}
-
-impl MarkersUsed {
-    fn by(rows: impl Iterator<Item = ConstraintRow>) -> Self {
-        let mut used = Self {
-            points: false,
-            axes_a: [false; 3],
-            axes_b: [false; 3],
-        };
-        for row in rows {
-            match row {
-                Coincident(_) | Distance => used.points = true,
-                Perpendicular { a, b } => {
-                    used.axes_a[a] = true;
-                    used.axes_b[b] = true;
-                }
-                Sliding { a } => {
-                    used.points = true;
-                    used.axes_a[a] = true;
-                }
-            }
-        }
-        used
-    }
-}
-
-fn unit<S: Scalar>(k: usize) -> Vec3<S> {
-    let mut unit = Vec3::zeros();
-    unit[k] = S::one();
-    unit
+/// Calls `on_rows` with the rows of a joint and their markers.
+fn with_rows<S: Scalar, R: Iterator<Item = ConstraintRow> + Clone, T>(
+    rows: R,
+    (a, b): (&JointSide<S>, &JointSide<S>),
+    on_rows: impl FnOnce(&MarkersUsed, &Rows<S, R, 3>) -> T,
+) -> T {
+    let used = MarkersUsed::by(rows.clone());
+    let rows = Rows {
+        rows,
+        markers: &markers(&used, a, b),
+        length: a.frame.length,
+        ground: &[Vec3::x(), Vec3::y(), Vec3::z()],
+    };
+    on_rows(&used, &rows)
 }
 
 /// Value Φ of a row.
@@ -129,11 +74,7 @@ pub(crate) fn rates<S: Scalar>(
     b: &JointSide<S>,
     out: &mut [S],
 ) {
-    let markers = Markers::of(rows.clone(), a, b);
-    for (row, out) in rows.zip(out) {
-        let (u, w, scale) = markers.factors(row, a.frame.length);
-        *out = (u.rate.dot(&w.x) + u.x.dot(&w.rate)) * scale;
-    }
+    with_rows(rows, (a, b), |_, rows| rows.rates(out));
 }
 
 /// Second derivatives Φ̈ of the rows of a joint at the accelerations of the motions. If these are
@@ -144,17 +85,7 @@ pub(crate) fn accelerations<S: Scalar>(
     b: &JointSide<S>,
     out: &mut [S],
 ) {
-    let markers = Markers::of(rows.clone(), a, b);
-    for (row, out) in rows.zip(out) {
-        let (u, w, scale) = markers.factors(row, a.frame.length);
-        *out = match row {
-            Coincident(k) => w.acceleration[k],
-            Perpendicular { .. } | Sliding { .. } | Distance => {
-                let ends = u.acceleration.dot(&w.x) + u.x.dot(&w.acceleration);
-                (ends + u.rate.dot(&w.rate) * 2.0) * scale
-            }
-        };
-    }
+    with_rows(rows, (a, b), |_, rows| rows.accelerations(out));
 }
 
 /// One row of G: the derivatives of the rate in the velocities of both bodies.
@@ -314,67 +245,24 @@ pub(crate) fn pull_back<S: Scalar>(
     a: &JointSide<S>,
     b: &JointSide<S>,
 ) -> (SideCotangent<S>, SideCotangent<S>) {
-    let markers = Markers::of(rows.clone(), a, b);
-    let mut by_distance = MarkerKinematics::zero();
-    let mut by_axes_a = [MarkerKinematics::zero(); 3];
-    let mut by_axes_b = [MarkerKinematics::zero(); 3];
-    let mut by_length = S::zero();
-    for (i, row) in rows.clone().enumerate() {
-        let cot = cot(i);
-        // Φ = u·w and its time derivatives are symmetric in u and w.
-        let by = |other: &MarkerKinematics<S>| MarkerKinematics {
-            x: other.x * cot.value
-                + other.rate * cot.rate
-                + other.acceleration * cot.acceleration
-                + other.virtual_rate * cot.virtual_rate,
-            rate: other.x * cot.rate + other.rate * (cot.acceleration * 2.0),
-            acceleration: other.x * cot.acceleration,
-            virtual_rate: other.x * cot.virtual_rate,
-        };
-        match row {
-            Coincident(k) => {
-                by_distance.x[k] += cot.value;
-                by_distance.rate[k] += cot.rate;
-                by_distance.acceleration[k] += cot.acceleration;
-                by_distance.virtual_rate[k] += cot.virtual_rate;
+    with_rows(rows, (a, b), |used, rows| {
+        let (by, by_length) = rows.pull_back(cot);
+        let (mut out_a, mut out_b) = (SideCotangent::of(a), SideCotangent::of(b));
+        out_a.frame.length = by_length;
+        if used.points {
+            pull_point(a, &by.distance, &mut out_a);
+            pull_point(b, &MarkerKinematics::zero().minus(&by.distance), &mut out_b);
+        }
+        for i in 0..3 {
+            if used.axes_a[i] {
+                pull_axis(a, i, &by.axes_a[i], &mut out_a);
             }
-            Perpendicular { a: i, b: j } => {
-                by_axes_a[i].add(&by(&markers.axes_b[j]));
-                by_axes_b[j].add(&by(&markers.axes_a[i]));
-            }
-            Sliding { a: i } => {
-                by_axes_a[i].add(&by(&markers.distance));
-                by_distance.add(&by(&markers.axes_a[i]));
-            }
-            Distance => {
-                // d · d / (2 L): both factors are d; Φ has the additional term −L / 2.
-                let length = a.frame.length;
-                let d = &markers.distance;
-                by_distance.add(&by(d).scaled(S::one() / length));
-                let squares = d.x.dot(&d.x) * 0.5 * cot.value
-                    + d.x.dot(&d.rate) * cot.rate
-                    + (d.x.dot(&d.acceleration) + d.rate.dot(&d.rate)) * cot.acceleration
-                    + d.x.dot(&d.virtual_rate) * cot.virtual_rate;
-                by_length -= squares / (length * length) + cot.value * 0.5;
+            if used.axes_b[i] {
+                pull_axis(b, i, &by.axes_b[i], &mut out_b);
             }
         }
-    }
-    let used = MarkersUsed::by(rows);
-    let (mut out_a, mut out_b) = (SideCotangent::of(a), SideCotangent::of(b));
-    out_a.frame.length = by_length;
-    if used.points {
-        pull_point(a, &by_distance, &mut out_a);
-        pull_point(b, &MarkerKinematics::zero().minus(&by_distance), &mut out_b);
-    }
-    for i in 0..3 {
-        if used.axes_a[i] {
-            pull_axis(a, i, &by_axes_a[i], &mut out_a);
-        }
-        if used.axes_b[i] {
-            pull_axis(b, i, &by_axes_b[i], &mut out_b);
-        }
-    }
-    (out_a, out_b)
+        (out_a, out_b)
+    })
 }
 
 /// Cotangents of a row's value, rate, second derivative and virtual rate.

@@ -9,18 +9,20 @@
 
 use super::bodies::BodyMotion;
 use crate::math::{Scalar, Vec3};
+use nalgebra::SVector;
 
-/// Value, velocity, acceleration and virtual velocity of a marker, in ground axes.
+/// Value, velocity, acceleration and virtual velocity of a marker: components along the ground axes,
+/// or along D = 2 directions of a plane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct MarkerKinematics<S> {
+pub(crate) struct MarkerKinematics<S, const D: usize = 3> {
     /// Value.
-    pub x: Vec3<S>,
+    pub x: SVector<S, D>,
     /// First derivative in time.
-    pub rate: Vec3<S>,
+    pub rate: SVector<S, D>,
     /// Second derivative in time, at the accelerations of the motion.
-    pub acceleration: Vec3<S>,
+    pub acceleration: SVector<S, D>,
     /// Rate at the virtual velocities of the motion.
-    pub virtual_rate: Vec3<S>,
+    pub virtual_rate: SVector<S, D>,
 }
 
 /// Motion of a marker's vector on its body, in the body's axes.
@@ -34,22 +36,52 @@ pub(crate) struct RelativeMotion<S> {
     pub virtual_rate: Vec3<S>,
 }
 
-impl<S: Scalar> MarkerKinematics<S> {
+impl<S: Scalar, const D: usize> MarkerKinematics<S, D> {
     /// A fixed marker at zero.
     pub(crate) fn zero() -> Self {
-        Self::fixed(Vec3::zeros())
+        Self::fixed(SVector::zeros())
     }
 
     /// A fixed marker.
-    pub(crate) fn fixed(x: Vec3<S>) -> Self {
+    pub(crate) fn fixed(x: SVector<S, D>) -> Self {
         Self {
             x,
-            rate: Vec3::zeros(),
-            acceleration: Vec3::zeros(),
-            virtual_rate: Vec3::zeros(),
+            rate: SVector::zeros(),
+            acceleration: SVector::zeros(),
+            virtual_rate: SVector::zeros(),
         }
     }
 
+    /// The difference of two markers.
+    pub(crate) fn minus(&self, other: &Self) -> Self {
+        MarkerKinematics {
+            x: self.x - other.x,
+            rate: self.rate - other.rate,
+            acceleration: self.acceleration - other.acceleration,
+            virtual_rate: self.virtual_rate - other.virtual_rate,
+        }
+    }
+
+    /// The marker times a number.
+    pub(crate) fn scaled(&self, scale: S) -> Self {
+        MarkerKinematics {
+            x: self.x * scale,
+            rate: self.rate * scale,
+            acceleration: self.acceleration * scale,
+            virtual_rate: self.virtual_rate * scale,
+        }
+    }
+
+    /// Adds another marker.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.x += other.x;
+        self.rate += other.rate;
+        self.acceleration += other.acceleration;
+        self.virtual_rate += other.virtual_rate;
+    }
+}
+
+impl<S: Scalar> MarkerKinematics<S> {
     /// The point at `s` from the centre of mass, in body axes.
     pub(crate) fn point(motion: &BodyMotion<S>, s: &Vec3<S>) -> Self {
         Self::moving_point(motion, s, None)
@@ -84,34 +116,6 @@ impl<S: Scalar> MarkerKinematics<S> {
         jet.acceleration += motion.acceleration;
         jet.virtual_rate += motion.virtual_velocity;
         jet
-    }
-
-    /// The difference of two markers.
-    pub(crate) fn minus(&self, other: &Self) -> Self {
-        MarkerKinematics {
-            x: self.x - other.x,
-            rate: self.rate - other.rate,
-            acceleration: self.acceleration - other.acceleration,
-            virtual_rate: self.virtual_rate - other.virtual_rate,
-        }
-    }
-
-    /// The marker times a number.
-    pub(crate) fn scaled(&self, scale: S) -> Self {
-        MarkerKinematics {
-            x: self.x * scale,
-            rate: self.rate * scale,
-            acceleration: self.acceleration * scale,
-            virtual_rate: self.virtual_rate * scale,
-        }
-    }
-
-    /// Adds another marker.
-    pub(crate) fn add(&mut self, other: &Self) {
-        self.x += other.x;
-        self.rate += other.rate;
-        self.acceleration += other.acceleration;
-        self.virtual_rate += other.virtual_rate;
     }
 }
 

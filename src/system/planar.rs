@@ -13,11 +13,15 @@
 
 use super::bodies::BodyMotion;
 use super::constraint::RowGradient;
+use super::marker::MarkerKinematics;
 use super::numbering::Numbering;
+use super::rows::{Markers, MarkersUsed, Rows};
 use crate::math::scalar::along;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Joint, JointFrame, Model};
 use nalgebra::Vector2;
+use std::iter::Copied;
+use std::slice::Iter;
 
 /// A vector in a plane.
 pub(super) type Vec2<S> = Vector2<S>;
@@ -54,8 +58,8 @@ pub(super) struct PlanarJoint<S> {
     /// Length of a rod \[m\].
     pub(super) length: S,
     pub(super) rows: Vec<ConstraintRow>,
-    /// Whether a row uses the distance of the points.
-    pub(super) points: bool,
+    /// The markers that the rows use.
+    pub(super) used: MarkersUsed,
 }
 
 /// Point and axes of a joint's frame, in the plane of its body.
@@ -79,14 +83,8 @@ pub(super) struct PlanarMotion<S> {
     pub(super) virtual_omega: S,
 }
 
-/// Value, velocity, acceleration and virtual velocity of a marker.
-#[derive(Clone, Copy)]
-pub(super) struct PlanarMarker<S> {
-    pub(super) x: Vec2<S>,
-    pub(super) rate: Vec2<S>,
-    pub(super) acceleration: Vec2<S>,
-    pub(super) virtual_rate: Vec2<S>,
-}
+/// A marker in the plane.
+pub(super) type PlanarMarker<S> = MarkerKinematics<S, 2>;
 
 impl BodyPlane {
     fn components<S: Scalar>(&self, x: &Vec3<S>) -> Vec2<S> {
@@ -154,26 +152,6 @@ impl<S: Scalar> PlanarMotion<S> {
     }
 }
 
-impl<S: Scalar> PlanarMarker<S> {
-    pub(super) fn zero() -> Self {
-        Self {
-            x: Vec2::zeros(),
-            rate: Vec2::zeros(),
-            acceleration: Vec2::zeros(),
-            virtual_rate: Vec2::zeros(),
-        }
-    }
-
-    fn minus(&self, other: &Self) -> Self {
-        Self {
-            x: self.x - other.x,
-            rate: self.rate - other.rate,
-            acceleration: self.acceleration - other.acceleration,
-            virtual_rate: self.virtual_rate - other.virtual_rate,
-        }
-    }
-}
-
 impl<S: Scalar> PlanarJoints<S> {
     /// The joints of `model`, if all its bodies move in one plane and no joint is driven.
     pub(crate) fn of(model: &Model<S>) -> Option<Self> {
@@ -197,15 +175,13 @@ impl<S: Scalar> PlanarJoints<S> {
         let joint = |joint: &Joint<S>| {
             let body_b = joint.body_b.unwrap_or(model.bodies.len());
             let rows: Vec<ConstraintRow> = joint.rows().collect();
-            let direction =
-                |row: &ConstraintRow| matches!(row, ConstraintRow::Perpendicular { .. });
             PlanarJoint {
                 body_a: joint.body_a,
                 body_b,
                 a: planes[joint.body_a].frame(&joint.frame_a),
                 b: planes[body_b].frame(&joint.frame_b),
                 length: joint.frame_a.length,
-                points: !rows.iter().all(direction),
+                used: MarkersUsed::by(rows.iter().copied()),
                 rows,
             }
         };
@@ -321,50 +297,29 @@ impl<S: Scalar> PlanarJoints<S> {
     /// Second derivatives Φ̈ at the accelerations set last. If these are zero, they are the biases.
     pub(crate) fn accelerations(&self, numbering: &Numbering, out: &mut [S]) {
         for (j, joint) in self.joints.iter().enumerate() {
-            let d = self.distance(joint);
-            for (out, &row) in out[numbering.rows(j)].iter_mut().zip(&joint.rows) {
-                let (u, w, scale) = match row {
-                    ConstraintRow::Coincident(k) => {
-                        *out = self.ground_axis(k).dot(&d.acceleration);
-                        continue;
-                    }
-                    ConstraintRow::Perpendicular { a, b } => {
-                        let (u, w) = self.axes(joint, a, b);
-                        (u, w, S::one())
-                    }
-                    ConstraintRow::Sliding { a } => {
-                        let u = self.motions[joint.body_a].direction(&joint.a.axes[a]);
-                        (u, d, S::one())
-                    }
-                    ConstraintRow::Distance => (d, d, S::from(0.5) / joint.length),
-                };
-                let ends = u.acceleration.dot(&w.x) + u.x.dot(&w.acceleration);
-                *out = (ends + u.rate.dot(&w.rate) * 2.0) * scale;
-            }
+            let out = &mut out[numbering.rows(j)];
+            self.with_rows(joint, |rows| rows.accelerations(out));
         }
     }
 
-    /// The vector between a joint's points as a marker; zero if no row uses it.
-    pub(super) fn distance(&self, joint: &PlanarJoint<S>) -> PlanarMarker<S> {
-        match joint.points {
-            true => {
-                let a = self.motions[joint.body_a].point(&joint.a.point);
-                a.minus(&self.motions[joint.body_b].point(&joint.b.point))
-            }
-            false => PlanarMarker::zero(),
-        }
-    }
-
-    /// Axis `a` of the frame on body A and axis `b` of that on body B, as markers.
-    pub(super) fn axes(
+    /// Calls `on_rows` with the rows of a joint and their markers.
+    pub(super) fn with_rows<T>(
         &self,
         joint: &PlanarJoint<S>,
-        a: usize,
-        b: usize,
-    ) -> (PlanarMarker<S>, PlanarMarker<S>) {
-        (
-            self.motions[joint.body_a].direction(&joint.a.axes[a]),
-            self.motions[joint.body_b].direction(&joint.b.axes[b]),
-        )
+        on_rows: impl FnOnce(&Rows<S, Copied<Iter<ConstraintRow>>, 2>) -> T,
+    ) -> T {
+        let (a, b) = (&self.motions[joint.body_a], &self.motions[joint.body_b]);
+        let markers = Markers::of(
+            &joint.used,
+            || a.point(&joint.a.point).minus(&b.point(&joint.b.point)),
+            |i| a.direction(&joint.a.axes[i]),
+            |i| b.direction(&joint.b.axes[i]),
+        );
+        on_rows(&Rows {
+            rows: joint.rows.iter().copied(),
+            markers: &markers,
+            length: joint.length,
+            ground: &std::array::from_fn(|k| self.ground_axis(k)),
+        })
     }
 }

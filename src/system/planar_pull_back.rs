@@ -8,19 +8,7 @@ use super::numbering::Numbering;
 use super::planar::{
     PlanarFrame, PlanarJoint, PlanarJoints, PlanarMarker, PlanarMotion, Vec2, spatial,
 };
-use crate::model::{ConstraintRow, JointFrame};
-
-/// Cotangent of one factor of a row from the other `factor`, without that of the value.
-fn on_factor(cot: &RowCotangent<f64>, factor: &PlanarMarker<f64>) -> PlanarMarker<f64> {
-    PlanarMarker {
-        x: factor.rate * cot.rate
-            + factor.acceleration * cot.acceleration
-            + factor.virtual_rate * cot.virtual_rate,
-        rate: factor.x * cot.rate + factor.rate * (cot.acceleration * 2.0),
-        acceleration: factor.x * cot.acceleration,
-        virtual_rate: factor.x * cot.virtual_rate,
-    }
-}
+use crate::model::JointFrame;
 
 /// Cotangents of one side of a joint.
 #[derive(Clone, Copy)]
@@ -129,41 +117,18 @@ impl PlanarJoints<f64> {
     ) -> (SideCotangent, SideCotangent, f64) {
         let (at_a, at_b) = (&self.motions[joint.body_a], &self.motions[joint.body_b]);
         let (mut by_a, mut by_b) = (SideCotangent::zero(), SideCotangent::zero());
-        let d = self.distance(joint);
-        let mut by_distance = PlanarMarker::zero();
-        let mut by_length = 0.0;
-        for (i, &row) in joint.rows.iter().enumerate() {
-            let cot = cot(i);
-            match row {
-                ConstraintRow::Coincident(k) => {
-                    let e = self.ground_axis(k);
-                    by_distance.rate += e * cot.rate;
-                    by_distance.acceleration += e * cot.acceleration;
-                    by_distance.virtual_rate += e * cot.virtual_rate;
-                }
-                ConstraintRow::Perpendicular { a, b } => {
-                    let (u, w) = self.axes(joint, a, b);
-                    by_a.axis(at_a, &joint.a, a, &on_factor(&cot, &w));
-                    by_b.axis(at_b, &joint.b, b, &on_factor(&cot, &u));
-                }
-                ConstraintRow::Sliding { a } => {
-                    let u = at_a.direction(&joint.a.axes[a]);
-                    by_a.axis(at_a, &joint.a, a, &on_factor(&cot, &d));
-                    by_distance.add(&on_factor(&cot, &u));
-                }
-                ConstraintRow::Distance => {
-                    // d · d / (2 L): both factors are d.
-                    by_distance.add(&on_factor(&cot, &d).scaled(1.0 / joint.length));
-                    let squares = d.x.dot(&d.rate) * cot.rate
-                        + (d.x.dot(&d.acceleration) + d.rate.dot(&d.rate)) * cot.acceleration
-                        + d.x.dot(&d.virtual_rate) * cot.virtual_rate;
-                    by_length -= squares / (joint.length * joint.length);
-                }
-            }
+        let (by, by_length) = self.with_rows(joint, |rows| rows.pull_back(cot));
+        if joint.used.points {
+            by_a.point(at_a, &joint.a, &by.distance);
+            by_b.point(at_b, &joint.b, &by.distance.scaled(-1.0));
         }
-        if joint.points {
-            by_a.point(at_a, &joint.a, &by_distance);
-            by_b.point(at_b, &joint.b, &by_distance.scaled(-1.0));
+        for i in 0..3 {
+            if joint.used.axes_a[i] {
+                by_a.axis(at_a, &joint.a, i, &by.axes_a[i]);
+            }
+            if joint.used.axes_b[i] {
+                by_b.axis(at_b, &joint.b, i, &by.axes_b[i]);
+            }
         }
         (by_a, by_b, by_length)
     }
@@ -176,24 +141,6 @@ impl PlanarJoints<f64> {
             if *by != Vec2::zeros() {
                 *out += spatial(along, by);
             }
-        }
-    }
-}
-
-impl PlanarMarker<f64> {
-    fn add(&mut self, other: &Self) {
-        self.x += other.x;
-        self.rate += other.rate;
-        self.acceleration += other.acceleration;
-        self.virtual_rate += other.virtual_rate;
-    }
-
-    fn scaled(&self, scale: f64) -> Self {
-        Self {
-            x: self.x * scale,
-            rate: self.rate * scale,
-            acceleration: self.acceleration * scale,
-            virtual_rate: self.virtual_rate * scale,
         }
     }
 }
