@@ -73,7 +73,9 @@ fn simulate_watching<S: SolveScalar>(
         Method::Dop853 => {
             explicit::march::march(model, &numbering, duration, settings, start, watch)?
         }
-        _ => implicit::march::march(model, &numbering, duration, settings, start)?,
+        Method::Radau { .. } | Method::Bdf { .. } | Method::GeneralisedAlpha { .. } => {
+            implicit::march::march(model, &numbering, duration, settings, start)?
+        }
     };
     run.counts.factorisations += saddle.factorisations;
     run.counts.solves += saddle.factorisations;

@@ -1,4 +1,7 @@
 //! Design variables: their numbers in the file, their start and their bounds.
+//!
+//! `read::parse` calls `bind`. Then `Quantity::get(x)` returns x_i (quantity.rs), and
+//! driver/evaluate.rs (`derivatives`, `parameter_derivatives`) sums ∂f/∂p · ∂p/∂x_i.
 
 use super::finding::Finding;
 use super::overrides::nearest_path;

@@ -1,5 +1,5 @@
 //! Derivatives of the reactions Gᵀλ of the rows in the positions, for the iteration matrices of
-//! implicit methods.
+//! implicit methods. Test: `reaction_jacobians` in tests/dynamics/constraint_derivatives.rs.
 
 use super::side::JointSide;
 use crate::math::scalar::skew;

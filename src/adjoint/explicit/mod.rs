@@ -4,15 +4,17 @@
 //! function, and let F map the state of a stage to its derivatives. Step n backwards is
 //!
 //! ```text
-//! ȳ*  += Fᵀ k̄_0(n+1)                           the node's own derivatives
-//! ȳ~   = (projection)ᵀ ȳ*
-//! k̄_i += h b_i ȳ~,     ȳ_n = ȳ~
-//! i = 11 … 1:   ȳ_i = Fᵀ k̄_i,   k̄_j += h a_ij ȳ_i,   ȳ_n += ȳ_i
-//! df/dh = Σ k̄_j · k_j / h
+//! ȳ*  += Fᵀ k̄_0(n+1)                           Sweep::node: the node's own derivatives
+//! ȳ~   = (projection)ᵀ ȳ*                       projection::pull_back
+//! k̄_i += h b_i ȳ~,     ȳ_n = ȳ~                 Sweep::end
+//! i = 11 … 1:   ȳ_i = Fᵀ k̄_i                    Sweep::stage
+//!               k̄_j += h a_ij ȳ_i,  ȳ_n += ȳ_i  Sweep::spread
+//! df/dh = Σ k̄_j · k_j / h                       Sweep::leave_step
 //! ```
 //!
 //! (Hager 2000; Sandu 2006.) It needs one symmetric solve per stage and function. All functions
-//! share the factors of a stage.
+//! share the factors of a stage. If a sample lies inside the step, the stages 15 to 13 of the dense
+//! output come first. Test: tests/dynamics/gradients_match_complex_step.rs.
 
 mod projection;
 mod sweep;

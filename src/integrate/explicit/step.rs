@@ -1,4 +1,4 @@
-//! One step of DOP853: stages, projection, error.
+//! One step of DOP853: stages, projection, error. Its adjoint: adjoint/explicit/mod.rs.
 
 use super::record::{Node, NodeView, StepData, add_rows};
 use super::tableau::{A, ALL, B, C, E3, E5, END, STAGES};
