@@ -4,9 +4,9 @@ use super::bounds;
 use super::check::check;
 use super::fault::Faults;
 use super::finding::{Finding, Part};
-use super::memory;
+use super::first_scene::{collapsed, driven_twice, oblique, too_many, unassembled, unstarted};
 use super::overrides::Override;
-use super::placement::{Assembly, placement_order};
+use super::placement::placement_order;
 use super::pointer::join;
 use super::points;
 use super::prune::prune;
@@ -22,13 +22,9 @@ use super::{Constraint, Objective, OptimiserSettings, Problem, Sense, Simulation
 use crate::integrate::{self, Spacing, Start};
 use crate::lower::{self, Lowering};
 use crate::math::Dual;
-use crate::model::{Joint, JointKind, RigidBody};
 use crate::optimiser::Method;
 use crate::structures::quality::MeshFault;
-use crate::system::failure::AssemblyFailure;
-use crate::system::kkt::SaddlePoint;
-use crate::system::placement::length_scale;
-use crate::system::{Numbering, initial, loads, redundancy};
+use crate::system::redundancy;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::io::ErrorKind;
@@ -40,9 +36,6 @@ const TOLERANCE: f64 = 1e-9;
 
 /// Name of the objective if the nearest feasible design is sought.
 const NEAREST: &str = "squared distance from the start";
-
-/// Memory of an optimisation per pair of variables \[bytes\]: about forty matrices.
-const OF_PAIR: usize = 350;
 
 /// Reads a problem file.
 pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Faults> {
@@ -198,25 +191,6 @@ fn of_structures(problem: &mut Problem) -> Result<(), Vec<Finding>> {
 /// Most faults of meshes that are told.
 const MOST_MESH_FAULTS: usize = 5;
 
-/// The fault of too many variables for the memory. Reductions examine the derivative of a scene by
-/// each variable, and an optimisation needs square matrices of their number.
-fn too_many(problem: &Problem) -> Option<Finding> {
-    let count = problem.variables.len();
-    let model = problem.unlowered_scene::<f64>(&problem.start()).model;
-    let scene = (model.bodies.len() * (size_of::<RigidBody<Dual>>() + 64))
-        + model.joints.len() * (size_of::<Joint<Dual>>() + 64);
-    let needed = count * (scene + count * OF_PAIR);
-    let available = memory::available().filter(|available| needed > *available)?;
-    let size = |bytes: usize| format!("{:.1} GB", bytes as f64 / 1e9);
-    let found = format!(
-        "{count} variables of a scene of {} bodies, which take {} of memory",
-        model.bodies.len(),
-        size(needed)
-    );
-    let expected = format!("a problem that fits into the {} available", size(available));
-    Some(Finding::new("/variables", found, expected))
-}
-
 /// The reductions of the scenes of a problem.
 pub(super) fn lowering(problem: &Problem) -> Lowering {
     let variables: Vec<lower::Range> = problem
@@ -232,160 +206,6 @@ pub(super) fn lowering(problem: &Problem) -> Lowering {
     let real = |x: &[f64]| problem.unlowered_scene(x);
     let dual = |x: &[Dual]| problem.unlowered_scene(x);
     Lowering::find(&real, &dual, &variables)
-}
-
-/// The fault of a spring or rod of length zero in the placement: it has no direction.
-fn collapsed(problem: &Problem) -> Option<Finding> {
-    let model = problem.scene(&problem.start()).model;
-    let rod = (model.joints.iter())
-        .find(|joint| {
-            let shortest = 1e-12 * length_scale(&model);
-            joint.kind == JointKind::Rod && joint.frame_a.length <= shortest
-        })
-        .map(|joint| join(&join(&join("/joints", &joint.name), "rod"), "at"));
-    let spring = || {
-        let spring = loads::without_length(&model)?;
-        Some(join(&join(&join("/loads", spring), "spring"), "at"))
-    };
-    let pointer = rod.or_else(spring)?;
-    let expected = "ends that are apart, as a force acts along the line through them";
-    Some(Finding::new(pointer, "ends at the same place", expected))
-}
-
-/// Axes of a universal joint are perpendicular up to this cosine.
-const PERPENDICULAR: f64 = 1e-9;
-
-/// The fault of a universal joint whose axes are not perpendicular in the placement.
-fn oblique(problem: &Problem) -> Option<Finding> {
-    let start = problem.start();
-    let assembly = Assembly::new(&problem.written, &problem.order, &start);
-    problem.written.joints.iter().find_map(|(name, joint)| {
-        let [Some(axis), Some(cross)] = joint.axes() else {
-            return None;
-        };
-        let [axis, cross] = [axis, cross].map(|axis| assembly.axis(axis).normalize());
-        let cosine = axis.dot(&cross);
-        (cosine.abs() > PERPENDICULAR).then(|| {
-            let pointer = join(&join(&join("/joints", name), "universal"), "cross");
-            let degrees = cosine.acos().to_degrees();
-            let found = format!("an axis at {degrees:.6} degrees to the other");
-            Finding::new(pointer, found, "one that is perpendicular to \"axis\"")
-        })
-    })
-}
-
-/// The fault of a drive whose motion other joints and drives prescribe already.
-fn driven_twice(problem: &Problem) -> Option<Finding> {
-    let model = problem.scene(&problem.start()).model;
-    let drives = &problem.written.drives;
-    if drives.is_empty() {
-        return None;
-    }
-    let undriven = |names: &[&str]| {
-        let mut model = model.clone();
-        let named = |joint: &&mut Joint<f64>| names.contains(&joint.name.as_str());
-        model
-            .joints
-            .iter_mut()
-            .filter(named)
-            .for_each(|joint| joint.drives.clear());
-        redundancy::redundant_rows(&model)
-    };
-    let all: Vec<&str> = drives.values().map(|drive| drive.joint.as_str()).collect();
-    let (with, without) = (undriven(&[])?, undriven(&all)?);
-    if with <= without {
-        return None;
-    }
-    // The last drive whose removal reduces the number of such motions.
-    let superfluous = |(_, joint): &(&String, &str)| undriven(&[*joint]).is_some_and(|n| n < with);
-    let mut named = drives
-        .iter()
-        .map(|(name, drive)| (name, drive.joint.as_str()));
-    let (name, joint) = named.rfind(superfluous)?;
-    let found = format!("the joint \"{joint}\"");
-    let expected = "a joint whose motion the other joints and drives leave free";
-    Some(Finding::new(
-        join(&join("/drives", name), "joint"),
-        found,
-        expected,
-    ))
-}
-
-/// The fault of joints that cannot start as given at the design of the file.
-fn unstarted(problem: &Problem) -> Option<Finding> {
-    let failure = problem.unlowered_scene::<f64>(&problem.start()).unstarted?;
-    let named = match &failure {
-        AssemblyFailure::Determined { joint }
-        | AssemblyFailure::Open { joint, .. }
-        | AssemblyFailure::Turned { joint } => problem.written.joints.get_key_value(joint),
-        _ => None,
-    };
-    let Some((name, joint)) = named else {
-        return Some(cannot_assemble(&failure));
-    };
-    let pointer = join(&join("/joints", name), joint.kind().name());
-    let (pointer, expected) = match joint.start() {
-        Some(_) => (join(&pointer, "start"), "a start that the joints admit"),
-        None => (pointer, "starts at which the joints can be closed"),
-    };
-    let hint = match &failure {
-        AssemblyFailure::Determined { .. } => "give the starts of as many joints as are free",
-        _ => "look at how far the joints let the bodies move",
-    };
-    let finding = Finding::new(pointer, failure.to_string(), expected);
-    Some(finding.of_key().hint(Some(hint.to_owned())))
-}
-
-/// The fault of joints that have no closed position, or no unique one, at the design of the file.
-fn unassembled(problem: &Problem) -> Option<Finding> {
-    let model = problem.scene(&problem.start()).model;
-    let numbering = Numbering::new(&model);
-    let mut saddle = SaddlePoint::new(&model, &numbering);
-    let failure = initial::solve(&model, &numbering, &mut saddle).err()?;
-    Some(cannot_assemble(&failure))
-}
-
-/// The fault of a scene that cannot start.
-fn cannot_assemble(failure: &AssemblyFailure) -> Finding {
-    let (pointer, expected, hint) = match failure {
-        AssemblyFailure::Open { joint, .. } => (
-            join("/joints", joint),
-            "points that the placed bodies can bring together",
-            "look at the lengths, and at where the bodies are placed",
-        ),
-        AssemblyFailure::Determined { joint } => (
-            join("/joints", joint),
-            "a start that the joints admit",
-            "give the starts of as many joints as are free",
-        ),
-        AssemblyFailure::Turned { joint } => (
-            join("/joints", joint),
-            "axes that point the same way in both bodies",
-            "place one of the bodies turned by 180 degrees",
-        ),
-        AssemblyFailure::SingularPosition { .. } => (
-            "/joints".to_owned(),
-            "a placement at which the joints are independent, as in its neighbourhood",
-            "place the bodies away from straight or folded positions",
-        ),
-        AssemblyFailure::Redundant { .. } => (
-            "/joints".to_owned(),
-            "constraints that are independent of each other",
-            "leave one of the joints out, or replace a revolute joint by a spherical one",
-        ),
-        AssemblyFailure::WithoutInertia { .. } => (
-            "/bodies".to_owned(),
-            "inertia in every direction that a body can move in",
-            "give a thin rod a radius: at a spherical joint it can spin about itself",
-        ),
-        AssemblyFailure::Singular => (
-            "".to_owned(),
-            "a scene whose equations have regular matrices in double precision",
-            "scale lengths, masses and times alike, so that they are nearer one",
-        ),
-    };
-    let finding = Finding::new(pointer, failure.to_string(), expected);
-    finding.of_key().hint(Some(hint.to_owned()))
 }
 
 /// The fault of a key that occurs twice.

@@ -16,7 +16,8 @@
 //! rows.
 
 use super::blocks::Block;
-use super::starts::{Asked, DOFS, Hinge, Starts, hinge, put};
+use super::hinge::{Hinge, hinge};
+use super::starts::{Asked, DOFS, Starts, put};
 use crate::math::rotation::matrix;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Model, RigidBody};

@@ -1,0 +1,142 @@
+//! Pull-backs of accelerations and rows in the present state.
+
+use super::Accelerations;
+use crate::model::Model;
+use crate::system::bodies::{self, velocities_of};
+use crate::system::flexible::{self, StateCotangent};
+use crate::system::in_motion::InMotion;
+use crate::system::joints::{self, JointCotangent, RowCotangents};
+use crate::system::loads::{self, LoadCotangent};
+
+impl Accelerations<'_, f64> {
+    /// Pulls the cotangent ā of the accelerations back to tangent positions, velocities, time
+    /// (returned) and parameters, in the present, factorised state. `a` and `lambda` are the
+    /// results of [`Accelerations::accelerations`].
+    pub(crate) fn pull_back(
+        &mut self,
+        (a, lambda): (&[f64], &[f64]),
+        a_bar: &[f64],
+        (y, v): (&mut [f64], &mut [f64]),
+        cot: &mut Model<f64>,
+    ) -> f64 {
+        let mut psi = std::mem::take(&mut self.rhs);
+        let (model, numbering) = (self.model, self.numbering);
+        let nv = numbering.velocities();
+        psi[..nv].copy_from_slice(a_bar);
+        psi[nv..].fill(0.0);
+        self.solve(&mut psi);
+        let mut by_time = 0.0;
+        let mut out = LoadCotangent {
+            y: Some(&mut *y),
+            v: Some(&mut *v),
+            time: &mut by_time,
+            model: cot,
+        };
+        loads::pull_back(&self.here(), &psi[..nv], &mut out);
+        psi.iter_mut().for_each(|x| *x = -*x);
+        for (i, body) in model.bodies.iter().enumerate() {
+            let o = numbering.velocity(i);
+            let (linear, alpha) = velocities_of(&a[o..]);
+            let (psi_r, psi_theta) = velocities_of(&psi[o..]);
+            let by_omega = bodies::pull_force_balance(
+                body,
+                &model.gravity,
+                &self.motions[i].omega,
+                (&linear, &alpha),
+                (&psi_r, &psi_theta),
+                &mut cot.bodies[i],
+                &mut cot.gravity,
+            );
+            for k in 0..3 {
+                v[o + 3 + k] += by_omega[k];
+            }
+        }
+        let mut bars = StateCotangent {
+            y: Some(&mut *y),
+            v: Some(&mut *v),
+        };
+        let here = (&self.motions[..], a);
+        flexible::pull_force_balances((model, numbering), here, &psi[..nv], &mut bars, cot);
+        // χᵀ (G a + bias) and λᵀ G ψ in one pass.
+        let cotangents = RowCotangents {
+            acceleration: Some(&psi[nv..]),
+            virtual_rate: Some(lambda),
+            ..Default::default()
+        };
+        let moving = (Some(a), Some(&psi[..nv]));
+        by_time += self.pull_rows(moving, &cotangents, (y, Some(v)), cot);
+        self.rhs = psi;
+        by_time
+    }
+
+    /// Pulls λᵀ G(q, t) w, which is linear in w, back to tangent positions, the parameters of the
+    /// joints and time (returned).
+    pub(crate) fn pull_rate(
+        &mut self,
+        w: &[f64],
+        lambda: &[f64],
+        y: &mut [f64],
+        cot: &mut Model<f64>,
+    ) -> f64 {
+        let cotangents = RowCotangents {
+            virtual_rate: Some(lambda),
+            ..Default::default()
+        };
+        self.pull_rows((None, Some(w)), &cotangents, (y, None), cot)
+    }
+
+    /// As [`Accelerations::pull_rate`], for χᵀ (G v + Φ_t) at the present velocities.
+    pub(crate) fn pull_rates(&mut self, chi: &[f64], y: &mut [f64], cot: &mut Model<f64>) -> f64 {
+        let cotangents = RowCotangents {
+            rate: Some(chi),
+            ..Default::default()
+        };
+        self.pull_rows((None, None), &cotangents, (y, None), cot)
+    }
+
+    /// As [`Accelerations::pull_rate`] for χᵀ Φ(q, t).
+    pub(crate) fn pull_constraints(
+        &mut self,
+        chi: &[f64],
+        y: &mut [f64],
+        cot: &mut Model<f64>,
+    ) -> f64 {
+        let cotangents = RowCotangents {
+            value: Some(chi),
+            ..Default::default()
+        };
+        self.pull_rows((None, None), &cotangents, (y, None), cot)
+    }
+
+    /// Pulls the cotangents of the rows back with these accelerations and virtual velocities;
+    /// `None` for zero.
+    fn pull_rows(
+        &mut self,
+        (a, w): (Option<&[f64]>, Option<&[f64]>),
+        cotangents: &RowCotangents,
+        (y, v): (&mut [f64], Option<&mut [f64]>),
+        cot: &mut Model<f64>,
+    ) -> f64 {
+        let (model, numbering) = (self.model, self.numbering);
+        let mut out = JointCotangent {
+            y: Some(y),
+            v,
+            model: cot,
+        };
+        // Values also depend on the frames' components across the plane.
+        if let (Some(planar), None) = (&mut self.planar, cotangents.value) {
+            planar.set_moving(numbering, a, w);
+            planar.pull_back(numbering, cotangents, &mut out);
+            return 0.0;
+        }
+        let moving = self.motions.iter().enumerate().map(|(i, motion)| {
+            let o = numbering.velocity(i);
+            let motion = a.map_or(*motion, |a| motion.accelerated(&a[o..]));
+            w.map_or(motion, |w| motion.virtually(&w[o..]))
+        });
+        self.moving.clear();
+        self.moving.extend(moving);
+        let at = InMotion::new(model, numbering, &self.moving, self.time);
+        joints::pull_back(&at, cotangents, &mut out)
+    }
+}
