@@ -19,7 +19,7 @@
 
 use super::frame_motion::FrameMotion;
 use super::marker::{self, MarkerKinematics};
-use super::rows::{Markers, MarkersUsed, Rows};
+use super::rows::{Markers, MarkersUsed, RowCotangent, Rows};
 use super::side::JointSide;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, JointFrame};
@@ -263,19 +263,6 @@ pub(crate) fn pull_back<S: Scalar>(
         }
         (out_a, out_b)
     })
-}
-
-/// Cotangents of a row's value, rate, second derivative and virtual rate.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RowCotangent<S> {
-    /// Of Φ.
-    pub value: S,
-    /// Of G v.
-    pub rate: S,
-    /// Of Φ̈.
-    pub acceleration: S,
-    /// Of the rate G w at the virtual velocities w.
-    pub virtual_rate: S,
 }
 
 fn pull_axis<S: Scalar>(

@@ -2,10 +2,11 @@
 
 use super::attachment;
 use super::bodies::{BodyMotion, add6, velocities_of};
-use super::constraint::{self, RowCotangent, RowGradient, SideCotangent, gradient};
+use super::constraint::{self, RowGradient, SideCotangent, gradient};
 use super::in_motion::InMotion;
 use super::numbering::Numbering;
 use super::reaction::{self, ReactionJacobian};
+use super::rows::RowCotangent;
 use super::side::{JointSide, pull_driven_frame, sides};
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Joint, Model, Modes};

@@ -34,7 +34,7 @@ pub(crate) mod reaction;
 pub(crate) mod reduce;
 pub(crate) mod redundancy;
 pub(crate) mod redundant_rows;
-mod rows;
+pub(crate) mod rows;
 pub(crate) mod side;
 pub(crate) mod tree;
 

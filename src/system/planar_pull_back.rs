@@ -2,12 +2,12 @@
 //! [`super::joints::pull_back`] in space, for rates and second derivatives.
 
 use super::bodies::add6;
-use super::constraint::RowCotangent;
 use super::joints::{JointCotangent, RowCotangents};
 use super::numbering::Numbering;
 use super::planar::{
     PlanarFrame, PlanarJoint, PlanarJoints, PlanarMarker, PlanarMotion, Vec2, spatial,
 };
+use super::rows::RowCotangent;
 use crate::model::JointFrame;
 
 /// Cotangents of one side of a joint.

@@ -14,7 +14,6 @@
 //! The table in [`super::constraint`] follows by the product rule. Vectors have D components: 3 in
 //! space, 2 in a plane (see [`super::planar`]).
 
-use super::constraint::RowCotangent;
 use super::marker::MarkerKinematics;
 use crate::math::Scalar;
 use crate::model::ConstraintRow;
@@ -180,6 +179,19 @@ impl<S: Scalar, R: Iterator<Item = ConstraintRow> + Clone, const D: usize> Rows<
         }
         (by, by_length)
     }
+}
+
+/// Cotangents of a row's value, rate, second derivative and virtual rate.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RowCotangent<S> {
+    /// Of Φ.
+    pub value: S,
+    /// Of G v.
+    pub rate: S,
+    /// Of Φ̈.
+    pub acceleration: S,
+    /// Of the rate G w at the virtual velocities w.
+    pub virtual_rate: S,
 }
 
 /// Cotangent of one factor of a row from the other. Φ = u · w and its time derivatives are symmetric
