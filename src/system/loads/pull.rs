@@ -5,8 +5,9 @@ use super::power::{SLIDE, SpringLength, angle, stretch, tanh, turn_rate};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, DegreeOfFreedom, LoadKind};
 use crate::system::bodies::BodyMotion;
-use crate::system::constraint::{self, RowCotangent, SideCotangent};
+use crate::system::constraint::{self, SideCotangent};
 use crate::system::marker::{self, MarkerKinematics};
+use crate::system::rows::RowCotangent;
 use crate::system::side::JointSide;
 
 /// Derivatives of the power (or energy) of a load.
