@@ -40,6 +40,12 @@ fn cases() -> Vec<Case> {
     all.extend(smooth::cases());
     all.extend(rows::cases());
     all.extend(ends::cases());
+    all.extend([(5, 3), (6, 3)].map(|(columns, rows)| case::Case {
+        group: "truss",
+        name: format!("truss of {columns} by {rows} nodes"),
+        truth: case::Truth::Stationary,
+        nlp: Box::new(problems::truss::Truss::new(columns, rows)),
+    }));
     all
 }
 

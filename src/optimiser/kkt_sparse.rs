@@ -7,8 +7,9 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 use super::jacobian::Jacobian;
 use super::quasi_newton::Compact;
 
-/// Least D of a row, relative to its entry a H⁻¹ aᵀ of the Schur complement. Without it the
-/// elimination could meet a zero. Iterative refinement removes its effect.
+/// Least D of a row, relative to its entry a S⁻¹ aᵀ of the Schur complement, where S is h and the
+/// stiffness a²/D of inequality rows. Without it the elimination could meet a zero. Iterative
+/// refinement removes its effect.
 const SHIFT: f64 = 1e-8;
 
 /// Factors of
@@ -41,6 +42,11 @@ impl SparseKkt {
         d: &DVector<f64>,
     ) -> Option<SparseKkt> {
         let (n, m) = (h.len(), d.len());
+        // Inequality rows stiffen their variables.
+        let mut stiff = h.clone();
+        for j in (0..m).filter(|&j| d[j] > 0.0) {
+            a.row(j).for_each(|(i, v)| stiff[i] += v * v / d[j]);
+        }
         // The upper triangle, column by column: h, then each row of A above its −D.
         let mut pointers: Vec<usize> = (0..=n).collect();
         let mut indices: Vec<usize> = (0..n).collect();
@@ -48,7 +54,7 @@ impl SparseKkt {
         for j in 0..m {
             let mut own = 0.0;
             for (i, v) in a.row(j) {
-                own += v * v / h[i];
+                own += v * v / stiff[i];
                 indices.push(i);
                 values.push(v);
             }

@@ -36,6 +36,10 @@ pub struct QuasiNewton {
     /// Diagonal that takes the place of σ I; empty if there is none.
     #[serde(default)]
     base: Vec<f64>,
+    /// Diagonal by a model of the program, which takes the place of `base`; empty if `base`
+    /// predicted the newest pair better.
+    #[serde(default)]
+    model: Vec<f64>,
     pairs: Vec<Pair>,
     skipped: usize,
     #[serde(skip)]
@@ -98,6 +102,7 @@ impl QuasiNewton {
             memory,
             sigma: 1.0,
             base: Vec::new(),
+            model: Vec::new(),
             pairs,
             skipped: 0,
             cached: Cached::default(),
@@ -110,6 +115,7 @@ impl QuasiNewton {
             cached: Cached::default(),
             pairs: self.pairs.clone(),
             base: self.base.clone(),
+            model: self.model.clone(),
             ..*self
         }
     }
@@ -118,7 +124,8 @@ impl QuasiNewton {
     pub(super) fn times(&self, factor: f64) -> QuasiNewton {
         let mut b = self.stored();
         b.sigma *= factor;
-        b.base.iter_mut().for_each(|d| *d *= factor);
+        let diagonals = b.base.iter_mut().chain(&mut b.model);
+        diagonals.for_each(|d| *d *= factor);
         for pair in &mut b.pairs {
             pair.y *= factor;
         }
@@ -135,6 +142,7 @@ impl QuasiNewton {
     pub(super) fn set_scale(&mut self, sigma: f64) {
         self.sigma = sigma;
         self.base.clear();
+        self.model.clear();
         self.cached = Cached::default();
     }
 
@@ -174,6 +182,7 @@ impl QuasiNewton {
     pub(super) fn reset(&mut self) {
         self.pairs.clear();
         self.base.clear();
+        self.model.clear();
         self.skipped = 0;
         self.cached = Cached::default();
     }
@@ -201,6 +210,34 @@ impl QuasiNewton {
 
     /// Adds a pair.
     pub(super) fn update(&mut self, s: DVector<f64>, y: DVector<f64>) {
+        self.update_with(s, y, &[]);
+    }
+
+    /// Takes `model` as diagonal if it predicts the pair better than the kept one. A diagonal D
+    /// predicts it well if D s is nearly a multiple of y. The factor of `model` is the geometric
+    /// mean of those that the pair demands of D and of D⁻¹.
+    fn choose_base(&mut self, s: &DVector<f64>, y: &DVector<f64>, model: &[f64]) {
+        let fit = |d: &dyn Fn(usize) -> f64| {
+            let all = 0..s.len();
+            let (sds, ydy) = all.fold((0.0, 0.0), |(a, b), i| {
+                (a + s[i] * s[i] * d(i), b + y[i] * y[i] / d(i))
+            });
+            (sds * ydy, (ydy / sds).sqrt())
+        };
+        let kept = &self.base;
+        let (misfit, _) = fit(&|i| kept.get(i).copied().unwrap_or(1.0));
+        self.model.clear();
+        if model.len() == self.n {
+            let (of_model, factor) = fit(&|i| model[i]);
+            if of_model < misfit {
+                let scaled = |d: &f64| (d * factor).clamp(FLATTEST_BASE, STEEPEST_BASE);
+                self.model = model.iter().map(scaled).collect();
+            }
+        }
+    }
+
+    /// Adds a pair. `model` is a positive diagonal by a model of the program, or empty.
+    pub(super) fn update_with(&mut self, s: DVector<f64>, y: DVector<f64>, model: &[f64]) {
         let (sy, ss, yy) = (s.dot(&y), s.norm_squared(), y.norm_squared());
         if !(sy.is_finite() && ss.is_finite() && yy.is_finite()) || ss == 0.0 {
             return;
@@ -216,6 +253,7 @@ impl QuasiNewton {
         self.skipped = 0;
         self.sigma = (sy / ss).clamp(1e-8, 1e8);
         if self.diagonal {
+            self.choose_base(&s, &y, model);
             self.update_base(&s, &y);
         }
         self.pairs.push(Pair { s, y });
@@ -303,7 +341,9 @@ impl QuasiNewton {
 
     /// The diagonal D of the compact form.
     pub(super) fn base(&self) -> DVector<f64> {
-        if self.base.is_empty() {
+        if !self.model.is_empty() {
+            DVector::from_column_slice(&self.model)
+        } else if self.base.is_empty() {
             DVector::from_element(self.n, self.sigma)
         } else {
             DVector::from_column_slice(&self.base)

@@ -2,8 +2,8 @@
 //! grows with the size.
 
 use flexbody::optimiser::{
-    Evaluation, EvaluationFailure, Gradients, Jacobian, Method, Nlp, Options, Outcome, Silent,
-    Status, solve,
+    Evaluation, EvaluationFailure, Functions, Gradients, Jacobian, Method, Nlp, Options, Outcome,
+    Silent, Status, solve,
 };
 
 use crate::problems::residuals::Residuals;
@@ -116,6 +116,33 @@ fn twenty_thousand_variables_need_little_memory() {
     }
 }
 
+/// Minimise Σ a_i/x_i subject to Σ x_i ≤ n/2: the optimum has x_i in proportion to √a_i. The
+/// coefficients are spread over `decades`.
+#[test]
+fn reciprocal_programs_need_few_evaluations_whatever_their_spread() {
+    for n in [30, 300, 3000] {
+        for decades in [0.0, 2.0, 6.0] {
+            let share = |i: usize| (i as f64 * 0.618_033_988_749_895).fract();
+            let a: Vec<f64> = (0..n).map(|i| 10_f64.powf(-decades * share(i))).collect();
+            let mut nlp = Functions::new(&vec![0.5; n], |x| {
+                let f = a.iter().zip(x).map(|(a, x)| a / x).sum();
+                (f, a.iter().zip(x).map(|(a, x)| -a / (x * x)).collect())
+            })
+            .bounds(&vec![1e-6; n], &vec![100.0; n])
+            .rows(&[f64::NEG_INFINITY], &[0.5 * n as f64], |x| {
+                (vec![x.iter().sum()], Jacobian::dense(1, n, vec![1.0; n]))
+            });
+            let outcome = run(&mut nlp, Method::InteriorPoint, 20);
+            let context = format!("{n} variables, {decades} decades: {:?}", outcome.counts);
+            assert!(outcome.converged(), "{context}");
+            let roots: f64 = a.iter().map(|a| a.sqrt()).sum();
+            let best = roots * roots / (0.5 * n as f64);
+            assert!((outcome.objective - best).abs() <= 1e-6 * best, "{context}");
+            assert!(outcome.counts.evaluations <= 50, "{context}");
+        }
+    }
+}
+
 #[test]
 fn a_truss_becomes_as_stiff_as_possible() {
     let mut truss = Truss::new(7, 4);
@@ -218,6 +245,9 @@ fn thousands_of_rows_of_few_variables() {
         (5, 3000, false),
         (4, 150, true),
         (4, 500, true),
+        (15, 2000, true),
+        (30, 1000, true),
+        (40, 2000, true),
     ] {
         let mut ball = Ball { n, rows, pinned };
         let outcome = run(&mut ball, Method::InteriorPoint, 20);
