@@ -2,10 +2,10 @@
 
 use nalgebra::DVector;
 
-use super::ending::{Claim, FinalIterate};
-use super::outcome::Status;
-use super::program::{Point, Program};
-use super::verdict::user_multipliers;
+use crate::optimiser::ending::{Claim, FinalIterate};
+use crate::optimiser::multipliers::user_multipliers;
+use crate::optimiser::outcome::Status;
+use crate::optimiser::program::{Point, Program};
 
 /// Distance from the first point, relative to its size, beyond which a solution is doubted, and how
 /// often this distance is then doubled.
@@ -175,7 +175,7 @@ fn unless_gradients_are_wrong(program: &mut Program<'_>, mut finish: FinalIterat
 }
 
 /// The final iterate after all checks.
-pub(super) fn doubted(program: &mut Program<'_>, finish: FinalIterate) -> FinalIterate {
+pub(crate) fn doubted(program: &mut Program<'_>, finish: FinalIterate) -> FinalIterate {
     let finish = unless_it_falls(program, finish);
     let finish = unless_multipliers_fail(program, finish);
     unless_gradients_are_wrong(program, finish)

@@ -1,18 +1,31 @@
-//! The final iterate of a method, and the outcome made of it.
+//! How a run ended: the ending of an iteration, the final iterate of a method, and its status.
+//! Whether the conditions hold is tested in `convergence`.
 
 use nalgebra::DVector;
 
-use super::nlp::Nlp;
-use super::outcome::{Counts, Kkt, Outcome, Status};
-use super::program::{Derivatives, EarlyExit, Point, Program};
-use super::quasi_newton::QuasiNewton;
-use super::scaling::Units;
-use super::state::{SavedState, Scaling};
-use super::trust_region::Ending;
-use super::verdict::{
-    ScaledMultipliers, active, is_at_precision, is_solved_at_end, is_solved_in_user_units, kkt,
-    scaled_residual, steepness, unit_of_forces, user_multipliers,
+use crate::optimiser::convergence::{
+    is_at_precision, is_solved_at_end, is_solved_in_user_units, kkt, scaled_residual,
 };
+use crate::optimiser::linear::quasi_newton::QuasiNewton;
+use crate::optimiser::multipliers::ScaledMultipliers;
+use crate::optimiser::outcome::{Kkt, Status};
+use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
+use crate::optimiser::scaling::Units;
+
+/// How the iteration ended.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Ending {
+    /// The caller's test was met, or the optimality conditions.
+    Reached,
+    /// The point is a stationary point of the violation.
+    Infeasible,
+    /// The objective falls below all bounds.
+    Unbounded,
+    /// No step is accepted although the radius is tiny.
+    Stalled,
+    /// The conditions hold in scaled units, but these do not suit the point.
+    Misscaled,
+}
 
 /// Step, relative to max(1, ‖x‖∞), of the test for descent. An objective that can fall must fall
 /// within it.
@@ -20,7 +33,7 @@ const NEARBY: f64 = 1e-6;
 
 /// What evaluations near a final iterate say of a claim that it solves the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Claim {
+pub(crate) enum Claim {
     /// Nothing: the residuals decide.
     Untested,
     /// The conditions hold in the units of the user and no descent was found nearby.
@@ -30,7 +43,7 @@ pub(super) enum Claim {
 }
 
 /// The final iterate of a method.
-pub(super) struct FinalIterate {
+pub(crate) struct FinalIterate {
     pub status: Status,
     pub point: Point,
     pub slopes: Derivatives,
@@ -84,7 +97,7 @@ impl FinalIterate {
         }
     }
 
-    fn kkt(&self, program: &Program<'_>) -> Kkt {
+    pub(crate) fn kkt(&self, program: &Program<'_>) -> Kkt {
         kkt(
             program,
             &self.point,
@@ -154,7 +167,7 @@ impl FinalIterate {
 
 /// Replaces the final iterate of a run that did not converge by a better point of the run. If that
 /// is better by more than the tolerance, the run had not reached the precision of the objective.
-pub(super) fn best_of(program: &mut Program<'_>, finish: FinalIterate) -> FinalIterate {
+pub(crate) fn best_of(program: &mut Program<'_>, finish: FinalIterate) -> FinalIterate {
     let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. })
         || finish.status == Status::Stalled && finish.is_solved(program);
     let at_precision = finish.status == Status::AtPrecision;
@@ -206,7 +219,7 @@ pub(super) fn best_of(program: &mut Program<'_>, finish: FinalIterate) -> FinalI
 }
 
 /// The outcome if all variables are fixed.
-pub(super) fn without_freedom(
+pub(crate) fn without_freedom(
     program: &Program<'_>,
     point: Point,
     slopes: Derivatives,
@@ -228,7 +241,7 @@ pub(super) fn without_freedom(
 }
 
 /// The outcome if the observer stops the run at the start.
-pub(super) fn unfinished(program: &Program<'_>, point: Point, slopes: Derivatives) -> FinalIterate {
+pub(crate) fn unfinished(program: &Program<'_>, point: Point, slopes: Derivatives) -> FinalIterate {
     let y = DVector::zeros(point.c.len());
     let multipliers = ScaledMultipliers::from_rows(program, &point, &slopes, y);
     let options = program.options;
@@ -246,7 +259,7 @@ pub(super) fn unfinished(program: &Program<'_>, point: Point, slopes: Derivative
     }
 }
 
-pub(super) fn status_of(
+pub(crate) fn status_of(
     program: &Program<'_>,
     result: Result<Ending, EarlyExit>,
     at: &Point,
@@ -263,120 +276,5 @@ pub(super) fn status_of(
         }
         Ok(Ending::Stalled | Ending::Misscaled) | Err(EarlyExit::Failed(_)) => Status::Stalled,
         Err(EarlyExit::Halt(status)) => status,
-    }
-}
-
-/// State at the last point, which may differ from the best.
-pub(super) fn state_of(program: &Program<'_>, finish: &FinalIterate) -> SavedState {
-    SavedState {
-        x: program.to_user(&finish.point.x),
-        objective: finish.point.f / program.scaling.objective,
-        multipliers: user_multipliers(program, &finish.slopes, &finish.multipliers),
-        scaling: Scaling {
-            typical_gradient: program.typical_gradient(),
-            ..program.scaling.clone()
-        },
-        quasi_newton: finish.b.stored(),
-        barrier: finish.barrier,
-        radius: finish.radius,
-    }
-}
-
-pub(super) fn outcome(program: &Program<'_>, finish: FinalIterate, state: SavedState) -> Outcome {
-    let kkt = finish.kkt(program);
-    let solved = finish.is_solved(program);
-    let FinalIterate {
-        mut status,
-        point,
-        slopes,
-        multipliers,
-        ..
-    } = finish;
-    // A method that can make no progress has converged if the conditions hold.
-    match status {
-        Status::Stalled | Status::IterationLimit | Status::EvaluationLimit if solved => {
-            status = Status::Converged;
-        }
-        Status::Converged if !solved => status = Status::Stalled,
-        _ => {}
-    }
-    let x = program.to_user(&point.x);
-    let mut constraints = vec![0.0; program.scaling.constraints.len()];
-    for (k, &j) in program.rows.iter().enumerate() {
-        constraints[j] = point.c[k] / program.scaling.constraints[j];
-    }
-    let user = user_multipliers(program, &slopes, &multipliers);
-    let nlp = program.nlp();
-    let (lower, upper) = nlp.variable_bounds();
-    let (row_lower, row_upper) = nlp.constraint_bounds();
-    let of_bound = |i: usize| (user.lower_bounds[i], user.upper_bounds[i]);
-    let of_row = |j: usize| {
-        (
-            (-user.constraints[j]).max(0.0),
-            user.constraints[j].max(0.0),
-        )
-    };
-    let gradient = unit_of_forces(program, &slopes);
-    let steep = steepness(program, &slopes);
-    let mut counts = program.counts;
-    counts.seconds = program.seconds();
-    Outcome {
-        status,
-        objective: point.f / program.scaling.objective,
-        active_bounds: active(&x, (&lower, &upper), of_bound, (|_| 1.0, gradient), |i| {
-            nlp.variable_name(i)
-        }),
-        active_constraints: active(
-            &constraints,
-            (&row_lower, &row_upper),
-            of_row,
-            (|j: usize| steep[j], gradient),
-            |j| nlp.constraint_name(j),
-        ),
-        kkt,
-        counts,
-        failed_designs: program.failed.clone(),
-        scaling: state.scaling.clone(),
-        state: Some(state),
-        constraints,
-        multipliers: user,
-        x,
-    }
-}
-
-pub(super) fn without_values(program: &Program<'_>, status: Status) -> Outcome {
-    let mut counts = program.counts;
-    counts.seconds = program.seconds();
-    Outcome {
-        x: program.to_user(&program.start()),
-        counts,
-        failed_designs: program.failed.clone(),
-        scaling: program.scaling.clone(),
-        ..untried(program.nlp(), status)
-    }
-}
-
-/// The outcome of a run without any evaluation.
-pub(super) fn untried(nlp: &dyn Nlp, status: Status) -> Outcome {
-    Outcome {
-        status,
-        x: nlp.start(),
-        objective: f64::NAN,
-        constraints: vec![f64::NAN; nlp.constraints()],
-        multipliers: Default::default(),
-        kkt: Kkt {
-            violation: f64::NAN,
-            stationarity: f64::NAN,
-            relative_stationarity: f64::NAN,
-            complementarity: f64::NAN,
-            relative_complementarity: f64::NAN,
-            scaled: f64::NAN,
-        },
-        active_bounds: Vec::new(),
-        active_constraints: Vec::new(),
-        counts: Counts::default(),
-        failed_designs: Vec::new(),
-        scaling: Scaling::default(),
-        state: None,
     }
 }

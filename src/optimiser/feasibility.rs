@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::program::{Derivatives, Program};
+use crate::optimiser::program::{Derivatives, Program};
 
 /// Largest violation of a row relative to its size, whatever the tolerance.
 const PART_OF_ROW: f64 = 1e-4;
@@ -70,7 +70,7 @@ impl Program<'_> {
     /// larger of the row's bounds and of Σ |∂c/∂x_i x_i|, the change of the row if every variable
     /// changes by its size. A row with zero bounds may be a product that vanishes with one
     /// variable. For such a row every variable changes by the size of the largest.
-    pub(super) fn measure_rows(&mut self, x: &DVector<f64>, slopes: &Derivatives) {
+    pub(crate) fn measure_rows(&mut self, x: &DVector<f64>, slopes: &Derivatives) {
         let largest_x = x.amax();
         for (k, &j) in self.rows.iter().enumerate() {
             let size = |bound: f64| if bound.is_finite() { bound.abs() } else { 0.0 };

@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::elastic_qp::ElasticQp;
-use super::jacobian::Jacobian;
-use super::observer::Phase;
-use super::program::{Derivatives, EarlyExit, Point, Program, Progress};
-use super::qp::{Hessian, QpData};
-use super::quasi_newton::Spectrum;
+use crate::optimiser::linear::jacobian::Jacobian;
+use crate::optimiser::linear::quasi_newton::Spectrum;
+use crate::optimiser::observer::Phase;
+use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
+use crate::optimiser::quadratic::data::{Hessian, QpData};
+use crate::optimiser::quadratic::elastic::ElasticQp;
 
 /// Largest number of steps.
 const STEPS: usize = 100;
@@ -54,7 +54,7 @@ impl Sides {
 /// to first order. Each trust-region step minimises t subject to excess + ∇excess·d ≤ t (Madsen &
 /// Schjær-Jacobsen 1978). Returns the last point, and whether the violation is least there. It is
 /// not known to be if a limit ends the search.
-pub(super) fn least_violation(
+pub(crate) fn least_violation(
     program: &mut Program<'_>,
     mut point: Point,
     mut slopes: Derivatives,

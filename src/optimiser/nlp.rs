@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::jacobian::Jacobian;
+use crate::optimiser::linear::jacobian::Jacobian;
 
 /// A smooth nonlinear program, minimise f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///
@@ -89,7 +89,7 @@ pub struct EvaluationFailure {
 }
 
 /// Finds the first value that is not finite, among the objective and `rows`.
-pub(super) fn fault_of_evaluation(
+pub(crate) fn fault_of_evaluation(
     nlp: &dyn Nlp,
     rows: &[usize],
     e: &Evaluation,
@@ -102,7 +102,7 @@ pub(super) fn fault_of_evaluation(
 }
 
 /// As [`fault_of_evaluation`], for derivatives.
-pub(super) fn fault_of_gradients(
+pub(crate) fn fault_of_gradients(
     nlp: &dyn Nlp,
     rows: &[usize],
     g: &Gradients,
@@ -136,7 +136,7 @@ fn not_finite(what: String, value: f64) -> EvaluationFailure {
 }
 
 /// Names the list of values whose length is wrong.
-pub(super) fn length_of_evaluation(nlp: &dyn Nlp, e: &Evaluation) -> Option<String> {
+pub(crate) fn length_of_evaluation(nlp: &dyn Nlp, e: &Evaluation) -> Option<String> {
     wrong_length(
         "list of constraints",
         e.constraints.len(),
@@ -145,7 +145,7 @@ pub(super) fn length_of_evaluation(nlp: &dyn Nlp, e: &Evaluation) -> Option<Stri
 }
 
 /// Names the list of derivatives whose length is wrong.
-pub(super) fn length_of_gradients(nlp: &dyn Nlp, g: &Gradients) -> Option<String> {
+pub(crate) fn length_of_gradients(nlp: &dyn Nlp, g: &Gradients) -> Option<String> {
     let (n, m) = (nlp.variables(), nlp.constraints());
     wrong_length("gradient of the objective", g.objective.len(), n).or_else(|| {
         let (rows, columns) = g.jacobian.shape();

@@ -26,7 +26,7 @@ pub enum Barrier {
     Adaptive,
 }
 
-/// Settings of [`solve`](super::solve).
+/// Settings of [`solve`](crate::optimiser::solve).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
@@ -72,7 +72,7 @@ pub struct Options {
 impl Options {
     /// Number of variables up to which subproblems of the trust region have a dense matrix. They
     /// cost more than the matrix.
-    pub(super) fn dense_subproblems(&self) -> usize {
+    pub(crate) fn dense_subproblems(&self) -> usize {
         15 * self.dense_limit
     }
 }

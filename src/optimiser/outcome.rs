@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::state::{Multipliers, SavedState, Scaling};
+use crate::optimiser::state::{Multipliers, SavedState, Scaling};
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -6,15 +6,15 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
-use super::jacobian::Jacobian;
-use super::nlp::{
+use crate::optimiser::linear::jacobian::Jacobian;
+use crate::optimiser::nlp::{
     Evaluation, EvaluationFailure, Gradients, Nlp, fault_of_evaluation, fault_of_gradients,
     length_of_evaluation, length_of_gradients,
 };
-use super::observer::{Observer, Phase, Row};
-use super::options::Options;
-use super::outcome::{Counts, FailedDesign, Status};
-use super::state::Scaling;
+use crate::optimiser::observer::{Observer, Phase, Row};
+use crate::optimiser::options::Options;
+use crate::optimiser::outcome::{Counts, FailedDesign, Status};
+use crate::optimiser::state::Scaling;
 
 /// Largest number of recorded designs with a failed evaluation.
 const FAILED_DESIGNS_KEPT: usize = 100;
@@ -25,7 +25,7 @@ const FAR: f64 = 1e6;
 
 /// Values of the scaled functions at a scaled point.
 #[derive(Clone, Debug)]
-pub(super) struct Point {
+pub(crate) struct Point {
     pub x: DVector<f64>,
     pub f: f64,
     pub c: DVector<f64>,
@@ -33,7 +33,7 @@ pub(super) struct Point {
 
 /// Derivatives of the scaled functions.
 #[derive(Clone, Debug)]
-pub(super) struct Derivatives {
+pub(crate) struct Derivatives {
     pub g: DVector<f64>,
     pub a: Jacobian,
     /// Derivatives in the fixed variables, in the user's units of these.
@@ -54,7 +54,7 @@ impl Derivatives {
 
 /// Why an evaluation gave no value.
 #[derive(Clone, Debug)]
-pub(super) enum EarlyExit {
+pub(crate) enum EarlyExit {
     /// The functions are undefined here. Another point may do.
     Failed(EvaluationFailure),
     /// The run must end.
@@ -63,7 +63,7 @@ pub(super) enum EarlyExit {
 
 /// The data of an iteration besides its point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Progress {
+pub(crate) struct Progress {
     pub optimality: f64,
     pub barrier: f64,
     pub step: f64,
@@ -82,7 +82,7 @@ struct Allowed {
 }
 
 /// The scaled program.
-pub(super) struct Program<'a> {
+pub(crate) struct Program<'a> {
     nlp: &'a mut dyn Nlp,
     observer: &'a mut dyn Observer,
     pub options: &'a Options,
@@ -98,8 +98,8 @@ pub(super) struct Program<'a> {
     pub row_upper: DVector<f64>,
     user_lower: Vec<f64>,
     user_upper: Vec<f64>,
-    pub(super) user_row_lower: Vec<f64>,
-    pub(super) user_row_upper: Vec<f64>,
+    pub(crate) user_row_lower: Vec<f64>,
+    pub(crate) user_row_upper: Vec<f64>,
     template: Vec<f64>,
     pub scaling: Scaling,
     /// Factor by which the units of all variables were changed during the run.
@@ -114,12 +114,12 @@ pub(super) struct Program<'a> {
     /// Norms ‖∇f‖∞ of all points so far, in the units of the user. A repeated point counts once.
     pub gradient_norms: Vec<f64>,
     /// Sizes of the rows at the newest derivatives, in the units of the user.
-    pub(super) row_sizes: Vec<f64>,
-    pub(super) largest_rows: Vec<f64>,
+    pub(crate) row_sizes: Vec<f64>,
+    pub(crate) largest_rows: Vec<f64>,
     /// Iterations and evaluations allowed to the running method.
     allowed: Allowed,
     /// First point reported, and its objective in the units of the user.
-    pub(super) first: Option<(DVector<f64>, f64)>,
+    pub(crate) first: Option<(DVector<f64>, f64)>,
     /// Best point reported: feasible with the least objective, or least infeasible.
     pub best: Option<Point>,
 }

@@ -1,8 +1,8 @@
 //! Restart of a stalled method, in units that suit the point where it stalled.
 
-use super::ending::FinalIterate;
-use super::outcome::Status;
-use super::program::{Derivatives, EarlyExit, Point, Program};
+use crate::optimiser::ending::FinalIterate;
+use crate::optimiser::outcome::Status;
+use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 
 /// Largest number of restarts.
 const RENEWALS: usize = 6;
@@ -10,7 +10,7 @@ const RENEWALS: usize = 6;
 /// Restarts from a feasible point where `finish` stalled. The restart has new units, an empty
 /// quasi-Newton matrix and no earlier derivatives. It is repeated as long as the objective
 /// improves. Only after a restart without improvement may the end be [`Status::AtPrecision`].
-pub(super) fn renewed(
+pub(crate) fn renewed(
     program: &mut Program<'_>,
     mut finish: FinalIterate,
     run: impl Fn(&mut Program<'_>, (Point, Derivatives)) -> FinalIterate,

@@ -4,8 +4,8 @@ use std::ops::RangeInclusive;
 
 use nalgebra::DVector;
 
-use super::program::{Derivatives, EarlyExit, Point, Program};
-use super::state::Scaling;
+use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
+use crate::optimiser::state::Scaling;
 
 /// An objective whose gradient at the start is below `FLAT` is multiplied until the gradient is
 /// `LIFTED`. Otherwise a start on a plateau would pass for a solution.
@@ -27,7 +27,7 @@ const LARGEST_LEFT_OUT: usize = 2;
 
 /// Units of a scaled program.
 #[derive(Clone, Debug)]
-pub(super) struct Units {
+pub(crate) struct Units {
     pub objective: f64,
     constraints: Vec<f64>,
     /// [`Program::length`].

@@ -2,25 +2,22 @@
 
 use nalgebra::DVector;
 
-use super::doubts::doubted;
-use super::ending::{
-    Claim, FinalIterate, best_of, outcome, state_of, status_of, unfinished, untried,
-    without_freedom, without_values,
-};
-use super::interior_point::InteriorPoint;
-use super::least_violation::least_violation;
-use super::nlp::Nlp;
-use super::observer::{Observer, Phase};
-use super::options::{Method, Options};
-use super::outcome::{Outcome, Status};
-use super::program::{Derivatives, EarlyExit, Point, Program, Progress};
-use super::renewal::renewed;
-use super::start::{Neighbourhood, first_point, look_around};
-use super::state::SavedState;
-use super::steering::{Goal, TrustRegion};
-use super::trust_region::Ending;
-use super::verdict::{ScaledMultipliers, is_solved_at_end, scaled_multipliers, scaled_residual};
-use super::well_posed;
+use crate::optimiser::convergence::scaled_residual;
+use crate::optimiser::doubts::doubted;
+use crate::optimiser::ending::{FinalIterate, best_of, unfinished, without_freedom};
+use crate::optimiser::interior_point::run::{RESUMED_PUSH, interior_point};
+use crate::optimiser::least_violation::least_violation;
+use crate::optimiser::multipliers::ScaledMultipliers;
+use crate::optimiser::nlp::Nlp;
+use crate::optimiser::observer::{Observer, Phase};
+use crate::optimiser::options::{Method, Options};
+use crate::optimiser::outcome::{Outcome, Status};
+use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
+use crate::optimiser::report::{outcome, state_of, untried, without_values};
+use crate::optimiser::start::{Neighbourhood, first_point, look_around};
+use crate::optimiser::state::SavedState;
+use crate::optimiser::trust_region::run::trust_region;
+use crate::optimiser::well_posed;
 
 /// Shares of iterations and evaluations at which [`Method::Auto`] changes: from the interior point
 /// to the trust region from its best point, then to the trust region from the start.
@@ -29,15 +26,6 @@ const SECOND_SHARE: f64 = 0.9;
 
 /// How often a run continues from a point near one that seems infeasible.
 const ESCAPES: usize = 3;
-
-/// How often the trust-region method looks for a feasible point after the penalties failed.
-const FEASIBILITY_PHASES: usize = 2;
-
-/// Least relative distance of the start of a resumed run from a bound.
-const RESUMED_PUSH: f64 = 1e-10;
-
-/// Larger multipliers are replaced by fitted ones at the end of a run.
-const LARGEST_MULTIPLIER: f64 = 1e20;
 
 /// Minimises f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///
@@ -286,152 +274,4 @@ fn auto(
         kept.restore_units(program);
     }
     kept
-}
-
-fn interior_point(
-    program: &mut Program<'_>,
-    point: Point,
-    slopes: Derivatives,
-    saved: Option<&SavedState>,
-    push: f64,
-) -> FinalIterate {
-    let mut method = InteriorPoint::new(program, point, slopes, push);
-    if let Some(saved) = saved {
-        let multipliers = scaled_multipliers(program, &saved.multipliers);
-        method.warm_start(&multipliers, saved.quasi_newton.clone(), saved.barrier);
-    }
-    let finish = finish_interior_point(program, method);
-    renewed(program, finish, |program, (point, slopes)| {
-        let method = InteriorPoint::new(program, point, slopes, RESUMED_PUSH);
-        finish_interior_point(program, method)
-    })
-}
-
-fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -> FinalIterate {
-    let mut result = method.run(program);
-    while let Ok(Ending::Misscaled | Ending::Stalled) = result
-        && let Some(factor) = method.better_scale(program)
-    {
-        let z = method.multipliers(program).times(factor);
-        let (b, mu) = (method.b.times(factor), method.barrier.mu * factor);
-        let mut point = method.at.point.clone();
-        program.rescale(factor);
-        point.f *= factor;
-        // Small derivatives were lost in the rounding of the large ones at the start.
-        let slopes = match program.gradients(&point.x) {
-            Ok(slopes) => slopes,
-            Err(trouble) => {
-                result = Err(trouble);
-                break;
-            }
-        };
-        method = InteriorPoint::new(program, point, slopes, RESUMED_PUSH);
-        method.warm_start(&z, b, mu.min(program.options.initial_barrier));
-        result = method.run(program);
-    }
-    let status = status_of(program, result, &method.at.point);
-    let mut multipliers = method.multipliers(program);
-    let mut scaled = method.optimality();
-    let (point, slopes) = (method.at.point, method.at.slopes);
-    // Unbounded multipliers may hide finite ones at the same point. They mean nothing if the rows
-    // cannot be satisfied.
-    let bounded = multipliers
-        .y
-        .iter()
-        .chain(&multipliers.zl)
-        .chain(&multipliers.zu);
-    let sane = -LARGEST_MULTIPLIER..=LARGEST_MULTIPLIER;
-    let useless =
-        matches!(status, Status::Infeasible { .. }) || bounded.copied().any(|v| !sane.contains(&v));
-    if status == Status::Stalled || useless {
-        let zero = DVector::zeros(point.c.len());
-        let y = if useless { &zero } else { &multipliers.y };
-        let fitted = ScaledMultipliers::polished(program, &point, &slopes, y);
-        let residual = scaled_residual(program, &point, &slopes, &fitted);
-        let solved = is_solved_at_end(program, &point, &slopes, &fitted, residual);
-        if useless || solved {
-            (multipliers, scaled) = (fitted, residual);
-        }
-    }
-    FinalIterate {
-        status,
-        multipliers,
-        scaled,
-        claim: Claim::Untested,
-        units: program.units(),
-        point,
-        slopes,
-        b: method.b,
-        barrier: method.barrier.mu,
-        radius: program.options.initial_radius,
-    }
-}
-
-fn trust_region(
-    program: &mut Program<'_>,
-    point: Point,
-    slopes: Derivatives,
-    saved: Option<&SavedState>,
-) -> FinalIterate {
-    let mut method = TrustRegion::new(program, point, slopes, Goal::Optimum);
-    if let Some(saved) = saved {
-        method.y = scaled_multipliers(program, &saved.multipliers).y;
-        if saved.quasi_newton.order() == method.b.order() {
-            method.b = saved.quasi_newton.clone();
-        }
-        method.radius = saved.radius;
-    }
-    let finish = finish_trust_region(program, method);
-    renewed(program, finish, |program, (point, slopes)| {
-        let method = TrustRegion::new(program, point, slopes, Goal::Optimum);
-        finish_trust_region(program, method)
-    })
-}
-
-fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> FinalIterate {
-    let mut result = optimise(program, &mut method);
-    for _ in 0..FEASIBILITY_PHASES {
-        let stuck = matches!(result, Ok(Ending::Stalled | Ending::Infeasible));
-        if !stuck || program.is_feasible(&method.point.c) {
-            break;
-        }
-        let (point, slopes) = (method.point.clone(), method.slopes.clone());
-        let mut phase = TrustRegion::new(program, point, slopes, Goal::Feasibility);
-        result = phase.run(program, |program, p| program.is_feasible(&p.c));
-        let (point, slopes) = (phase.point, phase.slopes);
-        method = TrustRegion::new(program, point, slopes, Goal::Optimum);
-        if !matches!(result, Ok(Ending::Reached)) {
-            break;
-        }
-        result = optimise(program, &mut method);
-    }
-    let status = status_of(program, result, &method.point);
-    FinalIterate {
-        status,
-        multipliers: method.multipliers(program),
-        scaled: method.optimality(program),
-        claim: Claim::Untested,
-        units: program.units(),
-        point: method.point,
-        slopes: method.slopes,
-        b: method.b,
-        barrier: program.options.initial_barrier,
-        radius: method.radius,
-    }
-}
-
-/// Runs the trust region, and again in better units if those of the start do not suit its end.
-fn optimise(program: &mut Program<'_>, method: &mut TrustRegion) -> Result<Ending, EarlyExit> {
-    loop {
-        let ending = method.run(program, |_, _| false)?;
-        if !matches!(ending, Ending::Misscaled | Ending::Stalled) {
-            return Ok(ending);
-        }
-        let Some(factor) = method.better_scale(program) else {
-            return Ok(ending);
-        };
-        program.rescale(factor);
-        let slopes = program.gradients(&method.point.x)?;
-        method.rescale(factor, slopes);
-    }
 }

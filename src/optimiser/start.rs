@@ -2,10 +2,10 @@
 
 use nalgebra::DVector;
 
-use super::iterate::margin;
-use super::nlp::EvaluationFailure;
-use super::options::Method;
-use super::program::{Derivatives, EarlyExit, Point, Program};
+use crate::optimiser::interior_point::iterate::margin;
+use crate::optimiser::nlp::EvaluationFailure;
+use crate::optimiser::options::Method;
+use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 
 /// Number of starts tried if the functions are undefined.
 const START_TRIALS: usize = 12;
@@ -21,7 +21,7 @@ const LESS: f64 = 1e-6;
 const UNCHANGED: f64 = 1e-12;
 
 /// Evaluates the start, moved into the interior of the bounds, or points near it.
-pub(super) fn first_point(
+pub(crate) fn first_point(
     program: &mut Program<'_>,
     push: f64,
 ) -> Result<(Point, Derivatives), EarlyExit> {
@@ -48,7 +48,7 @@ pub(super) fn first_point(
 }
 
 /// The violation around a point at which its derivatives show no descent.
-pub(super) enum Neighbourhood {
+pub(crate) enum Neighbourhood {
     /// It is clearly less at this point. The first point was a maximum, a saddle or one of several
     /// minima.
     Less(Box<(Point, Derivatives)>),
@@ -60,7 +60,7 @@ pub(super) enum Neighbourhood {
 
 /// Tries points around `at`, near and far. At a maximum, at a saddle and on a plateau of the
 /// violation its derivatives vanish too.
-pub(super) fn look_around(
+pub(crate) fn look_around(
     program: &mut Program<'_>,
     at: &Point,
 ) -> Result<Neighbourhood, EarlyExit> {

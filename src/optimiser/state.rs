@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::quasi_newton::QuasiNewton;
+use crate::optimiser::linear::quasi_newton::QuasiNewton;
 
 /// Two values of one objective at almost the same point differ by less than this, relatively.
 const SAME: f64 = 1e-6;
@@ -117,7 +117,7 @@ impl SavedState {
     }
 
     /// Whether `objective`, the value at this state's point, agrees with the stored one.
-    pub(super) fn is_of(&self, objective: f64) -> bool {
+    pub(crate) fn is_of(&self, objective: f64) -> bool {
         (objective - self.objective).abs() <= SAME * objective.abs().max(self.objective.abs())
     }
 }

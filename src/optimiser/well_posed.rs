@@ -1,15 +1,15 @@
 //! Faults of a program or of the options that are found before any evaluation.
 
-use super::nlp::Nlp;
-use super::options::{Method, Options};
-use super::outcome::Status;
+use crate::optimiser::nlp::Nlp;
+use crate::optimiser::options::{Method, Options};
+use crate::optimiser::outcome::Status;
 
 /// Largest number of variables for the trust region. Above it the subproblems take much longer than
 /// the iterations of the interior point.
-pub(super) const LARGEST_TRUST_REGION: usize = 2000;
+pub(crate) const LARGEST_TRUST_REGION: usize = 2000;
 
 /// Status of a run on `nlp` that cannot begin. `None` if the program and the options make sense.
-pub(super) fn fault(nlp: &dyn Nlp, options: &Options) -> Option<Status> {
+pub(crate) fn fault(nlp: &dyn Nlp, options: &Options) -> Option<Status> {
     let ill_posed = |what| Some(Status::IllPosed { what });
     if let Some(what) = fault_of_options(options).or_else(|| fault_of_lengths(nlp)) {
         return ill_posed(what);

@@ -1,9 +1,9 @@
 //! Choice of the barrier parameter.
 
-use super::direction::{Direction, NewtonSystem};
-use super::iterate::{Iterate, Layout};
-use super::options::{Barrier, Options};
-use super::quasi_newton::QuasiNewton;
+use crate::optimiser::interior_point::direction::{Direction, NewtonSystem};
+use crate::optimiser::interior_point::iterate::{Iterate, Layout};
+use crate::optimiser::linear::quasi_newton::QuasiNewton;
+use crate::optimiser::options::{Barrier, Options};
 
 /// A barrier subproblem is solved when its residual is below this multiple of μ.
 const SUBPROBLEM: f64 = 10.0;
@@ -27,7 +27,7 @@ const RETURNS: usize = 1;
 
 /// State of the rule.
 #[derive(Clone, Debug)]
-pub(super) struct BarrierRule {
+pub(crate) struct BarrierRule {
     pub mu: f64,
     least: f64,
     /// Whether μ is chosen anew at each iteration.

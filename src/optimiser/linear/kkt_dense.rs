@@ -2,8 +2,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::jacobian::Jacobian;
-use super::quasi_newton::QuasiNewton;
+use crate::optimiser::linear::jacobian::Jacobian;
+use crate::optimiser::linear::quasi_newton::QuasiNewton;
 
 /// Relative size of a pivot of the Schur complement below which rows count as dependent.
 const DEPENDENT: f64 = 1e-14;
@@ -15,7 +15,7 @@ const MANY: usize = 100;
 /// rows, more than variables, they are eliminated first: H = B + Σ + A_Iᵀ D_I⁻¹ A_I, and S has the other
 /// rows. The inertia is (n, m, 0) whenever S has a Cholesky factor; where equality rows are
 /// dependent it has none and δ is added to D.
-pub(super) struct DenseKkt {
+pub(crate) struct DenseKkt {
     hessian: Cholesky<f64, Dyn>,
     schur: Cholesky<f64, Dyn>,
     /// Rows of S, and the rows that are eliminated first.

@@ -2,7 +2,7 @@
 //! of infeasibility and merit that must not be dominated.
 
 /// Share of the infeasibility by which a step must improve on a filter entry.
-pub(super) const MARGIN: f64 = 1e-5;
+pub(crate) const MARGIN: f64 = 1e-5;
 
 /// Growth of the infeasibility allowed after the filter was cleared.
 const GROWTH: f64 = 100.0;
@@ -11,8 +11,8 @@ const GROWTH: f64 = 100.0;
 const ARMIJO: f64 = 1e-4;
 
 /// Exponents of the switching condition, of the directional derivative and of the infeasibility.
-pub(super) const SLOPE_POWER: f64 = 2.3;
-pub(super) const THETA_POWER: f64 = 1.1;
+pub(crate) const SLOPE_POWER: f64 = 2.3;
+pub(crate) const THETA_POWER: f64 = 1.1;
 
 /// The point from which a search starts.
 pub(crate) struct Measure {

@@ -2,9 +2,9 @@
 
 use nalgebra::DVector;
 
-use super::iterate::{Iterate, Layout};
-use super::kkt_system::KktSystem;
-use super::quasi_newton::QuasiNewton;
+use crate::optimiser::interior_point::iterate::{Iterate, Layout};
+use crate::optimiser::linear::kkt_system::KktSystem;
+use crate::optimiser::linear::quasi_newton::QuasiNewton;
 
 /// Largest Σ of a slack that counts as far from its bounds.
 const FAR: f64 = 1e-8;
@@ -16,7 +16,7 @@ const REACH: f64 = 0.9;
 
 /// Step of all parts of an [`Iterate`].
 #[derive(Clone, Debug)]
-pub(super) struct Direction {
+pub(crate) struct Direction {
     pub x: DVector<f64>,
     pub s: DVector<f64>,
     pub y: DVector<f64>,
@@ -25,7 +25,7 @@ pub(super) struct Direction {
 }
 
 /// The linear system of one iterate, factored once for all right-hand sides.
-pub(super) struct NewtonSystem {
+pub(crate) struct NewtonSystem {
     system: KktSystem,
     sigma: DVector<f64>,
     /// What was added to Σ.

@@ -5,8 +5,8 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
 use nalgebra::DVector;
 
-use super::qp::settings;
-use super::quasi_newton::Spectrum;
+use crate::optimiser::linear::quasi_newton::Spectrum;
+use crate::optimiser::quadratic::data::settings;
 
 /// Eigenvalues this close to σ, relatively, count as σ.
 const SAME: f64 = 1e-6;
@@ -21,7 +21,7 @@ const SAME: f64 = 1e-6;
 /// ```
 ///
 /// a diagonal form in p, z₋ and z₊. Springs in series are softer; parallel springs are stiffer.
-pub(super) fn solve(
+pub(crate) fn solve(
     rows: &CscMatrix<f64>,
     b: &Spectrum,
     factor: f64,

@@ -1,7 +1,9 @@
 //! Positive definite approximation of the Hessian of the Lagrangian.
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, LU};
+use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
+
+use crate::optimiser::linear::compact::Compact;
 
 /// Least cosine of step and gradient difference for which a pair is used.
 const CURVATURE: f64 = 1.5e-8;
@@ -60,16 +62,6 @@ impl PartialEq for Cached {
     }
 }
 
-/// B = D − U M⁻¹ Uᵀ with U = [D S, Y] (Byrd, Nocedal & Schnabel 1994, eq. 2.17). D is σ I or the
-/// diagonal.
-#[derive(Clone, Debug)]
-pub(super) struct Compact {
-    base: DVector<f64>,
-    pub u: DMatrix<f64>,
-    pub middle: DMatrix<f64>,
-    factors: LU<f64, Dyn, Dyn>,
-}
-
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Pair {
     #[serde(with = "as_list")]
@@ -79,7 +71,7 @@ struct Pair {
 }
 
 /// B = σ I + W diag(λ − σ) Wᵀ with orthonormal columns W.
-pub(super) struct Spectrum {
+pub(crate) struct Spectrum {
     pub sigma: f64,
     pub vectors: DMatrix<f64>,
     /// λ, positive.
@@ -91,7 +83,7 @@ const LEAST_EIGENVALUE: f64 = 1e-10;
 
 impl QuasiNewton {
     /// The identity, of order `n`, kept dense up to `dense_limit`.
-    pub(super) fn new(n: usize, dense_limit: usize, memory: usize) -> QuasiNewton {
+    pub(crate) fn new(n: usize, dense_limit: usize, memory: usize) -> QuasiNewton {
         let dense = n <= dense_limit;
         let memory = if dense { DENSE_PAIRS } else { memory.max(1) };
         let pairs = Vec::new();
@@ -110,7 +102,7 @@ impl QuasiNewton {
     }
 
     /// The matrix without cached values.
-    pub(super) fn stored(&self) -> QuasiNewton {
+    pub(crate) fn stored(&self) -> QuasiNewton {
         QuasiNewton {
             cached: Cached::default(),
             pairs: self.pairs.clone(),
@@ -121,7 +113,7 @@ impl QuasiNewton {
     }
 
     /// `factor` B.
-    pub(super) fn times(&self, factor: f64) -> QuasiNewton {
+    pub(crate) fn times(&self, factor: f64) -> QuasiNewton {
         let mut b = self.stored();
         b.sigma *= factor;
         let diagonals = b.base.iter_mut().chain(&mut b.model);
@@ -133,13 +125,13 @@ impl QuasiNewton {
     }
 
     /// Curvature sᵀy/sᵀs of the newest pair, if there is one.
-    pub(super) fn newest_curvature(&self) -> Option<f64> {
+    pub(crate) fn newest_curvature(&self) -> Option<f64> {
         let pair = self.pairs.last()?;
         Some(pair.s.dot(&pair.y) / pair.s.norm_squared())
     }
 
     /// Sets the scale σ that B has without pairs.
-    pub(super) fn set_scale(&mut self, sigma: f64) {
+    pub(crate) fn set_scale(&mut self, sigma: f64) {
         self.sigma = sigma;
         self.base.clear();
         self.model.clear();
@@ -147,7 +139,7 @@ impl QuasiNewton {
     }
 
     /// The fault of a matrix that was read, for a program of at most `variables` free variables.
-    pub(super) fn fault(&self, variables: usize) -> Option<String> {
+    pub(crate) fn fault(&self, variables: usize) -> Option<String> {
         if self.n > variables {
             let n = self.n;
             return Some(format!(
@@ -169,17 +161,17 @@ impl QuasiNewton {
     }
 
     /// Order of the matrix.
-    pub(super) fn order(&self) -> usize {
+    pub(crate) fn order(&self) -> usize {
         self.n
     }
 
     /// Whether no pair is kept.
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }
 
     /// Forgets all pairs; the scale of B remains.
-    pub(super) fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         self.pairs.clear();
         self.base.clear();
         self.model.clear();
@@ -188,7 +180,7 @@ impl QuasiNewton {
     }
 
     /// Lets the limited memory start from a diagonal that keeps the curvature of all pairs.
-    pub(super) fn with_diagonal(mut self) -> QuasiNewton {
+    pub(crate) fn with_diagonal(mut self) -> QuasiNewton {
         self.diagonal = !self.dense;
         self
     }
@@ -209,7 +201,7 @@ impl QuasiNewton {
     }
 
     /// Adds a pair.
-    pub(super) fn update(&mut self, s: DVector<f64>, y: DVector<f64>) {
+    pub(crate) fn update(&mut self, s: DVector<f64>, y: DVector<f64>) {
         self.update_with(s, y, &[]);
     }
 
@@ -237,7 +229,7 @@ impl QuasiNewton {
     }
 
     /// Adds a pair. `model` is a positive diagonal by a model of the program, or empty.
-    pub(super) fn update_with(&mut self, s: DVector<f64>, y: DVector<f64>, model: &[f64]) {
+    pub(crate) fn update_with(&mut self, s: DVector<f64>, y: DVector<f64>, model: &[f64]) {
         let (sy, ss, yy) = (s.dot(&y), s.norm_squared(), y.norm_squared());
         if !(sy.is_finite() && ss.is_finite() && yy.is_finite()) || ss == 0.0 {
             return;
@@ -264,12 +256,12 @@ impl QuasiNewton {
     }
 
     /// Whether B is kept as a dense matrix.
-    pub(super) fn is_dense(&self) -> bool {
+    pub(crate) fn is_dense(&self) -> bool {
         self.dense
     }
 
     /// B by the eigenvalues that differ from σ, and their eigenvectors.
-    pub(super) fn spectrum(&mut self) -> Spectrum {
+    pub(crate) fn spectrum(&mut self) -> Spectrum {
         let sigma = self.sigma;
         let n = self.n;
         let none = Spectrum {
@@ -298,7 +290,7 @@ impl QuasiNewton {
     }
 
     /// B as a dense matrix.
-    pub(super) fn dense(&mut self) -> &DMatrix<f64> {
+    pub(crate) fn dense(&mut self) -> &DMatrix<f64> {
         let (n, sigma, pairs) = (self.n, self.sigma, &self.pairs);
         self.cached.dense.get_or_insert_with(|| {
             let mut b = DMatrix::from_diagonal_element(n, n, sigma);
@@ -312,7 +304,7 @@ impl QuasiNewton {
     }
 
     /// Product B v.
-    pub(super) fn multiply(&mut self, v: &DVector<f64>) -> DVector<f64> {
+    pub(crate) fn multiply(&mut self, v: &DVector<f64>) -> DVector<f64> {
         if self.dense {
             return self.dense() * v;
         }
@@ -324,7 +316,7 @@ impl QuasiNewton {
     }
 
     /// Diagonal entry `i` of B.
-    pub(super) fn diagonal(&mut self, i: usize) -> f64 {
+    pub(crate) fn diagonal(&mut self, i: usize) -> f64 {
         if self.dense {
             return self.dense()[(i, i)];
         }
@@ -340,7 +332,7 @@ impl QuasiNewton {
     }
 
     /// The diagonal D of the compact form.
-    pub(super) fn base(&self) -> DVector<f64> {
+    pub(crate) fn base(&self) -> DVector<f64> {
         if !self.model.is_empty() {
             DVector::from_column_slice(&self.model)
         } else if self.base.is_empty() {
@@ -351,7 +343,7 @@ impl QuasiNewton {
     }
 
     /// B in its compact form; `None` without pairs.
-    pub(super) fn compact(&mut self) -> Option<&Compact> {
+    pub(crate) fn compact(&mut self) -> Option<&Compact> {
         if self.pairs.is_empty() {
             return None;
         }
@@ -391,7 +383,7 @@ impl QuasiNewton {
     }
 
     /// B + diag(`d`) as a matrix.
-    pub(super) fn dense_plus(&mut self, d: &DVector<f64>) -> DMatrix<f64> {
+    pub(crate) fn dense_plus(&mut self, d: &DVector<f64>) -> DMatrix<f64> {
         let mut h = self.dense().clone();
         for i in 0..self.n {
             h[(i, i)] += d[i];
@@ -400,7 +392,7 @@ impl QuasiNewton {
     }
 
     /// B⁻¹ `force`; `None` if rounding has destroyed the definiteness of B.
-    pub(super) fn newton_step(&mut self, force: &DVector<f64>) -> Option<DVector<f64>> {
+    pub(crate) fn newton_step(&mut self, force: &DVector<f64>) -> Option<DVector<f64>> {
         if self.dense {
             return Cholesky::new(self.dense().clone()).map(|factor| factor.solve(force));
         }
@@ -417,15 +409,6 @@ impl QuasiNewton {
         let inner = (middle - u.transpose() * &divided).lu();
         let small = inner.solve(&divided.tr_mul(force))?;
         Some(force.component_div(&compact.base) + divided * small)
-    }
-}
-
-impl Compact {
-    fn multiply(&self, v: &DVector<f64>) -> DVector<f64> {
-        match self.factors.solve(&self.u.tr_mul(v)) {
-            Some(inner) => v.component_mul(&self.base) - &self.u * inner,
-            None => v.component_mul(&self.base),
-        }
     }
 }
 

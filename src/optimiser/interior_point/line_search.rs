@@ -2,11 +2,11 @@
 
 use nalgebra::DVector;
 
-use super::direction::{Direction, NewtonSystem};
-use super::filter::{Filter, MARGIN, Measure, SLOPE_POWER, THETA_POWER};
-use super::iterate::{Iterate, Layout};
-use super::program::{Derivatives, EarlyExit, Point, Program};
-use super::quasi_newton::QuasiNewton;
+use crate::optimiser::interior_point::direction::{Direction, NewtonSystem};
+use crate::optimiser::interior_point::filter::{Filter, MARGIN, Measure, SLOPE_POWER, THETA_POWER};
+use crate::optimiser::interior_point::iterate::{Iterate, Layout};
+use crate::optimiser::linear::quasi_newton::QuasiNewton;
+use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 
 /// Longest step, relative to the size of the point.
 const LONGEST: f64 = 100.0;
@@ -39,12 +39,12 @@ const CORRECTION_GAIN: f64 = 0.99;
 const FEASIBLE: f64 = 1e-9;
 
 /// Infeasibility θ of the residuals `r` of rows whose values are `c`.
-pub(super) fn infeasibility(r: &DVector<f64>, c: &DVector<f64>) -> f64 {
+pub(crate) fn infeasibility(r: &DVector<f64>, c: &DVector<f64>) -> f64 {
     (r.lp_norm(1) - FEASIBLE - 10.0 * f64::EPSILON * c.lp_norm(1)).max(0.0)
 }
 
 /// A point that the search accepted.
-pub(super) struct Accepted {
+pub(crate) struct Accepted {
     pub point: Point,
     pub slopes: Derivatives,
     pub s: DVector<f64>,
@@ -58,7 +58,7 @@ pub(super) struct Accepted {
 const RESOLUTION: f64 = 1e-15;
 
 /// Data of one search.
-pub(super) struct LineSearch<'s> {
+pub(crate) struct LineSearch<'s> {
     pub layout: &'s Layout,
     pub at: &'s Iterate,
     pub system: &'s NewtonSystem,

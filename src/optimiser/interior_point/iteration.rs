@@ -2,23 +2,21 @@
 
 use nalgebra::DVector;
 
-use super::barrier::BarrierRule;
-use super::direction::{Direction, NewtonSystem};
-use super::filter::Filter;
-use super::iterate::{Iterate, Layout};
-use super::line_search::{Accepted, LineSearch, infeasibility};
-use super::observer::Phase;
-use super::outcome::Counts;
-use super::program::{Derivatives, EarlyExit, Point, Program, Progress};
-use super::quasi_newton::QuasiNewton;
-use super::steering::{Goal, TrustRegion};
-use super::trust_region::Ending;
-use super::verdict::{ScaledMultipliers, Verdict, is_at_precision, judge};
+use crate::optimiser::convergence::{Verdict, is_at_precision, judge};
+use crate::optimiser::ending::Ending;
+use crate::optimiser::interior_point::barrier::BarrierRule;
+use crate::optimiser::interior_point::direction::{Direction, NewtonSystem};
+use crate::optimiser::interior_point::filter::Filter;
+use crate::optimiser::interior_point::iterate::{Iterate, Layout};
+use crate::optimiser::interior_point::line_search::{Accepted, LineSearch, infeasibility};
+use crate::optimiser::linear::quasi_newton::QuasiNewton;
+use crate::optimiser::multipliers::ScaledMultipliers;
+use crate::optimiser::observer::Phase;
+use crate::optimiser::outcome::Counts;
+use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
 
-/// Multipliers of bounds stay within this factor of μ/distance.
-const MULTIPLIER_BAND: f64 = 1e10;
 /// Largest least-squares multiplier that is used.
-const LARGEST_ESTIMATE: f64 = 1e3;
+pub(crate) const LARGEST_ESTIMATE: f64 = 1e3;
 /// Infeasibility below which multipliers of rows are recomputed by least squares.
 const NEARLY_FEASIBLE: f64 = 1e-6;
 
@@ -43,12 +41,12 @@ const LOST_STEPS: usize = 4;
 const STIFFENINGS: usize = 8;
 
 /// State of the iteration.
-pub(super) struct InteriorPoint {
-    layout: Layout,
+pub(crate) struct InteriorPoint {
+    pub(crate) layout: Layout,
     pub at: Iterate,
     pub b: QuasiNewton,
     pub barrier: BarrierRule,
-    filter: Filter,
+    pub(crate) filter: Filter,
     theta_small: f64,
     short_steps: usize,
     /// A point that the iteration has not left by more than `NEARBY`, and the work done before.
@@ -243,7 +241,7 @@ impl InteriorPoint {
         }
     }
 
-    fn theta(&self) -> f64 {
+    pub(crate) fn theta(&self) -> f64 {
         infeasibility(
             &self.layout.residual(&self.at.point.c, &self.at.s),
             &self.at.point.c,
@@ -371,129 +369,5 @@ impl InteriorPoint {
             return Verdict::Unsolved;
         }
         judge(program, point, slopes, &z, scaled)
-    }
-
-    /// Handles a line search without a step: forgets the quasi-Newton matrix at a feasible point,
-    /// restores feasibility at another.
-    fn recover(
-        &mut self,
-        program: &mut Program<'_>,
-        failures: usize,
-    ) -> Result<Option<Ending>, EarlyExit> {
-        let theta = self.theta();
-        let small = 1e-2 * program.options.tolerance.min(program.least_allowed());
-        if theta <= small || failures > 3 {
-            if failures == 1 && !self.b.is_empty() {
-                self.b.reset();
-                self.filter.clear(self.theta());
-                return Ok(None);
-            }
-            if theta <= small || failures > 6 {
-                return Ok(Some(Ending::Stalled));
-            }
-        }
-        self.restore(program, theta, 0.9)
-    }
-
-    /// Reduces the violation by the factor `gain`, until the filter accepts the point.
-    fn restore(
-        &mut self,
-        program: &mut Program<'_>,
-        theta: f64,
-        gain: f64,
-    ) -> Result<Option<Ending>, EarlyExit> {
-        let phi = self.layout.barrier_function(
-            self.at.point.f,
-            &self.at.point.x,
-            &self.at.s,
-            self.barrier.mu,
-        );
-        self.filter.add(theta, phi);
-        let (point, slopes) = (self.at.point.clone(), self.at.slopes.clone());
-        let mut search = TrustRegion::new(program, point, slopes, Goal::Feasibility);
-        let (layout, filter, mu) = (&self.layout, &self.filter, self.barrier.mu);
-        let accepted = |_: &Program<'_>, p: &Point| {
-            let s = slacks(layout, p);
-            let theta_new = infeasibility(&layout.residual(&p.c, &s), &p.c);
-            let phi = layout.barrier_function(p.f, &p.x, &s, mu);
-            theta_new <= gain * theta && filter.accepts(theta_new, phi)
-        };
-        let ending = search.run(program, accepted)?;
-        let before = self.theta();
-        self.at.s = slacks(&self.layout, &search.point);
-        self.at.point = search.point;
-        self.at.slopes = search.slopes;
-        let after = self.theta();
-        self.at
-            .keep_multipliers_in_band(&self.layout, self.barrier.mu);
-        self.at.estimate_multipliers(&self.layout, LARGEST_ESTIMATE);
-        match ending {
-            Ending::Reached => Ok(None),
-            Ending::Infeasible => Ok(Some(Ending::Infeasible)),
-            _ if after < 0.5 * before => {
-                self.filter.clear(self.theta());
-                Ok(None)
-            }
-            other => Ok(Some(other)),
-        }
-    }
-}
-
-/// Slacks nearest to the values of the rows that keep a small distance from the bounds.
-fn slacks(layout: &Layout, point: &Point) -> DVector<f64> {
-    let inside = |(k, &j): (usize, &usize)| layout.push_inside(layout.n + k, point.c[j], 1e-6);
-    let slacks = layout.slack_rows.iter().enumerate().map(inside);
-    DVector::from_iterator(layout.slack_rows.len(), slacks)
-}
-
-/// Least variable relative to the largest, and least curvature relative to the mean, in a
-/// reciprocal model. Neither decides: on the bed 1e-3 and 1e-9 give the same.
-const LEAST_SHARE: f64 = 1e-6;
-
-impl Iterate {
-    /// Curvature of the Lagrangian if every function were a sum of terms a/x where it falls with x,
-    /// and of linear terms elsewhere: Σ 2 |∂/∂x|/|x| over the falling parts. So are the compliance
-    /// of a truss and the stresses in its bars, as functions of the areas, as far as forces stay
-    /// (Fleury & Braibant 1986). Empty if nothing falls.
-    fn reciprocal_curvature(&self) -> Vec<f64> {
-        let mut falling = self.slopes.g.map(|g| (-g).max(0.0));
-        for k in 0..self.y.len() {
-            for (i, slope) in self.slopes.a.row(k) {
-                falling[i] += (-self.y[k] * slope).max(0.0);
-            }
-        }
-        let x = &self.point.x;
-        let shortest = LEAST_SHARE * x.amax();
-        let curvature = |i: usize| 2.0 * falling[i] / x[i].abs().max(shortest);
-        let all = DVector::from_fn(x.len(), |i, _| curvature(i));
-        let least = LEAST_SHARE * all.mean();
-        if !(least > 0.0 && least.is_finite()) {
-            return Vec::new();
-        }
-        all.iter().map(|v| v.max(least)).collect()
-    }
-
-    /// Least-squares multipliers of the rows, unless they exceed `largest`, which sets zero.
-    pub(crate) fn estimate_multipliers(&mut self, layout: &Layout, largest: f64) {
-        if let Some(y) = self.least_squares_multipliers(layout) {
-            if y.amax() <= largest {
-                self.y = y;
-            } else {
-                self.y.fill(0.0);
-            }
-        }
-    }
-
-    fn keep_multipliers_in_band(&mut self, layout: &Layout, mu: f64) {
-        let (below, above) = layout.distances(&self.point.x, &self.s);
-        let clamp = |z: &mut DVector<f64>, distance: &DVector<f64>| {
-            for (z, d) in z.iter_mut().zip(distance.iter()) {
-                if d.is_finite() {
-                    *z = z.clamp(mu / (MULTIPLIER_BAND * d), MULTIPLIER_BAND * mu / d);
-                }
-            }
-        };
-        clamp(&mut self.zl, &below);
-        clamp(&mut self.zu, &above);
     }
 }

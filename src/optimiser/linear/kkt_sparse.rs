@@ -4,8 +4,8 @@ use clarabel::algebra::CscMatrix;
 use clarabel::qdldl::{QDLDLFactorisation, QDLDLSettings};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
-use super::jacobian::Jacobian;
-use super::quasi_newton::Compact;
+use crate::optimiser::linear::compact::Compact;
+use crate::optimiser::linear::jacobian::Jacobian;
 
 /// Least D of a row, relative to its entry a S⁻¹ aᵀ of the Schur complement, where S is h and the
 /// stiffness a²/D of inequality rows. Without it the elimination could meet a zero. Iterative
@@ -20,7 +20,7 @@ const SHIFT: f64 = 1e-8;
 /// ```
 ///
 /// a sparse LDLᵀ of the matrix without U, and the Woodbury formula for U.
-pub(super) struct SparseKkt {
+pub(crate) struct SparseKkt {
     n: usize,
     factors: QDLDLFactorisation<f64>,
     low_rank: Option<LowRank>,

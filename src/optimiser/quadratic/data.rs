@@ -3,28 +3,28 @@
 use clarabel::solver::{DefaultSettings, DefaultSettingsBuilder};
 use nalgebra::{DMatrix, DVector};
 
-use super::jacobian::Jacobian;
-use super::quasi_newton::Spectrum;
+use crate::optimiser::linear::jacobian::Jacobian;
+use crate::optimiser::linear::quasi_newton::Spectrum;
 
 /// Tolerance asked of Clarabel, in scaled units.
 const TOLERANCE: f64 = 1e-10;
 
 /// Positive definite matrix of a subproblem.
-pub(super) enum Hessian<'a> {
+pub(crate) enum Hessian<'a> {
     Dense(&'a DMatrix<f64>),
     Split(Spectrum),
 }
 
 impl Hessian<'_> {
     /// A bound on its entries.
-    pub(super) fn amax(&self) -> f64 {
+    pub(crate) fn amax(&self) -> f64 {
         match self {
             Hessian::Dense(b) => b.amax(),
             Hessian::Split(b) => b.values.amax().max(b.sigma),
         }
     }
 
-    pub(super) fn multiply(&self, d: &DVector<f64>) -> DVector<f64> {
+    pub(crate) fn multiply(&self, d: &DVector<f64>) -> DVector<f64> {
         match self {
             Hessian::Dense(b) => *b * d,
             Hessian::Split(b) => {
@@ -39,7 +39,7 @@ impl Hessian<'_> {
 }
 
 /// Data of one subproblem.
-pub(super) struct QpData<'a> {
+pub(crate) struct QpData<'a> {
     pub g: &'a DVector<f64>,
     pub b: &'a Hessian<'a>,
     pub a: &'a Jacobian,
@@ -54,14 +54,14 @@ pub(super) struct QpData<'a> {
 
 /// Solution of a subproblem.
 #[derive(Clone, Debug)]
-pub(super) struct QpStep {
+pub(crate) struct QpStep {
     pub d: DVector<f64>,
     /// Multipliers of the rows, positive at upper bounds.
     pub y: DVector<f64>,
 }
 
 /// Settings of Clarabel.
-pub(super) fn settings() -> Option<DefaultSettings<f64>> {
+pub(crate) fn settings() -> Option<DefaultSettings<f64>> {
     DefaultSettingsBuilder::default()
         .verbose(false)
         .presolve_enable(false)

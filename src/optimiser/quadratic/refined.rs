@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::qp::{Hessian, QpData, QpStep};
+use crate::optimiser::quadratic::data::{Hessian, QpData, QpStep};
 
 /// Distance from a bound of the box, relative to its size, at which a step counts as on it.
 const ON_BOX: f64 = 1e-7;
@@ -22,7 +22,7 @@ const ROUNDING: f64 = 1e-12;
 ///
 /// `None` if a row stays violated, the equations are singular, another bound would be violated, or
 /// a multiplier would get the wrong sign.
-pub(super) fn refine(data: &QpData<'_>, found: &QpStep) -> Option<QpStep> {
+pub(crate) fn refine(data: &QpData<'_>, found: &QpStep) -> Option<QpStep> {
     let Hessian::Dense(b) = data.b else {
         return None;
     };

@@ -3,21 +3,21 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::elastic_qp::ElasticQp;
-use super::program::{Derivatives, Point, Program};
-use super::qp::{Hessian, QpData, QpStep};
-use super::quasi_newton::{QuasiNewton, Spectrum};
+use crate::optimiser::linear::quasi_newton::{QuasiNewton, Spectrum};
+use crate::optimiser::program::{Derivatives, Point, Program};
+use crate::optimiser::quadratic::data::{Hessian, QpData, QpStep};
+use crate::optimiser::quadratic::elastic::ElasticQp;
 
 /// Share of the best possible reduction of the linearised violation that a step must reach.
 const STEERING: f64 = 0.1;
 
 /// Share of the violation that the linearisation may still remove at a point called infeasible before all
 /// steps are exhausted.
-pub(super) const IRREDUCIBLE: f64 = 1e-8;
+pub(crate) const IRREDUCIBLE: f64 = 1e-8;
 
 /// What the iteration minimises.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Goal {
+pub(crate) enum Goal {
     /// Objective and violation.
     Optimum,
     /// Violation alone. Steps keep the share 0.01 of every distance to a bound.
@@ -25,20 +25,20 @@ pub(super) enum Goal {
 }
 
 /// State of the iteration.
-pub(super) struct TrustRegion {
+pub(crate) struct TrustRegion {
     pub point: Point,
     pub slopes: Derivatives,
     /// Multipliers of the rows from the last subproblem.
     pub y: DVector<f64>,
     pub b: QuasiNewton,
     pub radius: f64,
-    pub(super) goal: Goal,
-    pub(super) penalty: DVector<f64>,
-    pub(super) qp: ElasticQp,
+    pub(crate) goal: Goal,
+    pub(crate) penalty: DVector<f64>,
+    pub(crate) qp: ElasticQp,
 }
 
 /// Trial of one subproblem.
-pub(super) struct Model {
+pub(crate) struct Model {
     pub step: QpStep,
     pub predicted: f64,
     /// Whether no step in the trust region reduces the linearised violation.
@@ -47,7 +47,7 @@ pub(super) struct Model {
 
 impl TrustRegion {
     /// Subproblem with steering of the penalties.
-    pub(super) fn solve_model(&mut self, program: &mut Program<'_>) -> Option<Model> {
+    pub(crate) fn solve_model(&mut self, program: &mut Program<'_>) -> Option<Model> {
         let c = self.point.c.clone();
         let mut step = self.solve_qp(program, self.weight(), &c)?;
         let now = program.total_violation(&c);
@@ -106,13 +106,13 @@ impl TrustRegion {
             .max(0.0)
     }
 
-    pub(super) fn linear_violation(&self, program: &Program<'_>, d: &DVector<f64>) -> f64 {
+    pub(crate) fn linear_violation(&self, program: &Program<'_>, d: &DVector<f64>) -> f64 {
         (0..self.point.c.len())
             .map(|k| self.linear_row_violation(program, d, k))
             .sum()
     }
 
-    pub(super) fn solve_qp(
+    pub(crate) fn solve_qp(
         &mut self,
         program: &mut Program<'_>,
         weight: f64,

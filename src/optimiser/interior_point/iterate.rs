@@ -2,14 +2,14 @@
 
 use nalgebra::{Cholesky, DVector, Dyn};
 
-use super::jacobian::Jacobian;
-use super::kkt_sparse::SparseKkt;
-use super::program::{Derivatives, Point, Program};
+use crate::optimiser::linear::jacobian::Jacobian;
+use crate::optimiser::linear::kkt_sparse::SparseKkt;
+use crate::optimiser::program::{Derivatives, Point, Program};
 
 /// Rows, slacks and bounds of the barrier problem.
 ///
 /// The vector w = (x, s) holds the variables and one slack for each row that is not an equality.
-pub(super) struct Layout {
+pub(crate) struct Layout {
     pub n: usize,
     /// Rows that have a slack.
     pub slack_rows: Vec<usize>,
@@ -21,7 +21,7 @@ pub(super) struct Layout {
 
 /// Primal–dual point.
 #[derive(Clone, Debug)]
-pub(super) struct Iterate {
+pub(crate) struct Iterate {
     pub point: Point,
     pub slopes: Derivatives,
     /// Slacks, of the length of [`Layout::slack_rows`].
@@ -36,7 +36,7 @@ pub(super) struct Iterate {
 /// Residuals of the perturbed optimality conditions, scaled by the size of the multipliers
 /// (Wächter & Biegler 2006, eq. 5).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Residuals {
+pub(crate) struct Residuals {
     pub stationarity: f64,
     pub violation: f64,
     pub complementarity: f64,
@@ -222,6 +222,60 @@ impl Iterate {
     }
 }
 
+/// Multipliers of bounds stay within this factor of μ/distance.
+const MULTIPLIER_BAND: f64 = 1e10;
+/// Least variable relative to the largest, and least curvature relative to the mean, in a
+/// reciprocal model. Neither decides: on the bed 1e-3 and 1e-9 give the same.
+const LEAST_SHARE: f64 = 1e-6;
+
+impl Iterate {
+    /// Curvature of the Lagrangian if every function were a sum of terms a/x where it falls with x,
+    /// and of linear terms elsewhere: Σ 2 |∂/∂x|/|x| over the falling parts. So are the compliance
+    /// of a truss and the stresses in its bars, as functions of the areas, as far as forces stay
+    /// (Fleury & Braibant 1986). Empty if nothing falls.
+    pub(crate) fn reciprocal_curvature(&self) -> Vec<f64> {
+        let mut falling = self.slopes.g.map(|g| (-g).max(0.0));
+        for k in 0..self.y.len() {
+            for (i, slope) in self.slopes.a.row(k) {
+                falling[i] += (-self.y[k] * slope).max(0.0);
+            }
+        }
+        let x = &self.point.x;
+        let shortest = LEAST_SHARE * x.amax();
+        let curvature = |i: usize| 2.0 * falling[i] / x[i].abs().max(shortest);
+        let all = DVector::from_fn(x.len(), |i, _| curvature(i));
+        let least = LEAST_SHARE * all.mean();
+        if !(least > 0.0 && least.is_finite()) {
+            return Vec::new();
+        }
+        all.iter().map(|v| v.max(least)).collect()
+    }
+
+    /// Least-squares multipliers of the rows, unless they exceed `largest`, which sets zero.
+    pub(crate) fn estimate_multipliers(&mut self, layout: &Layout, largest: f64) {
+        if let Some(y) = self.least_squares_multipliers(layout) {
+            if y.amax() <= largest {
+                self.y = y;
+            } else {
+                self.y.fill(0.0);
+            }
+        }
+    }
+
+    pub(crate) fn keep_multipliers_in_band(&mut self, layout: &Layout, mu: f64) {
+        let (below, above) = layout.distances(&self.point.x, &self.s);
+        let clamp = |z: &mut DVector<f64>, distance: &DVector<f64>| {
+            for (z, d) in z.iter_mut().zip(distance.iter()) {
+                if d.is_finite() {
+                    *z = z.clamp(mu / (MULTIPLIER_BAND * d), MULTIPLIER_BAND * mu / d);
+                }
+            }
+        };
+        clamp(&mut self.zl, &below);
+        clamp(&mut self.zu, &above);
+    }
+}
+
 /// Factors of A Aᵀ + 1 for each row that has a slack. They are dense for few rows.
 enum NormalEquations {
     Dense(Cholesky<f64, Dyn>),
@@ -267,7 +321,7 @@ const INSIDE: f64 = 1e-3;
 
 /// Distance between `bound` and the start: `push` relative to max(1, |bound|), at most that part of
 /// the distance of two bounds.
-pub(super) fn margin(bound: f64, width: f64, push: f64) -> f64 {
+pub(crate) fn margin(bound: f64, width: f64, push: f64) -> f64 {
     let absolute = push * bound.abs().max(1.0);
     if width.is_finite() {
         absolute.min(push.min(0.49) * width)

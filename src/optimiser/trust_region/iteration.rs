@@ -6,12 +6,14 @@
 
 use nalgebra::DVector;
 
-use super::elastic_qp::ElasticQp;
-use super::observer::Phase;
-use super::program::{Derivatives, EarlyExit, Point, Program, Progress};
-use super::quasi_newton::QuasiNewton;
-use super::steering::{Goal, IRREDUCIBLE, Model, TrustRegion};
-use super::verdict::{ScaledMultipliers, Verdict, judge, scaled_residual};
+use crate::optimiser::convergence::{Verdict, judge, scaled_residual};
+use crate::optimiser::ending::Ending;
+use crate::optimiser::linear::quasi_newton::QuasiNewton;
+use crate::optimiser::multipliers::ScaledMultipliers;
+use crate::optimiser::observer::Phase;
+use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
+use crate::optimiser::quadratic::elastic::ElasticQp;
+use crate::optimiser::trust_region::steering::{Goal, IRREDUCIBLE, Model, TrustRegion};
 
 /// Share of the predicted reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-4;
@@ -30,21 +32,6 @@ const STATIONARY: f64 = 1e-4;
 /// After this number of successive refused steps, gradients are evaluated at refused feasible
 /// points too. A matrix from few pairs refuses many steps before it knows a curved valley.
 const LEARN: usize = 1;
-
-/// How the iteration ended.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Ending {
-    /// The caller's test was met, or the optimality conditions.
-    Reached,
-    /// The point is a stationary point of the violation.
-    Infeasible,
-    /// The objective falls below all bounds.
-    Unbounded,
-    /// No step is accepted although the radius is tiny.
-    Stalled,
-    /// The conditions hold in scaled units, but these do not suit the point.
-    Misscaled,
-}
 
 impl TrustRegion {
     pub(crate) fn new(
@@ -81,7 +68,7 @@ impl TrustRegion {
         self.penalty *= factor;
     }
 
-    pub(super) fn weight(&self) -> f64 {
+    pub(crate) fn weight(&self) -> f64 {
         if self.goal == Goal::Optimum { 1.0 } else { 0.0 }
     }
 

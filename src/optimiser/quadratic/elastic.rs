@@ -6,11 +6,11 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 use nalgebra::DVector;
 
-use super::jacobian::Jacobian;
-use super::outcome::Counts;
-use super::qp::{Hessian, QpData, QpStep, settings};
-use super::refined_qp::refine;
-use super::split_qp;
+use crate::optimiser::linear::jacobian::Jacobian;
+use crate::optimiser::outcome::Counts;
+use crate::optimiser::quadratic::data::{Hessian, QpData, QpStep, settings};
+use crate::optimiser::quadratic::refined::refine;
+use crate::optimiser::quadratic::split;
 
 /// The subproblem
 ///
@@ -21,7 +21,7 @@ use super::split_qp;
 ///
 /// It always has a solution. It is solved in t = d/Δ, so that the absolute tolerances of Clarabel
 /// are relative to the size Δ of the box.
-pub(super) struct ElasticQp {
+pub(crate) struct ElasticQp {
     n: usize,
     has_lower: Vec<bool>,
     has_upper: Vec<bool>,
@@ -123,7 +123,7 @@ impl ElasticQp {
             }
             Hessian::Split(b) => {
                 let rows = self.pattern(data.a, values);
-                split_qp::solve(&rows, b, radius / force, &q, &rhs)?
+                split::solve(&rows, b, radius / force, &q, &rhs)?
             }
         };
         if !matches!(status, SolverStatus::Solved | SolverStatus::AlmostSolved) {

@@ -92,7 +92,7 @@ impl Jacobian {
     }
 
     /// A matrix of rows, each a list of (variable, entry) with rising variables.
-    pub(super) fn from_rows(
+    pub(crate) fn from_rows(
         columns: usize,
         rows: impl Iterator<Item = Vec<(usize, f64)>>,
     ) -> Jacobian {
@@ -149,40 +149,40 @@ impl Jacobian {
     }
 
     /// Aᵀ y.
-    pub(super) fn tr_mul(&self, y: &DVector<f64>) -> DVector<f64> {
+    pub(crate) fn tr_mul(&self, y: &DVector<f64>) -> DVector<f64> {
         DVector::from_vec(self.weighted_sum(y.as_slice()))
     }
 
     /// Product of row `j` and `x`.
-    pub(super) fn row_dot(&self, j: usize, x: &DVector<f64>) -> f64 {
+    pub(crate) fn row_dot(&self, j: usize, x: &DVector<f64>) -> f64 {
         self.row(j).map(|(i, v)| v * x[i]).sum()
     }
 
     /// Largest entry of row `j`, without its sign.
-    pub(super) fn row_amax(&self, j: usize) -> f64 {
+    pub(crate) fn row_amax(&self, j: usize) -> f64 {
         self.row(j).fold(0.0, |a, (_, v)| a.max(v.abs()))
     }
 
     /// Largest entry, without its sign.
-    pub(super) fn amax(&self) -> f64 {
+    pub(crate) fn amax(&self) -> f64 {
         self.value.iter().fold(0.0, |a, v| a.max(v.abs()))
     }
 
     /// Multiplies row `j` by `factor`.
-    pub(super) fn scale_row(&mut self, j: usize, factor: f64) {
+    pub(crate) fn scale_row(&mut self, j: usize, factor: f64) {
         for v in &mut self.value[self.starts[j]..self.starts[j + 1]] {
             *v *= factor;
         }
     }
 
     /// Variables and entries of row `j`, which may be changed.
-    pub(super) fn row_mut(&mut self, j: usize) -> (&[usize], &mut [f64]) {
+    pub(crate) fn row_mut(&mut self, j: usize) -> (&[usize], &mut [f64]) {
         let part = self.starts[j]..self.starts[j + 1];
         (&self.index[part.clone()], &mut self.value[part])
     }
 
     /// Whether each column has an entry that is not zero.
-    pub(super) fn touched(&self) -> Vec<bool> {
+    pub(crate) fn touched(&self) -> Vec<bool> {
         let mut touched = vec![false; self.columns];
         for (&i, &v) in self.index.iter().zip(&self.value) {
             touched[i] |= v != 0.0;
@@ -191,12 +191,12 @@ impl Jacobian {
     }
 
     /// Whether `other` has its entries in the same places.
-    pub(super) fn has_pattern_of(&self, other: &Jacobian) -> bool {
+    pub(crate) fn has_pattern_of(&self, other: &Jacobian) -> bool {
         self.columns == other.columns && self.starts == other.starts && self.index == other.index
     }
 
     /// As a matrix with all its zeros.
-    pub(super) fn to_dense(&self) -> DMatrix<f64> {
+    pub(crate) fn to_dense(&self) -> DMatrix<f64> {
         let (m, n) = self.shape();
         let mut dense = DMatrix::zeros(m, n);
         for j in 0..m {
@@ -209,7 +209,7 @@ impl Jacobian {
 
     /// The places of the entries by columns: where each column begins, and for each entry its row
     /// and its number.
-    pub(super) fn by_columns(&self) -> (Vec<usize>, Vec<(usize, usize)>) {
+    pub(crate) fn by_columns(&self) -> (Vec<usize>, Vec<(usize, usize)>) {
         let mut starts = vec![0; self.columns + 1];
         for &i in &self.index {
             starts[i + 1] += 1;
@@ -230,7 +230,7 @@ impl Jacobian {
     }
 
     /// All entries, row by row.
-    pub(super) fn values(&self) -> &[f64] {
+    pub(crate) fn values(&self) -> &[f64] {
         &self.value
     }
 }

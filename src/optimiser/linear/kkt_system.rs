@@ -4,10 +4,10 @@ use std::cmp::Ordering;
 
 use nalgebra::DVector;
 
-use super::jacobian::Jacobian;
-use super::kkt_dense::DenseKkt;
-use super::kkt_sparse::SparseKkt;
-use super::quasi_newton::QuasiNewton;
+use crate::optimiser::linear::jacobian::Jacobian;
+use crate::optimiser::linear::kkt_dense::DenseKkt;
+use crate::optimiser::linear::kkt_sparse::SparseKkt;
+use crate::optimiser::linear::quasi_newton::QuasiNewton;
 
 /// Residual, relative to the right-hand side, at which refinement ends, and the largest number of
 /// refinements.
@@ -22,7 +22,7 @@ const REFINEMENTS: usize = 5;
 /// ```
 ///
 /// with B + Σ positive definite and D ≥ 0 diagonal.
-pub(super) struct KktSystem {
+pub(crate) struct KktSystem {
     factors: Factors,
     sigma: DVector<f64>,
     d: DVector<f64>,

@@ -1,0 +1,84 @@
+//! What the interior point does when its line search finds no step.
+
+use nalgebra::DVector;
+
+use crate::optimiser::ending::Ending;
+use crate::optimiser::interior_point::iterate::Layout;
+use crate::optimiser::interior_point::iteration::{InteriorPoint, LARGEST_ESTIMATE};
+use crate::optimiser::interior_point::line_search::infeasibility;
+use crate::optimiser::program::{EarlyExit, Point, Program};
+use crate::optimiser::trust_region::steering::{Goal, TrustRegion};
+
+impl InteriorPoint {
+    /// Handles a line search without a step: forgets the quasi-Newton matrix at a feasible point,
+    /// restores feasibility at another.
+    pub(crate) fn recover(
+        &mut self,
+        program: &mut Program<'_>,
+        failures: usize,
+    ) -> Result<Option<Ending>, EarlyExit> {
+        let theta = self.theta();
+        let small = 1e-2 * program.options.tolerance.min(program.least_allowed());
+        if theta <= small || failures > 3 {
+            if failures == 1 && !self.b.is_empty() {
+                self.b.reset();
+                self.filter.clear(self.theta());
+                return Ok(None);
+            }
+            if theta <= small || failures > 6 {
+                return Ok(Some(Ending::Stalled));
+            }
+        }
+        self.restore(program, theta, 0.9)
+    }
+
+    /// Reduces the violation by the factor `gain`, until the filter accepts the point.
+    pub(crate) fn restore(
+        &mut self,
+        program: &mut Program<'_>,
+        theta: f64,
+        gain: f64,
+    ) -> Result<Option<Ending>, EarlyExit> {
+        let phi = self.layout.barrier_function(
+            self.at.point.f,
+            &self.at.point.x,
+            &self.at.s,
+            self.barrier.mu,
+        );
+        self.filter.add(theta, phi);
+        let (point, slopes) = (self.at.point.clone(), self.at.slopes.clone());
+        let mut search = TrustRegion::new(program, point, slopes, Goal::Feasibility);
+        let (layout, filter, mu) = (&self.layout, &self.filter, self.barrier.mu);
+        let accepted = |_: &Program<'_>, p: &Point| {
+            let s = slacks(layout, p);
+            let theta_new = infeasibility(&layout.residual(&p.c, &s), &p.c);
+            let phi = layout.barrier_function(p.f, &p.x, &s, mu);
+            theta_new <= gain * theta && filter.accepts(theta_new, phi)
+        };
+        let ending = search.run(program, accepted)?;
+        let before = self.theta();
+        self.at.s = slacks(&self.layout, &search.point);
+        self.at.point = search.point;
+        self.at.slopes = search.slopes;
+        let after = self.theta();
+        self.at
+            .keep_multipliers_in_band(&self.layout, self.barrier.mu);
+        self.at.estimate_multipliers(&self.layout, LARGEST_ESTIMATE);
+        match ending {
+            Ending::Reached => Ok(None),
+            Ending::Infeasible => Ok(Some(Ending::Infeasible)),
+            _ if after < 0.5 * before => {
+                self.filter.clear(self.theta());
+                Ok(None)
+            }
+            other => Ok(Some(other)),
+        }
+    }
+}
+
+/// Slacks nearest to the values of the rows that keep a small distance from the bounds.
+fn slacks(layout: &Layout, point: &Point) -> DVector<f64> {
+    let inside = |(k, &j): (usize, &usize)| layout.push_inside(layout.n + k, point.c[j], 1e-6);
+    let slacks = layout.slack_rows.iter().enumerate().map(inside);
+    DVector::from_iterator(layout.slack_rows.len(), slacks)
+}
