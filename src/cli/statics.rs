@@ -6,7 +6,7 @@ use super::{DONE, Failure, draw, print, shown, tell};
 use crate::driver::analysed::place;
 use crate::driver::statics::{StaticDesign, error, figures, precision};
 use crate::problem::Problem;
-use crate::report::{PrecisionOfMesh, prepare_directory, write_all};
+use crate::report::{PrecisionOfMesh, plots, prepare_directory, write_all};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 use std::path::Path;
@@ -51,7 +51,10 @@ pub(crate) fn simulate(job: &Job, problem: &Problem, json: bool) -> Result<u8, F
             }
             functions.insert(name.clone(), own);
         }
-        let all = json!({
+        let doubt = errors
+            .is_some()
+            .then(|| error::doubts(problem, &design, &all(problem)));
+        let mut all = json!({
             "name": problem.name,
             "mesh": size(&design),
             "work": {
@@ -60,6 +63,9 @@ pub(crate) fn simulate(job: &Job, problem: &Problem, json: bool) -> Result<u8, F
             },
             "functions": functions,
         });
+        if let Some(doubt) = doubt.flatten() {
+            all["warning"] = json!(doubt);
+        }
         let text = serde_json::to_string_pretty(&all).map_err(Failure::numerical)?;
         print(&(text + "\n"))?;
     } else {
@@ -68,6 +74,9 @@ pub(crate) fn simulate(job: &Job, problem: &Problem, json: bool) -> Result<u8, F
         }
         if let Some(errors) = &errors {
             print(&table(problem, errors))?;
+            if let Some(doubt) = error::doubts(problem, &design, &all(problem)) {
+                print(&format!("{doubt}\n"))?;
+            }
         }
     }
     if let Some(directory) = &job.output {
@@ -263,10 +272,15 @@ pub(crate) fn measure(
     if !job.quiet {
         print(&measured.text())?;
     }
-    let files = [
+    let mut files = vec![
         ("work_precision.csv", measured.to_csv()),
         ("summary.txt", measured.text()),
     ];
+    match plots::mesh_precision(&measured) {
+        Ok(figure) => files.push(("work_precision.svg", figure)),
+        Err(error) if !job.quiet => tell(&format!("no work_precision.svg: {error}\n")),
+        Err(_) => {}
+    }
     let files: Vec<_> = files
         .into_iter()
         .map(|(name, text)| (directory.join(name), text.into_bytes()))

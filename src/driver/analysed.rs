@@ -226,7 +226,9 @@ impl Simulated {
                 let kinks = simulation.at.kinks(problem, used.iter().copied());
                 simulation.warning.iter().cloned().chain(kinks).collect()
             }
-            Self::Statics(_) => Vec::new(),
+            Self::Statics(at) => statics::error::doubts(problem, at, used)
+                .into_iter()
+                .collect(),
         }
     }
 

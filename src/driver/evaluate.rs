@@ -56,6 +56,10 @@ impl Evaluated {
                 body: body.name.clone(),
             });
         }
+        if let Some((body, fault)) = problem.impossible_section(x) {
+            let fault = fault.to_string();
+            return Err(IntegrationFailure::Section { body, fault });
+        }
         integration.unlowered += usize::from(!problem.lower(&mut scene));
         let (run, refresh) = integration.simulate(&mut scene)?;
         let x = x.to_vec();

@@ -43,6 +43,8 @@ pub(crate) struct Evaluator<'a> {
     latest: Option<usize>,
     /// The steps of each evaluated design.
     pub judgements: Judgements,
+    /// Why the latest design without values has none.
+    pub without_values: Option<String>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -66,6 +68,7 @@ impl<'a> Evaluator<'a> {
             choice: None,
             latest: None,
             judgements: Judgements::default(),
+            without_values: None,
         })
     }
 
@@ -240,6 +243,9 @@ impl Nlp for Evaluator<'_> {
         let mut judgements = self.judgements.borrow_mut();
         judgements.entry(bits(&x)).or_insert(judged);
         drop(judgements);
+        if let Err(reason) = &found {
+            self.without_values = Some(reason.clone());
+        }
         let values = found.map_err(|reason| self.failure(reason))?;
         Ok(Evaluation {
             objective: self.sign * values[0],

@@ -25,6 +25,7 @@ pub(crate) struct Solved {
     sign: f64,
     counts: Work,
     unlowered: usize,
+    without_values: Option<String>,
 }
 
 /// A finished optimisation.
@@ -99,6 +100,7 @@ pub(crate) fn solve<'a>(
         sign,
         counts: program.counts(),
         unlowered: program.unlowered,
+        without_values: program.without_values,
         integration: program.integration,
     })
 }
@@ -160,6 +162,12 @@ impl Solved {
             optimum.warnings.push(format!(
                 "{} designs do not fulfil the conditions of the reduction of the scene and ran without it",
                 self.unlowered
+            ));
+        }
+        if let (Status::Stalled, Some(reason)) = (&self.outcome.status, &self.without_values) {
+            optimum.warnings.push(format!(
+                "{} designs had no values, the latest because: {reason}",
+                self.outcome.counts.failures
             ));
         }
         Optimisation {

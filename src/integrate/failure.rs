@@ -217,6 +217,14 @@ pub(crate) enum IntegrationFailure {
         /// The body.
         body: String,
     },
+    /// The section of a beam cannot be built.
+    #[error("body \"{body}\" has a section with {fault}")]
+    Section {
+        /// The body.
+        body: String,
+        /// The size and its limit.
+        fault: String,
+    },
     /// The event that ends the run does not occur, or not where it occurred for earlier designs.
     #[error(
         "the {quantity} that ends the run does not reach {value} within {waited} s: it comes as \

@@ -2,8 +2,9 @@
 
 use super::quantity::Quantity;
 use super::schema::flexible::{Beam, BeamSection, Damping, Frame, Functions, Strain};
+use super::section::section;
 use crate::math::Scalar;
-use crate::structures::beam::{Section, SectionValues};
+use crate::structures::beam::SectionValues;
 use crate::structures::damping::RayleighDamping;
 use crate::structures::material::Material;
 use crate::structures::modal::{
@@ -51,46 +52,25 @@ pub(crate) fn beam<S: Scalar>(written: &Beam, x: &[S]) -> FlexibleBeam<S> {
     let or = |quantity: &Option<Quantity>, default: f64| {
         quantity.as_ref().map_or(S::from(default), |q| q.get(x))
     };
-    let section = match &written.section {
-        BeamSection::Rectangle { width, height } => Section::Rectangle {
-            width: get(width),
-            height: get(height),
-        },
-        BeamSection::Tube { radius, wall } => Section::Tube {
-            radius: get(radius),
-            wall: get(wall),
-        },
-        BeamSection::I {
-            width,
-            height,
-            flange,
-            web,
-        } => Section::I {
-            width: get(width),
-            height: get(height),
-            flange: get(flange),
-            web: get(web),
-        },
-        // Axis 3 of a section is y, its axis 2 is z. EI2 resists what bends along axis 3.
-        BeamSection::Given(given) => {
-            let (along_y, along_z) = (or(&given.ga_y, 1.0), or(&given.ga_z, 1.0));
-            Section::Given(SectionValues {
-                stiffness: [
-                    get(&given.ea),
-                    along_z,
-                    along_y,
-                    or(&given.gj, 1.0),
-                    or(&given.ei_y, 1.0),
-                    or(&given.ei_z, 1.0),
-                ],
-                inertia: [
-                    get(&given.mass_per_length),
-                    get(&given.inertia_y),
-                    get(&given.inertia_z),
-                ],
-            })
+    // Axis 3 of a section is y, its axis 2 is z. EI2 resists what bends along axis 3.
+    let section = section(&written.section, x, |given| {
+        let (along_y, along_z) = (or(&given.ga_y, 1.0), or(&given.ga_z, 1.0));
+        SectionValues {
+            stiffness: [
+                get(&given.ea),
+                along_z,
+                along_y,
+                or(&given.gj, 1.0),
+                or(&given.ei_y, 1.0),
+                or(&given.ei_z, 1.0),
+            ],
+            inertia: [
+                get(&given.mass_per_length),
+                get(&given.inertia_y),
+                get(&given.inertia_z),
+            ],
         }
-    };
+    });
     let material = written.material.as_ref();
     let material = Material {
         young: material.map_or(S::one(), |material| get(&material.young)),

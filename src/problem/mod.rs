@@ -28,6 +28,7 @@ mod quantity;
 mod read;
 mod scene;
 mod schema;
+mod section;
 mod source;
 mod start_rates;
 mod starts;

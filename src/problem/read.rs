@@ -178,6 +178,16 @@ fn of_structures(problem: &mut Problem) -> Result<(), Vec<Finding>> {
     if problem.nearest_to.is_some() {
         statics.functions.push(Asked::DistanceFromStart);
     }
+    let unsupported: Vec<Finding> = (statics.unsupported().into_iter())
+        .map(|f| {
+            let pointer = join("/functions", &problem.function_names[f]);
+            let found = "the reaction of nodes that no support holds in this direction";
+            Finding::new(pointer, found, "nodes that a support holds")
+        })
+        .collect();
+    if !unsupported.is_empty() {
+        return Err(unsupported);
+    }
     if let Some((name, failure)) = statics.mechanism(&problem.written, &start) {
         let pointer = join("/structures", &name);
         let expected = "supports that hold every part of it";

@@ -19,6 +19,8 @@ pub(crate) struct Number {
     pub barred: Option<String>,
     /// Smallest value, and whether that value itself is excluded.
     pub least: Option<(f64, bool)>,
+    /// Largest value.
+    pub most: Option<f64>,
 }
 
 /// Result of checking a document.
@@ -198,6 +200,7 @@ impl<'a> Walker<'a> {
             unit,
             barred,
             least,
+            most: limit("maximum"),
         };
         self.structure.numbers.insert(pointer.to_owned(), number);
     }

@@ -257,6 +257,20 @@ impl<'a> Checker<'a> {
                 Some(_) => {}
             }
         }
+        if let Some(most) = number.most {
+            let expected = format!("an upper bound of at most {most}{unit}, as {path} must be");
+            match written.upper {
+                None => self.fault(Finding::new(pointer, "no \"upper\"", expected).of_key()),
+                Some(high) if high > most => {
+                    self.fault(Finding::new(
+                        &upper,
+                        format!("the upper bound {high}"),
+                        expected,
+                    ));
+                }
+                Some(_) => {}
+            }
+        }
     }
 }
 

@@ -38,7 +38,7 @@ pub(crate) struct PrecisionOfMesh {
 
 impl PrecisionOfMesh {
     /// Relative differences from the finest mesh: of each function, and of the gradient.
-    fn errors(&self, row: &MeshRow) -> Option<Vec<f64>> {
+    pub(crate) fn errors(&self, row: &MeshRow) -> Option<Vec<f64>> {
         let last = self.rows.last().filter(|last| last.cuts != row.cuts)?;
         let relative = |a: f64, b: f64| if a == b { 0.0 } else { (a - b).abs() / b.abs() };
         let pairs = row.values.iter().zip(&last.values);

@@ -76,13 +76,19 @@ fn objective(optimum: &Optimum) -> String {
     if let Some(aggregate) = &objective.aggregate {
         text.push_str(&format!("  {}\n", attained(aggregate, &unit)));
     }
+    let source = match optimum.integration {
+        Some(_) => "steps and samples",
+        None => "the mesh",
+    };
     if let Some(error) = objective.estimated_error
         && is_rounding(error, objective.value)
     {
-        text.push_str("  the estimated error of steps and samples is below rounding\n");
+        text.push_str(&format!(
+            "  the estimated error of {source} is below rounding\n"
+        ));
     } else if let Some(error) = objective.estimated_error {
         text.push_str(&format!(
-            "  accurate to about {}{unit} (estimated error of steps and samples)\n",
+            "  accurate to about {}{unit} (estimated error of {source})\n",
             significant(error, 2),
         ));
     }
@@ -315,13 +321,16 @@ fn work(optimum: &Optimum) -> String {
         0 => String::new(),
         n => format!(" (and {} recomputed for gradients)", grouped(n)),
     };
+    let steps = match (&optimum.integration, counts.steps) {
+        (None, 0) => String::new(),
+        (_, n) => format!("{} time steps{again}, ", grouped(n)),
+    };
     format!(
-        "Work: {} iterations, {} simulations{failed}, {} gradients\n      {} time steps{again}, \
+        "Work: {} iterations, {} simulations{failed}, {} gradients\n      {steps}\
          {} Newton iterations, {} factorisations, {} solves\n",
         grouped(counts.iterations),
         grouped(counts.function_evaluations),
         grouped(counts.gradient_evaluations),
-        grouped(counts.steps),
         grouped(counts.newton_iterations),
         grouped(counts.factorisations),
         grouped(counts.solves),

@@ -17,6 +17,7 @@ pub mod material;
 pub mod mesh;
 pub(crate) mod modal;
 pub mod modes;
+pub mod properties;
 pub mod quality;
 mod reactions;
 mod sheets;

@@ -259,3 +259,27 @@ fn a_load_case_that_nothing_needs_changes_nothing() {
     };
     assert_eq!(optimum("plate"), optimum("idle"));
 }
+
+/// A design that vanishes ends where it has no solution any more, and says so.
+#[test]
+fn a_run_that_stalls_says_why_designs_have_no_values() {
+    let scratch = scratch();
+    let directory = scratch.path();
+    let mut problem = json(PLATE);
+    problem["structures"]["plate"]["supports"] = serde_json::json!({"edge": {"nodes": ["x0"]}});
+    problem["variables"]["h"]["lower"] = serde_json::json!(1e-300);
+    problem["variables"]["h"]["scale"] = serde_json::json!(0.01);
+    problem["functions"] =
+        serde_json::json!({"mass": "mass", "energy": {"compliance": {"case": "pressure"}}});
+    problem["constraints"] = serde_json::json!({"any": {"function": "energy", "lower": 0}});
+    problem["optimiser"] = serde_json::json!({"evaluations": 4000});
+    std::fs::write(directory.join("plate.json"), problem.to_string()).expect("is written");
+    let ran = expect(1, directory, &["plate.json", "--output", "out"]);
+    assert!(ran.out.contains("no further progress"), "{}", ran.out);
+    assert!(
+        ran.out
+            .contains("designs had no values, the latest because"),
+        "{}",
+        ran.out
+    );
+}

@@ -192,7 +192,11 @@ fn pair(section: Value, frame: &str, simulation: Value) -> Value {
     numbers.extend(sizes.map(|size| format!("section/{}/{size}", kind.0)));
     for number in numbers {
         let path = format!("/bodies/first/beam/{number}");
-        variables.insert(number, json!({"path": path, "lower": 1e-6}));
+        let mut variable = json!({"path": path, "lower": 1e-6});
+        if number.ends_with("poisson") {
+            variable["upper"] = json!(0.5);
+        }
+        variables.insert(number, variable);
     }
     document["variables"] = Value::Object(variables);
     document

@@ -11,5 +11,6 @@ mod report_plots;
 mod report_records;
 mod second_order;
 mod stability;
+mod static_faults;
 mod statics;
 mod trebuchets;

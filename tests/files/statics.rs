@@ -318,9 +318,8 @@ fn patches([corners, edges, middle]: [f64; 3]) -> String {
     format!("/structures/plate/thickness/values={all:?}")
 }
 
-/// The sizing of a plate by an independent code that ties bending otherwise. At its optimum the functions
-/// agree; stresses beside jumps of the thickness, which are singular, differ by 0.2 %. They make the valley
-/// between edges and middle, so the optimum here lies further along it, and is lighter.
+/// The sizing of a plate by an independent code, whose energy does not tie curvatures: the only difference.
+/// Its stresses are those of the motion, as here.
 #[test]
 fn the_plate_of_patches_agrees_with_another_code() {
     let text = include_str!("../data/structures/shell_plate.json");
@@ -352,7 +351,7 @@ fn the_plate_of_patches_agrees_with_another_code() {
         number(&sizing["centre_deflection_m"]),
         1e-3,
     );
-    near("stress", value("stress"), 1.0, 2.5e-3);
+    near("stress", value("stress"), 1.0, 2.1e-3);
     for start in [[0.012; 3], [0.004, 0.015, 0.009]] {
         let done = solve(&shipped("plate_patches", &[&patches(start)]));
         let optimum = &done.optimum;
@@ -362,22 +361,19 @@ fn the_plate_of_patches_agrees_with_another_code() {
             optimum.message
         );
         let found = optimum.objective.value;
-        near("mass", found, mass, 1e-2);
-        assert!(found < mass, "{found}");
+        near("mass", found, mass, 1e-3);
         let multiplier = optimum.constraints["yield"].multiplier.abs();
         near(
             "multiplier",
             multiplier,
             number(&sizing["multiplier_kg"]),
-            1e-2,
+            1e-3,
         );
-        near(
-            "corners",
-            optimum.design["corners"].value,
-            thickness[0],
-            1e-2,
-        );
-        near("mass from all starts", found, 22.293_799_6, 1e-6);
+        for (patch, k) in [("corners", 0), ("edges", 1), ("middle", 5)] {
+            near(patch, optimum.design[patch].value, thickness[k], 1e-2);
+        }
+        // A prototype of the same element in another language.
+        near("mass from all starts", found, 22.482_408_1, 1e-6);
     }
 }
 
@@ -421,156 +417,5 @@ fn files_of_fields_have_cells_whose_middles_are_in_the_middle() {
             let [a, b] = ends.map(|k| distance(node(middle), node(k)));
             assert!((a / b - 1.0).abs() < 1e-9, "node {middle} of {cell:?}");
         }
-    }
-}
-
-/// What is wrong with a small plate, by what is changed: each is told with its place.
-#[test]
-fn faults_are_told_with_their_places() {
-    let plate = || {
-        json!({
-            "version": 1, "name": "plate", "materials": material(),
-            "structures": {"plate": {
-                "mesh": {"plate": {"length": 1, "width": 1, "elements": [2, 2]}},
-                "material": "metal", "thickness": 0.01,
-                "supports": {"edge": {"nodes": ["x0"]}}
-            }},
-            "load_cases": {"push": {"p": {"pressure": {"faces": "all", "pressure": 1e3}}}},
-            "functions": {"mass": "mass", "stress": {"von_mises": {"rho": 50}}}
-        })
-    };
-    let cases = [
-        (
-            "/structures/plate/supports/edge/nodes/0",
-            json!("x2"),
-            "\"x2\"",
-            "the name of a set of nodes",
-        ),
-        (
-            "/structures/plate/material",
-            json!("metall"),
-            "\"metall\"",
-            "did you mean \"metal\"?",
-        ),
-        (
-            "/load_cases/push/p/pressure/faces",
-            json!("al"),
-            "\"al\"",
-            "did you mean \"all\"?",
-        ),
-        (
-            "/structures/plate/supports",
-            json!({}),
-            "mechanism",
-            "hold every part",
-        ),
-        (
-            "/structures/plate/supports/edge/held",
-            json!(["x", "y", "z"]),
-            "mechanism",
-            "hold every part",
-        ),
-        (
-            "/materials/metal/yield_stress",
-            Value::Null,
-            "no \"yield_stress\"",
-            "a stress needs it",
-        ),
-        (
-            "/materials/metal/density",
-            Value::Null,
-            "no \"density\"",
-            "the mass needs it",
-        ),
-        (
-            "/structures/plate/thickness",
-            Value::Null,
-            "no \"thickness\"",
-            "a thickness of the shells",
-        ),
-        (
-            "/structures/plate/section",
-            json!({"tube": {"radius": 1, "wall": 0.1}}),
-            "\"section\" of a mesh",
-            "",
-        ),
-        (
-            "/structures/plate/thickness",
-            json!({"per": "patch", "patches": [2, 3], "value": 1}),
-            "2 × 3 patches of 2 × 2 elements",
-            "divide",
-        ),
-        (
-            "/structures/plate/thickness",
-            json!({"per": "element", "values": [1, 2]}),
-            "2 values",
-            "4 values",
-        ),
-        (
-            "/structures/plate/thickness",
-            json!({"per": "group", "groups": ["x"], "value": 1}),
-            "\"x\"",
-            "a set of elements",
-        ),
-        (
-            "/structures/plate/mesh",
-            json!({"panel": {"elements": [2, 2], "points": [
-                [0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]}}),
-            "inverted or folded",
-            "sound elements",
-        ),
-        (
-            "/functions/stress",
-            json!("duration"),
-            "a function of a motion",
-            "a function of structures",
-        ),
-        (
-            "/functions/stress",
-            json!({"compliance": {"case": "pull"}}),
-            "\"pull\"",
-            "a load case",
-        ),
-        (
-            "/simulation",
-            json!({"duration": 1}),
-            "\"structures\" beside a motion",
-            "without \"simulation\"",
-        ),
-        (
-            "/bodies",
-            json!({"a": {"shape": "point", "mass": 1}}),
-            "\"bodies\" beside structures",
-            "",
-        ),
-        (
-            "/structures/plate/sets",
-            json!({"s": {"node": {"at": [0.5, 1.5]}}}),
-            "[0.5, 1.5]",
-            "from 0 to 1",
-        ),
-    ];
-    parsed(&plate());
-    for (pointer, value, found, expected) in cases {
-        let mut document = plate();
-        let (parent, key) = pointer.rsplit_once('/').expect("a pointer");
-        let own = document.pointer_mut(parent).expect("a parent");
-        match (own, value.is_null()) {
-            (Value::Object(object), true) => {
-                object.shift_remove(key);
-            }
-            (own @ Value::Array(_), false) => own[key.parse::<usize>().expect("an index")] = value,
-            (own, _) => own[key] = value,
-        }
-        let text = serde_json::to_string_pretty(&document).expect("JSON");
-        let faults = Problem::parse(&text, "plate.json", &[])
-            .expect_err(pointer)
-            .to_string();
-        println!("{faults}");
-        assert!(
-            faults.contains(found) && faults.contains(expected),
-            "{pointer}: {faults}"
-        );
-        assert!(faults.starts_with("plate.json:"), "{faults}");
     }
 }

@@ -3,6 +3,7 @@
 mod beam_derivatives;
 mod beams;
 mod beams_in_structures;
+mod course;
 mod function_gradients;
 mod mesh_faults;
 mod modal_beams;
@@ -10,6 +11,7 @@ mod mode_gradients;
 mod modes;
 mod obstacle_course;
 mod patch_tests;
+mod plate_stress;
 mod reactions;
 mod sample;
 mod shell_derivatives;

@@ -14,6 +14,8 @@ use super::{StaticDesign, StaticValue, StaticsFailure};
 use crate::driver::error::{Estimate, FunctionError};
 use crate::problem::{Asked, Problem};
 use crate::structures::functions::{Aggregate, Function};
+use crate::structures::loads::Load;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Estimates the errors of the functions `which` at a solved design, and of their gradients if `gradients`.
@@ -61,6 +63,38 @@ pub(crate) fn estimate(
         });
     }
     Ok(all)
+}
+
+/// Functions whose estimate is not to be trusted: a force or moment at a point of a shell makes displacements
+/// there grow with the logarithm of the mesh (Naghdi's shells have no finite limit), and stresses with its
+/// inverse.
+pub(crate) fn doubts(problem: &Problem, at: &StaticDesign, which: &[usize]) -> Option<String> {
+    let mesh = at.statics.mesh();
+    let of_shells: HashSet<usize> = mesh.shells.iter().flatten().copied().collect();
+    let at_point = |load: &Load<f64>| match load {
+        Load::Point { nodes, .. } => {
+            let set = mesh.node_set(nodes).unwrap_or(&[]);
+            set.len() == 1 && of_shells.contains(&set[0])
+        }
+        _ => false,
+    };
+    let singular: Vec<bool> = (at.scene.cases.iter())
+        .map(|case| case.iter().any(at_point))
+        .collect();
+    let doubtful = |&&f: &&usize| {
+        let function = &at.statics.functions[f];
+        super::cases_of(function).iter().any(|&case| singular[case])
+    };
+    let names: Vec<String> = (which.iter().filter(doubtful))
+        .map(|&f| format!("\"{}\"", problem.function_names[f]))
+        .collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "the estimated errors of {} are not reliable: a load at one node of a shell has no limit as the \
+             mesh is refined",
+            names.join(", ")
+        )
+    })
 }
 
 /// The design on a mesh with every element cut.

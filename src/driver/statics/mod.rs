@@ -16,6 +16,7 @@ use crate::structures::loads::Load;
 use crate::structures::modes::{
     LowestFrequency, ModalFailure, ModalProblem, Modes, frequency_gradient, lowest_frequency,
 };
+use crate::structures::properties::PropertyFault;
 use crate::structures::quality::{MeshFault, faults};
 use crate::structures::statics::{StaticFailure, StaticProblem};
 use crate::structures::structure::Structure;
@@ -28,6 +29,9 @@ pub(crate) enum StaticsFailure {
     /// The mesh of this design.
     #[error("the mesh is not sound at this design: {0}")]
     Mesh(#[from] MeshFault),
+    /// Sections or inertias of this design.
+    #[error("the design cannot be built: {0}")]
+    Properties(#[from] PropertyFault),
     /// A load case.
     #[error("load case \"{case}\": {failure}")]
     Case {
@@ -145,6 +149,9 @@ impl StaticDesign {
                 .into_iter()
                 .next()
         {
+            return Err(fault.into());
+        }
+        if let Some(fault) = scene.structure.property_fault() {
             return Err(fault.into());
         }
         let all: Vec<usize> = (0..statics.functions.len()).collect();

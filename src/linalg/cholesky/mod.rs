@@ -12,6 +12,7 @@ use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::perm::PermRef;
 use faer::sparse::SparseColMatRef;
+use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
     factorize_symbolic_cholesky,
@@ -21,6 +22,9 @@ use faer::{Conj, MatMut, Par, Side};
 /// The matrix with unit diagonal is singular if its solution magnifies a random vector by this
 /// factor.
 const SINGULAR_GROWTH: f64 = 1e14;
+/// From this work an entry of the factor on (in units of 40 operations, as faer counts it), columns are factorised in
+/// dense blocks. On two plates of 64 shells this takes 1.8 ms, column by column 7.2 ms.
+const SUPERNODAL_FROM: SupernodalThreshold = SupernodalThreshold(0.3);
 /// First shift of the diagonal in the search for the weakest direction of an indefinite matrix.
 const PROBE_SHIFT: f64 = 1e-9;
 
@@ -60,7 +64,10 @@ impl SparseCholesky {
             structure(pattern),
             Side::Lower,
             SymmetricOrdering::Custom(PermRef::new_checked(&same, &same, pattern.order())),
-            CholeskySymbolicParams::default(),
+            CholeskySymbolicParams {
+                supernodal_flop_ratio_threshold: SUPERNODAL_FROM,
+                ..CholeskySymbolicParams::default()
+            },
         )
         .expect("the analysis fails only when memory is exhausted");
         let solve = symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);

@@ -131,39 +131,7 @@ impl Checker<'_> {
             }
             Some(_) => {}
         }
-        if let BeamSection::Tube { radius, wall } = &beam.section
-            && wall.value > radius.value
-        {
-            let found = format!("a wall of {} m", wall.value);
-            let expected = format!("one that is not above the radius, {} m", radius.value);
-            let place = join(&join(&place, "tube"), "wall");
-            self.fault(Finding::new(place, found, expected));
-        }
-        if let BeamSection::I {
-            width,
-            height,
-            flange,
-            web,
-        } = &beam.section
-        {
-            let sizes = [
-                (
-                    "flange",
-                    flange.value,
-                    "half the height",
-                    0.5 * height.value,
-                ),
-                ("web", web.value, "the width", width.value),
-            ];
-            for (key, size, what, most) in sizes {
-                if size > most {
-                    let found = format!("{size} m");
-                    let expected = format!("not above {what}, {most} m");
-                    let place = join(&join(&place, "i"), key);
-                    self.fault(Finding::new(place, found, expected));
-                }
-            }
-        }
+        self.sizes(&place, &beam.section);
     }
 
     fn part(&mut self, pointer: &str, part: f64) {

@@ -135,7 +135,18 @@ impl Checker<'_> {
     fn stress(&mut self, pointer: &str, stress: &Stress) {
         self.property("a stress", "yield_stress", |m| m.yield_stress.is_none());
         for (k, case) in stress.cases.iter().flatten().enumerate() {
-            self.case(&join(&join(pointer, "cases"), k), case);
+            let place = join(&join(pointer, "cases"), k);
+            self.case(&place, case);
+            if stress
+                .cases
+                .iter()
+                .flatten()
+                .take(k)
+                .any(|other| other == case)
+            {
+                let found = format!("\"{case}\" a second time");
+                self.fault(Finding::new(place, found, "a load case once"));
+            }
         }
         let none = match &stress.cases {
             Some(cases) => cases.is_empty(),

@@ -5,6 +5,7 @@ mod joints;
 mod load_cases;
 mod loads;
 mod mechanics;
+mod properties;
 mod structures;
 mod study;
 

@@ -1,14 +1,19 @@
 //! Structures: their meshes, properties, sets and supports.
 
 use super::Checker;
+use crate::math::Mat3;
 use crate::problem::finding::Finding;
 use crate::problem::pointer::{advice, join};
+use crate::problem::quantity::Quantity;
 use crate::problem::schema::structures::{
     Mesh, Per, Set, Structure, Thickness, VariedSection, VariedThickness,
 };
 use crate::problem::statics::expand::{section_count, thickness_count};
-use crate::problem::statics::mesh::{element_count, panel_elements, part};
-use std::collections::BTreeSet;
+use crate::problem::statics::mesh::{element_count, generated, panel_elements, part};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Name of the set of everything.
+const ALL: &str = "all";
 
 /// Most elements of a structure.
 const MOST_ELEMENTS: usize = 200_000;
@@ -73,6 +78,14 @@ impl Checker<'_> {
     pub(super) fn structures(&mut self) {
         let document = self.document;
         self.names("structures", document.structures.keys());
+        if document.structures.len() > 1 {
+            for name in document.structures.keys().filter(|name| name.contains('.')) {
+                let found = format!("the name \"{name}\"");
+                let expected =
+                    "a name without a dot, which stands between a structure and its sets";
+                self.fault(Finding::new(join("/structures", name), found, expected).of_key());
+            }
+        }
         self.names("materials", document.materials.keys());
         self.names("load_cases", document.load_cases.keys());
         if !self.is_static() {
@@ -132,6 +145,12 @@ impl Checker<'_> {
             let finding = Finding::new(join(&pointer, "material"), found, "the name of a material");
             self.fault(finding.hint(hint));
         }
+        if structure.damping.is_some() {
+            let found = "\"damping\" of a structure that does not move";
+            let expected =
+                "no damping: load cases are static, and frequencies those without damping";
+            self.fault(Finding::new(join(&pointer, "damping"), found, expected).of_key());
+        }
         self.mesh(&join(&pointer, "mesh"), &structure.mesh);
         self.properties(&pointer, structure);
         for (set, written) in &structure.sets {
@@ -141,7 +160,9 @@ impl Checker<'_> {
             self.sets.unknown = true;
             return;
         }
+        self.names_of_sets(&pointer, structure);
         let part = part::<f64>(structure, &[], 1);
+        self.empty_sets(&pointer, structure, &part.mesh);
         let several = self.document.structures.len() > 1;
         let named = |set: &String| match several {
             true => format!("{name}.{set}"),
@@ -188,8 +209,13 @@ impl Checker<'_> {
             }
         }
         for (mass, written) in &structure.masses {
-            let place = join(&join(&join(&pointer, "masses"), mass), "nodes");
-            self.set_among(&place, &written.nodes, Kind::Nodes, &own);
+            let place = join(&join(&pointer, "masses"), mass);
+            self.set_among(&join(&place, "nodes"), &written.nodes, Kind::Nodes, &own);
+            if let Some(inertia) = &written.inertia {
+                let [xx, yy, zz, xy, yz, zx] = inertia.map(|q| q.value);
+                let inertia = Mat3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);
+                self.inertia(&join(&place, "inertia"), &inertia);
+            }
         }
     }
 
@@ -214,6 +240,12 @@ impl Checker<'_> {
                 let place = format!("{pointer}/cylinder/elements/0");
                 self.fault(Finding::new(place, found, "at least 3"));
             }
+            Mesh::CurvedPanel { angles, .. } => {
+                self.arc(&format!("{pointer}/curved_panel/angles"), angles);
+            }
+            Mesh::CurvedBeam { angles, .. } => {
+                self.arc(&format!("{pointer}/curved_beam/angles"), angles);
+            }
             Mesh::Frame { points, members } => {
                 if members.is_empty() {
                     let place = format!("{pointer}/frame/members");
@@ -237,10 +269,66 @@ impl Checker<'_> {
             }
             Mesh::Plate { .. }
             | Mesh::Panel { .. }
-            | Mesh::CurvedPanel { .. }
             | Mesh::Cylinder { .. }
-            | Mesh::StraightBeam { .. }
-            | Mesh::CurvedBeam { .. } => {}
+            | Mesh::StraightBeam { .. } => {}
+        }
+    }
+
+    /// An arc does not lie on itself.
+    fn arc(&mut self, pointer: &str, angles: &[Quantity; 2]) {
+        let turn = (angles[1].value - angles[0].value).abs();
+        if turn > 2.0 * std::f64::consts::PI * (1.0 + 1e-12) {
+            let found = format!("an arc of {turn} rad");
+            self.fault(Finding::new(pointer, found, "at most a whole turn, 2π rad"));
+        }
+    }
+
+    /// No set has the name of one that the generator makes.
+    fn names_of_sets(&mut self, pointer: &str, structure: &Structure) {
+        let made = generated::<f64>(&structure.mesh, &[], 1).mesh;
+        let is_made = |name: &String| {
+            name == ALL
+                || made.node_sets.contains_key(name)
+                || made.edge_sets.contains_key(name)
+                || made.face_sets.contains_key(name)
+                || made.beam_sets.contains_key(name)
+        };
+        let mut taken: Vec<String> = (structure.sets.keys().filter(|name| is_made(name)))
+            .map(|name| join(&join(pointer, "sets"), name))
+            .collect();
+        if let Mesh::Frame { points, members } = &structure.mesh {
+            let frame = format!("{pointer}/mesh/frame");
+            let named = [
+                ("points", points.contains_key(ALL)),
+                ("members", members.contains_key(ALL)),
+            ];
+            let named = named.iter().filter(|(_, named)| *named);
+            taken.extend(named.map(|(key, _)| format!("{frame}/{key}/{ALL}")));
+        }
+        for place in taken {
+            let found = "the name of a set that the mesh has anyway";
+            self.fault(Finding::new(place, found, "another name").of_key());
+        }
+    }
+
+    /// Every set of elements has one.
+    fn empty_sets(
+        &mut self,
+        pointer: &str,
+        structure: &Structure,
+        mesh: &crate::structures::mesh::Mesh,
+    ) {
+        for (name, set) in &structure.sets {
+            let of =
+                |sets: &BTreeMap<String, Vec<usize>>| sets.get(name).is_some_and(Vec::is_empty);
+            if let Set::Elements { from, to } = set
+                && (of(&mesh.face_sets) || of(&mesh.beam_sets))
+            {
+                let found = format!("no element between {from:?} and {to:?}");
+                let expected = "corners with the middle of an element between them";
+                let place = join(&join(&join(pointer, "sets"), name), "elements");
+                self.fault(Finding::new(place, found, expected));
+            }
         }
     }
 
@@ -280,8 +368,18 @@ impl Checker<'_> {
         if let Some(Thickness::Varied(varied)) = &structure.thickness {
             self.varied_thickness(&join(pointer, "thickness"), structure, varied);
         }
+        if let Some(section) = &structure.section {
+            self.sizes(&join(pointer, "section"), section);
+        }
         if let Some(varied) = &structure.sections {
-            self.varied_section(&join(pointer, "sections"), structure, varied);
+            let pointer = join(pointer, "sections");
+            self.varied_section(&pointer, structure, varied);
+            if let Some(section) = &varied.value {
+                self.sizes(&join(&pointer, "value"), section);
+            }
+            for (k, section) in varied.values.iter().flatten().enumerate() {
+                self.sizes(&join(&join(&pointer, "values"), k), section);
+            }
         }
     }
 
@@ -425,6 +523,10 @@ impl Checker<'_> {
         let mut known = true;
         for (k, group) in groups.iter().enumerate() {
             match sets.get(group) {
+                Some(_) if groups[..k].contains(group) => {
+                    let found = format!("\"{group}\" a second time");
+                    self.fault(Finding::new(join(&pointer, k), found, "a group once"));
+                }
                 Some(set) => set.iter().for_each(|&e| held[e] = true),
                 None => {
                     known = false;

@@ -60,45 +60,7 @@ impl Beam {
 }
 
 /// A cross section.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub(crate) enum BeamSection {
-    /// A rectangle.
-    Rectangle {
-        /// Size along z.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        width: Quantity,
-        /// Size along y.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        height: Quantity,
-    },
-    /// A round tube, or a solid bar if the wall is the radius.
-    Tube {
-        /// Outer radius.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        radius: Quantity,
-        /// Thickness of the wall.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        wall: Quantity,
-    },
-    /// An I of thin walls with its web along y.
-    I {
-        /// Width of the flanges, along z.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        width: Quantity,
-        /// Whole height, along y.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        height: Quantity,
-        /// Thickness of a flange.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        flange: Quantity,
-        /// Thickness of the web.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        web: Quantity,
-    },
-    /// Given stiffnesses and masses.
-    Given(Box<GivenSection>),
-}
+pub(crate) type BeamSection = super::section::Section<Box<GivenSection>>;
 
 /// Stiffnesses and masses of a section.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -147,7 +109,7 @@ pub(crate) struct BeamMaterial {
     #[schemars(extend("unit" = "Pa", "exclusiveMinimum" = 0))]
     pub young: Quantity,
     /// Poisson's ratio, default 0.3.
-    #[schemars(extend("unit" = "1", "minimum" = 0))]
+    #[schemars(extend("unit" = "1", "exclusiveMinimum" = -1, "maximum" = 0.5))]
     pub poisson: Option<Quantity>,
     /// Density. Given masses per length need none.
     #[schemars(extend("unit" = "kg/m³", "exclusiveMinimum" = 0))]

@@ -6,6 +6,7 @@ pub(crate) mod functions;
 pub(crate) mod joints;
 pub(crate) mod loads;
 pub(crate) mod mechanics;
+pub(crate) mod section;
 pub(crate) mod statics;
 pub(crate) mod structures;
 

@@ -1,5 +1,6 @@
 //! Structures of shells and beams as they are written in a file.
 
+use super::flexible::Damping;
 use crate::problem::quantity::{Quantity, Vector};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -40,6 +41,8 @@ pub(crate) struct Structure {
     /// Masses at nodes, by name.
     #[serde(default)]
     pub masses: IndexMap<String, Mass>,
+    /// Damping, which only a motion has: a structure that does not move has none.
+    pub damping: Option<Damping>,
 }
 
 /// A generator of a mesh. x runs along the first direction of a panel, y along the second. A panel names
@@ -254,58 +257,25 @@ pub(crate) struct VariedSection {
     pub values: Option<Vec<Section>>,
 }
 
-/// A cross section. Axis 2 lies in the plane of beam and orientation, axis 3 is normal to both.
+/// A cross section.
+pub(crate) type Section = super::section::Section<GivenSection>;
+
+/// Stiffnesses and masses of a section.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub(crate) enum Section {
-    /// A rectangle.
-    Rectangle {
-        /// Size along axis 2.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        width: Quantity,
-        /// Size along axis 3.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        height: Quantity,
-    },
-    /// A round tube; a solid bar if the wall is the radius.
-    Tube {
-        /// Outer radius.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        radius: Quantity,
-        /// Thickness of the wall.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        wall: Quantity,
-    },
-    /// An I of thin walls, the web along axis 3.
-    I {
-        /// Width of the flanges.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        width: Quantity,
-        /// Whole height.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        height: Quantity,
-        /// Thickness of a flange.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        flange: Quantity,
-        /// Thickness of the web.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        web: Quantity,
-    },
-    /// Given stiffnesses and masses; such a beam has no stresses.
-    Given {
-        /// EA and the shear stiffnesses GA2 and GA3.
-        #[schemars(extend("unit" = "N", "exclusiveMinimum" = 0))]
-        axial_and_shear: [Quantity; 3],
-        /// GJ, EI2 and EI3.
-        #[schemars(extend("unit" = "N m²", "exclusiveMinimum" = 0))]
-        torsion_and_bending: [Quantity; 3],
-        /// Mass per length.
-        #[schemars(extend("unit" = "kg/m", "minimum" = 0))]
-        mass: Quantity,
-        /// Moments of the mass per length, ρI2 and ρI3.
-        #[schemars(extend("unit" = "kg m", "minimum" = 0))]
-        inertia: [Quantity; 2],
-    },
+#[serde(deny_unknown_fields)]
+pub(crate) struct GivenSection {
+    /// EA and the shear stiffnesses GA2 and GA3 with their factors.
+    #[schemars(extend("unit" = "N", "exclusiveMinimum" = 0))]
+    pub axial_and_shear: [Quantity; 3],
+    /// GJ, EI2 (of bending along axis 3) and EI3 (of bending along axis 2).
+    #[schemars(extend("unit" = "N m²", "exclusiveMinimum" = 0))]
+    pub torsion_and_bending: [Quantity; 3],
+    /// Mass per length ρA.
+    #[schemars(extend("unit" = "kg/m", "minimum" = 0))]
+    pub mass: Quantity,
+    /// Moments of the mass per length, ρI2 and ρI3.
+    #[schemars(extend("unit" = "kg m", "minimum" = 0))]
+    pub inertia: [Quantity; 2],
 }
 
 /// A set of nodes or elements, in the directions ξ and η of a panel, which run from 0 to 1; a line of beams
@@ -383,7 +353,7 @@ pub(crate) struct Material {
     #[schemars(extend("unit" = "Pa", "exclusiveMinimum" = 0))]
     pub young: Quantity,
     /// Poisson's ratio.
-    #[schemars(extend("unit" = "1", "minimum" = 0, "exclusiveMaximum" = 0.5))]
+    #[schemars(extend("unit" = "1", "exclusiveMinimum" = -1, "maximum" = 0.5))]
     pub poisson: Quantity,
     /// Density; needed for masses, weight and frequencies.
     #[schemars(extend("unit" = "kg/m³", "minimum" = 0))]

@@ -52,7 +52,8 @@ pub(crate) fn part<S: Scalar>(structure: &Structure, x: &[S], cuts: usize) -> Pa
     part
 }
 
-fn generated<S: Scalar>(mesh: &Written, x: &[S], cuts: usize) -> Part<S> {
+/// The mesh of a generator, without sets of the file.
+pub(crate) fn generated<S: Scalar>(mesh: &Written, x: &[S], cuts: usize) -> Part<S> {
     let finer = |elements: &[usize; 2]| elements.map(|n| n * cuts);
     let angles = |angles: &[Quantity; 2]| angles.map(|angle| angle.get(x));
     match mesh {
@@ -192,15 +193,17 @@ fn frame<S: Scalar>(
     let mut of_file = vec![true; places.len()];
     let mut parent = Vec::new();
     let mut first = 0;
+    let mut named = Vec::new();
     for (k, (name, member)) in members.iter().enumerate() {
         let inner = 2 * member.elements * cuts - 1;
         of_file.extend((1..=inner).map(|i| i.is_multiple_of(cuts)));
         parent.extend((0..member.elements * cuts).map(|e| first + e / cuts));
         first += member.elements;
         if let Some(beams) = mesh.beam_sets.remove(&format!("member{k}")) {
-            mesh.beam_sets.insert(name.clone(), beams);
+            named.push((name.clone(), beams));
         }
     }
+    mesh.beam_sets.extend(named);
     for k in 0..places.len() {
         mesh.node_sets.remove(&format!("point{k}"));
     }

@@ -16,6 +16,7 @@ use super::schema::Document;
 use super::schema::statics::{CaseLoad, Strains, Unknowns};
 use super::schema::structures::{self as written, Held};
 use crate::math::{Scalar, Vec3};
+use crate::structures::functions::Function;
 use crate::structures::loads::Load;
 use crate::structures::lumped_mass::LumpedMass;
 use crate::structures::material::Material;
@@ -28,6 +29,7 @@ use crate::structures::structure::{Structure, Topology};
 use crate::structures::supports::{NodeUnknowns, Support};
 use mesh::{append, name_whole, of_file};
 use properties::{section, section_at, slots, thickness};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Structures and load cases at a design.
@@ -206,6 +208,36 @@ impl Statics {
         };
         let (name, _) = document.structures.get_index(of)?;
         Some((name.clone(), failure))
+    }
+
+    /// The functions that ask for the reaction of nodes that no support holds in their direction: it is
+    /// zero at all designs.
+    pub(crate) fn unsupported(&self) -> Vec<usize> {
+        let sets = &self.mesh().node_sets;
+        let nodes_of = |set: &String| sets.get(set).map_or(&[][..], Vec::as_slice);
+        let holds = |set: &String, held: &dyn Fn(&Support) -> bool| {
+            let asked: HashSet<usize> = nodes_of(set).iter().copied().collect();
+            let supports = self.supports.iter().filter(|support| held(support));
+            supports
+                .flat_map(|support| nodes_of(&support.nodes))
+                .any(|node| asked.contains(node))
+        };
+        let is_zero = |function: &Asked| match function {
+            Asked::OfSolutions(Function::Reaction {
+                nodes, direction, ..
+            }) => {
+                let along = |support: &Support| {
+                    (0..3).any(|k| support.displacements[k] && direction[k] != 0.0)
+                };
+                !holds(nodes, &along)
+            }
+            Asked::OfSolutions(Function::ReactionMoment { nodes, .. }) => !holds(nodes, &|_| true),
+            _ => false,
+        };
+        let all = self.functions.iter().enumerate();
+        all.filter(|(_, function)| is_zero(function))
+            .map(|(f, _)| f)
+            .collect()
     }
 
     /// The structures at the design `x`.

@@ -84,40 +84,26 @@ pub(super) fn quantities(section: &WrittenSection) -> Vec<Quantity> {
             flange,
             web,
         } => vec![*width, *height, *flange, *web],
-        WrittenSection::Given {
-            axial_and_shear,
-            torsion_and_bending,
-            mass,
-            inertia,
-        } => {
-            let stiffness = axial_and_shear.iter().chain(torsion_and_bending);
-            stiffness.chain([mass]).chain(inertia).copied().collect()
+        WrittenSection::Given(given) => {
+            let stiffness = given.axial_and_shear.iter();
+            let stiffness = stiffness.chain(&given.torsion_and_bending);
+            let all = stiffness.chain([&given.mass]).chain(&given.inertia);
+            all.copied().collect()
         }
     }
 }
 
-pub(super) fn section_at<S: Scalar>(section: Option<&WrittenSection>, x: &[S]) -> Section<S> {
-    let Some(section) = section else {
+pub(super) fn section_at<S: Scalar>(written: Option<&WrittenSection>, x: &[S]) -> Section<S> {
+    let Some(written) = written else {
         return Section::Given(SectionValues::zeros());
     };
-    let all = quantities(section);
-    let mut next = all.iter().map(|q| q.get(x));
-    let shape: Section<f64> = match section {
-        WrittenSection::Rectangle { .. } => Section::Rectangle {
-            width: 0.0,
-            height: 0.0,
-        },
-        WrittenSection::Tube { .. } => Section::Tube {
-            radius: 0.0,
-            wall: 0.0,
-        },
-        WrittenSection::I { .. } => Section::I {
-            width: 0.0,
-            height: 0.0,
-            flange: 0.0,
-            web: 0.0,
-        },
-        WrittenSection::Given { .. } => Section::Given(SectionValues::zeros()),
-    };
-    shape.map(&mut |_| next.next().unwrap_or_else(S::zero))
+    crate::problem::section::section(written, x, |given| {
+        let [ea, ga2, ga3] = given.axial_and_shear.map(|q| q.get(x));
+        let [gj, ei2, ei3] = given.torsion_and_bending.map(|q| q.get(x));
+        let [i2, i3] = given.inertia.map(|q| q.get(x));
+        SectionValues {
+            stiffness: [ea, ga2, ga3, gj, ei2, ei3],
+            inertia: [given.mass.get(x), i2, i3],
+        }
+    })
 }

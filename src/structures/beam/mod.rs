@@ -18,7 +18,7 @@ mod section;
 mod torsion;
 
 pub use element::{Beam, BeamMotion};
-pub use section::{Section, SectionValues};
+pub use section::{Section, SectionFault, SectionValues};
 
 /// Nodes of a beam, at r = −1, 0, 1.
 pub const BEAM_NODES: usize = 3;

@@ -56,6 +56,51 @@ impl<S: Scalar> SectionValues<S> {
     }
 }
 
+/// A size of a section that its other sizes do not admit.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("a {size} of {found} m, above {limit}, {most} m")]
+pub struct SectionFault {
+    /// What is too large.
+    pub size: &'static str,
+    /// Its value \[m\].
+    pub found: f64,
+    /// What limits it.
+    pub limit: &'static str,
+    /// The largest value \[m\].
+    pub most: f64,
+}
+
+/// Part by which rounding may carry a size over its limit.
+const ROUNDING: f64 = 1e-12;
+
+impl Section<f64> {
+    /// Why no beam can have this section: formulas of areas and moments would go on beyond it.
+    pub fn fault(&self) -> Option<SectionFault> {
+        let limits = match *self {
+            Self::Rectangle { .. } | Self::Given(_) => return None,
+            Self::Tube { radius, wall } => vec![("wall", wall, "the radius", radius)],
+            Self::I {
+                width,
+                height,
+                flange,
+                web,
+            } => vec![
+                ("flange", flange, "half the height", 0.5 * height),
+                ("web", web, "the width", width),
+            ],
+        };
+        let wrong = limits
+            .into_iter()
+            .find(|&(_, found, _, most)| found > most * (1.0 + ROUNDING));
+        wrong.map(|(size, found, limit, most)| SectionFault {
+            size,
+            found,
+            limit,
+            most,
+        })
+    }
+}
+
 /// A, A2, A3, J, I2, I3 of a section.
 type Geometry<S> = [S; 6];
 

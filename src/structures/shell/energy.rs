@@ -12,7 +12,7 @@
 use super::basis::{GAUSS_POINTS, NODES, TABLES};
 use super::field::{Field, add_interpolate_transpose, add_sum_transpose, interpolate, sum};
 use super::frame;
-use super::strain::{ElementStrain, Strain, Terms};
+use super::strain::{Curvature, ElementStrain, Strain, Terms};
 use crate::math::{Scalar, Vec3};
 use crate::structures::material::Material;
 
@@ -133,7 +133,7 @@ impl<S: Scalar> Shell<S> {
     /// The strain energy of a motion, by its parts \[J\].
     pub fn energy(&self, motion: &Motion<S>, terms: Terms) -> EnergyParts<S> {
         let field = motion.field(&self.geometry);
-        let strain = ElementStrain::new(&self.geometry, &field, terms);
+        let strain = ElementStrain::new(&self.geometry, &field, terms, Curvature::Tied);
         let (h, material) = (self.thickness, &self.material);
         let mut parts = EnergyParts {
             membrane: S::zero(),
@@ -175,7 +175,7 @@ impl<S: Scalar> Shell<S> {
         to: &mut ShellCotangent<S>,
     ) {
         let field = motion.field(&self.geometry);
-        let strain = ElementStrain::new(&self.geometry, &field, terms);
+        let strain = ElementStrain::new(&self.geometry, &field, terms, Curvature::Tied);
         let (h, material) = (self.thickness, &self.material);
         let cube = h * h * h / 12.0;
         let shear_modulus = material.shear_modulus();

@@ -10,7 +10,8 @@
 //!
 //! Each component is taken at the points where it is tied (`basis`) and carried to the Gauss
 //! points, there to the orthonormal frame; `correction` adds a mean to the linear membrane and bending
-//! strains. Rotations may be as large as the von Karman strain admits.
+//! strains. Stresses take the curvatures of the motion itself. Rotations may be as large as the von Karman
+//! strain admits.
 
 use super::basis::{
     COMPONENTS, GAUSS_POINTS, MIDDLE, NODES, SHEAR_POINTS, TABLES, TYING_POINTS, component,
@@ -43,6 +44,15 @@ impl Terms {
         von_karman: true,
         patch_correction: true,
     };
+}
+
+/// Which curvatures are taken at the Gauss points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Curvature {
+    /// Those carried from where they are tied, with the correction: the energy has them.
+    Tied,
+    /// Those of the motion there. Their twist has half the error of the tied one, so stresses have them.
+    OfMotion,
 }
 
 /// Strains at a Gauss point in its frame, and the area that it stands for; or their cotangents.
@@ -166,6 +176,7 @@ pub(crate) struct ElementStrain<'a, S> {
     geometry: &'a Field<S>,
     motion: &'a Field<S>,
     terms: Terms,
+    curvature: Curvature,
     frames: [Frame<S>; GAUSS_POINTS],
     /// Direction of the first axes: a_r in the middle.
     reference: Vec3<S>,
@@ -177,11 +188,17 @@ pub(crate) struct ElementStrain<'a, S> {
 
 impl<'a, S: Scalar> ElementStrain<'a, S> {
     /// Strains of a motion of a geometry.
-    pub(crate) fn new(geometry: &'a Field<S>, motion: &'a Field<S>, terms: Terms) -> Self {
+    pub(crate) fn new(
+        geometry: &'a Field<S>,
+        motion: &'a Field<S>,
+        terms: Terms,
+        curvature: Curvature,
+    ) -> Self {
         let mut all = Self {
             geometry,
             motion,
             terms,
+            curvature,
             frames: [Frame::zeros(); GAUSS_POINTS],
             reference: sum(&TABLES.gauss[MIDDLE].by[0], &geometry.points),
             tied: TiedStrain::zeros(),
@@ -267,16 +284,49 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
         std::array::from_fn(|p| self.tied.membrane[p] + self.tied.quadratic[p])
     }
 
+    /// Covariant curvatures at a Gauss point.
+    fn curvatures(&self, k: usize) -> [S; 3] {
+        match self.curvature {
+            Curvature::Tied => carry(k, &self.tied.bending),
+            Curvature::OfMotion => {
+                let g = interpolate(&TABLES.gauss[k], self.geometry);
+                let u = interpolate(&TABLES.gauss[k], self.motion);
+                COMPONENTS.map(|c| bending(&g, &u, c))
+            }
+        }
+    }
+
+    /// Transpose of the derivative of [`ElementStrain::curvatures`] where they are those of the motion.
+    fn add_curvatures_of_motion_transpose(
+        &self,
+        k: usize,
+        bar: &[S; 3],
+        geometry: &mut Field<S>,
+        motion: &mut Field<S>,
+    ) {
+        let g = interpolate(&TABLES.gauss[k], self.geometry);
+        let u = interpolate(&TABLES.gauss[k], self.motion);
+        let mut pair = Pair::zeros();
+        for (c, &bar) in bar.iter().enumerate() {
+            pair.add_bending_transpose(&g, &u, c, bar);
+        }
+        add_interpolate_transpose(&TABLES.gauss[k], &pair.geometry, geometry);
+        add_interpolate_transpose(&TABLES.gauss[k], &pair.motion, motion);
+    }
+
     /// Strains in the frames of the Gauss points.
     fn gather(&mut self) {
         let (total, mean) = (self.all_membrane(), self.mean());
         for k in 0..GAUSS_POINTS {
             let frame = &self.frames[k];
             let m = frame.strain(&carry(k, &total));
-            let b = frame.strain(&carry(k, &self.tied.bending));
+            let b = frame.strain(&self.curvatures(k));
             let point = &mut self.points[k];
             point.membrane = std::array::from_fn(|c| m[c] + mean[0][c]);
-            point.bending = std::array::from_fn(|c| b[c] + mean[1][c]);
+            point.bending = match self.curvature {
+                Curvature::Tied => std::array::from_fn(|c| b[c] + mean[1][c]),
+                Curvature::OfMotion => b,
+            };
             point.shear = frame.shear(&carry_shear(k, &self.tied.shear));
         }
     }
@@ -297,18 +347,17 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
         for point in bar {
             for c in 0..3 {
                 mean_bar[0][c] += point.membrane[c];
-                mean_bar[1][c] += point.bending[c];
+                if self.curvature == Curvature::Tied {
+                    mean_bar[1][c] += point.bending[c];
+                }
             }
         }
         for k in 0..GAUSS_POINTS {
             let (frame, point) = (&self.frames[k], &bar[k]);
             let mut frame_bar = Frame::zeros();
             frame.add_strain_frame_transpose(&carry(k, &total), &point.membrane, &mut frame_bar);
-            frame.add_strain_frame_transpose(
-                &carry(k, &self.tied.bending),
-                &point.bending,
-                &mut frame_bar,
-            );
+            let curvatures = self.curvatures(k);
+            frame.add_strain_frame_transpose(&curvatures, &point.bending, &mut frame_bar);
             frame.add_shear_frame_transpose(
                 &carry_shear(k, &self.tied.shear),
                 &point.shear,
@@ -318,7 +367,12 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
             add_carry_transpose(k, &m, &mut tied.membrane);
             add_carry_transpose(k, &m, &mut tied.quadratic);
             let b = frame.strain_transpose(&point.bending);
-            add_carry_transpose(k, &b, &mut tied.bending);
+            match self.curvature {
+                Curvature::Tied => add_carry_transpose(k, &b, &mut tied.bending),
+                Curvature::OfMotion => {
+                    self.add_curvatures_of_motion_transpose(k, &b, geometry, motion);
+                }
+            }
             let s = frame.shear_transpose(&point.shear);
             add_carry_shear_transpose(k, &s, &mut tied.shear);
 

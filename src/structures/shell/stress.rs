@@ -1,12 +1,13 @@
 //! Von Mises stresses of an element, at both faces of its Gauss points.
 //!
 //! σ = C (e ± h/2 κ), σ_v² = σ_11² + σ_22² − σ_11 σ_22 + 3 σ_12² (plane stress), divided by the yield
-//! stress. Transverse shear stresses vanish at the faces.
+//! stress. Transverse shear stresses vanish at the faces. Curvatures κ are those of the motion, not the tied
+//! ones of the energy.
 
 use super::basis::GAUSS_POINTS;
 use super::energy::{Motion, Shell, ShellCotangent};
 use super::field::Field;
-use super::strain::{ElementStrain, Strain, Terms};
+use super::strain::{Curvature, ElementStrain, Strain, Terms};
 use crate::math::Scalar;
 
 /// Places of an element whose stress is evaluated: (Gauss point, face), the face z = +h/2 first.
@@ -44,7 +45,7 @@ impl<S: Scalar> Shell<S> {
     /// σ_v / σ_yield at the Gauss points, face +h/2 and face −h/2 of each after one another.
     pub fn stress_ratios(&self, motion: &Motion<S>, terms: Terms) -> [S; STRESS_POINTS] {
         let field = motion.field(&self.geometry);
-        let strain = ElementStrain::new(&self.geometry, &field, terms);
+        let strain = ElementStrain::new(&self.geometry, &field, terms, Curvature::OfMotion);
         std::array::from_fn(|k| {
             let (e, _) = at_face(self, &strain.points[k / 2], k % 2);
             von_mises(&self.material.plane_stress(&e)) / self.material.yield_stress
@@ -62,7 +63,7 @@ impl<S: Scalar> Shell<S> {
         to: &mut ShellCotangent<S>,
     ) {
         let field = motion.field(&self.geometry);
-        let strain = ElementStrain::new(&self.geometry, &field, terms);
+        let strain = ElementStrain::new(&self.geometry, &field, terms, Curvature::OfMotion);
         let mut strain_bar = [Strain::zeros(); GAUSS_POINTS];
         let yield_stress = self.material.yield_stress;
         for (k, &bar) in bar.iter().enumerate() {
