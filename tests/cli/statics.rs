@@ -179,6 +179,9 @@ fn error_is_measured_against_time_and_mesh() {
         ],
     );
     assert!(ran.out.contains("error of stress"), "{}", ran.out);
+    let figure =
+        std::fs::read_to_string(directory.join("wp/work_precision.svg")).expect("a figure");
+    assert!(figure.contains("gradient of"), "{figure}");
     let table = std::fs::read_to_string(directory.join("wp/work_precision.csv")).expect("a table");
     let column = |line: &str, k: usize| line.split(',').nth(k).and_then(|x| x.parse::<f64>().ok());
     let names: Vec<&str> = table.lines().next().expect("a header").split(',').collect();
@@ -282,4 +285,37 @@ fn a_run_that_stalls_says_why_designs_have_no_values() {
         "{}",
         ran.out
     );
+}
+
+/// A load at one node has no limit on a shell: functions of its case have no estimate to rely on, others do.
+#[test]
+fn estimates_of_loads_at_one_node_are_told_to_be_unreliable() {
+    let scratch = scratch();
+    let directory = scratch.path();
+    let mut problem = json(PLATE);
+    problem["load_cases"]["poke"] =
+        serde_json::json!({"p": {"point": {"nodes": "middle", "force": [0, 0, 9]}}});
+    problem["functions"]["give"] = serde_json::json!({"compliance": {"case": "poke"}});
+    std::fs::write(directory.join("plate.json"), problem.to_string()).expect("is written");
+    let ran = expect(0, directory, &["simulate", "plate.json", "--error"]);
+    // The stress is that of all load cases.
+    let told = "the estimated errors of \"stress\", \"give\" are not reliable";
+    assert!(ran.out.contains(told), "{}", ran.out);
+    let ran = expect(
+        0,
+        directory,
+        &["simulate", "plate.json", "--error", "--json"],
+    );
+    let warning = json(&ran.out)["warning"].clone();
+    assert!(
+        warning
+            .as_str()
+            .is_some_and(|text| text.contains("\"give\"")),
+        "{warning}"
+    );
+    let ran = expect(0, directory, &["simulate", "plate.json"]);
+    assert!(!ran.out.contains("not reliable"), "{}", ran.out);
+    written(directory);
+    let ran = expect(0, directory, &["simulate", "plate.json", "--error"]);
+    assert!(!ran.out.contains("not reliable"), "{}", ran.out);
 }
