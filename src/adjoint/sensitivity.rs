@@ -2,9 +2,9 @@
 //! and its derivatives in the parameters so far.
 
 use super::compensated::Compensated;
-use crate::functions::Scene;
 use crate::functions::evaluate::Linearised;
 use crate::functions::measure::{Snapshot, SnapshotCotangent};
+use crate::functions::{JointMultipliers, Rows, Scene};
 use crate::integrate::Trajectory;
 use crate::integrate::{IntegrationFailure, WorkCounts};
 use crate::linalg::REFINED_SOLVES;
@@ -15,6 +15,8 @@ use crate::system::{bodies, initial};
 pub(super) struct Sensitivity<'a> {
     linearised: Linearised<'a>,
     own: usize,
+    /// Multipliers of the joint whose reaction the function observes.
+    joint: Option<JointMultipliers<'a, f64>>,
     /// Derivatives in the parameters of the scene so far.
     pub cot: Scene<f64>,
     /// Derivative in the duration through the step sizes.
@@ -29,10 +31,14 @@ pub(super) struct Sensitivity<'a> {
 
 impl<'a> Sensitivity<'a> {
     /// Function number `own` of the scene, at the end of `run`.
-    pub(crate) fn new(scene: &'a Scene<f64>, run: &Trajectory<f64>, own: usize) -> Self {
+    pub(crate) fn new(scene: &'a Scene<f64>, run: &'a Trajectory<f64>, own: usize) -> Self {
         let (nq, nv) = (run.numbering.positions(), run.numbering.velocities());
+        let function = scene.function(own);
+        let joint = function.instant().and_then(|own| own.reacting_joint());
+        let joint = joint.map(|j| JointMultipliers::new(&scene.model, &run.numbering, j));
         Self {
-            linearised: Linearised::new(scene.function(own), &scene.model, run),
+            linearised: Linearised::new(function, &scene.model, run),
+            joint,
             own,
             cot: scene.zero_cotangent(),
             by_duration: 0.0,
@@ -63,9 +69,25 @@ impl<'a> Sensitivity<'a> {
         }
         let [y, v, a] = &mut self.sample;
         let (model, own) = self.cot.model_and_function(self.own);
-        let mut out = SnapshotCotangent { y, v, a, model };
-        self.linearised
-            .pull_back(k, &Snapshot::of(&scene.model, run, k), &mut out, own);
+        let rows = self.joint.as_ref().map_or(0, JointMultipliers::count);
+        let (mut lambda, mut by_time) = (vec![0.0; rows], 0.0);
+        let mut out = SnapshotCotangent {
+            y: &mut *y,
+            v: &mut *v,
+            a,
+            lambda: &mut lambda,
+            time: &mut by_time,
+            model: &mut *model,
+        };
+        let at = Snapshot {
+            joint: (self.joint.as_mut()).map_or(Rows::none(), |joint| joint.at(run, k)),
+            ..Snapshot::of(&scene.model, run, k)
+        };
+        self.linearised.pull_back(k, &at, &mut out, own);
+        if let Some(joint) = &mut self.joint {
+            by_time += joint.pull_back(&lambda, (y, v), model);
+        }
+        self.by_duration += run.instants[k] * by_time;
         true
     }
 
@@ -82,6 +104,9 @@ impl<'a> Sensitivity<'a> {
         a: &[f64],
         counts: &mut WorkCounts,
     ) -> Result<(), IntegrationFailure> {
+        if let Some(joint) = &self.joint {
+            counts.factorisations += joint.factorisations();
+        }
         let before = saddle.factorisations;
         let mut y = vec![0.0; a.len()];
         bodies::tangent_of_cotangent(&run.numbering, &run.initial.q, &self.q.value, &mut y);

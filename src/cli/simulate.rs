@@ -5,7 +5,7 @@ use super::error_table::table;
 use super::{DONE, Failure, NOT_REACHED, draw, load, print, read, refine, shown, tell};
 use crate::driver::tables::ReactionAxes;
 use crate::driver::{
-    self, CheckedDerivative, Evaluated, Simulated, Simulation, error, figures, tables,
+    self, CheckedDerivative, Evaluated, Simulated, Simulation, error, figures, not_finite, tables,
 };
 use crate::functions::evaluate::ungated_maximum;
 use crate::functions::peak::Maximum;
@@ -57,10 +57,13 @@ pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Fa
     let functions = problem.function_names.iter().enumerate();
     let lost = functions
         .filter(|(f, _)| !simulation.at.function(*f).value.is_finite())
-        .map(|(_, name)| format!("\"{name}\""))
+        .map(|(f, _)| {
+            let value = simulation.at.function(f).value;
+            not_finite::value(&problem, &simulation.at, f, value)
+        })
         .collect::<Vec<_>>();
     if !lost.is_empty() {
-        let what = format!("{}: not finite: {}", problem.name, lost.join(", "));
+        let what = format!("{}: not finite: {}", problem.name, lost.join("; "));
         return Err(Failure::numerical(what));
     }
     Ok(DONE)

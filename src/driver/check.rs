@@ -7,7 +7,11 @@ use crate::functions::{Function, Instant, Reduction};
 use crate::integrate::{IntegrationFailure, Settings, Trajectory, simulate};
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
+use crate::model::LoadKind;
+use crate::model::flexible::Quadratic;
 use crate::problem::Problem;
+use crate::system::loads::springs::SpringPart;
+use crate::system::measures::WrenchPart;
 use crate::system::placement::length_scale;
 use rayon::prelude::*;
 
@@ -161,28 +165,53 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
             let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
             mass * length / time
         }
-        Instant::Deformation { flexible, form, .. } => {
-            // By the largest coordinate of the motion.
-            let body = &model.flexible[*flexible];
-            let (numbering, run) = (&at.run.numbering, &at.run);
-            let places = body.places().zip(&form.linear);
-            let terms = places.map(|((carrier, k), b)| {
-                let place = numbering.position(carrier) + k;
-                let most = (0..=run.last()).fold(0.0_f64, |m, i| m.max(run.q(i)[place].abs()));
-                b.abs() * most
-            });
-            terms.fold(0.0, f64::max)
-        }
-        Instant::Energy(_) | Instant::StrainEnergy(_) => {
+        Instant::AngularMomentum(_) => {
             let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
-            mass * length * (model.gravity.norm() + length / (time * time))
+            mass * length * length / time
         }
+        Instant::Deformation { flexible, form, .. } => form_size(at, *flexible, form),
+        Instant::LargestDeformation {
+            flexible, largest, ..
+        } => {
+            let sizes = largest
+                .forms
+                .iter()
+                .map(|form| form_size(at, *flexible, form));
+            sizes.fold(0.0, f64::max)
+        }
+        Instant::Slide(_) => length,
+        Instant::Reaction(_) | Instant::Energy(_) | Instant::StrainEnergy(_) => {
+            let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
+            let force = mass * (model.gravity.norm() + length / (time * time));
+            match instant {
+                Instant::Reaction(wrench) if wrench.part == WrenchPart::Force => force,
+                _ => force * length,
+            }
+        }
+        Instant::Spring(spring) => match (spring.part, &model.loads[spring.load].kind) {
+            (SpringPart::Tension, LoadKind::Spring { stiffness, .. }) => stiffness * length,
+            (SpringPart::Torque, LoadKind::TorsionSpring { stiffness, .. }) => *stiffness,
+            _ => length,
+        },
     };
     let size = match reduction {
         Reduction::Integral => size * time,
         Reduction::Final | Reduction::Ks { .. } | Reduction::InducedExponential { .. } => size,
     };
     size.max(at.function(f).value.abs())
+}
+
+/// The size of a form in the elastic coordinates, by the largest of each in the motion.
+fn form_size(at: &Evaluated, flexible: usize, form: &Quadratic<f64>) -> f64 {
+    let body = &at.scene.model.flexible[flexible];
+    let (numbering, run) = (&at.run.numbering, &at.run);
+    let places = body.places().zip(&form.linear);
+    let terms = places.map(|((carrier, k), b)| {
+        let place = numbering.position(carrier) + k;
+        let most = (0..=run.last()).fold(0.0_f64, |m, i| m.max(run.q(i)[place].abs()));
+        b.abs() * most
+    });
+    terms.fold(0.0, f64::max)
 }
 
 /// Derivatives of all functions along a direction, and the real part of the motion.

@@ -11,11 +11,15 @@ use crate::functions::turning::turns;
 use crate::functions::{Function, Instant, Reduction};
 use crate::math::Vec3;
 use crate::model::Model;
-use crate::problem::{Drawing, Outline, Problem};
+use crate::problem::{BeamPoint, DeformedLine, Drawing, Outline, Problem};
 use crate::report::plots::{
-    Barrier, BodyMotion, EnergyRun, Flight, Motion, Scenery, convergence, energy, motion,
+    Barrier, BodyMotion, EnergyRun, Flight, History as Curves, Motion, Patch, Scenery, convergence,
+    energy, histories, motion,
 };
 use crate::report::{History, Optimum, ReportError};
+
+/// Layers across a beam in which its stress is drawn.
+const LAYERS: usize = 6;
 
 /// A file's name and content.
 pub(crate) type NamedFile = (&'static str, Vec<u8>);
@@ -131,9 +135,38 @@ fn figures(
         .map(|(title, design)| energies(title, design))
         .collect();
     all.push(("energy.svg", energy(&energies)));
+    if drawings
+        .iter()
+        .any(|drawing| !drawing.beam_points.is_empty())
+    {
+        let pairs = designs.iter().zip(&drawings);
+        let all_of = |((title, design), drawing): (&(&str, &Simulation), &Drawing)| {
+            deflections(title, design, drawing)
+        };
+        let curves: Vec<Curves> = pairs.map(all_of).collect();
+        let label = "displacement against the beam's axes [m]";
+        all.push(("deflection.svg", histories(&curves, label)));
+    }
     all.into_iter()
         .filter_map(|(name, svg)| Some((name, svg.ok()?.into_bytes())))
         .collect()
+}
+
+/// The displacements of points of beams against time.
+fn deflections(title: &str, simulation: &Simulation, drawing: &Drawing) -> Curves {
+    let (model, run) = (&simulation.written.model, simulation.motion());
+    let curve = |point: &BeamPoint| {
+        let at = |k: usize| -> f64 {
+            let q = elastic(model, &Snapshot::of(model, run, k), point.body);
+            point.by.iter().zip(&q).map(|(n, q)| n * q).sum()
+        };
+        (point.name.clone(), (0..=run.last()).map(at).collect())
+    };
+    Curves {
+        title: title.to_string(),
+        time: (0..=run.last()).map(|k| run.time(k)).collect(),
+        curves: drawing.beam_points.iter().map(curve).collect(),
+    }
 }
 
 fn scenery(drawing: &Drawing) -> Scenery {
@@ -229,6 +262,17 @@ fn lapse(
                     outline(&drawing.outlines[body], &q, |s| flat(&motion.point(s)))
                 })
                 .collect(),
+            patches: match &drawing.outlines[body] {
+                Outline::Deformed(line) if !line.stresses.is_empty() => instants
+                    .iter()
+                    .map(|&k| {
+                        let at = Snapshot::of(model, run, k);
+                        let motion = at.motion(body);
+                        patches(line, &elastic(model, &at, body), |s| flat(&motion.point(s)))
+                    })
+                    .collect(),
+                _ => Vec::new(),
+            },
         })
         .collect();
     let thrown = release.map(|(_, p)| (p.body, p.point));
@@ -270,6 +314,38 @@ fn elastic(model: &Model<f64>, at: &Snapshot<f64>, body: usize) -> Vec<f64> {
     places
         .map(|(carrier, k)| at.motion(carrier).point(&Vec3::zeros())[k])
         .collect()
+}
+
+/// Coloured parts of a bent beam: slices along it, in layers across it.
+fn patches(line: &DeformedLine, q: &[f64], place: impl Fn(&Vec3<f64>) -> [f64; 2]) -> Vec<Patch> {
+    let moved = |(point, modes): &(Vec3<f64>, Vec<Vec3<f64>>)| {
+        let moved = modes.iter().zip(q).fold(*point, |sum, (n, &q)| sum + n * q);
+        place(&moved)
+    };
+    let border: Vec<[f64; 2]> = line.points.iter().map(moved).collect();
+    let last = border.len() - 1;
+    let between = |k: usize, part: f64| {
+        let (a, b) = (border[k], border[last - k]);
+        [0, 1].map(|i| a[i] + part * (b[i] - a[i]))
+    };
+    let mut all = Vec::new();
+    for (k, stresses) in line.stresses.iter().enumerate() {
+        let [first, second] = stresses.each_ref().map(|form| form.value(q));
+        for layer in 0..LAYERS {
+            let [from, to] = [layer, layer + 1].map(|i| i as f64 / LAYERS as f64);
+            let middle = 0.5 * (from + to);
+            all.push(Patch {
+                corners: vec![
+                    between(k, from),
+                    between(k + 1, from),
+                    between(k + 1, to),
+                    between(k, to),
+                ],
+                value: first + middle * (second - first),
+            });
+        }
+    }
+    all
 }
 
 /// The silhouette of a body with elastic coordinates `q` whose points are shown by `place`.

@@ -16,7 +16,7 @@ pub(crate) mod integration;
 pub(crate) mod known_evaluations;
 pub(crate) mod memory;
 pub(crate) mod multi_start;
-mod not_finite;
+pub(crate) mod not_finite;
 pub(crate) mod optimise;
 mod record;
 pub(crate) mod second_order;

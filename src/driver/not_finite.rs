@@ -1,13 +1,13 @@
 //! Origin of a number that is not finite.
 
 use super::evaluate::Evaluated;
-use crate::functions::Function;
 use crate::functions::evaluate::sample;
 use crate::functions::turning::turns;
+use crate::functions::{Function, Instant};
 use crate::problem::Problem;
 
 /// A function whose value is not finite, and the time from which on its data are not.
-pub(super) fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> String {
+pub(crate) fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> String {
     let name = &problem.function_names[f];
     let own = match &at.scene.functions[f] {
         Function::Reduced { instant, .. } => {
@@ -16,7 +16,8 @@ pub(super) fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> 
             let first = all.iter().position(|x| !x.is_finite());
             first.map(|k| {
                 let (what, time) = (instant.describe(), at.run.time(k));
-                format!(": its {what} is not finite from t = {time:.6e} s on")
+                let why = shared(at, instant);
+                format!(": its {what} is not finite from t = {time:.6e} s on{why}")
             })
         }
         Function::Clearance { .. } | Function::Duration | Function::OfDesign(_) => None,
@@ -26,6 +27,19 @@ pub(super) fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> 
         own.unwrap_or_default(),
         body(at)
     )
+}
+
+/// Why a reaction may not be determined.
+fn shared(at: &Evaluated, instant: &Instant<f64>) -> String {
+    let joints = &at.scene.model.joints;
+    match instant.reacting_joint() {
+        Some(joint) if joints.iter().any(|joint| !joint.redundant.is_empty()) => format!(
+            ", as joint \"{}\" shares it with others in a way that the motion does not determine; a \
+             joint with fewer constraints, such as a spherical or cylindrical one, would",
+            joints[joint].name
+        ),
+        _ => String::new(),
+    }
 }
 
 /// A derivative that is not finite.

@@ -4,12 +4,16 @@ use super::flight::Flight;
 use super::function::{Bound, Function, Reduction, Release};
 use super::instant::{Instant, Projectile};
 use super::measure::{Snapshot, SnapshotCotangent, pull_flight};
+use super::multipliers::{JointMultipliers, Rows};
 use super::peak::{self, Maximum, Point};
 use super::turning::turns;
 use crate::integrate::{Trajectory, quadrature};
+use crate::linalg::SolveScalar;
+use crate::math::Parameters;
 use crate::math::soft_max::SoftMax;
-use crate::math::{Parameters, Scalar};
 use crate::model::Model;
+use crate::system::Numbering;
+use std::ops::RangeInclusive;
 
 /// A function's value over a run, with data for reports.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +27,7 @@ pub(crate) struct Evaluated<S> {
     pub peak_sharpness: f64,
 }
 
-impl<S: Scalar> Function<S> {
+impl<S: SolveScalar> Function<S> {
     /// Value over a run of `model`.
     pub(crate) fn evaluate(&self, model: &Model<S>, run: &Trajectory<S>) -> Evaluated<S> {
         match self {
@@ -63,7 +67,7 @@ impl<S: Scalar> Function<S> {
     }
 }
 
-fn reduce<S: Scalar>(
+fn reduce<S: SolveScalar>(
     instant: &Instant<S>,
     reduction: Reduction,
     model: &Model<S>,
@@ -77,8 +81,8 @@ fn reduce<S: Scalar>(
     };
     match reduction {
         Reduction::Final => {
-            let at = Snapshot::of(model, run, run.last());
-            plain(instant.value(&at, turn(&turns, run.last())))
+            let last = run.last();
+            plain(sample_at(instant, &turns, model, run, last..=last)[0])
         }
         Reduction::Integral => {
             let values = sample(instant, &turns, model, run);
@@ -115,7 +119,11 @@ fn reduce<S: Scalar>(
 /// The soft maximum over the maxima of a quantity minus its minima. It is never below the largest
 /// value, because maxima and minima alternate and no minimum exceeds its neighbours. Also the
 /// samples and turning points that its weights belong to.
-fn turning<S: Scalar>(values: &[S], run: &Trajectory<S>, rho: f64) -> (SoftMax<S>, Vec<Point<S>>) {
+fn turning<S: SolveScalar>(
+    values: &[S],
+    run: &Trajectory<S>,
+    rho: f64,
+) -> (SoftMax<S>, Vec<Point<S>>) {
     let points = peak::points(run, values);
     let heights: Vec<S> = points.iter().map(|point| point.value).collect();
     let rises = |i: usize| heights[i + 1].re() > heights[i].re();
@@ -133,7 +141,7 @@ fn turning<S: Scalar>(values: &[S], run: &Trajectory<S>, rho: f64) -> (SoftMax<S
 
 /// The largest range without the gate, at instants at which the gate is more than half open; `None`
 /// without a gate.
-pub(crate) fn ungated_maximum<S: Scalar>(
+pub(crate) fn ungated_maximum<S: SolveScalar>(
     function: &Function<S>,
     model: &Model<S>,
     run: &Trajectory<S>,
@@ -162,15 +170,35 @@ pub(crate) fn ungated_maximum<S: Scalar>(
 }
 
 /// Values of an instant quantity at all instants of a run.
-pub(crate) fn sample<S: Scalar>(
+pub(crate) fn sample<S: SolveScalar>(
     instant: &Instant<S>,
     turns: &Option<Vec<f64>>,
     model: &Model<S>,
     run: &Trajectory<S>,
 ) -> Vec<S> {
-    (0..=run.last())
-        .map(|k| instant.value(&Snapshot::of(model, run, k), turn(turns, k)))
-        .collect()
+    sample_at(instant, turns, model, run, 0..=run.last())
+}
+
+/// Values of an instant quantity at some instants of a run. Multipliers are computed if it needs them.
+fn sample_at<S: SolveScalar>(
+    instant: &Instant<S>,
+    turns: &Option<Vec<f64>>,
+    model: &Model<S>,
+    run: &Trajectory<S>,
+    instants: RangeInclusive<usize>,
+) -> Vec<S> {
+    // Rows that were left out of the run may stand in the model.
+    let numbering = instant.reacting_joint().map(|_| Numbering::new(model));
+    let joint = numbering.as_ref().zip(instant.reacting_joint());
+    let mut joint = joint.map(|(numbering, j)| JointMultipliers::new(model, numbering, j));
+    let value = |k: usize| {
+        let at = Snapshot {
+            joint: (joint.as_mut()).map_or(Rows::none(), |joint| joint.at(run, k)),
+            ..Snapshot::of(model, run, k)
+        };
+        instant.value(&at, turn(turns, k))
+    };
+    instants.map(value).collect()
 }
 
 fn turn(turns: &Option<Vec<f64>>, k: usize) -> f64 {
@@ -187,7 +215,7 @@ struct ReleaseWeights<S> {
     peak: usize,
 }
 
-fn release_weights<S: Scalar>(
+fn release_weights<S: SolveScalar>(
     release: &Release<S>,
     model: &Model<S>,
     run: &Trajectory<S>,
@@ -218,7 +246,7 @@ fn release_weights<S: Scalar>(
 
 /// The mean flight Σ w_k z_k. It is summed relative to the best flight, so that derivatives of the
 /// weights, whose sum is zero, do not cancel at the size of z.
-fn mean_flight<S: Scalar>(
+fn mean_flight<S: SolveScalar>(
     projectile: &Projectile<S>,
     release: &ReleaseWeights<S>,
     model: &Model<S>,
@@ -252,7 +280,7 @@ const NEGLIGIBLE: f64 = f64::EPSILON * f64::EPSILON;
 
 /// The weights with zeros for negligible ones. Most weights of a soft maximum are negligible, and
 /// the adjoint skips their instants.
-fn without_negligible<S: Scalar>(mut weights: Vec<S>) -> Vec<S> {
+fn without_negligible<S: SolveScalar>(mut weights: Vec<S>) -> Vec<S> {
     let largest = weights.iter().fold(0.0_f64, |m, w| m.max(w.re().abs()));
     for w in &mut weights {
         if w.re().abs() < NEGLIGIBLE * largest {

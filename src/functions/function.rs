@@ -2,6 +2,7 @@
 
 use super::instant::{Gate, Instant, Projectile};
 use crate::math::{Scalar, Vec3, parameters};
+use crate::system::measures::Wrench;
 
 /// Side of the maximum over time on which an aggregate lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -95,6 +96,14 @@ parameters!(enum Release {
     Best { rho; projectile, gate },
 });
 
+/// A joint or load, by its number.
+pub(crate) enum Part<'a> {
+    /// A joint.
+    Joint(&'a mut usize),
+    /// A load.
+    Load(&'a mut usize),
+}
+
 impl<S: Scalar> Function<S> {
     /// SI unit of the value.
     pub(crate) fn unit(&self) -> String {
@@ -107,6 +116,35 @@ impl<S: Scalar> Function<S> {
             Function::Clearance { .. } => "m".to_owned(),
             Function::Duration => "s".to_owned(),
             Function::OfDesign(_) => "1".to_owned(),
+        }
+    }
+
+    /// The quantity at an instant, if the function reduces one.
+    pub(crate) fn instant(&self) -> Option<&Instant<S>> {
+        match self {
+            Function::Reduced { instant, .. } => Some(instant),
+            Function::Clearance { .. } | Function::Duration | Function::OfDesign(_) => None,
+        }
+    }
+
+    /// The component of a joint's reaction that the function observes, if any.
+    pub(crate) fn reaction(&self) -> Option<&Wrench<S>> {
+        match self.instant() {
+            Some(Instant::Reaction(wrench)) => Some(wrench),
+            _ => None,
+        }
+    }
+
+    /// The joint or load that the function observes by its number, if any.
+    pub(crate) fn part(&mut self) -> Option<Part<'_>> {
+        let Function::Reduced { instant, .. } = self else {
+            return None;
+        };
+        match instant {
+            Instant::Reaction(wrench) => Some(Part::Joint(&mut wrench.joint)),
+            Instant::Slide(joint) => Some(Part::Joint(joint)),
+            Instant::Spring(spring) => Some(Part::Load(&mut spring.load)),
+            _ => None,
         }
     }
 
@@ -126,8 +164,13 @@ impl<S: Scalar> Function<S> {
                 Instant::AngularVelocity { body, .. } => visit(body, None),
                 Instant::Energy(_)
                 | Instant::Momentum { .. }
+                | Instant::AngularMomentum(_)
                 | Instant::StrainEnergy(_)
-                | Instant::Deformation { .. } => {}
+                | Instant::Deformation { .. }
+                | Instant::LargestDeformation { .. }
+                | Instant::Reaction(_)
+                | Instant::Slide(_)
+                | Instant::Spring(_) => {}
                 Instant::Rotation(rotation) => {
                     rotation.for_each_body(&mut |body| visit(body, None))
                 }

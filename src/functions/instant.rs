@@ -1,8 +1,12 @@
 //! Quantities at an instant.
 
+use super::stations::Largest;
 use super::turning::Rotation;
 use crate::math::{Scalar, Vec3, parameters};
 use crate::model::flexible::Quadratic;
+use crate::system::angular_momentum::AngularMomentum;
+use crate::system::loads::springs::{Spring, SpringPart};
+use crate::system::measures::{Wrench, WrenchPart};
 
 /// A thrown point and the definition of its range. Up is against gravity.
 #[derive(Clone, Copy, Debug)]
@@ -142,6 +146,8 @@ pub(crate) enum Instant<S> {
         /// The direction.
         direction: Vec3<S>,
     },
+    /// Component of the angular momentum of the whole model \[kg m²/s\].
+    AngularMomentum(AngularMomentum<S>),
     /// Energy of the whole model \[J\].
     Energy(EnergyPart),
     /// Strain energy of a flexible body \[J\], an index into those of the model.
@@ -155,6 +161,21 @@ pub(crate) enum Instant<S> {
         /// The form.
         form: Quadratic<S>,
     },
+    /// The largest of several quadratic forms in the elastic coordinates of a flexible body.
+    LargestDeformation {
+        /// The flexible body, an index into those of the model.
+        flexible: usize,
+        /// What they measure.
+        kind: DeformationKind,
+        /// The forms.
+        largest: Largest<S>,
+    },
+    /// Component of the reaction of a joint \[N or N m\].
+    Reaction(Wrench<S>),
+    /// Displacement of body A of a joint against body B along its axis \[m\].
+    Slide(usize),
+    /// Length, force or torque of a spring \[m, N or N m\].
+    Spring(Spring),
     /// Rotation of a body about an axis, continuous in time and in (−2π, 2π] at t = 0 \[rad\].
     Rotation(Rotation<S>),
     /// Range of a projectile that is released at this instant \[m\], times the gate if there is
@@ -180,9 +201,14 @@ parameters!(enum Instant {
     SpeedSquared { body; point },
     AngularVelocity { body; direction },
     Momentum {; direction },
+    AngularMomentum(; momentum),
     Energy(part;),
     StrainEnergy(body;),
     Deformation { flexible, kind; form },
+    LargestDeformation { flexible, kind; largest },
+    Reaction(; wrench),
+    Slide(joint;),
+    Spring(spring;),
     Rotation(; rotation),
     Range {; projectile, gate },
 });
@@ -197,8 +223,21 @@ impl<S: Scalar> Instant<S> {
             Instant::SpeedSquared { .. } => "m²/s²",
             Instant::AngularVelocity { .. } => "rad/s",
             Instant::Momentum { .. } => "kg m/s",
+            Instant::AngularMomentum(_) => "kg m²/s",
             Instant::Energy(_) | Instant::StrainEnergy(_) => "J",
-            Instant::Deformation { kind, .. } => kind.unit(),
+            Instant::Deformation { kind, .. } | Instant::LargestDeformation { kind, .. } => {
+                kind.unit()
+            }
+            Instant::Reaction(wrench) => match wrench.part {
+                WrenchPart::Force => "N",
+                WrenchPart::Moment => "N m",
+            },
+            Instant::Slide(_) => "m",
+            Instant::Spring(spring) => match spring.part {
+                SpringPart::Length => "m",
+                SpringPart::Tension => "N",
+                SpringPart::Torque => "N m",
+            },
             Instant::Rotation(_) => "rad",
         }
     }
@@ -211,6 +250,7 @@ impl<S: Scalar> Instant<S> {
             "m²/s²" => "m²/s".into(),
             "rad/s" => "rad".into(),
             "kg m/s" => "kg m".into(),
+            "kg m²/s" => "kg m²".into(),
             unit => format!("{unit} s"),
         }
     }
@@ -225,11 +265,51 @@ impl<S: Scalar> Instant<S> {
             Instant::SpeedSquared { .. } => "speed squared",
             Instant::AngularVelocity { .. } => "angular velocity",
             Instant::Momentum { .. } => "momentum",
+            Instant::AngularMomentum(_) => "angular momentum",
             Instant::Energy(_) => "energy",
             Instant::StrainEnergy(_) => "strain energy",
             Instant::Deformation { kind, .. } => kind.name(),
+            Instant::LargestDeformation { kind, .. } => match kind {
+                DeformationKind::Displacement => "largest elastic displacement",
+                DeformationKind::Force => "largest section force",
+                DeformationKind::Moment => "largest section moment",
+                DeformationKind::Stress => "largest stress",
+            },
+            Instant::Reaction(wrench) => match wrench.part {
+                WrenchPart::Force => "joint force",
+                WrenchPart::Moment => "joint moment",
+            },
+            Instant::Slide(_) => "slide",
+            Instant::Spring(spring) => match spring.part {
+                SpringPart::Length => "spring length",
+                SpringPart::Tension => "spring force",
+                SpringPart::Torque => "spring torque",
+            },
             Instant::Rotation(_) => "rotation",
             Instant::Range { .. } => "range",
+        }
+    }
+
+    /// The joint whose multipliers the quantity needs, if any.
+    pub(crate) fn reacting_joint(&self) -> Option<usize> {
+        match self {
+            Instant::Reaction(wrench) => Some(wrench.joint),
+            Instant::Position { .. }
+            | Instant::Velocity { .. }
+            | Instant::Acceleration { .. }
+            | Instant::Speed { .. }
+            | Instant::SpeedSquared { .. }
+            | Instant::AngularVelocity { .. }
+            | Instant::Momentum { .. }
+            | Instant::AngularMomentum(_)
+            | Instant::Energy(_)
+            | Instant::StrainEnergy(_)
+            | Instant::Deformation { .. }
+            | Instant::LargestDeformation { .. }
+            | Instant::Slide(_)
+            | Instant::Spring(_)
+            | Instant::Rotation(_)
+            | Instant::Range { .. } => None,
         }
     }
 }

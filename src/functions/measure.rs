@@ -2,13 +2,16 @@
 
 use super::flight::{self, Flight};
 use super::instant::{EnergyPart, Gate, Instant, Projectile};
+use super::multipliers::Rows;
 use super::turning::Rotation;
 use crate::integrate::Trajectory;
 use crate::math::{Scalar, Vec3};
 use crate::model::Model;
 use crate::system::bodies::add6;
+use crate::system::joints::JointCotangent;
+use crate::system::loads::springs;
 use crate::system::marker::{self, MarkerKinematics};
-use crate::system::{BodyMotion, Numbering, flexible, loads};
+use crate::system::{BodyMotion, InMotion, Numbering, flexible, loads, measures};
 
 /// A point is at rest below this speed \[m/s\]. There the derivative of its speed is set to zero.
 const REST: f64 = 1e-25;
@@ -26,6 +29,10 @@ pub(crate) struct Snapshot<'a, S> {
     pub v: &'a [S],
     /// Accelerations; one entry per velocity number.
     pub a: &'a [S],
+    /// Multipliers of the rows of the joint whose reaction is measured, if any.
+    pub joint: Rows<'a, S>,
+    /// Time \[s\].
+    pub time: S,
 }
 
 impl<'a, S: Scalar> Snapshot<'a, S> {
@@ -37,6 +44,8 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
             q: run.q(k),
             v: run.v(k),
             a: run.a(k),
+            joint: Rows::none(),
+            time: run.time(k),
         }
     }
 
@@ -51,6 +60,11 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
         let mut motions = Vec::with_capacity(self.numbering.bodies());
         BodyMotion::all(self.numbering, self.q, self.v, &mut motions);
         motions
+    }
+
+    /// The model with these motions.
+    fn in_motion<'b>(&'b self, motions: &'b [BodyMotion<S>]) -> InMotion<'b, S> {
+        InMotion::new(self.model, self.numbering, motions, self.time)
     }
 
     /// Elastic coordinates of a flexible body.
@@ -89,6 +103,10 @@ pub(crate) struct SnapshotCotangent<'a> {
     pub v: &'a mut [f64],
     /// Of the accelerations.
     pub a: &'a mut [f64],
+    /// Of the multipliers.
+    pub lambda: &'a mut [f64],
+    /// Of the time, through the motions that drives prescribe.
+    pub time: &'a mut f64,
     /// Of the model's parameters.
     pub model: &'a mut Model<f64>,
 }
@@ -150,6 +168,20 @@ impl<S: Scalar> Instant<S> {
                 form,
                 ..
             } => form.value(&at.coordinates(*body)),
+            Instant::LargestDeformation {
+                flexible: body,
+                largest,
+                ..
+            } => largest.value(&at.coordinates(*body)),
+            Instant::AngularMomentum(momentum) => {
+                momentum.value(&at.in_motion(&at.motions()), at.v)
+            }
+            Instant::Reaction(wrench) => {
+                let (motions, of) = (at.motions(), &at.joint);
+                wrench.value(&at.in_motion(&motions), (of.lambda, of.undetermined))
+            }
+            Instant::Slide(joint) => measures::slide(&at.model.joints[*joint], &at.motions()),
+            Instant::Spring(spring) => springs::value(&at.in_motion(&at.motions()), *spring),
             Instant::Rotation(rotation) => at.rotation(rotation, turns),
             Instant::Range { projectile, gate } => {
                 at.flight(projectile).range(projectile.ground) * at.openness(gate, turns)
@@ -322,6 +354,58 @@ impl Instant<f64> {
                 form.pull_value(&q, weight, by_form);
                 let body = &at.model.flexible[*body];
                 flexible::add_coordinates(at.numbering, body, &by_q, out.y);
+            }
+            (
+                Instant::LargestDeformation {
+                    flexible: body,
+                    largest,
+                    ..
+                },
+                Instant::LargestDeformation {
+                    largest: by_largest,
+                    ..
+                },
+            ) => {
+                let q = at.coordinates(*body);
+                let mut by_q = vec![0.0; q.len()];
+                largest.pull_back(&q, weight, &mut by_q, by_largest);
+                let body = &at.model.flexible[*body];
+                flexible::add_coordinates(at.numbering, body, &by_q, out.y);
+            }
+            (Instant::AngularMomentum(momentum), Instant::AngularMomentum(own)) => {
+                let motions = at.motions();
+                let here = at.in_motion(&motions);
+                let state = (&mut *out.y, &mut *out.v);
+                momentum.pull_back(&here, (at.v, weight), state, out.model, own);
+            }
+            (Instant::Reaction(wrench), Instant::Reaction(own)) => {
+                let motions = at.motions();
+                let mut to = JointCotangent {
+                    y: Some(&mut *out.y),
+                    v: None,
+                    model: &mut *out.model,
+                };
+                let lambda = (at.joint.lambda, &mut *out.lambda);
+                let here = at.in_motion(&motions);
+                *out.time += wrench.pull_back(&here, lambda, weight, &mut to, own);
+            }
+            (Instant::Slide(joint), _) => {
+                let motions = at.motions();
+                let mut to = JointCotangent {
+                    y: Some(&mut *out.y),
+                    v: None,
+                    model: &mut *out.model,
+                };
+                measures::pull_slide(&at.in_motion(&motions), *joint, weight, &mut to);
+            }
+            (Instant::Spring(spring), _) => {
+                let motions = at.motions();
+                let mut to = JointCotangent {
+                    y: Some(&mut *out.y),
+                    v: Some(&mut *out.v),
+                    model: &mut *out.model,
+                };
+                springs::pull_back(&at.in_motion(&motions), *spring, weight, &mut to);
             }
             (Instant::Rotation(rotation), Instant::Rotation(own)) => {
                 rotation.pull_back((at.numbering, at.q), weight, out.y, own);

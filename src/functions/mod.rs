@@ -5,13 +5,16 @@ pub(crate) mod flight;
 pub(crate) mod function;
 pub(crate) mod instant;
 pub(crate) mod measure;
+mod multipliers;
 pub(crate) mod peak;
 pub(crate) mod resolution;
 pub(crate) mod rest;
 pub(crate) mod scene;
+pub(crate) mod stations;
 pub(crate) mod turning;
 
 pub(crate) use function::{Bound, Function, Reduction, Release};
 pub(crate) use instant::{EnergyPart, Gate, GateSide, Instant, Projectile};
+pub(crate) use multipliers::{JointMultipliers, Rows};
 pub(crate) use scene::{Scene, TerminalEvent};
 pub(crate) use turning::Rotation;

@@ -4,6 +4,7 @@ use super::evaluate::sample;
 use super::turning::turns;
 use super::{Function, Instant, Reduction};
 use crate::integrate::Trajectory;
+use crate::linalg::SolveScalar;
 use crate::math::{Parameters, Scalar, parameters};
 use crate::model::Model;
 use crate::system::failure::AssemblyFailure;
@@ -47,7 +48,10 @@ impl<S: Scalar> TerminalEvent<S> {
     }
 
     /// g − c at the end of a run.
-    pub(crate) fn gap(&self, model: &Model<S>, run: &Trajectory<S>) -> S {
+    pub(crate) fn gap(&self, model: &Model<S>, run: &Trajectory<S>) -> S
+    where
+        S: SolveScalar,
+    {
         self.measure.evaluate(model, run).value - self.value
     }
 }

@@ -1,10 +1,11 @@
 //! Fixed bodies: welded to ground, directly or through other fixed bodies. They have no unknowns,
 //! and joints between them and ground have no rows. A design variable may change their position.
 
-use super::Kept;
-use super::examine::{ConditionChecker, Designs, Verdict};
+use super::examine::{ConditionChecker, Designs, Verdict, ViolatedCondition};
+use super::{Kept, reactions};
 use crate::math::Scalar;
 use crate::model::{Joint, JointKind, Mobility, Model};
+use crate::system::measures::Wrench;
 use crate::system::placement::{guess, length_scale};
 use crate::system::{BodyMotion, Numbering, constraint, side};
 
@@ -51,19 +52,25 @@ impl Fixed {
             return Default::default();
         }
         let fixed = Self { held };
+        let lost = |wrench: &Wrench<f64>| fixed.holds_joint(&model.joints[wrench.joint]);
+        let obstacles = reactions::kept(&designs.start, lost);
+        if !obstacles.is_empty() {
+            return (Self::default(), Some(Self::kept(obstacles)));
+        }
         let verdict = designs.ask(
             |scene| fixed.holds(&scene.model, 0.0),
             |scene, change| fixed.holds(&scene.model, change),
         );
         match verdict {
             Ok(()) => (fixed, None),
-            Err(obstacles) => {
-                let kept = Kept {
-                    reduction: "bodies that are welded to ground".into(),
-                    obstacles,
-                };
-                (Self::default(), Some(kept))
-            }
+            Err(obstacles) => (Self::default(), Some(Self::kept(obstacles))),
+        }
+    }
+
+    fn kept(obstacles: Vec<ViolatedCondition>) -> Kept {
+        Kept {
+            reduction: "bodies that are welded to ground".into(),
+            obstacles,
         }
     }
 

@@ -12,7 +12,7 @@
 //! copies of the host without mass and unknowns, so the numbers of the bodies do not change. Their
 //! motion follows from that of the host after a run.
 
-use crate::functions::Scene;
+use crate::functions::{Function, Instant, Scene};
 use crate::integrate::explicit;
 use crate::integrate::{Tape, Trajectory};
 use crate::math::rotation::{self, Quat};
@@ -116,6 +116,10 @@ pub(super) fn merge<S: Scalar>(scene: &mut Scene<S>, clusters: &[Cluster], welds
             };
         }
     }
+    // By joint: the pose of its body A on the host.
+    let written: Vec<Option<Pose<S>>> = (model.joints.iter())
+        .map(|joint| on_host[joint.body_a])
+        .collect();
     for (j, joint) in model.joints.iter_mut().enumerate() {
         match welds.contains(&j) {
             true => leave_without_rows(joint, &on_host),
@@ -127,6 +131,14 @@ pub(super) fn merge<S: Scalar>(scene: &mut Scene<S>, clusters: &[Cluster], welds
     }
     let event = scene.until.as_mut().map(|until| &mut until.measure);
     for function in scene.functions.iter_mut().chain(event) {
+        if let Function::Reduced {
+            instant: Instant::Reaction(wrench),
+            ..
+        } = function
+            && let (Axes::Body, Some(pose)) = (wrench.axes, &written[wrench.joint])
+        {
+            wrench.direction = pose.turn * wrench.direction;
+        }
         function.for_each_place(&mut |body, point| {
             if let Some(pose) = &on_host[*body] {
                 *body = pose.host;

@@ -15,6 +15,7 @@ mod normal;
 mod out_of_plane;
 pub(crate) mod planar;
 mod point;
+mod reactions;
 pub(crate) mod unseen;
 pub(crate) mod welded;
 
@@ -180,7 +181,11 @@ impl Lowering {
         let characteristic_length = Reach::new(model);
         let point = |&body: &usize| point::holds(scene, &characteristic_length, body, 0.0).is_ok();
         let plane = self.plane.as_ref();
-        plane.map_or(true, |plane| plane.holds(model, 0.0).is_ok())
+        let in_plane = |plane: &Plane| {
+            plane.holds(model, 0.0).is_ok()
+                && reactions::in_plane(scene, &plane.normal, 0.0).is_ok()
+        };
+        plane.map_or(true, in_plane)
             && self.points.iter().all(point)
             && self.non_rotating.holds(model, 0.0).is_ok()
             && self.fixed.holds(model, 0.0).is_ok()

@@ -3,11 +3,12 @@
 //!
 //! Their rotation is that of the placement, provided that it satisfies these rows.
 
-use super::Kept;
 use super::examine::{ConditionChecker, Designs, Verdict};
 use super::fixed::{Fixed, is_void};
+use super::{Kept, reactions};
 use crate::math::Scalar;
 use crate::model::{ConstraintRow, DegreeOfFreedom, Joint, Model};
+use crate::system::measures::{Wrench, WrenchPart};
 use crate::system::{BodyMotion, Numbering, constraint, placement, side};
 
 /// Bodies that move but cannot rotate.
@@ -58,19 +59,24 @@ impl NonRotating {
             return Default::default();
         }
         let found = Self { bodies, still };
+        let kept = |obstacles| Kept {
+            reduction: "the rotation of bodies that cannot turn".into(),
+            obstacles,
+        };
+        let lost = |wrench: &Wrench<f64>| {
+            wrench.part == WrenchPart::Moment && found.holds_joint(&model.joints[wrench.joint])
+        };
+        let obstacles = reactions::kept(&designs.start, lost);
+        if !obstacles.is_empty() {
+            return (Self::default(), Some(kept(obstacles)));
+        }
         let verdict = designs.ask(
             |scene| found.holds(&scene.model, 0.0),
             |scene, change| found.holds(&scene.model, change),
         );
         match verdict {
             Ok(()) => (found, None),
-            Err(obstacles) => {
-                let kept = Kept {
-                    reduction: "the rotation of bodies that cannot turn".into(),
-                    obstacles,
-                };
-                (Self::default(), Some(kept))
-            }
+            Err(obstacles) => (Self::default(), Some(kept(obstacles))),
         }
     }
 

@@ -19,10 +19,11 @@
 //! ```
 
 use super::Kept;
-use super::examine::{Designs, ViolatedCondition};
+use super::examine::{Designs, Verdict, ViolatedCondition};
 use super::fixed::is_void;
 use super::normal::{candidates, clean};
-use super::out_of_plane;
+use super::{out_of_plane, reactions};
+use crate::functions::Scene;
 use crate::math::scalar::lift3;
 use crate::math::{Mat3, Scalar, Vec3, rotation};
 use crate::model::{ConstraintRow, Joint, JointFrame, JointKind};
@@ -125,8 +126,8 @@ impl Plane {
         for normal in candidates(&designs.start.model) {
             let plane = Self::across(&designs.start.model, normal);
             let verdict = designs.ask(
-                |scene| plane.holds(&scene.model, 0.0),
-                |scene, change| plane.holds(&scene.model, change),
+                |scene| plane.admits(scene, 0.0),
+                |scene, change| plane.admits(scene, change),
             );
             match verdict {
                 Ok(()) => return Ok(plane.without_redundancy(&designs.start.model)),
@@ -153,7 +154,7 @@ impl Plane {
     /// The violated conditions of the likeliest plane.
     #[cfg(test)]
     pub fn of(model: &Model<f64>) -> Result<Self, Kept> {
-        let scene = crate::functions::Scene {
+        let scene = Scene {
             model: model.clone(),
             duration: 1.0,
             until: None,
@@ -161,6 +162,12 @@ impl Plane {
             unstarted: None,
         };
         Self::find(&Designs::single(scene))
+    }
+
+    /// Examines the conditions on the model, and those on the functions.
+    fn admits<S: Scalar>(&self, scene: &Scene<S>, change: f64) -> Verdict {
+        self.holds(&scene.model, change)?;
+        reactions::in_plane(scene, &self.normal, change)
     }
 
     /// The plane with this normal, and the heights of the parts of `model`.

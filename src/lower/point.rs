@@ -6,6 +6,7 @@
 
 use super::characteristic_length::Reach;
 use super::examine::{ConditionChecker, Verdict};
+use super::reactions;
 use crate::functions::{Function, Gate, Instant, Release, Rotation, Scene};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, JointKind, LoadKind};
@@ -102,7 +103,7 @@ pub(super) fn holds<S: Scalar>(
     let read = || "a function looks at its rotation".to_owned();
     let event = scene.until.as_ref().map(|until| &until.measure);
     for function in scene.functions.iter().chain(event) {
-        for (body, point) in looks_at(function) {
+        for (body, point) in looks_at(scene, function) {
             if is(body) {
                 vanishes(point.as_ref(), &read);
             }
@@ -112,7 +113,7 @@ pub(super) fn holds<S: Scalar>(
 }
 
 /// Bodies that a function observes, each with the point; `None` if it observes the rotation.
-fn looks_at<S: Scalar>(function: &Function<S>) -> Vec<(usize, Option<Vec3<S>>)> {
+fn looks_at<S: Scalar>(scene: &Scene<S>, function: &Function<S>) -> Vec<(usize, Option<Vec3<S>>)> {
     let turned = |rotation: &Rotation<S>| {
         let bodies = [Some(rotation.body), rotation.relative_to];
         bodies.into_iter().flatten().map(|body| (body, None))
@@ -131,9 +132,18 @@ fn looks_at<S: Scalar>(function: &Function<S>) -> Vec<(usize, Option<Vec3<S>>)> 
             | Instant::SpeedSquared { body, point } => vec![(*body, Some(*point))],
             // The energy depends on angular velocities, which are zero, and on heights of centres.
             Instant::Energy(_) => Vec::new(),
-            Instant::Momentum { .. } | Instant::StrainEnergy(_) | Instant::Deformation { .. } => {
-                Vec::new()
+            Instant::Momentum { .. }
+            | Instant::StrainEnergy(_)
+            | Instant::Deformation { .. }
+            | Instant::LargestDeformation { .. } => Vec::new(),
+            // Loads turn only bodies that are no points. Angular velocities are zero, but the angular
+            // momentum of a centre is not, whatever its body's rotation.
+            Instant::AngularMomentum(_) | Instant::Spring(_) => Vec::new(),
+            Instant::Reaction(wrench) => {
+                let all = reactions::turning(scene, wrench).into_iter();
+                all.map(|body| (body, None)).collect()
             }
+            Instant::Slide(joint) => vec![(scene.model.joints[*joint].body_a, None)],
             Instant::AngularVelocity { body, .. } => vec![(*body, None)],
             Instant::Rotation(rotation) => turned(rotation).collect(),
             Instant::Range { projectile, gate } => {

@@ -6,6 +6,7 @@
 //! parts, so there the functions change by their discretisation error.
 
 use super::welded::Groups;
+use crate::functions::function::Part;
 use crate::functions::{Function, Instant, Scene};
 use crate::integrate::explicit;
 use crate::integrate::{Tape, Trajectory};
@@ -44,13 +45,25 @@ impl Seen {
         let event = scene.until.iter().map(|until| &until.measure);
         for function in functions.iter().map(|&f| &scene.functions[f]).chain(event) {
             if let Function::Reduced {
-                instant: Instant::Energy(_) | Instant::Momentum { .. },
+                instant: Instant::Energy(_) | Instant::Momentum { .. } | Instant::AngularMomentum(_),
                 ..
             } = function
             {
                 seen.fill(true);
             }
-            (function.clone()).for_each_place(&mut |body, _| seen[*body] = true);
+            let mut function = function.clone();
+            function.for_each_place(&mut |body, _| seen[*body] = true);
+            let observed = match function.part() {
+                Some(Part::Joint(&mut joint)) => {
+                    let joint = &model.joints[joint];
+                    [Some(joint.body_a), joint.body_b]
+                }
+                Some(Part::Load(&mut load)) => ends(&model.loads[load], model),
+                None => [None, None],
+            };
+            for body in observed.into_iter().flatten() {
+                seen[body] = true;
+            }
         }
         // The duration depends on no body, but a scene needs one. No joint joins carriers.
         if !seen.contains(&true) || !model.flexible.is_empty() {
@@ -105,7 +118,16 @@ impl Seen {
                 *body = number[*body].expect("a body that a function looks at is kept");
             });
         }
-        leave_out(&mut scene.model, &number);
+        let [joints, loads] = leave_out(&mut scene.model, &number);
+        let event = scene.until.as_mut().map(|until| &mut until.measure);
+        for function in scene.functions.iter_mut().chain(event) {
+            let (own, new) = match function.part() {
+                Some(Part::Joint(joint)) => (joint, &joints),
+                Some(Part::Load(load)) => (load, &loads),
+                None => continue,
+            };
+            *own = new[*own].expect("a part that a function looks at is kept");
+        }
     }
 
     /// The motion of all bodies of `written`; those that were removed are at rest.
@@ -165,19 +187,18 @@ fn ends<S>(load: &Load<S>, model: &Model<S>) -> [Option<usize>; 2] {
     }
 }
 
-/// Removes the bodies without a new number, and their joints and loads.
-fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) {
+/// Removes the bodies without a new number, and their joints and loads. Returns the new numbers of joints
+/// and of loads.
+fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) -> [Vec<Option<usize>>; 2] {
     let kept = |ends: [Option<usize>; 2]| ends.into_iter().flatten().all(|b| number[b].is_some());
     let loads: Vec<bool> = (model.loads.iter())
         .map(|load| kept(ends(load, model)))
         .collect();
-    let mut joint_number = Vec::with_capacity(model.joints.len());
-    let mut next = 0;
-    for joint in &model.joints {
-        let stays = kept([Some(joint.body_a), joint.body_b]);
-        joint_number.push(stays.then_some(next));
-        next += usize::from(stays);
-    }
+    let joints = model.joints.iter();
+    let joints: Vec<bool> = joints
+        .map(|joint| kept([Some(joint.body_a), joint.body_b]))
+        .collect();
+    let joint_number = renumbered(&joints);
     let new = |body: &mut usize| {
         *body = number[*body].expect("what is on a body that is left out is left out");
     };
@@ -211,4 +232,16 @@ fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) {
     model
         .bodies
         .retain(|_| stays.next().is_some_and(Option::is_some));
+    [joint_number, renumbered(&loads)]
+}
+
+/// The new numbers of those that stay.
+fn renumbered(stays: &[bool]) -> Vec<Option<usize>> {
+    let mut next = 0;
+    let number = |&stays: &bool| {
+        let own = stays.then_some(next);
+        next += usize::from(stays);
+        own
+    };
+    stays.iter().map(number).collect()
 }

@@ -7,7 +7,7 @@
 
 use super::examine::{ConditionChecker, Designs, Verdict, ViolatedCondition};
 use super::merge::{self, Cluster};
-use super::{Kept, fixed};
+use super::{Kept, fixed, reactions};
 use crate::functions::Scene;
 use crate::integrate::Trajectory;
 use crate::math::{Scalar, Vec3};
@@ -50,7 +50,7 @@ impl Welded {
                 Some(Candidate {
                     joint,
                     bodies: between(weld)?,
-                    obstacles: loads_on(model, joint),
+                    obstacles: loads_on(&designs.start, joint),
                 })
             })
             .collect();
@@ -205,8 +205,9 @@ impl Welded {
     }
 }
 
-/// Loads that act through a joint. They prevent its removal.
-fn loads_on(model: &Model<f64>, joint: usize) -> Vec<ViolatedCondition> {
+/// Loads that act through a joint, and functions that observe its reaction. They prevent its removal.
+fn loads_on(scene: &Scene<f64>, joint: usize) -> Vec<ViolatedCondition> {
+    let model = &scene.model;
     let acts = |kind: &LoadKind<f64>| match kind {
         LoadKind::TorsionSpring { joint: own, .. }
         | LoadKind::Damping { joint: own, .. }
@@ -217,7 +218,9 @@ fn loads_on(model: &Model<f64>, joint: usize) -> Vec<ViolatedCondition> {
     let loads = model.loads.iter().filter(|load| acts(&load.kind));
     let told =
         loads.map(|load| ViolatedCondition::plain(format!("load \"{}\" acts on it", load.name)));
-    told.collect()
+    let mut all: Vec<ViolatedCondition> = told.collect();
+    all.extend(reactions::kept(scene, |wrench| wrench.joint == joint));
+    all
 }
 
 /// Examines whether the placement and its velocities satisfy `joints`.

@@ -7,7 +7,8 @@ use super::schema::mechanics::{Body, Shape};
 use super::schema::{Document, View};
 use crate::math::Vec3;
 use crate::model::Model;
-use crate::structures::modal::FlexibleBeam;
+use crate::model::flexible::Quadratic;
+use crate::structures::modal::{BeamFrame, FlexibleBeam};
 use std::f64::consts::TAU;
 
 /// Default number of instants of the time lapse.
@@ -18,7 +19,7 @@ const SLICES: usize = 24;
 const CORNERS: usize = 32;
 
 /// The outline of a body: points from its centre of mass, body axes \[m\].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) enum Outline {
     /// The silhouette is the convex hull of these points in the plane of the view.
     Hull(Vec<Vec3<f64>>),
@@ -31,10 +32,24 @@ pub(crate) enum Outline {
 }
 
 /// A closed line of points that move on their body.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct DeformedLine {
     /// Its points: where they are in the undeformed body (m), and their displacements by each coordinate.
     pub points: Vec<(Vec3<f64>, Vec<Vec3<f64>>)>,
+    /// Between each pair of neighbouring points on one side and the next: the stress along both sides (Pa).
+    /// Empty for a section without size. The points of the other side follow in opposite order.
+    pub stresses: Vec<[Quadratic<f64>; 2]>,
+}
+
+/// A displacement of a point of a beam against its axes, in its axes (m).
+#[derive(Clone, Debug)]
+pub(crate) struct BeamPoint {
+    /// Name of the beam, the point and the direction.
+    pub name: String,
+    /// The body.
+    pub body: usize,
+    /// The displacement by each coordinate.
+    pub by: Vec<f64>,
 }
 
 /// A barrier across the direction of flight.
@@ -57,6 +72,8 @@ pub(crate) struct Drawing {
     pub snapshots: usize,
     /// Outlines in the order of the bodies.
     pub outlines: Vec<Outline>,
+    /// Points of beams whose displacements are drawn against time.
+    pub beam_points: Vec<BeamPoint>,
     /// Points whose paths are drawn: body, and point from its centre of mass in body axes \[m\].
     pub traces: Vec<(usize, Vec3<f64>)>,
     /// Height of the ground on which a range is measured \[m\].
@@ -102,6 +119,7 @@ pub(crate) fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawin
         up,
         snapshots: document.plot.snapshots.unwrap_or(SNAPSHOTS),
         outlines: outlines(document, &assembly, &scene.model, right.cross(&up), x),
+        beam_points: beam_points(document, x),
         traces: traces.collect(),
         // Heights appear only if gravity points down in the view.
         ground: ground.filter(|_| falls),
@@ -143,9 +161,41 @@ fn beam_outline(beam: &FlexibleBeam<f64>, sight: &Vec3<f64>) -> DeformedLine {
     };
     let there = (0..=SLICES).map(|k| at(k, 1.0));
     let back = (0..=SLICES).rev().map(|k| at(k, -1.0));
+    let middle = |k: usize| (k as f64 + 0.5) / SLICES as f64;
+    let stress = |k: usize| {
+        let along = |sign: f64| beam.fibre_stress(middle(k), side.map(|x| x * sign));
+        [along(1.0), along(-1.0)]
+    };
+    let sized = beam.half_sizes().is_some();
     DeformedLine {
         points: there.chain(back).collect(),
+        stresses: (0..SLICES).filter(|_| sized).map(stress).collect(),
     }
+}
+
+/// The free end of beams whose start holds their axes, the middle of those on their chord, in each direction
+/// in which they bend.
+fn beam_points(document: &Document, x: &[f64]) -> Vec<BeamPoint> {
+    let mut all = Vec::new();
+    for (body, (name, written)) in document.bodies.iter().enumerate() {
+        let Some(written) = &written.beam else {
+            continue;
+        };
+        let beam = super::beam::beam(written, x);
+        let (place, at) = match beam.frame {
+            BeamFrame::Clamped => ("end", 1.0),
+            BeamFrame::Chord => ("middle", 0.5),
+        };
+        let modes = beam.point(at, [0.0; 2]);
+        for (k, direction) in [(1, "y"), (2, "z")] {
+            let by: Vec<f64> = modes.displacement.iter().map(|n| n[k]).collect();
+            if by.iter().any(|&n| n != 0.0) {
+                let name = format!("{name}: {place} along {direction}");
+                all.push(BeamPoint { name, body, by });
+            }
+        }
+    }
+    all
 }
 
 /// The axes to the right and up of the file's view, or of another one if it has none.

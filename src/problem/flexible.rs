@@ -4,15 +4,19 @@
 use super::beam;
 use super::placement::Assembly;
 use super::schema::Document;
-use super::schema::functions::{SectionComponent, SectionPlace};
+use super::schema::functions::{Bound as Side, SectionComponent, SectionPlace};
+use super::schema::loads::Load;
+use super::schema::measured::{LargestFibreStress, LargestSectionForce, SectionPlaces, Sign};
 use crate::functions::instant::DeformationKind;
-use crate::functions::{Function, Instant, TerminalEvent};
+use crate::functions::stations::Largest;
+use crate::functions::{Bound, Function, Instant, TerminalEvent};
 use crate::math::{Scalar, Vec3};
 use crate::model::flexible::Quadratic;
 use crate::model::{LoadKind, Model};
-use crate::structures::modal::FlexibleBeam;
+use crate::structures::beam::Section;
 use crate::structures::modal::frequencies::{Held, frequencies};
 use crate::structures::modal::sections::SectionForce;
+use crate::structures::modal::{FlexibleBeam, ModalNumbers};
 
 /// A body with elastic coordinates.
 struct Elastic<S> {
@@ -22,6 +26,9 @@ struct Elastic<S> {
     flexible: usize,
     beam: FlexibleBeam<S>,
 }
+
+/// A beam and its numbers.
+pub(crate) type Weighed<S> = (FlexibleBeam<S>, ModalNumbers<S>);
 
 /// A point that something holds on to.
 struct Interface<S> {
@@ -38,22 +45,38 @@ pub(crate) struct FlexibleBodies<S> {
 }
 
 impl<S: Scalar> FlexibleBodies<S> {
+    /// The beams of a document with their numbers; gives their frames mass and inertia.
+    pub(crate) fn weigh(document: &Document, model: &mut Model<S>, x: &[S]) -> Vec<Weighed<S>> {
+        let mut all = Vec::new();
+        for (frame, body) in document.bodies.values().enumerate() {
+            if let Some(written) = &body.beam {
+                let beam = beam::beam(written, x);
+                let numbers = beam.numbers();
+                model.bodies[frame].mass = numbers.mass;
+                model.bodies[frame].inertia = numbers.inertia;
+                all.push((beam, numbers));
+            }
+        }
+        all
+    }
+
     /// Gives the beams of a document their elastic coordinates, and moves joints and loads from them to
     /// their points. The bodies of `model` are at their start.
-    pub(crate) fn add(document: &Document, model: &mut Model<S>, x: &[S]) -> Self {
+    pub(crate) fn add(
+        document: &Document,
+        assembly: &Assembly<S>,
+        model: &mut Model<S>,
+        beams: Vec<Weighed<S>>,
+        x: &[S],
+    ) -> Self {
         let mut all = Self {
             bodies: Vec::new(),
             interfaces: Vec::new(),
         };
-        for (frame, body) in document.bodies.values().enumerate() {
-            let Some(written) = &body.beam else {
-                continue;
-            };
-            let beam = beam::beam(written, x);
-            let numbers = beam.numbers();
+        let bodies = document.bodies.values().enumerate();
+        let written = bodies.filter_map(|(frame, body)| Some((frame, body.beam.as_ref()?)));
+        for ((frame, written), (beam, numbers)) in written.zip(beams) {
             let [elastic, rates] = beam::start(written, x);
-            model.bodies[frame].mass = numbers.mass;
-            model.bodies[frame].inertia = numbers.inertia;
             let flexible = model.add_flexible(
                 frame,
                 (&elastic, &rates),
@@ -69,7 +92,7 @@ impl<S: Scalar> FlexibleBodies<S> {
         }
         if !all.bodies.is_empty() {
             all.move_joints(model);
-            all.move_loads(model);
+            all.move_loads(document, assembly, model);
         }
         all
     }
@@ -125,8 +148,8 @@ impl<S: Scalar> FlexibleBodies<S> {
         }
     }
 
-    fn move_loads(&mut self, model: &mut Model<S>) {
-        for k in 0..model.loads.len() {
+    fn move_loads(&mut self, document: &Document, assembly: &Assembly<S>, model: &mut Model<S>) {
+        for (k, written) in document.loads.values().enumerate() {
             let mut kind = model.loads[k].kind.clone();
             match &mut kind {
                 LoadKind::Force { body, point, .. } => self.move_place(model, body, point),
@@ -142,9 +165,16 @@ impl<S: Scalar> FlexibleBodies<S> {
                         self.move_place(model, body, point_b);
                     }
                 }
-                // These act on joints, which have moved. A file has no torque on a beam.
-                LoadKind::Torque { .. }
-                | LoadKind::TorsionSpring { .. }
+                LoadKind::Torque { body, .. } => {
+                    if let Load::Torque(torque) = written
+                        && let Some(point) = &torque.point
+                    {
+                        let mut point = assembly.in_body(&torque.body, point);
+                        self.move_place(model, body, &mut point);
+                    }
+                }
+                // These act on joints, which have moved.
+                LoadKind::TorsionSpring { .. }
                 | LoadKind::Damping { .. }
                 | LoadKind::BallDamping { .. }
                 | LoadKind::Friction { .. } => {}
@@ -234,6 +264,40 @@ impl<S: Scalar> FlexibleBodies<S> {
         }
     }
 
+    /// The largest section force or moment of several sections.
+    pub(crate) fn largest_section(
+        &self,
+        body: usize,
+        of: &LargestSectionForce,
+        stations: &[S],
+    ) -> Instant<S> {
+        let all = stations
+            .iter()
+            .map(|&at| self.section(body, of.component, at));
+        let settings = (of.sign, of.rho, of.bound);
+        largest(all, settings)
+    }
+
+    /// The largest stress of several sections and fibres.
+    pub(crate) fn largest_stress(
+        &self,
+        body: usize,
+        of: &LargestFibreStress,
+        stations: &[S],
+    ) -> Instant<S> {
+        let outer: &[[f64; 2]] = match &self.of(body).beam.section {
+            Section::Tube { .. } => &ROUND,
+            Section::Rectangle { .. } | Section::I { .. } | Section::Given(_) => &CORNERS,
+        };
+        let fibres = of.fibres.as_deref().unwrap_or(outer);
+        let at = |station: S| {
+            let fibre = move |fibre: &[f64; 2]| self.stress(body, station, fibre.map(S::from));
+            fibres.iter().map(fibre)
+        };
+        let settings = (of.sign, of.rho, of.bound);
+        largest(stations.iter().flat_map(|&station| at(station)), settings)
+    }
+
     /// The stress along a fibre, at parts of half the section's height and width.
     pub(crate) fn stress(&self, body: usize, station: S, fibre: [S; 2]) -> Instant<S> {
         let Elastic { flexible, beam, .. } = self.of(body);
@@ -244,6 +308,80 @@ impl<S: Scalar> FlexibleBodies<S> {
             flexible: *flexible,
             kind: DeformationKind::Stress,
             form: beam.fibre_stress(station, [half[0] * fibre[0], half[1] * fibre[1]]),
+        }
+    }
+}
+
+/// The outermost fibres of a rectangle and of an I.
+const CORNERS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
+/// Fibres around a tube.
+const ROUND: [[f64; 2]; 8] = {
+    const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
+    [
+        [1.0, 0.0],
+        [HALF, HALF],
+        [0.0, 1.0],
+        [-HALF, HALF],
+        [-1.0, 0.0],
+        [-HALF, -HALF],
+        [0.0, -1.0],
+        [HALF, -HALF],
+    ]
+};
+
+/// The largest of several measures of one beam.
+fn largest<S: Scalar>(
+    all: impl Iterator<Item = Instant<S>>,
+    (sign, rho, bound): (Option<Sign>, f64, Option<Side>),
+) -> Instant<S> {
+    let mut found: Option<(usize, DeformationKind)> = None;
+    let mut largest = Largest {
+        forms: Vec::new(),
+        signs: Vec::new(),
+        rho,
+        bound: match bound {
+            None | Some(Side::Below) => Bound::Below,
+            Some(Side::Above) => Bound::Above,
+        },
+    };
+    for instant in all {
+        let Instant::Deformation {
+            flexible,
+            kind,
+            form,
+        } = instant
+        else {
+            unreachable!("section forces and stresses are deformations");
+        };
+        found = Some((flexible, kind));
+        for &factor in sign.unwrap_or_default().factors() {
+            largest.forms.push(form.clone());
+            largest.signs.push(factor);
+        }
+    }
+    let (flexible, kind) = found.expect("there is a section, which is checked");
+    Instant::LargestDeformation {
+        flexible,
+        kind,
+        largest,
+    }
+}
+
+/// Where several sections are, as fractions of the length.
+pub(crate) fn stations<S: Scalar>(
+    document: &Document,
+    assembly: &Assembly<S>,
+    body: &str,
+    places: &SectionPlaces,
+) -> Vec<S> {
+    match places {
+        SectionPlaces::Count(count) => {
+            let last = (count - 1) as f64;
+            (0..*count).map(|k| S::from(k as f64 / last)).collect()
+        }
+        SectionPlaces::List(all) => {
+            let one = |place| station(document, assembly, body, place);
+            all.iter().map(one).collect()
         }
     }
 }

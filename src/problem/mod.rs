@@ -40,7 +40,7 @@ mod tests;
 mod text;
 mod variables;
 
-pub(crate) use drawing::{Drawing, Outline};
+pub(crate) use drawing::{BeamPoint, DeformedLine, Drawing, Outline};
 pub use fault::{Fault, Faults};
 pub(crate) use focus::Focus;
 pub(crate) use memory::available as available_memory;

@@ -1,11 +1,12 @@
 //! The map from a design to a scene, analytic in the design.
 
-use super::flexible::{FlexibleBodies, station};
+use super::flexible::{FlexibleBodies, station, stations};
 use super::mass::mass_properties;
 use super::placement::{Assembly, GROUND};
 use super::quantity::{Vector, vector};
 use super::schema::Document;
 use super::schema::functions::{self as written, CountedFrom, Function as Written, OfMotion};
+use super::schema::measured::{JointReaction, OfSpring, ReactionAxes};
 use super::schema::mechanics::{Body, Point, Shape};
 use super::start_rates;
 use super::starts::Starts;
@@ -16,8 +17,11 @@ use crate::functions::{
 use crate::math::rotation::{compose, conjugate, matrix};
 use crate::math::scalar::{lift3, unit};
 use crate::math::{Scalar, Vec3};
-use crate::model::{Mobility, Model, RigidBody};
+use crate::model::{Axes, Mobility, Model, RigidBody};
+use crate::system::angular_momentum::AngularMomentum;
 use crate::system::failure::AssemblyFailure;
+use crate::system::loads::springs::{Spring, SpringPart};
+use crate::system::measures::{End, Wrench, WrenchPart};
 
 /// Default gravity \[m/s²\].
 pub(crate) const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
@@ -37,8 +41,9 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
         loads: super::loads::loads(document, &assembly),
         flexible: Vec::new(),
     };
+    let beams = FlexibleBodies::weigh(document, &mut model, x);
     let unstarted = start(document, &assembly, &mut model, x).err();
-    let mut flexible = FlexibleBodies::add(document, &mut model, x);
+    let mut flexible = FlexibleBodies::add(document, &assembly, &mut model, beams, x);
     let builder = Builder {
         document,
         assembly: &assembly,
@@ -46,6 +51,9 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
         flexible: &flexible,
         ends: (model.joints.iter())
             .map(|joint| (joint.body_a, joint.body_b))
+            .collect(),
+        frames: (model.joints.iter())
+            .map(|joint| joint.frame_a.axes)
             .collect(),
         x,
     };
@@ -171,6 +179,8 @@ struct Builder<'a, S> {
     flexible: &'a FlexibleBodies<S>,
     /// The bodies of the joints, first the one that is not ground.
     ends: Vec<(usize, Option<usize>)>,
+    /// The axes of the joints on the first of them.
+    frames: Vec<[Vec3<S>; 3]>,
     x: &'a [S],
 }
 
@@ -270,6 +280,16 @@ impl<S: Scalar> Builder<'_, S> {
             I::Momentum(momentum) => Instant::Momentum {
                 direction: vector(&momentum.direction, self.x),
             },
+            I::AngularMomentum(momentum) => Instant::AngularMomentum(AngularMomentum {
+                direction: vector(&momentum.direction, self.x),
+                about: (momentum.about).map_or(Vec3::zeros(), |about| vector(&about, self.x)),
+            }),
+            I::Slide(slide) => Instant::Slide(self.joint(&slide.joint)),
+            I::JointForce(of) => self.reaction(of, WrenchPart::Force),
+            I::JointMoment(of) => self.reaction(of, WrenchPart::Moment),
+            I::SpringLength(of) => self.spring(of, SpringPart::Length),
+            I::SpringForce(of) => self.spring(of, SpringPart::Tension),
+            I::SpringTorque(of) => self.spring(of, SpringPart::Torque),
             I::Energy(part) => Instant::Energy(match part {
                 Energy::Kinetic => EnergyPart::Kinetic,
                 Energy::Potential => EnergyPart::Potential,
@@ -300,7 +320,53 @@ impl<S: Scalar> Builder<'_, S> {
                 let fibre = of.fibre.map(S::from);
                 (self.flexible).stress(self.body(&of.body), station, fibre)
             }
+            I::LargestSectionForce(of) => {
+                let stations = stations(self.document, self.assembly, &of.body, &of.stations);
+                (self.flexible).largest_section(self.body(&of.body), of, &stations)
+            }
+            I::LargestFibreStress(of) => {
+                let stations = stations(self.document, self.assembly, &of.body, &of.stations);
+                (self.flexible).largest_stress(self.body(&of.body), of, &stations)
+            }
         }
+    }
+
+    fn joint(&self, name: &str) -> usize {
+        let index = self.document.joints.get_index_of(name);
+        index.expect("a function is of a joint, which is checked")
+    }
+
+    fn spring(&self, of: &OfSpring, part: SpringPart) -> Instant<S> {
+        let load = self.document.loads.get_index_of(&of.load);
+        Instant::Spring(Spring {
+            load: load.expect("a function is of a load, which is checked"),
+            part,
+        })
+    }
+
+    fn reaction(&self, of: &JointReaction, part: WrenchPart) -> Instant<S> {
+        let joint = self.joint(&of.joint);
+        let [first, second] = self.document.joints[joint].between();
+        let first = if first == GROUND { second } else { first };
+        let direction = vector(&of.direction, self.x);
+        let (axes, direction) = match of.axes.unwrap_or_default() {
+            ReactionAxes::Ground => (Axes::Ground, direction),
+            ReactionAxes::Joint => {
+                let [e1, e2, e3] = self.frames[joint];
+                let along = e1 * direction.x + e2 * direction.y + e3 * direction.z;
+                (Axes::Body, along)
+            }
+        };
+        Instant::Reaction(Wrench {
+            joint,
+            on: match of.on.as_ref().is_none_or(|on| on == first) {
+                true => End::A,
+                false => End::B,
+            },
+            part,
+            axes,
+            direction,
+        })
     }
 
     fn body(&self, name: &str) -> usize {

@@ -271,34 +271,56 @@ pub(crate) fn pull_back(
         let first = numbering.rows(j).start;
         let cot = |i: usize| cotangents.row(first + i);
         let (by_a, by_b) = constraint::pull_back(joint.rows(), cot, &a, &b);
-        let bodies = [(Some(joint.body_a), &by_a), (joint.body_b, &by_b)];
-        for (body, by) in bodies {
-            let Some(body) = body else { continue };
-            let o = numbering.velocity(body);
-            if let Some(y) = out.y.as_deref_mut() {
-                add6(&mut y[o..], &by.position, &by.theta);
-            }
-            if let Some(v) = out.v.as_deref_mut() {
-                add6(&mut v[o..], &by.velocity, &by.omega);
-            }
-        }
-        let target = &mut out.model.joints[j];
-        match (&joint.modes, &by_a.moving) {
-            (Some(modes), Some(motion)) => attachment::pull_frame(
-                (joint, modes),
-                (numbering, at.motions),
-                (&by_a.frame, motion),
-                (out.y.as_deref_mut(), out.v.as_deref_mut()),
-                target,
-            ),
-            _ => target.frame_a.add(&by_a.frame),
-        }
-        match &by_b.moving {
-            None => target.frame_b.add(&by_b.frame),
-            Some(motion) => {
-                by_time += pull_driven_frame(joint, time, &by_b.frame, motion, target);
-            }
-        }
+        by_time += give(at, j, (&by_a, &by_b), out);
     }
     by_time
+}
+
+/// Hands cotangents of both sides of joint `j` on to tangent positions, velocities and the parameters of
+/// the joint. Returns the derivative in time.
+pub(crate) fn give(
+    at: &InMotion<f64>,
+    j: usize,
+    (by_a, by_b): (&SideCotangent<f64>, &SideCotangent<f64>),
+    out: &mut JointCotangent,
+) -> f64 {
+    let joint = &at.model.joints[j];
+    give_to_states(at, joint, (by_a, by_b), out);
+    let target = &mut out.model.joints[j];
+    match (&joint.modes, &by_a.moving) {
+        (Some(modes), Some(motion)) => attachment::pull_frame(
+            (joint, modes),
+            (at.numbering, at.motions),
+            (&by_a.frame, motion),
+            (out.y.as_deref_mut(), out.v.as_deref_mut()),
+            target,
+        ),
+        _ => target.frame_a.add(&by_a.frame),
+    }
+    match &by_b.moving {
+        None => {
+            target.frame_b.add(&by_b.frame);
+            0.0
+        }
+        Some(motion) => pull_driven_frame(joint, at.time, &by_b.frame, motion, target),
+    }
+}
+
+/// The part of [`give`] that belongs to the motions of the bodies.
+pub(crate) fn give_to_states(
+    at: &InMotion<f64>,
+    joint: &Joint<f64>,
+    (by_a, by_b): (&SideCotangent<f64>, &SideCotangent<f64>),
+    out: &mut JointCotangent,
+) {
+    for (body, by) in [(Some(joint.body_a), by_a), (joint.body_b, by_b)] {
+        let Some(body) = body else { continue };
+        let o = at.numbering.velocity(body);
+        if let Some(y) = out.y.as_deref_mut() {
+            add6(&mut y[o..], &by.position, &by.theta);
+        }
+        if let Some(v) = out.v.as_deref_mut() {
+            add6(&mut v[o..], &by.velocity, &by.omega);
+        }
+    }
 }

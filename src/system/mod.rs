@@ -7,6 +7,7 @@
 //! discretisation of time.
 
 pub(crate) mod accelerations;
+pub(crate) mod angular_momentum;
 pub(crate) mod assembly;
 pub(crate) mod attachment;
 pub(crate) mod bodies;
@@ -23,6 +24,7 @@ pub(crate) mod joints;
 pub(crate) mod kkt;
 pub(crate) mod loads;
 pub(crate) mod marker;
+pub(crate) mod measures;
 pub(crate) mod nearest;
 pub(crate) mod numbering;
 pub(crate) mod observe;

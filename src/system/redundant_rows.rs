@@ -37,6 +37,29 @@ impl<S> Default for RowWeights<S> {
     }
 }
 
+/// Sets `rhs` to the solution of that system for row i with this gradient.
+fn weigh<S: Scalar>(
+    at: &InMotion<S>,
+    (i, g): (usize, &RowGradient<S>),
+    rhs: &mut [S],
+    mut solve: impl FnMut(&mut [S]),
+) {
+    let numbering = at.numbering;
+    let joint = &at.model.joints[numbering.joint_of_row(i)];
+    rhs.fill(S::zero());
+    let a = numbering.velocity(joint.body_a);
+    add6(&mut rhs[a..], &-g.force, &-g.torque_a);
+    if let Some(body) = joint.body_b {
+        add6(&mut rhs[numbering.velocity(body)..], &g.force, &-g.torque_b);
+    }
+    if let Some(modes) = &joint.modes {
+        for (slot, x) in attachment::elastic_gradient(modes, numbering, g.local()) {
+            rhs[slot] -= x;
+        }
+    }
+    solve(rhs);
+}
+
 /// Redundant rows, which are not imposed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct RedundantRows {
@@ -112,6 +135,26 @@ impl RedundantRows {
         }
     }
 
+    /// Multipliers of all rows that together move no body, one list for each redundant row: what the motion
+    /// does not determine. `solve` is as in [`RedundantRows::exchanged`].
+    pub(crate) fn undetermined<S: Scalar>(
+        &self,
+        at: &InMotion<S>,
+        mut solve: impl FnMut(&mut [S]),
+    ) -> Vec<Vec<f64>> {
+        let mut gradients = Vec::new();
+        joints::gradients(at, &mut gradients);
+        let nv = at.numbering.velocities();
+        let mut rhs = vec![S::zero(); nv + self.rows.len()];
+        let mut of = |i: usize| {
+            weigh(at, (i, &gradients[i]), &mut rhs, &mut solve);
+            let mut all: Vec<f64> = rhs[nv..].iter().map(|x| x.re()).collect();
+            all[i] = 1.0;
+            all
+        };
+        self.numbers().map(&mut of).collect()
+    }
+
     /// The choice after exchanging the first redundant row for an imposed row whose weight in its
     /// dependence is more than `worn` times its own; `None` if there is none. The weights are −λ of
     ///
@@ -149,20 +192,7 @@ impl RedundantRows {
         let nv = numbering.velocities();
         rhs.resize(nv + self.rows.len(), S::zero());
         for i in self.numbers() {
-            rhs.fill(S::zero());
-            let joint = &model.joints[numbering.joint_of_row(i)];
-            let g = &gradients[i];
-            let a = numbering.velocity(joint.body_a);
-            add6(&mut rhs[a..], &-g.force, &-g.torque_a);
-            if let Some(body) = joint.body_b {
-                add6(&mut rhs[numbering.velocity(body)..], &g.force, &-g.torque_b);
-            }
-            if let Some(modes) = &joint.modes {
-                for (slot, x) in attachment::elastic_gradient(modes, numbering, g.local()) {
-                    rhs[slot] -= x;
-                }
-            }
-            solve(rhs);
+            weigh(at, (i, &gradients[i]), rhs, &mut solve);
             let weights = rhs[nv..].iter().zip(&*sizes).enumerate();
             let heaviest = weights
                 .filter(|(k, _)| !self.rows[*k])

@@ -5,7 +5,7 @@ use crate::tests::reference;
 
 use flexbody::functions::instant::DeformationKind;
 use flexbody::functions::measure::{Snapshot, SnapshotCotangent};
-use flexbody::functions::{EnergyPart, Instant};
+use flexbody::functions::{EnergyPart, Instant, Rows};
 use flexbody::integrate::implicit::ggl::{Equations, StepState};
 use flexbody::linalg::SparseMatrix;
 use flexbody::math::{Complex64, Parameters, Scalar, Vec3};
@@ -373,11 +373,15 @@ fn pull_backs_of_quantities() {
                 q: &case.q,
                 v: &case.v,
                 a: &still,
+                joint: Rows::none(),
+                time: 0.0,
             };
             let mut out = SnapshotCotangent {
                 y: &mut y,
                 v: &mut v,
                 a: &mut a,
+                lambda: &mut [],
+                time: &mut 0.0,
                 model: &mut cot,
             };
             instant.pull_back(&at, 0.0, 1.0, &mut out, &mut own);
@@ -392,6 +396,8 @@ fn pull_backs_of_quantities() {
                     q,
                     v,
                     a: &zero,
+                    joint: Rows::none(),
+                    time: Complex64::from(0.0),
                 };
                 slopes(&[instant.value(&at, 0.0)])[0]
             };

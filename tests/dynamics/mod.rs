@@ -24,6 +24,7 @@ mod loads;
 mod lowering;
 mod methods_match_references;
 mod planar_joints;
+mod reaction_functions;
 mod reactions_carry_weight;
 mod redundant_joints;
 mod side_by_side;

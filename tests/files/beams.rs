@@ -153,7 +153,8 @@ fn pair(section: Value, frame: &str, simulation: Value) -> Value {
             "spring": {"spring": {"between": ["second", "ground"], "at": {"a": "middle", "b": [1, 1, 1]},
                        "rest_length": 0.5, "stiffness": 40, "damping": 0.1}},
             "push": {"force": {"body": "first", "point": "middle", "direction": [0, 1, 1],
-                     "magnitude": {"harmonic": {"amplitude": 3, "frequency": 2}}}}
+                     "magnitude": {"harmonic": {"amplitude": 3, "frequency": 2}}}},
+            "twist": {"torque": {"body": "second", "point": "middle", "direction": [0, 1, 1], "magnitude": 0.5}}
         },
         "functions": {
             "weight": {"final": {"position": {"body": "weight", "direction": [1, 2, 3]}}},
@@ -161,7 +162,18 @@ fn pair(section: Value, frame: &str, simulation: Value) -> Value {
             "moment": {"ks": {"rho": 1, "of": {"section_force": {"body": "first", "station": 0.3, "component": "bending_z"}}}},
             "axial": {"final": {"section_force": {"body": "second", "station": "middle", "component": "axial"}}},
             "stress": {"induced_exponential": {"rho": 1e-5, "of": {"fibre_stress": {"body": "first", "station": 0.1, "fibre": [1, -1]}}}},
-            "strain energy": {"final": {"strain_energy": {"body": "first"}}}
+            "strain energy": {"final": {"strain_energy": {"body": "first"}}},
+            "root force": {"ks": {"rho": 0.1, "bound": "above", "of": {"joint_force": {"joint": "root",
+                           "direction": [1, 2, 0.5], "on": "ground", "axes": "joint"}}}},
+            "elbow moment": {"induced_exponential": {"rho": 1, "of": {"joint_moment": {"joint": "elbow",
+                             "direction": [0.3, 1, 0.2], "on": "first", "axes": "joint"}}}},
+            "largest stress": {"ks": {"rho": 1e-5, "of": {"largest_fibre_stress": {"body": "first",
+                               "stations": 5, "rho": 1e-5}}}},
+            "largest moment": {"integral": {"largest_section_force": {"body": "second", "sign": "both",
+                               "stations": ["start", "middle", 0.8], "component": "bending_y", "rho": 1,
+                               "bound": "above"}}},
+            "tension": {"final": {"spring_force": {"load": "spring"}}},
+            "spin": {"final": {"angular_momentum": {"direction": [1, 2, 3], "about": [0.5, 0, 1]}}}
         }
     });
     document["simulation"] = simulation;
@@ -342,8 +354,12 @@ fn files_are_told_what_a_beam_cannot_be() {
         "places on the beam",
     );
     told(
-        &|d| d["joints"]["root"]["revolute"]["start"] = json!({"turn": {"angle": 0.1}}),
-        "in a scene with beams",
+        &|d| {
+            d["joints"]["root"]["revolute"]["start"] = json!({"turn": {"angle": 0.1}});
+            d["bodies"][beam]["beam"]["start"] =
+                json!({"coordinates": [0, 0, 0, 0, 0, 0, 0, 0, 0]});
+        },
+        "beside that of the coordinates",
     );
     told(
         &|d| {

@@ -7,7 +7,7 @@ use crate::problem::joints::holds_points;
 use crate::problem::pointer::join;
 use crate::problem::schema::drives::TimeFunction;
 use crate::problem::schema::joints::{Axis, Ends, Joint, JointPlace, JointStart, PointPair};
-use crate::problem::schema::mechanics::Shape;
+use crate::problem::schema::mechanics::{Body, Shape};
 
 impl Checker<'_> {
     pub(super) fn joints(&mut self) {
@@ -51,9 +51,11 @@ impl Checker<'_> {
         }
         if let Some(start) = joint.start() {
             let pointer = join(pointer, "start");
-            if document.bodies.values().any(|body| body.beam.is_some()) {
-                let found = "a start of a joint in a scene with beams";
-                let expected = "bodies that are placed, with their velocities";
+            let bent = |body: &Body| body.beam.as_ref().is_some_and(|beam| beam.start.is_some());
+            if let Some((beam, _)) = document.bodies.iter().find(|(_, body)| bent(body)) {
+                let found =
+                    format!("a start of a joint beside that of the coordinates of \"{beam}\"");
+                let expected = "one of them: joints are started with straight beams";
                 self.fault(Finding::new(&pointer, found, expected).of_key());
             }
             self.start(&pointer, (name, joint), start);

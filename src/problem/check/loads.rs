@@ -9,6 +9,7 @@ use crate::problem::pointer::{advice, join};
 use crate::problem::quantity::Quantity;
 use crate::problem::schema::joints::Ends;
 use crate::problem::schema::loads::{Load, Motion, TimeFunction};
+use crate::problem::schema::measured::JointReaction;
 
 impl Checker<'_> {
     pub(super) fn loads(&mut self) {
@@ -37,11 +38,19 @@ impl Checker<'_> {
                 }
             }
             Load::Torque(torque) => {
-                self.moving(pointer, &torque.body, &None);
-                if self.is_beam(&torque.body) {
-                    let found = format!("a torque on the beam \"{}\"", torque.body);
-                    let expected = "a torque on a rigid body, which may be welded to the beam";
-                    self.fault(Finding::new(join(pointer, "body"), found, expected));
+                self.moving(pointer, &torque.body, &torque.point);
+                match (self.is_beam(&torque.body), &torque.point) {
+                    (true, None) => {
+                        let found = format!("a torque on the beam \"{}\"", torque.body);
+                        let expected = "\"point\", the point whose section it turns";
+                        self.fault(Finding::new(pointer, found, expected).of_key());
+                    }
+                    (false, Some(_)) => {
+                        let found = "the point of a torque on a rigid body";
+                        let expected = "none, as it acts on the body as a whole";
+                        self.fault(Finding::new(join(pointer, "point"), found, expected).of_key());
+                    }
+                    (true, Some(_)) | (false, None) => {}
                 }
                 self.direction(&join(pointer, "direction"), &torque.direction);
                 self.course(&join(pointer, "magnitude"), torque.magnitude.parts());
@@ -101,6 +110,52 @@ impl Checker<'_> {
                 self.fault(Finding::new(pointer, format!("\"{name}\""), expected).hint(hint));
             }
         }
+    }
+
+    /// Checks the reaction of a joint.
+    pub(super) fn reaction(&mut self, pointer: &str, of: &JointReaction) {
+        self.direction(&join(pointer, "direction"), &of.direction);
+        let Some(joint) = self.document.joints.get(&of.joint) else {
+            if !self.damage.holds("joints", &of.joint) {
+                let names = self.document.joints.keys().map(String::as_str);
+                let hint = advice(&of.joint, "joints", names);
+                let found = format!("\"{}\"", of.joint);
+                let place = join(pointer, "joint");
+                self.fault(Finding::new(place, found, "the name of a joint").hint(hint));
+            }
+            return;
+        };
+        if let Some(on) = &of.on
+            && !joint.between().contains(on)
+        {
+            let [a, b] = joint.between();
+            let expected = format!("\"{a}\" or \"{b}\", which the joint holds");
+            let place = join(pointer, "on");
+            self.fault(Finding::new(place, format!("\"{on}\""), expected));
+        }
+    }
+
+    /// Checks that a load is a spring, or a torsion spring.
+    pub(super) fn spring(&mut self, pointer: &str, name: &str, torsion: bool) {
+        let fits = |load: &Load| match load {
+            Load::Spring(_) => !torsion,
+            Load::TorsionSpring(_) => torsion,
+            Load::Force(_) | Load::Torque(_) | Load::Damping(_) | Load::Friction(_) => false,
+        };
+        let loads = &self.document.loads;
+        if loads.get(name).is_some_and(fits) || self.damage.holds("loads", name) {
+            return;
+        }
+        let what = ["spring", "torsion spring"][usize::from(torsion)];
+        let suitable = loads.iter().filter(|(_, load)| fits(load));
+        let names: Vec<&str> = suitable.map(|(name, _)| name.as_str()).collect();
+        let hint = match names.is_empty() {
+            true => Some("there is none".to_owned()),
+            false => advice(name, "such loads", names),
+        };
+        let place = join(pointer, "load");
+        let expected = format!("the name of a load that is a {what}");
+        self.fault(Finding::new(place, format!("\"{name}\""), expected).hint(hint));
     }
 
     /// Checks that a joint has the degree of freedom on which a load acts.

@@ -178,7 +178,26 @@ impl Checker<'_> {
                 let pointer = join(pointer, "momentum/direction");
                 self.direction(&pointer, &momentum.direction);
             }
+            Instant::AngularMomentum(momentum) => {
+                let pointer = join(pointer, "angular_momentum/direction");
+                self.direction(&pointer, &momentum.direction);
+            }
             Instant::Energy(_) => {}
+            Instant::Slide(slide) => {
+                let kinds = [JointKind::Prismatic, JointKind::Cylindrical];
+                self.loaded_joint(&join(pointer, "slide"), &slide.joint, &kinds);
+            }
+            Instant::JointForce(of) => self.reaction(&join(pointer, "joint_force"), of),
+            Instant::JointMoment(of) => self.reaction(&join(pointer, "joint_moment"), of),
+            Instant::SpringLength(of) => {
+                self.spring(&join(pointer, "spring_length"), &of.load, false);
+            }
+            Instant::SpringForce(of) => {
+                self.spring(&join(pointer, "spring_force"), &of.load, false);
+            }
+            Instant::SpringTorque(of) => {
+                self.spring(&join(pointer, "spring_torque"), &of.load, true);
+            }
             Instant::Rotation(rotation) => {
                 let pointer = join(pointer, "rotation");
                 self.moving(&pointer, &rotation.body, &None);
@@ -200,7 +219,25 @@ impl Checker<'_> {
             Instant::SectionForce(of) => {
                 self.station(&join(pointer, "section_force"), &of.body, &of.station);
             }
-            Instant::FibreStress(of) => self.fibre(&join(pointer, "fibre_stress"), of),
+            Instant::FibreStress(of) => {
+                let pointer = join(pointer, "fibre_stress");
+                self.station(&pointer, &of.body, &of.station);
+                self.has_stress(&pointer, &of.body);
+                self.fibre(&join(&pointer, "fibre"), of.fibre);
+            }
+            Instant::LargestSectionForce(of) => {
+                self.stations(
+                    &join(pointer, "largest_section_force"),
+                    &of.body,
+                    &of.stations,
+                );
+            }
+            Instant::LargestFibreStress(of) => {
+                let pointer = join(pointer, "largest_fibre_stress");
+                self.stations(&pointer, &of.body, &of.stations);
+                self.has_stress(&pointer, &of.body);
+                self.fibres(&join(&pointer, "fibres"), of.fibres.as_deref());
+            }
         }
     }
 

@@ -1,5 +1,8 @@
 //! Functions of interest in a file.
 
+use super::measured::{
+    AngularMomentum, JointReaction, JointSlide, LargestFibreStress, LargestSectionForce, OfSpring,
+};
 use super::mechanics::Point;
 use super::statics::{
     CentreOfMass, Displacement, Frequency, LowestFrequency, MomentOfInertia, OfCase,
@@ -145,12 +148,26 @@ pub(crate) enum Instant {
     AngularVelocity(Spinning),
     /// Component of the linear momentum of the whole scene [kg m/s].
     Momentum(Momentum),
+    /// Component of the angular momentum of the whole scene about a fixed point [kg m²/s].
+    AngularMomentum(AngularMomentum),
     /// Energy of the whole scene [J].
     Energy(Energy),
     /// Rotation of a body about an axis [rad], counted over whole turns.
     Rotation(Rotation),
     /// Angle of a joint [rad] as in drives and torsion springs, counted over whole turns.
     Angle(JointAngle),
+    /// Displacement of a joint along its axis [m].
+    Slide(JointSlide),
+    /// Component of the force by which a joint acts on a body [N].
+    JointForce(JointReaction),
+    /// Component of the moment by which a joint acts on a body [N m], that of its drive included.
+    JointMoment(JointReaction),
+    /// Distance of the points of a spring [m].
+    SpringLength(OfSpring),
+    /// Force by which a spring pulls its points together [N], damping included.
+    SpringForce(OfSpring),
+    /// Torque by which a torsion spring turns its joint back [N m], damping included.
+    SpringTorque(OfSpring),
     /// Range of a projectile that is released at this instant [m].
     Range(Range),
     /// Displacement of a beam's point from where it is in the undeformed beam (m).
@@ -161,6 +178,10 @@ pub(crate) enum Instant {
     SectionForce(SectionForce),
     /// Stress of bending and stretch along a fibre of a beam (Pa).
     FibreStress(FibreStress),
+    /// Largest force (N) or moment (N m) of several sections of a beam, by a smooth maximum.
+    LargestSectionForce(LargestSectionForce),
+    /// Largest stress of bending and stretch of several sections and fibres of a beam, by a smooth maximum (Pa).
+    LargestFibreStress(LargestFibreStress),
 }
 
 /// A beam.

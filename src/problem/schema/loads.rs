@@ -53,6 +53,8 @@ pub(crate) struct Force {
 pub(crate) struct Torque {
     /// The body.
     pub body: String,
+    /// Of a beam: the point whose section it turns, by name or in body axes.
+    pub point: Option<Point>,
     /// Direction, of any length but zero.
     #[schemars(extend("unit" = "1"))]
     pub direction: Vector,

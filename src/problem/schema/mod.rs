@@ -5,6 +5,7 @@ pub(crate) mod flexible;
 pub(crate) mod functions;
 pub(crate) mod joints;
 pub(crate) mod loads;
+pub(crate) mod measured;
 pub(crate) mod mechanics;
 pub(crate) mod section;
 pub(crate) mod statics;

@@ -5,9 +5,11 @@
 
 mod axis;
 mod canvas;
+mod colours;
 mod connectors;
 mod convergence;
 mod energy;
+mod histories;
 mod mesh_precision;
 mod motion;
 mod panel;
@@ -17,7 +19,8 @@ mod work_precision;
 pub(crate) use connectors::{Connector, ConnectorKind};
 pub(crate) use convergence::convergence;
 pub(crate) use energy::{EnergyRun, energy};
+pub(crate) use histories::{History, histories};
 pub(crate) use mesh_precision::mesh_precision;
-pub(crate) use motion::{Barrier, BodyMotion, Flight, Motion, Scenery, motion};
+pub(crate) use motion::{Barrier, BodyMotion, Flight, Motion, Patch, Scenery, motion};
 pub(crate) use structure::{Camera, StructureView, structure};
 pub(crate) use work_precision::work_precision;

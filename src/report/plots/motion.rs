@@ -2,9 +2,11 @@
 
 use super::axis::{Axis, range};
 use super::canvas::{Anchor, BLACK, Canvas, GROUND, INK, PALETTE};
+use super::colours::colour;
 use super::connectors::{self, Connector, ConnectorKind, Point};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
 use crate::report::ReportError;
+use crate::report::number::significant;
 use plotters::style::RGBColor;
 
 /// A body at the instants of a time lapse.
@@ -14,6 +16,17 @@ pub(crate) struct BodyMotion {
     pub name: String,
     /// Its outline at each instant, early to late: a polygon, or a line of two points.
     pub outlines: Vec<Vec<Point>>,
+    /// Coloured patches of a body that deforms, at each instant; else empty.
+    pub patches: Vec<Vec<Patch>>,
+}
+
+/// A polygon with the colour of a value, a stress \[Pa\].
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Patch {
+    /// Its corners.
+    pub corners: Vec<Point>,
+    /// The value.
+    pub value: f64,
 }
 
 /// A projectile at the instant of its release; from here it falls freely.
@@ -165,7 +178,8 @@ pub(crate) fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, Re
     } else {
         (WIDTH, (WIDTH - left - RIGHT - used) / 2.0)
     };
-    let legend = lapse_legend(designs, full - left - RIGHT);
+    let values = stress_range(designs);
+    let legend = lapse_legend(designs, full - left - RIGHT, values);
     let top = 8.0 + legend.height() + 24.0;
     let mut bottom = top + first.height + BELOW;
     let below = (!flown.is_empty()).then(|| {
@@ -190,7 +204,7 @@ pub(crate) fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, Re
         panel.draw(&mut canvas, true, i == 0);
         canvas.title(middle, &design.title, Anchor::Centre);
         draw_scenery(&mut canvas, &panel, scenery);
-        draw_lapse(&mut canvas, &panel, design);
+        draw_lapse(&mut canvas, &panel, design, values);
     }
     if let Some((panel, legend)) = below {
         legend.draw(&mut canvas, left, panel.top - legend.height() - 4.0);
@@ -248,10 +262,30 @@ fn flight_color(index: usize) -> RGBColor {
     PALETTE[index % PALETTE.len()]
 }
 
-fn lapse_legend(designs: &[Motion], width: f64) -> Legend {
+/// The lowest and highest value of all patches, if there are any.
+fn stress_range(designs: &[Motion]) -> Option<[f64; 2]> {
+    let bodies = designs.iter().flat_map(|design| &design.bodies);
+    let patches = bodies.flat_map(|body| body.patches.iter().flatten());
+    let mut values = patches.map(|patch| patch.value).peekable();
+    values.peek()?;
+    let (low, high) = range(values);
+    Some([low, high])
+}
+
+fn lapse_legend(designs: &[Motion], width: f64, values: Option<[f64; 2]>) -> Legend {
     let mut entries = Vec::new();
     for (i, body) in designs[0].bodies.iter().enumerate() {
-        entries.push((Key::Area(body_color(i)), body.name.clone()));
+        if body.patches.is_empty() {
+            entries.push((Key::Area(body_color(i)), body.name.clone()));
+        }
+    }
+    if let Some(values) = values {
+        let coloured = designs[0].bodies.iter();
+        let coloured = coloured.filter(|body| !body.patches.is_empty());
+        let names: Vec<&str> = coloured.map(|body| body.name.as_str()).collect();
+        let [low, high] = values.map(|value| significant(value, 3));
+        let text = format!("{}: stress from {low} to {high} Pa", names.join(", "));
+        entries.push((Key::Scale, text));
     }
     entries.extend(connectors::legend(&designs[0].connectors));
     let long = |design: &Motion| design.traces.iter().any(|trace| trace.len() > 1);
@@ -322,7 +356,7 @@ fn draw_scenery(canvas: &mut Canvas, panel: &Panel, scenery: &Scenery) {
     }
 }
 
-fn draw_lapse(canvas: &mut Canvas, panel: &Panel, design: &Motion) {
+fn draw_lapse(canvas: &mut Canvas, panel: &Panel, design: &Motion, values: Option<[f64; 2]>) {
     let frames = design.bodies.iter().map(|body| body.outlines.len()).max();
     let frames = frames.unwrap_or(0);
     for frame in 0..frames {
@@ -335,7 +369,18 @@ fn draw_lapse(canvas: &mut Canvas, panel: &Panel, design: &Motion) {
             if !finite {
                 continue;
             }
-            let mut pixels: Vec<_> = outline.iter().map(|&[x, y]| panel.pixel(x, y)).collect();
+            let place = |&[x, y]: &Point| panel.pixel(x, y);
+            let mut pixels: Vec<_> = outline.iter().map(place).collect();
+            if let (Some(patches), Some(values)) = (body.patches.get(frame), values) {
+                for patch in patches {
+                    let corners: Vec<_> = patch.corners.iter().map(place).collect();
+                    let own = colour(patch.value, values);
+                    canvas.area(&corners, own, 0.2 + 0.8 * late);
+                }
+                pixels.extend(pixels.first().copied());
+                canvas.path(&pixels, INK, 0.5, 0.2 + 0.5 * late);
+                continue;
+            }
             if pixels.len() > 2 {
                 canvas.area(&pixels, body_color(i), 0.06 + 0.44 * late * late);
                 pixels.extend(pixels.first().copied());

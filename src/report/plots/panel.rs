@@ -2,6 +2,7 @@
 
 use super::axis::{Axis, Scale};
 use super::canvas::{Anchor, Canvas, GRID, INK, Pixel, text_width};
+use super::colours::colour;
 use plotters::style::RGBColor;
 
 /// A frame at a place of the picture (px) with its axes.
@@ -168,9 +169,14 @@ pub(super) enum Key {
     Area(RGBColor),
     Disc(RGBColor),
     Below(RGBColor),
+    /// The colours of values from low to high.
+    Scale,
     /// Text only.
     Note,
 }
+
+/// Width of a scale of colours (px).
+const SCALE: f64 = 90.0;
 
 /// Height of a row of a legend (px).
 const ROW: f64 = 20.0;
@@ -190,6 +196,7 @@ impl Legend {
                 Key::Note => 0.0,
                 Key::Disc(_) | Key::Below(_) | Key::Area(_) => 18.0,
                 Key::Line(_) | Key::Dashes(_) => 32.0,
+                Key::Scale => SCALE + 6.0,
             };
             let text = fitted(&text, width - shown);
             let needed = shown + text_width(&text) + 16.0;
@@ -238,6 +245,18 @@ impl Legend {
                     Key::Below(color) => {
                         canvas.below_mark((x + 6.0, y + 4.0), color);
                         18.0
+                    }
+                    Key::Scale => {
+                        const STEPS: usize = 40;
+                        let step = SCALE / STEPS as f64;
+                        for k in 0..STEPS {
+                            let (a, b) = (x + step * k as f64, x + step * (k + 1) as f64 + 0.3);
+                            let part = (k as f64 + 0.5) / STEPS as f64;
+                            let (low, high) = (y + 6.0, y - 6.0);
+                            let strip = [(a, low), (b, low), (b, high), (a, high)];
+                            canvas.area(&strip, colour(part, [0.0, 1.0]), 1.0);
+                        }
+                        SCALE + 6.0
                     }
                     Key::Note => 0.0,
                 };

@@ -1,8 +1,8 @@
 //! Pictures of structures: surfaces and lines in colour, seen obliquely, in rows and columns.
 
 use super::canvas::{Anchor, Canvas, INK, Pixel};
+use super::colours::colour;
 use crate::report::ReportError;
-use plotters::style::RGBColor;
 
 /// One view of a structure.
 pub(crate) struct StructureView {
@@ -67,32 +67,6 @@ fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 fn unit(a: [f64; 3]) -> [f64; 3] {
     let size = dot(&a, &a).sqrt();
     a.map(|x| x / size)
-}
-
-/// Colours from dark to light that people with any colour vision can order (viridis).
-const COLOURS: [(u8, u8, u8); 9] = [
-    (68, 1, 84),
-    (71, 44, 122),
-    (59, 81, 139),
-    (44, 113, 142),
-    (33, 144, 141),
-    (39, 173, 129),
-    (92, 200, 99),
-    (170, 220, 50),
-    (253, 231, 37),
-];
-
-fn colour(value: f64, [low, high]: [f64; 2]) -> RGBColor {
-    let part = if high > low {
-        (value - low) / (high - low)
-    } else {
-        0.5
-    };
-    let place = part.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
-    let k = (place as usize).min(COLOURS.len() - 2);
-    let (a, b, t) = (COLOURS[k], COLOURS[k + 1], place - k as f64);
-    let mix = |a: u8, b: u8| (f64::from(a) + t * (f64::from(b) - f64::from(a))).round() as u8;
-    RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }
 
 /// Sizes of a view and of its legend (px).

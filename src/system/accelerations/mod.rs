@@ -188,6 +188,20 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         exchanged
     }
 
+    /// Multipliers that move no body (see [`RedundantRows::undetermined`]); none without redundant rows. The
+    /// matrix must be factorised in the present state.
+    pub(crate) fn undetermined(&mut self) -> Vec<Vec<f64>> {
+        if self.left_out.is_empty() {
+            return Vec::new();
+        }
+        let left_out = std::mem::take(&mut self.left_out);
+        let motions = std::mem::take(&mut self.motions);
+        let at = InMotion::new(self.model, self.numbering, &motions, self.time);
+        let all = left_out.undetermined(&at, |rhs| self.solve(rhs));
+        (self.left_out, self.motions) = (left_out, motions);
+        all
+    }
+
     /// Moves to the state (q, v) at `time` without factorising. The Euler parameters in `q` need
     /// not have unit length.
     pub(crate) fn set_state(&mut self, q: &[S], v: &[S], time: S) {

@@ -14,8 +14,19 @@ impl Accelerations<'_, f64> {
     /// results of [`Accelerations::accelerations`].
     pub(crate) fn pull_back(
         &mut self,
-        (a, lambda): (&[f64], &[f64]),
+        found: (&[f64], &[f64]),
         a_bar: &[f64],
+        state: (&mut [f64], &mut [f64]),
+        cot: &mut Model<f64>,
+    ) -> f64 {
+        self.pull_back_both(found, (a_bar, &[]), state, cot)
+    }
+
+    /// As [`Accelerations::pull_back`], with the cotangents of the multipliers too; none if empty.
+    pub(crate) fn pull_back_both(
+        &mut self,
+        (a, lambda): (&[f64], &[f64]),
+        (a_bar, lambda_bar): (&[f64], &[f64]),
         (y, v): (&mut [f64], &mut [f64]),
         cot: &mut Model<f64>,
     ) -> f64 {
@@ -23,7 +34,10 @@ impl Accelerations<'_, f64> {
         let (model, numbering) = (self.model, self.numbering);
         let nv = numbering.velocities();
         psi[..nv].copy_from_slice(a_bar);
-        psi[nv..].fill(0.0);
+        match lambda_bar.is_empty() {
+            true => psi[nv..].fill(0.0),
+            false => psi[nv..].copy_from_slice(lambda_bar),
+        }
         self.solve(&mut psi);
         let mut by_time = 0.0;
         let mut out = LoadCotangent {

@@ -7,6 +7,7 @@
 mod parameters;
 mod power;
 mod pull;
+pub(crate) mod springs;
 
 use super::bodies::{BodyMotion, add6, velocities_of};
 use super::in_motion::InMotion;

@@ -24,7 +24,7 @@ pub(super) struct Pulled<S> {
 }
 
 impl<S: Scalar> Pulled<S> {
-    fn zero() -> Self {
+    pub(super) fn zero() -> Self {
         Self {
             a: SideCotangent::fixed(),
             b: SideCotangent::fixed(),
@@ -265,7 +265,11 @@ fn pull_axis<S: Scalar>(side: &JointSide<S>, axis: usize, x: Vec3<S>, out: &mut 
 }
 
 /// Pulls the cotangents of a spring's length and its rate back.
-fn pull_rate<S: Scalar>(at: &Acting<S>, (by_length, by_rate): (S, S), out: &mut Pulled<S>) {
+pub(super) fn pull_rate<S: Scalar>(
+    at: &Acting<S>,
+    (by_length, by_rate): (S, S),
+    out: &mut Pulled<S>,
+) {
     let SpringLength {
         length, direction, ..
     } = stretch(at);
@@ -280,7 +284,7 @@ fn pull_rate<S: Scalar>(at: &Acting<S>, (by_length, by_rate): (S, S), out: &mut 
 }
 
 /// Pulls the cotangent of [`turn_rate`] back.
-fn pull_turn<S: Scalar>(at: &Acting<S>, cot: S, out: &mut Pulled<S>) {
+pub(super) fn pull_turn<S: Scalar>(at: &Acting<S>, cot: S, out: &mut Pulled<S>) {
     let (a, b) = (at.a.motion, at.b.motion);
     let e = at.a.frame.axes[2];
     let omega_in_a = a.rotation.tr_mul(&(b.rotation * b.omega));
@@ -293,7 +297,7 @@ fn pull_turn<S: Scalar>(at: &Acting<S>, cot: S, out: &mut Pulled<S>) {
 }
 
 /// Pulls the cotangent of [`angle`] back, except to the angle at rest.
-fn pull_angle<S: Scalar>(at: &Acting<S>, cot: S, out: &mut Pulled<S>) {
+pub(super) fn pull_angle<S: Scalar>(at: &Acting<S>, cot: S, out: &mut Pulled<S>) {
     let a1 = at.a.motion.rotation * at.a.frame.axes[0];
     let [b1, b2] = [0, 1].map(|i| at.b.motion.rotation * at.b.frame.axes[i]);
     let (x, y) = (a1.dot(&b1), a1.dot(&b2));

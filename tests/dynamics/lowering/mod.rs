@@ -4,6 +4,7 @@
 mod explanation;
 mod planes;
 mod points;
+mod reactions;
 use crate::tests::reference;
 use crate::tests::reference::documents::problem as parse;
 mod unseen;

@@ -82,6 +82,7 @@ macro_rules! faults {
     };
 }
 
+mod beams;
 mod loads;
 mod starts;
 
