@@ -1,7 +1,7 @@
 //! Values of functions over a run, and their linearisation for the adjoint.
 
 use super::flight::Flight;
-use super::function::{Bound, Function, Reduction, Release};
+use super::function::{Function, Reduction, Release};
 use super::instant::{Instant, Projectile};
 use super::measure::{Snapshot, SnapshotCotangent, pull_flight};
 use super::multipliers::{JointMultipliers, Rows};
@@ -10,7 +10,7 @@ use super::turning::turns;
 use crate::integrate::{Trajectory, quadrature};
 use crate::linalg::SolveScalar;
 use crate::math::Parameters;
-use crate::math::soft_max::SoftMax;
+use crate::math::soft_max::{Bound, SoftMax};
 use crate::model::Model;
 use crate::system::Numbering;
 use std::ops::RangeInclusive;

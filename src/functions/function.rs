@@ -1,18 +1,9 @@
 //! A function of interest: an instant quantity reduced over the run to one number.
 
 use super::instant::{Gate, Instant, Projectile};
+use crate::math::soft_max::Bound;
 use crate::math::{Scalar, Vec3, parameters};
 use crate::system::measures::Wrench;
-
-/// Side of the maximum over time on which an aggregate lies.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Bound {
-    /// Never above it.
-    #[default]
-    Below,
-    /// Never below it.
-    Above,
-}
 
 /// Reduction of the values g_k of an instant quantity to one number.
 #[derive(Clone, Copy, Debug, PartialEq)]

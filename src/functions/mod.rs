@@ -13,7 +13,8 @@ pub(crate) mod scene;
 pub(crate) mod stations;
 pub(crate) mod turning;
 
-pub(crate) use function::{Bound, Function, Reduction, Release};
+pub(crate) use crate::math::soft_max::Bound;
+pub(crate) use function::{Function, Reduction, Release};
 pub(crate) use instant::{EnergyPart, Gate, GateSide, Instant, Projectile};
 pub(crate) use multipliers::{JointMultipliers, Rows};
 pub(crate) use scene::{Scene, TerminalEvent};

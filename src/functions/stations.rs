@@ -2,8 +2,7 @@
 //! fibres and signs. With the ρ of a Kreisselmeier–Steinhauser function over time it is one such function
 //! over both.
 
-use super::function::Bound;
-use crate::math::soft_max::SoftMax;
+use crate::math::soft_max::{Bound, SoftMax};
 use crate::math::{Scalar, parameters};
 use crate::model::flexible::Quadratic;
 

@@ -2,6 +2,16 @@
 
 use super::Scalar;
 
+/// Side of the maximum on which an aggregate lies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Bound {
+    /// Never above it.
+    #[default]
+    Below,
+    /// Never below it.
+    Above,
+}
+
 /// The softmax of values g_k with quadrature weights c_k: KS = (1/ρ) ln Σ c_k e^{ρ g_k}, with
 /// ∂KS/∂g_k = w_k. Σ c_k = 1 for quadratures in time.
 ///

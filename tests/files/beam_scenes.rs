@@ -79,7 +79,7 @@ fn elbow(angle: f64, rate: f64, by_joint: bool) -> Value {
             "shoulder": {"revolute": {"between": ["upper", "ground"], "at": "upper.start", "axis": [0, 0, 1]}},
             "elbow": {"revolute": {"between": ["lower", "upper"], "at": "lower.start", "axis": [0, 0, 1]}}
         },
-        "simulation": {"duration": 0.15, "tolerance": 1e-9, "method": {"radau": {"stages": 3}}},
+        "simulation": {"duration": 0.1, "steps": 40, "method": {"radau": {"stages": 2}}},
         "functions": {
             "x": {"final": {"position": {"body": "lower", "point": "end", "direction": [1, 0, 0]}}},
             "y": {"final": {"position": {"body": "lower", "point": "end", "direction": [0, 1, 0]}}},
@@ -139,7 +139,8 @@ fn starts_with_beams_have_exact_derivatives() {
         let found = check(&problem, &problem.start()).expect("runs");
         assert_eq!(found.len(), 16);
         for d in found {
-            assert!(d.differs_by_round_off(), "{d:?}");
+            let off = (d.adjoint - d.complex_step).abs();
+            assert!(off <= 1e-12 * d.terms.max(d.complex_step.abs()), "{d:?}");
         }
     }
 }
