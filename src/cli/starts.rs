@@ -79,6 +79,9 @@ pub(crate) fn several(
     }
 }
 
+/// Variables of an optimum that its line shows.
+const MOST_SHOWN: usize = 8;
+
 /// Distinct optima, best first.
 fn table_of_optima((runs, starts): (&[Run], usize), optima: &[LocalOptimum]) -> String {
     let converged: usize = optima.iter().map(|optimum| optimum.found_by).sum();
@@ -93,10 +96,15 @@ fn table_of_optima((runs, starts): (&[Run], usize), optima: &[LocalOptimum]) -> 
     for (k, found) in optima.iter().enumerate() {
         let run = &runs[found.run];
         let names = run.problem.variables.iter().map(|v| &v.name);
-        let design: Vec<String> = names
-            .zip(run.design())
+        let all = names.zip(run.design());
+        let mut design: Vec<String> = all
+            .take(MOST_SHOWN)
             .map(|(name, x)| format!("{name} {x:.6}"))
             .collect();
+        let rest = run.problem.variables.len().saturating_sub(MOST_SHOWN);
+        if rest > 0 {
+            design.push(format!("and {rest} more in optima.csv"));
+        }
         text.push_str(&format!(
             "{:>4}  {} {:.8e}  from {} of the starts  {}\n",
             k + 1,

@@ -14,7 +14,7 @@ const MARGIN: f64 = 14.0;
 /// Room below the title (px).
 const TITLE: f64 = 24.0;
 /// Relative errors below this one are rounding.
-const ROUNDING: f64 = 1e-14;
+const ROUNDING: f64 = 1e-12;
 
 /// A function or gradient: its name, its look, and (CPU time \[s\], relative error) from mesh to mesh.
 struct Curve {
