@@ -7,7 +7,9 @@ use std::fmt::Write;
 #[path = "../tests/structures/course.rs"]
 mod course;
 
-use course::{hemisphere, pinched_cylinder, scordelis_lo, skew_plate, twisted_beam};
+use course::{
+    hemisphere, loss_by_distortion, pinched_cylinder, scordelis_lo, skew_plate, twisted_beam,
+};
 
 /// A problem: its name, its colour, and (n, displacement by the published one) from mesh to mesh.
 struct Series {
@@ -140,6 +142,16 @@ fn main() {
             .map(|(n, ratio)| format!("{n}: {ratio:.5}"))
             .collect();
         println!("{:<34} {}", series.name, cells.join("  "));
+    }
+    println!(
+        "part of the deflection that distorted elements take from a strip; n elements along a side"
+    );
+    for slenderness in [1e-2, 1e-3, 1e-4, 1e-5] {
+        let cells = [6, 12, 24].map(|n| {
+            let loss = 100.0 * loss_by_distortion(n, slenderness);
+            format!("{n}: {loss:.3} %")
+        });
+        println!("t/L = {slenderness:<28e} {}", cells.join("  "));
     }
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/obstacle_course.svg");
     match std::fs::write(path, picture(&all)) {

@@ -1,7 +1,7 @@
 //! The linear obstacle course of shells (MacNeal & Harder 1985; Belytschko et al. 1985; Morley 1963), six
 //! unknowns a node. Each function gives the displacement on a mesh of size n as a part of the published one.
 
-use flexbody::structures::generate::{Generated, curved_panel, panel};
+use flexbody::structures::generate::{Generated, curved_panel, panel, plate};
 use flexbody::structures::loads::Load;
 use flexbody::structures::material::Material;
 use flexbody::structures::statics::StaticProblem;
@@ -170,4 +170,53 @@ pub(crate) fn twisted_beam(n: usize) -> [f64; 2] {
         moved.dot(&direction) / expected
     };
     [one(Vec3::z(), 0.005_424), one(Vec3::y(), 0.001_754)]
+}
+
+/// A number in (−1, 1) that looks random.
+fn next(state: &mut u64) -> f64 {
+    *state = (state.wrapping_mul(6364136223846793005)).wrapping_add(1442695040888963407);
+    (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// A strip of 1.2 × 0.8 with n × n elements; with a `seed` the inner corners are displaced at random by up to an
+/// eighth of an element.
+fn strip(n: usize, seed: Option<u64>) -> Generated<f64> {
+    let mut strip = plate([1.2, 0.8], [n, n]);
+    let Some(mut state) = seed else {
+        return strip;
+    };
+    let row = 2 * n + 1;
+    for j in (2..2 * n).step_by(2) {
+        for i in (2..2 * n).step_by(2) {
+            let moved = Vec3::new(next(&mut state), next(&mut state), 0.0);
+            strip.nodes[j * row + i] += moved * (0.1 / n as f64);
+        }
+    }
+    // Other nodes are in the middle of straight edges, or of the element.
+    let corners = strip.nodes.clone();
+    let at = |i: usize, j: usize| corners[j * row + i];
+    for j in 0..row {
+        for i in 0..row {
+            let ([i0, i1], [j0, j1]) = ([i - i % 2, i + i % 2], [j - j % 2, j + j % 2]);
+            strip.nodes[j * row + i] = (at(i0, j0) + at(i1, j0) + at(i0, j1) + at(i1, j1)) / 4.0;
+        }
+    }
+    strip
+}
+
+/// What distorted elements take from the deflection of a clamped strip under a force on its edge: the mean over five
+/// meshes of 1 − w / w of the regular mesh, at t/L = `slenderness`.
+pub(crate) fn loss_by_distortion(n: usize, slenderness: f64) -> f64 {
+    let deflection = |seed: Option<u64>| {
+        let load = Load::Edge {
+            edges: "x1".into(),
+            force: Vec3::new(0.0, 0.0, slenderness.powi(3)),
+        };
+        let (thickness, held) = (1.2 * slenderness, [Support::clamp("x0")]);
+        let steel = material(7e10, 0.3);
+        displacement(strip(n, seed), thickness, steel, &held, load, "x1y0").z
+    };
+    let regular = deflection(None);
+    let losses = (1..=5).map(|seed| 1.0 - deflection(Some(seed)) / regular);
+    losses.sum::<f64>() / 5.0
 }
