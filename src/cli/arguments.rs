@@ -1,5 +1,6 @@
 //! The arguments of `optimize`.
 
+use super::range::{Range, range};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -45,6 +46,15 @@ pub(crate) struct RunOptions {
     /// Writes all optima to optima.csv.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub starts: Option<u32>,
+    /// Reports the derivative of the optimal objective by a number of the file that is not designed,
+    /// by a JSON Pointer as /bodies/arm/mass. May be repeated.
+    #[arg(long, value_name = "PATH")]
+    pub sensitivity: Vec<String>,
+    /// Optimises for n values of a number of the file from a to b, each from the optimum before,
+    /// and writes sweep.csv and sweep.svg instead of the other results.
+    #[arg(long, value_name = "PATH=a..b,n", value_parser = range,
+          conflicts_with_all = ["resume", "from", "starts", "second_order", "sensitivity"])]
+    pub sweep: Option<Range>,
     /// Checks by differences of gradients whether the optimum is a minimum of second order. Exit
     /// code 1 if it is not.
     #[arg(long)]

@@ -1,6 +1,7 @@
 //! `optimize PROBLEM`: the default job.
 
 use super::arguments::{Job, RunOptions};
+use super::parameters::{Parameter, add_sensitivities, parameter, sweep};
 use super::progress::show;
 use super::records::{Records, Start, changed, refuse_without_run};
 use super::starts::several;
@@ -34,6 +35,12 @@ const OPTIMA: &str = "optima.csv";
 pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     let problem = read(job)?;
     complete(&problem, job)?;
+    if let Some(range) = &course.sweep {
+        return sweep(job, &problem, range);
+    }
+    let parameters = course.sensitivity.iter();
+    let parameters = parameters.map(|path| parameter(job, &problem, path));
+    let parameters: Vec<Parameter> = parameters.collect::<Result<_, _>>()?;
     let begin = |problem: Problem| -> Result<_, Failure> {
         // Parts on which neither objective nor constraints depend are not simulated.
         let mut problem = problem.for_optimisation().unwrap_or(problem);
@@ -101,6 +108,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
         _ => {}
     }
     let state = WarmStart::of(&problem, &done.outcome);
+    add_sensitivities(&mut done, &parameters);
     let (recorded, refused) = write(&done, state, optima, &directory);
     let mut unwritten = lost.or(refused);
     // The results are on the disk now: later failures lose nothing.

@@ -12,7 +12,7 @@ use crate::report::optimum::{
 use indexmap::IndexMap;
 
 /// One word and one sentence for how the run ended.
-fn verdict(status: &Status) -> (&'static str, String) {
+pub(super) fn verdict(status: &Status) -> (&'static str, String) {
     match status {
         Status::Converged => ("converged", "the optimality conditions hold".into()),
         Status::AtPrecision => (
@@ -166,6 +166,7 @@ pub(super) fn record(
             .collect(),
         constraints: constraints(problem, outcome, maximise, start.as_ref().ok(), aggregate),
         multipliers,
+        sensitivities: IndexMap::new(),
         active_bounds: active_bounds(outcome),
         kkt: Kkt {
             scaled: KktResiduals {

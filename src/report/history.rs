@@ -64,7 +64,7 @@ pub(crate) struct History {
 
 pub(super) const OBJECTIVE: &str = "objective: ";
 pub(super) const VARIABLE: &str = "variable: ";
-const CONSTRAINT: &str = "constraint: ";
+pub(super) const CONSTRAINT: &str = "constraint: ";
 /// Columns before the design variables; `objective` is followed by its name.
 const FIXED: [&str; 14] = [
     "iteration",

@@ -10,6 +10,7 @@
 //! | [`explain`] | the reductions of a scene and the reduced scene |
 //! | [`history`] | the iterations of an optimisation, `history.csv` |
 //! | [`optima`] | the distinct optima of several starts, `optima.csv` |
+//! | [`sweep`] | the optima for several values of a parameter, `sweep.csv` |
 //! | [`optimum`] | the end of an optimisation, `optimum.json` |
 //! | [`certificate`] | the check of an optimisation's gradients |
 //! | [`mod@compare`] | an optimum against a committed baseline |
@@ -38,6 +39,7 @@ pub(crate) mod plots;
 pub(crate) mod positions;
 pub(crate) mod stability;
 pub(crate) mod summary;
+pub(crate) mod sweep;
 mod table;
 pub(crate) mod vtu;
 pub(crate) mod work_precision;
@@ -54,4 +56,5 @@ pub(crate) use optima::{FoundOptimum, optima_csv};
 pub(crate) use optimum::Optimum;
 pub(crate) use stability::{StabilityFamily, StabilityOutcome, StabilityRow, StabilityTable};
 pub(crate) use summary::summary;
+pub(crate) use sweep::{Sweep, SweptOptimum};
 pub(crate) use work_precision::{PrecisionRow, WorkPrecision};

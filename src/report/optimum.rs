@@ -33,6 +33,10 @@ pub(crate) struct Optimum {
     pub kkt: Kkt,
     /// How the optimiser scaled the problem.
     pub scaling: Scaling,
+    /// By JSON Pointer: derivatives of the optimal objective by numbers of the problem file that are
+    /// not designed, if requested.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub sensitivities: IndexMap<String, Sensitivity>,
     /// Curvature at the optimum, if requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub second_order: Option<SecondOrder>,
@@ -126,6 +130,19 @@ pub(crate) struct DesignValue {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper: Option<f64>,
     /// Unit, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+}
+
+/// Derivative of the optimal objective by a number that is not designed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Sensitivity {
+    /// Value of the number.
+    pub value: f64,
+    /// Derivative, in the user's sense of the objective.
+    pub derivative: f64,
+    /// Unit of the number, where it is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
 }

@@ -21,6 +21,17 @@ pub(crate) fn summary(optimum: &Optimum) -> String {
         text.push_str(&constraints(optimum));
         text.push_str(&maxima(optimum));
     }
+    for (path, found) in &optimum.sensitivities {
+        let units = [&optimum.objective.unit, &found.unit].map(|unit| match unit.as_deref() {
+            None | Some("") => "1".to_owned(),
+            Some(unit) => unit.to_owned(),
+        });
+        let derivative = significant(found.derivative, 6);
+        text.push_str(&format!(
+            "Sensitivity of the optimum to {path}: {derivative} {} per {}\n",
+            units[0], units[1]
+        ));
+    }
     text.push('\n');
     let KktResiduals {
         stationarity,

@@ -5,6 +5,7 @@ mod beyond_one_run;
 mod commands;
 mod memory;
 mod names;
+mod parameters;
 mod program;
 mod restart;
 mod results_are_kept;

@@ -25,7 +25,7 @@ const PLATE: &str = r#"{
     "constraints": {"yield": {"function": "stress", "upper": 1}}
 }"#;
 
-fn written(directory: &Path) {
+pub fn written(directory: &Path) {
     std::fs::write(directory.join("plate.json"), PLATE).expect("is written");
 }
 

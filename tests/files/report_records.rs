@@ -55,6 +55,7 @@ fn optimum() -> Optimum {
         complementarity: 1e-9,
     };
     Optimum {
+        sensitivities: Default::default(),
         status: "converged".into(),
         message: "Converged to the tolerance 1e-6.".into(),
         objective: Objective {

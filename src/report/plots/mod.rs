@@ -14,6 +14,7 @@ mod mesh_precision;
 mod motion;
 mod panel;
 mod structure;
+mod sweep;
 mod work_precision;
 
 pub(crate) use connectors::{Connector, ConnectorKind};
@@ -23,4 +24,5 @@ pub(crate) use histories::{History, histories};
 pub(crate) use mesh_precision::mesh_precision;
 pub(crate) use motion::{Barrier, BodyMotion, Flight, Motion, Patch, Scenery, motion};
 pub(crate) use structure::{Camera, StructureView, structure};
+pub(crate) use sweep::sweep;
 pub(crate) use work_precision::work_precision;

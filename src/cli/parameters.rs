@@ -1,0 +1,183 @@
+//! Parameters that are not designed: `--sensitivity PATH` and `--sweep PATH=a..b,n`.
+
+use super::arguments::Job;
+use super::range::Range;
+use super::{
+    DONE, Failure, INTERRUPTED, NOT_REACHED, interrupt, overrides, print, read_with, shown, tell,
+};
+use crate::driver::{self, Optimisation};
+use crate::problem::{Override, Problem};
+use crate::report::optimum::Sensitivity;
+use crate::report::{Sweep, plots, prepare_directory, write_all};
+use serde_json::{Value, json};
+use std::ops::ControlFlow;
+use std::path::Path;
+
+/// A problem with one more variable: the number at a path.
+pub(super) struct Parameter {
+    path: String,
+    problem: Problem,
+}
+
+/// The value of a number in the file and its overrides.
+fn number(problem: &Problem, path: &str) -> Option<f64> {
+    problem.document.pointer(path).and_then(Value::as_f64)
+}
+
+/// Refuses a path that a variable designs.
+fn not_designed(problem: &Problem, option: &str, path: &str) -> Result<(), Failure> {
+    let owner = (problem.variables.iter()).find(|v| v.paths.iter().any(|own| own == path));
+    let Some(owner) = owner else { return Ok(()) };
+    Err(Failure::bad_input(format!(
+        "found {option} {path}, which the variable \"{}\" designs, expected a number that is not \
+         designed",
+        owner.name
+    )))
+}
+
+/// The problem of a job with the number at `path` as its last variable.
+pub(super) fn parameter(job: &Job, problem: &Problem, path: &str) -> Result<Parameter, Failure> {
+    not_designed(problem, "--sensitivity", path)?;
+    let name = path.replace('~', "~0").replace('/', "~1");
+    let mut all = overrides(job)?;
+    all.push(Override {
+        path: format!("/variables/{name}"),
+        value: match number(problem, path) {
+            // A bound at the value itself fulfils every condition of the number.
+            Some(value) => json!({"path": path, "lower": value}),
+            None => json!({"path": path}),
+        },
+    });
+    let problem = read_with(job, &all).map_err(|failure| {
+        let message = format!("--sensitivity {path}: {}", failure.message);
+        Failure::new(failure.code, message)
+    })?;
+    let path = path.to_owned();
+    Ok(Parameter { path, problem })
+}
+
+/// Adds the sensitivities of an optimum to its record. A failure becomes a warning.
+pub(super) fn add_sensitivities(done: &mut Optimisation, parameters: &[Parameter]) {
+    for Parameter { path, problem } in parameters {
+        let warn = |why: &str| format!("no sensitivity to {path}: {why}");
+        if !done.outcome.converged() {
+            let warning = warn("the run did not converge");
+            done.optimum.warnings.push(warning);
+            continue;
+        }
+        let focused = problem.for_optimisation();
+        let problem = focused.as_ref().unwrap_or(problem);
+        let Some(own) = problem.variables.last() else {
+            continue;
+        };
+        match driver::sensitivity(problem, &done.outcome) {
+            Ok(Some(derivative)) if derivative.is_finite() => {
+                let found = Sensitivity {
+                    value: own.start,
+                    derivative,
+                    unit: Some(own.unit.clone()).filter(|unit| !unit.is_empty()),
+                };
+                done.optimum.sensitivities.insert(path.clone(), found);
+            }
+            Ok(_) => done.optimum.warnings.push(warn("it is not finite")),
+            Err(failure) => done.optimum.warnings.push(warn(&failure.to_string())),
+        }
+    }
+}
+
+/// A number as JSON. A whole one may be meant for a count.
+fn as_json(value: f64) -> Value {
+    if value.fract() == 0.0 && value.abs() < 1e15 {
+        Value::from(value as i64)
+    } else {
+        Value::from(value)
+    }
+}
+
+/// Optimises for each value of a parameter, each from the optimum before, and writes `sweep.csv` and
+/// `sweep.svg`, both or none.
+pub(super) fn sweep(job: &Job, base: &Problem, range: &Range) -> Result<u8, Failure> {
+    not_designed(base, "--sweep", &range.path)?;
+    if job.accuracy.is_some() {
+        return Err(Failure::bad_input(
+            "found --accuracy with --sweep, expected one of them: the steps of a sweep stay equal",
+        ));
+    }
+    // All values are read before the first run.
+    let given = overrides(job)?;
+    let problem = |value: f64| {
+        let mut all = given.clone();
+        all.push(Override {
+            path: range.path.clone(),
+            value: as_json(value),
+        });
+        read_with(job, &all)
+    };
+    let problems: Vec<Problem> = range.values().map(problem).collect::<Result<_, _>>()?;
+    let directory = match &job.output {
+        Some(directory) => directory.clone(),
+        None => Path::new("results").join(&base.name),
+    };
+    let _held = prepare_directory(&directory)?;
+    interrupt::heed();
+    let mut found: Option<Sweep> = None;
+    let mut last: Option<Vec<f64>> = None;
+    for (value, problem) in range.values().zip(problems) {
+        let mut problem = problem.for_optimisation().unwrap_or(problem);
+        if let Some(design) = &last {
+            problem.restart(design);
+        }
+        let mut progress = |_: &_| match interrupt::asked() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
+        let Some((columns, optimum)) = driver::swept(&problem, value, &mut progress) else {
+            return Err(Failure::bad_input("nothing to optimise"));
+        };
+        if interrupt::asked() {
+            tell("interrupted: the sweep is not complete and nothing is written\n");
+            return Ok(INTERRUPTED);
+        }
+        if !job.quiet {
+            tell(&format!(
+                "{} = {value}: {} {}\n",
+                range.path, optimum.status, optimum.objective
+            ));
+        }
+        if optimum.converged {
+            last = Some(optimum.design.clone());
+        }
+        let (objective, variables, constraints) = columns;
+        let sweep = found.get_or_insert_with(|| Sweep {
+            parameter: range.path.clone(),
+            objective,
+            variables,
+            constraints,
+            optima: Vec::new(),
+        });
+        sweep.optima.push(optimum);
+    }
+    let Some(found) = found else {
+        return Err(Failure::bad_input("nothing to optimise"));
+    };
+    let mut files = vec![(directory.join("sweep.csv"), found.to_csv()?.into_bytes())];
+    match plots::sweep(&found) {
+        Ok(figure) => files.push((directory.join("sweep.svg"), figure.into_bytes())),
+        Err(error) => tell(&format!("warning: a figure is missing: {error}\n")),
+    }
+    write_all(&files)?;
+    if !job.quiet {
+        print(&found.text())?;
+        tell(&format!("results in {}\n", shown(&directory)));
+    }
+    let failed = found.optima.iter().filter(|at| !at.converged).count();
+    if failed > 0 {
+        let all = found.optima.len();
+        tell(&format!(
+            "{}: {failed} of {all} runs did not converge\n",
+            base.name
+        ));
+        return Ok(NOT_REACHED);
+    }
+    Ok(DONE)
+}

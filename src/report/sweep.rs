@@ -1,0 +1,94 @@
+//! The optima for several values of a parameter as a table, `sweep.csv`.
+
+use super::ReportError;
+use super::csv;
+use super::history::{CONSTRAINT, Column, OBJECTIVE, VARIABLE, exact};
+
+/// The optimum for one value of the parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SweptOptimum {
+    /// Value of the parameter.
+    pub value: f64,
+    /// How the run ended, in one word.
+    pub status: String,
+    /// Whether it converged.
+    pub converged: bool,
+    /// Simulations.
+    pub evaluations: usize,
+    /// Objective in the user's sense.
+    pub objective: f64,
+    /// Values of the variables.
+    pub design: Vec<f64>,
+    /// Values of the constraints.
+    pub constraints: Vec<f64>,
+}
+
+/// The optima along a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Sweep {
+    /// JSON Pointer to the parameter.
+    pub parameter: String,
+    /// The objective's name and unit.
+    pub objective: Column,
+    /// Design variables.
+    pub variables: Vec<Column>,
+    /// Constraints.
+    pub constraints: Vec<Column>,
+    /// The optima, in the order of the values.
+    pub optima: Vec<SweptOptimum>,
+}
+
+impl Sweep {
+    /// Comma separated values (RFC 4180), with the columns of `history.csv` for objective, variables
+    /// and constraints. Numbers are the shortest that read back exactly; one that is not finite is
+    /// an empty field.
+    ///
+    /// # Errors
+    /// [`ReportError::History`] if a unit contains a square bracket.
+    pub(crate) fn to_csv(&self) -> Result<String, ReportError> {
+        let mut header = vec![
+            self.parameter.clone(),
+            "status".into(),
+            "evaluations".into(),
+        ];
+        header.push(self.objective.heading(OBJECTIVE)?);
+        for variable in &self.variables {
+            header.push(variable.heading(VARIABLE)?);
+        }
+        for constraint in &self.constraints {
+            header.push(constraint.heading(CONSTRAINT)?);
+        }
+        let mut text = String::new();
+        csv::write_record(&mut text, header.iter().map(String::as_str));
+        for found in &self.optima {
+            let mut fields = vec![exact(found.value), found.status.clone()];
+            fields.push(found.evaluations.to_string());
+            fields.push(exact(found.objective));
+            fields.extend(
+                found
+                    .design
+                    .iter()
+                    .chain(&found.constraints)
+                    .map(|&x| exact(x)),
+            );
+            csv::write_record(&mut text, fields.iter().map(String::as_str));
+        }
+        Ok(text)
+    }
+
+    /// The same for a person: value, objective, evaluations and status.
+    pub(crate) fn text(&self) -> String {
+        let unit = self.objective.unit.as_deref().unwrap_or_default();
+        let mut text = format!(
+            "{:>14} {:>18} {unit:8} evaluations status\n",
+            "value", "objective"
+        );
+        for found in &self.optima {
+            text += &format!(
+                "{:>14} {:>18.9e} {unit:8} {:>11} {}\n",
+                found.value, found.objective, found.evaluations, found.status
+            );
+        }
+        format!("Optima for {}\n{text}", self.parameter)
+    }
+}
