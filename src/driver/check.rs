@@ -165,6 +165,7 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
             let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
             mass * length / time
         }
+        Instant::ShellStress { .. } => 1.0,
         Instant::AngularMomentum(_) => {
             let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
             mass * length * length / time

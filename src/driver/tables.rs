@@ -7,6 +7,7 @@ use crate::functions::evaluate::sample;
 use crate::functions::measure::Snapshot;
 use crate::functions::turning::turns;
 use crate::math::Vec3;
+use crate::model::{FlexibleBody, Form};
 use crate::problem::Problem;
 use crate::report::csv_table;
 use crate::system::observe::Reaction;
@@ -95,7 +96,12 @@ fn motion(simulation: &Simulation) -> String {
         header.extend(components(&named("velocity"), "m/s"));
         header.extend(components(&named("angular velocity"), "rad/s"));
     }
-    for flexible in &model.flexible {
+    // Nodes of finite elements are too many for a table.
+    let modal = |flexible: &&FlexibleBody<f64>| match flexible.form {
+        Form::Modal(_) => true,
+        Form::Finite(_) => false,
+    };
+    for flexible in model.flexible.iter().filter(modal) {
         let named = |what: &str, unit: &str, i: usize| {
             format!("{}: elastic {what} {i} [{unit}]", flexible.name)
         };
@@ -113,7 +119,7 @@ fn motion(simulation: &Simulation) -> String {
             row.extend(motion.velocity.iter());
             row.extend((motion.rotation * motion.omega).iter());
         }
-        for flexible in &model.flexible {
+        for flexible in model.flexible.iter().filter(modal) {
             row.extend((flexible.places()).map(|(carrier, i)| at.motion(carrier).position[i]));
             row.extend((flexible.places()).map(|(carrier, i)| at.motion(carrier).velocity[i]));
         }

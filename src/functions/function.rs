@@ -157,6 +157,7 @@ impl<S: Scalar> Function<S> {
                 | Instant::Momentum { .. }
                 | Instant::AngularMomentum(_)
                 | Instant::StrainEnergy(_)
+                | Instant::ShellStress { .. }
                 | Instant::Deformation { .. }
                 | Instant::LargestDeformation { .. }
                 | Instant::Reaction(_)

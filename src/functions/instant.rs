@@ -152,6 +152,15 @@ pub(crate) enum Instant<S> {
     Energy(EnergyPart),
     /// Strain energy of a flexible body \[J\], an index into those of the model.
     StrainEnergy(usize),
+    /// Aggregate of von Mises stress by yield stress over points of shells: (1/ρ) ln Σ e^{ρ σ/σ_y}.
+    ShellStress {
+        /// The flexible body, an index into those of the model.
+        flexible: usize,
+        /// The elements.
+        elements: Vec<usize>,
+        /// ρ.
+        rho: f64,
+    },
     /// A quadratic form in the elastic coordinates of a flexible body.
     Deformation {
         /// The flexible body, an index into those of the model.
@@ -204,6 +213,7 @@ parameters!(enum Instant {
     AngularMomentum(; momentum),
     Energy(part;),
     StrainEnergy(body;),
+    ShellStress { flexible, elements, rho; },
     Deformation { flexible, kind; form },
     LargestDeformation { flexible, kind; largest },
     Reaction(; wrench),
@@ -225,6 +235,7 @@ impl<S: Scalar> Instant<S> {
             Instant::Momentum { .. } => "kg m/s",
             Instant::AngularMomentum(_) => "kg m²/s",
             Instant::Energy(_) | Instant::StrainEnergy(_) => "J",
+            Instant::ShellStress { .. } => "1",
             Instant::Deformation { kind, .. } | Instant::LargestDeformation { kind, .. } => {
                 kind.unit()
             }
@@ -268,6 +279,7 @@ impl<S: Scalar> Instant<S> {
             Instant::AngularMomentum(_) => "angular momentum",
             Instant::Energy(_) => "energy",
             Instant::StrainEnergy(_) => "strain energy",
+            Instant::ShellStress { .. } => "von Mises stress by yield stress",
             Instant::Deformation { kind, .. } => kind.name(),
             Instant::LargestDeformation { kind, .. } => match kind {
                 DeformationKind::Displacement => "largest elastic displacement",
@@ -304,6 +316,7 @@ impl<S: Scalar> Instant<S> {
             | Instant::AngularMomentum(_)
             | Instant::Energy(_)
             | Instant::StrainEnergy(_)
+            | Instant::ShellStress { .. }
             | Instant::Deformation { .. }
             | Instant::LargestDeformation { .. }
             | Instant::Slide(_)

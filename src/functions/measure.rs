@@ -5,6 +5,7 @@ use super::instant::{EnergyPart, Gate, Instant, Projectile};
 use super::multipliers::Rows;
 use super::turning::Rotation;
 use crate::integrate::Trajectory;
+use crate::math::soft_max::SoftMax;
 use crate::math::{Scalar, Vec3};
 use crate::model::Model;
 use crate::system::bodies::add6;
@@ -162,6 +163,15 @@ impl<S: Scalar> Instant<S> {
             Instant::Energy(part) => energy(at, *part),
             Instant::StrainEnergy(body) => {
                 flexible::strain_energy(&at.model.flexible[*body], &at.motions())
+            }
+            Instant::ShellStress {
+                flexible: body,
+                elements,
+                rho,
+            } => {
+                let body = &at.model.flexible[*body];
+                let ratios = flexible::stress_ratios(body, &at.motions(), elements);
+                SoftMax::new(&ratios, |_| 1.0, *rho).ks
             }
             Instant::Deformation {
                 flexible: body,
@@ -339,6 +349,27 @@ impl Instant<f64> {
                 let of = (at.model, at.numbering);
                 let part = (*body, weight);
                 flexible::pull_strain_energy(of, &at.motions(), part, out.y, out.model);
+            }
+            (
+                Instant::ShellStress {
+                    flexible: body,
+                    elements,
+                    rho,
+                },
+                _,
+            ) => {
+                let motions = at.motions();
+                let ratios = flexible::stress_ratios(&at.model.flexible[*body], &motions, elements);
+                let mut bar = SoftMax::new(&ratios, |_| 1.0, *rho).weights;
+                bar.iter_mut().for_each(|bar| *bar *= weight);
+                let of = (at.model, at.numbering);
+                flexible::pull_stress_ratios(
+                    of,
+                    &motions,
+                    (*body, elements, &bar),
+                    out.y,
+                    out.model,
+                );
             }
             (
                 Instant::Deformation {

@@ -8,6 +8,7 @@ use crate::linalg::SolveScalar;
 use crate::math::{Scalar, Vec3};
 use crate::model::load::LoadKind;
 use crate::model::{FlexibleBody, Load, Model, RigidBody};
+use crate::system::flexible;
 
 /// The method for scenes that are not stiff.
 pub(crate) const NON_STIFF: Method = Method::Dop853;
@@ -136,12 +137,9 @@ pub(crate) fn warning(model: &Model<f64>, method: Method, h: f64) -> Option<Stri
 }
 
 /// Angular frequency \[rad/s\] and damping ratio of each elastic coordinate of a body by itself.
-fn vibrations(body: &FlexibleBody<f64>) -> impl Iterator<Item = (f64, f64)> + '_ {
-    let m = body.modes();
-    (0..m).map(move |i| {
-        let diagonal = i * (m + 1);
-        let (stiffness, damping) = (body.stiffness.linear[diagonal], body.damping[diagonal]);
-        let mass = body.inertia.products[body.inertia.place(i, i).0].trace();
+fn vibrations(body: &FlexibleBody<f64>) -> impl Iterator<Item = (f64, f64)> + use<> {
+    let all = flexible::alone(body).into_iter();
+    all.map(|[stiffness, mass, damping]| {
         let omega = (stiffness / mass).sqrt();
         (omega, 0.5 * damping / (mass * omega))
     })

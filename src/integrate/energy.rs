@@ -94,8 +94,9 @@ impl Ledger {
         });
         let square = scale.length * scale.length;
         let elastic = model.flexible.iter().map(|body| {
-            let modes = body.modes();
-            let diagonal = (0..modes).map(|i| body.stiffness.linear[i * (modes + 1)].re().abs());
+            let diagonal = flexible::alone(body)
+                .into_iter()
+                .map(|[k, ..]| k.re().abs());
             0.5 * square * diagonal.sum::<f64>()
         });
         Some(Self {

@@ -1,10 +1,14 @@
 //! Sparse linear algebra: static patterns, LU and Cholesky factorisation.
 
 pub(crate) mod cholesky;
+mod factors;
+mod fronts;
+mod multifrontal;
 pub(crate) mod pattern;
 mod replay;
 mod scaling;
 pub(crate) mod sparse_lu;
 
-pub(crate) use pattern::{Emit, Pattern, SparseMatrix};
-pub(crate) use sparse_lu::{Pivots, REFINED_SOLVES, SingularMatrix, SolveScalar, SparseLu};
+pub(crate) use factors::{REFINED_SOLVES, SparseLu};
+pub(crate) use pattern::{Emit, KnownPivots, Pattern, SparseMatrix};
+pub(crate) use sparse_lu::{Pivots, SingularMatrix, SolveScalar};

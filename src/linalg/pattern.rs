@@ -5,6 +5,7 @@
 //! costs one indexed addition. Entries at the same place are summed.
 
 use crate::math::{Mat3, Scalar, Vec3};
+use std::sync::Arc;
 
 /// Receives the entries of an assembly in their fixed order.
 pub(crate) trait Emit<S: Scalar> {
@@ -48,6 +49,18 @@ pub(crate) struct Pattern {
     column_starts: Vec<usize>,
     rows: Vec<usize>,
     record: Record,
+    /// Pivots that are known before the values.
+    known_pivots: Option<Arc<KnownPivots>>,
+}
+
+/// Pivots (row, column) that are known before the values, in the order of their elimination: of structures
+/// with many elastic coordinates, whose own matrices are nearly symmetric and definite.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct KnownPivots {
+    /// Rows with few entries, eliminated first; no two of their rows and columns share an entry.
+    pub short: Vec<(usize, usize)>,
+    /// The others.
+    pub inner: Vec<(usize, usize)>,
 }
 
 /// Slots of the entries of an assembly, in its order.
@@ -80,6 +93,7 @@ impl Pattern {
         let slots = recorder.0.iter().map(|place| slot(&sorted, place));
         Self {
             record: Record::Whole(slots.collect()),
+            known_pivots: None,
             column_starts,
             rows: sorted.into_iter().map(|(_, row)| row).collect(),
         }
@@ -111,6 +125,7 @@ impl Pattern {
         let shares = slots.zip(weights).collect();
         Self {
             record: Record::Shared { starts, shares },
+            known_pivots: None,
             column_starts,
             rows: sorted.into_iter().map(|(_, row)| row).collect(),
         }
@@ -129,6 +144,17 @@ impl Pattern {
             column_starts[j + 1] += column_starts[j];
         }
         (column_starts, sorted)
+    }
+
+    /// The pattern with pivots that are known before the values; none if there are none.
+    pub(crate) fn with_pivots(mut self, pivots: KnownPivots) -> Self {
+        self.known_pivots = (!pivots.inner.is_empty()).then(|| Arc::new(pivots));
+        self
+    }
+
+    /// Pivots that are known before the values.
+    pub(crate) fn known_pivots(&self) -> Option<&KnownPivots> {
+        self.known_pivots.as_deref()
     }
 
     /// Order of the matrix.

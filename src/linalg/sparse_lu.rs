@@ -10,11 +10,6 @@ use faer::sparse::linalg::lu::{LuSymbolicParams, SymbolicLu, factorize_symbolic_
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use std::sync::Arc;
 
-/// Number of steps of iterative refinement of a transposed solution.
-const REFINEMENTS: usize = 2;
-/// Number of solves with the factors for a refined solution.
-pub(crate) const REFINED_SOLVES: usize = 1 + REFINEMENTS;
-
 /// A scalar of linear systems: `f64` or `Complex64`.
 pub(crate) trait SolveScalar: Scalar + faer::traits::ComplexField {}
 impl<S: Scalar + faer::traits::ComplexField> SolveScalar for S {}
@@ -32,14 +27,12 @@ pub(crate) struct SingularMatrix {
 /// R and C are powers of two that make the largest entries of all rows and columns equal up to 2⁸.
 /// P is found by partial pivoting. All three are those of the first matrix, and are kept while its
 /// pivots stay good. A new search reuses the memory, so factorisations do not allocate.
-pub(crate) struct SparseLu<S> {
+pub(crate) struct PivotedLu<S> {
     symbolic: SymbolicLu<usize>,
     pivoting: Pivoting<S>,
     replay: Option<Replay<S>>,
     /// The pivots in use, if they have been requested.
     pivots: Option<Arc<Pivots>>,
-    /// Right-hand side and correction of a refined solution.
-    refined: [Vec<S>; 2],
 }
 
 /// Pivots and scaling of a factorisation. With the matrix they determine its factors.
@@ -96,7 +89,7 @@ impl<S: SolveScalar> Pivoting<S> {
     }
 }
 
-impl<S: SolveScalar> SparseLu<S> {
+impl<S: SolveScalar> PivotedLu<S> {
     /// Analyses a pattern.
     ///
     /// Memory is exhausted.
@@ -104,13 +97,11 @@ impl<S: SolveScalar> SparseLu<S> {
     pub(crate) fn new(pattern: &Pattern) -> Self {
         let symbolic = factorize_symbolic_lu(structure(pattern), LuSymbolicParams::default())
             .expect("the analysis fails only when memory is exhausted");
-        let n = pattern.order();
         Self {
             symbolic,
             pivoting: Pivoting::new(pattern),
             replay: None,
             pivots: None,
-            refined: [vec![S::zero(); n], vec![S::zero(); n]],
         }
     }
 
@@ -207,29 +198,6 @@ impl<S: SolveScalar> SparseLu<S> {
     pub(crate) fn smallest_pivot(&mut self, first: usize) -> (f64, usize) {
         self.factors().smallest_pivot(first)
     }
-
-    /// Solves Aᵀ x = b in place for the matrix A that was factorised last, with two steps of
-    /// iterative refinement. The backward error of each equation is then small for any growth of
-    /// the pivots (Skeel 1980).
-    ///
-    /// # Panics
-    /// No matrix has been factorised.
-    pub(crate) fn solve_transposed_refined(&mut self, matrix: &SparseMatrix<S>, b: &mut [S]) {
-        let [mut rhs, mut correction] = std::mem::take(&mut self.refined);
-        rhs.copy_from_slice(b);
-        self.solve_transposed(b);
-        for _ in 0..REFINEMENTS {
-            matrix.multiply_transposed(b, &mut correction);
-            for (r, &b) in correction.iter_mut().zip(&rhs) {
-                *r = b - *r;
-            }
-            self.solve_transposed(&mut correction);
-            for (x, d) in b.iter_mut().zip(&correction) {
-                *x += *d;
-            }
-        }
-        self.refined = [rhs, correction];
-    }
 }
 
 fn structure(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
@@ -268,7 +236,7 @@ mod tests {
             dense.set_column(j, &DVector::from_vec(matrix.multiply(&unit)));
         }
         let b = DVector::from_fn(n, |i, _| Complex64::new(i as f64, 1.0));
-        let mut lu = SparseLu::new(&matrix.pattern);
+        let mut lu = PivotedLu::new(&matrix.pattern);
         for _ in 0..2 {
             lu.factorise(&matrix).expect("regular");
             let mut x = b.as_slice().to_vec();
@@ -296,7 +264,7 @@ mod tests {
             };
             let mut matrix = SparseMatrix::new(Pattern::record(2, assembly));
             matrix.assemble(assembly);
-            let mut lu = SparseLu::new(&matrix.pattern);
+            let mut lu = PivotedLu::new(&matrix.pattern);
             lu.factorise(&matrix).expect("regular");
             assert!(lu.smallest_pivot(0).0 > 1e-3);
             let mut x = [r * (1.0 + k), 2.0];
@@ -316,7 +284,7 @@ mod tests {
         };
         let mut matrix = SparseMatrix::new(Pattern::record(2, assembly));
         matrix.assemble(assembly);
-        let failure = SparseLu::new(&matrix.pattern).factorise(&matrix);
+        let failure = PivotedLu::new(&matrix.pattern).factorise(&matrix);
         assert_eq!(failure, Err(SingularMatrix { column: 1 }));
     }
 }

@@ -6,7 +6,7 @@ use super::fixed::is_void;
 use super::planar::{Plane, Turned, points, used};
 use crate::math::scalar::{along, lift3};
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, DegreeOfFreedom, LoadKind, Model};
+use crate::model::{Axes, DegreeOfFreedom, Form, LoadKind, Model};
 
 /// The largest angular velocity of the bodies \[rad/s\], by value or by a `change` of the variable.
 /// Speeds count by their ratio to the body's length. The round-off of a slow body scales with it.
@@ -33,7 +33,14 @@ fn shapes<S: Scalar>(model: &Model<S>, turned: &Turned<S>, examiner: &mut Condit
             let what = format!("the deformation of body \"{name}\" leaves the plane");
             (what, "kg m²")
         };
-        let inertia = &body.inertia;
+        let inertia = match &body.form {
+            Form::Modal(modal) => &modal.inertia,
+            Form::Finite(_) => {
+                // Shells bend in all directions.
+                examiner.zero(S::one(), 1.0, what);
+                continue;
+            }
+        };
         let moments = || std::iter::once(&inertia.centre).chain(&inertia.static_moments);
         let scale = moments().map(largest).fold(0.0, f64::max);
         for p in moments() {

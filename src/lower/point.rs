@@ -134,6 +134,7 @@ fn looks_at<S: Scalar>(scene: &Scene<S>, function: &Function<S>) -> Vec<(usize, 
             Instant::Energy(_) => Vec::new(),
             Instant::Momentum { .. }
             | Instant::StrainEnergy(_)
+            | Instant::ShellStress { .. }
             | Instant::Deformation { .. }
             | Instant::LargestDeformation { .. } => Vec::new(),
             // Loads turn only bodies that are no points. Angular velocities are zero, but the angular

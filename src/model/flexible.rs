@@ -20,10 +20,11 @@
 //! joints, loads or functions is a body without mass as well, its *interface*, held by a joint of kind
 //! `Attachment` (see [`Modes`]).
 
+use super::finite::FiniteElements;
 use crate::math::slices::{add_scaled, dot};
 use crate::math::{Mat3, Scalar, Vec3, parameters};
 
-/// A flexible body. Coordinates I = 1 … m stand at index I − 1.
+/// A flexible body.
 #[derive(Clone, Debug)]
 pub(crate) struct FlexibleBody<S> {
     /// Name in the problem file.
@@ -33,6 +34,22 @@ pub(crate) struct FlexibleBody<S> {
     pub frame: usize,
     /// The first of the carriers of the elastic coordinates, which stand one after the other.
     pub carriers: usize,
+    /// What its coordinates are.
+    pub form: Form<S>,
+}
+
+/// What the coordinates of a flexible body are.
+#[derive(Clone, Debug)]
+pub(crate) enum Form<S> {
+    /// Factors of shapes of the whole body.
+    Modal(Modal<S>),
+    /// Displacements and rotations of the nodes of finite elements.
+    Finite(FiniteElements<S>),
+}
+
+/// A body whose coordinates are factors of shapes. Coordinates I = 1 … m stand at index I − 1.
+#[derive(Clone, Debug)]
+pub(crate) struct Modal<S> {
     /// Integrals of the shapes.
     pub inertia: ModalInertia<S>,
     /// Strain energy U.
@@ -86,8 +103,8 @@ pub(crate) struct Quadratic<S> {
 /// s = X + Σ q_I N_I, and its axes at e + Σ q_I Θ_I × e. X and e are the joint's frame A.
 #[derive(Clone, Debug)]
 pub(crate) struct Modes<S> {
-    /// The first of the bodies that carry the coordinates.
-    pub carriers: usize,
+    /// The body that carries each coordinate that moves it, and the component of its position.
+    pub places: Vec<(usize, usize)>,
     /// N_I.
     pub displacement: Vec<Vec3<S>>,
     /// Θ_I.
@@ -118,7 +135,10 @@ pub(crate) fn places(first: usize, count: usize) -> impl Iterator<Item = (usize,
 impl<S: Scalar> FlexibleBody<S> {
     /// Number m of elastic coordinates.
     pub(crate) fn modes(&self) -> usize {
-        self.inertia.static_moments.len()
+        match &self.form {
+            Form::Modal(modal) => modal.inertia.static_moments.len(),
+            Form::Finite(finite) => finite.mesh.coordinates,
+        }
     }
 
     /// The bodies that carry the coordinates.
@@ -134,8 +154,12 @@ impl<S: Scalar> FlexibleBody<S> {
 
 parameters!(struct FlexibleBody {
     name, frame, carriers;
-    inertia, stiffness, damping
+    form
 });
+
+parameters!(enum Form { Modal(; modal), Finite(; finite) });
+
+parameters!(struct Modal {; inertia, stiffness, damping });
 
 parameters!(struct ModalInertia {; centre, static_moments, with_position, products });
 
@@ -145,7 +169,7 @@ parameters!(struct Strain {; weight, strain });
 
 parameters!(struct Quadratic {; linear, squares });
 
-parameters!(struct Modes { carriers; displacement, rotation });
+parameters!(struct Modes { places; displacement, rotation });
 
 impl<S: Scalar> ModalInertia<S> {
     /// Where S_IJ stands among the products, and whether it is transposed.
@@ -194,12 +218,5 @@ impl<S: Scalar> Quadratic<S> {
             add_scaled(by_g, scale * *c * along, q);
             add_scaled(by_g, scale * *c * w, psi);
         }
-    }
-}
-
-impl<S: Scalar> Modes<S> {
-    /// The body that carries each coordinate, and the component of its position.
-    pub(crate) fn places(&self) -> impl Iterator<Item = (usize, usize)> + Clone + use<S> {
-        places(self.carriers, self.displacement.len())
     }
 }

@@ -5,6 +5,7 @@
 //! each parameter.
 
 pub(crate) mod drive;
+pub(crate) mod finite;
 pub(crate) mod flexible;
 pub(crate) mod joint;
 pub(crate) mod load;
@@ -14,7 +15,7 @@ pub(crate) mod table;
 pub(crate) mod time_function;
 
 pub(crate) use drive::{DegreeOfFreedom, Drive};
-pub(crate) use flexible::{FlexibleBody, ModalInertia, ModalStiffness, Modes};
+pub(crate) use flexible::{FlexibleBody, Form, Modes};
 pub(crate) use joint::{ConstraintRow, Joint, JointFrame, JointKind};
 pub(crate) use load::{Axes, Load, LoadKind};
 pub(crate) use mobility::Mobility;
@@ -55,7 +56,10 @@ impl<S: Scalar> Model<S> {
             LoadKind::Force { .. } | LoadKind::Torque { .. } => false,
         };
         let driven = self.joints.iter().any(|joint| !joint.drives.is_empty());
-        let undamped = |body: &FlexibleBody<S>| body.damping.iter().all(|x| x.re() == 0.0);
+        let undamped = |body: &FlexibleBody<S>| match &body.form {
+            Form::Modal(modal) => modal.damping.iter().all(|x| x.re() == 0.0),
+            Form::Finite(_) => true,
+        };
         !driven && self.loads.iter().all(conserves) && self.flexible.iter().all(undamped)
     }
 
@@ -89,9 +93,7 @@ impl<S: Scalar> Model<S> {
         &mut self,
         frame: usize,
         (elastic, elastic_rate): (&[S], &[S]),
-        inertia: ModalInertia<S>,
-        stiffness: ModalStiffness<S>,
-        damping: Vec<S>,
+        form: Form<S>,
     ) -> usize {
         let name = self.bodies[frame].name.clone();
         let carriers = self.bodies.len();
@@ -110,28 +112,34 @@ impl<S: Scalar> Model<S> {
             name,
             frame,
             carriers,
-            inertia,
-            stiffness,
-            damping,
+            form,
         });
         self.flexible.len() - 1
     }
 
     /// Adds the interface of a point X of flexible body `flexible` with the displacements N_I and the
-    /// rotations Θ_I there, and the joint that holds it: the index of the body. It starts where the
-    /// deformed point does, its axes turned by the section.
+    /// rotations Θ_I there, by the coordinates of `indices` or by all of them, and the joint that holds it:
+    /// the index of the body. It starts where the deformed point does, its axes turned by the section.
     pub(crate) fn attach(
         &mut self,
         flexible: usize,
         name: &str,
         point: Vec3<S>,
         (displacement, rotation): (Vec<Vec3<S>>, Vec<Vec3<S>>),
+        indices: Option<&[usize]>,
     ) -> usize {
         let body = &self.flexible[flexible];
-        let (frame, carriers) = (body.frame, body.carriers);
+        let frame = body.frame;
+        let places: Vec<(usize, usize)> = match indices {
+            Some(indices) => {
+                let all: Vec<(usize, usize)> = body.places().collect();
+                indices.iter().map(|&i| all[i]).collect()
+            }
+            None => body.places().collect(),
+        };
         let sum = |modes: &[Vec3<S>], of: fn(&RigidBody<S>) -> &Vec3<S>| {
-            let all = modes.iter().zip(body.places());
-            all.fold(Vec3::zeros(), |sum: Vec3<S>, (mode, (carrier, k))| {
+            let all = modes.iter().zip(&places);
+            all.fold(Vec3::zeros(), |sum: Vec3<S>, (mode, &(carrier, k))| {
                 sum + mode * of(&self.bodies[carrier])[k]
             })
         };
@@ -167,7 +175,7 @@ impl<S: Scalar> Model<S> {
             redundant: Vec::new(),
             trivial_rows: Vec::new(),
             modes: Some(Modes {
-                carriers,
+                places,
                 displacement,
                 rotation,
             }),

@@ -7,8 +7,10 @@ use super::schema::mechanics::{Body, Shape};
 use super::schema::{Document, View};
 use crate::math::Vec3;
 use crate::model::Model;
+use crate::model::finite::ElementMesh;
 use crate::model::flexible::Quadratic;
 use crate::structures::modal::{BeamFrame, FlexibleBeam};
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// Default number of instants of the time lapse.
@@ -137,16 +139,59 @@ fn outlines(
 ) -> Vec<Outline> {
     let written = document.bodies.values().zip(&assembly.poses);
     let mut all: Vec<Outline> = written
-        .map(|(body, pose)| match &body.beam {
-            Some(beam) => {
+        .map(|(body, pose)| match (&body.beam, &body.elements) {
+            (None, Some(elements)) => {
+                let mesh = super::elements::prepared(document, elements).mesh.clone();
+                Outline::Deformed(shell_outline(&mesh))
+            }
+            (Some(beam), _) => {
                 let sight = pose.rotation.tr_mul(&towards);
                 Outline::Deformed(beam_outline(&super::beam::beam(beam, x), &sight))
             }
-            None => outline(body, pose.centre, x),
+            (None, None) => outline(body, pose.centre, x),
         })
         .collect();
     all.resize(model.bodies.len(), Outline::Spokes(Vec::new()));
     all
+}
+
+/// The free edges of shells, one after the other.
+fn shell_outline(mesh: &ElementMesh) -> DeformedLine {
+    const EDGES: [[usize; 3]; 4] = [[0, 1, 2], [2, 5, 8], [8, 7, 6], [6, 3, 0]];
+    let edges = |element: &crate::model::finite::ShellElement| {
+        let nodes = element.nodes;
+        EDGES.map(|edge| edge.map(|local| nodes[local]))
+    };
+    let mut uses: BTreeMap<usize, usize> = BTreeMap::new();
+    for edge in mesh.elements.iter().flat_map(edges) {
+        *uses.entry(edge[1]).or_default() += 1;
+    }
+    let all = mesh.elements.iter().flat_map(edges);
+    let mut next: BTreeMap<usize, [usize; 3]> = (all.filter(|edge| uses[&edge[1]] == 1))
+        .map(|edge| (edge[0], edge))
+        .collect();
+    let mut line = Vec::new();
+    while let Some((&start, _)) = next.first_key_value() {
+        let mut at = start;
+        while let Some([from, middle, to]) = next.remove(&at) {
+            line.extend([from, middle]);
+            at = to;
+        }
+        line.push(at);
+    }
+    let point = |node: usize| {
+        let mut modes = vec![Vec3::zeros(); mesh.coordinates];
+        for (k, coordinate) in mesh.displacements[node].iter().enumerate() {
+            if let Some(coordinate) = coordinate {
+                modes[*coordinate][k] = 1.0;
+            }
+        }
+        (mesh.nodes[node], modes)
+    };
+    DeformedLine {
+        points: line.into_iter().map(point).collect(),
+        stresses: Vec::new(),
+    }
 }
 
 /// The sides of a beam that is seen along `sight`, in its own axes.

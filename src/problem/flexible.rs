@@ -2,7 +2,9 @@
 //! points that joints, loads and functions hold on to.
 
 use super::beam;
+use super::elements;
 use super::placement::Assembly;
+use super::prepared::Prepared;
 use super::schema::Document;
 use super::schema::functions::{Bound as Side, SectionComponent, SectionPlace};
 use super::schema::loads::Load;
@@ -10,13 +12,16 @@ use super::schema::measured::{LargestFibreStress, LargestSectionForce, SectionPl
 use crate::functions::instant::DeformationKind;
 use crate::functions::stations::Largest;
 use crate::functions::{Bound, Function, Instant, TerminalEvent};
+use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
-use crate::model::flexible::Quadratic;
+use crate::model::flexible::{Form, Modal, Quadratic};
 use crate::model::{LoadKind, Model};
 use crate::structures::beam::Section;
+use crate::structures::floating::PointMotion;
 use crate::structures::modal::frequencies::{Held, frequencies};
 use crate::structures::modal::sections::SectionForce;
 use crate::structures::modal::{FlexibleBeam, ModalNumbers};
+use std::sync::Arc;
 
 /// A body with elastic coordinates.
 struct Elastic<S> {
@@ -30,6 +35,30 @@ struct Elastic<S> {
 /// A beam and its numbers.
 pub(crate) type Weighed<S> = (FlexibleBeam<S>, ModalNumbers<S>);
 
+/// A body of finite elements.
+struct Shells {
+    /// The body that is its frame.
+    frame: usize,
+    /// Its index among those of the model.
+    flexible: usize,
+    prepared: Arc<Prepared>,
+}
+
+/// How far a place may be from a named point, as a part of the size of the body.
+const SAME_PLACE: f64 = 1e-6;
+
+impl Shells {
+    /// The named point at a place, and its name.
+    fn at<S: Scalar>(&self, place: &Vec3<S>) -> Option<(&String, &PointMotion)> {
+        let place = place.map(Scalar::re);
+        let nodes = self.prepared.mesh.nodes.iter();
+        let size = nodes.fold(0.0_f64, |size, node| size.max(node.norm()));
+        let same = |motion: &PointMotion| (motion.place - place).norm() <= SAME_PLACE * size;
+        let mut points = self.prepared.points.iter();
+        points.find(|(_, motion)| same(motion))
+    }
+}
+
 /// A point that something holds on to.
 struct Interface<S> {
     flexible: usize,
@@ -41,6 +70,7 @@ struct Interface<S> {
 /// The bodies with elastic coordinates of a scene.
 pub(crate) struct FlexibleBodies<S> {
     bodies: Vec<Elastic<S>>,
+    shells: Vec<Shells>,
     interfaces: Vec<Interface<S>>,
 }
 
@@ -71,8 +101,25 @@ impl<S: Scalar> FlexibleBodies<S> {
     ) -> Self {
         let mut all = Self {
             bodies: Vec::new(),
+            shells: Vec::new(),
             interfaces: Vec::new(),
         };
+        for (frame, body) in document.bodies.values().enumerate() {
+            let Some(elements) = &body.elements else {
+                continue;
+            };
+            let finite = elements::finite(document, elements, x);
+            let (mass, inertia) = finite.rigid();
+            model.bodies[frame].mass = mass;
+            model.bodies[frame].inertia = inertia;
+            let still = vec![S::zero(); finite.mesh.coordinates];
+            let flexible = model.add_flexible(frame, (&still, &still), Form::Finite(finite));
+            all.shells.push(Shells {
+                frame,
+                flexible,
+                prepared: elements::prepared(document, elements),
+            });
+        }
         let bodies = document.bodies.values().enumerate();
         let written = bodies.filter_map(|(frame, body)| Some((frame, body.beam.as_ref()?)));
         for ((frame, written), (beam, numbers)) in written.zip(beams) {
@@ -80,9 +127,11 @@ impl<S: Scalar> FlexibleBodies<S> {
             let flexible = model.add_flexible(
                 frame,
                 (&elastic, &rates),
-                numbers.shapes,
-                numbers.stiffness,
-                numbers.damping,
+                Form::Modal(Modal {
+                    inertia: numbers.shapes,
+                    stiffness: numbers.stiffness,
+                    damping: numbers.damping,
+                }),
             );
             all.bodies.push(Elastic {
                 frame,
@@ -90,7 +139,7 @@ impl<S: Scalar> FlexibleBodies<S> {
                 beam,
             });
         }
-        if !all.bodies.is_empty() {
+        if !model.flexible.is_empty() {
             all.move_joints(model);
             all.move_loads(document, assembly, model);
         }
@@ -99,6 +148,30 @@ impl<S: Scalar> FlexibleBodies<S> {
 
     /// The body that stands for a point of body `body`: itself, unless its points move on it.
     fn hold(&mut self, model: &mut Model<S>, body: usize, point: Vec3<S>) -> Option<usize> {
+        if let Some(shells) = self.shells.iter().find(|shells| shells.frame == body) {
+            let flexible = shells.flexible;
+            let (name, motion) = shells.at(&point)?;
+            let same = |known: &&Interface<S>| {
+                known.flexible == flexible
+                    && shells.at(&known.point).is_some_and(|(of, _)| of == name)
+            };
+            if let Some(known) = self.interfaces.iter().find(same) {
+                return Some(known.body);
+            }
+            if motion.coordinates.is_empty() {
+                return None;
+            }
+            let lift = |all: &[Vec3<f64>]| all.iter().map(lift3).collect();
+            let modes = (lift(&motion.displacement), lift(&motion.rotation));
+            let indices = Some(&motion.coordinates[..]);
+            let body = model.attach(flexible, name, lift3(&motion.place), modes, indices);
+            self.interfaces.push(Interface {
+                flexible,
+                point,
+                body,
+            });
+            return Some(body);
+        }
         let elastic = self.bodies.iter().find(|elastic| elastic.frame == body)?;
         let flexible = elastic.flexible;
         let known = (self.interfaces.iter())
@@ -114,7 +187,7 @@ impl<S: Scalar> FlexibleBodies<S> {
         let [px, py, pz] = [point.x, point.y, point.z].map(|x| (x.re() * 1e6).round() / 1e6);
         let name = format!("point [{px}, {py}, {pz}]");
         let modes = (modes.displacement, modes.rotation);
-        let body = model.attach(flexible, &name, point, modes);
+        let body = model.attach(flexible, &name, point, modes, None);
         self.interfaces.push(Interface {
             flexible,
             point,
@@ -190,7 +263,7 @@ impl<S: Scalar> FlexibleBodies<S> {
         functions: &mut [Function<S>],
         until: &mut Option<TerminalEvent<S>>,
     ) {
-        if self.bodies.is_empty() {
+        if model.flexible.is_empty() {
             return;
         }
         let mut visit = |body: &mut usize, point: Option<&mut Vec3<S>>| {
@@ -211,9 +284,26 @@ impl<S: Scalar> FlexibleBodies<S> {
         found.expect("a function of elastic coordinates is of such a body, which is checked")
     }
 
+    fn shells_of(&self, body: usize) -> Option<&Shells> {
+        self.shells.iter().find(|shells| shells.frame == body)
+    }
+
     /// Its index among the flexible bodies of the model.
     pub(crate) fn index(&self, body: usize) -> usize {
-        self.of(body).flexible
+        let shells = self.shells_of(body).map(|shells| shells.flexible);
+        shells.unwrap_or_else(|| self.of(body).flexible)
+    }
+
+    /// Aggregate of the stress of a set of shells, or of all of a body.
+    pub(crate) fn shell_stress(&self, body: usize, set: Option<&String>, rho: f64) -> Instant<S> {
+        let shells = self.shells_of(body);
+        let shells = shells.expect("a stress of shells is of such a body, which is checked");
+        let all = || (0..shells.prepared.mesh.elements.len()).collect();
+        Instant::ShellStress {
+            flexible: shells.flexible,
+            elements: set.map_or_else(all, |set| shells.prepared.sets.face_sets[set].clone()),
+            rho,
+        }
     }
 
     /// The displacement of a point from where it is in the undeformed body, along a direction in the
@@ -224,6 +314,22 @@ impl<S: Scalar> FlexibleBodies<S> {
         point: Vec3<S>,
         direction: Vec3<S>,
     ) -> Instant<S> {
+        if let Some(shells) = self.shells_of(body) {
+            let mut linear = vec![S::zero(); shells.prepared.mesh.coordinates];
+            if let Some((_, motion)) = shells.at(&point) {
+                for (&i, n) in motion.coordinates.iter().zip(&motion.displacement) {
+                    linear[i] = lift3(n).dot(&direction);
+                }
+            }
+            return Instant::Deformation {
+                flexible: shells.flexible,
+                kind: DeformationKind::Displacement,
+                form: Quadratic {
+                    linear,
+                    squares: Vec::new(),
+                },
+            };
+        }
         let Elastic { flexible, beam, .. } = self.of(body);
         let modes = beam.point(point.x / beam.length, [point.y, point.z]);
         Instant::Deformation {
@@ -399,6 +505,16 @@ pub(crate) fn described(document: &Document, x: &[f64]) -> Vec<String> {
         Some(told.collect::<Vec<String>>().join(", "))
     };
     let unknown = || "none, as its stiffness or mass is singular".to_owned();
+    let shells = document.bodies.iter().filter_map(|(name, body)| {
+        let elements = body.elements.as_ref()?;
+        let mesh = elements::prepared(document, elements).mesh.clone();
+        let (nodes, count) = (mesh.nodes.len(), mesh.coordinates);
+        let shells = mesh.elements.len();
+        Some(format!(
+            "shells \"{name}\": {count} coordinates of {nodes} nodes of {shells} elements"
+        ))
+    });
+    let shells: Vec<String> = shells.collect();
     beams
         .map(|(name, written)| {
             let beam = beam::beam(written, x);
@@ -411,6 +527,7 @@ pub(crate) fn described(document: &Document, x: &[f64]) -> Vec<String> {
                 beam.modes.count()
             )
         })
+        .chain(shells)
         .collect()
 }
 

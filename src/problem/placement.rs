@@ -1,11 +1,13 @@
 //! Poses of the bodies at the start, and points and axes relative to them.
 
+use super::elements;
 use super::mass::mass_properties;
 use super::quantity::{Quantity, Vector, vector};
 use super::schema::Document;
 use super::schema::joints::{Axis, Ends};
 use super::schema::mechanics::{Location, Point};
 use crate::math::rotation::{Quat, compose, from_axis_angle, matrix};
+use crate::math::scalar::lift3;
 use crate::math::{Mat3, Scalar, Vec3};
 
 /// Message of a failed look-up. A checked file has all names.
@@ -169,9 +171,10 @@ impl<'a, S: Scalar> Assembly<'a, S> {
     /// A named point of a body, from the origin of its axes \[m\].
     fn point(&self, body: &str, point: &str) -> Vec3<S> {
         let body = self.document.bodies.get(body).expect(CHECKED);
-        match (body.points.get(point), &body.beam) {
-            (Some(point), _) => vector(point, self.x),
-            (None, beam) => {
+        match (body.points.get(point), &body.beam, &body.elements) {
+            (Some(point), _, _) => vector(point, self.x),
+            (None, _, Some(elements)) => lift3(&elements::place(self.document, elements, point)),
+            (None, beam, None) => {
                 let beam = beam.as_ref().expect(CHECKED);
                 let part = beam.station(point).expect(CHECKED).get(self.x);
                 Vec3::new(part * beam.length.get(self.x), S::zero(), S::zero())

@@ -1,14 +1,17 @@
 //! Places that bodies do not have: those beside a point mass, and those beyond the ends of a beam.
 
 use super::Problem;
+use super::elements::{mesh_quantities, prepared};
 use super::finding::Finding;
 use super::joints::at;
 use super::placement::Assembly;
 use super::pointer::join;
+use super::quantity::Quantity;
 use super::schema::joints::Joint;
 use super::schema::loads::Load;
 use super::schema::mechanics::Shape;
 use crate::math::Vec3;
+use crate::model::LoadKind;
 use crate::system::placement::length_scale;
 
 /// Two points are the same up to this distance, relative to the length scale.
@@ -27,6 +30,121 @@ pub(super) fn off_beams(problem: &Problem) -> Option<Finding> {
             let found = format!("a joint, load or function at x = {x:.6} m of \"{name}\"");
             let expected = format!("places on the beam, x from 0 to {length} m");
             Finding::new(join(&join("/bodies", name), "beam"), found, expected)
+        })
+    })
+}
+
+/// The first mesh or material of shells that move that a variable changes.
+pub(super) fn moved_meshes(problem: &Problem) -> Option<Finding> {
+    let document = &problem.written;
+    let moves = |quantities: &[Quantity]| quantities.iter().any(|q| q.variable.is_some());
+    document.bodies.iter().find_map(|(name, body)| {
+        let structure = &body.elements.as_ref()?.structure;
+        let own = join(&join(&join("/bodies", name), "elements"), "structure");
+        let mesh = moves(&mesh_quantities(&structure.mesh));
+        let material = document.materials.get(&structure.material);
+        let of_material = join("/materials", &structure.material);
+        let poisson = material.map(|material| material.poisson);
+        let yield_stress = material.and_then(|material| material.yield_stress);
+        let all = [
+            (join(&own, "mesh"), mesh),
+            (join(&own, "at"), structure.at.is_some_and(|at| moves(&at))),
+            (join(&of_material, "poisson"), moves(poisson.as_slice())),
+            (
+                join(&of_material, "yield_stress"),
+                moves(yield_stress.as_slice()),
+            ),
+        ];
+        let (place, _) = all.into_iter().find(|(_, moved)| *moved)?;
+        let found = "a design variable in the mesh or material of shells that move";
+        let expected = "thickness, density, Young's modulus or surface mass as variables";
+        Some(Finding::new(place, found, expected))
+    })
+}
+
+/// The first joint, load or function that holds shells where they have no named point.
+pub(super) fn off_points(problem: &Problem) -> Option<Finding> {
+    let document = &problem.written;
+    let of = |body: usize| document.bodies.get_index(body)?.1.elements.as_ref();
+    if !document.bodies.values().any(|body| body.elements.is_some()) {
+        return None;
+    }
+    let twice = document.bodies.iter().find_map(|(name, body)| {
+        let prepared = prepared(document, body.elements.as_ref()?);
+        let points: Vec<_> = prepared.points.iter().collect();
+        let size = prepared
+            .mesh
+            .nodes
+            .iter()
+            .fold(0.0_f64, |size, node| size.max(node.norm()));
+        let (first, second) = (0..points.len()).find_map(|i| {
+            let near = |j: &usize| (points[*j].1.place - points[i].1.place).norm() <= 1e-6 * size;
+            (i + 1..points.len())
+                .find(near)
+                .map(|j| (points[i].0, points[j].0))
+        })?;
+        let pointer = join(&join(&join("/bodies", name), "elements"), "points");
+        let found = format!("\"{second}\" where \"{first}\" is");
+        let expected = "points at different places, as joints find them by their place";
+        Some(Finding::new(join(&pointer, second), found, expected).of_key())
+    });
+    if twice.is_some() {
+        return twice;
+    }
+    let mut scene = problem.scene(&problem.start());
+    let mut places = Vec::new();
+    for joint in scene
+        .model
+        .joints
+        .iter()
+        .filter(|joint| joint.modes.is_none())
+    {
+        let at = join("/joints", &joint.name);
+        places.push((at.clone(), joint.body_a, joint.frame_a.point));
+        places.extend(joint.body_b.map(|body| (at, body, joint.frame_b.point)));
+    }
+    for load in &scene.model.loads {
+        let at = join("/loads", &load.name);
+        match &load.kind {
+            LoadKind::Force { body, point, .. } => places.push((at, *body, *point)),
+            LoadKind::Spring {
+                body_a,
+                body_b,
+                point_a,
+                point_b,
+                ..
+            } => {
+                places.push((at.clone(), *body_a, *point_a));
+                places.extend(body_b.map(|body| (at, body, *point_b)));
+            }
+            LoadKind::Torque { .. }
+            | LoadKind::TorsionSpring { .. }
+            | LoadKind::Damping { .. }
+            | LoadKind::BallDamping { .. }
+            | LoadKind::Friction { .. } => {}
+        }
+    }
+    for (function, name) in scene.functions.iter_mut().zip(document.functions.keys()) {
+        function.for_each_place(&mut |body, point| {
+            places.extend(point.map(|point| (join("/functions", name), *body, *point)));
+        });
+    }
+    places.into_iter().find_map(|(pointer, body, point)| {
+        let prepared = prepared(document, of(body)?);
+        let size = prepared
+            .mesh
+            .nodes
+            .iter()
+            .fold(0.0_f64, |size, node| size.max(node.norm()));
+        let mut named = prepared.points.values();
+        // A named point that still has the body itself is held by the frame.
+        let known = named.any(|motion| (motion.place - point).norm() <= 1e-6 * size);
+        let (name, _) = document.bodies.get_index(body)?;
+        let [x, y, z] = [point.x, point.y, point.z].map(|x| (x * 1e6).round() / 1e6);
+        (!known).then(|| {
+            let found = format!("the place [{x}, {y}, {z}] of \"{name}\"");
+            let expected = "a point that the \"elements\" of the body name";
+            Finding::new(pointer, found, expected)
         })
     })
 }

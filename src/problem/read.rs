@@ -103,7 +103,8 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     if !findings.is_empty() {
         return faults(findings);
     }
-    let variables = match written.structures.is_empty() {
+    let shells = written.bodies.values().any(|body| body.elements.is_some());
+    let variables = match written.structures.is_empty() && !shells {
         true => variables,
         false => match expand(&written, &mut sound, variables) {
             Ok(variables) => variables,
@@ -140,12 +141,14 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
                 .into_iter()
                 .map(|joint| joint.redundant)
                 .collect();
-            let finding = too_many(&problem)
+            let finding = points::moved_meshes(&problem)
+                .or_else(|| too_many(&problem))
                 .or_else(|| unstarted(&problem))
                 .or_else(|| collapsed(&problem))
                 .or_else(|| oblique(&problem))
                 .or_else(|| points::beside(&problem))
                 .or_else(|| points::off_beams(&problem))
+                .or_else(|| points::off_points(&problem))
                 .or_else(|| driven_twice(&problem))
                 .or_else(|| unassembled(&problem));
             match finding {

@@ -311,6 +311,10 @@ impl<S: Scalar> Builder<'_, S> {
                 (self.flexible).displacement(self.body(&of.body), point, direction)
             }
             I::StrainEnergy(of) => Instant::StrainEnergy(self.flexible.index(self.body(&of.body))),
+            I::VonMises(of) => {
+                let body = self.body(&of.body);
+                (self.flexible).shell_stress(body, of.elements.as_ref(), of.rho)
+            }
             I::SectionForce(of) => {
                 let station = station(self.document, self.assembly, &of.body, &of.station);
                 (self.flexible).section(self.body(&of.body), of.component, station)

@@ -21,7 +21,7 @@ fn sums<S: Scalar>(
 ) -> (Vec3<S>, Vec3<S>) {
     let mut sums = (Vec3::zeros(), Vec3::zeros());
     let shapes = modes.displacement.iter().zip(&modes.rotation);
-    for ((n, t), (carrier, k)) in shapes.zip(modes.places()) {
+    for ((n, t), &(carrier, k)) in shapes.zip(&modes.places) {
         let x = of(&motions[carrier])[k];
         sums.0 += n * x;
         sums.1 += t * x;
@@ -67,8 +67,8 @@ pub(crate) fn elastic_gradient<'a, S: Scalar>(
     (force, torque): (Vec3<S>, Vec3<S>),
 ) -> impl Iterator<Item = (usize, S)> + 'a {
     let shapes = modes.displacement.iter().zip(&modes.rotation);
-    let places = shapes.zip(modes.places());
-    places.map(move |((n, t), (carrier, k))| {
+    let places = shapes.zip(&modes.places);
+    places.map(move |((n, t), &(carrier, k))| {
         let slot = numbering.velocity(carrier) + k;
         (slot, n.dot(&force) + t.dot(&torque))
     })
@@ -119,10 +119,8 @@ pub(crate) fn pull_frame(
         }
         let torque = moment(frame, by);
         let Some(cot) = &mut own.modes else { continue };
-        let places = modes
-            .places()
-            .zip(cot.displacement.iter_mut().zip(&mut cot.rotation));
-        for ((carrier, k), (n, t)) in places {
+        let places = (modes.places.iter()).zip(cot.displacement.iter_mut().zip(&mut cot.rotation));
+        for (&(carrier, k), (n, t)) in places {
             let x = of(&motions[carrier])[k];
             *n += by.point * x;
             *t += torque * x;

@@ -3,7 +3,7 @@
 use super::flexing::Block;
 use crate::math::Scalar;
 use crate::math::slices::{add_scaled, dot};
-use crate::model::flexible::{FlexibleBody, ModalStiffness};
+use crate::model::flexible::{Modal, ModalStiffness};
 
 /// Strain energy U \[J\].
 pub(crate) fn energy<S: Scalar>(stiffness: &ModalStiffness<S>, q: &[S]) -> S {
@@ -47,14 +47,14 @@ fn add_stiffness<S: Scalar>(stiffness: &ModalStiffness<S>, q: &[S], out: &mut [S
 }
 
 /// Adds ∂U/∂q + D q̇.
-pub(crate) fn add_forces<S: Scalar>(body: &FlexibleBody<S>, q: &[S], rate: &[S], out: &mut [S]) {
+pub(crate) fn add_forces<S: Scalar>(body: &Modal<S>, q: &[S], rate: &[S], out: &mut [S]) {
     add_stiffness(&body.stiffness, q, out);
     add_product(&body.damping, rate, out);
 }
 
 /// Adds the derivatives of [`add_forces`] in q and q̇ to the elastic parts of two blocks.
 pub(crate) fn add_jacobian<S: Scalar>(
-    body: &FlexibleBody<S>,
+    body: &Modal<S>,
     q: &[S],
     by_y: &mut Block<S>,
     by_v: &mut Block<S>,
@@ -89,11 +89,11 @@ pub(crate) fn add_jacobian<S: Scalar>(
 /// Pulls the cotangent ψ of [`add_forces`] back to q and q̇ (added) and to the parameters (added to
 /// `cot`).
 pub(crate) fn pull_forces(
-    body: &FlexibleBody<f64>,
+    body: &Modal<f64>,
     (q, rate): (&[f64], &[f64]),
     psi: &[f64],
     (by_q, by_rate): (&mut [f64], &mut [f64]),
-    cot: &mut FlexibleBody<f64>,
+    cot: &mut Modal<f64>,
 ) {
     add_transposed(&body.stiffness.linear, psi, by_q);
     add_transposed(&body.damping, psi, by_rate);

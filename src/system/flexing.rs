@@ -19,7 +19,7 @@
 
 use crate::math::scalar::skew;
 use crate::math::{Mat3, Scalar, Vec3};
-use crate::model::flexible::{FlexibleBody, ModalInertia};
+use crate::model::flexible::ModalInertia;
 
 /// The motion of a flexible body as its inertial forces depend on it; all in the axes of its frame.
 #[derive(Clone, Debug)]
@@ -111,7 +111,7 @@ impl<S: Scalar> Block<S> {
 }
 
 /// The vector w with tr(Zᵀ t̃) = t · w for all t.
-fn axial<S: Scalar>(z: &Mat3<S>) -> Vec3<S> {
+pub(crate) fn axial<S: Scalar>(z: &Mat3<S>) -> Vec3<S> {
     Vec3::new(
         z[(2, 1)] - z[(1, 2)],
         z[(0, 2)] - z[(2, 0)],
@@ -155,7 +155,7 @@ fn moments<S: Scalar>(inertia: &ModalInertia<S>, first: S, x: &[S]) -> Vec<Mat3<
 }
 
 /// Σ_I x_I p_I.
-fn static_moment<S: Scalar>(inertia: &ModalInertia<S>, first: S, x: &[S]) -> Vec3<S> {
+pub(crate) fn static_moment<S: Scalar>(inertia: &ModalInertia<S>, first: S, x: &[S]) -> Vec3<S> {
     let all = inertia.static_moments.iter().zip(x);
     all.fold(inertia.centre * first, |sum, (p, &x)| sum + p * x)
 }
@@ -507,9 +507,4 @@ pub(crate) fn pull_kinetic(
         }
     }
     (out, at.rotation * kept.momentum * scale)
-}
-
-/// Static moment Σ q_I p_I of the deformed body about the frame's origin, axes of the frame \[kg m\].
-pub(crate) fn first_moment<S: Scalar>(body: &FlexibleBody<S>, q: &[S]) -> Vec3<S> {
-    static_moment(&body.inertia, S::one(), q)
 }

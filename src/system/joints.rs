@@ -195,7 +195,7 @@ pub(crate) fn elastic_reactions<S: Scalar>(
         reaction::add_elastic_reaction(row, l, (&a, &joint.frame_a), &b, &mut turned);
     }
     let shapes = modes.displacement.iter().zip(&modes.rotation);
-    let places = shapes.zip(modes.places());
+    let places = shapes.zip(modes.places.iter().copied());
     places
         .map(|((n, t), (carrier, k))| {
             let slot = at.numbering.velocity(carrier) + k;

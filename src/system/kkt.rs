@@ -10,7 +10,9 @@ use super::joints;
 use super::numbering::Numbering;
 use super::reduce::{emit_reduced, through, unreduced};
 use super::redundant_rows::RedundantRows;
-use crate::linalg::{Emit, Pattern, Pivots, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
+use crate::linalg::{
+    Emit, KnownPivots, Pattern, Pivots, SingularMatrix, SolveScalar, SparseLu, SparseMatrix,
+};
 use crate::math::{Mat3, Scalar};
 use crate::model::Model;
 use std::sync::Arc;
@@ -196,6 +198,11 @@ impl<S: SolveScalar> SaddlePoint<S> {
                 let rows = (&gradients[..], &left_out);
                 emit_saddle_point(&at, rows, &zeros, (block, Metric::Mass), emit);
             });
+        });
+        let nodal = flexible::nodal_unknowns(model, numbering);
+        let pattern = pattern.with_pivots(KnownPivots {
+            short: Vec::new(),
+            inner: nodal.into_iter().map(|i| (i, i)).collect(),
         });
         let factors = SparseLu::new(&pattern);
         Self {

@@ -15,6 +15,7 @@ pub(crate) mod constraint;
 mod elastic;
 pub(crate) mod emit_bodies;
 pub(crate) mod failure;
+pub(crate) mod finite;
 pub(crate) mod flexible;
 mod flexing;
 pub(crate) mod frame_motion;

@@ -9,19 +9,24 @@ use flexbody::functions::{EnergyPart, Instant, Rows};
 use flexbody::integrate::implicit::ggl::{Equations, StepState};
 use flexbody::linalg::SparseMatrix;
 use flexbody::math::{Complex64, Parameters, Scalar, Vec3};
-use flexbody::model::Model;
+use flexbody::model::{Form, Model};
 use flexbody::system::bodies::{BodyMotion, all_force_balances, rates, velocity_of_rates};
 use flexbody::system::kkt::SaddlePoint;
 use flexbody::system::marker::{MarkerKinematics, RelativeMotion};
 use flexbody::system::{Numbering, flexible, initial, placement};
 use reference::cases::{Case, TIME, dot, lift, parameters, rows_agree, slopes, step, unit};
-use reference::flexible::{Points, quadratic, stiffness, swing_of};
+use reference::flexible::{Points, modal, quadratic, stiffness, swing_of};
 use reference::models::Numbers;
+use reference::shells::shell_swing;
 
-/// Swings at random states, their attachments a little open.
+/// Swings of shapes and of shells at random states, their attachments a little open.
 fn cases() -> Vec<Case> {
-    let case = |(seed, modes): (u64, usize)| {
-        let mut model = swing_of(seed, modes, 40.0);
+    let shapes = [(1, 1), (2, 2), (3, 3), (4, 5), (5, 7)];
+    let shapes = shapes.map(|(seed, modes)| (seed, swing_of(seed, modes, 40.0)));
+    let shells = [(6, [1, 1]), (7, [2, 1])];
+    let shells = shells.map(|(seed, elements)| (seed, shell_swing(seed, elements)));
+    let case = |(seed, mut model): (u64, Model<f64>)| {
+        let modes = model.flexible[0].modes();
         let mut numbers = Numbers(seed + 100);
         for i in 0..model.bodies.len() {
             let count = model.bodies[i].mobility.translation.free();
@@ -44,7 +49,7 @@ fn cases() -> Vec<Case> {
             numbers,
         }
     };
-    [(1, 1), (2, 2), (3, 3), (4, 5), (5, 7)].map(case).into()
+    shapes.into_iter().chain(shells).map(case).collect()
 }
 
 /// Velocity coordinates that the mobilities admit.
@@ -91,9 +96,7 @@ fn inertial_forces_are_those_of_the_points() {
         model.add_flexible(
             0,
             (&q, &rate),
-            points.inertia(),
-            stiff,
-            vec![0.0; modes * modes],
+            modal(points.inertia(), stiff, vec![0.0; modes * modes]),
         );
         let numbering = Numbering::new(&model);
         let (q, v) = placement::guess(&model);
@@ -360,10 +363,17 @@ fn pull_backs_of_quantities() {
                 form: quadratic(&mut case.numbers, modes),
             },
         ];
+        let stress = Instant::ShellStress {
+            flexible: 0,
+            elements: vec![0],
+            rho: 2.0,
+        };
+        let shells = matches!(case.model.flexible[0].form, Form::Finite(_));
+        let instants = instants.into_iter().chain(shells.then_some(stress));
         let nv = case.v.len();
         let places = admitted(&case);
         let still = vec![0.0; nv];
-        for instant in &instants {
+        for instant in &instants.collect::<Vec<_>>() {
             let (mut y, mut v, mut a) = (still.clone(), still.clone(), still.clone());
             let mut cot = case.model.map(&mut |_| 0.0);
             let mut own = instant.map(&mut |_| 0.0);

@@ -12,7 +12,7 @@ use flexbody::model::flexible::ModalStiffness;
 use flexbody::model::{Mobility, Model};
 use flexbody::system::Numbering;
 use flexbody::system::observe::{Observation, observe};
-use reference::flexible::{Points, planar_swing, stiffness, swing_from, swing_of};
+use reference::flexible::{Points, modal, modal_of, planar_swing, stiffness, swing_from, swing_of};
 use reference::models::Numbers;
 
 const RADAU: Method = Method::Radau { stages: 3 };
@@ -35,7 +35,7 @@ fn free(seed: u64, modes: usize) -> Model<f64> {
     let scaled = |x: &[f64], by: f64| -> Vec<f64> { x.iter().map(|x| x * by).collect() };
     let damping = vec![0.0; modes * modes];
     let start = (&scaled(&q, 0.1)[..], &scaled(&rate, 0.5)[..]);
-    model.add_flexible(0, start, points.inertia(), stiff, damping);
+    model.add_flexible(0, start, modal(points.inertia(), stiff, damping));
     model
 }
 
@@ -167,11 +167,12 @@ fn stiff_bodies_are_nearly_rigid() {
     let at = |size: f64| {
         // Closed where it starts undeformed.
         let mut model = swing_from(41, modes, 1.0, 0.0);
-        let ModalStiffness { linear, strains } = &mut model.flexible[0].stiffness;
+        let own = modal_of(&mut model.flexible[0].form);
+        let ModalStiffness { linear, strains } = &mut own.stiffness;
         linear.iter_mut().for_each(|k| *k *= size);
         strains.iter_mut().for_each(|strain| strain.weight *= size);
         // Critical damping and more, so that the start leaves no vibration.
-        let damping = &mut model.flexible[0].damping;
+        let damping = &mut own.damping;
         damping.iter_mut().for_each(|d| *d *= 8.0 * size.sqrt());
         for body in &mut model.bodies {
             body.velocity.fill(0.0);
@@ -230,7 +231,8 @@ fn planes_are_found() {
                     unstarted: None,
                 };
                 let found = gradients(&scene, &run, &[0]).expect("differentiates");
-                let by = found.gradients[0].model.flexible[0].clone();
+                let mut by = found.gradients[0].model.flexible[0].clone();
+                let by = modal_of(&mut by.form);
                 let inertia = by
                     .inertia
                     .products
@@ -252,7 +254,10 @@ fn planes_are_found() {
         }
         // A mode that leaves the plane is told.
         let mut tilted = model.clone();
-        tilted.flexible[0].inertia.static_moments[0].z = 1e-6;
+        modal_of(&mut tilted.flexible[0].form)
+            .inertia
+            .static_moments[0]
+            .z = 1e-6;
         let kept = Plane::of(&tilted)
             .expect_err("leaves the plane")
             .to_string();

@@ -9,6 +9,7 @@ mod elimination;
 mod energy_is_kept;
 mod error_estimate;
 mod events;
+mod finite_elements;
 mod flexible_derivatives;
 mod flexible_gradients;
 mod flexible_motion;

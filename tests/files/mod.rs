@@ -5,6 +5,7 @@ mod beams;
 mod benchmarks;
 mod circles;
 mod faults;
+mod finite_elements;
 mod layers;
 mod problems_check;
 mod readme;

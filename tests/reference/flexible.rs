@@ -3,7 +3,7 @@
 
 use super::models::{Numbers, axes_along, joint};
 use flexbody::math::{Mat3, Vec3, rotation};
-use flexbody::model::flexible::{ModalInertia, ModalStiffness, Quadratic, Strain};
+use flexbody::model::flexible::{Form, Modal, ModalInertia, ModalStiffness, Quadratic, Strain};
 use flexbody::model::{Axes, JointKind, Load, LoadKind, Model, TimeFunction};
 
 /// Points with masses, and their displacements by each mode.
@@ -59,6 +59,27 @@ impl Points {
             with_position: self.shapes.iter().map(with).collect(),
             products,
         }
+    }
+}
+
+/// A body of shapes.
+pub fn modal(
+    inertia: ModalInertia<f64>,
+    stiffness: ModalStiffness<f64>,
+    damping: Vec<f64>,
+) -> Form<f64> {
+    Form::Modal(Modal {
+        inertia,
+        stiffness,
+        damping,
+    })
+}
+
+/// The shapes of a body that has some.
+pub fn modal_of(form: &mut Form<f64>) -> &mut Modal<f64> {
+    match form {
+        Form::Modal(modal) => modal,
+        Form::Finite(_) => panic!("the body has shapes"),
     }
 }
 
@@ -142,15 +163,13 @@ pub fn swing_from(seed: u64, modes: usize, size: f64, start: f64) -> Model<f64> 
     model.add_flexible(
         0,
         (&start(&q, 0.05 * deformed), &start(&rate, 0.2 * deformed)),
-        points.inertia(),
-        stiff,
-        damping,
+        modal(points.inertia(), stiff, damping),
     );
     let mut attach = |name: &str, model: &mut Model<f64>| {
         let list = |numbers: &mut Numbers| (0..modes).map(|_| numbers.vector() * 0.5).collect();
         let point = numbers.vector();
         let shapes = (list(&mut numbers), list(&mut numbers));
-        model.attach(0, name, point, shapes)
+        model.attach(0, name, point, shapes, None)
     };
     let tip = attach("tip", &mut model);
     let side = attach("side", &mut model);
@@ -230,11 +249,15 @@ pub fn planar_swing(seed: u64, modes: usize) -> Model<f64> {
     );
     let stiff = stiffness(&mut numbers, modes, 100.0);
     let damping = definite(&mut numbers, modes, 0.5);
-    model.add_flexible(0, (&start.0, &start.1), points.inertia(), stiff, damping);
+    model.add_flexible(
+        0,
+        (&start.0, &start.1),
+        modal(points.inertia(), stiff, damping),
+    );
     let displacement = (0..modes).map(|_| flat(numbers.vector()) * 0.5).collect();
     let turning = (0..modes).map(|_| along(numbers.vector()) * 0.5).collect();
     let point = flat(numbers.vector());
-    let tip = model.attach(0, "tip", point, (displacement, turning));
+    let tip = model.attach(0, "tip", point, (displacement, turning), None);
     let place = model.bodies[tip].position;
     let hinge = ("hinge", JointKind::Revolute);
     let hinge = joint(&model.bodies, hinge, (1, Some(tip)), &place, &Vec3::z());

@@ -8,6 +8,7 @@ pub mod cases;
 pub mod documents;
 pub mod flexible;
 pub mod models;
+pub mod shells;
 
 use flexbody::integrate::{Method, Multipliers, Settings, Start, Trajectory, simulate};
 use flexbody::math::{Mat3, Vec3};

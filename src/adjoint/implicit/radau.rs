@@ -6,7 +6,7 @@ use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::ggl::Equations;
 use crate::integrate::implicit::radau::Scheme;
 use crate::integrate::implicit::split::SplitMatrix;
-use crate::linalg::{Emit, Pattern, REFINED_SOLVES, SparseLu, SparseMatrix};
+use crate::linalg::{Emit, KnownPivots, Pattern, REFINED_SOLVES, SparseLu, SparseMatrix};
 use crate::math::slices::add_scaled;
 use crate::model::Model;
 use crate::system::RedundantRows;
@@ -84,7 +84,19 @@ impl<'a> BackwardStage<'a> {
         let blocks = Blocks::new(&mut equations, scheme, &zero);
         let (count, length) = (scheme.stages(), equations.length());
         let order = count * equations.order();
-        let pattern = Pattern::record(order, |emit| blocks.emit(scheme, emit));
+        let one = blocks.stages[0].held.pattern.known_pivots();
+        let of_stages = |pivots: &[(usize, usize)]| {
+            let n = order / count;
+            let stages = |&(row, column): &(usize, usize)| {
+                (0..count).map(move |i| (i * n + row, i * n + column))
+            };
+            pivots.iter().flat_map(stages).collect()
+        };
+        let known = one.map_or_else(KnownPivots::default, |one| KnownPivots {
+            short: of_stages(&one.short),
+            inner: of_stages(&one.inner),
+        });
+        let pattern = Pattern::record(order, |emit| blocks.emit(scheme, emit)).with_pivots(known);
         Self {
             model,
             numbering,

@@ -13,7 +13,7 @@
 //! mass: rows are multiplied by h, h²/m, 1, h, columns v, λ, μ divided by h, h²/m, h, with the mean
 //! mass m.
 
-use crate::linalg::{Emit, Pattern};
+use crate::linalg::{Emit, KnownPivots, Pattern};
 use crate::math::{Mat3, Scalar};
 use crate::model::Model;
 use crate::system::attachment::by_coordinates;
@@ -196,7 +196,19 @@ impl<'a, S: Scalar> Equations<'a, S> {
     pub(crate) fn pattern(&mut self, at: &StepState<S>) -> Pattern {
         self.visit(at);
         let this = &*self;
-        this.record(|emit| this.emit(at, S::one(), S::one(), emit))
+        let pattern = this.record(|emit| this.emit(at, S::one(), S::one(), emit));
+        pattern.with_pivots(this.known_pivots())
+    }
+
+    /// Pivots of the nodes of finite elements: their velocities by the kinematics, their positions by
+    /// the dynamics.
+    fn known_pivots(&self) -> KnownPivots {
+        let n = self.numbering.unknowns();
+        let all = flexible::nodal_unknowns(self.model, self.numbering);
+        KnownPivots {
+            short: all.iter().map(|&i| (i, n + i)).collect(),
+            inner: all.iter().map(|&i| (n + i, i)).collect(),
+        }
     }
 
     /// Records the pattern of [`Equations::emit_rates`].

@@ -36,6 +36,12 @@ const DIVERGENT: f64 = 0.9;
 /// The kept factors are used up to this relative change of the step size.
 const SAME_STEP: f64 = 1e-6;
 const ITERATIONS: usize = 20;
+/// With finite elements, whose strains stiffen them within a step, the matrix is renewed at the present
+/// iterate above this contraction, so often in a step.
+const SLOW: f64 = 0.25;
+const RENEWALS: usize = 6;
+/// Iterations of their infinitesimal parts.
+const RENEWED_INFINITESIMAL_ITERATIONS: usize = 40;
 /// A pivot of a multiplier below this indicates a singular position.
 const NEARLY_SINGULAR: f64 = 1e-4;
 /// Number of iterations in which an infinitesimal part converges after the real part.
@@ -63,6 +69,8 @@ pub(crate) struct StageNewton<'a, S> {
     complex_mode: (SparseMatrix<Complex64>, SparseLu<Complex64>),
     /// Step size of the kept factors.
     factored: Option<f64>,
+    /// Whether the matrix is renewed within a step.
+    renews: bool,
     scale: SceneScale,
     residuals: Vec<Vec<S>>,
     updates: Vec<Vec<S>>,
@@ -108,6 +116,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                 (SparseMatrix::new(pattern), factors)
             },
             factored: None,
+            renews: flexible::has_nodes(model),
             scale: SceneScale::of(model),
             residuals: vec![vec![S::zero(); n]; scheme.stages()],
             updates: vec![vec![S::zero(); n]; scheme.stages()],
@@ -207,6 +216,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         let known = [&last.q[..], &last.v, &last.dq, &last.dv];
         let scales = self.scale.step(numbering, known, h.re());
         let (mut previous, mut before, mut slowest) = (f64::INFINITY, 0.0_f64, 0.0_f64);
+        let mut renewals = 0;
         for iteration in 1..=ITERATIONS {
             let size = self.improve(stages, h, &scales, nv, counts);
             if !size.is_finite() {
@@ -238,7 +248,12 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             if remaining <= TOLERANCE || stagnant {
                 self.noise = noise;
                 if S::INFINITESIMAL {
-                    for _ in 0..INFINITESIMAL_ITERATIONS {
+                    let mut count = INFINITESIMAL_ITERATIONS;
+                    if self.renews {
+                        self.factorise(stages, h.re(), at, counts)?;
+                        count = RENEWED_INFINITESIMAL_ITERATIONS;
+                    }
+                    for _ in 0..count {
                         self.improve(stages, h, &scales, nv, counts);
                     }
                 }
@@ -250,7 +265,10 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             }
             if iteration > 1 {
                 slowest = slowest.max(contraction);
-                if slow && !self.is_round_off(&scales) {
+                if self.renews && contraction > SLOW && renewals < RENEWALS {
+                    self.factorise(stages, h.re(), at, counts)?;
+                    renewals += 1;
+                } else if slow && !self.is_round_off(&scales) {
                     break;
                 }
             }

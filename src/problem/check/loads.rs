@@ -39,6 +39,13 @@ impl Checker<'_> {
             }
             Load::Torque(torque) => {
                 self.moving(pointer, &torque.body, &torque.point);
+                let body = self.document.bodies.get(&torque.body);
+                if body.is_some_and(|body| body.elements.is_some()) {
+                    let found = format!("a torque on the shells \"{}\"", torque.body);
+                    let expected =
+                        "a torque on a rigid body, which may be welded to a point of them";
+                    self.fault(Finding::new(join(pointer, "body"), found, expected));
+                }
                 match (self.is_beam(&torque.body), &torque.point) {
                     (true, None) => {
                         let found = format!("a torque on the beam \"{}\"", torque.body);

@@ -21,9 +21,10 @@ impl Checker<'_> {
                 let expected = "a name that is not \"ground\" and has no dot";
                 self.fault(Finding::new(&pointer, found, expected).of_key());
             }
-            match &body.beam {
-                Some(beam) => self.beam(&pointer, body, beam),
-                None => self.mass(&pointer, body),
+            match (&body.beam, &body.elements) {
+                (Some(beam), _) => self.beam(&pointer, body, beam),
+                (None, Some(elements)) => self.elements(&pointer, (name, body), elements),
+                (None, None) => self.mass(&pointer, body),
             }
             self.place(&join(&pointer, "place"), name, &body.place);
         }
@@ -70,7 +71,7 @@ impl Checker<'_> {
                 let finding = Finding::new(
                     pointer,
                     "a body without its mass properties",
-                    "\"shape\" and \"mass\" or \"density\", or else \"mass\" and \"inertia\", or else \"beam\"",
+                    "\"shape\" and \"mass\" or \"density\", or else \"mass\" and \"inertia\", or else \"beam\" or \"elements\"",
                 );
                 self.fault(finding.of_key());
                 return;

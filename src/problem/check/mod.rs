@@ -1,6 +1,7 @@
 //! Checks the meaning of a document: names, numbers, and faults that a schema cannot express.
 
 mod beams;
+mod elements;
 mod joints;
 mod load_cases;
 mod loads;
@@ -63,7 +64,9 @@ impl<'a> Checker<'a> {
     fn named_point(&mut self, pointer: &str, body: &Body, name: &str, whole: &str) {
         let beam = body.beam.as_ref();
         let is_station = beam.is_some_and(|beam| beam.station(name).is_some());
-        if body.points.contains_key(name) || is_station {
+        let elements = body.elements.as_ref();
+        let is_held = elements.is_some_and(|elements| elements.points.contains_key(name));
+        if body.points.contains_key(name) || is_station || is_held {
             return;
         }
         let prefix = whole.strip_suffix(name).unwrap_or_default();
@@ -72,6 +75,11 @@ impl<'a> Checker<'a> {
             .keys()
             .map(String::as_str)
             .chain(beam.iter().flat_map(|beam| beam.station_names()))
+            .chain(
+                elements
+                    .iter()
+                    .flat_map(|all| all.points.keys().map(String::as_str)),
+            )
             .map(|key| format!("{prefix}{key}"))
             .collect();
         let hint = advice(whole, "points", names.iter().map(String::as_str));

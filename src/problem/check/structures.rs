@@ -135,7 +135,11 @@ impl Checker<'_> {
     }
 
     fn structure(&mut self, name: &str, structure: &Structure) {
-        let pointer = join("/structures", name);
+        self.structure_at(join("/structures", name), name, structure);
+    }
+
+    /// Checks a structure that is written at `pointer`.
+    pub(super) fn structure_at(&mut self, pointer: String, name: &str, structure: &Structure) {
         let before = self.findings.len();
         let materials = &self.document.materials;
         let material = &structure.material;

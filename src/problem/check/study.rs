@@ -91,6 +91,24 @@ impl Checker<'_> {
             let hint = "dop853 and radau choose their steps by a tolerance";
             self.fault(Finding::new("/simulation/method", found, expected).hint(Some(hint.into())));
         }
+        let explicit = matches!(simulation.method, Some(Method::Dop853) | None);
+        let shells = self
+            .document
+            .bodies
+            .values()
+            .any(|body| body.elements.is_some());
+        if explicit && shells {
+            let (place, found) = match &simulation.method {
+                Some(_) => (
+                    "/simulation/method",
+                    "the explicit method with finite elements",
+                ),
+                None => ("/simulation", "finite elements without a method"),
+            };
+            let expected =
+                "\"method\" radau, bdf or generalised_alpha, as finite elements are stiff";
+            self.fault(Finding::new(place, found, expected).of_key());
+        }
         if let (true, Some(samples)) = (equal, simulation.samples) {
             let found = format!("{samples} samples with the method {name}");
             let expected = "none: this method is sampled at the ends of its steps";
@@ -208,14 +226,15 @@ impl Checker<'_> {
             Instant::Range(range) => self.range(&join(pointer, "range"), range),
             Instant::ElasticDisplacement(of) => {
                 let pointer = join(pointer, "elastic_displacement");
-                if self.measured_beam(&pointer, &of.body).is_some() {
+                if self.measured_elastic(&pointer, &of.body) {
                     self.point(&join(&pointer, "point"), &of.body, &of.point);
                 }
                 self.direction(&join(&pointer, "direction"), &of.direction);
             }
             Instant::StrainEnergy(of) => {
-                self.measured_beam(&join(pointer, "strain_energy"), &of.body);
+                self.measured_elastic(&join(pointer, "strain_energy"), &of.body);
             }
+            Instant::VonMises(of) => self.shell_stress(&join(pointer, "von_mises"), of),
             Instant::SectionForce(of) => {
                 self.station(&join(pointer, "section_force"), &of.body, &of.station);
             }

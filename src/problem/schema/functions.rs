@@ -170,9 +170,11 @@ pub(crate) enum Instant {
     SpringTorque(OfSpring),
     /// Range of a projectile that is released at this instant [m].
     Range(Range),
-    /// Displacement of a beam's point from where it is in the undeformed beam (m).
+    /// Von Mises stress by yield stress of a body of shells, aggregated over both faces of their Gauss points.
+    VonMises(ShellStress),
+    /// Displacement of a point of a beam or of shells from where it is in the undeformed body (m).
     ElasticDisplacement(ElasticDisplacement),
-    /// Strain energy of a beam (J).
+    /// Strain energy of a beam or of shells (J).
     StrainEnergy(OfBeam),
     /// Force (N) or moment (N m) in a section of a beam.
     SectionForce(SectionForce),
@@ -182,6 +184,23 @@ pub(crate) enum Instant {
     LargestSectionForce(LargestSectionForce),
     /// Largest stress of bending and stretch of several sections and fibres of a beam, by a smooth maximum (Pa).
     LargestFibreStress(LargestFibreStress),
+}
+
+/// Stress of a body of shells.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ShellStress {
+    /// The body.
+    pub body: String,
+    /// Aggregation parameter over the points; larger is closer to the maximum.
+    #[schemars(extend(
+        "unit" = "1",
+        "exclusiveMinimum" = 0,
+        "design_variable" = "an aggregation parameter says what is asked, not what is built"
+    ))]
+    pub rho: f64,
+    /// Name of a set of elements of its structure, default all.
+    pub elements: Option<String>,
 }
 
 /// A beam.

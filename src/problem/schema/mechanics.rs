@@ -1,5 +1,6 @@
 //! Bodies in a file.
 
+use super::elements::Elements;
 use super::flexible::Beam;
 use crate::problem::quantity::{Quantity, Vector};
 use indexmap::IndexMap;
@@ -26,6 +27,8 @@ pub(crate) struct Body {
     pub inertia: Option<Inertia>,
     /// A beam with elastic coordinates, instead of all above.
     pub beam: Option<Box<Beam>>,
+    /// Shells with elastic coordinates at all their nodes, instead of all above.
+    pub elements: Option<Box<Elements>>,
     /// Named points in body axes from their origin (the centre of the shape, the start of a beam).
     #[serde(default)]
     #[schemars(extend("unit" = "m"))]

@@ -1,6 +1,7 @@
 //! The problem file: serde structures. Their documentation becomes the JSON Schema.
 
 pub(crate) mod drives;
+pub(crate) mod elements;
 pub(crate) mod flexible;
 pub(crate) mod functions;
 pub(crate) mod joints;

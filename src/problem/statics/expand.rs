@@ -36,8 +36,13 @@ pub(crate) fn section_count(structure: &Structure) -> usize {
 /// The varied properties of a document that have one value: their pointers, and how many they stand for.
 fn varied(document: &Document) -> Vec<(String, usize)> {
     let mut all = Vec::new();
-    for (name, structure) in &document.structures {
-        let own = join("/structures", name);
+    let still = document.structures.iter();
+    let still = still.map(|(name, structure)| (join("/structures", name), structure));
+    let moving = document.bodies.iter().filter_map(|(name, body)| {
+        let own = join(&join(&join("/bodies", name), "elements"), "structure");
+        Some((own, &body.elements.as_ref()?.structure))
+    });
+    for (own, structure) in still.chain(moving) {
         if let Some(Thickness::Varied(varied)) = &structure.thickness
             && varied.value.is_some()
         {

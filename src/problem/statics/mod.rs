@@ -3,7 +3,7 @@
 pub(crate) mod expand;
 mod functions;
 pub(crate) mod mesh;
-mod properties;
+pub(crate) mod properties;
 mod pull_back;
 mod workspace;
 

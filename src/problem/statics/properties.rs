@@ -7,7 +7,7 @@ use crate::problem::schema::structures::{self as written, Per, Section as Writte
 use crate::structures::beam::{Section, SectionValues};
 
 /// Which value of its structure each element has.
-pub(super) fn slots(structure: &written::Structure, part: &Part<f64>) -> Vec<usize> {
+pub(crate) fn slots(structure: &written::Structure, part: &Part<f64>) -> Vec<usize> {
     let panel = panel_elements(&structure.mesh);
     let of_groups = |groups: &[String], e: usize| {
         let sets = match panel {
@@ -49,7 +49,7 @@ pub(super) fn slots(structure: &written::Structure, part: &Part<f64>) -> Vec<usi
 }
 
 /// The thickness of this number.
-pub(super) fn thickness(structure: &written::Structure, slot: usize) -> Quantity {
+pub(crate) fn thickness(structure: &written::Structure, slot: usize) -> Quantity {
     let none = Quantity::fixed(0.0);
     match &structure.thickness {
         None => none,

@@ -44,8 +44,12 @@ fn at_face<S: Scalar>(shell: &Shell<S>, strain: &Strain<S>, face: usize) -> ([S;
 impl<S: Scalar> Shell<S> {
     /// σ_v / σ_yield at the Gauss points, face +h/2 and face −h/2 of each after one another.
     pub fn stress_ratios(&self, motion: &Motion<S>, terms: Terms) -> [S; STRESS_POINTS] {
-        let field = motion.field(&self.geometry);
-        let strain = ElementStrain::new(&self.geometry, &field, terms, Curvature::OfMotion);
+        self.field_stress_ratios(&motion.field(&self.geometry), terms)
+    }
+
+    /// As [`Shell::stress_ratios`], of the motion of points and directors.
+    pub(crate) fn field_stress_ratios(&self, field: &Field<S>, terms: Terms) -> [S; STRESS_POINTS] {
+        let strain = ElementStrain::new(&self.geometry, field, terms, Curvature::OfMotion);
         std::array::from_fn(|k| {
             let (e, _) = at_face(self, &strain.points[k / 2], k % 2);
             von_mises(&self.material.plane_stress(&e)) / self.material.yield_stress
@@ -63,7 +67,21 @@ impl<S: Scalar> Shell<S> {
         to: &mut ShellCotangent<S>,
     ) {
         let field = motion.field(&self.geometry);
-        let strain = ElementStrain::new(&self.geometry, &field, terms, Curvature::OfMotion);
+        let mut motion_bar = Field::zeros();
+        self.add_field_stress_ratios_transpose(&field, terms, bar, &mut motion_bar, to);
+        motion.add_field_transpose(&self.geometry, &motion_bar, force, &mut to.geometry);
+    }
+
+    /// Transpose of the derivative of [`Shell::field_stress_ratios`].
+    pub(crate) fn add_field_stress_ratios_transpose(
+        &self,
+        field: &Field<S>,
+        terms: Terms,
+        bar: &[S; STRESS_POINTS],
+        motion_bar: &mut Field<S>,
+        to: &mut ShellCotangent<S>,
+    ) {
+        let strain = ElementStrain::new(&self.geometry, field, terms, Curvature::OfMotion);
         let mut strain_bar = [Strain::zeros(); GAUSS_POINTS];
         let yield_stress = self.material.yield_stress;
         for (k, &bar) in bar.iter().enumerate() {
@@ -83,8 +101,6 @@ impl<S: Scalar> Shell<S> {
                 to.thickness += e_bar[c] * point.bending[c] * sign;
             }
         }
-        let mut motion_bar = Field::zeros();
-        strain.add_transpose(&strain_bar, &mut to.geometry, &mut motion_bar);
-        motion.add_field_transpose(&self.geometry, &motion_bar, force, &mut to.geometry);
+        strain.add_transpose(&strain_bar, &mut to.geometry, motion_bar);
     }
 }

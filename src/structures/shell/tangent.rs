@@ -107,6 +107,59 @@ struct Parameters<S> {
     strain: [S; PARAMETERS],
 }
 
+/// The numbers of which the strain energy of an element is made for E = h = 1: those of the membrane
+/// parameters e_p, K_m / (E h), and K_b / (E h³) and K_s / (E h) between the unknowns.
+pub(crate) struct Operators {
+    /// b_p over the displacements.
+    pub membrane: Vec<[f64; DISPLACEMENTS]>,
+    /// g1_p and g2_p.
+    pub slopes: Vec<[[f64; DISPLACEMENTS]; 2]>,
+    /// K_m.
+    pub plane: [[f64; PARAMETERS]; PARAMETERS],
+    /// K_b and K_s, by rows.
+    pub linear: [Vec<f64>; 2],
+}
+
+impl Shell<f64> {
+    /// The operators of an element whose unknown rotations are about `axes`.
+    pub(crate) fn operators(&self, axes: &RotationAxes<f64>) -> Operators {
+        let mut unit = *self;
+        (unit.thickness, unit.material.young) = (1.0, 1.0);
+        let columns = Columns::new(axes, &unit.geometry);
+        let all = unit.parameters(&columns, None, Terms::VON_KARMAN);
+        let mut matrix = ElementMatrix::new();
+        let n = columns.total;
+        let mut rows = |add: &dyn Fn(&mut ElementMatrix<f64>)| {
+            matrix.clear(n);
+            add(&mut matrix);
+            let entry = |k: usize| matrix.rows[(k / n).max(k % n)][(k / n).min(k % n)];
+            (0..n * n).map(entry).collect::<Vec<f64>>()
+        };
+        let bending = rows(&|matrix| {
+            let scaled = multiply(&all.plane, &all.bending, 1.0 / 12.0, n);
+            matrix.add_products(&all.bending, &scaled, n);
+        });
+        let shear = rows(&|matrix| {
+            let scaled = multiply(&all.shear_stiffness, &all.shear, 1.0, n);
+            matrix.add_products(&all.shear, &scaled, n);
+        });
+        let slopes = (0..TYING_POINTS).map(|p| {
+            let basis = &TABLES.tying[p];
+            let d = sum(&basis.n, &unit.geometry.directors);
+            let slope = |k: usize| std::array::from_fn(|i| d[i % 3] * basis.by[k][i / 3]);
+            COMPONENTS[component(p)].map(slope)
+        });
+        Operators {
+            membrane: (all.membrane.iter())
+                .map(|row| std::array::from_fn(|i| row[i]))
+                .collect(),
+            slopes: slopes.collect(),
+            plane: std::array::from_fn(|p| std::array::from_fn(|q| all.plane[p.max(q)][p.min(q)])),
+            linear: [bending, shear],
+        }
+    }
+}
+
 impl<S: Scalar> Shell<S> {
     /// Writes the tangent stiffness at a motion, lower part, into `matrix` [N/m, N, N m].
     pub fn tangent(

@@ -1,0 +1,89 @@
+//! Shells of a flexible body as finite elements: its coordinates are displacements and rotations of nodes.
+//!
+//! A point is the position x_a = X_a + u_a of a node or its director t_a = D_a + θ_a × D_a, in the axes of
+//! the frame. Points have scalar masses between the nodes of an element,
+//!
+//! ```text
+//! T = ½ Σ m_ab ẋ_a·ẋ_b + ½ Σ i_ab ṫ_a·ṫ_b,   m_ab = (ρh + μ) A_ab,   i_ab = ρh³/12 A_ab,   A_ab = ∫ N_a N_b dA
+//! U = ½ E h eᵀ P e + ½ E h³ vᵀ K_b v + ½ E h vᵀ K_s v,   e_p = b_p·u + ½ (r_p·u)(s_p·u)
+//! ```
+//!
+//! with the unknowns v of an element, of which u are the displacements. A, P, K_b, K_s, b, r and s are
+//! those of the mesh and of Poisson's ratio, and no design changes them.
+
+use crate::math::{Mat3, Vec3, parameters};
+use std::sync::Arc;
+
+/// Nodes of an element.
+pub(crate) const NODES: usize = 9;
+/// Points of an element: the positions of its nodes, then their directors.
+pub(crate) const POINTS: usize = 2 * NODES;
+/// Displacements of the nodes of an element.
+pub(crate) const DISPLACEMENTS: usize = 3 * NODES;
+/// Unknowns of an element at most.
+pub(crate) const UNKNOWNS: usize = 6 * NODES;
+/// Membrane strains of an element, with the three of the patch correction.
+pub(crate) const STRAINS: usize = 19;
+/// Those with von Karman's term.
+pub(crate) const QUADRATIC: usize = 16;
+
+/// Shells of a flexible body: the mesh, and what a design can change of each element.
+#[derive(Clone, Debug)]
+pub(crate) struct FiniteElements<S> {
+    /// The mesh.
+    pub mesh: Arc<ElementMesh>,
+    /// Thickness h \[m\].
+    pub thickness: Vec<S>,
+    /// Young's modulus E \[Pa\].
+    pub young: Vec<S>,
+    /// Density ρ \[kg/m³\].
+    pub density: Vec<S>,
+    /// Non-structural mass per area μ \[kg/m²\].
+    pub surface_mass: Vec<S>,
+}
+
+parameters!(struct FiniteElements { mesh; thickness, young, density, surface_mass });
+
+/// What no design changes of the shells of a body.
+#[derive(Clone, Debug)]
+pub(crate) struct ElementMesh {
+    /// Number of coordinates.
+    pub coordinates: usize,
+    /// The elements.
+    pub elements: Vec<ShellElement>,
+    /// Place of each node \[m\].
+    pub nodes: Vec<Vec3<f64>>,
+    /// Coordinates of the displacements of each node; none where the frame holds them.
+    pub displacements: Vec<[Option<usize>; 3]>,
+}
+
+/// A nine-node shell.
+#[derive(Clone, Debug)]
+pub(crate) struct ShellElement {
+    /// Its nodes.
+    pub nodes: [usize; NODES],
+    /// The coordinate of each unknown; none where the frame holds it. Displacements come first.
+    pub coordinates: Vec<Option<usize>>,
+    /// X_a \[m\], then D_a.
+    pub points: [Vec3<f64>; POINTS],
+    /// The point that each unknown moves, and how.
+    pub moves: Vec<(usize, Vec3<f64>)>,
+    /// A_ab \[m²\].
+    pub shares: [[f64; NODES]; NODES],
+    /// ∫ dA \[m²\].
+    pub area: f64,
+    /// Σ A_ab X_a X_bᵀ \[m⁴\], and that of the directors \[m²\].
+    pub second: [Mat3<f64>; 2],
+    /// b_p.
+    pub membrane: Vec<[f64; DISPLACEMENTS]>,
+    /// r_p and s_p.
+    pub slopes: Vec<[[f64; DISPLACEMENTS]; 2]>,
+    /// P for E = h = 1.
+    pub plane: [[f64; STRAINS]; STRAINS],
+    /// K_b and K_s for E = h = 1, by rows.
+    pub linear: [Vec<f64>; 2],
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// Yield stress \[Pa\].
+    pub yield_stress: f64,
+}

@@ -1,0 +1,176 @@
+//! Bodies of finite elements.
+
+use super::Checker;
+use crate::problem::elements::{frame_nodes, nodes_of};
+use crate::problem::finding::Finding;
+use crate::problem::pointer::{advice, join};
+use crate::problem::schema::elements::{ElementFrame, Elements, Held};
+use crate::problem::schema::functions::ShellStress;
+use crate::problem::schema::mechanics::Body;
+use crate::problem::statics::mesh::part;
+use crate::structures::floating::{FrameNodes, spans};
+
+impl Checker<'_> {
+    pub(super) fn elements(
+        &mut self,
+        pointer: &str,
+        (name, body): (&str, &Body),
+        elements: &Elements,
+    ) {
+        let extra = [
+            ("shape", body.shape.is_some()),
+            ("density", body.density.is_some()),
+            ("mass", body.mass.is_some()),
+            ("centre_of_mass", body.centre_of_mass.is_some()),
+            ("inertia", body.inertia.is_some()),
+            ("points", !body.points.is_empty()),
+        ];
+        for (key, _) in extra.into_iter().filter(|(_, given)| *given) {
+            let found = format!("\"{key}\" beside \"elements\"");
+            let expected = match key {
+                "points" => "the points of \"elements\", which are nodes and edges",
+                _ => "one of them, as the elements give it",
+            };
+            self.fault(Finding::new(join(pointer, key), found, expected).of_key());
+        }
+        let pointer = join(pointer, "elements");
+        let own = join(&pointer, "structure");
+        let structure = &elements.structure;
+        let before = self.findings.len();
+        if structure.mesh.is_of_beams() {
+            let found = "a mesh of beams";
+            let expected = "a mesh of shells; a beam that moves is written as \"beam\"";
+            self.fault(Finding::new(join(&own, "mesh"), found, expected));
+            return;
+        }
+        self.structure_at(own.clone(), name, structure);
+        let unused = [
+            ("supports", !structure.supports.is_empty()),
+            ("masses", !structure.masses.is_empty()),
+        ];
+        for (key, _) in unused.into_iter().filter(|(_, given)| *given) {
+            let found = format!("\"{key}\" of shells that move");
+            let expected = match key {
+                "supports" => "joints, which hold bodies that move",
+                _ => "point bodies that joints hold",
+            };
+            self.fault(Finding::new(join(&own, key), found, expected).of_key());
+        }
+        if self.findings.len() > before {
+            return;
+        }
+        let material = &self.document.materials[&structure.material];
+        if material.density.is_none_or(|density| density.value <= 0.0) {
+            let place = join(&join("/materials", &structure.material), "density");
+            let found = "no density of a material of shells that move";
+            self.fault(Finding::new(place, found, "a density above 0 [kg/m³]").of_key());
+        }
+        let part = part::<f64>(structure, &[], 1);
+        let nodes = part.mesh.node_sets.keys().map(String::as_str);
+        let edges = part.mesh.edge_sets.keys().map(String::as_str);
+        let all: Vec<&str> = nodes.chain(edges.clone()).collect();
+        let frame = join(&pointer, "frame");
+        let wanted = match &elements.frame {
+            ElementFrame::Chord(sets) => {
+                let sets = sets.iter().enumerate();
+                let pointer = join(&frame, "chord");
+                sets.map(|(k, set)| (join(&pointer, k), set, true))
+                    .collect()
+            }
+            ElementFrame::Clamped(set) => vec![(join(&frame, "clamped"), set, false)],
+        };
+        let held = elements.points.iter().map(|(name, held)| {
+            let pointer = join(&join(&pointer, "points"), name);
+            match held {
+                Held::Node(set) => (join(&pointer, "node"), set, true),
+                Held::Edge(set) => (join(&pointer, "edge"), set, false),
+            }
+        });
+        let mut wanted: Vec<(String, &String, bool)> = wanted;
+        wanted.extend(held);
+        for (place, set, one) in wanted {
+            let (found, expected, hint) = match nodes_of(&part.mesh, set) {
+                None => {
+                    let hint = advice(set, "sets", all.iter().copied());
+                    (
+                        format!("\"{set}\""),
+                        "the name of a set of nodes or of an edge",
+                        hint,
+                    )
+                }
+                Some(nodes) if one && nodes.len() != 1 => (
+                    format!("\"{set}\", a set of {} nodes", nodes.len()),
+                    "a set of one node",
+                    None,
+                ),
+                Some(_) => continue,
+            };
+            self.fault(Finding::new(place, found, expected).hint(hint));
+        }
+        for (name, held) in &elements.points {
+            if let Held::Edge(set) = held
+                && !part.mesh.edge_sets.contains_key(set)
+            {
+                let place = join(&join(&join(&pointer, "points"), name), "edge");
+                let hint = advice(set, "edges", edges.clone());
+                let found = format!("\"{set}\"");
+                self.fault(Finding::new(place, found, "the name of an edge").hint(hint));
+            }
+        }
+        if self.findings.len() > before {
+            return;
+        }
+        if let Some(FrameNodes::Chord(chord)) = frame_nodes(&part.mesh, &elements.frame)
+            && !spans(&part.nodes, chord)
+        {
+            let found = "three nodes on a line";
+            let expected = "three nodes that span a plane";
+            self.fault(Finding::new(join(&frame, "chord"), found, expected));
+        }
+    }
+
+    /// Whether a body is a beam or of shells; a fault if not.
+    pub(super) fn measured_elastic(&mut self, pointer: &str, name: &str) -> bool {
+        let body = self.document.bodies.get(name);
+        body.is_some_and(|body| body.elements.is_some())
+            || self.measured_beam(pointer, name).is_some()
+    }
+
+    pub(super) fn shell_stress(&mut self, pointer: &str, of: &ShellStress) {
+        let body = self.document.bodies.get(&of.body);
+        let Some(elements) = body.and_then(|body| body.elements.as_ref()) else {
+            if !self.damage.holds("bodies", &of.body) {
+                let bodies = self.document.bodies.iter();
+                let shells = bodies.filter(|(_, body)| body.elements.is_some());
+                let hint = advice(
+                    &of.body,
+                    "bodies of shells",
+                    shells.map(|(name, _)| name.as_str()),
+                );
+                let found = format!("\"{}\"", of.body);
+                let finding =
+                    Finding::new(join(pointer, "body"), found, "the name of a body of shells");
+                self.fault(finding.hint(hint));
+            }
+            return;
+        };
+        let structure = &elements.structure;
+        let material = self.document.materials.get(&structure.material);
+        if material.is_some_and(|material| material.yield_stress.is_none()) {
+            let place = join("/materials", &structure.material);
+            let found = "a material without \"yield_stress\"";
+            let expected = "a yield stress, as a function compares stresses with it";
+            self.fault(Finding::new(place, found, expected).of_key());
+        }
+        let Some(set) = &of.elements else { return };
+        if self.findings.is_empty() {
+            let sets = part::<f64>(structure, &[], 1).mesh.face_sets;
+            if sets.get(set).is_none_or(Vec::is_empty) {
+                let hint = advice(set, "sets of faces", sets.keys().map(String::as_str));
+                let found = format!("\"{set}\"");
+                let expected = "the name of a set of elements that has some";
+                self.fault(Finding::new(join(pointer, "elements"), found, expected).hint(hint));
+            }
+        }
+    }
+}

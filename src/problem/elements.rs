@@ -1,0 +1,147 @@
+//! From the shells of a body in a file to their coordinates and points.
+
+use super::prepared::Prepared;
+use super::quantity::Quantity;
+use super::schema::Document;
+use super::schema::elements::{ElementFrame, Elements, Held};
+use super::schema::structures::{Mesh as WrittenMesh, Structure as WrittenStructure};
+use super::statics::mesh::{Part, part};
+use super::statics::properties::{slots, thickness};
+use crate::math::{Scalar, Vec3};
+use crate::model::finite::FiniteElements;
+use crate::structures::beam::{Section, SectionValues};
+use crate::structures::floating::{FrameNodes, element_mesh};
+use crate::structures::material::Material;
+use crate::structures::mesh::Mesh;
+use crate::structures::structure::{Structure, Topology};
+use std::sync::Arc;
+
+/// The nodes of a set of nodes or of an edge.
+pub(crate) fn nodes_of(mesh: &Mesh, set: &str) -> Option<Vec<usize>> {
+    let nodes = mesh.node_sets.get(set).cloned();
+    nodes.or_else(|| mesh.edge_sets.get(set).map(|edges| edges.concat()))
+}
+
+/// The nodes that hold the axes; `None` if a set is missing.
+pub(crate) fn frame_nodes(mesh: &Mesh, frame: &ElementFrame) -> Option<FrameNodes> {
+    let one = |set: &String| nodes_of(mesh, set)?.first().copied();
+    match frame {
+        ElementFrame::Chord([o, b, c]) => Some(FrameNodes::Chord([one(o)?, one(b)?, one(c)?])),
+        ElementFrame::Clamped(set) => {
+            let nodes = nodes_of(mesh, set).filter(|nodes| !nodes.is_empty());
+            nodes.map(FrameNodes::Clamped)
+        }
+    }
+}
+
+/// The numbers of a mesh.
+pub(crate) fn mesh_quantities(mesh: &WrittenMesh) -> Vec<Quantity> {
+    match mesh {
+        WrittenMesh::Plate { length, width, .. } => vec![*length, *width],
+        WrittenMesh::Panel { points, .. } => points.as_flattened().to_vec(),
+        WrittenMesh::CurvedPanel {
+            radius,
+            length,
+            angles,
+            ..
+        } => vec![*radius, *length, angles[0], angles[1]],
+        WrittenMesh::Cylinder { radius, length, .. } => vec![*radius, *length],
+        WrittenMesh::StraightBeam { .. }
+        | WrittenMesh::CurvedBeam { .. }
+        | WrittenMesh::Frame { .. } => Vec::new(),
+    }
+}
+
+/// The mesh of shells with the numbers of the file.
+pub(crate) fn part_of_file(structure: &WrittenStructure) -> Part<f64> {
+    let place = structure.at.iter().flatten().copied();
+    let numbers = mesh_quantities(&structure.mesh).into_iter().chain(place);
+    let mut x = Vec::new();
+    for quantity in numbers {
+        if let Some(i) = quantity.variable {
+            x.resize(x.len().max(i + 1), 0.0);
+            x[i] = quantity.value;
+        }
+    }
+    part(structure, &x, 1)
+}
+
+/// Works out what no design changes. A checked file has all sets.
+pub(crate) fn prepared(document: &Document, elements: &Elements) -> Arc<Prepared> {
+    let new = || {
+        const CHECKED: &str = "sets are checked when a problem is read";
+        let (written, none) = (&elements.structure, Section::Given(SectionValues::zeros()));
+        let part = part_of_file(written);
+        let slots = slots(written, &part);
+        let shells = part.mesh.shells.len();
+        let material = document.materials.get(&written.material);
+        let value =
+            |quantity: Option<Quantity>, default: f64| quantity.map_or(default, |q| q.value);
+        let structure = Structure {
+            topology: Arc::new(Topology::new(
+                part.mesh.clone(),
+                &part.nodes,
+                [vec![0; shells], Vec::new()],
+                Vec::new(),
+            )),
+            nodes: part.nodes,
+            thickness: vec![1.0; shells],
+            surface_mass: vec![0.0; shells],
+            sections: vec![none; 0],
+            orientations: Vec::new(),
+            offsets: Vec::new(),
+            line_mass: Vec::new(),
+            masses: Vec::new(),
+            materials: vec![Material {
+                young: 1.0,
+                poisson: value(material.map(|material| material.poisson), 0.3),
+                density: 1.0,
+                yield_stress: value(material.and_then(|material| material.yield_stress), 1.0),
+            }],
+        };
+        let frame = frame_nodes(&part.mesh, &elements.frame).expect(CHECKED);
+        let (mesh, surface) = element_mesh(&structure, &frame).expect(CHECKED);
+        let motion = |held: &Held| match held {
+            Held::Node(set) => surface.node(nodes_of(&part.mesh, set).expect(CHECKED)[0]),
+            Held::Edge(set) => surface.edge(&part.mesh.edge_sets[set]),
+        };
+        let points = elements.points.iter();
+        Arc::new(Prepared {
+            mesh: Arc::new(mesh),
+            points: points
+                .map(|(name, held)| (name.clone(), motion(held)))
+                .collect(),
+            slots,
+            sets: part.mesh,
+        })
+    };
+    elements.prepared.get_or_init(new).clone()
+}
+
+/// The shells at the design `x`.
+pub(crate) fn finite<S: Scalar>(
+    document: &Document,
+    elements: &Elements,
+    x: &[S],
+) -> FiniteElements<S> {
+    let prepared = prepared(document, elements);
+    let written = &elements.structure;
+    let material = &document.materials[&written.material];
+    let count = prepared.mesh.elements.len();
+    let zero = Quantity::fixed(0.0);
+    let all = |quantity: Quantity| vec![quantity.get(x); count];
+    FiniteElements {
+        thickness: (prepared.slots.iter())
+            .map(|&slot| thickness(written, slot).get(x))
+            .collect(),
+        young: all(material.young),
+        density: all(material.density.unwrap_or(zero)),
+        surface_mass: all(written.surface_mass.unwrap_or(zero)),
+        mesh: prepared.mesh.clone(),
+    }
+}
+
+/// The place of a named point in the undeformed body, in its axes \[m\].
+pub(crate) fn place(document: &Document, elements: &Elements, name: &str) -> Vec3<f64> {
+    prepared(document, elements).points[name].place
+}

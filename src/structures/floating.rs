@@ -1,0 +1,326 @@
+//! Shells as bodies that move: the numbers of a mesh for a floating frame, and how its nodes and edges move
+//! with the coordinates.
+
+use super::assembly::Assembly;
+use super::mesh::UnknownSet;
+use super::shell::basis::TABLES;
+use super::state::Configuration;
+use super::structure::Structure;
+use super::supports::{NodeUnknowns, Support};
+use crate::math::{Mat3, Scalar, Vec3};
+use crate::model::finite::{ElementMesh, FiniteElements, NODES, ShellElement};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What holds the axes of a body of shells.
+#[derive(Clone, Debug)]
+pub(crate) enum FrameNodes {
+    /// Nodes O, B, C: O is where it was, B stays on the line from O, C in the plane of the three. Of B all
+    /// displacements are held but that most along the line, of C that most along the normal.
+    Chord([usize; 3]),
+    /// Nodes that do not move.
+    Clamped(Vec<usize>),
+}
+
+/// The component of a vector that is largest.
+fn largest(v: &Vec3<f64>) -> usize {
+    let all = (0..3).max_by(|&i, &j| v[i].abs().total_cmp(&v[j].abs()));
+    all.unwrap_or(0)
+}
+
+/// The sine of the angle at O below which three nodes count as on a line.
+const ON_LINE: f64 = 0.01;
+
+/// Whether three nodes span a plane.
+pub(crate) fn spans(nodes: &[Vec3<f64>], [o, b, c]: [usize; 3]) -> bool {
+    let (b, c) = (nodes[b] - nodes[o], nodes[c] - nodes[o]);
+    b.cross(&c).norm() > ON_LINE * b.norm() * c.norm()
+}
+
+/// The mesh of a structure of shells in a floating frame. Its nodes are in the axes of the frame.
+///
+/// # Errors
+/// None for sets that are made here.
+pub(crate) fn element_mesh(
+    structure: &Structure<f64>,
+    frame: &FrameNodes,
+) -> Result<(ElementMesh, Surface), UnknownSet> {
+    let mut held = structure.clone();
+    let topology = Arc::make_mut(&mut held.topology);
+    let mut supports = Vec::new();
+    let mut hold =
+        |name: &str, nodes: Vec<usize>, displacements: [bool; 3], rotations: [bool; 3]| {
+            topology.mesh.node_sets.insert(name.to_owned(), nodes);
+            supports.push(Support::of(name, displacements, rotations));
+        };
+    match frame {
+        FrameNodes::Chord([o, b, c]) => {
+            let (along, aside) = (
+                structure.nodes[*b] - structure.nodes[*o],
+                structure.nodes[*c] - structure.nodes[*o],
+            );
+            let (line, normal) = (largest(&along), largest(&along.cross(&aside)));
+            let none = [false; 3];
+            hold("frame, origin", vec![*o], [true; 3], none);
+            hold("frame, line", vec![*b], [0, 1, 2].map(|k| k != line), none);
+            hold(
+                "frame, plane",
+                vec![*c],
+                [0, 1, 2].map(|k| k == normal),
+                none,
+            );
+        }
+        FrameNodes::Clamped(nodes) => {
+            hold("frame, clamped", nodes.clone(), [true; 3], [true; 3]);
+        }
+    }
+    let assembly = Assembly::new(&held, &supports, NodeUnknowns::Natural)?;
+    let configuration = assembly.configuration(&held);
+    let unknowns = &assembly.unknowns;
+    let elements = (0..held.topology.mesh.shells.len()).map(|i| element(&configuration, i));
+    let surface = Surface::of(&configuration);
+    let mesh = ElementMesh {
+        coordinates: unknowns.count,
+        elements: elements.collect(),
+        nodes: held.nodes.clone(),
+        displacements: unknowns.nodes.iter().map(|at| at.displacements).collect(),
+    };
+    Ok((mesh, surface))
+}
+
+fn element(configuration: &Configuration<f64>, index: usize) -> ShellElement {
+    let shell = configuration.shell(index);
+    let nodes = configuration.structure.topology.mesh.shells[index];
+    let axes = configuration.element_axes(index);
+    let operators = shell.operators(&axes);
+    let mut points = [Vec3::zeros(); 2 * NODES];
+    points[..NODES].copy_from_slice(&shell.geometry.points);
+    points[NODES..].copy_from_slice(&shell.geometry.directors);
+    let (mut coordinates, mut moves) = (Vec::new(), Vec::new());
+    for (a, &node) in nodes.iter().enumerate() {
+        for (k, displacement) in configuration.unknowns.nodes[node]
+            .displacements
+            .iter()
+            .enumerate()
+        {
+            coordinates.push(*displacement);
+            moves.push((a, Vec3::from_fn(|i, _| f64::from(u8::from(i == k)))));
+        }
+    }
+    for (a, &node) in nodes.iter().enumerate() {
+        for (axis, unknown) in axes.axes[a]
+            .iter()
+            .zip(configuration.unknowns.rotations_of(node))
+        {
+            coordinates.push(Some(unknown));
+            moves.push((NODES + a, axis.cross(&shell.geometry.directors[a])));
+        }
+    }
+    let mut shares = [[0.0; NODES]; NODES];
+    let mut area = 0.0;
+    for (k, basis) in TABLES.gauss.iter().enumerate() {
+        let own = shell.area(k);
+        area += own;
+        for a in 0..NODES {
+            for b in 0..NODES {
+                shares[a][b] += own * basis.n[a] * basis.n[b];
+            }
+        }
+    }
+    let second = |points: &[Vec3<f64>]| {
+        let mut sum = Mat3::zeros();
+        for (a, x) in points.iter().enumerate() {
+            for (b, y) in points.iter().enumerate() {
+                sum += x * y.transpose() * shares[a][b];
+            }
+        }
+        sum
+    };
+    ShellElement {
+        nodes,
+        coordinates,
+        second: [second(&points[..NODES]), second(&points[NODES..])],
+        points,
+        moves,
+        shares,
+        area,
+        membrane: operators.membrane,
+        slopes: operators.slopes,
+        plane: operators.plane,
+        linear: operators.linear,
+        poisson: shell.material.poisson,
+        yield_stress: shell.material.yield_stress,
+    }
+}
+
+impl<S: Scalar> FiniteElements<S> {
+    /// Mass \[kg\], and inertia about the origin \[kg m²\], of the undeformed body.
+    pub(crate) fn rigid(&self) -> (S, Mat3<S>) {
+        let (mut mass, mut second) = (S::zero(), Mat3::zeros());
+        for (i, element) in self.mesh.elements.iter().enumerate() {
+            let (h, rho) = (self.thickness[i], self.density[i]);
+            let per_area = rho * h + self.surface_mass[i];
+            mass += per_area * element.area;
+            second += element.second[0].map(S::from) * per_area;
+            second += element.second[1].map(S::from) * (rho * h * h * h * (1.0 / 12.0));
+        }
+        (mass, Mat3::identity() * second.trace() - second)
+    }
+}
+
+/// How a point of the body moves with some coordinates.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PointMotion {
+    /// Where it is in the undeformed body \[m\].
+    pub place: Vec3<f64>,
+    /// The coordinates.
+    pub coordinates: Vec<usize>,
+    /// Displacement by each.
+    pub displacement: Vec<Vec3<f64>>,
+    /// Rotation by each.
+    pub rotation: Vec<Vec3<f64>>,
+}
+
+/// Displacements and rotations of all nodes by coordinates.
+#[derive(Clone, Debug)]
+pub(crate) struct Surface {
+    nodes: Vec<Vec3<f64>>,
+    displacements: Vec<[Option<usize>; 3]>,
+    /// Rotation of each node: coordinate and rotation vector.
+    rotations: Vec<Vec<(usize, Vec3<f64>)>>,
+}
+
+impl Surface {
+    /// Rotations about tangents are those of the nodes; that about the normal of a smooth surface is
+    /// ½ (e2·u,1 − e1·u,2) there, the mean over the elements.
+    fn of(configuration: &Configuration<f64>) -> Self {
+        let unknowns = configuration.unknowns;
+        let mesh = &configuration.structure.topology.mesh;
+        let nodes = &configuration.structure.nodes;
+        let displacements: Vec<[Option<usize>; 3]> =
+            unknowns.nodes.iter().map(|at| at.displacements).collect();
+        let mut rotations: Vec<Vec<(usize, Vec3<f64>)>> = (0..nodes.len())
+            .map(|node| {
+                let (axes, _) = configuration.axes(node);
+                unknowns.rotations_of(node).zip(axes).collect()
+            })
+            .collect();
+        let mut uses = vec![0.0; nodes.len()];
+        for element in &mesh.shells {
+            element.iter().for_each(|&node| uses[node] += 1.0);
+        }
+        for element in &mesh.shells {
+            for (local, &node) in element.iter().enumerate() {
+                let Some(_) = configuration.smooth_director(node) else {
+                    continue;
+                };
+                let basis = &TABLES.nodes[local];
+                let tangent = |k: usize| {
+                    let all = element.iter().zip(&basis.by[k]);
+                    all.fold(Vec3::zeros(), |sum: Vec3<f64>, (&b, n)| sum + nodes[b] * *n)
+                };
+                let (ar, as_) = (tangent(0), tangent(1));
+                let normal = ar.cross(&as_);
+                // About n: ½ (a_s·u_r − a_r·u_s) / J.
+                let about = normal * (0.5 / (normal.norm_squared() * uses[node]));
+                for (b, &other) in element.iter().enumerate() {
+                    let by = as_ * basis.by[0][b] - ar * basis.by[1][b];
+                    for k in 0..3 {
+                        if let Some(coordinate) = displacements[other][k] {
+                            rotations[node].push((coordinate, about * by[k]));
+                        }
+                    }
+                }
+            }
+        }
+        Self {
+            nodes: nodes.clone(),
+            displacements,
+            rotations,
+        }
+    }
+
+    /// The motion of a node.
+    pub(crate) fn node(&self, node: usize) -> PointMotion {
+        let mut sum = Sum::default();
+        sum.displace(&self.displacements[node], 1.0);
+        for (coordinate, rotation) in &self.rotations[node] {
+            sum.at(*coordinate).1 += rotation;
+        }
+        sum.finish(self.nodes[node])
+    }
+
+    /// The motion of a straight edge as a whole: the mean displacement by Simpson's weights, the turn of its
+    /// line, and about its line the mean of the rotations.
+    pub(crate) fn edge(&self, edges: &[[usize; 3]]) -> PointMotion {
+        let mut weights: BTreeMap<usize, f64> = BTreeMap::new();
+        for edge in edges {
+            let length = (self.nodes[edge[2]] - self.nodes[edge[0]]).norm();
+            for (&node, part) in edge.iter().zip([1.0, 4.0, 1.0]) {
+                *weights.entry(node).or_default() += part / 6.0 * length;
+            }
+        }
+        let total: f64 = weights.values().sum();
+        let all = weights.iter().map(|(&node, w)| (node, w / total));
+        let all: Vec<(usize, f64)> = all.collect();
+        let place = (all.iter()).fold(Vec3::zeros(), |sum: Vec3<f64>, &(node, w)| {
+            sum + self.nodes[node] * w
+        });
+        let far = |from: Vec3<f64>| {
+            let distance = |node: usize| (self.nodes[node] - from).norm();
+            let nodes = all.iter().map(|(node, _)| *node);
+            let far = nodes.max_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+            far.map_or(from, |node| self.nodes[node])
+        };
+        let start = far(place);
+        let along = (far(start) - start).normalize();
+        let arm = |node: usize| (self.nodes[node] - place).dot(&along);
+        let square: f64 = all.iter().map(|&(node, w)| w * arm(node).powi(2)).sum();
+        let mut sum = Sum::default();
+        for &(node, w) in &all {
+            sum.displace(&self.displacements[node], w);
+            let lever = w * arm(node) / square;
+            for (k, coordinate) in self.displacements[node].iter().enumerate() {
+                if let Some(coordinate) = coordinate {
+                    let unit = Vec3::from_fn(|i, _| f64::from(u8::from(i == k)));
+                    sum.at(*coordinate).1 += along.cross(&unit) * lever;
+                }
+            }
+            for (coordinate, rotation) in &self.rotations[node] {
+                sum.at(*coordinate).1 += along * (w * rotation.dot(&along));
+            }
+        }
+        sum.finish(place)
+    }
+}
+
+/// A sum of displacements and rotations by coordinates.
+#[derive(Default)]
+struct Sum(BTreeMap<usize, (Vec3<f64>, Vec3<f64>)>);
+
+impl Sum {
+    fn at(&mut self, coordinate: usize) -> &mut (Vec3<f64>, Vec3<f64>) {
+        self.0.entry(coordinate).or_default()
+    }
+
+    fn displace(&mut self, coordinates: &[Option<usize>; 3], weight: f64) {
+        for (k, coordinate) in coordinates.iter().enumerate() {
+            if let Some(coordinate) = coordinate {
+                self.at(*coordinate).0[k] += weight;
+            }
+        }
+    }
+
+    fn finish(self, place: Vec3<f64>) -> PointMotion {
+        let mut out = PointMotion {
+            place,
+            ..PointMotion::default()
+        };
+        for (coordinate, (displacement, rotation)) in self.0 {
+            out.coordinates.push(coordinate);
+            out.displacement.push(displacement);
+            out.rotation.push(rotation);
+        }
+        out
+    }
+}

@@ -1,0 +1,123 @@
+//! From the coordinates of a body to the unknowns and points of an element, and back.
+
+use crate::math::{Mat3, Scalar, Vec3};
+use crate::model::finite::{FiniteElements, NODES, POINTS, ShellElement, UNKNOWNS};
+
+/// Unknowns of an element, or forces on them.
+pub(crate) type Local<S> = [S; UNKNOWNS];
+/// A vector for each point of an element.
+pub(super) type Points<S> = [Vec3<S>; POINTS];
+
+/// A constant vector in another scalar.
+pub(crate) fn lift<S: Scalar>(v: &Vec3<f64>) -> Vec3<S> {
+    v.map(S::from)
+}
+
+/// The unknowns of an element.
+pub(crate) fn gather<S: Scalar>(element: &ShellElement, q: &[S]) -> Local<S> {
+    let mut out = [S::zero(); UNKNOWNS];
+    for (out, coordinate) in out.iter_mut().zip(&element.coordinates) {
+        if let Some(i) = coordinate {
+            *out = q[*i];
+        }
+    }
+    out
+}
+
+/// Transpose of [`gather`].
+pub(super) fn scatter<S: Scalar>(element: &ShellElement, x: &Local<S>, out: &mut [S]) {
+    for (&x, coordinate) in x.iter().zip(&element.coordinates) {
+        if let Some(i) = coordinate {
+            out[*i] += x;
+        }
+    }
+}
+
+/// How unknowns, or their rates, move the points.
+pub(crate) fn motion<S: Scalar>(element: &ShellElement, x: &Local<S>) -> Points<S> {
+    let mut out = [Vec3::zeros(); POINTS];
+    for (&x, (point, along)) in x.iter().zip(&element.moves) {
+        for k in 0..3 {
+            out[*point][k] += x * along[k];
+        }
+    }
+    out
+}
+
+/// Transpose of [`motion`].
+pub(super) fn motion_transpose<S: Scalar>(element: &ShellElement, by: &Points<S>) -> Local<S> {
+    let mut out = [S::zero(); UNKNOWNS];
+    for (out, (point, along)) in out.iter_mut().zip(&element.moves) {
+        let by = &by[*point];
+        *out = by[0] * along[0] + by[1] * along[1] + by[2] * along[2];
+    }
+    out
+}
+
+/// Where the points are.
+pub(super) fn points<S: Scalar>(element: &ShellElement, x: &Local<S>) -> Points<S> {
+    let mut out = motion(element, x);
+    for (out, point) in out.iter_mut().zip(&element.points) {
+        for k in 0..3 {
+            out[k] += S::from(point[k]);
+        }
+    }
+    out
+}
+
+/// Mass and rotary inertia per area of an element.
+pub(super) fn per_area<S: Scalar>(finite: &FiniteElements<S>, i: usize) -> [S; 2] {
+    let (h, rho) = (finite.thickness[i], finite.density[i]);
+    [
+        rho * h + finite.surface_mass[i],
+        rho * h * h * h * (1.0 / 12.0),
+    ]
+}
+
+/// Transpose of the derivative of [`per_area`].
+pub(super) fn pull_per_area(
+    finite: &FiniteElements<f64>,
+    i: usize,
+    by: [f64; 2],
+    cot: &mut FiniteElements<f64>,
+) {
+    let (h, rho) = (finite.thickness[i], finite.density[i]);
+    cot.surface_mass[i] += by[0];
+    cot.density[i] += by[0] * h + by[1] * h * h * h / 12.0;
+    cot.thickness[i] += by[0] * rho + by[1] * rho * h * h / 4.0;
+}
+
+/// Σ_l A_kl x_l: positions with positions, directors with directors.
+pub(super) fn share<S: Scalar>(element: &ShellElement, x: &Points<S>) -> Points<S> {
+    let mut out = [Vec3::zeros(); POINTS];
+    for kind in [0, NODES] {
+        for (a, row) in element.shares.iter().enumerate() {
+            let out = &mut out[kind + a];
+            for (b, &share) in row.iter().enumerate() {
+                let x = &x[kind + b];
+                for k in 0..3 {
+                    out[k] += x[k] * share;
+                }
+            }
+        }
+    }
+    out
+}
+
+/// The products of [`share`] times the masses per area.
+pub(super) fn weigh<S: Scalar>(
+    element: &ShellElement,
+    per_area: [S; 2],
+    x: &Points<S>,
+) -> Points<S> {
+    let mut out = share(element, x);
+    for (k, out) in out.iter_mut().enumerate() {
+        *out *= per_area[k / NODES];
+    }
+    out
+}
+
+/// Second moment of the undeformed element, which the rigid body has.
+pub(super) fn second<S: Scalar>(element: &ShellElement, per_area: [S; 2]) -> Mat3<S> {
+    element.second[0].map(S::from) * per_area[0] + element.second[1].map(S::from) * per_area[1]
+}

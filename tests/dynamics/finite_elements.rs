@@ -1,0 +1,255 @@
+//! Bodies of shells as finite elements: forces and energies against the elements of statics and against sums
+//! over points, and the motion of free bodies.
+
+use crate::tests::reference;
+
+use flexbody::integrate::{Method, Settings, Trajectory, simulate};
+use flexbody::math::Vec3;
+use flexbody::model::{Form, Model};
+use flexbody::structures::shell::basis::TABLES;
+use flexbody::structures::shell::{Field, Motion, NODES, Terms};
+use flexbody::structures::state::Configuration;
+use flexbody::structures::supports::{AtNode, NodeUnknowns, Rotations, Unknowns};
+use flexbody::system::bodies::{BodyMotion, all_force_balances};
+use flexbody::system::marker::{MarkerKinematics, RelativeMotion};
+use flexbody::system::{Numbering, finite, flexible, placement};
+use reference::models::Numbers;
+use reference::shells::{Shells, shells};
+
+/// A free body of shells at a random state.
+fn free(seed: u64, elements: [usize; 2], clamped: bool, size: f64) -> (Model<f64>, Shells) {
+    let mut numbers = Numbers(seed);
+    let shells = shells(&mut numbers, elements, clamped);
+    let mut frame = numbers.body("panel");
+    (frame.mass, frame.inertia) = shells.elements.rigid();
+    let mut model = Model {
+        gravity: numbers.vector() * 9.0,
+        bodies: vec![frame],
+        joints: Vec::new(),
+        loads: Vec::new(),
+        flexible: Vec::new(),
+    };
+    let count = shells.elements.mesh.coordinates;
+    let start = |numbers: &mut Numbers, by: f64| -> Vec<f64> {
+        numbers.list(count).iter().map(|x| x * by).collect()
+    };
+    let (q, rate) = (start(&mut numbers, size), start(&mut numbers, 5.0 * size));
+    model.add_flexible(0, (&q, &rate), Form::Finite(shells.elements.clone()));
+    (model, shells)
+}
+
+/// Coordinates as a motion of the nodes of an element.
+fn field(shells: &Shells, index: usize, q: &[f64]) -> Field<f64> {
+    let element = &shells.elements.mesh.elements[index];
+    let mut field = Field::zeros();
+    for (coordinate, (point, along)) in element.coordinates.iter().zip(&element.moves) {
+        let Some(i) = coordinate else { continue };
+        match point / NODES {
+            0 => field.points[*point] += along * q[*i],
+            _ => field.directors[point - NODES] += along * q[*i],
+        }
+    }
+    field
+}
+
+/// The energy is that of the elements of statics with von Karman's strains; forces are its derivatives.
+#[test]
+fn elastic_energy_is_that_of_the_shells() {
+    let none = AtNode {
+        displacements: [None; 3],
+        rotations: Rotations::Global([false; 3]),
+        first_rotation: 0,
+    };
+    for (seed, elements, clamped) in [(1, [1, 1], false), (2, [2, 1], true), (3, [2, 2], false)] {
+        let (_, shells) = free(seed, elements, clamped, 0.05);
+        let own = &shells.elements;
+        let q: Vec<f64> = Numbers(seed + 50).list(own.mesh.coordinates);
+        let q: Vec<f64> = q.iter().map(|q| q * 0.05).collect();
+        let unknowns = Unknowns {
+            nodes: vec![none; shells.structure.nodes.len()],
+            count: 0,
+        };
+        let at = Configuration::new(&shells.structure, &unknowns, NodeUnknowns::Natural);
+        let mut exact = 0.0;
+        for (i, element) in own.mesh.elements.iter().enumerate() {
+            let mut shell = at.shell(i);
+            shell.thickness = own.thickness[i];
+            shell.material.young = own.young[i];
+            let field = field(&shells, i, &q);
+            // θ × D gives back what moves the director.
+            let mut motion = Motion::zeros();
+            motion.displacement = field.points;
+            for a in 0..NODES {
+                let d = &element.points[NODES + a];
+                motion.rotation[a] = d.cross(&field.directors[a]);
+            }
+            exact += shell.energy(&motion, Terms::VON_KARMAN).total();
+        }
+        let energy = finite::energy(own, &q);
+        assert!((energy - exact).abs() < 1e-12 * exact, "{energy} {exact}");
+        let mut force = vec![0.0; q.len()];
+        finite::add_forces(own, &q, &mut force);
+        let lifted = flexbody::math::Parameters::map(own, &mut flexbody::math::Complex64::from);
+        let largest = force.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        for (j, force) in force.iter().enumerate() {
+            let mut q: Vec<_> = q
+                .iter()
+                .map(|&q| flexbody::math::Complex64::new(q, 0.0))
+                .collect();
+            q[j].im = 1e-30;
+            let slope = finite::energy(&lifted, &q).im / 1e-30;
+            assert!((force - slope).abs() < 1e-12 * largest);
+        }
+    }
+}
+
+/// The virtual power of the forces is the sum over Gauss points of mass times acceleration less gravity, and
+/// of rotary inertia times the acceleration of directors; energy and momenta likewise.
+#[test]
+fn inertia_is_that_of_the_points() {
+    for (seed, elements, clamped) in [(11, [1, 1], false), (12, [2, 1], true)] {
+        let (model, shells) = free(seed, elements, clamped, 0.1);
+        let own = &shells.elements;
+        let numbering = Numbering::new(&model);
+        let (q, v) = placement::guess(&model);
+        let mut numbers = Numbers(seed + 70);
+        let (a, w) = (numbers.list(v.len()), numbers.list(v.len()));
+        let mut motions = Vec::new();
+        BodyMotion::all(&numbering, &q, &v, &mut motions);
+        let mut forces = vec![0.0; v.len()];
+        all_force_balances(&model, &numbering, &motions, &a, &mut forces);
+        flexible::add_force_balances(&model, &numbering, &motions, &a, &mut forces);
+        let places: Vec<(usize, usize)> = model.flexible[0].places().collect();
+        let elastic = |of: &[f64], start: &dyn Fn(usize) -> usize| -> Vec<f64> {
+            places.iter().map(|&(b, k)| of[start(b) + k]).collect()
+        };
+        let by_v = |b: usize| numbering.velocity(b);
+        let (x, xdot) = (elastic(&q, &|b| numbering.position(b)), elastic(&v, &by_v));
+        let (xddot, xw) = (elastic(&a, &by_v), elastic(&w, &by_v));
+        let mut elastic_power = 0.0;
+        let mut stiff = vec![0.0; x.len()];
+        finite::add_forces(own, &x, &mut stiff);
+        stiff
+            .iter()
+            .zip(&xw)
+            .for_each(|(f, w)| elastic_power += f * w);
+        let all = (0..6).chain(places.iter().map(|&(b, k)| by_v(b) + k));
+        let power: f64 = all.map(|i| forces[i] * w[i]).sum::<f64>() - elastic_power;
+        let motion = motions[0].accelerated(&a).virtually(&w);
+        let origin = MarkerKinematics::moving_point(&motion, &Vec3::zeros(), None);
+        let (mut exact, mut kinetic) = (0.0, 0.0);
+        let (mut linear, mut angular) = (Vec3::zeros(), Vec3::zeros());
+        for (i, element) in own.mesh.elements.iter().enumerate() {
+            let [u, rate, second, along] = [&x, &xdot, &xddot, &xw].map(|x| field(&shells, i, x));
+            for (k, basis) in TABLES.gauss.iter().enumerate() {
+                let nodes = |all: &dyn Fn(usize) -> Vec3<f64>| {
+                    let all = (0..NODES).map(|a| all(a) * basis.n[a]);
+                    all.fold(Vec3::zeros(), |sum: Vec3<f64>, x| sum + x)
+                };
+                let h = own.thickness[i];
+                let tangents = [0, 1].map(|d| {
+                    let all = (0..NODES).map(|a| element.points[a] * basis.by[d][a]);
+                    all.fold(Vec3::zeros(), |sum: Vec3<f64>, x| sum + x)
+                });
+                let area = tangents[0].cross(&tangents[1]).norm() * TABLES.weights[k];
+                let masses = [
+                    own.density[i] * h + own.surface_mass[i],
+                    own.density[i] * h.powi(3) / 12.0,
+                ];
+                for (kind, mass) in masses.into_iter().enumerate() {
+                    let of = |field: &Field<f64>, a: usize| match kind {
+                        0 => field.points[a],
+                        _ => field.directors[a],
+                    };
+                    let local = RelativeMotion {
+                        rate: nodes(&|a| of(&rate, a)),
+                        acceleration: nodes(&|a| of(&second, a)),
+                        virtual_rate: nodes(&|a| of(&along, a)),
+                    };
+                    let place = nodes(&|a| element.points[kind * NODES + a] + of(&u, a));
+                    let mut at = MarkerKinematics::moving_point(&motion, &place, Some(&local));
+                    let mut gravity = model.gravity;
+                    if kind == 1 {
+                        at = at.minus(&origin);
+                        gravity = Vec3::zeros();
+                    } else {
+                        linear += at.rate * (mass * area);
+                    }
+                    exact += mass * area * (at.acceleration - gravity).dot(&at.virtual_rate);
+                    kinetic += 0.5 * mass * area * at.rate.norm_squared();
+                    angular += at.x.cross(&at.rate) * (mass * area);
+                }
+            }
+        }
+        assert!(
+            (power - exact).abs() <= 1e-12 * exact.abs().max(10.0),
+            "{power} {exact}"
+        );
+        let held = flexible::held(&model, &motions);
+        let body = &model.bodies[0];
+        let spin = body.inertia * motion.omega;
+        let energy = held.kinetic
+            + 0.5 * (body.mass * motion.velocity.norm_squared() + spin.dot(&motion.omega));
+        assert!((energy - kinetic).abs() <= 1e-12 * kinetic.max(1.0));
+        let momentum = held.momentum + motion.velocity * body.mass;
+        assert!((momentum - linear).norm() <= 1e-12 * linear.norm().max(10.0));
+        let turning = held.angular_momentum
+            + motion.position.cross(&motion.velocity) * body.mass
+            + motion.rotation * spin;
+        assert!((turning - angular).norm() <= 1e-12 * angular.norm().max(10.0));
+    }
+}
+
+const RADAU: Method = Method::Radau { stages: 3 };
+
+fn run(model: &Model<f64>, duration: f64, steps: usize) -> Trajectory<f64> {
+    simulate(model, duration, &Settings::steps(RADAU, steps)).expect("runs")
+}
+
+/// A free body keeps its momenta; its energy is kept to the order of the method; a velocity that is added
+/// to all of it changes nothing of its deformation.
+#[test]
+fn a_free_body_moves_as_it_must() {
+    let (mut model, _) = free(21, [2, 1], false, 0.02);
+    model.gravity.fill(0.0);
+    let held = |run: &Trajectory<f64>, k: usize| {
+        let mut motions = Vec::new();
+        BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
+        let (held, body, motion) = (
+            flexible::held(&model, &motions),
+            &model.bodies[0],
+            &motions[0],
+        );
+        let spin = body.inertia * motion.omega;
+        let energy = held.kinetic
+            + held.potential
+            + 0.5 * (body.mass * motion.velocity.norm_squared() + spin.dot(&motion.omega));
+        let angular = held.angular_momentum
+            + motion.position.cross(&motion.velocity) * body.mass
+            + motion.rotation * spin;
+        (energy, held.momentum + motion.velocity * body.mass, angular)
+    };
+    let drift = |steps: usize| {
+        let run = run(&model, 0.2, steps);
+        let (first, last) = (held(&run, 0), held(&run, run.last()));
+        let (linear, angular) = ((first.1 - last.1).norm(), (first.2 - last.2).norm());
+        ([(first.0 - last.0).abs(), linear, angular], run)
+    };
+    let (coarse, fine) = (drift(40), drift(80));
+    for (coarse, fine) in coarse.0.into_iter().zip(fine.0) {
+        assert!(coarse / fine > 8.0 && fine < 1e-5, "{coarse:e} {fine:e}");
+    }
+    let mut faster = model.clone();
+    faster.bodies[0].velocity += Vec3::new(6.0, -8.0, 3.0);
+    let (own, other) = (fine.1, run(&faster, 0.2, 80));
+    let elastic = |run: &Trajectory<f64>| -> Vec<f64> {
+        let places = model.flexible[0].places();
+        let q = run.q(run.last());
+        places
+            .map(|(b, k)| q[run.numbering.position(b) + k])
+            .collect()
+    };
+    for (x, y) in elastic(&own).iter().zip(elastic(&other)) {
+        assert!((x - y).abs() < 1e-10, "{x} {y}");
+    }
+}

@@ -1,0 +1,167 @@
+//! Shells that move, from files: two hinged plates against an independent code of geometrically exact shells;
+//! derivatives of all functions by the complex step; what files may not say.
+
+use flexbody::driver::{check, simulate};
+use flexbody::problem::Problem;
+use serde_json::{Value, json};
+use std::path::Path;
+
+fn read(name: &str) -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    let text = std::fs::read_to_string(path).expect("a file");
+    serde_json::from_str(&text).expect("valid JSON")
+}
+
+/// The double plate with this mesh, duration, number of steps and method.
+fn plates(elements: [usize; 2], duration: f64, steps: usize, method: &Value) -> Value {
+    let mut document = read("problems/flexible/double_plate.json");
+    for body in ["first", "second"] {
+        document["bodies"][body]["elements"]["structure"]["mesh"]["plate"]["elements"] =
+            json!(elements);
+    }
+    document["simulation"] = json!({"duration": duration, "steps": steps, "method": method});
+    document
+}
+
+fn parsed(document: &Value) -> Problem {
+    Problem::parse(&document.to_string(), "plates", &[]).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// Positions after 0.1 s. The plates hardly bend, so a coarse mesh suffices.
+#[test]
+fn two_plates_follow_their_reference() {
+    let reference = read("tests/data/double_plate_reference.json");
+    let instants = reference["instants"].as_array().expect("a list");
+    let at = instants
+        .iter()
+        .find(|at| at["t"] == json!(0.1))
+        .expect("0.1 s");
+    let method = json!({"radau": {"stages": 3}});
+    let problem = parsed(&plates([4, 1], 0.1, 50, &method));
+    let motion = simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
+    let points = [
+        ("hinge", "hinge2"),
+        ("tip", "tip"),
+        ("centre 1", "centre1"),
+        ("centre 2", "centre2"),
+    ];
+    for (own, name) in points {
+        for (k, axis) in ["x", "y"].iter().enumerate() {
+            let function = format!("{own} {axis}");
+            let mut names = problem.function_names.iter();
+            let index = names
+                .position(|name| *name == function)
+                .expect("a function");
+            let (found, exact) = (
+                motion.at.function(index).value,
+                at[name][k].as_f64().expect("a number"),
+            );
+            assert!((found - exact).abs() < 5e-5, "{function}: {found} {exact}");
+        }
+    }
+}
+
+/// Derivatives of positions, energies and stresses by thickness of bands, modulus and density, by the methods
+/// that serve shells. The plates are thick and soft, so that positions depend on them; those of thin metal plates
+/// move by 1e-4 m only, and round-off of positions of 1 m is 1e-11 of that.
+#[test]
+fn derivatives_are_exact() {
+    let methods = [
+        json!({"bdf": {"order": 2}}),
+        json!({"radau": {"stages": 2}}),
+        json!({"radau": {"stages": 3}}),
+        json!({"generalised_alpha": {"radius": 0.8}}),
+    ];
+    for method in methods {
+        let mut document = plates([2, 1], 0.02, 8, &method);
+        document["bodies"]["second"]["elements"]["structure"]["thickness"] =
+            json!({"per": "band", "along": "x", "value": 0.04});
+        document["bodies"]["first"]["elements"]["structure"]["thickness"] = json!(0.05);
+        document["materials"]["aluminium"]["young"] = json!(7e7);
+        document["variables"] = json!({
+            "bands": {"path": "/bodies/second/elements/structure/thickness/value", "lower": 0.01, "upper": 0.1},
+            "thickness": {"path": "/bodies/first/elements/structure/thickness", "lower": 0.01, "upper": 0.1},
+            "modulus": {"path": "/materials/aluminium/young", "lower": 1e7, "upper": 1e8},
+            "density": {"path": "/materials/aluminium/density", "lower": 2000, "upper": 3000},
+        });
+        let problem = parsed(&document);
+        assert_eq!(problem.variables.len(), 5);
+        let found = check(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
+        assert_eq!(found.len(), 5 * problem.function_names.len());
+        for derivative in &found {
+            let scale = |k: usize| problem.variables[k].scale;
+            let of_function = found.iter().filter(|d| d.function == derivative.function);
+            let gradient =
+                of_function.fold(0.0_f64, |m, d| m.hypot(d.complex_step * scale(d.variable)));
+            let off =
+                (derivative.adjoint - derivative.complex_step).abs() * scale(derivative.variable);
+            let name = &problem.function_names[derivative.function];
+            assert!(
+                gradient > 0.0 && off <= 1e-12 * gradient,
+                "{method} {name}: {off:e} {gradient:e}"
+            );
+        }
+    }
+}
+
+/// A change of a document.
+type Change = dyn Fn(&mut Value);
+
+#[test]
+fn what_a_file_may_not_say() {
+    let faulty = |change: &Change| {
+        let mut document = plates([2, 1], 0.1, 10, &json!({"bdf": {"order": 2}}));
+        change(&mut document);
+        let faults = Problem::parse(&document.to_string(), "plates", &[]).err();
+        faults.map_or_else(String::new, |faults| faults.to_string())
+    };
+    assert_eq!(faulty(&|_| {}), "");
+    let cases: [(&Change, &str); 9] = [
+        (
+            &|d| d["simulation"]["method"] = json!("dop853"),
+            "finite elements are stiff",
+        ),
+        (
+            &|d| {
+                d["bodies"]["first"]["elements"]["frame"] =
+                    json!({"chord": ["start", "end", "middle"]})
+            },
+            "three nodes on a line",
+        ),
+        (
+            &|d| d["bodies"]["first"]["elements"]["frame"] = json!({"clamped": "x2"}),
+            "the name of a set of nodes or of an edge",
+        ),
+        (
+            &|d| d["bodies"]["first"]["elements"]["points"]["other"] = json!({"node": "end"}),
+            "points at different places",
+        ),
+        (
+            &|d| d["joints"]["root"]["revolute"]["at"] = json!([0.1, 0, 0]),
+            "a point that the \"elements\" of the body name",
+        ),
+        (
+            &|d| d["bodies"]["first"]["mass"] = json!(3),
+            "beside \"elements\"",
+        ),
+        (
+            &|d| {
+                d["bodies"]["first"]["elements"]["structure"]["supports"] =
+                    json!({"a": {"nodes": ["x0"]}})
+            },
+            "joints, which hold bodies that move",
+        ),
+        (
+            &|d| d["materials"]["aluminium"] = json!({"young": 7e10, "poisson": 0.3}),
+            "density",
+        ),
+        (
+            &|d| d["variables"] = json!({"length": {"path": "/bodies/first/elements/structure/mesh/plate/length", "lower": 0.5, "upper": 2}}),
+            "a design variable in the mesh or material of shells that move",
+        ),
+    ];
+    for (change, expected) in cases {
+        let text = faulty(change);
+        assert!(text.contains(expected), "{expected}: {text}");
+    }
+}

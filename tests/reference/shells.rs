@@ -1,0 +1,146 @@
+//! Bodies of shells in floating frames: panels of any form, soft enough that their derivatives are of one
+//! size.
+
+use super::models::{Numbers, axes_along, joint};
+use flexbody::math::Vec3;
+use flexbody::math::rotation;
+use flexbody::model::finite::FiniteElements;
+use flexbody::model::{Axes, Form, JointKind, Load, LoadKind, Model, TimeFunction};
+use flexbody::structures::floating::{FrameNodes, PointMotion, Surface, element_mesh};
+use flexbody::structures::generate::panel;
+use flexbody::structures::material::Material;
+use flexbody::structures::mesh::Mesh;
+use flexbody::structures::structure::Structure;
+use std::sync::Arc;
+
+/// Shells of a body, and how their nodes move.
+pub struct Shells {
+    pub structure: Structure<f64>,
+    pub elements: FiniteElements<f64>,
+    pub surface: Surface,
+    pub mesh: Mesh,
+}
+
+/// A curved and distorted panel whose elements differ in thickness and material.
+pub fn shells(numbers: &mut Numbers, elements: [usize; 2], clamped: bool) -> Shells {
+    let bend = numbers.vector() * 0.2;
+    let made = panel(elements, false, |x, y| {
+        let z = 0.2 + bend.x * x * x + bend.y * x * y + bend.z * y * y;
+        Vec3::new(1.2 * x + 0.1 * y * y + 0.3, 0.8 * y + 0.1 * x * y - 0.2, z)
+    });
+    let material = Material {
+        young: 90.0,
+        poisson: 0.3,
+        density: 3.0,
+        yield_stress: 20.0,
+    };
+    let structure = Structure::uniform(made.mesh.clone(), made.nodes, 0.2, material);
+    let structure = structure.expect("a sound mesh");
+    let last = structure.nodes.len() - 1;
+    let frame = match clamped {
+        true => FrameNodes::Clamped(made.mesh.edge_sets["x0"].concat()),
+        false => FrameNodes::Chord([0, last, 2 * elements[0]]),
+    };
+    let (mesh, surface) = element_mesh(&structure, &frame).expect("has its sets");
+    let count = mesh.elements.len();
+    let mut any = |size: f64| {
+        (0..count)
+            .map(|_| size * (1.0 + 0.3 * numbers.next()))
+            .collect()
+    };
+    let elements = FiniteElements {
+        thickness: any(0.2),
+        young: any(90.0),
+        density: any(3.0),
+        surface_mass: any(0.1),
+        mesh: Arc::new(mesh),
+    };
+    Shells {
+        structure,
+        elements,
+        surface,
+        mesh: made.mesh,
+    }
+}
+
+/// The interface of a point of body `flexible`.
+pub fn attach(model: &mut Model<f64>, flexible: usize, name: &str, motion: PointMotion) -> usize {
+    let shapes = (motion.displacement, motion.rotation);
+    let indices = Some(&motion.coordinates[..]);
+    model.attach(flexible, name, motion.place, shapes, indices)
+}
+
+/// A panel on a revolute joint along its first edge; a rigid body on a revolute joint at a corner; a spring
+/// and a force at its points. Joints are closed at the start.
+pub fn shell_swing(seed: u64, elements: [usize; 2]) -> Model<f64> {
+    let mut numbers = Numbers(seed);
+    let shells = shells(&mut numbers, elements, false);
+    let mut frame = numbers.body("panel");
+    (frame.mass, frame.inertia) = shells.elements.rigid();
+    let load = numbers.body("load");
+    let mut model = Model {
+        gravity: Vec3::new(1.0, -9.0, 2.0),
+        bodies: vec![frame, load],
+        joints: Vec::new(),
+        loads: Vec::new(),
+        flexible: Vec::new(),
+    };
+    let count = shells.elements.mesh.coordinates;
+    let small = |x: Vec<f64>, by: f64| -> Vec<f64> { x.iter().map(|x| x * by).collect() };
+    let start = (
+        small(numbers.list(count), 0.02),
+        small(numbers.list(count), 0.1),
+    );
+    model.add_flexible(0, (&start.0, &start.1), Form::Finite(shells.elements));
+    let corner = *shells.mesh.edge_sets["x1"]
+        .concat()
+        .last()
+        .expect("an edge");
+    let root = attach(
+        &mut model,
+        0,
+        "root",
+        shells.surface.edge(&shells.mesh.edge_sets["y0"]),
+    );
+    let tip = attach(&mut model, 0, "tip", shells.surface.node(corner));
+    let side = attach(
+        &mut model,
+        0,
+        "side",
+        shells.surface.edge(&shells.mesh.edge_sets["x1"]),
+    );
+    for (name, between) in [("root", (root, None)), ("hinge", (1, Some(tip)))] {
+        let at = between.1.unwrap_or(root);
+        let place = model.bodies[at].position;
+        let axis = axes_along(&numbers.vector())[2];
+        let kind = (name, JointKind::Revolute);
+        let made = joint(&model.bodies, kind, between, &place, &axis);
+        model.joints.push(made);
+    }
+    let r = rotation::matrix(&model.bodies[side].orientation);
+    let anchor = model.bodies[side].position + r * Vec3::new(0.4, 1.1, -0.3);
+    model.loads.push(Load {
+        name: "spring".into(),
+        kind: LoadKind::Spring {
+            body_a: side,
+            body_b: None,
+            point_a: Vec3::new(0.05, -0.02, 0.03),
+            point_b: anchor,
+            rest_length: 0.8,
+            stiffness: 20.0,
+            cubic: 3.0,
+            damping: 0.4,
+        },
+    });
+    model.loads.push(Load {
+        name: "push".into(),
+        kind: LoadKind::Force {
+            body: tip,
+            point: Vec3::new(0.1, 0.0, 0.05),
+            direction: Vec3::new(0.5, -1.0, 0.8),
+            axes: Axes::Body,
+            magnitude: TimeFunction::constant(3.0),
+        },
+    });
+    model
+}
