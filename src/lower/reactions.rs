@@ -1,9 +1,9 @@
 //! Reactions that functions observe, and the reductions that would lose them.
 
 use super::examine::{ConditionChecker, Verdict, ViolatedCondition};
-use super::planar::Turned;
 use crate::functions::Scene;
-use crate::math::{Scalar, Vec3};
+use crate::math::scalar::lift3;
+use crate::math::{Scalar, Vec3, rotation};
 use crate::model::Axes;
 use crate::system::measures::{Wrench, WrenchPart};
 
@@ -33,13 +33,16 @@ pub(super) fn in_plane<S: Scalar>(scene: &Scene<S>, normal: &Vec3<f64>, change: 
     let moments = observed(scene).filter(|wrench| wrench.part == WrenchPart::Moment);
     for wrench in moments {
         let joint = &scene.model.joints[wrench.joint];
-        let turned = Turned::new(&scene.model, normal);
-        let normal = turned.normal(match wrench.axes {
-            Axes::Ground => None,
-            Axes::Body => Some(joint.body_a),
-        });
+        let normal: Vec3<S> = lift3(normal);
+        let normal = match wrench.axes {
+            Axes::Ground => normal,
+            Axes::Body => {
+                let body = &scene.model.bodies[joint.body_a];
+                rotation::matrix(&body.orientation).tr_mul(&normal)
+            }
+        };
         let size = wrench.direction.map(|x| x.re()).norm();
-        examiner.vanishes(wrench.direction.cross(normal).as_slice(), size, || {
+        examiner.vanishes(wrench.direction.cross(&normal).as_slice(), size, || {
             let what = "a function observes a moment across the plane of joint";
             (format!("{what} \"{}\"", joint.name), "")
         });
