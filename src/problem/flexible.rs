@@ -6,9 +6,11 @@ use super::elements;
 use super::placement::Assembly;
 use super::prepared::Prepared;
 use super::schema::Document;
-use super::schema::functions::{Bound as Side, SectionComponent, SectionPlace};
 use super::schema::loads::Load;
-use super::schema::measured::{LargestFibreStress, LargestSectionForce, SectionPlaces, Sign};
+use super::schema::measured::{
+    Bound as Side, LargestFibreStress, LargestSectionForce, SectionComponent, SectionPlace,
+    SectionPlaces, Sign,
+};
 use crate::functions::instant::DeformationKind;
 use crate::functions::stations::Largest;
 use crate::functions::{Bound, Function, Instant, TerminalEvent};

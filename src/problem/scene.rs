@@ -6,7 +6,7 @@ use super::placement::{Assembly, GROUND};
 use super::quantity::{Vector, vector};
 use super::schema::Document;
 use super::schema::functions::{self as written, CountedFrom, Function as Written, OfMotion};
-use super::schema::measured::{JointReaction, OfSpring, ReactionAxes};
+use super::schema::measured::{Bound as Side, JointReaction, OfSpring, ReactionAxes};
 use super::schema::mechanics::{Body, Point, Shape};
 use super::start_rates;
 use super::starts::Starts;
@@ -196,8 +196,8 @@ impl<S: Scalar> Builder<'_, S> {
         match function {
             OfMotion::Ks(ks) => {
                 let bound = match ks.bound {
-                    None | Some(written::Bound::Below) => Bound::Below,
-                    Some(written::Bound::Above) => Bound::Above,
+                    None | Some(Side::Below) => Bound::Below,
+                    Some(Side::Above) => Bound::Above,
                 };
                 reduced(&ks.of, Reduction::Ks { rho: ks.rho, bound })
             }

@@ -6,9 +6,8 @@ use crate::problem::finding::Finding;
 use crate::problem::pointer::{advice, join};
 use crate::problem::quantity::{Quantity, Vector};
 use crate::problem::schema::flexible::{Beam, BeamSection, Functions, Strain};
-use crate::problem::schema::functions::SectionPlace;
 use crate::problem::schema::joints::PointPair;
-use crate::problem::schema::measured::SectionPlaces;
+use crate::problem::schema::measured::{SectionPlace, SectionPlaces};
 use crate::problem::schema::mechanics::{Body, Point};
 
 /// Part of the length by which a point may lie beyond an end.

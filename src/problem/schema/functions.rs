@@ -1,7 +1,8 @@
 //! Functions of interest in a file.
 
 use super::measured::{
-    AngularMomentum, JointReaction, JointSlide, LargestFibreStress, LargestSectionForce, OfSpring,
+    AngularMomentum, Bound, JointReaction, JointSlide, LargestFibreStress, LargestSectionForce,
+    OfSpring, SectionComponent, SectionPlace,
 };
 use super::mechanics::Point;
 use super::statics::{
@@ -103,16 +104,6 @@ pub(crate) struct Ks {
     pub bound: Option<Bound>,
     /// The quantity.
     pub of: Instant,
-}
-
-/// A side of the true maximum.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum Bound {
-    /// Never above it.
-    Below,
-    /// Never below it.
-    Above,
 }
 
 /// Aggregated quantity and sharpness.
@@ -234,35 +225,6 @@ pub(crate) struct SectionForce {
     pub station: SectionPlace,
     /// Which of its forces and moments.
     pub component: SectionComponent,
-}
-
-/// A section of a beam.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub(crate) enum SectionPlace {
-    /// Name of a station, "start" or "end".
-    Named(String),
-    /// Fraction of the length.
-    #[schemars(extend("unit" = "1", "minimum" = 0))]
-    Fraction(Quantity),
-}
-
-/// A force or moment in a section, by the beam's axes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum SectionComponent {
-    /// Axial force, positive in tension.
-    Axial,
-    /// Shear force along y.
-    ShearY,
-    /// Shear force along z.
-    ShearZ,
-    /// Torsion moment.
-    Torsion,
-    /// Bending moment about y.
-    BendingY,
-    /// Bending moment about z.
-    BendingZ,
 }
 
 /// Stress along a fibre.

@@ -1,7 +1,6 @@
 //! Quantities of joints, springs, the whole scene and several sections, in a file.
 
-use super::functions::{Bound, SectionComponent, SectionPlace};
-use crate::problem::quantity::Vector;
+use crate::problem::quantity::{Quantity, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -150,4 +149,43 @@ pub(crate) struct LargestFibreStress {
     pub rho: f64,
     /// "below" (default): never above the largest. "above": never below it.
     pub bound: Option<Bound>,
+}
+
+/// A section of a beam.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum SectionPlace {
+    /// Name of a station, "start" or "end".
+    Named(String),
+    /// Fraction of the length.
+    #[schemars(extend("unit" = "1", "minimum" = 0))]
+    Fraction(Quantity),
+}
+
+/// A force or moment in a section, by the beam's axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum SectionComponent {
+    /// Axial force, positive in tension.
+    Axial,
+    /// Shear force along y.
+    ShearY,
+    /// Shear force along z.
+    ShearZ,
+    /// Torsion moment.
+    Torsion,
+    /// Bending moment about y.
+    BendingY,
+    /// Bending moment about z.
+    BendingZ,
+}
+
+/// A side of the true maximum.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Bound {
+    /// Never above it.
+    Below,
+    /// Never below it.
+    Above,
 }
