@@ -87,9 +87,9 @@ fn objective(optimum: &Optimum) -> String {
     if let Some(aggregate) = &objective.aggregate {
         text.push_str(&format!("  {}\n", attained(aggregate, &unit)));
     }
-    let source = match optimum.integration {
-        Some(_) => "steps and samples",
-        None => "the mesh",
+    let source = match is_at_rest(optimum) {
+        false => "steps and samples",
+        true => "the mesh",
     };
     if let Some(error) = objective.estimated_error
         && is_rounding(error, objective.value)
@@ -322,6 +322,11 @@ fn curvature(second: &SecondOrder, optimum: &Optimum) -> String {
     text
 }
 
+/// Whether nothing moves: a structure without time steps.
+fn is_at_rest(optimum: &Optimum) -> bool {
+    optimum.integration.is_none() && optimum.counts.steps == 0
+}
+
 fn work(optimum: &Optimum) -> String {
     let counts = &optimum.counts;
     let failed = match counts.failed_evaluations {
@@ -332,9 +337,9 @@ fn work(optimum: &Optimum) -> String {
         0 => String::new(),
         n => format!(" (and {} recomputed for gradients)", grouped(n)),
     };
-    let steps = match (&optimum.integration, counts.steps) {
-        (None, 0) => String::new(),
-        (_, n) => format!("{} time steps{again}, ", grouped(n)),
+    let steps = match is_at_rest(optimum) {
+        true => String::new(),
+        false => format!("{} time steps{again}, ", grouped(counts.steps)),
     };
     format!(
         "Work: {} iterations, {} simulations{failed}, {} gradients\n      {steps}\
