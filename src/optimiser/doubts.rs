@@ -105,11 +105,12 @@ const AGREE: f64 = 0.1;
 /// A run without a solution becomes [`Status::Inconsistent`] if the derivative of a function along
 /// one direction differs from its central differences. These must agree for two steps, and the
 /// differences to either side must come nearer to each other with the step: then the function is
-/// smooth here.
+/// smooth here. A run at a limit is not tested: with a higher limit it must go on as if it had not
+/// ended.
 fn unless_gradients_are_wrong(program: &mut Program<'_>, mut finish: FinalIterate) -> FinalIterate {
     let undecided = matches!(
         finish.status,
-        Status::Stalled | Status::AtPrecision | Status::IterationLimit | Status::Infeasible { .. }
+        Status::Stalled | Status::AtPrecision | Status::Infeasible { .. }
     );
     if !undecided || finish.claim == Claim::Refuted || finish.is_solved(program) {
         return finish;
