@@ -4,6 +4,7 @@ use super::placement::{Assembly, split_location};
 use super::quantity::vector;
 use super::schema::functions::Function;
 use super::schema::mechanics::{Body, Shape};
+use super::schema::modal::Modal;
 use super::schema::{Document, View};
 use crate::math::Vec3;
 use crate::model::Model;
@@ -139,17 +140,20 @@ fn outlines(
 ) -> Vec<Outline> {
     let written = document.bodies.values().zip(&assembly.poses);
     let mut all: Vec<Outline> = written
-        .map(|(body, pose)| match (&body.beam, &body.elements) {
-            (None, Some(elements)) => {
-                let mesh = super::elements::prepared(document, elements).mesh.clone();
-                Outline::Deformed(shell_outline(&mesh))
-            }
-            (Some(beam), _) => {
-                let sight = pose.rotation.tr_mul(&towards);
-                Outline::Deformed(beam_outline(&super::beam::beam(beam, x), &sight))
-            }
-            (None, None) => outline(body, pose.centre, x),
-        })
+        .map(
+            |(body, pose)| match (&body.beam, &body.elements, &body.modal) {
+                (None, Some(elements), _) => {
+                    let mesh = super::elements::prepared(document, elements).mesh.clone();
+                    Outline::Deformed(shell_outline(&mesh))
+                }
+                (Some(beam), _, _) => {
+                    let sight = pose.rotation.tr_mul(&towards);
+                    Outline::Deformed(beam_outline(&super::beam::beam(beam, x), &sight))
+                }
+                (None, None, Some(modal)) => Outline::Deformed(line_of_points(modal, x)),
+                (None, None, None) => outline(body, pose.centre, x),
+            },
+        )
         .collect();
     all.resize(model.bodies.len(), Outline::Spokes(Vec::new()));
     all
@@ -241,6 +245,21 @@ fn beam_points(document: &Document, x: &[f64]) -> Vec<BeamPoint> {
         }
     }
     all
+}
+
+/// Lines between the points of a body of files, in their order and back.
+fn line_of_points(modal: &Modal, x: &[f64]) -> DeformedLine {
+    let scale = super::modal::scale(modal, x);
+    let points = modal.body().points.iter();
+    let mut points: Vec<_> = points
+        .map(|point| (point.position * scale, point.displacement.clone()))
+        .collect();
+    let back: Vec<_> = points.iter().rev().skip(1).cloned().collect();
+    points.extend(back);
+    DeformedLine {
+        points,
+        stresses: Vec::new(),
+    }
 }
 
 /// The axes to the right and up of the file's view, or of another one if it has none.

@@ -3,14 +3,17 @@
 
 use super::beam;
 use super::elements;
+use super::modal;
 use super::placement::Assembly;
 use super::prepared::Prepared;
 use super::schema::Document;
+use super::schema::flexible::Beam;
 use super::schema::loads::Load;
 use super::schema::measured::{
     Bound as Side, LargestFibreStress, LargestSectionForce, SectionComponent, SectionPlace,
     SectionPlaces, Sign,
 };
+use super::schema::mechanics::Body;
 use crate::functions::instant::DeformationKind;
 use crate::functions::stations::Largest;
 use crate::functions::{Bound, Function, Instant, TerminalEvent};
@@ -21,8 +24,9 @@ use crate::model::{LoadKind, Model};
 use crate::structures::beam::Section;
 use crate::structures::floating::PointMotion;
 use crate::structures::modal::frequencies::{Held, frequencies};
+use crate::structures::modal::loaded::Loaded;
 use crate::structures::modal::sections::SectionForce;
-use crate::structures::modal::{FlexibleBeam, ModalNumbers};
+use crate::structures::modal::{FlexibleBeam, ModalNumbers, PointModes};
 use std::sync::Arc;
 
 /// A body with elastic coordinates.
@@ -31,11 +35,54 @@ struct Elastic<S> {
     frame: usize,
     /// Its index among those of the model.
     flexible: usize,
-    beam: FlexibleBeam<S>,
+    shapes: Shapes<S>,
 }
 
-/// A beam and its numbers.
-pub(crate) type Weighed<S> = (FlexibleBeam<S>, ModalNumbers<S>);
+/// How points of a body move with its elastic coordinates.
+pub(crate) enum Shapes<S> {
+    Beam(FlexibleBeam<S>),
+    /// A body of files, and the factor of its lengths.
+    Modal(Arc<Loaded>, S),
+}
+
+impl<S: Scalar> Shapes<S> {
+    fn point(&self, point: Vec3<S>) -> PointModes<S> {
+        match self {
+            Self::Beam(beam) => beam.point(point.x / beam.length, [point.y, point.z]),
+            Self::Modal(loaded, scale) => loaded.body.point(&point, *scale),
+        }
+    }
+
+    fn beam(&self) -> &FlexibleBeam<S> {
+        match self {
+            Self::Beam(beam) => beam,
+            Self::Modal(..) => unreachable!("sections are those of beams, which is checked"),
+        }
+    }
+}
+
+/// The shapes and numbers of a beam or of a body of files at the design `x`.
+fn weighed<S: Scalar>(body: &Body, x: &[S]) -> Option<Weighed<S>> {
+    if let Some(written) = &body.beam {
+        let beam = beam::beam(written, x);
+        let numbers = beam.numbers();
+        return Some((Shapes::Beam(beam), numbers));
+    }
+    let written = body.modal.as_ref()?;
+    let loaded = written.loaded.clone()?;
+    let shapes = Shapes::Modal(loaded, modal::scale(written, x));
+    Some((shapes, modal::numbers(written, x)))
+}
+
+/// The coordinates of such a body and their rates at the start.
+fn start<S: Scalar>(body: &Body, count: usize, x: &[S]) -> [Vec<S>; 2] {
+    let of_beam = body.beam.as_ref().map(|beam| beam::start(beam, x));
+    let written = body.modal.as_ref().and_then(|modal| modal.start.as_ref());
+    of_beam.unwrap_or_else(|| modal::start(written, count, x))
+}
+
+/// The shapes of a body and its numbers.
+pub(crate) type Weighed<S> = (Shapes<S>, ModalNumbers<S>);
 
 /// A body of finite elements.
 struct Shells {
@@ -77,28 +124,26 @@ pub(crate) struct FlexibleBodies<S> {
 }
 
 impl<S: Scalar> FlexibleBodies<S> {
-    /// The beams of a document with their numbers; gives their frames mass and inertia.
+    /// The beams and bodies of files of a document with their numbers; gives their frames mass and inertia.
     pub(crate) fn weigh(document: &Document, model: &mut Model<S>, x: &[S]) -> Vec<Weighed<S>> {
         let mut all = Vec::new();
         for (frame, body) in document.bodies.values().enumerate() {
-            if let Some(written) = &body.beam {
-                let beam = beam::beam(written, x);
-                let numbers = beam.numbers();
+            if let Some((shapes, numbers)) = weighed(body, x) {
                 model.bodies[frame].mass = numbers.mass;
                 model.bodies[frame].inertia = numbers.inertia;
-                all.push((beam, numbers));
+                all.push((shapes, numbers));
             }
         }
         all
     }
 
-    /// Gives the beams of a document their elastic coordinates, and moves joints and loads from them to
+    /// Gives the flexible bodies of a document their elastic coordinates, and moves joints and loads from them to
     /// their points. The bodies of `model` are at their start.
     pub(crate) fn add(
         document: &Document,
         assembly: &Assembly<S>,
         model: &mut Model<S>,
-        beams: Vec<Weighed<S>>,
+        bodies_with_shapes: Vec<Weighed<S>>,
         x: &[S],
     ) -> Self {
         let mut all = Self {
@@ -123,9 +168,9 @@ impl<S: Scalar> FlexibleBodies<S> {
             });
         }
         let bodies = document.bodies.values().enumerate();
-        let written = bodies.filter_map(|(frame, body)| Some((frame, body.beam.as_ref()?)));
-        for ((frame, written), (beam, numbers)) in written.zip(beams) {
-            let [elastic, rates] = beam::start(written, x);
+        let weighed = bodies.filter(|(_, body)| body.beam.is_some() || body.modal.is_some());
+        for ((frame, body), (shapes, numbers)) in weighed.zip(bodies_with_shapes) {
+            let [elastic, rates] = start(body, numbers.modes(), x);
             let flexible = model.add_flexible(
                 frame,
                 (&elastic, &rates),
@@ -138,7 +183,7 @@ impl<S: Scalar> FlexibleBodies<S> {
             all.bodies.push(Elastic {
                 frame,
                 flexible,
-                beam,
+                shapes,
             });
         }
         if !model.flexible.is_empty() {
@@ -181,7 +226,7 @@ impl<S: Scalar> FlexibleBodies<S> {
         if let Some(known) = known {
             return Some(known.body);
         }
-        let modes = (elastic.beam).point(point.x / elastic.beam.length, [point.y, point.z]);
+        let modes = elastic.shapes.point(point);
         let still = |all: &[Vec3<S>]| all.iter().all(|v| v.iter().all(|x| *x == S::zero()));
         if still(&modes.displacement) && still(&modes.rotation) {
             return None;
@@ -332,8 +377,10 @@ impl<S: Scalar> FlexibleBodies<S> {
                 },
             };
         }
-        let Elastic { flexible, beam, .. } = self.of(body);
-        let modes = beam.point(point.x / beam.length, [point.y, point.z]);
+        let Elastic {
+            flexible, shapes, ..
+        } = self.of(body);
+        let modes = shapes.point(point);
         Instant::Deformation {
             flexible: *flexible,
             kind: DeformationKind::Displacement,
@@ -356,7 +403,9 @@ impl<S: Scalar> FlexibleBodies<S> {
         station: S,
     ) -> Instant<S> {
         use DeformationKind::{Force, Moment};
-        let Elastic { flexible, beam, .. } = self.of(body);
+        let Elastic {
+            flexible, shapes, ..
+        } = self.of(body);
         let (force, kind) = match component {
             SectionComponent::Axial => (SectionForce::Axial, Force),
             SectionComponent::ShearY => (SectionForce::ShearY, Force),
@@ -368,7 +417,7 @@ impl<S: Scalar> FlexibleBodies<S> {
         Instant::Deformation {
             flexible: *flexible,
             kind,
-            form: beam.section_force(force, station),
+            form: shapes.beam().section_force(force, station),
         }
     }
 
@@ -393,7 +442,7 @@ impl<S: Scalar> FlexibleBodies<S> {
         of: &LargestFibreStress,
         stations: &[S],
     ) -> Instant<S> {
-        let outer: &[[f64; 2]] = match &self.of(body).beam.section {
+        let outer: &[[f64; 2]] = match &self.of(body).shapes.beam().section {
             Section::Tube { .. } => &ROUND,
             Section::Rectangle { .. } | Section::I { .. } | Section::Given(_) => &CORNERS,
         };
@@ -408,7 +457,10 @@ impl<S: Scalar> FlexibleBodies<S> {
 
     /// The stress along a fibre, at parts of half the section's height and width.
     pub(crate) fn stress(&self, body: usize, station: S, fibre: [S; 2]) -> Instant<S> {
-        let Elastic { flexible, beam, .. } = self.of(body);
+        let Elastic {
+            flexible, shapes, ..
+        } = self.of(body);
+        let beam = shapes.beam();
         let half = beam
             .half_sizes()
             .expect("a section with stresses has a size, which is checked");
@@ -497,10 +549,8 @@ pub(crate) fn stations<S: Scalar>(
 /// Natural frequencies that are told of a body.
 const TOLD: usize = 4;
 
-/// Coordinates and natural frequencies of the beams of a document.
+/// Coordinates and natural frequencies of the flexible bodies of a document.
 pub(crate) fn described(document: &Document, x: &[f64]) -> Vec<String> {
-    let beams = document.bodies.iter();
-    let beams = beams.filter_map(|(name, body)| Some((name, body.beam.as_ref()?)));
     let told = |held, beam: &FlexibleBeam<f64>| {
         let all = frequencies(&beam.numbers(), held)?;
         let told = all.iter().take(TOLD).map(|f| format!("{f:.4e}"));
@@ -517,17 +567,23 @@ pub(crate) fn described(document: &Document, x: &[f64]) -> Vec<String> {
         ))
     });
     let shells: Vec<String> = shells.collect();
-    beams
-        .map(|(name, written)| {
-            let beam = beam::beam(written, x);
-            let [y, z, torsion, stretch] = beam.modes.ranges().map(|range| range.len());
-            let held = told(Held::Axes, &beam).unwrap_or_else(unknown);
-            let free = told(Held::Nothing, &beam).unwrap_or_else(unknown);
-            format!(
-                "beam \"{name}\": {} coordinates ({y} of bending along y, {z} along z, {torsion} of \
+    let of_beam = |name: &str, written: &Beam| {
+        let beam = beam::beam(written, x);
+        let [y, z, torsion, stretch] = beam.modes.ranges().map(|range| range.len());
+        let held = told(Held::Axes, &beam).unwrap_or_else(unknown);
+        let free = told(Held::Nothing, &beam).unwrap_or_else(unknown);
+        format!(
+            "beam \"{name}\": {} coordinates ({y} of bending along y, {z} along z, {torsion} of \
                  torsion, {stretch} of stretch); frequencies with its axes held {held} Hz, free {free} Hz",
-                beam.modes.count()
-            )
+            beam.modes.count()
+        )
+    };
+    let bodies = document.bodies.iter();
+    bodies
+        .filter_map(|(name, body)| match (&body.beam, &body.modal) {
+            (Some(beam), _) => Some(of_beam(name, beam)),
+            (None, Some(modal)) => Some(modal::described(name, modal, x)),
+            (None, None) => None,
         })
         .chain(shells)
         .collect()

@@ -18,9 +18,8 @@ pub(crate) struct MassProperties<S> {
 /// Mass properties at the design `x`. Missing entries of a checked file are zero.
 pub(crate) fn mass_properties<S: Scalar>(body: &Body, x: &[S]) -> MassProperties<S> {
     let number = |quantity: &Option<Quantity>| quantity.map_or(S::zero(), |q| q.get(x));
-    if body.beam.is_some() || body.elements.is_some() {
-        // Those of a beam follow from its shapes, those of shells from their nodes; places are from the
-        // origin of the axes.
+    if body.is_flexible() {
+        // Those of a flexible body follow from its shapes; its places are from its origin.
         return MassProperties {
             mass: S::zero(),
             centre: Vec3::zeros(),

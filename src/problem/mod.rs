@@ -20,6 +20,7 @@ mod joints;
 mod loads;
 mod mass;
 mod memory;
+mod modal;
 mod overrides;
 mod placement;
 mod pointer;
@@ -169,7 +170,7 @@ pub struct Problem {
     pub(crate) optimiser: OptimiserSettings,
     /// The document with its overrides applied. [`Problem::parse`] makes the same problem from it.
     pub(crate) document: serde_json::Value,
-    /// SHA-256 of the document without white space, hexadecimal.
+    /// SHA-256 of the document without white space and of the files that it names, hexadecimal.
     pub(crate) hash: String,
     /// The document with its numbers bound to the design variables.
     written: Document,

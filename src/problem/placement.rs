@@ -171,15 +171,19 @@ impl<'a, S: Scalar> Assembly<'a, S> {
     /// A named point of a body, from the origin of its axes \[m\].
     fn point(&self, body: &str, point: &str) -> Vec3<S> {
         let body = self.document.bodies.get(body).expect(CHECKED);
-        match (body.points.get(point), &body.beam, &body.elements) {
-            (Some(point), _, _) => vector(point, self.x),
-            (None, _, Some(elements)) => lift3(&elements::place(self.document, elements, point)),
-            (None, beam, None) => {
-                let beam = beam.as_ref().expect(CHECKED);
-                let part = beam.station(point).expect(CHECKED).get(self.x);
-                Vec3::new(part * beam.length.get(self.x), S::zero(), S::zero())
-            }
+        if let Some(point) = body.points.get(point) {
+            return vector(point, self.x);
         }
+        if let Some(elements) = &body.elements {
+            return lift3(&elements::place(self.document, elements, point));
+        }
+        if let Some(modal) = &body.modal {
+            let point = modal.point(point).expect(CHECKED);
+            return lift3(&point.position) * super::modal::scale(modal, self.x);
+        }
+        let beam = body.beam.as_ref().expect(CHECKED);
+        let part = beam.station(point).expect(CHECKED).get(self.x);
+        Vec3::new(part * beam.length.get(self.x), S::zero(), S::zero())
     }
 
     /// A point of a body or of ground, from the origin of its axes \[m\].

@@ -3,7 +3,7 @@
 use super::Problem;
 use super::elements::{mesh_quantities, prepared};
 use super::finding::Finding;
-use super::joints::at;
+use super::joints::{at, holds_points};
 use super::placement::Assembly;
 use super::pointer::join;
 use super::quantity::Quantity;
@@ -147,6 +147,71 @@ pub(super) fn off_points(problem: &Problem) -> Option<Finding> {
             Finding::new(pointer, found, expected)
         })
     })
+}
+
+/// Distance of a place from an interface, relative to the size of its body, up to which it is there.
+const AT_INTERFACE: f64 = 1e-6;
+
+/// The first joint, load or function that holds a body of files beside its interfaces, or turns one whose
+/// rotation is not known.
+pub(super) fn off_interfaces(problem: &Problem) -> Option<Finding> {
+    let written = &problem.written;
+    if !written.bodies.values().any(|body| body.modal.is_some()) {
+        return None;
+    }
+    let start = problem.start();
+    let scene = problem.unlowered_scene::<f64>(&start);
+    let near = |name: &str, point: &Vec3<f64>| {
+        let modal = written.bodies.get(name)?.modal.as_ref()?;
+        let (body, scale) = (modal.body(), super::modal::scale(modal, &start));
+        let nearest = body.nearest(point, scale)?;
+        let distance = (nearest.position * scale - point).norm();
+        let there = distance <= AT_INTERFACE * body.size() * scale;
+        Some((nearest, distance, there))
+    };
+    let beside = scene.model.joints.iter().find_map(|joint| {
+        joint.modes.as_ref()?;
+        let (name, _) = written.bodies.get_index(joint.body_a)?;
+        let (nearest, distance, there) = near(name, &joint.frame_a.point)?;
+        (!there).then(|| {
+            let [x, y, z] = <[f64; 3]>::from(joint.frame_a.point);
+            let found = format!(
+                "a joint, load or function at [{x:.6}, {y:.6}, {z:.6}] m of \"{name}\", {distance:.3e} m from \
+                 the interface \"{}\"",
+                nearest.name
+            );
+            let expected = "places that are interfaces of the body";
+            let pointer = join(&join("/bodies", name), "modal");
+            Finding::new(pointer, found, expected).of_key()
+        })
+    });
+    let assembly = Assembly::new(written, &problem.order, &start);
+    let turned = || {
+        written.joints.iter().find_map(|(key, joint)| {
+            let place = joint.place().filter(|_| !holds_points(joint.kind()))?;
+            joint.between().iter().find_map(|name| {
+                let point = at(
+                    &assembly,
+                    place,
+                    name,
+                    usize::from(joint.between()[1] == *name),
+                );
+                let (nearest, ..) = near(name, &point)?;
+                (!nearest.turns).then(|| {
+                    let found = format!(
+                        "the interface \"{}\" of \"{name}\", whose rotation is not known",
+                        nearest.name
+                    );
+                    let pointer =
+                        join(&join(&join("/joints", key), joint.kind().name()), "between");
+                    let hint = "an interface of several nodes turns as one rigid body";
+                    let expected = "an interface that turns, or a joint that is spherical or rod";
+                    Finding::new(pointer, found, expected).hint(Some(hint.into()))
+                })
+            })
+        })
+    };
+    beside.or_else(turned)
 }
 
 /// The first joint or load that a point mass does not admit.

@@ -5,6 +5,7 @@ use super::check::check;
 use super::fault::Faults;
 use super::finding::{Finding, Part};
 use super::first_scene::{collapsed, driven_twice, oblique, too_many, unassembled, unstarted};
+use super::modal;
 use super::overrides::Override;
 use super::placement::placement_order;
 use super::pointer::join;
@@ -90,12 +91,17 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
         return faults(findings);
     };
     let damage = prune(entries, &structure.findings);
-    let written = match deserialise(&sound) {
+    let mut written = match deserialise(&sound) {
         Ok(written) => written,
         Err(finding) => {
             findings.push(finding);
             return faults(findings);
         }
+    };
+    // Files are read beside a sound document only.
+    let content = match structure.findings.is_empty() {
+        true => modal::load(&mut written, (file, &source))?,
+        false => String::new(),
     };
     findings.extend(check(&written, &damage));
     let (variables, wrong) = variables(&written, &document, &structure);
@@ -114,8 +120,9 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     bind(&mut sound, &variables);
     let order = placement_order(&written).expect("a checked document has no circle of places");
     match deserialise(&sound) {
-        Ok(written) => {
-            let mut problem = problem(document, written, order, variables);
+        Ok(mut bound) => {
+            modal::share(&written, &mut bound);
+            let mut problem = problem(document, (bound, &content), order, variables);
             if !problem.written.structures.is_empty() {
                 return match of_structures(&mut problem) {
                     Ok(()) => Ok(problem),
@@ -149,6 +156,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
                 .or_else(|| points::beside(&problem))
                 .or_else(|| points::off_beams(&problem))
                 .or_else(|| points::off_points(&problem))
+                .or_else(|| points::off_interfaces(&problem))
                 .or_else(|| driven_twice(&problem))
                 .or_else(|| unassembled(&problem));
             match finding {
@@ -249,7 +257,7 @@ fn deserialise(document: &Value) -> Result<Document, Finding> {
 /// The problem of a checked document.
 fn problem(
     document: Value,
-    written: Document,
+    (written, content): (Document, &str),
     order: Vec<usize>,
     variables: Vec<super::Variable>,
 ) -> Problem {
@@ -279,7 +287,7 @@ fn problem(
             upper: constraint.upper.unwrap_or(f64::INFINITY),
         })
         .collect();
-    let hash = Sha256::digest(document.to_string());
+    let hash = Sha256::digest(document.to_string() + content);
     let mut function_names: Vec<String> = written.functions.keys().cloned().collect();
     let feasible = objective.is_none() && !written.constraints.is_empty() && !variables.is_empty();
     let nearest_to = feasible.then(|| {

@@ -1,7 +1,7 @@
 //! Structures of shells and beams as finite elements, with exact derivatives; nothing moves here. How the pieces fit:
 //! docs/structures.md.
 
-mod assembly;
+pub(crate) mod assembly;
 pub mod beam;
 mod beams;
 pub mod damping;

@@ -7,6 +7,7 @@ mod circles;
 mod faults;
 mod finite_elements;
 mod layers;
+mod modal;
 mod problems_check;
 mod readme;
 mod report_plots;

@@ -4,6 +4,7 @@ mod beam_derivatives;
 mod beams;
 mod beams_in_structures;
 mod course;
+mod craig_bampton;
 mod function_gradients;
 mod mesh_faults;
 mod modal_beams;

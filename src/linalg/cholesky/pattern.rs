@@ -44,6 +44,11 @@ impl SymmetricPattern {
         column.binary_search(&i).ok().map(|at| start + at)
     }
 
+    /// Slots and rows of the stored entries of a column; the first is the diagonal.
+    pub(crate) fn column(&self, j: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        (self.starts[j]..self.starts[j + 1]).map(|at| (at, self.rows[at]))
+    }
+
     /// r = b − A x, every entry rounded once or twice only: products and sums keep what they lose (Dekker
     /// 1971, Knuth 1969). Refinement with such residuals gives solutions of full accuracy.
     pub(crate) fn exact_residual(&self, values: &[f64], x: &[f64], b: &[f64], r: &mut [f64]) {

@@ -18,18 +18,8 @@ const MOST_SECTIONS: usize = 1000;
 
 impl Checker<'_> {
     pub(super) fn beam(&mut self, pointer: &str, body: &Body, beam: &Beam) {
-        let extra = [
-            ("shape", body.shape.is_some()),
-            ("density", body.density.is_some()),
-            ("mass", body.mass.is_some()),
-            ("centre_of_mass", body.centre_of_mass.is_some()),
-            ("inertia", body.inertia.is_some()),
-        ];
-        for (key, _) in extra.into_iter().filter(|(_, given)| *given) {
-            let found = format!("\"{key}\" beside \"beam\"");
-            let expected = "one of them, as section and material of the beam give it";
-            self.fault(Finding::new(join(pointer, key), found, expected).of_key());
-        }
+        let expected = "one of them, as section and material of the beam give it";
+        self.without_rigid_keys(pointer, body, ("beam", expected));
         for (name, point) in &body.points {
             self.on_beam(&join(&join(pointer, "points"), name), beam, point);
         }
@@ -77,6 +67,43 @@ impl Checker<'_> {
                 self.fault(Finding::new(place, found, expected));
             }
         }
+    }
+
+    /// Checks that a flexible body has no keys of rigid ones; `own` is its key and what is expected.
+    pub(super) fn without_rigid_keys(
+        &mut self,
+        pointer: &str,
+        body: &Body,
+        (own, expected): (&str, &str),
+    ) {
+        let extra = [
+            ("shape", body.shape.is_some()),
+            ("density", body.density.is_some()),
+            ("mass", body.mass.is_some()),
+            ("centre_of_mass", body.centre_of_mass.is_some()),
+            ("inertia", body.inertia.is_some()),
+        ];
+        for (key, _) in extra.into_iter().filter(|(_, given)| *given) {
+            let found = format!("\"{key}\" beside \"{own}\"");
+            self.fault(Finding::new(join(pointer, key), found, expected).of_key());
+        }
+    }
+
+    /// Checks that a body has elastic coordinates; whether it has.
+    pub(super) fn measured_flexible(&mut self, pointer: &str, name: &str) -> bool {
+        let body = self.document.bodies.get(name);
+        if body.is_some_and(|body| body.is_flexible()) {
+            return true;
+        }
+        if !self.damage.holds("bodies", name) {
+            let bodies = self.document.bodies.iter();
+            let flexible = bodies.filter(|(_, body)| body.is_flexible());
+            let hint = advice(name, "such bodies", flexible.map(|(name, _)| name.as_str()));
+            let place = join(pointer, "body");
+            let expected = "the name of a beam, of shells or of a modal body";
+            self.fault(Finding::new(place, format!("\"{name}\""), expected).hint(hint));
+        }
+        false
     }
 
     /// Checks that a section has what its functions and its inertia need.

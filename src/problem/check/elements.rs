@@ -129,13 +129,6 @@ impl Checker<'_> {
         }
     }
 
-    /// Whether a body is a beam or of shells; a fault if not.
-    pub(super) fn measured_elastic(&mut self, pointer: &str, name: &str) -> bool {
-        let body = self.document.bodies.get(name);
-        body.is_some_and(|body| body.elements.is_some())
-            || self.measured_beam(pointer, name).is_some()
-    }
-
     pub(super) fn shell_stress(&mut self, pointer: &str, of: &ShellStress) {
         let body = self.document.bodies.get(&of.body);
         let Some(elements) = body.and_then(|body| body.elements.as_ref()) else {

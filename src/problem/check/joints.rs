@@ -58,8 +58,9 @@ impl Checker<'_> {
                 let expected = "one of them: joints are started with straight beams";
                 self.fault(Finding::new(&pointer, found, expected).of_key());
             }
-            if document.bodies.values().any(|body| body.elements.is_some()) {
-                let found = "a start of a joint in a scene with finite elements";
+            let other = |body: &Body| body.elements.is_some() || body.modal.is_some();
+            if document.bodies.values().any(other) {
+                let found = "a start of a joint in a scene with finite elements or modal bodies";
                 let expected = "bodies that are placed, with their velocities";
                 self.fault(Finding::new(&pointer, found, expected).of_key());
             }

@@ -40,10 +40,14 @@ impl Checker<'_> {
             Load::Torque(torque) => {
                 self.moving(pointer, &torque.body, &torque.point);
                 let body = self.document.bodies.get(&torque.body);
-                if body.is_some_and(|body| body.elements.is_some()) {
-                    let found = format!("a torque on the shells \"{}\"", torque.body);
-                    let expected =
-                        "a torque on a rigid body, which may be welded to a point of them";
+                let kind = body.and_then(|body| match (&body.elements, &body.modal) {
+                    (Some(_), _) => Some("shells"),
+                    (None, Some(_)) => Some("body of files"),
+                    (None, None) => None,
+                });
+                if let Some(kind) = kind {
+                    let found = format!("a torque on the {kind} \"{}\"", torque.body);
+                    let expected = "a torque on a rigid body, which may be welded to a point of it";
                     self.fault(Finding::new(join(pointer, "body"), found, expected));
                 }
                 match (self.is_beam(&torque.body), &torque.point) {

@@ -21,10 +21,21 @@ impl Checker<'_> {
                 let expected = "a name that is not \"ground\" and has no dot";
                 self.fault(Finding::new(&pointer, found, expected).of_key());
             }
-            match (&body.beam, &body.elements) {
-                (Some(beam), _) => self.beam(&pointer, body, beam),
-                (None, Some(elements)) => self.elements(&pointer, (name, body), elements),
-                (None, None) => self.mass(&pointer, body),
+            let flexible = [
+                ("beam", body.beam.is_some()),
+                ("elements", body.elements.is_some()),
+                ("modal", body.modal.is_some()),
+            ];
+            let mut given = flexible.iter().filter(|(_, given)| *given);
+            if let (Some((first, _)), Some((second, _))) = (given.next(), given.next()) {
+                let found = format!("\"{second}\" beside \"{first}\"");
+                self.fault(Finding::new(join(&pointer, second), found, "one of them").of_key());
+            }
+            match (&body.beam, &body.elements, &body.modal) {
+                (Some(beam), _, _) => self.beam(&pointer, body, beam),
+                (None, Some(elements), _) => self.elements(&pointer, (name, body), elements),
+                (None, None, Some(modal)) => self.modal(&pointer, body, modal),
+                (None, None, None) => self.mass(&pointer, body),
             }
             self.place(&join(&pointer, "place"), name, &body.place);
         }
@@ -71,7 +82,7 @@ impl Checker<'_> {
                 let finding = Finding::new(
                     pointer,
                     "a body without its mass properties",
-                    "\"shape\" and \"mass\" or \"density\", or else \"mass\" and \"inertia\", or else \"beam\" or \"elements\"",
+                    "\"shape\" and \"mass\" or \"density\", or else \"mass\" and \"inertia\", or else \"beam\", \"elements\" or \"modal\"",
                 );
                 self.fault(finding.of_key());
                 return;

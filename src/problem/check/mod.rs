@@ -6,6 +6,7 @@ mod joints;
 mod load_cases;
 mod loads;
 mod mechanics;
+mod modal;
 mod properties;
 mod structures;
 mod study;
@@ -63,10 +64,16 @@ impl<'a> Checker<'a> {
     /// Checks that a body has a point; `whole` is the text in the file.
     fn named_point(&mut self, pointer: &str, body: &Body, name: &str, whole: &str) {
         let beam = body.beam.as_ref();
+        let modal = body.modal.as_ref();
         let is_station = beam.is_some_and(|beam| beam.station(name).is_some());
         let elements = body.elements.as_ref();
         let is_held = elements.is_some_and(|elements| elements.points.contains_key(name));
-        if body.points.contains_key(name) || is_station || is_held {
+        let is_interface = modal.is_some_and(|modal| modal.point_names().any(|own| own == name));
+        if body.points.contains_key(name) || is_station || is_held || is_interface {
+            return;
+        }
+        // Files that are not read have a fault of their own.
+        if modal.is_some_and(|modal| modal.loaded.is_none()) {
             return;
         }
         let prefix = whole.strip_suffix(name).unwrap_or_default();
@@ -80,6 +87,7 @@ impl<'a> Checker<'a> {
                     .iter()
                     .flat_map(|all| all.points.keys().map(String::as_str)),
             )
+            .chain(modal.iter().flat_map(|modal| modal.point_names()))
             .map(|key| format!("{prefix}{key}"))
             .collect();
         let hint = advice(whole, "points", names.iter().map(String::as_str));

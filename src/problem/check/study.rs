@@ -226,13 +226,13 @@ impl Checker<'_> {
             Instant::Range(range) => self.range(&join(pointer, "range"), range),
             Instant::ElasticDisplacement(of) => {
                 let pointer = join(pointer, "elastic_displacement");
-                if self.measured_elastic(&pointer, &of.body) {
+                if self.measured_flexible(&pointer, &of.body) {
                     self.point(&join(&pointer, "point"), &of.body, &of.point);
                 }
                 self.direction(&join(&pointer, "direction"), &of.direction);
             }
             Instant::StrainEnergy(of) => {
-                self.measured_elastic(&join(pointer, "strain_energy"), &of.body);
+                self.measured_flexible(&join(pointer, "strain_energy"), &of.body);
             }
             Instant::VonMises(of) => self.shell_stress(&join(pointer, "von_mises"), of),
             Instant::SectionForce(of) => {

@@ -2,13 +2,14 @@
 
 use super::elements::Elements;
 use super::flexible::Beam;
+use super::modal::Modal;
 use crate::problem::quantity::{Quantity, Vector};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// A body: a shape with its mass or density, or an explicit mass, centre of mass and inertia, or a beam
-/// with elastic coordinates.
+/// or a body of files with elastic coordinates.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Body {
@@ -29,6 +30,8 @@ pub(crate) struct Body {
     pub beam: Option<Box<Beam>>,
     /// Shells with elastic coordinates at all their nodes, instead of all above.
     pub elements: Option<Box<Elements>>,
+    /// A body with elastic coordinates from files of other codes, instead of all above.
+    pub modal: Option<Box<Modal>>,
     /// Named points in body axes from their origin (the centre of the shape, the start of a beam).
     #[serde(default)]
     #[schemars(extend("unit" = "m"))]
@@ -38,6 +41,13 @@ pub(crate) struct Body {
     pub place: Place,
     /// Its velocity at the start, instead of that of the assembly.
     pub velocity: Option<BodyVelocity>,
+}
+
+impl Body {
+    /// Whether it has elastic coordinates.
+    pub(crate) fn is_flexible(&self) -> bool {
+        self.beam.is_some() || self.elements.is_some() || self.modal.is_some()
+    }
 }
 
 /// A homogeneous solid, centred at the origin of the body's axes.

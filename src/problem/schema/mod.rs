@@ -8,6 +8,7 @@ pub(crate) mod joints;
 pub(crate) mod loads;
 pub(crate) mod measured;
 pub(crate) mod mechanics;
+pub(crate) mod modal;
 pub(crate) mod section;
 pub(crate) mod statics;
 pub(crate) mod structures;

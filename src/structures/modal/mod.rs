@@ -1,8 +1,14 @@
 //! Bodies with elastic coordinates: their numbers, in any scalar, for the model of the motion.
 
 pub(crate) mod beam;
+pub(crate) mod craig_bampton;
 pub(crate) mod damping;
+pub(crate) mod free_body;
 pub(crate) mod frequencies;
+pub(crate) mod imported;
+pub(crate) mod interfaces;
+pub(crate) mod loaded;
+mod mass_integrals;
 pub(crate) mod sections;
 mod shapes;
 

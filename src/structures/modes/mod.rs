@@ -13,13 +13,15 @@ pub use frequencies::{
     LowestFrequency, eigenvalue_gradient, frequency_gradient, lowest_frequency, reduced,
 };
 
+pub(crate) use search::{Pencil, PencilFailure};
+
 use super::assembly::Assembly;
 use super::mesh::UnknownSet;
+use super::shell::Terms;
 use super::state::NodalMotion;
-use super::statics::{StaticFailure, StaticProblem, most_moved};
+use super::statics::{StaticFailure, StaticProblem, mechanism, most_moved};
 use super::structure::Structure;
 use super::supports::{NodeUnknowns, Support};
-use crate::linalg::cholesky::SparseCholesky;
 
 /// Why there are no modes.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -103,11 +105,7 @@ impl Modes {
 /// A structure with supports, ready for its modes: the analysis of its matrices is done.
 pub struct ModalProblem {
     pub(super) assembly: Assembly,
-    solver: SparseCholesky,
-    stiffness: Vec<f64>,
-    mass: Vec<f64>,
-    /// K + s M, or K − μ M.
-    shifted: Vec<f64>,
+    pencil: Pencil,
 }
 
 impl ModalProblem {
@@ -121,13 +119,40 @@ impl ModalProblem {
         node_unknowns: NodeUnknowns,
     ) -> Result<Self, UnknownSet> {
         let assembly = Assembly::new(structure, supports, node_unknowns)?;
-        let values = vec![0.0; assembly.pattern.entries()];
         Ok(Self {
-            solver: SparseCholesky::new(&assembly.pattern),
-            stiffness: values.clone(),
-            mass: values.clone(),
-            shifted: values,
+            pencil: Pencil::new(assembly.pattern.clone()),
             assembly,
+        })
+    }
+
+    /// The `count` lowest modes beside rigid motions, and those that form a cluster with the last.
+    ///
+    /// # Errors
+    /// [`ModalFailure`] if the structure is a mechanism without being rigid, has no mass or fewer modes.
+    pub fn solve(
+        &mut self,
+        structure: &Structure<f64>,
+        count: usize,
+    ) -> Result<Modes, ModalFailure> {
+        let configuration = self.assembly.configuration(structure);
+        let rest = NodalMotion::zeros(structure.nodes.len());
+        let Pencil {
+            stiffness, mass, ..
+        } = &mut self.pencil;
+        self.assembly
+            .tangent(&configuration, &rest, Terms::LINEAR, stiffness);
+        self.assembly.mass(&configuration, mass);
+        let motions = rigid::rigid_motions(&configuration);
+        let found = self.pencil.lowest(motions, count);
+        found.map_err(|failure| match failure {
+            PencilFailure::NotDefinite(failure) => {
+                mechanism(&self.assembly, structure, &failure).into()
+            }
+            PencilFailure::NoMass => ModalFailure::NoMass,
+            PencilFailure::TooMany { asked, there } => ModalFailure::TooMany { asked, there },
+            PencilFailure::NoConvergence { asked, found } => {
+                ModalFailure::NoConvergence { asked, found }
+            }
         })
     }
 

@@ -1,15 +1,11 @@
-//! The lowest modes: Lanczos, the count of what it found, and a last step of inverse iteration.
+//! The lowest eigenvalues of a pair of sparse symmetric matrices: Lanczos, the count of what it found, and a
+//! last step of inverse iteration.
 
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 
 use super::lanczos::{Basis, Found, Operator, largest};
-use super::rigid::rigid_motions;
-use super::{ModalFailure, ModalProblem, ModalWork, Modes};
-use crate::linalg::cholesky::{SparseCholesky, SymmetricPattern};
-use crate::structures::shell::Terms;
-use crate::structures::state::NodalMotion;
-use crate::structures::statics::mechanism;
-use crate::structures::structure::Structure;
+use super::{ModalWork, Modes};
+use crate::linalg::cholesky::{NotPositiveDefinite, SparseCholesky, SymmetricPattern};
 
 /// Relative distance of eigenvalues below which they count as one cluster.
 const CLUSTER: f64 = 1e-6;
@@ -56,25 +52,66 @@ impl Shifted<'_> {
     }
 }
 
-impl ModalProblem {
-    /// The `count` lowest modes beside rigid motions, and those that form a cluster with the last.
+/// Why a pair of matrices has no such modes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum PencilFailure {
+    /// K + sM has no factors.
+    NotDefinite(NotPositiveDefinite),
+    /// Nothing has mass.
+    NoMass,
+    /// There are fewer modes than were asked for.
+    TooMany {
+        /// How many were asked for.
+        asked: usize,
+        /// How many there are.
+        there: usize,
+    },
+    /// The iteration came to no end.
+    NoConvergence {
+        /// How many were asked for.
+        asked: usize,
+        /// How many were found.
+        found: usize,
+    },
+}
+
+/// Stiffness and mass in one pattern, ready for their modes.
+pub(crate) struct Pencil {
+    pub pattern: SymmetricPattern,
+    /// K.
+    pub stiffness: Vec<f64>,
+    /// M.
+    pub mass: Vec<f64>,
+    /// K + s M, or K − μ M.
+    shifted: Vec<f64>,
+    solver: SparseCholesky,
+}
+
+impl Pencil {
+    /// Analyses a pattern; the matrices are zero.
+    pub(crate) fn new(pattern: SymmetricPattern) -> Self {
+        let values = vec![0.0; pattern.entries()];
+        Self {
+            solver: SparseCholesky::new(&pattern),
+            stiffness: values.clone(),
+            mass: values.clone(),
+            shifted: values,
+            pattern,
+        }
+    }
+
+    /// The `count` lowest modes beside the rigid `motions`, and those that form a cluster with the last.
     ///
     /// # Errors
-    /// [`ModalFailure`] if the structure is a mechanism without being rigid, has no mass or fewer modes.
-    pub fn solve(
+    /// [`PencilFailure`] if K is singular beside these motions, or there is no mass or fewer modes.
+    pub(crate) fn lowest(
         &mut self,
-        structure: &Structure<f64>,
+        motions: Vec<Vec<f64>>,
         count: usize,
-    ) -> Result<Modes, ModalFailure> {
-        let configuration = self.assembly.configuration(structure);
-        let rest = NodalMotion::zeros(structure.nodes.len());
-        self.assembly
-            .tangent(&configuration, &rest, Terms::LINEAR, &mut self.stiffness);
-        self.assembly.mass(&configuration, &mut self.mass);
+    ) -> Result<Modes, PencilFailure> {
         if self.mass.iter().all(|&m| m == 0.0) {
-            return Err(ModalFailure::NoMass);
+            return Err(PencilFailure::NoMass);
         }
-        let motions = rigid_motions(&configuration);
         let shift = if motions.is_empty() {
             0.0
         } else {
@@ -85,16 +122,14 @@ impl ModalProblem {
             factorisations: 1,
             solves: 0,
         };
-        self.solver
-            .factorise(&self.assembly.pattern, &self.shifted)
-            .map_err(|failure| mechanism(&self.assembly, structure, &failure))?;
+        self.factorise()?;
         let mut locked = Basis::default();
         for motion in motions {
             let operator = self.operator();
             let mut w = motion;
             locked.orthogonalise(&mut w);
             if locked.push(&operator, w, 0.0).is_none() {
-                return Err(ModalFailure::NoMass);
+                return Err(PencilFailure::NoMass);
             }
         }
         let rigid = locked.len();
@@ -106,7 +141,7 @@ impl ModalProblem {
             let Some((whole, gap)) = last_gap(&values, count, exhausted) else {
                 if exhausted {
                     let there = values.len();
-                    return Err(ModalFailure::TooMany {
+                    return Err(PencilFailure::TooMany {
                         asked: count,
                         there,
                     });
@@ -114,7 +149,7 @@ impl ModalProblem {
                 wanted = values.len() + 4;
                 continue;
             };
-            let below = self.count_below(gap, shift, structure, &mut work)?;
+            let below = self.count_below(gap, shift, &mut work)?;
             if below == rigid + whole {
                 let vectors = locked.vectors.drain(rigid..rigid + whole).collect();
                 return Ok(Modes {
@@ -129,15 +164,34 @@ impl ModalProblem {
             exhausted = false;
         }
         let found = locked.len() - rigid;
-        Err(ModalFailure::NoConvergence {
+        Err(PencilFailure::NoConvergence {
             asked: count,
             found,
         })
     }
 
+    fn factorise(&mut self) -> Result<(), PencilFailure> {
+        let factors = self.solver.factorise(&self.pattern, &self.shifted);
+        factors.map_err(PencilFailure::NotDefinite)
+    }
+
+    /// Factorises K alone.
+    ///
+    /// # Errors
+    /// [`PencilFailure::NotDefinite`].
+    pub(crate) fn factorise_stiffness(&mut self) -> Result<(), PencilFailure> {
+        self.combine(0.0);
+        self.factorise()
+    }
+
+    /// Solves K x = b in place by the factors of K.
+    pub(crate) fn solve(&mut self, b: &mut [f64]) {
+        self.solver.solve(b);
+    }
+
     fn operator(&mut self) -> Shifted<'_> {
         Shifted {
-            pattern: &self.assembly.pattern,
+            pattern: &self.pattern,
             mass: &self.mass,
             matrix: &self.shifted,
             solver: &mut self.solver,
@@ -146,7 +200,7 @@ impl ModalProblem {
 
     /// A shift that is small beside the large eigenvalues.
     fn shift(&self) -> f64 {
-        let pattern = &self.assembly.pattern;
+        let pattern = &self.pattern;
         let slots = (0..pattern.order()).filter_map(|j| pattern.slot(j, j));
         let ratios = slots
             .filter(|&at| self.mass[at] > 0.0)
@@ -170,7 +224,7 @@ impl ModalProblem {
         wanted: usize,
         seed: u64,
         work: &mut ModalWork,
-    ) -> Result<bool, ModalFailure> {
+    ) -> Result<bool, PencilFailure> {
         let missing = wanted.saturating_sub(locked.len() - rigid);
         let mut operator = self.operator();
         let Found {
@@ -181,7 +235,7 @@ impl ModalProblem {
         } = largest(&mut operator, locked, missing, seed);
         work.solves += solves;
         if vectors.len() < missing && !exhausted {
-            return Err(ModalFailure::NoConvergence {
+            return Err(PencilFailure::NoConvergence {
                 asked: wanted,
                 found: locked.len() - rigid + vectors.len(),
             });
@@ -200,10 +254,10 @@ impl ModalProblem {
         locked: &mut Basis,
         rigid: usize,
         work: &mut ModalWork,
-    ) -> Result<Vec<f64>, ModalFailure> {
+    ) -> Result<Vec<f64>, PencilFailure> {
         let known: Vec<Vec<f64>> = locked.products.drain(rigid..).collect();
         locked.vectors.truncate(rigid);
-        let (count, n) = (known.len(), self.assembly.pattern.order());
+        let (count, n) = (known.len(), self.pattern.order());
         work.solves += 2 * count;
         let mut y: Vec<Vec<f64>> = Vec::with_capacity(count);
         for product in known {
@@ -211,7 +265,7 @@ impl ModalProblem {
             locked.orthogonalise(&mut w);
             y.push(w);
         }
-        let pattern = &self.assembly.pattern;
+        let pattern = &self.pattern;
         let products = |values: &[f64]| -> Vec<Vec<f64>> {
             let one = |y: &Vec<f64>| {
                 let mut product = vec![0.0; n];
@@ -234,7 +288,7 @@ impl ModalProblem {
             DMatrix::from_fn(count, count, |i, j| a[(i, j)] * scale[i] * scale[j])
         };
         let (k, m) = (scaled(&k), scaled(&m));
-        let failure = ModalFailure::NoConvergence {
+        let failure = PencilFailure::NoConvergence {
             asked: count,
             found: 0,
         };
@@ -270,15 +324,14 @@ impl ModalProblem {
         &mut self,
         [low, high]: [f64; 2],
         shift: f64,
-        structure: &Structure<f64>,
         work: &mut ModalWork,
-    ) -> Result<usize, ModalFailure> {
+    ) -> Result<usize, PencilFailure> {
         let mut below = None;
         // Another place in the gap, should rounding spoil the pivots at one.
         for part in [0.5, 0.37, 0.61, 0.29] {
             self.combine(-(low + part * (high - low)));
             work.factorisations += 1;
-            let pattern = &self.assembly.pattern;
+            let pattern = &self.pattern;
             below = self.solver.negative_eigenvalues(pattern, &self.shifted);
             if below.is_some() {
                 break;
@@ -286,10 +339,8 @@ impl ModalProblem {
         }
         self.combine(shift);
         work.factorisations += 1;
-        self.solver
-            .factorise(&self.assembly.pattern, &self.shifted)
-            .map_err(|failure| mechanism(&self.assembly, structure, &failure))?;
-        below.ok_or(ModalFailure::NoConvergence { asked: 0, found: 0 })
+        self.factorise()?;
+        below.ok_or(PencilFailure::NoConvergence { asked: 0, found: 0 })
     }
 }
 

@@ -1,0 +1,321 @@
+//! Bodies from files of other codes: reads their files, reduces their matrices, and tells what came out.
+
+mod describe;
+mod dmig;
+mod matrix_market;
+mod nodes;
+mod numbers;
+mod standard_input;
+mod symmetry;
+mod text;
+
+pub(super) use describe::described;
+pub(super) use numbers::{numbers, scale, start};
+
+use super::bounds;
+use super::fault::Faults;
+use super::finding::{Finding, Part};
+use super::pointer::join;
+use super::schema::Document;
+use super::schema::modal::{Modal, ModalFrame, Source as Files, Units};
+use super::source::Source;
+use crate::structures::modal::craig_bampton::reduce;
+use crate::structures::modal::free_body::{Entry, FreeBody};
+use crate::structures::modal::interfaces::{Holding, Interface, NoReduction};
+use crate::structures::modal::loaded::{Loaded, Reduced};
+use nodes::NodeTable;
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use text::TextFault;
+
+/// Fixed-interface modes where a file gives no number.
+const MODES: u32 = 10;
+
+/// Reads the files of all bodies of a document that lies beside them; their content as a text for the hash
+/// of the problem.
+///
+/// # Errors
+/// The first fault of a file, or of what the document says of it.
+pub(super) fn load(
+    document: &mut Document,
+    (file, source): (&str, &Source),
+) -> Result<String, Faults> {
+    let directory = Path::new(file).parent().unwrap_or(Path::new(""));
+    let mut content = String::new();
+    for (name, body) in &mut document.bodies {
+        let Some(modal) = &mut body.modal else {
+            continue;
+        };
+        let pointer = join(&join("/bodies", name), "modal");
+        let mut reader = Reader {
+            directory,
+            content: &mut content,
+        };
+        let loaded = reader.body(&pointer, modal);
+        let loaded = loaded.map_err(|fault| match *fault {
+            LoadFault::Data {
+                path,
+                text,
+                finding,
+            } => {
+                let file = path.display().to_string();
+                Faults::locate(vec![finding], &file, &Source::plain(&text), &[])
+            }
+            LoadFault::Document(finding) => Faults::locate(vec![finding], file, source, &[]),
+        })?;
+        modal.loaded = loaded.map(Arc::new);
+    }
+    Ok(content)
+}
+
+/// Gives the bodies of `to` what the files of the same bodies say.
+pub(super) fn share(from: &Document, to: &mut Document) {
+    for (from, to) in from.bodies.values().zip(to.bodies.values_mut()) {
+        if let (Some(from), Some(to)) = (&from.modal, &mut to.modal) {
+            to.loaded.clone_from(&from.loaded);
+        }
+    }
+}
+
+/// What is wrong with a body.
+enum LoadFault {
+    /// In a file of it.
+    Data {
+        path: PathBuf,
+        text: String,
+        finding: Finding,
+    },
+    /// In the problem file.
+    Document(Finding),
+}
+
+struct Reader<'a> {
+    directory: &'a Path,
+    content: &'a mut String,
+}
+
+impl Reader<'_> {
+    /// A body; none if the document names interfaces that it does not have, which is told elsewhere.
+    fn body(&mut self, pointer: &str, modal: &Modal) -> Result<Option<Loaded>, Box<LoadFault>> {
+        let source = join(pointer, "source");
+        match &modal.source {
+            Files::StandardInput(file) => {
+                let place = join(&source, "standard_input");
+                let body = self.read(&place, file, standard_input::read)?;
+                Ok(Some(Loaded {
+                    body,
+                    reduced: None,
+                }))
+            }
+            Files::MatrixMarket {
+                nodes,
+                stiffness,
+                mass,
+                units,
+            } => {
+                let below = join(&source, "matrix_market");
+                let table = self.read(&join(&below, "nodes"), nodes, nodes::read)?;
+                let mut matrix = |key: &str, file: &str| {
+                    let place = join(&below, key);
+                    self.read(&place, file, |text| matrix_market::read(text, &table))
+                };
+                let pair = [matrix("stiffness", stiffness)?, matrix("mass", mass)?];
+                reduced(pointer, modal, &table, pair, units)
+            }
+            Files::Dmig {
+                nodes,
+                file,
+                stiffness,
+                mass,
+                units,
+            } => {
+                let below = join(&source, "dmig");
+                let table = self.read(&join(&below, "nodes"), nodes, nodes::read)?;
+                let names = [
+                    stiffness.as_deref().unwrap_or("KAAX"),
+                    mass.as_deref().unwrap_or("MAAX"),
+                ];
+                let place = join(&below, "file");
+                let pair = self.read(&place, file, |text| dmig::read(text, &table, names))?;
+                reduced(pointer, modal, &table, pair, units)
+            }
+        }
+    }
+
+    /// Reads a file that the entry at `pointer` names.
+    fn read<T>(
+        &mut self,
+        pointer: &str,
+        file: &str,
+        parse: impl FnOnce(&str) -> Result<T, TextFault>,
+    ) -> Result<T, Box<LoadFault>> {
+        let path = self.directory.join(file);
+        let document = |found: String| {
+            let expected = "a file that can be read; its path is relative to the problem file";
+            Box::new(LoadFault::Document(Finding::new(pointer, found, expected)))
+        };
+        let named = path.display();
+        let bytes = bounds::read(&path).map_err(|error| match error.kind() {
+            _ if path.is_dir() => document(format!("the directory {named}")),
+            std::io::ErrorKind::NotFound => document(format!("no file {named}")),
+            _ => document(format!("{error} of {named}")),
+        })?;
+        if bytes.len() > bounds::LARGEST {
+            return Err(document(format!(
+                "a file of more than {} MB, {named}",
+                bounds::LARGEST >> 20
+            )));
+        }
+        let hash = Sha256::digest(&bytes);
+        self.content
+            .extend(hash.iter().map(|byte| format!("{byte:02x}")));
+        let data = |text: String, fault: TextFault| {
+            Box::new(LoadFault::Data {
+                path: path.clone(),
+                text,
+                finding: Finding {
+                    part: Part::Bytes(fault.at),
+                    ..Finding::new(pointer, fault.found, fault.expected).hint(fault.hint)
+                },
+            })
+        };
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let at = error.utf8_error().valid_up_to();
+            let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
+            let end = at + char::REPLACEMENT_CHARACTER.len_utf8();
+            data(
+                text,
+                TextFault::new(at..end, "a byte that is not UTF-8", "a text"),
+            )
+        })?;
+        // A text may begin with a byte order mark.
+        let written = text.strip_prefix('\u{feff}').unwrap_or(&text);
+        parse(written).map_err(|fault| data(written.to_owned(), fault))
+    }
+}
+
+/// The body of two matrices, reduced.
+fn reduced(
+    pointer: &str,
+    modal: &Modal,
+    table: &NodeTable,
+    [mut stiffness, mut mass]: [Vec<Entry>; 2],
+    units: &Units,
+) -> Result<Option<Loaded>, Box<LoadFault>> {
+    let document = |key: &str, found: String, expected: &str, hint: Option<&str>| {
+        let finding = Finding::new(join(pointer, key), found, expected);
+        Box::new(LoadFault::Document(finding.hint(hint.map(str::to_owned))))
+    };
+    let Units {
+        length,
+        mass: kilograms,
+        time,
+    } = *units;
+    // A rotation is none of length: its rows are moments, its columns act by angles.
+    let factor = |i: usize, j: usize| {
+        let rotations = [i, j].iter().filter(|key| **key % 6 >= 3).count();
+        kilograms * length.powi(rotations as i32)
+    };
+    for (i, j, value) in &mut stiffness {
+        *value *= factor(*i, *j) / (time * time);
+    }
+    for (i, j, value) in &mut mass {
+        *value *= factor(*i, *j);
+    }
+    let Some(holding) = holding(modal) else {
+        return Ok(None);
+    };
+    let mut interfaces = Vec::new();
+    for (name, written) in &modal.interfaces {
+        let place = join("interfaces", name);
+        let place = place.trim_start_matches('/');
+        let mut nodes = Vec::new();
+        for id in written.list() {
+            let Some(&node) = table.index.get(id) else {
+                let expected = "the number of a node of the table of nodes";
+                return Err(document(place, format!("node {id}"), expected, None));
+            };
+            let before = interfaces
+                .iter()
+                .find(|other: &&Interface| other.nodes.contains(&node));
+            if nodes.contains(&node) || before.is_some() {
+                let found = format!("node {id} a second time");
+                return Err(document(place, found, "each node in one interface", None));
+            }
+            nodes.push(node);
+        }
+        interfaces.push(Interface {
+            name: name.clone(),
+            nodes,
+        });
+    }
+    let places = table.places.iter().map(|place| place * length).collect();
+    let free = FreeBody::new(places, &stiffness, &mass);
+    free.check(|node| table.numbers[node].to_string())
+        .map_err(|fault| {
+            let expected = "stiffness and mass matrix of a free body in space";
+            let hint = "write the matrices without supports, in the axes of the table of nodes";
+            document("source", fault.to_string(), expected, Some(hint))
+        })?;
+    let modes = modal.modes.unwrap_or(MODES) as usize;
+    let reduction = reduce(&free, &interfaces, &holding, modes).map_err(|failure| {
+        let found = failure.to_string();
+        let hold = "interfaces that hold the axes: one that moves and turns, or three points";
+        match &failure {
+            NoReduction::Interior(_) => document(
+                "source",
+                found,
+                "a body that is held where its interfaces are",
+                None,
+            ),
+            NoReduction::Loose | NoReduction::Collinear => document("frame", found, hold, None),
+            NoReduction::Without { .. } => {
+                let hint = "several nodes in one interface move and turn as one rigid body";
+                let expected = "an interface that moves and turns in all directions";
+                document("interfaces", found, expected, Some(hint))
+            }
+            NoReduction::OnALine { .. } => {
+                document("interfaces", found, "nodes that are not in one line", None)
+            }
+            NoReduction::NoConvergence { .. } => {
+                document("modes", found, "another number of modes", None)
+            }
+            NoReduction::Nothing => {
+                document("modes", found, "more modes or interfaces, and mass", None)
+            }
+        }
+    })?;
+    Ok(Some(Loaded {
+        body: reduction.body.clone(),
+        reduced: Some(Reduced {
+            free,
+            reduction,
+            interfaces,
+            holding,
+        }),
+    }))
+}
+
+/// What holds the axes; none if an interface that it names is not there.
+fn holding(modal: &Modal) -> Option<Holding> {
+    if modal
+        .interfaces
+        .values()
+        .any(|nodes| nodes.list().is_empty())
+    {
+        return None;
+    }
+    let index = |name: &String| modal.interfaces.get_index_of(name);
+    match &modal.frame {
+        None => (!modal.interfaces.is_empty()).then_some(Holding::Clamped(0)),
+        Some(ModalFrame::Clamped(name)) => Some(Holding::Clamped(index(name)?)),
+        Some(ModalFrame::Chord(names)) => match &names[..] {
+            [a, b] if a != b => Some(Holding::Chord(index(a)?, index(b)?, None)),
+            [a, b, c] if a != b && b != c && a != c => {
+                Some(Holding::Chord(index(a)?, index(b)?, Some(index(c)?)))
+            }
+            _ => None,
+        },
+    }
+}
