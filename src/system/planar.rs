@@ -31,6 +31,8 @@ pub(super) type Vec2<S> = Vector2<S>;
 pub(crate) struct PlanarJoints<S> {
     /// Two orthonormal directions of the plane, ground axes.
     pub(super) along: [Vec3<f64>; 2],
+    /// The components of the ground axes along them.
+    ground: [Vec2<S>; 3],
     /// The planes of the bodies; that of ground is last.
     pub(super) planes: Vec<BodyPlane>,
     pub(super) joints: Vec<PlanarJoint<S>>,
@@ -189,15 +191,11 @@ impl<S: Scalar> PlanarJoints<S> {
         let driven = model.joints.iter().any(|joint| !joint.drives.is_empty());
         (!driven).then(|| Self {
             along,
+            ground: std::array::from_fn(|k| Vec2::new(S::from(along[0][k]), S::from(along[1][k]))),
             joints,
             motions: vec![PlanarMotion::ground(); planes.len()],
             planes,
         })
-    }
-
-    /// The components of ground axis k in the plane.
-    pub(super) fn ground_axis(&self, k: usize) -> Vec2<S> {
-        Vec2::new(S::from(self.along[0][k]), S::from(self.along[1][k]))
     }
 
     /// Sets positions and velocities of the bodies. Accelerations and virtual velocities become
@@ -263,7 +261,7 @@ impl<S: Scalar> PlanarJoints<S> {
             for &row in &joint.rows {
                 let (force, (torque_a, torque_b)) = match row {
                     ConstraintRow::Coincident(k) => {
-                        let e = self.ground_axis(k);
+                        let e = self.ground[k];
                         let mut force = Vec3::zeros();
                         force[k] = S::one();
                         (force, torques(e.dot(&across_a), -e.dot(&across_b)))
@@ -319,7 +317,7 @@ impl<S: Scalar> PlanarJoints<S> {
             rows: joint.rows.iter().copied(),
             markers: &markers,
             length: joint.length,
-            ground: &std::array::from_fn(|k| self.ground_axis(k)),
+            ground: &self.ground,
         })
     }
 }

@@ -13,6 +13,7 @@ use flexbody::structures::supports::{AtNode, NodeUnknowns, Rotations, Unknowns};
 use flexbody::system::bodies::{BodyMotion, all_force_balances};
 use flexbody::system::marker::{MarkerKinematics, RelativeMotion};
 use flexbody::system::{Numbering, finite, flexible, placement};
+use reference::flexible::totals;
 use reference::models::Numbers;
 use reference::shells::{Shells, shells};
 
@@ -185,17 +186,9 @@ fn inertia_is_that_of_the_points() {
             (power - exact).abs() <= 1e-12 * exact.abs().max(10.0),
             "{power} {exact}"
         );
-        let held = flexible::held(&model, &motions);
-        let body = &model.bodies[0];
-        let spin = body.inertia * motion.omega;
-        let energy = held.kinetic
-            + 0.5 * (body.mass * motion.velocity.norm_squared() + spin.dot(&motion.omega));
+        let (energy, _, momentum, turning) = totals(&model, &motions);
         assert!((energy - kinetic).abs() <= 1e-12 * kinetic.max(1.0));
-        let momentum = held.momentum + motion.velocity * body.mass;
         assert!((momentum - linear).norm() <= 1e-12 * linear.norm().max(10.0));
-        let turning = held.angular_momentum
-            + motion.position.cross(&motion.velocity) * body.mass
-            + motion.rotation * spin;
         assert!((turning - angular).norm() <= 1e-12 * angular.norm().max(10.0));
     }
 }
@@ -215,19 +208,8 @@ fn a_free_body_moves_as_it_must() {
     let held = |run: &Trajectory<f64>, k: usize| {
         let mut motions = Vec::new();
         BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
-        let (held, body, motion) = (
-            flexible::held(&model, &motions),
-            &model.bodies[0],
-            &motions[0],
-        );
-        let spin = body.inertia * motion.omega;
-        let energy = held.kinetic
-            + held.potential
-            + 0.5 * (body.mass * motion.velocity.norm_squared() + spin.dot(&motion.omega));
-        let angular = held.angular_momentum
-            + motion.position.cross(&motion.velocity) * body.mass
-            + motion.rotation * spin;
-        (energy, held.momentum + motion.velocity * body.mass, angular)
+        let (kinetic, potential, momentum, angular) = totals(&model, &motions);
+        (kinetic + potential, momentum, angular)
     };
     let drift = |steps: usize| {
         let run = run(&model, 0.2, steps);

@@ -15,7 +15,7 @@ use flexbody::system::kkt::SaddlePoint;
 use flexbody::system::marker::{MarkerKinematics, RelativeMotion};
 use flexbody::system::{Numbering, flexible, initial, placement};
 use reference::cases::{Case, TIME, dot, lift, parameters, rows_agree, slopes, step, unit};
-use reference::flexible::{Points, modal, quadratic, stiffness, swing_of};
+use reference::flexible::{Points, modal, quadratic, stiffness, swing_of, totals};
 use reference::models::Numbers;
 use reference::shells::shell_swing;
 
@@ -142,15 +142,7 @@ fn inertial_forces_are_those_of_the_points() {
             "{power} {exact}"
         );
         // Energy and momenta likewise.
-        let held = flexible::held(&model, &motions);
-        let body = &model.bodies[0];
-        let spin = body.inertia * motion.omega;
-        let kinetic = held.kinetic
-            + 0.5 * (body.mass * motion.velocity.norm_squared() + spin.dot(&motion.omega));
-        let momentum = held.momentum + motion.velocity * body.mass;
-        let angular = held.angular_momentum
-            + motion.position.cross(&motion.velocity) * body.mass
-            + motion.rotation * spin;
+        let (kinetic, _, momentum, angular) = totals(&model, &motions);
         let (mut energy, mut linear, mut turning) = (0.0, Vec3::zeros(), Vec3::zeros());
         for (k, m) in points.masses.iter().enumerate() {
             let sum = |x: &[f64]| {

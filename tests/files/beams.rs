@@ -2,7 +2,8 @@
 //! with an elastic rod (Simeon 1996; crank.f of the IVP test set); beams that are nearly rigid; derivatives in
 //! every parameter; what files may not say.
 
-use flexbody::driver::{Simulation, check, simulate};
+use crate::tests::reference::gradients::gradients_are_exact;
+use flexbody::driver::{Simulation, simulate};
 use flexbody::problem::Problem;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -232,23 +233,7 @@ fn every_number_of_a_beam_has_an_exact_derivative() {
         .zip(["chord", "clamped", "chord"])
     {
         let problem = parsed(&pair(section, frame, simulation.clone()));
-        let found = check(&problem, &problem.start()).expect("runs");
-        assert_eq!(
-            found.len(),
-            problem.function_names.len() * problem.variables.len()
-        );
-        for f in 0..problem.function_names.len() {
-            let scaled = |i: usize, x: f64| x * problem.variables[i].start.abs();
-            let of: Vec<_> = found.iter().filter(|d| d.function == f).collect();
-            let gradient = of
-                .iter()
-                .fold(0.0_f64, |m, d| m.hypot(scaled(d.variable, d.complex_step)));
-            assert!(gradient > 0.0);
-            for d in of {
-                let off = scaled(d.variable, d.adjoint - d.complex_step).abs() / gradient;
-                assert!(off <= 1e-12, "{simulation} {d:?}: {off:e}");
-            }
-        }
+        gradients_are_exact(&problem, &simulation);
     }
 }
 

@@ -5,6 +5,8 @@ use super::models::{Numbers, axes_along, joint};
 use flexbody::math::{Mat3, Vec3, rotation};
 use flexbody::model::flexible::{Form, Modal, ModalInertia, ModalStiffness, Quadratic, Strain};
 use flexbody::model::{Axes, JointKind, Load, LoadKind, Model, TimeFunction};
+use flexbody::system::bodies::BodyMotion;
+use flexbody::system::flexible;
 
 /// Points with masses, and their displacements by each mode.
 pub struct Points {
@@ -179,6 +181,12 @@ pub fn swing_from(seed: u64, modes: usize, size: f64, start: f64) -> Model<f64> 
     model
         .joints
         .push(joint(&model.bodies, hinge, (1, Some(tip)), &place, &axis));
+    add_loads(&mut model, side, tip);
+    model
+}
+
+/// Loads of a swing: a spring from ground to the interface `side`, and a force on the interface `tip`.
+pub fn add_loads(model: &mut Model<f64>, side: usize, tip: usize) {
     let r = rotation::matrix(&model.bodies[side].orientation);
     let anchor = model.bodies[side].position + r * Vec3::new(0.4, 1.1, -0.3);
     model.loads.push(Load {
@@ -204,7 +212,21 @@ pub fn swing_from(seed: u64, modes: usize, size: f64, start: f64) -> Model<f64> 
             magnitude: TimeFunction::constant(3.0),
         },
     });
-    model
+}
+
+/// Kinetic energy, strain energy, momentum and angular momentum about the origin of a model whose only
+/// flexible body has frame 0 and which has no other mass.
+pub fn totals(model: &Model<f64>, motions: &[BodyMotion<f64>]) -> (f64, f64, Vec3<f64>, Vec3<f64>) {
+    let held = flexible::held(model, motions);
+    let (body, motion) = (&model.bodies[0], &motions[0]);
+    let spin = body.inertia * motion.omega;
+    let kinetic =
+        held.kinetic + 0.5 * (body.mass * motion.velocity.norm_squared() + spin.dot(&motion.omega));
+    let angular = held.angular_momentum
+        + motion.position.cross(&motion.velocity) * body.mass
+        + motion.rotation * spin;
+    let momentum = held.momentum + motion.velocity * body.mass;
+    (kinetic, held.potential, momentum, angular)
 }
 
 /// A swing of which everything lies and moves in the plane across z, with a rigid body on a hinge at its

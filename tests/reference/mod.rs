@@ -7,6 +7,7 @@
 pub mod cases;
 pub mod documents;
 pub mod flexible;
+pub mod gradients;
 pub mod models;
 pub mod shells;
 

@@ -1,11 +1,11 @@
 //! Bodies of shells in floating frames: panels of any form, soft enough that their derivatives are of one
 //! size.
 
+use super::flexible::add_loads;
 use super::models::{Numbers, axes_along, joint};
 use flexbody::math::Vec3;
-use flexbody::math::rotation;
 use flexbody::model::finite::FiniteElements;
-use flexbody::model::{Axes, Form, JointKind, Load, LoadKind, Model, TimeFunction};
+use flexbody::model::{Form, JointKind, Model};
 use flexbody::structures::floating::{FrameNodes, PointMotion, Surface, element_mesh};
 use flexbody::structures::generate::panel;
 use flexbody::structures::material::Material;
@@ -117,30 +117,6 @@ pub fn shell_swing(seed: u64, elements: [usize; 2]) -> Model<f64> {
         let made = joint(&model.bodies, kind, between, &place, &axis);
         model.joints.push(made);
     }
-    let r = rotation::matrix(&model.bodies[side].orientation);
-    let anchor = model.bodies[side].position + r * Vec3::new(0.4, 1.1, -0.3);
-    model.loads.push(Load {
-        name: "spring".into(),
-        kind: LoadKind::Spring {
-            body_a: side,
-            body_b: None,
-            point_a: Vec3::new(0.05, -0.02, 0.03),
-            point_b: anchor,
-            rest_length: 0.8,
-            stiffness: 20.0,
-            cubic: 3.0,
-            damping: 0.4,
-        },
-    });
-    model.loads.push(Load {
-        name: "push".into(),
-        kind: LoadKind::Force {
-            body: tip,
-            point: Vec3::new(0.1, 0.0, 0.05),
-            direction: Vec3::new(0.5, -1.0, 0.8),
-            axes: Axes::Body,
-            magnitude: TimeFunction::constant(3.0),
-        },
-    });
+    add_loads(&mut model, side, tip);
     model
 }

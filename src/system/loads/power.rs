@@ -54,9 +54,8 @@ pub(super) fn forces<S: Scalar>(
             ..
         } => {
             let at = stretch(at);
-            let x = at.length - *rest_length;
-            let tension = x * (*stiffness + *cubic * x * x) + *damping * at.rate;
-            let f = at.direction * tension;
+            let law = [*rest_length, *stiffness, *cubic, *damping];
+            let f = at.direction * tension(&at, law);
             [
                 (-f, -sa.cross(&ra.tr_mul(&f))),
                 (f, sb.cross(&rb.tr_mul(&f))),
@@ -67,10 +66,7 @@ pub(super) fn forces<S: Scalar>(
             stiffness,
             damping,
             ..
-        } => {
-            let torque = *stiffness * angle(at, *rest_angle) + *damping * turn_rate(at);
-            about_axis(at, -torque)
-        }
+        } => about_axis(at, -torsion(at, [*rest_angle, *stiffness, *damping])),
         LoadKind::Damping {
             dof, coefficient, ..
         } => along(at, *dof, |rate| -(*coefficient * rate)),
@@ -86,6 +82,17 @@ pub(super) fn forces<S: Scalar>(
             ]
         }
     }
+}
+
+/// Tension k x + k3 x³ + c l̇ of a spring \[N\], from its rest length, k, k3 and c.
+pub(super) fn tension<S: Scalar>(at: &SpringLength<S>, [rest, k, k3, c]: [S; 4]) -> S {
+    let x = at.length - rest;
+    x * (k + k3 * x * x) + c * at.rate
+}
+
+/// Torque k x + c φ̇ of a torsion spring \[N m\], from its rest angle, k and c.
+pub(super) fn torsion<S: Scalar>(at: &Acting<S>, [rest, k, c]: [S; 3]) -> S {
+    k * angle(at, rest) + c * turn_rate(at)
 }
 
 /// Potential energy of a load \[J\]; zero if it is no spring.

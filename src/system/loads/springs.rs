@@ -1,6 +1,6 @@
 //! What functions measure of springs, with its derivatives.
 
-use super::power::{angle, stretch, turn_rate};
+use super::power::{angle, stretch, tension, torsion, turn_rate};
 use super::pull::{Pulled, pull_angle, pull_rate, pull_turn};
 use super::{Acting, for_each_load, give_to_parameters, give_to_states};
 use crate::math::Scalar;
@@ -51,11 +51,7 @@ fn of<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>, part: SpringPart) -> S {
                 ..
             },
             SpringPart::Tension,
-        ) => {
-            let now = stretch(at);
-            let x = now.length - *rest_length;
-            x * (*stiffness + *cubic * x * x) + *damping * now.rate
-        }
+        ) => tension(&stretch(at), [*rest_length, *stiffness, *cubic, *damping]),
         (
             LoadKind::TorsionSpring {
                 rest_angle,
@@ -64,7 +60,7 @@ fn of<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>, part: SpringPart) -> S {
                 ..
             },
             SpringPart::Torque,
-        ) => *stiffness * angle(at, *rest_angle) + *damping * turn_rate(at),
+        ) => torsion(at, [*rest_angle, *stiffness, *damping]),
         (
             LoadKind::Spring { .. }
             | LoadKind::TorsionSpring { .. }

@@ -1,0 +1,276 @@
+//! Bodies with elastic coordinates in a scene: the body that is their frame, their coordinates, and the
+//! points that joints, loads and functions hold on to.
+
+mod described;
+mod measures;
+mod shapes;
+
+pub(crate) use described::described;
+pub(crate) use measures::{station, stations};
+pub(crate) use shapes::Weighed;
+
+use super::elements;
+use super::placement::Assembly;
+use super::prepared::Prepared;
+use super::schema::Document;
+use super::schema::loads::Load;
+use crate::functions::{Function, TerminalEvent};
+use crate::math::scalar::lift3;
+use crate::math::{Scalar, Vec3};
+use crate::model::flexible::{Form, Modal};
+use crate::model::{LoadKind, Model};
+use crate::structures::floating::PointMotion;
+use shapes::{Shapes, start, weighed};
+use std::sync::Arc;
+
+/// A body with elastic coordinates.
+struct Elastic<S> {
+    /// The body that is its frame.
+    frame: usize,
+    /// Its index among those of the model.
+    flexible: usize,
+    shapes: Shapes<S>,
+}
+
+/// A body of finite elements.
+struct Shells {
+    /// The body that is its frame.
+    frame: usize,
+    /// Its index among those of the model.
+    flexible: usize,
+    prepared: Arc<Prepared>,
+}
+
+/// How far a place may be from a named point, as a part of the size of the body.
+const SAME_PLACE: f64 = 1e-6;
+
+impl Shells {
+    /// The named point at a place, and its name.
+    fn at<S: Scalar>(&self, place: &Vec3<S>) -> Option<(&String, &PointMotion)> {
+        let place = place.map(Scalar::re);
+        let nodes = self.prepared.mesh.nodes.iter();
+        let size = nodes.fold(0.0_f64, |size, node| size.max(node.norm()));
+        let same = |motion: &PointMotion| (motion.place - place).norm() <= SAME_PLACE * size;
+        let mut points = self.prepared.points.iter();
+        points.find(|(_, motion)| same(motion))
+    }
+}
+
+/// A point that something holds on to.
+struct Interface<S> {
+    flexible: usize,
+    point: Vec3<S>,
+    /// The body that stands for the point.
+    body: usize,
+}
+
+/// The bodies with elastic coordinates of a scene.
+pub(crate) struct FlexibleBodies<S> {
+    bodies: Vec<Elastic<S>>,
+    shells: Vec<Shells>,
+    interfaces: Vec<Interface<S>>,
+}
+
+impl<S: Scalar> FlexibleBodies<S> {
+    /// The beams and bodies of files of a document with their numbers; gives their frames mass and inertia.
+    pub(crate) fn weigh(document: &Document, model: &mut Model<S>, x: &[S]) -> Vec<Weighed<S>> {
+        let mut all = Vec::new();
+        for (frame, body) in document.bodies.values().enumerate() {
+            if let Some((shapes, numbers)) = weighed(body, x) {
+                model.bodies[frame].mass = numbers.mass;
+                model.bodies[frame].inertia = numbers.inertia;
+                all.push((shapes, numbers));
+            }
+        }
+        all
+    }
+
+    /// Gives the flexible bodies of a document their elastic coordinates, and moves joints and loads from them to
+    /// their points. The bodies of `model` are at their start.
+    pub(crate) fn add(
+        document: &Document,
+        assembly: &Assembly<S>,
+        model: &mut Model<S>,
+        bodies_with_shapes: Vec<Weighed<S>>,
+        x: &[S],
+    ) -> Self {
+        let mut all = Self {
+            bodies: Vec::new(),
+            shells: Vec::new(),
+            interfaces: Vec::new(),
+        };
+        for (frame, body) in document.bodies.values().enumerate() {
+            let Some(elements) = &body.elements else {
+                continue;
+            };
+            let finite = elements::finite(document, elements, x);
+            let (mass, inertia) = finite.rigid();
+            model.bodies[frame].mass = mass;
+            model.bodies[frame].inertia = inertia;
+            let still = vec![S::zero(); finite.mesh.coordinates];
+            let flexible = model.add_flexible(frame, (&still, &still), Form::Finite(finite));
+            all.shells.push(Shells {
+                frame,
+                flexible,
+                prepared: elements::prepared(document, elements),
+            });
+        }
+        let bodies = document.bodies.values().enumerate();
+        let weighed = bodies.filter(|(_, body)| body.beam.is_some() || body.modal.is_some());
+        for ((frame, body), (shapes, numbers)) in weighed.zip(bodies_with_shapes) {
+            let [elastic, rates] = start(body, numbers.modes(), x);
+            let flexible = model.add_flexible(
+                frame,
+                (&elastic, &rates),
+                Form::Modal(Modal {
+                    inertia: numbers.shapes,
+                    stiffness: numbers.stiffness,
+                    damping: numbers.damping,
+                }),
+            );
+            all.bodies.push(Elastic {
+                frame,
+                flexible,
+                shapes,
+            });
+        }
+        if !model.flexible.is_empty() {
+            all.move_joints(model);
+            all.move_loads(document, assembly, model);
+        }
+        all
+    }
+
+    /// The body that stands for a point of body `body`: itself, unless its points move on it.
+    fn hold(&mut self, model: &mut Model<S>, body: usize, point: Vec3<S>) -> Option<usize> {
+        if let Some(shells) = self.shells.iter().find(|shells| shells.frame == body) {
+            let flexible = shells.flexible;
+            let (name, motion) = shells.at(&point)?;
+            let same = |known: &&Interface<S>| {
+                known.flexible == flexible
+                    && shells.at(&known.point).is_some_and(|(of, _)| of == name)
+            };
+            if let Some(known) = self.interfaces.iter().find(same) {
+                return Some(known.body);
+            }
+            if motion.coordinates.is_empty() {
+                return None;
+            }
+            let lift = |all: &[Vec3<f64>]| all.iter().map(lift3).collect();
+            let modes = (lift(&motion.displacement), lift(&motion.rotation));
+            let indices = Some(&motion.coordinates[..]);
+            let body = model.attach(flexible, name, lift3(&motion.place), modes, indices);
+            self.interfaces.push(Interface {
+                flexible,
+                point,
+                body,
+            });
+            return Some(body);
+        }
+        let elastic = self.bodies.iter().find(|elastic| elastic.frame == body)?;
+        let flexible = elastic.flexible;
+        let known = (self.interfaces.iter())
+            .find(|known| known.flexible == flexible && known.point == point);
+        if let Some(known) = known {
+            return Some(known.body);
+        }
+        let modes = elastic.shapes.point(point);
+        let still = |all: &[Vec3<S>]| all.iter().all(|v| v.iter().all(|x| *x == S::zero()));
+        if still(&modes.displacement) && still(&modes.rotation) {
+            return None;
+        }
+        let [px, py, pz] = [point.x, point.y, point.z].map(|x| (x.re() * 1e6).round() / 1e6);
+        let name = format!("point [{px}, {py}, {pz}]");
+        let modes = (modes.displacement, modes.rotation);
+        let body = model.attach(flexible, &name, point, modes, None);
+        self.interfaces.push(Interface {
+            flexible,
+            point,
+            body,
+        });
+        Some(body)
+    }
+
+    /// Moves a place to the body that stands for it.
+    fn move_place(&mut self, model: &mut Model<S>, body: &mut usize, point: &mut Vec3<S>) {
+        if let Some(interface) = self.hold(model, *body, *point) {
+            *body = interface;
+            *point = Vec3::zeros();
+        }
+    }
+
+    fn move_joints(&mut self, model: &mut Model<S>) {
+        for k in 0..model.joints.len() {
+            if model.joints[k].modes.is_some() {
+                continue;
+            }
+            let (mut body, mut point) = (model.joints[k].body_a, model.joints[k].frame_a.point);
+            self.move_place(model, &mut body, &mut point);
+            (model.joints[k].body_a, model.joints[k].frame_a.point) = (body, point);
+            if let Some(mut body) = model.joints[k].body_b {
+                let mut point = model.joints[k].frame_b.point;
+                self.move_place(model, &mut body, &mut point);
+                model.joints[k].body_b = Some(body);
+                model.joints[k].frame_b.point = point;
+            }
+        }
+    }
+
+    fn move_loads(&mut self, document: &Document, assembly: &Assembly<S>, model: &mut Model<S>) {
+        for (k, written) in document.loads.values().enumerate() {
+            let mut kind = model.loads[k].kind.clone();
+            match &mut kind {
+                LoadKind::Force { body, point, .. } => self.move_place(model, body, point),
+                LoadKind::Spring {
+                    body_a,
+                    body_b,
+                    point_a,
+                    point_b,
+                    ..
+                } => {
+                    self.move_place(model, body_a, point_a);
+                    if let Some(body) = body_b {
+                        self.move_place(model, body, point_b);
+                    }
+                }
+                LoadKind::Torque { body, .. } => {
+                    if let Load::Torque(torque) = written
+                        && let Some(point) = &torque.point
+                    {
+                        let mut point = assembly.in_body(&torque.body, point);
+                        self.move_place(model, body, &mut point);
+                    }
+                }
+                // These act on joints, which have moved.
+                LoadKind::TorsionSpring { .. }
+                | LoadKind::Damping { .. }
+                | LoadKind::BallDamping { .. }
+                | LoadKind::Friction { .. } => {}
+            }
+            model.loads[k].kind = kind;
+        }
+    }
+
+    /// Moves what functions look at to the points of these bodies.
+    pub(crate) fn move_functions(
+        &mut self,
+        model: &mut Model<S>,
+        functions: &mut [Function<S>],
+        until: &mut Option<TerminalEvent<S>>,
+    ) {
+        if model.flexible.is_empty() {
+            return;
+        }
+        let mut visit = |body: &mut usize, point: Option<&mut Vec3<S>>| {
+            if let Some(point) = point {
+                self.move_place(model, body, point);
+            }
+        };
+        for function in functions {
+            function.for_each_place(&mut visit);
+        }
+        if let Some(until) = until {
+            until.measure.for_each_place(&mut visit);
+        }
+    }
+}

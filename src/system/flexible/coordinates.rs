@@ -1,0 +1,167 @@
+//! Where the coordinates of a flexible body stand in the vectors of the system, and the motion that they
+//! describe.
+
+use crate::math::{Scalar, Vec3};
+use crate::model::Model;
+use crate::model::flexible::{FlexibleBody, Form};
+use crate::system::bodies::BodyMotion;
+use crate::system::flexing::{Flexing, Generalised};
+use crate::system::numbering::Numbering;
+
+/// Where the coordinates of a flexible body stand among the velocities: six of the frame, then the
+/// elastic ones.
+pub(super) fn slots<S: Scalar>(numbering: &Numbering, body: &FlexibleBody<S>) -> Vec<usize> {
+    let frame = numbering.velocity(body.frame);
+    let elastic = (body.places()).map(|(carrier, k)| numbering.velocity(carrier) + k);
+    (frame..frame + 6).chain(elastic).collect()
+}
+
+/// Whether some body has finite elements.
+pub(crate) fn has_nodes<S: Scalar>(model: &Model<S>) -> bool {
+    let finite = |body: &FlexibleBody<S>| match body.form {
+        Form::Modal(_) => false,
+        Form::Finite(_) => true,
+    };
+    model.flexible.iter().any(finite)
+}
+
+/// Unknowns of the coordinates of finite elements, in an order of little fill.
+pub(crate) fn nodal_unknowns<S: Scalar>(model: &Model<S>, numbering: &Numbering) -> Vec<usize> {
+    let mut all = Vec::new();
+    for body in &model.flexible {
+        match &body.form {
+            Form::Modal(_) => {}
+            Form::Finite(_) => {
+                all.extend((body.places()).map(|(carrier, k)| numbering.unknown(carrier) + k));
+            }
+        }
+    }
+    all
+}
+
+/// Elastic components of a vector in velocity numbering.
+pub(super) fn elastic_of<S: Scalar>(
+    numbering: &Numbering,
+    body: &FlexibleBody<S>,
+    x: &[S],
+) -> Vec<S> {
+    let places = body.places();
+    places
+        .map(|(carrier, k)| x[numbering.velocity(carrier) + k])
+        .collect()
+}
+
+/// The part of a vector in velocity numbering that belongs to a flexible body.
+pub(super) fn part_of<S: Scalar>(
+    numbering: &Numbering,
+    body: &FlexibleBody<S>,
+    x: &[S],
+) -> Generalised<S> {
+    let o = numbering.velocity(body.frame);
+    Generalised {
+        linear: Vec3::new(x[o], x[o + 1], x[o + 2]),
+        angular: Vec3::new(x[o + 3], x[o + 4], x[o + 5]),
+        elastic: elastic_of(numbering, body, x),
+    }
+}
+
+/// Adds parts to a vector in velocity numbering.
+pub(super) fn add_part<S: Scalar>(
+    numbering: &Numbering,
+    body: &FlexibleBody<S>,
+    (linear, angular): (&Vec3<S>, &Vec3<S>),
+    elastic: &[S],
+    out: &mut [S],
+) {
+    let o = numbering.velocity(body.frame);
+    for k in 0..3 {
+        out[o + k] += linear[k];
+        out[o + 3 + k] += angular[k];
+    }
+    add_coordinates(numbering, body, elastic, out);
+}
+
+/// Adds cotangents of the elastic coordinates to a vector in velocity numbering.
+pub(crate) fn add_coordinates<S: Scalar>(
+    numbering: &Numbering,
+    body: &FlexibleBody<S>,
+    elastic: &[S],
+    out: &mut [S],
+) {
+    for ((carrier, k), &x) in body.places().zip(elastic) {
+        out[numbering.velocity(carrier) + k] += x;
+    }
+}
+
+/// Elastic coordinates of a body in motion.
+pub(crate) fn coordinates<S: Scalar>(body: &FlexibleBody<S>, motions: &[BodyMotion<S>]) -> Vec<S> {
+    let places = body.places();
+    places
+        .map(|(carrier, k)| motions[carrier].position[k])
+        .collect()
+}
+
+/// Their rates.
+fn rates<S: Scalar>(body: &FlexibleBody<S>, motions: &[BodyMotion<S>]) -> Vec<S> {
+    let places = body.places();
+    places
+        .map(|(carrier, k)| motions[carrier].velocity[k])
+        .collect()
+}
+
+/// The motion of a flexible body at the accelerations `a` (velocity numbering).
+pub(super) fn motion_of<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    body: &FlexibleBody<S>,
+    motions: &[BodyMotion<S>],
+    a: &[S],
+) -> Flexing<S> {
+    let frame = &motions[body.frame];
+    let a = part_of(numbering, body, a);
+    Flexing {
+        rotation: frame.rotation,
+        gamma: frame.rotation.tr_mul(&(a.linear - model.gravity)),
+        omega: frame.omega,
+        alpha: a.angular,
+        q: coordinates(body, motions),
+        rate: rates(body, motions),
+        acceleration: a.elastic,
+    }
+}
+
+/// The motion whose inertial forces are M(q) x: no velocity, no gravity.
+pub(super) fn accelerated<S: Scalar>(
+    numbering: &Numbering,
+    body: &FlexibleBody<S>,
+    motions: &[BodyMotion<S>],
+    x: &[S],
+) -> Flexing<S> {
+    let rotation = motions[body.frame].rotation;
+    let x = part_of(numbering, body, x);
+    let q = coordinates(body, motions);
+    Flexing {
+        rotation,
+        gamma: rotation.tr_mul(&x.linear),
+        omega: Vec3::zeros(),
+        alpha: x.angular,
+        rate: vec![S::zero(); q.len()],
+        q,
+        acceleration: x.elastic,
+    }
+}
+
+/// The motion of a flexible body without accelerations.
+pub(super) fn at_rest<S: Scalar>(body: &FlexibleBody<S>, motions: &[BodyMotion<S>]) -> Flexing<S> {
+    let frame = &motions[body.frame];
+    let q = coordinates(body, motions);
+    Flexing {
+        rotation: frame.rotation,
+        gamma: Vec3::zeros(),
+        omega: frame.omega,
+        alpha: Vec3::zeros(),
+        acceleration: vec![S::zero(); q.len()],
+        rate: rates(body, motions),
+        q,
+    }
+}

@@ -1,0 +1,178 @@
+//! Energy, momenta and stress of flexible bodies.
+
+use super::coordinates::{add_coordinates, add_part, at_rest, coordinates};
+use super::form::{elastic_energy, first_moment, moving, pull_first_moment, pull_kinetic, unlike};
+use crate::math::{Scalar, Vec3};
+use crate::model::Model;
+use crate::model::flexible::{FlexibleBody, Form};
+use crate::system::bodies::BodyMotion;
+use crate::system::numbering::Numbering;
+use crate::system::{elastic, finite};
+
+/// What flexible bodies add to energy and momenta.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Held<S> {
+    /// Kinetic energy \[J\].
+    pub kinetic: S,
+    /// Gravity's and strain energy \[J\].
+    pub potential: S,
+    /// Linear momentum, ground axes \[kg m/s\].
+    pub momentum: Vec3<S>,
+    /// Angular momentum about the origin, ground axes \[kg m²/s\].
+    pub angular_momentum: Vec3<S>,
+}
+
+/// Energy and momenta that flexible bodies add to those of the rigid ones.
+pub(crate) fn held<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> Held<S> {
+    let mut out = Held {
+        kinetic: S::zero(),
+        potential: S::zero(),
+        momentum: Vec3::zeros(),
+        angular_momentum: Vec3::zeros(),
+    };
+    for body in &model.flexible {
+        let frame = &motions[body.frame];
+        let at = at_rest(body, motions);
+        let nu = frame.rotation.tr_mul(&frame.velocity);
+        let moving = moving(&body.form, &at, &nu);
+        let momentum = frame.rotation * moving.momentum;
+        out.kinetic += moving.kinetic;
+        out.momentum += momentum;
+        out.angular_momentum += frame.position.cross(&momentum) + frame.rotation * moving.spin;
+        let moment = frame.rotation * first_moment(&body.form, &at.q);
+        out.potential += elastic_energy(&body.form, &at.q) - model.gravity.dot(&moment);
+    }
+    out
+}
+
+/// Strain energy of one flexible body \[J\].
+pub(crate) fn strain_energy<S: Scalar>(body: &FlexibleBody<S>, motions: &[BodyMotion<S>]) -> S {
+    elastic_energy(&body.form, &coordinates(body, motions))
+}
+
+/// Adds `scale` times the derivative of the strain energy of flexible body `i` to tangent positions and
+/// parameters.
+pub(crate) fn pull_strain_energy(
+    (model, numbering): (&Model<f64>, &Numbering),
+    motions: &[BodyMotion<f64>],
+    (i, scale): (usize, f64),
+    y: &mut [f64],
+    cot: &mut Model<f64>,
+) {
+    let (body, own) = (&model.flexible[i], &mut cot.flexible[i]);
+    let q = coordinates(body, motions);
+    let mut by_q = vec![0.0; q.len()];
+    match (&body.form, &mut own.form) {
+        (Form::Modal(modal), Form::Modal(own)) => {
+            elastic::pull_energy(&modal.stiffness, &q, scale, &mut by_q, &mut own.stiffness);
+        }
+        (Form::Finite(finite), Form::Finite(own)) => {
+            finite::pull_energy(finite, &q, scale, &mut by_q, own);
+        }
+        (Form::Modal(_), Form::Finite(_)) | (Form::Finite(_), Form::Modal(_)) => unlike(),
+    }
+    let still = Vec3::zeros();
+    add_part(numbering, body, (&still, &still), &by_q, y);
+}
+
+/// Von Mises stress by yield stress at the points of some elements of a body of finite elements; none of
+/// others.
+pub(crate) fn stress_ratios<S: Scalar>(
+    body: &FlexibleBody<S>,
+    motions: &[BodyMotion<S>],
+    elements: &[usize],
+) -> Vec<S> {
+    match &body.form {
+        Form::Modal(_) => Vec::new(),
+        Form::Finite(own) => finite::stress_ratios(own, &coordinates(body, motions), elements),
+    }
+}
+
+/// Transpose of the derivative of [`stress_ratios`] of flexible body `i`, for the cotangents `bar`.
+pub(crate) fn pull_stress_ratios(
+    (model, numbering): (&Model<f64>, &Numbering),
+    motions: &[BodyMotion<f64>],
+    (i, elements, bar): (usize, &[usize], &[f64]),
+    y: &mut [f64],
+    cot: &mut Model<f64>,
+) {
+    let (body, own) = (&model.flexible[i], &mut cot.flexible[i]);
+    let q = coordinates(body, motions);
+    let mut by_q = vec![0.0; q.len()];
+    match (&body.form, &mut own.form) {
+        (Form::Modal(_), Form::Modal(_)) => {}
+        (Form::Finite(finite), Form::Finite(own)) => {
+            finite::pull_stress_ratios(finite, (&q, elements), bar, &mut by_q, own);
+        }
+        (Form::Modal(_), Form::Finite(_)) | (Form::Finite(_), Form::Modal(_)) => unlike(),
+    }
+    add_coordinates(numbering, body, &by_q, y);
+}
+
+/// Adds the derivatives of the kinetic energy times the first and of the potential energy times the
+/// second of `scales`, as in [`held`].
+pub(crate) fn pull_energies(
+    (model, numbering): (&Model<f64>, &Numbering),
+    motions: &[BodyMotion<f64>],
+    [kinetic, potential]: [f64; 2],
+    (y, v): (&mut [f64], &mut [f64]),
+    cot: &mut Model<f64>,
+) {
+    let still = Vec3::zeros();
+    for (i, body) in model.flexible.iter().enumerate() {
+        let frame = &motions[body.frame];
+        let at = at_rest(body, motions);
+        let nu = frame.rotation.tr_mul(&frame.velocity);
+        let own = &mut cot.flexible[i].form;
+        let (by, velocity) = pull_kinetic(&body.form, &at, &nu, kinetic, own);
+        add_part(numbering, body, (&still, &by.theta), &by.q, y);
+        add_part(numbering, body, (&velocity, &by.omega), &by.rate, v);
+        // −g · R p.
+        let down = frame.rotation.tr_mul(&model.gravity) * -potential;
+        let p = first_moment(&body.form, &at.q);
+        cot.gravity -= frame.rotation * p * potential;
+        let mut by_q = vec![0.0; at.q.len()];
+        pull_first_moment(&body.form, (&at.q, true), &down, &mut by_q, own);
+        add_part(numbering, body, (&still, &p.cross(&down)), &by_q, y);
+        pull_strain_energy((model, numbering), motions, (i, potential), y, cot);
+    }
+}
+
+/// Adds the derivatives of the linear momentum of the flexible bodies, as in [`held`], along a vector in
+/// ground axes.
+pub(crate) fn pull_momentum(
+    (model, numbering): (&Model<f64>, &Numbering),
+    motions: &[BodyMotion<f64>],
+    along: &Vec3<f64>,
+    (y, v): (&mut [f64], &mut [f64]),
+    cot: &mut Model<f64>,
+) {
+    let still = Vec3::zeros();
+    for (body, own) in model.flexible.iter().zip(&mut cot.flexible) {
+        let (frame, at) = (&motions[body.frame], at_rest(body, motions));
+        // R (ω × p + ṗ) · d with p = Σ q_I p_I.
+        let own_along = frame.rotation.tr_mul(along);
+        let turned = own_along.cross(&at.omega);
+        let p = first_moment(&body.form, &at.q);
+        let nu = Vec3::zeros();
+        let momentum = moving(&body.form, &at, &nu).momentum;
+        let (mut by_q, mut by_rate) = (vec![0.0; at.q.len()], vec![0.0; at.q.len()]);
+        let form = &mut own.form;
+        pull_first_moment(&body.form, (&at.q, true), &turned, &mut by_q, form);
+        pull_first_moment(
+            &body.form,
+            (&at.rate, false),
+            &own_along,
+            &mut by_rate,
+            form,
+        );
+        add_part(
+            numbering,
+            body,
+            (&still, &momentum.cross(&own_along)),
+            &by_q,
+            y,
+        );
+        add_part(numbering, body, (&still, &p.cross(&own_along)), &by_rate, v);
+    }
+}
