@@ -2,7 +2,8 @@
 //!
 //! `cargo bench --bench optimiser` prints a table: own time of an iteration without the evaluations,
 //! and the largest memory that the optimiser held; `-- 1000` is for 1000 variables alone. `-- truss 60 22` solves a ground structure of 20,000
-//! bars.
+//! bars, `-- truss 60 22 curvature` does so with second derivatives, and `-- truss 60 22 criteria` takes
+//! 500 steps of the optimality criteria.
 
 mod report;
 #[path = "../../tests/optimiser/problems/separable.rs"]

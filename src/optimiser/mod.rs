@@ -30,6 +30,7 @@ mod well_posed;
 
 pub use derivatives::{DerivativeError, derivative_errors};
 pub use functions::Functions;
+pub use linear::curvature::Curvature;
 pub use linear::jacobian::Jacobian;
 pub use linear::quasi_newton::QuasiNewton;
 pub use nlp::{Evaluation, EvaluationFailure, Gradients, Nlp};

@@ -106,7 +106,7 @@ pub(crate) fn least_squares(
         let ones = DVector::from_element(variables.len(), 1.0);
         let zeros = DVector::zeros(rows.len());
         // The least-squares solution of Aᵀ y = g is that of [I Aᵀ; A 0] (r, y) = (g, 0).
-        let factor = SparseKkt::factor(&ones, None, &a, &zeros)?;
+        let factor = SparseKkt::factor(&ones, None, &a, &zeros, None)?;
         let mut y = zeros.clone();
         for _ in 0..3 {
             let rest = &g - a.tr_mul(&y);

@@ -2,13 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::optimiser::linear::curvature::Curvature;
 use crate::optimiser::linear::jacobian::Jacobian;
 
 /// A smooth nonlinear program, minimise f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///
 /// A row with c_L = c_U is an equality. An infinite bound is absent; a row without bounds is
-/// ignored, whatever its values. The optimiser uses first derivatives only. It requests them at a
-/// point whose values it requested last or shortly before.
+/// ignored, whatever its values. The optimiser requests first derivatives at a point whose values it
+/// requested last or shortly before. It needs no second derivatives, but the interior point uses them where the
+/// program gives them.
 pub trait Nlp {
     /// Number of variables n.
     fn variables(&self) -> usize;
@@ -58,6 +60,13 @@ pub trait Nlp {
     /// # Errors
     /// [`EvaluationFailure`] as for [`Nlp::evaluate`].
     fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure>;
+
+    /// Second derivatives of f + yᵀc at `x`, of which gradients were requested last, for the
+    /// multipliers `y` of the rows. Without them, as by default, they are approximated from
+    /// gradients.
+    fn curvature(&mut self, _x: &[f64], _y: &[f64]) -> Option<Curvature> {
+        None
+    }
 }
 
 /// Values of the functions at one point.

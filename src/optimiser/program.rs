@@ -83,7 +83,7 @@ struct Allowed {
 
 /// The scaled program.
 pub(crate) struct Program<'a> {
-    nlp: &'a mut dyn Nlp,
+    pub(super) nlp: &'a mut dyn Nlp,
     observer: &'a mut dyn Observer,
     pub options: &'a Options,
     /// Variables whose bounds differ, and those whose bounds coincide.

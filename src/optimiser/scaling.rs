@@ -1,9 +1,12 @@
 //! Scale factors of the functions, and the units of their derivatives.
 
 use std::ops::RangeInclusive;
+use std::time::Instant;
 
 use nalgebra::DVector;
 
+use crate::optimiser::linear::curvature::Curvature;
+use crate::optimiser::outcome::Status;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 use crate::optimiser::state::Scaling;
 
@@ -178,6 +181,34 @@ impl Program<'_> {
         let mut slopes = self.gradients(&point.x)?;
         self.scale(&mut point, &mut slopes);
         Ok((point, slopes))
+    }
+
+    /// Second derivatives of the scaled Lagrangian at `x` for the multipliers `y`, if the program gives them.
+    pub(crate) fn curvature(
+        &mut self,
+        x: &DVector<f64>,
+        y: &DVector<f64>,
+    ) -> Result<Option<Curvature>, EarlyExit> {
+        let full = self.to_user(x);
+        let unit_f = self.scaling.objective;
+        let mut user = vec![0.0; self.scaling.constraints.len()];
+        for (k, &j) in self.rows.iter().enumerate() {
+            user[j] = y[k] * self.scaling.constraints[j] / unit_f;
+        }
+        let clock = Instant::now();
+        let found = self.nlp.curvature(&full, &user);
+        self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
+        let Some(found) = found else {
+            return Ok(None);
+        };
+        if let Some(what) = found.fault(full.len()) {
+            return Err(EarlyExit::Halt(Status::IllPosed { what }));
+        }
+        Ok(Some(found.scaled(
+            &self.free,
+            &self.scaling.variables,
+            unit_f,
+        )))
     }
 
     /// Records gradients and zero rows and columns for the scaling report, before scaling.

@@ -1,5 +1,6 @@
 //! The optimiser on programs with known optima.
 
+mod curvature;
 mod derivatives;
 mod disagree;
 mod endings;

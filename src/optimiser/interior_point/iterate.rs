@@ -290,7 +290,7 @@ impl NormalEquations {
             for &j in &layout.slack_rows {
                 d[j] = 1.0;
             }
-            let factor = SparseKkt::factor(&DVector::from_element(n, 1.0), None, a, &d)?;
+            let factor = SparseKkt::factor(&DVector::from_element(n, 1.0), None, a, &d, None)?;
             return Some(NormalEquations::Sparse(Box::new(factor)));
         }
         let dense = a.to_dense();

@@ -167,6 +167,8 @@ impl InteriorPoint {
             if program.is_unbounded(&self.at.point) {
                 return Ok(Ending::Unbounded);
             }
+            let curvature = program.curvature(&self.at.point.x, &self.at.y)?;
+            self.b.set_exact(curvature);
             if self.barrier.update(&self.at, &self.layout, &mut self.b) {
                 self.filter.clear(self.theta());
             }

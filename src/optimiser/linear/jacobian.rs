@@ -195,6 +195,17 @@ impl Jacobian {
         self.columns == other.columns && self.starts == other.starts && self.index == other.index
     }
 
+    /// The rows of this matrix, then those of `below`.
+    pub(crate) fn above(&self, below: &Jacobian) -> Jacobian {
+        let mut all = self.clone();
+        let end = self.index.len();
+        all.starts
+            .extend(below.starts[1..].iter().map(|at| end + at));
+        all.index.extend(&below.index);
+        all.value.extend(&below.value);
+        all
+    }
+
     /// As a matrix with all its zeros.
     pub(crate) fn to_dense(&self) -> DMatrix<f64> {
         let (m, n) = self.shape();

@@ -40,6 +40,7 @@ impl SparseKkt {
         compact: Option<&Compact>,
         a: &Jacobian,
         d: &DVector<f64>,
+        w: Option<&Jacobian>,
     ) -> Option<SparseKkt> {
         let (n, m) = (h.len(), d.len());
         // Inequality rows stiffen their variables.
@@ -47,7 +48,8 @@ impl SparseKkt {
         for j in (0..m).filter(|&j| d[j] > 0.0) {
             a.row(j).for_each(|(i, v)| stiff[i] += v * v / d[j]);
         }
-        // The upper triangle, column by column: h, then each row of A above its −D.
+        // The upper triangle, column by column: h, then each row of A above its −D, or its −W.
+        let plain = m - w.map_or(0, |w| w.shape().0);
         let mut pointers: Vec<usize> = (0..=n).collect();
         let mut indices: Vec<usize> = (0..n).collect();
         let mut values: Vec<f64> = h.as_slice().to_vec();
@@ -58,8 +60,15 @@ impl SparseKkt {
                 indices.push(i);
                 values.push(v);
             }
-            indices.push(n + j);
-            values.push(-d[j].max(SHIFT * own).max(f64::MIN_POSITIVE));
+            if let Some(w) = w.filter(|_| j >= plain) {
+                for (i, v) in w.row(j - plain) {
+                    indices.push(n + plain + i);
+                    values.push(-v);
+                }
+            } else {
+                indices.push(n + j);
+                values.push(-d[j].max(SHIFT * own).max(f64::MIN_POSITIVE));
+            }
             pointers.push(indices.len());
         }
         let matrix = CscMatrix::new(n + m, n + m, pointers, indices, values);
@@ -89,6 +98,11 @@ impl SparseKkt {
             system.low_rank = Some(LowRank { u, solved, inner });
         }
         Some(system)
+    }
+
+    /// Number of positive pivots. It is the number of positive eigenvalues.
+    pub(crate) fn positive_pivots(&self) -> usize {
+        self.factors.Dinv.iter().filter(|v| **v > 0.0).count()
     }
 
     pub(crate) fn solve(&self, p: &DVector<f64>, q: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {

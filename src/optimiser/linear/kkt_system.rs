@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use nalgebra::DVector;
 
+use crate::optimiser::linear::curvature::{Curvature, symmetric_product};
 use crate::optimiser::linear::jacobian::Jacobian;
 use crate::optimiser::linear::kkt_dense::DenseKkt;
 use crate::optimiser::linear::kkt_sparse::SparseKkt;
@@ -31,6 +32,66 @@ pub(crate) struct KktSystem {
 enum Factors {
     Dense(Box<DenseKkt>),
     Sparse(Box<SparseKkt>),
+    Exact(Box<Exact>),
+}
+
+/// The system with second derivatives: rows G and −W are added below A and −D.
+struct Exact {
+    factors: SparseKkt,
+    diagonal: DVector<f64>,
+    rows: Jacobian,
+    stiffness: Jacobian,
+}
+
+/// First addition to a Hessian that is not positive definite, relative to its largest diagonal entry, and
+/// the factor by which it grows.
+const SMALL: f64 = 1e-6;
+const GROWTH: f64 = 10.0;
+
+impl Exact {
+    /// Adds a multiple of the identity until the matrix has n positive eigenvalues.
+    fn factor(
+        curvature: &Curvature,
+        sigma: &DVector<f64>,
+        a: &Jacobian,
+        d: &DVector<f64>,
+    ) -> Option<Exact> {
+        let n = sigma.len();
+        let rows = a.above(&curvature.coupling);
+        let stiffness = curvature.stiffness.clone();
+        let d = d.clone().resize_vertically(rows.shape().0, 0.0);
+        let mut diagonal = DVector::from_column_slice(&curvature.diagonal);
+        let size = diagonal.amax().max(1.0);
+        let mut added = 0.0;
+        while added <= size / SMALL {
+            let h = sigma + &diagonal;
+            if let Some(factors) = SparseKkt::factor(&h, None, &rows, &d, Some(&stiffness))
+                && factors.positive_pivots() == n
+            {
+                return Some(Exact {
+                    factors,
+                    diagonal,
+                    rows,
+                    stiffness,
+                });
+            }
+            let next = (GROWTH * added).max(SMALL * size);
+            diagonal.add_scalar_mut(next - added);
+            added = next;
+        }
+        None
+    }
+
+    /// The product of D and −W with the multipliers of the rows.
+    fn damp(&self, d: &DVector<f64>, y: &DVector<f64>) -> DVector<f64> {
+        let (m, k) = (d.len(), self.stiffness.shape().0);
+        let mut all = DVector::zeros(m + k);
+        all.rows_mut(0, m)
+            .copy_from(&d.component_mul(&y.rows(0, m)));
+        let below = symmetric_product(&self.stiffness, &y.rows(m, k).into_owned());
+        all.rows_mut(m, k).copy_from(&below);
+        all
+    }
 }
 
 impl KktSystem {
@@ -41,11 +102,13 @@ impl KktSystem {
         a: &Jacobian,
         d: DVector<f64>,
     ) -> Option<KktSystem> {
-        let factors = if b.is_dense() {
+        let factors = if let Some(curvature) = b.exact() {
+            Factors::Exact(Box::new(Exact::factor(curvature, &sigma, a, &d)?))
+        } else if b.is_dense() {
             Factors::Dense(Box::new(DenseKkt::factor(b, &sigma, a, &d)?))
         } else {
             let h = &sigma + b.base();
-            Factors::Sparse(Box::new(SparseKkt::factor(&h, b.compact(), a, &d)?))
+            Factors::Sparse(Box::new(SparseKkt::factor(&h, b.compact(), a, &d, None)?))
         };
         Some(KktSystem { factors, sigma, d })
     }
@@ -54,7 +117,7 @@ impl KktSystem {
     pub(crate) fn regularisation(&self) -> f64 {
         match &self.factors {
             Factors::Dense(dense) => dense.regularisation,
-            Factors::Sparse(_) => 0.0,
+            Factors::Sparse(_) | Factors::Exact(_) => 0.0,
         }
     }
 
@@ -66,38 +129,63 @@ impl KktSystem {
         p: &DVector<f64>,
         q: &DVector<f64>,
     ) -> (DVector<f64>, DVector<f64>) {
-        let (mut dx, mut dy) = self.solve_once(a, p, q);
-        let size = p.amax().max(q.amax());
-        let mut last = f64::INFINITY;
-        let most = match &self.factors {
-            Factors::Dense(dense) => dense.refinements(),
-            Factors::Sparse(_) => REFINEMENTS,
-        };
-        for _ in 0..most {
-            let rp = p - b.multiply(&dx) - self.sigma.component_mul(&dx) - a.tr_mul(&dy);
-            let rq = q - a * &dx + self.d.component_mul(&dy);
-            let residual = rp.amax().max(rq.amax());
-            let stands = residual.partial_cmp(&last) != Some(Ordering::Less);
-            if residual <= EXACT * size || stands {
-                break;
-            }
-            last = residual;
-            let (ex, ey) = self.solve_once(a, &rp, &rq);
-            dx += ex;
-            dy += ey;
-        }
-        (dx, dy)
-    }
-
-    fn solve_once(
-        &self,
-        a: &Jacobian,
-        p: &DVector<f64>,
-        q: &DVector<f64>,
-    ) -> (DVector<f64>, DVector<f64>) {
+        let sigma = &self.sigma;
         match &self.factors {
-            Factors::Dense(dense) => dense.solve(a, &self.d, p, q),
-            Factors::Sparse(sparse) => sparse.solve(p, q),
+            Factors::Dense(dense) => refined(
+                dense.refinements(),
+                (p, q, a),
+                |v| b.multiply(v) + sigma.component_mul(v),
+                |y| self.d.component_mul(y),
+                |p, q| dense.solve(a, &self.d, p, q),
+            ),
+            Factors::Sparse(sparse) => refined(
+                REFINEMENTS,
+                (p, q, a),
+                |v| b.multiply(v) + sigma.component_mul(v),
+                |y| self.d.component_mul(y),
+                |p, q| sparse.solve(p, q),
+            ),
+            Factors::Exact(exact) => {
+                let m = q.len();
+                let q = q.clone().resize_vertically(exact.rows.shape().0, 0.0);
+                let h = sigma + &exact.diagonal;
+                let (dx, dy) = refined(
+                    REFINEMENTS,
+                    (p, &q, &exact.rows),
+                    |v| h.component_mul(v),
+                    |y| exact.damp(&self.d, y),
+                    |p, q| exact.factors.solve(p, q),
+                );
+                (dx, dy.rows(0, m).into_owned())
+            }
         }
     }
+}
+
+/// Solves for dx and dy by `solve_once`, with at most `most` refinements. The others give the products with B + Σ
+/// and with D.
+fn refined(
+    most: usize,
+    (p, q, a): (&DVector<f64>, &DVector<f64>, &Jacobian),
+    mut stiffness: impl FnMut(&DVector<f64>) -> DVector<f64>,
+    damping: impl Fn(&DVector<f64>) -> DVector<f64>,
+    solve_once: impl Fn(&DVector<f64>, &DVector<f64>) -> (DVector<f64>, DVector<f64>),
+) -> (DVector<f64>, DVector<f64>) {
+    let (mut dx, mut dy) = solve_once(p, q);
+    let size = p.amax().max(q.amax());
+    let mut last = f64::INFINITY;
+    for _ in 0..most {
+        let rp = p - stiffness(&dx) - a.tr_mul(&dy);
+        let rq = q - a * &dx + damping(&dy);
+        let residual = rp.amax().max(rq.amax());
+        let stands = residual.partial_cmp(&last) != Some(Ordering::Less);
+        if residual <= EXACT * size || stands {
+            break;
+        }
+        last = residual;
+        let (ex, ey) = solve_once(&rp, &rq);
+        dx += ex;
+        dy += ey;
+    }
+    (dx, dy)
 }

@@ -4,6 +4,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use crate::optimiser::linear::compact::Compact;
+use crate::optimiser::linear::curvature::Curvature;
 
 /// Least cosine of step and gradient difference for which a pair is used.
 const CURVATURE: f64 = 1.5e-8;
@@ -44,6 +45,10 @@ pub struct QuasiNewton {
     model: Vec<f64>,
     pairs: Vec<Pair>,
     skipped: usize,
+    /// Second derivatives at the present point, where the program gives them. They take the place of
+    /// all pairs.
+    #[serde(skip)]
+    exact: Option<Curvature>,
     #[serde(skip)]
     cached: Cached,
 }
@@ -53,6 +58,7 @@ pub struct QuasiNewton {
 struct Cached {
     dense: Option<DMatrix<f64>>,
     compact: Option<Compact>,
+    exact_diagonal: Option<DVector<f64>>,
 }
 
 /// Two matrices of the same pairs are equal, whatever is cached.
@@ -97,14 +103,27 @@ impl QuasiNewton {
             model: Vec::new(),
             pairs,
             skipped: 0,
+            exact: None,
             cached: Cached::default(),
         }
+    }
+
+    /// Sets the second derivatives at the present point.
+    pub(crate) fn set_exact(&mut self, exact: Option<Curvature>) {
+        self.cached.exact_diagonal = exact.as_ref().map(Curvature::least_diagonal);
+        self.exact = exact;
+    }
+
+    /// The second derivatives at the present point, if they are known.
+    pub(crate) fn exact(&self) -> Option<&Curvature> {
+        self.exact.as_ref()
     }
 
     /// The matrix without cached values.
     pub(crate) fn stored(&self) -> QuasiNewton {
         QuasiNewton {
             cached: Cached::default(),
+            exact: None,
             pairs: self.pairs.clone(),
             base: self.base.clone(),
             model: self.model.clone(),
@@ -317,6 +336,9 @@ impl QuasiNewton {
 
     /// Diagonal entry `i` of B.
     pub(crate) fn diagonal(&mut self, i: usize) -> f64 {
+        if let Some(diagonal) = &self.cached.exact_diagonal {
+            return diagonal[i];
+        }
         if self.dense {
             return self.dense()[(i, i)];
         }

@@ -2,7 +2,7 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::qdldl::QDLDLFactorisation;
-use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
+use flexbody::optimiser::{Curvature, Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
 
 /// Minimise the compliance pᵀu with K(x) u = p over the areas x of all bars; their volume is
 /// given. The grid is fixed on its left edge and loaded at the middle of its right edge.
@@ -17,6 +17,8 @@ pub struct Truss {
     places: Vec<[usize; 10]>,
     factors: Option<QDLDLFactorisation<f64>>,
     last: Option<(Vec<f64>, Vec<f64>)>,
+    /// Whether the program gives its second derivatives.
+    pub with_curvature: bool,
 }
 
 /// Least area, relative to the mean area.
@@ -102,16 +104,12 @@ impl Truss {
             places,
             factors: None,
             last: None,
+            with_curvature: false,
         }
     }
 
-    /// Displacements under the load.
-    fn solve(&mut self, x: &[f64]) -> Vec<f64> {
-        if let Some((at, u)) = &self.last
-            && at == x
-        {
-            return u.clone();
-        }
+    /// Entries of the stiffness matrix K(x).
+    fn matrix(&self, x: &[f64]) -> Vec<f64> {
         let mut values = vec![0.0; self.pattern.nzval.len()];
         for (k, (_, cosines, length)) in self.bars.iter().enumerate() {
             let mut slot = 0;
@@ -125,6 +123,17 @@ impl Truss {
                 }
             }
         }
+        values
+    }
+
+    /// Displacements under the load.
+    fn solve(&mut self, x: &[f64]) -> Vec<f64> {
+        if let Some((at, u)) = &self.last
+            && at == x
+        {
+            return u.clone();
+        }
+        let values = self.matrix(x);
         match &mut self.factors {
             Some(factors) => {
                 let all: Vec<usize> = (0..values.len()).collect();
@@ -145,6 +154,12 @@ impl Truss {
         self.last = Some((x.to_vec(), u.clone()));
         u
     }
+}
+
+/// Elongation of a bar under the displacements `u`.
+fn strain((ends, cosines, _): &([Option<usize>; 4], [f64; 4], f64), u: &[f64]) -> f64 {
+    let parts = ends.iter().zip(cosines);
+    parts.map(|(end, c)| end.map_or(0.0, |i| c * u[i])).sum()
 }
 
 /// The ten pairs of degrees of freedom of a bar, without the fixed ones.
@@ -184,17 +199,38 @@ impl Nlp for Truss {
 
     fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure> {
         let u = self.solve(x);
-        let strain = |(ends, cosines, _): &([Option<usize>; 4], [f64; 4], f64)| {
-            let parts = ends.iter().zip(cosines);
-            parts
-                .map(|(end, c)| end.map_or(0.0, |i| c * u[i]))
-                .sum::<f64>()
-        };
-        let objective = self.bars.iter().map(|b| -strain(b).powi(2) / b.2);
+        let objective = self.bars.iter().map(|b| -strain(b, &u).powi(2) / b.2);
         let volume = self.bars.iter().map(|b| b.2 / self.volume);
         Ok(Gradients {
             objective: objective.collect(),
             jacobian: Jacobian::dense(1, self.bars.len(), volume.collect()),
+        })
+    }
+
+    /// The compliance has the derivatives 2 (∂K/∂x_i u)ᵀ K⁻¹ ∂K/∂x_j u.
+    fn curvature(&mut self, x: &[f64], _y: &[f64]) -> Option<Curvature> {
+        if !self.with_curvature {
+            return None;
+        }
+        let u = self.solve(x);
+        let forces = self.bars.iter().enumerate().flat_map(|(k, bar)| {
+            let force = strain(bar, &u) / bar.2;
+            let ends = bar.0.iter().zip(bar.1);
+            ends.filter_map(move |(end, c)| end.map(|i| (i, k, c * force)))
+        });
+        let coupling = Jacobian::sparse(self.freedoms, self.bars.len(), forces);
+        let values = self.matrix(x);
+        let pattern = &self.pattern;
+        let column = |j: usize| {
+            let part = pattern.colptr[j]..pattern.colptr[j + 1];
+            part.map(move |p| (j, pattern.rowval[p], p))
+        };
+        let half = (0..self.freedoms).flat_map(column);
+        let half = half.map(|(j, i, p)| (j, i, 0.5 * values[p]));
+        Some(Curvature {
+            diagonal: vec![0.0; self.bars.len()],
+            coupling,
+            stiffness: Jacobian::sparse(self.freedoms, self.freedoms, half),
         })
     }
 }
