@@ -94,8 +94,39 @@ fn as_json(value: f64) -> Value {
     }
 }
 
-/// Optimises for each value of a parameter, each from the optimum before, and writes `sweep.csv` and
-/// `sweep.svg`, both or none.
+/// The optima so far as a table.
+const TABLE: &str = "sweep.csv";
+/// The same with all that a rerun needs to continue; removed at the end.
+const PARTIAL: &str = "sweep.partial.json";
+
+/// The sweep that was interrupted in a directory, as far as it is one over `problems` (values and
+/// hashes). A file that cannot be read counts as none.
+fn begun<'p>(
+    directory: &Path,
+    path: &str,
+    problems: impl Iterator<Item = (f64, &'p str)>,
+) -> Option<Sweep> {
+    let text = std::fs::read(directory.join(PARTIAL)).ok()?;
+    let found = serde_json::from_slice::<Sweep>(&text).ok();
+    let mut found = found.filter(|sweep| sweep.parameter == path)?;
+    found.keep_common(problems);
+    (!found.optima.is_empty()).then_some(found)
+}
+
+/// Writes table, figure and partial sweep, all of them or none.
+fn write(found: &Sweep, directory: &Path) -> Result<(), Failure> {
+    let mut files = vec![(directory.join(TABLE), found.to_csv()?.into_bytes())];
+    // Without a finite objective there is nothing to draw.
+    if let Ok(figure) = plots::sweep(found) {
+        files.push((directory.join("sweep.svg"), figure.into_bytes()));
+    }
+    let partial = serde_json::to_vec(found).map_err(Failure::numerical)?;
+    files.push((directory.join(PARTIAL), partial));
+    Ok(write_all(&files)?)
+}
+
+/// Optimises for each value of a parameter, each from the last optimum before. Writes the optima so
+/// far after each run, so that an interrupted sweep leaves them and the next one continues.
 pub(super) fn sweep(job: &Job, base: &Problem, range: &Range) -> Result<u8, Failure> {
     not_designed(base, "--sweep", &range.path)?;
     if job.accuracy.is_some() {
@@ -118,14 +149,23 @@ pub(super) fn sweep(job: &Job, base: &Problem, range: &Range) -> Result<u8, Fail
         Some(directory) => directory.clone(),
         None => Path::new("results").join(&base.name),
     };
+    let problems: Vec<Problem> = problems
+        .into_iter()
+        .map(|problem| problem.for_optimisation().unwrap_or(problem))
+        .collect();
     let _held = prepare_directory(&directory)?;
     interrupt::heed();
-    let mut found: Option<Sweep> = None;
-    let mut last: Option<Vec<f64>> = None;
-    for (value, problem) in range.values().zip(problems) {
-        let mut problem = problem.for_optimisation().unwrap_or(problem);
-        if let Some(design) = &last {
-            problem.restart(design);
+    let hashes = problems.iter().map(|problem| problem.hash.as_str());
+    let mut found = begun(&directory, &range.path, range.values().zip(hashes));
+    let known = found.as_ref().map_or(0, |sweep| sweep.optima.len());
+    if known > 0 && !job.quiet {
+        let all = problems.len();
+        tell(&format!("continues after {known} of {all} optima\n"));
+    }
+    for (value, mut problem) in range.values().zip(problems).skip(known) {
+        let last = found.iter().flat_map(|sweep| &sweep.optima);
+        if let Some(last) = last.rev().find(|optimum| optimum.converged) {
+            problem.restart(&last.design);
         }
         let mut progress = |_: &_| match interrupt::asked() {
             true => ControlFlow::Break(()),
@@ -135,7 +175,14 @@ pub(super) fn sweep(job: &Job, base: &Problem, range: &Range) -> Result<u8, Fail
             return Err(Failure::bad_input("nothing to optimise"));
         };
         if interrupt::asked() {
-            tell("interrupted: the sweep is not complete and nothing is written\n");
+            let table = directory.join(TABLE);
+            tell(&match found.map_or(0, |sweep| sweep.optima.len()) {
+                0 => "interrupted before the first optimum\n".to_owned(),
+                done => format!(
+                    "interrupted: {done} optima are in {}; the same command continues\n",
+                    shown(&table)
+                ),
+            });
             return Ok(INTERRUPTED);
         }
         if !job.quiet {
@@ -143,9 +190,6 @@ pub(super) fn sweep(job: &Job, base: &Problem, range: &Range) -> Result<u8, Fail
                 "{} = {value}: {} {}\n",
                 range.path, optimum.status, optimum.objective
             ));
-        }
-        if optimum.converged {
-            last = Some(optimum.design.clone());
         }
         let (objective, variables, constraints) = columns;
         let sweep = found.get_or_insert_with(|| Sweep {
@@ -156,16 +200,13 @@ pub(super) fn sweep(job: &Job, base: &Problem, range: &Range) -> Result<u8, Fail
             optima: Vec::new(),
         });
         sweep.optima.push(optimum);
+        write(sweep, &directory)?;
     }
     let Some(found) = found else {
         return Err(Failure::bad_input("nothing to optimise"));
     };
-    let mut files = vec![(directory.join("sweep.csv"), found.to_csv()?.into_bytes())];
-    match plots::sweep(&found) {
-        Ok(figure) => files.push((directory.join("sweep.svg"), figure.into_bytes())),
-        Err(error) => tell(&format!("warning: a figure is missing: {error}\n")),
-    }
-    write_all(&files)?;
+    // A partial sweep that stays does no harm: its optima are those of the table.
+    let _ = std::fs::remove_file(directory.join(PARTIAL));
     if !job.quiet {
         print(&found.text())?;
         tell(&format!("results in {}\n", shown(&directory)));

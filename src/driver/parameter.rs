@@ -53,6 +53,7 @@ pub(crate) fn swept(
     let (outcome, history) = (solved.outcome, solved.history);
     let optimum = SweptOptimum {
         value,
+        problem: problem.hash.clone(),
         status: verdict(&outcome.status).0.to_owned(),
         converged: outcome.converged(),
         evaluations: outcome.counts.evaluations,

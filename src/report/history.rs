@@ -2,9 +2,10 @@
 
 use super::ReportError;
 use super::csv;
+use serde::{Deserialize, Serialize};
 
 /// Name and unit of a column.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Column {
     /// Name, as in the problem file.
     pub name: String,

@@ -3,12 +3,15 @@
 use super::ReportError;
 use super::csv;
 use super::history::{CONSTRAINT, Column, OBJECTIVE, VARIABLE, exact};
+use serde::{Deserialize, Serialize};
 
 /// The optimum for one value of the parameter.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SweptOptimum {
     /// Value of the parameter.
     pub value: f64,
+    /// SHA-256 of the problem with this value, hexadecimal.
+    pub problem: String,
     /// How the run ended, in one word.
     pub status: String,
     /// Whether it converged.
@@ -24,7 +27,7 @@ pub(crate) struct SweptOptimum {
 }
 
 /// The optima along a parameter.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Sweep {
     /// JSON Pointer to the parameter.
     pub parameter: String,
@@ -39,6 +42,16 @@ pub(crate) struct Sweep {
 }
 
 impl Sweep {
+    /// Keeps the optima of the first runs that are the same in a sweep over `problems`, each a value
+    /// and the SHA-256 of its problem.
+    pub(crate) fn keep_common<'p>(&mut self, problems: impl Iterator<Item = (f64, &'p str)>) {
+        let same = |(found, (value, problem)): &(&SweptOptimum, (f64, &str))| {
+            found.value.to_bits() == value.to_bits() && found.problem == *problem
+        };
+        let common = self.optima.iter().zip(problems).take_while(same).count();
+        self.optima.truncate(common);
+    }
+
     /// Comma separated values (RFC 4180), with the columns of `history.csv` for objective, variables
     /// and constraints. Numbers are the shortest that read back exactly; one that is not finite is
     /// an empty field.

@@ -1,8 +1,10 @@
 //! `--sensitivity PATH` and `--sweep PATH=a..b,n`.
 
-use crate::program::{HAMMER, expect, json, read, scratch};
+use crate::program::{HAMMER, TREBUCHET, expect, json, names, read, scratch, start};
 use crate::statics::written;
 use std::path::Path;
+use std::process::Command;
+use std::time::{Duration, Instant};
 
 const TIGHT: [&str; 3] = [
     "--no-certificate",
@@ -152,4 +154,38 @@ fn a_sweep_finds_the_optimum_for_every_value() {
     }
     assert!(read(&at.path().join("swept/sweep.svg")).starts_with("<svg"));
     assert!(!at.path().join("swept/optimum.json").exists());
+}
+
+/// The optima so far are a table. The same command continues behind them and ends with the files of
+/// a sweep that was not interrupted; a command with another value begins anew.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_sweep_leaves_a_table_and_continues() {
+    let at = scratch();
+    let range = "/bodies/counterweight/shape/box/size/0=3.7..4.3,4";
+    let sweep = |output| [TREBUCHET, "--sweep", range, "--output", output];
+    expect(0, at.path(), &sweep("whole"));
+    let mut run = start(at.path(), &sweep("cut"));
+    let table = at.path().join("cut/sweep.csv");
+    let patience = Instant::now();
+    while !table.exists() && patience.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let sent = Command::new("kill")
+        .args(["-INT", &run.id().to_string()])
+        .status();
+    assert!(sent.expect("kill runs").success());
+    assert_eq!(run.wait().expect("ends").code(), Some(130));
+    let whole = read(&at.path().join("whole/sweep.csv"));
+    let cut = read(&table);
+    assert!(whole.starts_with(&cut), "{cut}");
+    let rows = cut.lines().count();
+    assert!((2..5).contains(&rows), "{cut}");
+    let files = names(&at.path().join("cut"));
+    assert_eq!(files, ["sweep.csv", "sweep.partial.json", "sweep.svg"]);
+    let ran = expect(0, at.path(), &sweep("cut"));
+    let known = format!("continues after {} of 4 optima", rows - 1);
+    assert!(ran.err.contains(&known), "{}", ran.err);
+    assert_eq!(read(&table), whole);
+    assert_eq!(names(&at.path().join("cut")), ["sweep.csv", "sweep.svg"]);
 }
