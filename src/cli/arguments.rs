@@ -94,7 +94,8 @@ pub(crate) struct Job {
     /// second simulation with steps of half the size.
     #[arg(long)]
     pub error: bool,
-    /// Writes the fields of structures to fields.vtu beside the results, for ParaView and meshio.
+    /// Writes the fields of structures to fields.vtu beside the results, for ParaView and meshio. Of shells that
+    /// move it writes fields_0000.vtu and so on, at most 101 instants, and their list fields.pvd.
     #[arg(long)]
     pub vtu: bool,
     /// Refines steps or samples until the estimated relative error of the objective at the start is

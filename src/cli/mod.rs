@@ -219,9 +219,9 @@ fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
         let code = unread.map_or(BAD_INPUT, |error| code_of_reading(&error));
         Failure::new(code, faults)
     })?;
-    if job.vtu && problem.statics.is_none() {
+    if job.vtu && problem.statics.is_none() && !problem.has_shells() {
         return Err(Failure::bad_input(format!(
-            "{}: found --vtu, expected a problem of structures without a motion",
+            "{}: found --vtu, expected a problem of structures or a body with \"elements\"",
             shown(&job.problem)
         )));
     }

@@ -134,9 +134,15 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     if recorded {
         draw(&directory, figures::of_optimisation(&problem, &done));
     }
-    if let (true, true, Some(driver::Simulated::Statics(end))) = (recorded, job.vtu, &done.end) {
-        let fields = driver::statics::figures::fields(end).into_bytes();
-        write_all(&[(directory.join("fields.vtu"), fields)])?;
+    match (&done.end, recorded && job.vtu) {
+        (Some(driver::Simulated::Statics(end)), true) => {
+            let fields = driver::statics::figures::fields(end).into_bytes();
+            write_all(&[(directory.join("fields.vtu"), fields)])?;
+        }
+        (Some(driver::Simulated::Motion(end)), true) => {
+            write_all(&driver::shell_fields::series(&directory, end))?;
+        }
+        (_, false) | (None, true) => {}
     }
     if let Some(error) = unwritten {
         return Err(error.into());

@@ -26,6 +26,10 @@ pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Fa
     if problem.statics.is_some() {
         return super::statics::simulate(job, &problem, json);
     }
+    if job.vtu && job.output.is_none() {
+        let what = "found --vtu without --output, expected a directory for the files";
+        return Err(Failure::bad_input(what));
+    }
     let simulation = driver::simulate(&problem, &problem.start()).map_err(Failure::numerical)?;
     if json {
         print(&as_json(&problem, &simulation, job.error)?)?;
@@ -49,6 +53,9 @@ pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Fa
             .map(|(name, bytes)| (directory.join(name), bytes))
             .collect();
         write_all(&tables)?;
+        if job.vtu {
+            write_all(&driver::shell_fields::series(directory, &simulation))?;
+        }
         draw(directory, figures::of_simulation(&problem, &simulation));
         if !job.quiet {
             tell(&format!("results in {}\n", shown(directory)));

@@ -152,7 +152,7 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
         Function::Reduced { instant, reduction } => (instant, *reduction),
         Function::Clearance { .. } => return length.max(at.function(f).value.abs()),
         Function::Duration => return time,
-        Function::OfDesign(value) => return value.abs().max(1.0),
+        Function::OfDesign { value, .. } => return value.abs().max(1.0),
     };
     let size = match instant {
         Instant::Position { .. } | Instant::Range { .. } => length,

@@ -91,8 +91,8 @@ pub(super) fn connectors(
 fn beside(outline: &Outline, point: &Vec3<f64>) -> bool {
     match outline {
         Outline::Sphere(radius) => point.norm() > radius * (1.0 + 1e-9),
-        // Joints hold points of beams by bodies of their own.
-        Outline::Deformed(_) => false,
+        // Joints hold points of beams and shells by bodies of their own.
+        Outline::Deformed(_) | Outline::Shells(_) => false,
         // Corners are on the surface, so the box around them holds all of the shape.
         Outline::Hull(corners) => (0..3).any(|i| {
             let reach = corners.iter().map(|c| c[i].abs()).fold(0.0, f64::max);

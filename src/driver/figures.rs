@@ -2,7 +2,9 @@
 
 use super::analysed::Simulated;
 use super::connectors::connectors;
+use super::elastic_figures::{deflections, elastic, has_stress, limits, patches, stresses};
 use super::optimise::Optimisation;
+use super::shells;
 use super::simulate::Simulation;
 use super::statics::figures as of_structures;
 use crate::functions::evaluate::sample;
@@ -10,16 +12,12 @@ use crate::functions::measure::Snapshot;
 use crate::functions::turning::turns;
 use crate::functions::{Function, Instant, Reduction};
 use crate::math::Vec3;
-use crate::model::Model;
-use crate::problem::{BeamPoint, DeformedLine, Drawing, Outline, Problem};
+use crate::problem::{Drawing, Outline, Problem};
 use crate::report::plots::{
-    Barrier, BodyMotion, EnergyRun, Flight, History as Curves, Motion, Patch, Scenery, convergence,
+    Barrier, BodyMotion, EnergyRun, Flight, History as Curves, Motion, Scenery, convergence,
     energy, histories, motion,
 };
 use crate::report::{History, Optimum, ReportError};
-
-/// Layers across a beam in which its stress is drawn.
-const LAYERS: usize = 6;
 
 /// A file's name and content.
 pub(crate) type NamedFile = (&'static str, Vec<u8>);
@@ -135,38 +133,23 @@ fn figures(
         .map(|(title, design)| energies(title, design))
         .collect();
     all.push(("energy.svg", energy(&energies)));
-    if drawings
-        .iter()
-        .any(|drawing| !drawing.beam_points.is_empty())
-    {
-        let pairs = designs.iter().zip(&drawings);
-        let all_of = |((title, design), drawing): (&(&str, &Simulation), &Drawing)| {
-            deflections(title, design, drawing)
-        };
-        let curves: Vec<Curves> = pairs.map(all_of).collect();
-        let label = "displacement against the beam's axes [m]";
+    let deforms = |drawing: &Drawing| !drawing.elastic_points.is_empty();
+    if drawings.iter().any(deforms) {
+        let pairs = || designs.iter().zip(&drawings);
+        let curves = pairs().map(|((title, design), drawing)| deflections(title, design, drawing));
+        let label = "displacement against the body's axes [m]";
+        let curves: Vec<Curves> = curves.collect();
         all.push(("deflection.svg", histories(&curves, label)));
+        let curves = pairs().map(|((title, design), drawing)| stresses(title, design, drawing));
+        let mut curves: Vec<Curves> = curves.collect();
+        for (own, (_, design)) in curves.iter_mut().zip(designs) {
+            own.curves.extend(limits(problem, design));
+        }
+        all.push(("stress.svg", histories(&curves, "largest stress [Pa]")));
     }
     all.into_iter()
         .filter_map(|(name, svg)| Some((name, svg.ok()?.into_bytes())))
         .collect()
-}
-
-/// The displacements of points of beams against time.
-fn deflections(title: &str, simulation: &Simulation, drawing: &Drawing) -> Curves {
-    let (model, run) = (&simulation.written.model, simulation.motion());
-    let curve = |point: &BeamPoint| {
-        let at = |k: usize| -> f64 {
-            let q = elastic(model, &Snapshot::of(model, run, k), point.body);
-            point.by.iter().zip(&q).map(|(n, q)| n * q).sum()
-        };
-        (point.name.clone(), (0..=run.last()).map(at).collect())
-    };
-    Curves {
-        title: title.to_string(),
-        time: (0..=run.last()).map(|k| run.time(k)).collect(),
-        curves: drawing.beam_points.iter().map(curve).collect(),
-    }
 }
 
 fn scenery(drawing: &Drawing) -> Scenery {
@@ -238,7 +221,8 @@ fn lapse(
     let end = release.as_ref().map_or(run.last(), |(k, _)| *k);
     let shown: Vec<usize> = run.shown().into_iter().filter(|&k| k <= end).collect();
     let latest = shown.len() - 1;
-    let flat = |p: &Vec3<f64>| [drawing.right.dot(p), drawing.up.dot(p)];
+    let flat = |p: &Vec3<f64>| drawing.flat(p);
+    let (oblique, sight) = (drawing.is_oblique(), drawing.sight());
     let snapshots = drawing.snapshots.clamp(2, latest.max(1) + 1);
     let instants: Vec<usize> = (0..snapshots)
         .map(|i| match i + 1 == snapshots {
@@ -262,17 +246,19 @@ fn lapse(
                     outline(&drawing.outlines[body], &q, |s| flat(&motion.point(s)))
                 })
                 .collect(),
-            patches: match &drawing.outlines[body] {
-                Outline::Deformed(line) if !line.stresses.is_empty() => instants
-                    .iter()
-                    .map(|&k| {
-                        let at = Snapshot::of(model, run, k);
-                        let motion = at.motion(body);
-                        patches(line, &elastic(model, &at, body), |s| flat(&motion.point(s)))
-                    })
-                    .collect(),
-                _ => Vec::new(),
-            },
+            patches: instants
+                .iter()
+                .filter(|_| has_stress(&drawing.outlines[body]))
+                .map(|&k| {
+                    let at = Snapshot::of(model, run, k);
+                    patches(&at, body, drawing)
+                })
+                .collect(),
+            depths: instants
+                .iter()
+                .filter(|_| oblique)
+                .map(|&k| sight.dot(&Snapshot::of(model, run, k).motion(body).position))
+                .collect(),
         })
         .collect();
     let thrown = release.map(|(_, p)| (p.body, p.point));
@@ -304,50 +290,6 @@ fn lapse(
     }
 }
 
-/// Elastic coordinates of a body; none of a rigid one.
-fn elastic(model: &Model<f64>, at: &Snapshot<f64>, body: usize) -> Vec<f64> {
-    let own = model
-        .flexible
-        .iter()
-        .filter(|flexible| flexible.frame == body);
-    let places = own.flat_map(|flexible| flexible.places());
-    places
-        .map(|(carrier, k)| at.motion(carrier).point(&Vec3::zeros())[k])
-        .collect()
-}
-
-/// Coloured parts of a bent beam: slices along it, in layers across it.
-fn patches(line: &DeformedLine, q: &[f64], place: impl Fn(&Vec3<f64>) -> [f64; 2]) -> Vec<Patch> {
-    let moved = |(point, modes): &(Vec3<f64>, Vec<Vec3<f64>>)| {
-        let moved = modes.iter().zip(q).fold(*point, |sum, (n, &q)| sum + n * q);
-        place(&moved)
-    };
-    let border: Vec<[f64; 2]> = line.points.iter().map(moved).collect();
-    let last = border.len() - 1;
-    let between = |k: usize, part: f64| {
-        let (a, b) = (border[k], border[last - k]);
-        [0, 1].map(|i| a[i] + part * (b[i] - a[i]))
-    };
-    let mut all = Vec::new();
-    for (k, stresses) in line.stresses.iter().enumerate() {
-        let [first, second] = stresses.each_ref().map(|form| form.value(q));
-        for layer in 0..LAYERS {
-            let [from, to] = [layer, layer + 1].map(|i| i as f64 / LAYERS as f64);
-            let middle = 0.5 * (from + to);
-            all.push(Patch {
-                corners: vec![
-                    between(k, from),
-                    between(k + 1, from),
-                    between(k + 1, to),
-                    between(k, to),
-                ],
-                value: first + middle * (second - first),
-            });
-        }
-    }
-    all
-}
-
 /// The silhouette of a body with elastic coordinates `q` whose points are shown by `place`.
 fn outline(outline: &Outline, q: &[f64], place: impl Fn(&Vec3<f64>) -> [f64; 2]) -> Vec<[f64; 2]> {
     match outline {
@@ -357,6 +299,10 @@ fn outline(outline: &Outline, q: &[f64], place: impl Fn(&Vec3<f64>) -> [f64; 2])
                 place(&moved)
             })
             .collect(),
+        Outline::Shells(line) => {
+            let nodes = shells::places(&line.mesh, q);
+            line.nodes.iter().map(|&node| place(&nodes[node])).collect()
+        }
         Outline::Hull(corners) => hull(corners.iter().map(place).collect()),
         Outline::Sphere(radius) => {
             let [x, y] = place(&Vec3::zeros());

@@ -411,7 +411,7 @@ pub(super) fn looks_at_the_whole(function: &Function<f64>) -> bool {
         Function::Reduced { instant, reduction } => {
             !matches!(reduction, Reduction::Final) || instant.watched_rotation().is_some()
         }
-        Function::Duration | Function::OfDesign(_) => false,
+        Function::Duration | Function::OfDesign { .. } => false,
         Function::Clearance { release, .. } => {
             matches!(release, crate::functions::Release::Best { .. })
         }

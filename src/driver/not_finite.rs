@@ -20,7 +20,7 @@ pub(crate) fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> 
                 format!(": its {what} is not finite from t = {time:.6e} s on{why}")
             })
         }
-        Function::Clearance { .. } | Function::Duration | Function::OfDesign(_) => None,
+        Function::Clearance { .. } | Function::Duration | Function::OfDesign { .. } => None,
     };
     format!(
         "the function \"{name}\" is {value}{}{}",

@@ -157,7 +157,7 @@ fn functions(problem: &Problem, simulation: &Simulation) -> String {
                 };
                 ("clearance", "m", (0..=run.last()).map(at).collect())
             }
-            Function::Duration | Function::OfDesign(_) => continue,
+            Function::Duration | Function::OfDesign { .. } => continue,
         };
         header.push(format!("{name}: {what} [{unit}]"));
         columns.push(values);

@@ -32,7 +32,7 @@ impl<S: SolveScalar> Function<S> {
     pub(crate) fn evaluate(&self, model: &Model<S>, run: &Trajectory<S>) -> Evaluated<S> {
         match self {
             Function::Reduced { instant, reduction } => reduce(instant, *reduction, model, run),
-            Function::OfDesign(value) => Evaluated {
+            Function::OfDesign { value, .. } => Evaluated {
                 value: *value,
                 maximum: None,
                 peak_sharpness: 0.0,
@@ -386,7 +386,7 @@ impl<'a> Linearised<'a> {
                 Release::Best { .. } => this.at_best_release(projectile, *distance, model, run),
             },
             Function::Duration => this.by_duration = 1.0,
-            Function::OfDesign(_) => {}
+            Function::OfDesign { .. } => {}
         }
         this
     }
@@ -459,7 +459,7 @@ impl<'a> Linearised<'a> {
             }
         };
         match own {
-            Function::Duration | Function::OfDesign(_) => {}
+            Function::Duration | Function::OfDesign { .. } => {}
             Function::Reduced { instant, .. } => pull(instant),
             Function::Clearance {
                 projectile: by_projectile,
@@ -506,7 +506,7 @@ impl<'a> Linearised<'a> {
                 *distance += self.by_barrier[0];
                 *top += self.by_barrier[1];
             }
-            Function::OfDesign(value) => *value += 1.0,
+            Function::OfDesign { value, .. } => *value += 1.0,
             Function::Reduced { .. } | Function::Duration => {}
         }
     }

@@ -71,15 +71,20 @@ pub(crate) enum Function<S> {
     },
     /// Duration T of the run; with an event, its time \[s\].
     Duration,
-    /// A number that depends only on the design, without unit.
-    OfDesign(S),
+    /// A number that depends only on the design.
+    OfDesign {
+        /// Its SI unit.
+        unit: &'static str,
+        /// The number.
+        value: S,
+    },
 }
 
 parameters!(enum Function {
     Reduced { reduction; instant },
     Clearance {; projectile, release, distance, top },
     Duration,
-    OfDesign(; value),
+    OfDesign { unit; value },
 });
 
 parameters!(enum Release {
@@ -106,7 +111,7 @@ impl<S: Scalar> Function<S> {
             Function::Reduced { instant, .. } => instant.unit().to_owned(),
             Function::Clearance { .. } => "m".to_owned(),
             Function::Duration => "s".to_owned(),
-            Function::OfDesign(_) => "1".to_owned(),
+            Function::OfDesign { unit, .. } => (*unit).to_owned(),
         }
     }
 
@@ -114,7 +119,7 @@ impl<S: Scalar> Function<S> {
     pub(crate) fn instant(&self) -> Option<&Instant<S>> {
         match self {
             Function::Reduced { instant, .. } => Some(instant),
-            Function::Clearance { .. } | Function::Duration | Function::OfDesign(_) => None,
+            Function::Clearance { .. } | Function::Duration | Function::OfDesign { .. } => None,
         }
     }
 
@@ -173,7 +178,7 @@ impl<S: Scalar> Function<S> {
                     }
                 }
             },
-            Function::Duration | Function::OfDesign(_) => {}
+            Function::Duration | Function::OfDesign { .. } => {}
             Function::Clearance {
                 projectile,
                 release,

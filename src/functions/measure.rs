@@ -57,7 +57,7 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
     }
 
     /// Motions of all bodies.
-    fn motions(&self) -> Vec<BodyMotion<S>> {
+    pub(crate) fn motions(&self) -> Vec<BodyMotion<S>> {
         let mut motions = Vec::with_capacity(self.numbering.bodies());
         BodyMotion::all(self.numbering, self.q, self.v, &mut motions);
         motions

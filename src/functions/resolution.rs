@@ -137,7 +137,7 @@ fn sum_of(scene: &Scene<f64>, f: usize, run: &Trajectory<f64>, nodes: &[usize]) 
                 gate,
             } => (Instant::Range { projectile, gate }, Some(rho)),
         },
-        Function::Duration | Function::OfDesign(_) => return None,
+        Function::Duration | Function::OfDesign { .. } => return None,
     };
     let turns = turns(instant.watched_rotation(), run);
     let all = sample(&instant, &turns, &scene.model, run);

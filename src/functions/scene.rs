@@ -63,7 +63,7 @@ impl TerminalEvent<f64> {
             Function::Reduced { instant, .. } => instant.describe().into(),
             Function::Clearance { .. } => "clearance".into(),
             Function::Duration => "duration".into(),
-            Function::OfDesign(_) => "design".into(),
+            Function::OfDesign { .. } => "design".into(),
         }
     }
 

@@ -152,7 +152,7 @@ fn looks_at<S: Scalar>(scene: &Scene<S>, function: &Function<S>) -> Vec<(usize, 
                 [thrown].into_iter().chain(gated(gate)).collect()
             }
         },
-        Function::Duration | Function::OfDesign(_) => Vec::new(),
+        Function::Duration | Function::OfDesign { .. } => Vec::new(),
         Function::Clearance {
             projectile,
             release,

@@ -8,6 +8,8 @@ use crate::lower::{Lowering, Seen};
 pub(crate) struct Focus {
     /// Kept bodies and functions.
     pub seen: Seen,
+    /// Bodies of the whole scenes, those of elastic coordinates among them.
+    bodies: usize,
     /// Reductions of the whole scenes.
     whole: Option<Lowering>,
 }
@@ -51,6 +53,7 @@ impl Problem {
         };
         focused.focus = Some(Focus {
             seen,
+            bodies: scene.model.bodies.len(),
             whole: self.lowering.clone(),
         });
         if !all_bodies {
@@ -70,7 +73,7 @@ impl Problem {
     /// The problem with all bodies, if some were removed; it keeps its functions.
     pub(crate) fn whole(&self) -> Option<Self> {
         let focus = self.focus.as_ref()?;
-        let bodies = self.order.len();
+        let bodies = focus.bodies;
         if focus.seen.bodies.len() == bodies {
             return None;
         }
@@ -78,6 +81,7 @@ impl Problem {
         whole.lowering.clone_from(&focus.whole);
         whole.focus = Some(Focus {
             seen: focus.seen.all_bodies(bodies),
+            bodies,
             whole: focus.whole.clone(),
         });
         Some(whole)

@@ -9,6 +9,7 @@ mod blocks;
 mod bounds;
 mod check;
 mod drawing;
+mod elastic_drawing;
 pub(crate) mod elements;
 mod fault;
 mod finding;
@@ -43,7 +44,8 @@ mod tests;
 mod text;
 mod variables;
 
-pub(crate) use drawing::{BeamPoint, DeformedLine, Drawing, Outline};
+pub(crate) use drawing::{Drawing, Outline};
+pub(crate) use elastic_drawing::{DeformedLine, ElasticPoint};
 pub use fault::{Fault, Faults};
 pub(crate) use focus::Focus;
 pub(crate) use memory::available as available_memory;
@@ -205,6 +207,12 @@ impl Problem {
         read::parse(text, file, overrides)
     }
 
+    /// Whether a body has finite elements.
+    pub(crate) fn has_shells(&self) -> bool {
+        let bodies = self.written.bodies.values();
+        bodies.into_iter().any(|body| body.elements.is_some())
+    }
+
     /// Name of the problem and of its results.
     pub fn name(&self) -> &str {
         &self.name
@@ -325,7 +333,10 @@ impl Problem {
         }
         if self.nearest_to.is_some() {
             let distance = self.distance_from_start(x);
-            scene.functions.push(Function::OfDesign(distance));
+            scene.functions.push(Function::OfDesign {
+                unit: "1",
+                value: distance,
+            });
         }
         if let Some(focus) = &self.focus {
             focus.seen.apply(&mut scene);

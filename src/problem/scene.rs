@@ -49,6 +49,7 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
         assembly: &assembly,
         gravity,
         flexible: &flexible,
+        mass: (model.bodies.iter()).fold(S::zero(), |sum, body| sum + body.mass),
         ends: (model.joints.iter())
             .map(|joint| (joint.body_a, joint.body_b))
             .collect(),
@@ -177,6 +178,8 @@ struct Builder<'a, S> {
     assembly: &'a Assembly<'a, S>,
     gravity: Vec3<S>,
     flexible: &'a FlexibleBodies<S>,
+    /// Mass of all bodies \[kg\].
+    mass: S,
     /// The bodies of the joints, first the one that is not ground.
     ends: Vec<(usize, Option<usize>)>,
     /// The axes of the joints on the first of them.
@@ -208,6 +211,10 @@ impl<S: Scalar> Builder<'_, S> {
             OfMotion::Final(instant) => reduced(instant, Reduction::Final),
             OfMotion::Clearance(clearance) => self.clearance(clearance),
             OfMotion::Duration => Function::Duration,
+            OfMotion::Mass => Function::OfDesign {
+                unit: "kg",
+                value: self.mass,
+            },
         }
     }
 
@@ -481,7 +488,9 @@ pub(crate) fn released<'a>(
         OfMotion::Ks(ks) => (&ks.of, Some(ks.rho)),
         OfMotion::InducedExponential(aggregate) => (&aggregate.of, Some(aggregate.rho)),
         OfMotion::Final(instant) => (instant, None),
-        OfMotion::Integral(_) | OfMotion::Clearance(_) | OfMotion::Duration => return None,
+        OfMotion::Integral(_) | OfMotion::Clearance(_) | OfMotion::Duration | OfMotion::Mass => {
+            return None;
+        }
     };
     match instant {
         written::Instant::Range(range) => Some((range, rho)),

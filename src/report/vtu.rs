@@ -1,4 +1,4 @@
-//! Fields of structures as VTK files for unstructured grids (`.vtu`), which ParaView and meshio read.
+//! Fields of structures, at rest and in motion, as VTK files for unstructured grids (`.vtu`), which ParaView and meshio read.
 //!
 //! Nine-node shells are cells of type 28 (biquadratic quadrilateral): corners, middles of edges, centre.
 //! Three-node beams are cells of type 21 (quadratic edge): ends, middle.
@@ -98,6 +98,23 @@ pub(crate) fn vtu(fields: &Fields) -> String {
         text.push_str("</DataArray>\n");
     }
     text.push_str("</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
+    text
+}
+
+/// A collection of files for the instants of a motion (`.pvd`), which ParaView opens: time \[s\] and name.
+pub(crate) fn pvd(files: &[(f64, String)]) -> String {
+    let mut text = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
+         byte_order=\"LittleEndian\">\n<Collection>\n",
+    );
+    for (time, name) in files {
+        let _ = writeln!(
+            text,
+            "<DataSet timestep=\"{time:e}\" part=\"0\" file=\"{}\"/>",
+            escaped(name)
+        );
+    }
+    text.push_str("</Collection>\n</VTKFile>\n");
     text
 }
 

@@ -150,7 +150,7 @@ fn beams_are_drawn_bent_and_coloured() {
     // Lowest and highest stress have the ends of the scale.
     assert!(motion.contains("#440154") && motion.contains("#FDE725"));
     assert!(deflection.contains("lower: middle along y"));
-    assert!(deflection.contains("displacement against the beam"));
+    assert!(deflection.contains("displacement against the body"));
     if let Some(folder) = std::env::var_os("PICTURES") {
         for (name, bytes) in &figures {
             std::fs::write(std::path::Path::new(&folder).join(name), bytes).expect("written");

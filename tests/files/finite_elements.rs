@@ -13,7 +13,7 @@ fn read(name: &str) -> Value {
 }
 
 /// The double plate with this mesh, duration, number of steps and method.
-fn plates(elements: [usize; 2], duration: f64, steps: usize, method: &Value) -> Value {
+pub(super) fn plates(elements: [usize; 2], duration: f64, steps: usize, method: &Value) -> Value {
     let mut document = read("problems/flexible/double_plate.json");
     for body in ["first", "second"] {
         document["bodies"][body]["elements"]["structure"]["mesh"]["plate"]["elements"] =
@@ -23,7 +23,7 @@ fn plates(elements: [usize; 2], duration: f64, steps: usize, method: &Value) -> 
     document
 }
 
-fn parsed(document: &Value) -> Problem {
+pub(super) fn parsed(document: &Value) -> Problem {
     Problem::parse(&document.to_string(), "plates", &[]).unwrap_or_else(|faults| panic!("{faults}"))
 }
 

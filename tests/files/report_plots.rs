@@ -189,11 +189,13 @@ fn thrower(title: &str, speed: f64) -> Motion {
             BodyMotion {
                 name: "arm".into(),
                 patches: Vec::new(),
+                depths: Vec::new(),
                 outlines: frames.iter().map(|a| vec![[0.0, 0.0], tip(a)]).collect(),
             },
             BodyMotion {
                 name: "stone".into(),
                 patches: Vec::new(),
+                depths: Vec::new(),
                 outlines: frames.iter().map(tip).map(square).collect(),
             },
         ],
@@ -326,6 +328,7 @@ fn flat_steep_and_broken_motions_stay_inside() {
         bodies: vec![BodyMotion {
             name: "a point".into(),
             patches: Vec::new(),
+            depths: Vec::new(),
             outlines: vec![vec![[3.0, 3.0]]],
         }],
         connectors: Vec::new(),

@@ -151,7 +151,7 @@ impl Checker<'_> {
             OfMotion::Clearance(clearance) => {
                 self.clearance(&format!("{pointer}/clearance"), clearance);
             }
-            OfMotion::Duration => {}
+            OfMotion::Duration | OfMotion::Mass => {}
         }
     }
 

@@ -29,7 +29,7 @@ pub(crate) enum Function {
     Clearance(Clearance),
     /// Duration of the run; with `until`, the time of the event [s].
     Duration,
-    /// Mass of all structures (kg).
+    /// Mass of all bodies, or of all structures (kg).
     Mass,
     /// Coordinate of the centre of mass of all structures (m).
     CentreOfMass(CentreOfMass),
@@ -61,6 +61,7 @@ pub(crate) enum OfMotion<'a> {
     Final(&'a Instant),
     Clearance(&'a Clearance),
     Duration,
+    Mass,
 }
 
 impl Function {
@@ -73,8 +74,8 @@ impl Function {
             Self::Final(own) => Some(OfMotion::Final(own)),
             Self::Clearance(own) => Some(OfMotion::Clearance(own)),
             Self::Duration => Some(OfMotion::Duration),
-            Self::Mass
-            | Self::CentreOfMass(_)
+            Self::Mass => Some(OfMotion::Mass),
+            Self::CentreOfMass(_)
             | Self::MomentOfInertia(_)
             | Self::StrainEnergy(_)
             | Self::Compliance(_)

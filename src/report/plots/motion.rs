@@ -18,6 +18,8 @@ pub(crate) struct BodyMotion {
     pub outlines: Vec<Vec<Point>>,
     /// Coloured patches of a body that deforms, at each instant; else empty.
     pub patches: Vec<Vec<Patch>>,
+    /// How near it is to the viewer at each instant; empty if all bodies are drawn in their order.
+    pub depths: Vec<f64>,
 }
 
 /// A polygon with the colour of a value, a stress \[Pa\].
@@ -361,7 +363,11 @@ fn draw_lapse(canvas: &mut Canvas, panel: &Panel, design: &Motion, values: Optio
     let frames = frames.unwrap_or(0);
     for frame in 0..frames {
         let late = (frame + 1) as f64 / frames as f64;
-        for (i, body) in design.bodies.iter().enumerate() {
+        // What is far is drawn first.
+        let depth = |body: &BodyMotion| body.depths.get(frame).copied().unwrap_or(0.0);
+        let mut order: Vec<(usize, &BodyMotion)> = design.bodies.iter().enumerate().collect();
+        order.sort_by(|a, b| depth(a.1).total_cmp(&depth(b.1)));
+        for (i, body) in order {
             let Some(outline) = body.outlines.get(frame) else {
                 continue;
             };

@@ -102,7 +102,7 @@ pub(crate) fn coordinates<S: Scalar>(body: &FlexibleBody<S>, motions: &[BodyMoti
 }
 
 /// Their rates.
-fn rates<S: Scalar>(body: &FlexibleBody<S>, motions: &[BodyMotion<S>]) -> Vec<S> {
+pub(crate) fn rates<S: Scalar>(body: &FlexibleBody<S>, motions: &[BodyMotion<S>]) -> Vec<S> {
     let places = body.places();
     places
         .map(|(carrier, k)| motions[carrier].velocity[k])

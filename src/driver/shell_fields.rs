@@ -1,0 +1,92 @@
+//! Shells in motion as files for ParaView: one for each of some instants, and their list.
+
+use super::shells;
+use super::simulate::Simulation;
+use crate::functions::measure::Snapshot;
+use crate::math::Vec3;
+use crate::model::flexible::{FlexibleBody, Form};
+use crate::report::vtu::{Fields, pvd, vtu};
+use crate::system::flexible::{coordinates, rates};
+use std::path::{Path, PathBuf};
+
+/// Instants at most.
+const INSTANTS: usize = 101;
+
+/// `fields_0000.vtu` … and `fields.pvd`; nothing if no body has finite elements. The instants have equal
+/// numbers of samples between them. All shells are one mesh in ground axes.
+pub(crate) fn series(directory: &Path, simulation: &Simulation) -> Vec<(PathBuf, Vec<u8>)> {
+    let (model, run) = (&simulation.written.model, simulation.motion());
+    if model
+        .bodies
+        .iter()
+        .enumerate()
+        .all(|(body, _)| shells::of(model, body).is_none())
+    {
+        return Vec::new();
+    }
+    let shown = run.shown();
+    let last = shown.len() - 1;
+    let count = INSTANTS.min(shown.len());
+    let mut instants: Vec<usize> = (0..count)
+        .map(|i| shown[i * last / (count - 1).max(1)])
+        .collect();
+    instants.dedup();
+    let (mut files, mut list) = (Vec::new(), Vec::new());
+    for (i, &k) in instants.iter().enumerate() {
+        let name = format!("fields_{i:04}.vtu");
+        files.push((
+            directory.join(&name),
+            vtu(&fields(&Snapshot::of(model, run, k))).into_bytes(),
+        ));
+        list.push((run.time(k), name));
+    }
+    files.push((directory.join("fields.pvd"), pvd(&list).into_bytes()));
+    files
+}
+
+/// The fields of all shells at an instant.
+fn fields(at: &Snapshot<f64>) -> Fields {
+    let mut fields = Fields::default();
+    let (mut displacements, mut velocities) = (Vec::new(), Vec::new());
+    let (mut thickness, mut stress, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+    let motions = at.motions();
+    let bodies = at.model.flexible.iter().enumerate();
+    let finite = bodies.filter_map(|(i, body): (usize, &FlexibleBody<f64>)| match &body.form {
+        Form::Finite(finite) => Some((i, body, finite)),
+        Form::Modal(_) => None,
+    });
+    for (i, body, finite) in finite {
+        let (mesh, motion) = (&finite.mesh, &motions[body.frame]);
+        let (q, rate) = (coordinates(body, &motions), rates(body, &motions));
+        let first = fields.nodes.len();
+        for (node, place) in shells::places(mesh, &q).iter().enumerate() {
+            let rate = |k: usize| mesh.displacements[node][k].map_or(0.0, |i| rate[i]);
+            let own = Vec3::from_fn(|k, _| rate(k));
+            let velocity = motion.point_velocity(place) + motion.rotation * own;
+            fields.nodes.push(motion.point(place).into());
+            displacements.push((motion.rotation * (place - mesh.nodes[node])).into());
+            velocities.push(velocity.into());
+        }
+        let elements = mesh.elements.iter();
+        fields
+            .shells
+            .extend(elements.map(|element| element.nodes.map(|node| first + node)));
+        thickness.extend(&finite.thickness);
+        let largest = shells::stresses(finite, &q);
+        stress.extend(largest.map(|all| all.into_iter().fold(0.0, f64::max)));
+        numbers.extend(mesh.elements.iter().map(|_| (i + 1) as f64));
+    }
+    fields.vectors = vec![
+        (
+            "displacement against the body's axes [m]".to_owned(),
+            displacements,
+        ),
+        ("velocity [m/s]".to_owned(), velocities),
+    ];
+    fields.of_elements = vec![
+        ("largest von Mises stress [Pa]".to_owned(), stress),
+        ("thickness [m]".to_owned(), thickness),
+        ("number of the flexible body".to_owned(), numbers),
+    ];
+    fields
+}

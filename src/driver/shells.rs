@@ -1,0 +1,79 @@
+//! Shells in motion: where their nodes are, their stresses, and coloured parts of their surface.
+
+use crate::math::Vec3;
+use crate::model::Model;
+use crate::model::finite::{ElementMesh, FiniteElements};
+use crate::model::flexible::Form;
+use crate::problem::Drawing;
+use crate::report::plots::Patch;
+use crate::system::finite::stress_ratios;
+
+/// Up to so many elements of a body are drawn in four parts each, others in one.
+const IN_PARTS: usize = 40;
+
+/// The shells of a body, if it has some.
+pub(super) fn of(model: &Model<f64>, body: usize) -> Option<&FiniteElements<f64>> {
+    let own = model.flexible.iter().find(|own| own.frame == body)?;
+    match &own.form {
+        Form::Finite(finite) => Some(finite),
+        Form::Modal(_) => None,
+    }
+}
+
+/// Where the nodes are at the elastic coordinates `q`, in the axes of the body \[m\].
+pub(super) fn places(mesh: &ElementMesh, q: &[f64]) -> Vec<Vec3<f64>> {
+    let moved = |(place, by): (&Vec3<f64>, &[Option<usize>; 3])| {
+        place + Vec3::from_fn(|k, _| by[k].map_or(0.0, |i| q[i]))
+    };
+    mesh.nodes
+        .iter()
+        .zip(&mesh.displacements)
+        .map(moved)
+        .collect()
+}
+
+/// Von Mises stress of each element at the Gauss points, row by row: the larger of both faces \[Pa\].
+pub(super) fn stresses<'a>(
+    finite: &'a FiniteElements<f64>,
+    q: &'a [f64],
+) -> impl Iterator<Item = [f64; 9]> + 'a {
+    finite.mesh.elements.iter().enumerate().map(|(i, element)| {
+        let faces = stress_ratios(finite, q, &[i]);
+        std::array::from_fn(|g| element.yield_stress * faces[2 * g].max(faces[2 * g + 1]))
+    })
+}
+
+/// Coloured parts of the surface, those that are far first. A colour is the mean over the Gauss points of
+/// the part. `place` takes points of the body to ground.
+pub(super) fn patches(
+    finite: &FiniteElements<f64>,
+    q: &[f64],
+    place: impl Fn(&Vec3<f64>) -> Vec3<f64>,
+    drawing: &Drawing,
+) -> Vec<Patch> {
+    const WHOLE: [usize; 8] = [0, 1, 2, 5, 8, 7, 6, 3];
+    let nodes: Vec<Vec3<f64>> = places(&finite.mesh, q).iter().map(place).collect();
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let sight = drawing.sight();
+    let mut all: Vec<(f64, Patch)> = Vec::new();
+    let mut add = |corners: &[usize], value: f64| {
+        let depth: f64 = corners.iter().map(|&node| sight.dot(&nodes[node])).sum();
+        let corners: Vec<[f64; 2]> = corners.iter().map(|&n| drawing.flat(&nodes[n])).collect();
+        all.push((depth / corners.len() as f64, Patch { corners, value }));
+    };
+    for (element, stress) in finite.mesh.elements.iter().zip(stresses(finite, q)) {
+        if finite.mesh.elements.len() > IN_PARTS {
+            add(&WHOLE.map(|local| element.nodes[local]), mean(&stress));
+            continue;
+        }
+        for at in [0, 1, 3, 4] {
+            let corners = [at, at + 1, at + 4, at + 3];
+            add(
+                &corners.map(|local| element.nodes[local]),
+                mean(&corners.map(|g| stress[g])),
+            );
+        }
+    }
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all.into_iter().map(|(_, patch)| patch).collect()
+}

@@ -1,0 +1,172 @@
+//! What is drawn of bodies that deform: their outlines, and displacements of their points.
+
+use super::elements::{nodes_of, prepared};
+use super::schema::Document;
+use super::schema::elements::Held;
+use super::schema::modal::Modal;
+use crate::math::Vec3;
+use crate::model::finite::{ElementMesh, NODES, ShellElement};
+use crate::model::flexible::Quadratic;
+use crate::structures::modal::{BeamFrame, FlexibleBeam};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Straight pieces of a side of a beam.
+const SLICES: usize = 24;
+/// Nodes along the edges of an element, counter-clockwise.
+const EDGES: [[usize; 3]; 4] = [[0, 1, 2], [2, 5, 8], [8, 7, 6], [6, 3, 0]];
+
+/// A closed line of points that move on their body.
+#[derive(Clone, Debug)]
+pub(crate) struct DeformedLine {
+    /// Its points: where they are in the undeformed body (m), and their displacements by each coordinate.
+    pub points: Vec<(Vec3<f64>, Vec<Vec3<f64>>)>,
+    /// Between each pair of neighbouring points on one side and the next: the stress along both sides (Pa).
+    /// Empty for a section without size. The points of the other side follow in opposite order.
+    pub stresses: Vec<[Quadratic<f64>; 2]>,
+}
+
+/// A displacement of a point of a flexible body against its axes, in its axes (m).
+#[derive(Clone, Debug)]
+pub(crate) struct ElasticPoint {
+    /// Name of the body, the point and the direction.
+    pub name: String,
+    /// The body.
+    pub body: usize,
+    /// Coordinates that move it, and the displacement by each.
+    pub by: Vec<(usize, f64)>,
+}
+
+/// A closed line of nodes of shells.
+#[derive(Clone, Debug)]
+pub(crate) struct ShellLine {
+    /// The mesh.
+    pub mesh: Arc<ElementMesh>,
+    /// The nodes, in their order along the line.
+    pub nodes: Vec<usize>,
+}
+
+/// The free edges of shells, one after the other.
+pub(super) fn shell_line(mesh: &Arc<ElementMesh>) -> ShellLine {
+    let edges = |element: &ShellElement| {
+        let nodes = element.nodes;
+        EDGES.map(|edge| edge.map(|local| nodes[local]))
+    };
+    let mut uses: BTreeMap<usize, usize> = BTreeMap::new();
+    for edge in mesh.elements.iter().flat_map(edges) {
+        *uses.entry(edge[1]).or_default() += 1;
+    }
+    let all = mesh.elements.iter().flat_map(edges);
+    let mut next: BTreeMap<usize, [usize; 3]> = (all.filter(|edge| uses[&edge[1]] == 1))
+        .map(|edge| (edge[0], edge))
+        .collect();
+    let mut nodes = Vec::new();
+    while let Some((&start, _)) = next.first_key_value() {
+        let mut at = start;
+        while let Some([from, middle, to]) = next.remove(&at) {
+            nodes.extend([from, middle]);
+            at = to;
+        }
+        nodes.push(at);
+    }
+    ShellLine {
+        mesh: mesh.clone(),
+        nodes,
+    }
+}
+
+/// Displacements of the named points of shells along the axis of the body that is nearest to their normal.
+pub(super) fn shell_points(document: &Document) -> Vec<ElasticPoint> {
+    let mut all = Vec::new();
+    for (body, (name, written)) in document.bodies.iter().enumerate() {
+        let Some(elements) = &written.elements else {
+            continue;
+        };
+        let known = prepared(document, elements);
+        for (point, held) in &elements.points {
+            let (Held::Node(set) | Held::Edge(set)) = held;
+            let nodes = nodes_of(&known.sets, set).unwrap_or_default();
+            let of = |element: &ShellElement| {
+                let local = element.nodes.iter().position(|node| nodes.contains(node))?;
+                Some(element.points[NODES + local].iamax())
+            };
+            let Some(axis) = known.mesh.elements.iter().find_map(of) else {
+                continue;
+            };
+            let motion = &known.points[point];
+            let by = motion.coordinates.iter().zip(&motion.displacement);
+            let by = by.map(|(coordinate, n)| (*coordinate, n[axis]));
+            let by: Vec<(usize, f64)> = by.filter(|(_, n)| *n != 0.0).collect();
+            if !by.is_empty() {
+                let name = format!("{name}: {point} along {}", ["x", "y", "z"][axis]);
+                all.push(ElasticPoint { name, body, by });
+            }
+        }
+    }
+    all
+}
+
+/// The sides of a beam that is seen along `sight`, in its own axes.
+pub(super) fn beam_outline(beam: &FlexibleBeam<f64>, sight: &Vec3<f64>) -> DeformedLine {
+    // The side that is seen best: along y or z.
+    let along_y = sight.z.abs() >= sight.y.abs();
+    let [y, z] = beam.half_sizes().unwrap_or([0.0; 2]);
+    let side = if along_y { [y, 0.0] } else { [0.0, z] };
+    let at = |k: usize, sign: f64| {
+        let modes = beam.point(k as f64 / SLICES as f64, side.map(|x| x * sign));
+        (modes.position, modes.displacement)
+    };
+    let there = (0..=SLICES).map(|k| at(k, 1.0));
+    let back = (0..=SLICES).rev().map(|k| at(k, -1.0));
+    let middle = |k: usize| (k as f64 + 0.5) / SLICES as f64;
+    let stress = |k: usize| {
+        let along = |sign: f64| beam.fibre_stress(middle(k), side.map(|x| x * sign));
+        [along(1.0), along(-1.0)]
+    };
+    let sized = beam.half_sizes().is_some();
+    DeformedLine {
+        points: there.chain(back).collect(),
+        stresses: (0..SLICES).filter(|_| sized).map(stress).collect(),
+    }
+}
+
+/// The free end of beams whose start holds their axes, the middle of those on their chord, in each direction
+/// in which they bend.
+pub(super) fn beam_points(document: &Document, x: &[f64]) -> Vec<ElasticPoint> {
+    let mut all = Vec::new();
+    for (body, (name, written)) in document.bodies.iter().enumerate() {
+        let Some(written) = &written.beam else {
+            continue;
+        };
+        let beam = super::beam::beam(written, x);
+        let (place, at) = match beam.frame {
+            BeamFrame::Clamped => ("end", 1.0),
+            BeamFrame::Chord => ("middle", 0.5),
+        };
+        let modes = beam.point(at, [0.0; 2]);
+        for (k, direction) in [(1, "y"), (2, "z")] {
+            let by = modes.displacement.iter().map(|n| n[k]).enumerate();
+            let by: Vec<(usize, f64)> = by.filter(|(_, n)| *n != 0.0).collect();
+            if !by.is_empty() {
+                let name = format!("{name}: {place} along {direction}");
+                all.push(ElasticPoint { name, body, by });
+            }
+        }
+    }
+    all
+}
+
+/// Lines between the points of a body of files, in their order and back.
+pub(super) fn line_of_points(modal: &Modal, x: &[f64]) -> DeformedLine {
+    let scale = super::modal::scale(modal, x);
+    let points = modal.body().points.iter();
+    let mut points: Vec<_> = points
+        .map(|point| (point.position * scale, point.displacement.clone()))
+        .collect();
+    let back: Vec<_> = points.iter().rev().skip(1).cloned().collect();
+    points.extend(back);
+    DeformedLine {
+        points,
+        stresses: Vec::new(),
+    }
+}
