@@ -81,14 +81,10 @@ impl FinalIterate {
         point: Point,
         slopes: Derivatives,
     ) -> FinalIterate {
-        let (violation, j) = program.worst_violation(&point.c);
         let y = DVector::zeros(point.c.len());
         let multipliers = ScaledMultipliers::polished(program, &point, &slopes, &y);
         FinalIterate {
-            status: Status::Infeasible {
-                constraint: program.constraint_name(j),
-                violation,
-            },
+            status: infeasible(program, &point),
             scaled: scaled_residual(program, &point, &slopes, &multipliers),
             multipliers,
             point,
@@ -224,15 +220,9 @@ pub(crate) fn without_freedom(
     point: Point,
     slopes: Derivatives,
 ) -> FinalIterate {
-    let (violation, j) = program.worst_violation(&point.c);
-    let feasible = program.is_feasible(&point.c);
-    let status = if feasible {
-        Status::Converged
-    } else {
-        Status::Infeasible {
-            constraint: program.constraint_name(j),
-            violation,
-        }
+    let status = match program.is_feasible(&point.c) {
+        true => Status::Converged,
+        false => infeasible(program, &point),
     };
     FinalIterate {
         status,
@@ -259,6 +249,15 @@ pub(crate) fn unfinished(program: &Program<'_>, point: Point, slopes: Derivative
     }
 }
 
+/// The verdict on a point at which the worst row cannot be improved.
+fn infeasible(program: &Program<'_>, at: &Point) -> Status {
+    let (violation, j) = program.worst_violation(&at.c);
+    Status::Infeasible {
+        constraint: program.constraint_name(j),
+        violation,
+    }
+}
+
 pub(crate) fn status_of(
     program: &Program<'_>,
     result: Result<Ending, EarlyExit>,
@@ -267,13 +266,7 @@ pub(crate) fn status_of(
     match result {
         Ok(Ending::Reached) => Status::Converged,
         Ok(Ending::Unbounded) => Status::Unbounded,
-        Ok(Ending::Infeasible) => {
-            let (violation, j) = program.worst_violation(&at.c);
-            Status::Infeasible {
-                constraint: program.constraint_name(j),
-                violation,
-            }
-        }
+        Ok(Ending::Infeasible) => infeasible(program, at),
         Ok(Ending::Stalled | Ending::Misscaled) | Err(EarlyExit::Failed(_)) => Status::Stalled,
         Err(EarlyExit::Halt(status)) => status,
     }

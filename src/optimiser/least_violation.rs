@@ -104,13 +104,12 @@ pub(crate) fn least_violation(
         }
         let progress = Progress {
             optimality: gain,
-            barrier: 0.0,
             step: size,
             regularisation: radius,
             primal_step: if accepted { 1.0 } else { 0.0 },
-            dual_step: 0.0,
             trials: 1,
             phase: Phase::Restoration,
+            ..Progress::default()
         };
         if program.report(&point, &progress).is_err() {
             break;

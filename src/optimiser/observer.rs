@@ -6,10 +6,11 @@ use std::ops::ControlFlow;
 use serde::{Deserialize, Serialize};
 
 /// Part of the algorithm that made an iteration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
     /// Interior-point iteration.
+    #[default]
     Regular,
     /// Reduction of the constraint violation alone.
     Restoration,

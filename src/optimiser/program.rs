@@ -62,7 +62,7 @@ pub(crate) enum EarlyExit {
 }
 
 /// The data of an iteration besides its point.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Progress {
     pub optimality: f64,
     pub barrier: f64,

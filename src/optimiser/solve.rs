@@ -127,16 +127,12 @@ fn run(
     let progress = Progress {
         optimality: scaled_residual(&program, &point, &slopes, &without_rows),
         barrier: options.initial_barrier,
-        step: 0.0,
-        regularisation: 0.0,
-        primal_step: 0.0,
-        dual_step: 0.0,
-        trials: 0,
         phase: if options.method == Method::TrustRegion {
             Phase::Sqp
         } else {
             Phase::Regular
         },
+        ..Progress::default()
     };
     let interrupted = program.report(&point, &progress).is_err();
     let finish = if interrupted {

@@ -113,18 +113,11 @@ impl Layout {
         f - mu * below.iter().chain(above.iter()).map(logarithm).sum::<f64>()
     }
 
-    /// Moves `value`, entry `i` of w, into the interior of its bounds.
+    /// Moves `value` of slack `i` of w into the interior of its bounds.
     pub(crate) fn push_inside(&self, i: usize, value: f64, push: f64) -> f64 {
         let (l, u) = (self.lower[i], self.upper[i]);
         let width = u - l;
-        // A variable inside its bounds stays where it is. Its scale may come from distant bounds
-        // and says nothing about its distance to them.
-        let margin = |bound: f64| {
-            let margin = margin(bound, width, push);
-            let away = (value - bound).abs();
-            let is_inside = i < self.n && (l..=u).contains(&value) && away > INSIDE * margin;
-            if is_inside { margin.min(away) } else { margin }
-        };
+        let margin = |bound: f64| margin(bound, width, push);
         let mut inside = value;
         if l.is_finite() {
             inside = inside.max(l + margin(l));
@@ -251,14 +244,10 @@ impl Iterate {
         all.iter().map(|v| v.max(least)).collect()
     }
 
-    /// Least-squares multipliers of the rows, unless they exceed `largest`, which sets zero.
-    pub(crate) fn estimate_multipliers(&mut self, layout: &Layout, largest: f64) {
+    /// Sets the multipliers of the rows by least squares, where these exist.
+    pub(crate) fn estimate_multipliers(&mut self, layout: &Layout) {
         if let Some(y) = self.least_squares_multipliers(layout) {
-            if y.amax() <= largest {
-                self.y = y;
-            } else {
-                self.y.fill(0.0);
-            }
+            self.y = y;
         }
     }
 
@@ -315,9 +304,6 @@ impl NormalEquations {
 
 /// Number of rows and variables up to which least-squares multipliers come from dense matrices.
 const SMALL: usize = 200;
-
-/// A variable counts as inside if its distance to a bound exceeds this share of [`margin`].
-const INSIDE: f64 = 1e-3;
 
 /// Distance between `bound` and the start: `push` relative to max(1, |bound|), at most that part of
 /// the distance of two bounds.

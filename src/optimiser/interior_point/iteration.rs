@@ -15,8 +15,6 @@ use crate::optimiser::observer::Phase;
 use crate::optimiser::outcome::Counts;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
 
-/// Largest least-squares multiplier that is used.
-pub(crate) const LARGEST_ESTIMATE: f64 = 1e3;
 /// Infeasibility below which multipliers of rows are recomputed by least squares.
 const NEARLY_FEASIBLE: f64 = 1e-6;
 
@@ -88,7 +86,7 @@ impl InteriorPoint {
             slopes,
             s,
         };
-        at.estimate_multipliers(&layout, LARGEST_ESTIMATE);
+        at.estimate_multipliers(&layout);
         let theta = infeasibility(&layout.residual(&at.point.c, &at.s), &at.point.c);
         // The first step is no longer than the point, or 1.
         let mut b = QuasiNewton::new(n, options.dense_limit, options.memory).with_diagonal();
@@ -315,7 +313,7 @@ impl InteriorPoint {
         at.keep_multipliers_in_band(&self.layout, self.barrier.mu);
         let r = self.layout.residual(&at.point.c, &at.s);
         if r.lp_norm(1) < NEARLY_FEASIBLE {
-            at.estimate_multipliers(&self.layout, f64::INFINITY);
+            at.estimate_multipliers(&self.layout);
         }
         let change = &at.slopes.g - &before.g + at.slopes.a.tr_mul(&at.y) - before.a.tr_mul(&at.y);
         let model = if self.b.is_dense() {

@@ -222,7 +222,7 @@ impl LineSearch<'_> {
             zl: &self.at.zl + &direction.zl * dual,
             zu: &self.at.zu + &direction.zu * dual,
         };
-        moved.estimate_multipliers(self.layout, f64::INFINITY);
+        moved.estimate_multipliers(self.layout);
         let after = moved.residuals(self.layout, self.mu);
         Ok((after.largest() <= SOFT_GAIN * before.largest()).then_some((point, slopes, s)))
     }

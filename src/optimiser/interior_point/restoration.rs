@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use crate::optimiser::ending::Ending;
 use crate::optimiser::interior_point::iterate::Layout;
-use crate::optimiser::interior_point::iteration::{InteriorPoint, LARGEST_ESTIMATE};
+use crate::optimiser::interior_point::iteration::InteriorPoint;
 use crate::optimiser::interior_point::line_search::infeasibility;
 use crate::optimiser::program::{EarlyExit, Point, Program};
 use crate::optimiser::trust_region::steering::{Goal, TrustRegion};
@@ -63,7 +63,7 @@ impl InteriorPoint {
         let after = self.theta();
         self.at
             .keep_multipliers_in_band(&self.layout, self.barrier.mu);
-        self.at.estimate_multipliers(&self.layout, LARGEST_ESTIMATE);
+        self.at.estimate_multipliers(&self.layout);
         match ending {
             Ending::Reached => Ok(None),
             Ending::Infeasible => Ok(Some(Ending::Infeasible)),

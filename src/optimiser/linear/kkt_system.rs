@@ -134,14 +134,14 @@ impl KktSystem {
             Factors::Dense(dense) => refined(
                 dense.refinements(),
                 (p, q, a),
-                |v| b.multiply(v) + sigma.component_mul(v),
+                |p, v| p - b.multiply(v) - sigma.component_mul(v),
                 |y| self.d.component_mul(y),
                 |p, q| dense.solve(a, &self.d, p, q),
             ),
             Factors::Sparse(sparse) => refined(
                 REFINEMENTS,
                 (p, q, a),
-                |v| b.multiply(v) + sigma.component_mul(v),
+                |p, v| p - b.multiply(v) - sigma.component_mul(v),
                 |y| self.d.component_mul(y),
                 |p, q| sparse.solve(p, q),
             ),
@@ -152,7 +152,7 @@ impl KktSystem {
                 let (dx, dy) = refined(
                     REFINEMENTS,
                     (p, &q, &exact.rows),
-                    |v| h.component_mul(v),
+                    |p, v| p - h.component_mul(v),
                     |y| exact.damp(&self.d, y),
                     |p, q| exact.factors.solve(p, q),
                 );
@@ -162,12 +162,12 @@ impl KktSystem {
     }
 }
 
-/// Solves for dx and dy by `solve_once`, with at most `most` refinements. The others give the products with B + Σ
-/// and with D.
+/// Solves for dx and dy by `solve_once`, with at most `most` refinements. `rest` is p − (B + Σ) dx
+/// and `damping` D dy.
 fn refined(
     most: usize,
     (p, q, a): (&DVector<f64>, &DVector<f64>, &Jacobian),
-    mut stiffness: impl FnMut(&DVector<f64>) -> DVector<f64>,
+    mut rest: impl FnMut(&DVector<f64>, &DVector<f64>) -> DVector<f64>,
     damping: impl Fn(&DVector<f64>) -> DVector<f64>,
     solve_once: impl Fn(&DVector<f64>, &DVector<f64>) -> (DVector<f64>, DVector<f64>),
 ) -> (DVector<f64>, DVector<f64>) {
@@ -175,7 +175,7 @@ fn refined(
     let size = p.amax().max(q.amax());
     let mut last = f64::INFINITY;
     for _ in 0..most {
-        let rp = p - stiffness(&dx) - a.tr_mul(&dy);
+        let rp = rest(p, &dx) - a.tr_mul(&dy);
         let rq = q - a * &dx + damping(&dy);
         let residual = rp.amax().max(rq.amax());
         let stands = residual.partial_cmp(&last) != Some(Ordering::Less);
