@@ -2,6 +2,7 @@
 //! tolerance are kept until their error is too large, so functions are smooth in the design.
 
 use super::event::{self, Admit};
+use super::flexible_limits;
 use super::memory;
 use crate::functions::resolution::{Resolution, resolution};
 use crate::functions::{Function, Reduction, Scene};
@@ -9,10 +10,7 @@ use crate::integrate::{
     Chosen, Grid, IntegrationFailure, Limits, Method, Samples, Settings, Spacing, Trajectory,
     choice, simulate, simulate_by,
 };
-use crate::model::Model;
 use crate::problem::Problem;
-use crate::system::BodyMotion;
-use crate::system::attachment::section_rotation;
 
 /// Samples of a motion with steps by tolerance, for tables, figures and events.
 const SAMPLES: usize = 1000;
@@ -203,8 +201,8 @@ impl Integration {
     pub(crate) fn warning(&self, scene: &Scene<f64>, run: &Trajectory<f64>) -> Option<String> {
         let widest = (1..=run.grid.steps()).map(|k| run.grid.width(k));
         let h = run.duration * widest.fold(0.0, f64::max);
-        let turned = || large_rotation(&scene.model, run);
-        choice::warning(&scene.model, run.method, h).or_else(turned)
+        let inaccurate = || flexible_limits::warning(&scene.model, run);
+        choice::warning(&scene.model, run.method, h).or_else(inaccurate)
     }
 
     /// Settings of the first run, or of one that chooses its steps anew.
@@ -416,35 +414,4 @@ pub(super) fn looks_at_the_whole(function: &Function<f64>) -> bool {
             matches!(release, crate::functions::Release::Best { .. })
         }
     }
-}
-
-/// Rotation of a section relative to the frame of its body from which the strains of von Karman and
-/// the linear rotations of sections are no longer accurate \[rad\].
-const LARGE_ROTATION: f64 = 0.15;
-
-/// A warning about the section of a flexible body that turns farthest, if it turns too far.
-fn large_rotation(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
-    if model.flexible.is_empty() {
-        return None;
-    }
-    let mut most: (f64, usize, &str) = (0.0, 0, "");
-    let mut motions = Vec::new();
-    for k in 0..=run.last() {
-        BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
-        for joint in &model.joints {
-            let Some(modes) = &joint.modes else { continue };
-            let angle = section_rotation(modes, &motions).norm();
-            if angle > most.0 {
-                most = (angle, k, &joint.name);
-            }
-        }
-    }
-    let (angle, k, name) = most;
-    (angle > LARGE_ROTATION).then(|| {
-        format!(
-            "the section \"{name}\" turns by {angle:.2} rad relative to its body's frame at \
-             t = {:.4} s; above {LARGE_ROTATION} rad its strains are inaccurate: divide the body",
-            run.time(k)
-        )
-    })
 }

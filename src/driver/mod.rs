@@ -13,6 +13,7 @@ pub(crate) mod evaluator;
 pub(crate) mod event;
 pub(crate) mod explain;
 pub(crate) mod figures;
+mod flexible_limits;
 pub(crate) mod integration;
 pub(crate) mod known_evaluations;
 pub(crate) mod memory;

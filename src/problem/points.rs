@@ -152,8 +152,8 @@ pub(super) fn off_points(problem: &Problem) -> Option<Finding> {
 /// Distance of a place from an interface, relative to the size of its body, up to which it is there.
 const AT_INTERFACE: f64 = 1e-6;
 
-/// The first joint, load or function that holds a body of files beside its interfaces, or turns one whose
-/// rotation is not known.
+/// The first joint, load or function that holds a body of files beside its interfaces, or the first joint or torque
+/// that turns one whose rotation is not known.
 pub(super) fn off_interfaces(problem: &Problem) -> Option<Finding> {
     let written = &problem.written;
     if !written.bodies.values().any(|body| body.modal.is_some()) {
@@ -211,7 +211,26 @@ pub(super) fn off_interfaces(problem: &Problem) -> Option<Finding> {
             })
         })
     };
-    beside.or_else(turned)
+    let twisted = || {
+        written.loads.iter().find_map(|(key, load)| {
+            let Load::Torque(torque) = load else {
+                return None;
+            };
+            let point = assembly.in_body(&torque.body, torque.point.as_ref()?);
+            let (nearest, ..) = near(&torque.body, &point)?;
+            (!nearest.turns).then(|| {
+                let found = format!(
+                    "the interface \"{}\" of \"{}\", whose rotation is not known",
+                    nearest.name, torque.body
+                );
+                let pointer = join(&join(&join("/loads", key), load.key()), "point");
+                let expected = "an interface that turns";
+                let hint = "an interface of several nodes turns as one rigid body";
+                Finding::new(pointer, found, expected).hint(Some(hint.into()))
+            })
+        })
+    };
+    beside.or_else(turned).or_else(twisted)
 }
 
 /// The first joint or load that a point mass does not admit.

@@ -9,6 +9,7 @@ mod finite_elements;
 mod flexible_scenes;
 mod layers;
 mod modal;
+mod modal_scenes;
 mod problems_check;
 mod readme;
 mod report_plots;

@@ -51,16 +51,19 @@ impl Checker<'_> {
         }
         if let Some(start) = joint.start() {
             let pointer = join(pointer, "start");
-            let bent = |body: &Body| body.beam.as_ref().is_some_and(|beam| beam.start.is_some());
-            if let Some((beam, _)) = document.bodies.iter().find(|(_, body)| bent(body)) {
+            let bent = |body: &Body| {
+                let beam = body.beam.as_ref().is_some_and(|beam| beam.start.is_some());
+                let modal = body.modal.as_ref();
+                beam || modal.is_some_and(|modal| modal.start.is_some())
+            };
+            if let Some((body, _)) = document.bodies.iter().find(|(_, body)| bent(body)) {
                 let found =
-                    format!("a start of a joint beside that of the coordinates of \"{beam}\"");
-                let expected = "one of them: joints are started with straight beams";
+                    format!("a start of a joint beside that of the coordinates of \"{body}\"");
+                let expected = "one of them: joints are started with undeformed bodies";
                 self.fault(Finding::new(&pointer, found, expected).of_key());
             }
-            let other = |body: &Body| body.elements.is_some() || body.modal.is_some();
-            if document.bodies.values().any(other) {
-                let found = "a start of a joint in a scene with finite elements or modal bodies";
+            if (document.bodies.values()).any(|body| body.elements.is_some()) {
+                let found = "a start of a joint in a scene with finite elements";
                 let expected = "bodies that are placed, with their velocities";
                 self.fault(Finding::new(&pointer, found, expected).of_key());
             }

@@ -40,28 +40,29 @@ impl Checker<'_> {
             Load::Torque(torque) => {
                 self.moving(pointer, &torque.body, &torque.point);
                 let body = self.document.bodies.get(&torque.body);
-                let kind = body.and_then(|body| match (&body.elements, &body.modal) {
-                    (Some(_), _) => Some("shells"),
-                    (None, Some(_)) => Some("body of files"),
-                    (None, None) => None,
-                });
-                if let Some(kind) = kind {
-                    let found = format!("a torque on the {kind} \"{}\"", torque.body);
+                let shells = body.is_some_and(|body| body.elements.is_some());
+                if shells {
+                    let found = format!("a torque on the shells \"{}\"", torque.body);
                     let expected = "a torque on a rigid body, which may be welded to a point of it";
                     self.fault(Finding::new(join(pointer, "body"), found, expected));
                 }
-                match (self.is_beam(&torque.body), &torque.point) {
+                let modal = body.is_some_and(|body| body.modal.is_some());
+                let (kind, turned) = match modal {
+                    true => ("body of files", "\"point\", the interface that it turns"),
+                    false => ("beam", "\"point\", the point whose section it turns"),
+                };
+                match (self.is_beam(&torque.body) || modal, &torque.point) {
                     (true, None) => {
-                        let found = format!("a torque on the beam \"{}\"", torque.body);
-                        let expected = "\"point\", the point whose section it turns";
+                        let found = format!("a torque on the {kind} \"{}\"", torque.body);
+                        let expected = turned;
                         self.fault(Finding::new(pointer, found, expected).of_key());
                     }
-                    (false, Some(_)) => {
+                    (false, Some(_)) if !shells => {
                         let found = "the point of a torque on a rigid body";
                         let expected = "none, as it acts on the body as a whole";
                         self.fault(Finding::new(join(pointer, "point"), found, expected).of_key());
                     }
-                    (true, Some(_)) | (false, None) => {}
+                    (true, Some(_)) | (false, _) => {}
                 }
                 self.direction(&join(pointer, "direction"), &torque.direction);
                 self.course(&join(pointer, "magnitude"), torque.magnitude.parts());

@@ -10,6 +10,9 @@ use crate::structures::modes::Pencil;
 /// Natural frequencies that are told of a body.
 const TOLD: usize = 6;
 
+/// Uncertainty of a stiffness by the digits of its file, relative to it, from which it is told.
+const TOLD_UNCERTAIN: f64 = 1e-4;
+
 /// A body in words; what it says of the free body costs the modes of the full matrices.
 pub(in crate::problem) fn described(name: &str, modal: &Modal, x: &[f64]) -> String {
     let Some(loaded) = &modal.loaded else {
@@ -92,6 +95,12 @@ fn coordinates(reduced: &Reduced, count: usize) -> String {
     }
     if reduction.massless > 0 {
         words += &format!("; {} modes without mass are left out", reduction.massless);
+    }
+    if reduction.uncertain > TOLD_UNCERTAIN {
+        words += &format!(
+            "; the digits of its files leave a stiffness uncertain by {:.0e} of itself",
+            reduction.uncertain
+        );
     }
     if free.empty > 0 {
         words += &format!(

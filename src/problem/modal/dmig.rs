@@ -6,8 +6,8 @@
 
 use super::nodes::NodeTable;
 use super::symmetry::{Given, Place, symmetric};
-use super::text::{TextFault, Word, bytes, lines, number, quoted, whole};
-use crate::structures::modal::free_body::Entry;
+use super::text::{TextFault, Word, bytes, lines, number, quoted, rounding, whole};
+use crate::structures::modal::written::WrittenMatrix;
 
 /// Characters of the first field of a line.
 const FIRST: usize = 8;
@@ -40,7 +40,7 @@ pub(super) fn read(
     text: &str,
     nodes: &NodeTable,
     names: [&str; 2],
-) -> Result<[Vec<Entry>; 2], TextFault> {
+) -> Result<[WrittenMatrix; 2], TextFault> {
     let mut matrices = names.map(|name| Matrix {
         name,
         given: None,
@@ -204,6 +204,8 @@ fn column(card: &Card, nodes: &NodeTable, places: &mut Vec<Place>) -> Result<(),
             row: key(nodes, &node, &component)?,
             column,
             value: number(&value)?,
+            rounding: rounding(&value),
+            length: value.1.trim().len(),
             at: node.0,
         });
         groups += 1;

@@ -3,13 +3,13 @@
 
 use super::nodes::NodeTable;
 use super::symmetry::{Given, Place, symmetric};
-use super::text::{TextFault, Word, bytes, lines, number, quoted, whole, words};
-use crate::structures::modal::free_body::Entry;
+use super::text::{TextFault, Word, bytes, lines, number, quoted, rounding, whole, words};
+use crate::structures::modal::written::WrittenMatrix;
 
 const HEADER: &str = "%%MatrixMarket matrix coordinate real symmetric";
 
 /// Reads a matrix whose rows are the unknowns of the nodes.
-pub(super) fn read(text: &str, nodes: &NodeTable) -> Result<Vec<Entry>, TextFault> {
+pub(super) fn read(text: &str, nodes: &NodeTable) -> Result<WrittenMatrix, TextFault> {
     let mut all = lines(text);
     let (start, header) = all.next().unwrap_or((0, ""));
     let given = header_of(start, header)?;
@@ -82,6 +82,8 @@ pub(super) fn read(text: &str, nodes: &NodeTable) -> Result<Vec<Entry>, TextFaul
             row: rows[i],
             column: rows[j],
             value: number(&c)?,
+            rounding: rounding(&c),
+            length: c.1.len(),
             at: a.0,
         });
     }

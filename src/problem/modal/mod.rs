@@ -20,9 +20,10 @@ use super::schema::Document;
 use super::schema::modal::{Modal, ModalFrame, Source as Files, Units};
 use super::source::Source;
 use crate::structures::modal::craig_bampton::reduce;
-use crate::structures::modal::free_body::{Entry, FreeBody};
+use crate::structures::modal::free_body::FreeBody;
 use crate::structures::modal::interfaces::{Holding, Interface, NoReduction};
 use crate::structures::modal::loaded::{Loaded, Reduced};
+use crate::structures::modal::written::WrittenMatrix;
 use nodes::NodeTable;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -200,12 +201,15 @@ fn reduced(
     pointer: &str,
     modal: &Modal,
     table: &NodeTable,
-    [mut stiffness, mut mass]: [Vec<Entry>; 2],
+    [mut stiffness, mut mass]: [WrittenMatrix; 2],
     units: &Units,
 ) -> Result<Option<Loaded>, Box<LoadFault>> {
-    let document = |key: &str, found: String, expected: &str, hint: Option<&str>| {
-        let finding = Finding::new(join(pointer, key), found, expected);
+    let at = |place: &str, found: String, expected: &str, hint: Option<&str>| {
+        let finding = Finding::new(place, found, expected);
         Box::new(LoadFault::Document(finding.hint(hint.map(str::to_owned))))
+    };
+    let document = |key: &str, found: String, expected: &str, hint: Option<&str>| {
+        at(&join(pointer, key), found, expected, hint)
     };
     let Units {
         length,
@@ -217,31 +221,26 @@ fn reduced(
         let rotations = [i, j].iter().filter(|key| **key % 6 >= 3).count();
         kilograms * length.powi(rotations as i32)
     };
-    for (i, j, value) in &mut stiffness {
-        *value *= factor(*i, *j) / (time * time);
-    }
-    for (i, j, value) in &mut mass {
-        *value *= factor(*i, *j);
-    }
+    stiffness.scale(|i, j| factor(i, j) / (time * time));
+    mass.scale(factor);
     let Some(holding) = holding(modal) else {
         return Ok(None);
     };
     let mut interfaces = Vec::new();
     for (name, written) in &modal.interfaces {
-        let place = join("interfaces", name);
-        let place = place.trim_start_matches('/');
+        let place = join(&join(pointer, "interfaces"), name);
         let mut nodes = Vec::new();
         for id in written.list() {
             let Some(&node) = table.index.get(id) else {
                 let expected = "the number of a node of the table of nodes";
-                return Err(document(place, format!("node {id}"), expected, None));
+                return Err(at(&place, format!("node {id}"), expected, None));
             };
             let before = interfaces
                 .iter()
                 .find(|other: &&Interface| other.nodes.contains(&node));
             if nodes.contains(&node) || before.is_some() {
                 let found = format!("node {id} a second time");
-                return Err(document(place, found, "each node in one interface", None));
+                return Err(at(&place, found, "each node in one interface", None));
             }
             nodes.push(node);
         }
@@ -251,7 +250,7 @@ fn reduced(
         });
     }
     let places = table.places.iter().map(|place| place * length).collect();
-    let free = FreeBody::new(places, &stiffness, &mass);
+    let free = FreeBody::written(places, &stiffness, &mass);
     free.check(|node| table.numbers[node].to_string())
         .map_err(|fault| {
             let expected = "stiffness and mass matrix of a free body in space";
@@ -269,6 +268,11 @@ fn reduced(
                 "a body that is held where its interfaces are",
                 None,
             ),
+            NoReduction::Digits { .. } => {
+                let hint = "large fields of DMIG have 16 characters, Matrix Market has no limit";
+                let expected = "numbers with more digits";
+                document("source", found, expected, Some(hint))
+            }
             NoReduction::Loose | NoReduction::Collinear => document("frame", found, hold, None),
             NoReduction::Without { .. } => {
                 let hint = "several nodes in one interface move and turn as one rigid body";

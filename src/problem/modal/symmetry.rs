@@ -1,8 +1,13 @@
 //! Entries of a symmetric matrix from those of a file.
 
 use super::text::{TextFault, words};
-use crate::structures::modal::free_body::{COMPONENTS, Entry};
+use crate::structures::modal::free_body::COMPONENTS;
+use crate::structures::modal::written::WrittenMatrix;
 use std::collections::HashMap;
+
+/// Characters that a number may have less than the longest of its file and yet be rounded: a sign, and a digit of the
+/// exponent. A shorter one had room for more digits: it is exact.
+const SHORTER: usize = 2;
 
 /// Difference of two entries that should be equal, relative to the entries on the diagonal.
 const EQUAL: f64 = 1e-9;
@@ -23,16 +28,19 @@ pub(super) struct Place {
     pub row: usize,
     pub column: usize,
     pub value: f64,
+    /// By how much rounding may have changed it, and the characters of the number.
+    pub rounding: f64,
+    pub length: usize,
     /// Byte at which it begins.
     pub at: usize,
 }
 
-/// Each pair of keys once.
+/// Each pair of keys once. Both halves of a matrix may differ by what rounding makes of them.
 pub(super) fn symmetric(
     mut places: Vec<Place>,
     given: Given,
     text: &str,
-) -> Result<Vec<Entry>, TextFault> {
+) -> Result<WrittenMatrix, TextFault> {
     let pair = |p: &Place| (p.row.max(p.column), p.row.min(p.column));
     places.sort_by_key(|p| (pair(p), p.row < p.column, p.at));
     let here = |p: &Place| {
@@ -47,7 +55,16 @@ pub(super) fn symmetric(
         .filter(|p| p.row == p.column)
         .map(|p| (p.row, p.value.abs()))
         .collect();
-    let mut entries = Vec::with_capacity(places.len());
+    let mut matrix = WrittenMatrix {
+        entries: Vec::with_capacity(places.len()),
+        rounding: Vec::with_capacity(places.len()),
+    };
+    let longest = places.iter().map(|p| p.length).max().unwrap_or(0);
+    for place in &mut places {
+        if place.length + SHORTER < longest {
+            place.rounding = 0.0;
+        }
+    }
     let mut k = 0;
     while k < places.len() {
         let first = places[k];
@@ -62,6 +79,7 @@ pub(super) fn symmetric(
                 let size = |key: usize| diagonal.get(&key).copied().unwrap_or(0.0);
                 let size = (size(a.row) * size(a.column)).sqrt();
                 let most = EQUAL * size.max(a.value.abs()).max(b.value.abs());
+                let most = most + a.rounding + b.rounding;
                 if (a.value - b.value).abs() > most {
                     return Err(unequal(here(b), (b, b.value), a.value));
                 }
@@ -70,9 +88,11 @@ pub(super) fn symmetric(
             (Given::Both, [one]) => return Err(unequal(here(one), (one, one.value), 0.0)),
             (_, all) => return Err(second(all[all.len() - 1])),
         };
-        entries.push((first.row, first.column, value));
+        let rounding = group.iter().fold(0.0, |m: f64, p| m.max(p.rounding));
+        matrix.entries.push((first.row, first.column, value));
+        matrix.rounding.push(rounding);
     }
-    Ok(entries)
+    Ok(matrix)
 }
 
 fn unequal(at: std::ops::Range<usize>, (place, value): (&Place, f64), other: f64) -> TextFault {

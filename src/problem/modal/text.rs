@@ -79,6 +79,24 @@ pub(super) fn number(word: &Word) -> Result<f64, TextFault> {
     }
 }
 
+/// Half a unit of the last digit of a written number: by how much rounding may have changed it. A whole number
+/// without point and exponent is exact.
+pub(super) fn rounding(word: &Word) -> f64 {
+    let text = word.1.trim().trim_start_matches(['+', '-']);
+    let mantissa = text
+        .find(|c: char| !c.is_ascii_digit() && c != '.')
+        .map_or(text, |end| &text[..end]);
+    let decimals = mantissa
+        .find('.')
+        .map_or(0, |point| mantissa.len() - point - 1);
+    if mantissa.len() == text.len() && !text.contains('.') {
+        return 0.0;
+    }
+    let exponent = text[mantissa.len()..].trim_start_matches(['d', 'D', 'e', 'E']);
+    let exponent = exponent.parse::<i32>().unwrap_or(0);
+    0.5 * 10.0_f64.powi(exponent.saturating_sub(i32::try_from(decimals).unwrap_or(0)))
+}
+
 fn fortran(text: &str) -> Option<f64> {
     let mut written = String::with_capacity(text.len() + 1);
     let mut last = ' ';

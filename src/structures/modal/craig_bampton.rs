@@ -15,6 +15,7 @@ use super::free_body::{COMPONENTS, FreeBody, Unknown};
 use super::imported::{ImportedBody, ImportedPoint};
 use super::interfaces::{Abilities, Column, Holding, Interface, NoReduction, abilities, columns};
 use super::mass_integrals::integrals;
+use super::written::deviation;
 use crate::linalg::cholesky::{NotPositiveDefinite, SymmetricPattern};
 use crate::math::Vec3;
 use crate::math::slices::dot;
@@ -23,6 +24,9 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 /// 1/ω² of a mode relative to the largest below which the mode has no mass.
 const MASSLESS: f64 = 1e-14;
+/// Largest standard deviation of the stiffness of a coordinate by the digits of a file, relative to it.
+const UNCERTAIN: f64 = 0.1;
+
 /// A reduced body, and what it was made of.
 #[derive(Clone, Debug)]
 pub(crate) struct Reduction {
@@ -36,6 +40,8 @@ pub(crate) struct Reduction {
     pub fixed: Vec<f64>,
     /// Modes that were left out because they have no mass.
     pub massless: usize,
+    /// Largest standard deviation of the stiffness of a coordinate by the digits of the file, relative to it.
+    pub uncertain: f64,
 }
 
 /// Reduces a body; at least `modes` fixed-interface modes are kept, if there are as many.
@@ -63,7 +69,14 @@ pub(crate) fn reduce(
     if basis.is_empty() {
         return Err(NoReduction::Nothing);
     }
-    let (mix, massless) = held_modes(free, &basis)?;
+    let (mix, massless) = held_modes(free, &basis).map_err(|failure| {
+        let parts = basis.iter().map(|x| by_digits(free, x));
+        let part = parts.fold(0.0, f64::max);
+        match part > UNCERTAIN {
+            true => NoReduction::Digits { part },
+            false => failure,
+        }
+    })?;
     let shapes: Vec<Vec<f64>> = mix
         .column_iter()
         .map(|y| combine(&basis, y.iter()))
@@ -89,6 +102,11 @@ pub(crate) fn reduce(
                 0.5 * (dot(&shapes[i], &forces[j]) + dot(&shapes[j], &forces[i]));
         }
     }
+    let parts = shapes.iter().map(|x| by_digits(free, x));
+    let uncertain = parts.fold(0.0, f64::max);
+    if uncertain > UNCERTAIN {
+        return Err(NoReduction::Digits { part: uncertain });
+    }
     body.points = (interfaces.iter().zip(&abilities).enumerate())
         .map(|(k, (interface, can))| {
             let own = || columns.iter().enumerate().filter(|(_, c)| c.interface == k);
@@ -113,7 +131,17 @@ pub(crate) fn reduce(
         boundary_before,
         fixed: frequencies,
         massless,
+        uncertain,
     })
+}
+
+/// Standard deviation of the stiffness of a motion by the digits of the file, relative to it; 0 of exact numbers.
+fn by_digits(free: &FreeBody, x: &[f64]) -> f64 {
+    let energy = dot(x, &product(&free.pattern, &free.stiffness, x)).abs();
+    match deviation(&free.pattern, &free.rounding[0], x) {
+        deviation if deviation > 0.0 => deviation / energy.max(f64::MIN_POSITIVE),
+        _ => 0.0,
+    }
 }
 
 fn combine<'a>(basis: &[Vec<f64>], y: impl Iterator<Item = &'a f64>) -> Vec<f64> {
@@ -237,8 +265,17 @@ fn interior(
     Ok((statics, fixed, found.frequencies()))
 }
 
-/// The node that moves most where the stiffness between the interfaces is singular.
+/// The node that moves most where the stiffness between the interfaces is singular; or that the digits of the
+/// stiffness do not tell whether it is.
 fn mechanism(free: &FreeBody, inside: &[usize], failure: &NotPositiveDefinite) -> NoReduction {
+    let mut x = vec![0.0; free.unknowns.len()];
+    for (&i, &value) in inside.iter().zip(&failure.direction) {
+        x[i] = value;
+    }
+    let part = by_digits(free, &x);
+    if part > UNCERTAIN {
+        return NoReduction::Digits { part };
+    }
     let sizes = failure.direction.iter().map(|x| x.abs());
     let most = sizes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
     let unknown = most.and_then(|(k, _)| Some(free.unknowns[*inside.get(k)?]));

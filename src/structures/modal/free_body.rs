@@ -3,17 +3,15 @@
 //! An unknown is a displacement (component 0, 1, 2) or a rotation (3, 4, 5) of a node along or about the axes
 //! of the body. Unknowns without stiffness and mass are left out.
 
+use super::written::{Entry, WrittenMatrix};
 use crate::linalg::cholesky::{SymmetricPattern, fill_reducing_order};
 use crate::math::Vec3;
 
-/// Part of the forces of all its entries that a rigid motion may leave in the stiffness of a free body.
+/// Part of the forces of all its entries that a rigid motion may leave in the stiffness of a free body, beside
+/// what the digits of its entries explain.
 const FREE: f64 = 1e-5;
-/// Relative difference of the masses in three directions.
+/// Relative difference of the masses in three directions, beside what the digits explain.
 const ONE_MASS: f64 = 1e-5;
-
-/// An entry of a symmetric matrix: the keys 6 × node + component of row and column, and its value. Each
-/// pair of keys stands once.
-pub(crate) type Entry = (usize, usize, f64);
 
 /// A component of the motion of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +35,8 @@ pub(crate) struct FreeBody {
     pub stiffness: Vec<f64>,
     /// M.
     pub mass: Vec<f64>,
+    /// By how much rounding may have changed the entries of K and of M.
+    pub rounding: [Vec<f64>; 2],
     /// Components of the nodes without stiffness and mass.
     pub empty: usize,
 }
@@ -82,8 +82,24 @@ pub(crate) const COMPONENTS: [&str; 6] = [
 ];
 
 impl FreeBody {
-    /// Assembles the matrices. Keys are below six times the number of nodes.
+    /// Assembles exact matrices. Keys are below six times the number of nodes.
+    #[cfg(test)]
     pub(crate) fn new(nodes: Vec<Vec3<f64>>, stiffness: &[Entry], mass: &[Entry]) -> Self {
+        let exact = |entries: &[Entry]| WrittenMatrix {
+            entries: entries.to_vec(),
+            rounding: vec![0.0; entries.len()],
+        };
+        Self::written(nodes, &exact(stiffness), &exact(mass))
+    }
+
+    /// Assembles the matrices of files.
+    pub(crate) fn written(
+        nodes: Vec<Vec3<f64>>,
+        stiffness: &WrittenMatrix,
+        mass: &WrittenMatrix,
+    ) -> Self {
+        let roundings = [stiffness, mass].map(WrittenMatrix::roundings);
+        let (stiffness, mass) = (&stiffness.entries, &mass.entries);
         let both = || stiffness.iter().chain(mass).filter(|entry| entry.2 != 0.0);
         let mut there = vec![false; 6 * nodes.len()];
         let mut neighbours = vec![Vec::new(); nodes.len()];
@@ -129,6 +145,7 @@ impl FreeBody {
         Self {
             stiffness: scatter(stiffness),
             mass: scatter(mass),
+            rounding: roundings.each_ref().map(|all| scatter(all)),
             empty: there.iter().filter(|there| !**there).count(),
             nodes,
             unknowns,
@@ -197,8 +214,9 @@ impl FreeBody {
         };
         for (k, motion) in self.rigid_motions(&self.middle()).iter().enumerate() {
             let all: Vec<f64> = motion.iter().map(|x| x.abs()).collect();
-            let part = norm(&self.stiffness, motion) / norm(&sizes, &all).max(f64::MIN_POSITIVE);
-            if part > FREE {
+            let size = norm(&sizes, &all).max(f64::MIN_POSITIVE);
+            let part = norm(&self.stiffness, motion) / size;
+            if part > FREE + norm(&self.rounding[0], &all) / size {
                 let motion = COMPONENTS[k];
                 return Err(NoFreeBody::Held { motion, part });
             }
@@ -212,7 +230,8 @@ impl FreeBody {
         });
         let [x, y, z] = masses;
         let (least, most) = (x.min(y).min(z), x.max(y).max(z));
-        if !(least > 0.0 && most - least <= ONE_MASS * most) {
+        let rounded: f64 = 2.0 * self.rounding[1].iter().sum::<f64>();
+        if !(least > 0.0 && most - least <= ONE_MASS * most + rounded) {
             return Err(NoFreeBody::Masses { x, y, z });
         }
         Ok(())

@@ -47,6 +47,14 @@ pub(crate) enum NoReduction {
     },
     #[error("interfaces at one place or in one line hold no frame")]
     Collinear,
+    #[error(
+        "numbers of so few digits that by rounding alone a stiffness of the reduced body is uncertain by \
+         {part:.0e} of itself"
+    )]
+    Digits {
+        /// Standard deviation of the stiffness of a coordinate, relative to it.
+        part: f64,
+    },
     #[error("what holds the frame leaves a rigid motion of the body")]
     Loose,
     #[error("the search for fixed-interface modes came to no end: {found} of {asked} were found")]

@@ -11,6 +11,7 @@ pub(crate) mod loaded;
 mod mass_integrals;
 pub(crate) mod sections;
 mod shapes;
+pub(crate) mod written;
 
 pub(crate) use beam::{BeamDamping, BeamModes, FlexibleBeam, StrainMeasure};
 pub(crate) use shapes::{BeamFrame, BendingFunctions};

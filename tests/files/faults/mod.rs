@@ -84,6 +84,7 @@ macro_rules! faults {
 
 mod beams;
 mod loads;
+mod modal;
 mod starts;
 
 faults! {

@@ -1,0 +1,95 @@
+//! Where the equations of flexible bodies are no longer accurate: sections that turn far from the axes of their
+//! body, and bodies of linear strain that spin fast.
+
+use crate::integrate::Trajectory;
+use crate::model::{Form, Model};
+use crate::structures::modal::ModalNumbers;
+use crate::structures::modal::frequencies::{Held, frequencies};
+use crate::system::BodyMotion;
+use crate::system::attachment::section_rotation;
+use std::f64::consts::TAU;
+
+/// Rotation of a section relative to the frame of its body from which the strains of von Karman and
+/// the linear rotations of sections are no longer accurate \[rad\].
+const LARGE_ROTATION: f64 = 0.15;
+
+/// Part of the lowest angular frequency above which a body of linear strain spins fast. A beam that turns with Ω
+/// gains a stiffness of about Ω²/ω² of its own by the tension, which linear strain does not have.
+const FAST: f64 = 0.1;
+
+/// A warning about a motion that flexible bodies do not follow accurately.
+pub(super) fn warning(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
+    if model.flexible.is_empty() {
+        return None;
+    }
+    large_rotation(model, run).or_else(|| fast_spin(model, run))
+}
+
+/// The section that turns farthest, if it turns too far.
+fn large_rotation(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
+    let mut most: (f64, usize, &str) = (0.0, 0, "");
+    let mut motions = Vec::new();
+    for k in 0..=run.last() {
+        BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
+        for joint in &model.joints {
+            let Some(modes) = &joint.modes else { continue };
+            let angle = section_rotation(modes, &motions).norm();
+            if angle > most.0 {
+                most = (angle, k, &joint.name);
+            }
+        }
+    }
+    let (angle, k, name) = most;
+    (angle > LARGE_ROTATION).then(|| {
+        format!(
+            "the section \"{name}\" turns by {angle:.2} rad relative to its body's frame at \
+             t = {:.4} s; above {LARGE_ROTATION} rad its strains are inaccurate: divide the body",
+            run.time(k)
+        )
+    })
+}
+
+/// The body of linear strain that spins fastest relative to its lowest frequency, if it spins too fast.
+fn fast_spin(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
+    let mut most: Option<(f64, String)> = None;
+    for body in &model.flexible {
+        let modal = match &body.form {
+            Form::Modal(modal) if modal.stiffness.strains.is_empty() => modal,
+            Form::Modal(_) | Form::Finite(_) => continue,
+        };
+        let frame = &model.bodies[body.frame];
+        let numbers = ModalNumbers {
+            mass: frame.mass,
+            inertia: frame.inertia,
+            shapes: modal.inertia.clone(),
+            stiffness: modal.stiffness.clone(),
+            damping: Vec::new(),
+        };
+        let lowest = frequencies(&numbers, Held::Axes).and_then(|all| all.first().copied());
+        let Some(lowest) = lowest.map(|hertz| TAU * hertz) else {
+            continue;
+        };
+        let (mut spin, mut at) = (0.0, 0);
+        let mut motions = Vec::new();
+        for k in 0..=run.last() {
+            BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
+            let own = motions[body.frame].omega.norm();
+            if own > spin {
+                (spin, at) = (own, k);
+            }
+        }
+        let part = spin / lowest;
+        if part > FAST && most.as_ref().is_none_or(|(before, _)| part > *before) {
+            let told = format!(
+                "\"{}\" turns with {spin:.3e} rad/s at t = {:.4} s, {part:.2} of its lowest angular frequency \
+                 {lowest:.3e} rad/s; its strain is linear, so rotation softens it and does not stiffen it: its \
+                 stiffness errs by about {:.0} %",
+                body.name,
+                run.time(at),
+                100.0 * part * part
+            );
+            most = Some((part, told));
+        }
+    }
+    most.map(|(_, told)| told)
+}
