@@ -25,12 +25,21 @@ pub(super) struct Front {
     pub pivots: std::ops::Range<usize>,
     /// The later unknowns that it touches, in order.
     pub rest: Vec<usize>,
-    /// Fronts whose remainders are added, and where their unknowns stand in this.
-    pub children: Vec<(usize, Vec<u32>)>,
+    /// Fronts whose remainders are added.
+    pub children: Vec<Child>,
     /// Slots of entries of the matrix, and their places in the front.
     pub entries: Vec<(u32, u32)>,
     /// Products of short rows: number, slot below, slot beside, place.
     pub products: Vec<[u32; 4]>,
+}
+
+/// A front whose remainder is added to another.
+pub(super) struct Child {
+    pub front: usize,
+    /// Where its unknowns stand in the other front, ascending.
+    pub places: Vec<u32>,
+    /// Number of those that are pivots there.
+    pub pivots: usize,
 }
 
 impl Front {
@@ -39,13 +48,32 @@ impl Front {
         self.pivots.len() + self.rest.len()
     }
 
-    fn place(&self, unknown: usize) -> usize {
+    /// Number of entries in the columns of the pivots, and in the other columns of their rows.
+    pub(super) fn sizes(&self) -> (usize, usize) {
+        let (p, r) = (self.pivots.len(), self.rest.len());
+        (p * (p + r), p * r)
+    }
+
+    fn number(&self, unknown: usize) -> usize {
         match self.pivots.contains(&unknown) {
             true => unknown - self.pivots.start,
             false => {
                 let found = self.rest.binary_search(&unknown);
                 self.pivots.len() + found.expect("a front has all that its pivots touch")
             }
+        }
+    }
+
+    /// Where an entry stands among the columns of the pivots, then the other columns of their rows, then
+    /// the remainder.
+    fn place(&self, row: usize, column: usize) -> usize {
+        let (row, column) = (self.number(row), self.number(column));
+        let (p, r) = (self.pivots.len(), self.rest.len());
+        let (left, upper) = self.sizes();
+        match (column < p, row < p) {
+            (true, _) => column * (p + r) + row,
+            (false, true) => left + (column - p) * p + row,
+            (false, false) => left + upper + (column - p) * r + row - p,
         }
     }
 }
@@ -142,7 +170,7 @@ impl Plan {
         }
         for (r, c, slot) in &entries {
             let front = &mut fronts[front_of[*r.min(c)]];
-            let place = front.place(*r) + front.order() * front.place(*c);
+            let place = front.place(*r, *c);
             front.entries.push((*slot as u32, place as u32));
         }
         for (k, own) in short.iter().enumerate() {
@@ -150,7 +178,7 @@ impl Plan {
                 for &(column, beside) in &own.beside {
                     let (r, c) = (row_of[row], column_of[column]);
                     let front = &mut fronts[front_of[r.min(c)]];
-                    let place = front.place(r) + front.order() * front.place(c);
+                    let place = front.place(r, c);
                     let product = [k, below, beside, place].map(|x| x as u32);
                     front.products.push(product);
                 }
@@ -220,9 +248,14 @@ fn fronts(mut later: Vec<Vec<usize>>, count: usize) -> Vec<Front> {
             continue;
         };
         let to = if first < inner { front_of[first] } else { last };
-        let places = (all[k].rest.iter()).map(|&i| all[to].place(i) as u32);
-        let places = places.collect();
-        all[to].children.push((k, places));
+        let places = (all[k].rest.iter()).map(|&i| all[to].number(i) as u32);
+        let places: Vec<u32> = places.collect();
+        let own = all[to].pivots.len();
+        all[to].children.push(Child {
+            front: k,
+            pivots: places.partition_point(|&place| (place as usize) < own),
+            places,
+        });
     }
     all
 }

@@ -1,6 +1,7 @@
 //! Sparse linear algebra: static patterns, LU and Cholesky factorisation.
 
 pub(crate) mod cholesky;
+mod eliminated;
 mod factors;
 mod fronts;
 mod multifrontal;

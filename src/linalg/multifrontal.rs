@@ -4,22 +4,11 @@
 //! Each front is a dense matrix. Its pivots are eliminated with a search among their own rows; the rest goes
 //! to the parent (Duff & Reid 1983).
 
-use super::fronts::{Front, Plan};
+use super::eliminated::{Eliminated, usable};
+use super::fronts::Plan;
 use super::pattern::{KnownPivots, Pattern, SparseMatrix};
 use super::scaling::{Equilibration, size};
 use super::sparse_lu::{SingularMatrix, SolveScalar};
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
-
-/// Factors of a front of order f with p pivots, by columns.
-struct Eliminated<S> {
-    /// The row that was exchanged with each pivot row.
-    exchanges: Vec<u32>,
-    /// Its first p columns: L below the diagonal, U above.
-    left: Vec<S>,
-    /// U of the other columns, p × (f − p).
-    upper: Vec<S>,
-}
 
 /// The elimination of matrices of one pattern.
 pub(super) struct Multifrontal<S> {
@@ -29,19 +18,28 @@ pub(super) struct Multifrontal<S> {
     /// Inverse pivots of the short rows.
     inverse: Vec<S>,
     done: Vec<Eliminated<S>>,
-    /// Right-hand sides: of the unknowns, and of the short rows.
+    /// Remainders of the fronts, and memory of remainders that are used up.
+    remainders: Vec<Vec<S>>,
+    free: Vec<Vec<S>>,
+    /// Right-hand sides: of the unknowns, of the short rows, and of what a front touches.
     inside: Vec<S>,
     of_short: Vec<S>,
+    beside: Vec<S>,
 }
 
 impl<S: SolveScalar> Multifrontal<S> {
     pub(super) fn new(pattern: &Pattern, known: &KnownPivots) -> Self {
         let plan = Plan::new(pattern, known);
+        let widths = plan.fronts.iter().map(|front| front.rest.len());
+        let widest = widths.max().unwrap_or(0);
         Self {
             scaling: Equilibration::new(pattern),
             scaled: vec![S::zero(); pattern.entries()],
             inverse: vec![S::zero(); plan.short.len()],
-            done: Vec::new(),
+            done: plan.fronts.iter().map(Eliminated::new).collect(),
+            remainders: plan.fronts.iter().map(|_| Vec::new()).collect(),
+            free: Vec::new(),
+            beside: vec![S::zero(); widest],
             inside: vec![S::zero(); plan.rows.len()],
             of_short: vec![S::zero(); plan.short.len()],
             plan,
@@ -62,34 +60,41 @@ impl<S: SolveScalar> Multifrontal<S> {
             }
             *inverse = S::one() / pivot;
         }
-        self.done.clear();
-        let mut remainders: Vec<Vec<S>> = Vec::with_capacity(plan.fronts.len());
-        for front in &plan.fronts {
-            let order = front.order();
-            let mut dense = vec![S::zero(); order * order];
+        for (k, front) in plan.fronts.iter().enumerate() {
+            let done = &mut self.done[k];
+            let mut rest = self.free.pop().unwrap_or_default();
+            rest.clear();
+            rest.resize(front.rest.len().pow(2), S::zero());
+            done.left.fill(S::zero());
+            done.upper.fill(S::zero());
+            let (left, upper) = front.sizes();
+            let mut add = |place: u32, x: S| {
+                let place = place as usize;
+                if place < left {
+                    done.left[place] += x;
+                } else if place < left + upper {
+                    done.upper[place - left] += x;
+                } else {
+                    rest[place - left - upper] += x;
+                }
+            };
             for &(slot, place) in &front.entries {
-                dense[place as usize] += self.scaled[slot as usize];
+                add(place, self.scaled[slot as usize]);
             }
             for &[k, below, beside, place] in &front.products {
-                dense[place as usize] -= self.scaled[below as usize]
-                    * self.scaled[beside as usize]
-                    * self.inverse[k as usize];
+                let by = self.scaled[below as usize] * self.scaled[beside as usize];
+                add(place, -(by * self.inverse[k as usize]));
             }
-            for (child, places) in &front.children {
-                let rest = std::mem::take(&mut remainders[*child]);
-                let columns = rest.chunks_exact(places.len());
-                for (column, &to) in columns.zip(places) {
-                    let own = &mut dense[to as usize * order..][..order];
-                    for (&x, &row) in column.iter().zip(places) {
-                        own[row as usize] += x;
-                    }
-                }
+            for child in &front.children {
+                let own = std::mem::take(&mut self.remainders[child.front]);
+                done.extend(&mut rest, front, child, &own);
+                self.free.push(own);
             }
-            let (done, remainder) = eliminate(dense, front).map_err(|pivot| SingularMatrix {
-                column: plan.columns[front.pivots.start + pivot],
-            })?;
-            self.done.push(done);
-            remainders.push(remainder);
+            done.eliminate(&mut rest, front)
+                .map_err(|pivot| SingularMatrix {
+                    column: plan.columns[front.pivots.start + pivot],
+                })?;
+            self.remainders[k] = rest;
         }
         Ok(())
     }
@@ -128,6 +133,8 @@ impl<S: SolveScalar> Multifrontal<S> {
             of_short,
             scaling,
             done,
+            beside,
+            ..
         } = self;
         scale(b, &scaling.rows);
         for ((t, own), &inverse) in of_short.iter_mut().zip(&plan.short).zip(&*inverse) {
@@ -140,10 +147,10 @@ impl<S: SolveScalar> Multifrontal<S> {
             *x = b[row];
         }
         for (front, done) in plan.fronts.iter().zip(&*done) {
-            done.forward(front, inside);
+            done.forward(front, inside, beside);
         }
         for (front, done) in plan.fronts.iter().zip(&*done).rev() {
-            done.backward(front, inside);
+            done.backward(front, inside, beside);
         }
         for (&x, &column) in inside.iter().zip(&plan.columns) {
             b[column] = x;
@@ -167,6 +174,8 @@ impl<S: SolveScalar> Multifrontal<S> {
             of_short,
             scaling,
             done,
+            beside,
+            ..
         } = self;
         scale(b, &scaling.columns);
         for ((t, own), &inverse) in of_short.iter_mut().zip(&plan.short).zip(&*inverse) {
@@ -179,10 +188,10 @@ impl<S: SolveScalar> Multifrontal<S> {
             *x = b[column];
         }
         for (front, done) in plan.fronts.iter().zip(&*done) {
-            done.forward_transposed(front, inside);
+            done.forward_transposed(front, inside, beside);
         }
         for (front, done) in plan.fronts.iter().zip(&*done).rev() {
-            done.backward_transposed(front, inside);
+            done.backward_transposed(front, inside, beside);
         }
         for (&x, &row) in inside.iter().zip(&plan.rows) {
             b[row] = x;
@@ -199,150 +208,6 @@ impl<S: SolveScalar> Multifrontal<S> {
 fn scale<S: SolveScalar>(b: &mut [S], by: &[f64]) {
     for (b, &by) in b.iter_mut().zip(by) {
         *b = *b * by;
-    }
-}
-
-fn usable<S: SolveScalar>(pivot: S) -> bool {
-    let size = size(pivot);
-    size > 0.0 && size.is_finite()
-}
-
-/// Eliminates the pivots of a front; returns its factors and the remainder, or the pivot that is missing.
-fn eliminate<S: SolveScalar>(
-    mut dense: Vec<S>,
-    front: &Front,
-) -> Result<(Eliminated<S>, Vec<S>), usize> {
-    let (order, p, r) = (front.order(), front.pivots.len(), front.rest.len());
-    let mut exchanges = Vec::with_capacity(p);
-    for k in 0..p {
-        let column = &dense[k * order..][..p];
-        let (mut best, mut largest) = (k, size(column[k]));
-        for (i, &x) in column.iter().enumerate().skip(k + 1) {
-            if size(x) > largest {
-                (best, largest) = (i, size(x));
-            }
-        }
-        exchanges.push(best as u32);
-        if best != k {
-            for j in 0..order {
-                dense.swap(j * order + k, j * order + best);
-            }
-        }
-        let pivot = dense[k * order + k];
-        if !usable(pivot) {
-            return Err(k);
-        }
-        let inverse = S::one() / pivot;
-        let (before, after) = dense.split_at_mut((k + 1) * order);
-        let own = &mut before[k * order + k + 1..];
-        for x in &mut *own {
-            *x *= inverse;
-        }
-        for other in after.chunks_exact_mut(order).take(p - k - 1) {
-            let factor = other[k];
-            for (x, &l) in other[k + 1..].iter_mut().zip(&*own) {
-                *x -= l * factor;
-            }
-        }
-    }
-    let mut left = dense;
-    let right = left.split_off(p * order);
-    let mut upper = Vec::with_capacity(p * r);
-    let mut remainder = Vec::with_capacity(r * r);
-    for column in right.chunks_exact(order.max(1)) {
-        upper.extend_from_slice(&column[..p]);
-        remainder.extend_from_slice(&column[p..]);
-    }
-    for column in upper.chunks_exact_mut(p) {
-        for k in 0..p {
-            let x = column[k];
-            for (y, &l) in column[k + 1..].iter_mut().zip(&left[k * order + k + 1..]) {
-                *y -= l * x;
-            }
-        }
-    }
-    if r > 0 && p > 0 {
-        let lower = MatRef::from_column_major_slice_with_stride(&left[p..], r, p, order);
-        let beside = MatRef::from_column_major_slice(&upper, p, r);
-        let rest = MatMut::from_column_major_slice_mut(&mut remainder, r, r);
-        matmul(rest, Accum::Add, lower, beside, -S::one(), Par::Seq);
-    }
-    let done = Eliminated {
-        exchanges,
-        left,
-        upper,
-    };
-    Ok((done, remainder))
-}
-
-impl<S: SolveScalar> Eliminated<S> {
-    fn forward(&self, front: &Front, x: &mut [S]) {
-        let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
-        for (k, &other) in self.exchanges.iter().enumerate() {
-            x.swap(start + k, start + other as usize);
-        }
-        for k in 0..p {
-            let factor = x[start + k];
-            let column = &self.left[k * order..][..order];
-            for (x, &l) in x[start + k + 1..start + p]
-                .iter_mut()
-                .zip(&column[k + 1..p])
-            {
-                *x -= l * factor;
-            }
-            for (&i, &l) in front.rest.iter().zip(&column[p..]) {
-                x[i] -= l * factor;
-            }
-        }
-    }
-
-    fn backward(&self, front: &Front, x: &mut [S]) {
-        let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
-        for (&i, column) in front.rest.iter().zip(self.upper.chunks_exact(p.max(1))) {
-            let factor = x[i];
-            for (x, &u) in x[start..start + p].iter_mut().zip(column) {
-                *x -= u * factor;
-            }
-        }
-        for k in (0..p).rev() {
-            let column = &self.left[k * order..][..order];
-            let factor = x[start + k] / column[k];
-            x[start + k] = factor;
-            for (x, &u) in x[start..start + k].iter_mut().zip(column) {
-                *x -= u * factor;
-            }
-        }
-    }
-
-    fn forward_transposed(&self, front: &Front, x: &mut [S]) {
-        let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
-        for k in 0..p {
-            let column = &self.left[k * order..][..order];
-            let known = x[start..start + k].iter().zip(column);
-            let sum = known.fold(S::zero(), |sum, (&x, &u)| sum + x * u);
-            x[start + k] = (x[start + k] - sum) / column[k];
-        }
-        for (&i, column) in front.rest.iter().zip(self.upper.chunks_exact(p.max(1))) {
-            let known = x[start..start + p].iter().zip(column);
-            let sum = known.fold(S::zero(), |sum, (&x, &u)| sum + x * u);
-            x[i] -= sum;
-        }
-    }
-
-    fn backward_transposed(&self, front: &Front, x: &mut [S]) {
-        let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
-        for k in (0..p).rev() {
-            let column = &self.left[k * order..][..order];
-            let rest = front.rest.iter().zip(&column[p..]);
-            let mut sum = rest.fold(S::zero(), |sum, (&i, &l)| sum + x[i] * l);
-            for (&x, &l) in x[start + k + 1..start + p].iter().zip(&column[k + 1..p]) {
-                sum += x * l;
-            }
-            x[start + k] -= sum;
-        }
-        for (k, &other) in self.exchanges.iter().enumerate().rev() {
-            x.swap(start + k, start + other as usize);
-        }
     }
 }
 

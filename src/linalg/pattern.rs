@@ -41,7 +41,20 @@ pub(crate) trait Emit<S: Scalar> {
             self.add(row + i, column, values[i]);
         }
     }
+
+    /// Adds `scale` times a dense block, by rows, at `rows` and `columns`.
+    fn add_dense(&mut self, rows: &[usize], columns: &[usize], scale: S, block: &[S]) {
+        let mut values = block.iter();
+        for &row in rows {
+            for (&column, &value) in columns.iter().zip(&mut values) {
+                self.add(row, column, value * scale);
+            }
+        }
+    }
 }
+
+/// The slot of an entry that is left out.
+const NONE: u32 = u32::MAX;
 
 /// Positions of the non-zeros of a square matrix in compressed columns.
 #[derive(Clone, Debug)]
@@ -66,7 +79,7 @@ pub(crate) struct KnownPivots {
 /// Slots of the entries of an assembly, in its order.
 #[derive(Clone, Debug)]
 enum Record {
-    /// One slot per entry.
+    /// One slot per entry, or [`NONE`].
     Whole(Vec<u32>),
     /// Entry k goes to the slots from `starts[k]` to `starts[k + 1]`, each with a weight.
     Shared {
@@ -122,9 +135,21 @@ impl Pattern {
         }
         let (column_starts, sorted) = Self::sort(n, &places);
         let slots = places.iter().map(|place| slot(&sorted, place));
-        let shares = slots.zip(weights).collect();
+        // An entry that stays as it is, or is left out, needs no weight.
+        let single = starts.windows(2).all(|own| own[1] - own[0] <= 1);
+        let record = if single && weights.iter().all(|&weight| weight == 1.0) {
+            let mut slots = slots;
+            let own = starts.windows(2).map(|own| match own[1] > own[0] {
+                true => slots.next().unwrap_or(NONE),
+                false => NONE,
+            });
+            Record::Whole(own.collect())
+        } else {
+            let shares = slots.zip(weights).collect();
+            Record::Shared { starts, shares }
+        };
         Self {
-            record: Record::Shared { starts, shares },
+            record,
             known_pivots: None,
             column_starts,
             rows: sorted.into_iter().map(|(_, row)| row).collect(),
@@ -223,7 +248,19 @@ impl<S: Scalar> Emit<S> for Replay<'_, S> {
             .slots
             .next()
             .expect("an assembly emits as often as when recorded");
-        self.values[slot as usize] += value;
+        if slot != NONE {
+            self.values[slot as usize] += value;
+        }
+    }
+
+    fn add_dense(&mut self, _: &[usize], _: &[usize], scale: S, block: &[S]) {
+        let (own, rest) = self.slots.as_slice().split_at(block.len());
+        self.slots = rest.iter();
+        for (&slot, &value) in own.iter().zip(block) {
+            if slot != NONE {
+                self.values[slot as usize] += value * scale;
+            }
+        }
     }
 }
 

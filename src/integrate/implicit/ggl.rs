@@ -80,6 +80,10 @@ impl<S: Scalar> Emit<S> for Times<'_, S> {
     fn add(&mut self, row: usize, column: usize, value: S) {
         self.0.add(row, column, value * self.1);
     }
+
+    fn add_dense(&mut self, rows: &[usize], columns: &[usize], scale: S, block: &[S]) {
+        self.0.add_dense(rows, columns, scale * self.1, block);
+    }
 }
 
 impl<'a, S: Scalar> Equations<'a, S> {

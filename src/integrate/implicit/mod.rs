@@ -1,6 +1,7 @@
 //! Implicit methods on the GGL-stabilised equations: Radau IIA, and one-stage formulas with a
 //! memory (BDF, generalised-α).
 
+mod broyden;
 mod estimate;
 pub(crate) mod formula;
 pub(crate) mod ggl;

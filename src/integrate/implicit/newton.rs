@@ -1,6 +1,7 @@
 //! Newton's method for one implicit step. The iteration matrix is kept while the method converges.
 
 use super::Stage;
+use super::broyden::{Broyden, Pace};
 use super::formula::Formula;
 use super::ggl::Equations;
 use super::scales::SceneScale;
@@ -9,7 +10,7 @@ use crate::integrate::work::WorkCounts;
 use crate::linalg::{Pivots, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::Scalar;
 use crate::model::Model;
-use crate::system::{Numbering, RedundantRows};
+use crate::system::{Numbering, RedundantRows, flexible};
 use std::sync::Arc;
 
 /// Newton's method stops at this error of a step, relative to its largest increments of position,
@@ -24,6 +25,11 @@ const RENEW: f64 = 0.1;
 /// The iteration matrix is renewed after this many steps of one iteration each.
 const UNSEEN: usize = 8;
 const ITERATIONS: usize = 25;
+/// With finite elements, whose factors are dear, kept factors are corrected by Broyden's method and renewed
+/// within a step above this contraction.
+const SLOW: f64 = 0.5;
+/// Their assembly and factorisation cost as much as so many iterations.
+const FACTORS: usize = 4;
 
 /// Rates as functions of the increments in this step: q̇ = c dq + `qdot`, v̇ = c dv + `vdot`.
 #[derive(Clone, Debug)]
@@ -77,6 +83,7 @@ pub(crate) struct Memory<S> {
     made: Option<(Stage<S>, [S; 2])>,
     contraction: f64,
     unseen: usize,
+    pace: Pace,
     pivots: Option<Arc<Pivots>>,
 }
 
@@ -94,6 +101,9 @@ pub(crate) struct Newton<'a, S> {
     contraction: f64,
     /// Number of steps in a row with one iteration, which gives no contraction.
     unseen: usize,
+    /// With finite elements: corrections of the kept factors, and the work with them.
+    broyden: Option<Broyden<S>>,
+    pace: Pace,
     scale: SceneScale,
     residual: Vec<S>,
 }
@@ -113,6 +123,8 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             made: (Stage::zero(numbering), [S::zero(); 2]),
             contraction: 1.0,
             unseen: 0,
+            broyden: (!S::INFINITESIMAL && flexible::has_nodes(model)).then(Broyden::new),
+            pace: Pace::default(),
             scale: SceneScale::of(model),
             residual: vec![S::zero(); length],
         }
@@ -124,6 +136,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             made: self.factored.map(|_| self.made.clone()),
             contraction: self.contraction,
             unseen: self.unseen,
+            pace: self.pace,
             pivots: self.factors.pivots(),
         }
     }
@@ -132,6 +145,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
     pub(crate) fn restore(&mut self, kept: &Memory<S>, counts: &mut WorkCounts) {
         self.contraction = kept.contraction;
         self.unseen = kept.unseen;
+        self.pace = kept.pace;
         self.factors
             .set_pivots(&self.matrix.pattern, kept.pivots.as_ref());
         self.factored = None;
@@ -183,6 +197,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         let round_off = ROUND_OFF * scales.place().max(1.0);
         let mut previous = f64::INFINITY;
         let (mut polish, mut before) = (false, 0.0_f64);
+        let renew = if self.broyden.is_some() { SLOW } else { RENEW };
         for iteration in 1..=ITERATIONS {
             history.rates(x);
             let at = x.instant();
@@ -190,7 +205,11 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             // An infinitesimal part converges only with the exact matrix.
             let residual = (self.residual.iter()).fold(0.0, |m: f64, x| m.max(x.re().abs()));
             let fresh = S::INFINITESIMAL || self.factored != Some(history.c * h);
+            if let (true, Some(broyden)) = (fresh || iteration == 1, &mut self.broyden) {
+                broyden.clear();
+            }
             if fresh {
+                self.pace = Pace::default();
                 let (equations, matrix) = (&mut self.equations, &mut self.matrix);
                 matrix.assemble(|emit| equations.jacobian(&at, h, history.c, emit));
                 self.factored = None;
@@ -211,6 +230,9 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             let mut update = std::mem::take(&mut self.residual);
             let factors = &mut self.factors;
             self.equations.through(&mut update, |x| factors.solve(x));
+            if let Some(broyden) = &mut self.broyden {
+                broyden.correct(std::slice::from_mut(&mut update));
+            }
             let size = scales.size(&update[..2 * nv], h.re());
             if !size.is_finite() {
                 self.residual = update;
@@ -250,10 +272,13 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                     self.factored = None;
                     self.unseen = 0;
                 }
+                if self.broyden.is_some() && self.pace.is_lost(iteration, FACTORS) {
+                    self.factored = None;
+                }
                 history.rates(x);
                 return Ok(());
             }
-            if iteration > 1 && contraction > RENEW {
+            if iteration > 1 && contraction > renew {
                 self.factored = None;
             }
             if fresh {

@@ -2,6 +2,7 @@
 //! are kept while the method converges (Hairer & Wanner 1996, section IV.8).
 
 use super::Stage;
+use super::broyden::{Broyden, Pace};
 use super::ggl::Equations;
 use super::radau::Scheme;
 use super::scales::{Scales, SceneScale};
@@ -36,10 +37,14 @@ const DIVERGENT: f64 = 0.9;
 /// The kept factors are used up to this relative change of the step size.
 const SAME_STEP: f64 = 1e-6;
 const ITERATIONS: usize = 20;
-/// With finite elements, whose strains stiffen them within a step, the matrix is renewed at the present
-/// iterate above this contraction, so often in a step.
-const SLOW: f64 = 0.25;
+/// With finite elements, whose strains stiffen them within a step, kept factors are corrected by Broyden's
+/// method, and renewed at the present iterate above this contraction, so often in a step. Infinitesimal parts
+/// take them as they are.
+const SLOW: f64 = 0.5;
+const SLOW_INFINITESIMAL: f64 = 0.25;
 const RENEWALS: usize = 6;
+/// Their assembly and factorisation cost as much as so many iterations.
+const FACTORS: usize = 4;
 /// Iterations of their infinitesimal parts.
 const RENEWED_INFINITESIMAL_ITERATIONS: usize = 40;
 /// A pivot of a multiplier below this indicates a singular position.
@@ -52,6 +57,7 @@ const INFINITESIMAL_ITERATIONS: usize = 12;
 pub(crate) struct Memory {
     /// State of the kept factors, and the step size.
     made: Option<(Stage<f64>, f64)>,
+    pace: Pace,
     /// Pivots of the real and of the complex matrix.
     pivots: [Option<Arc<Pivots>>; 2],
 }
@@ -69,8 +75,10 @@ pub(crate) struct StageNewton<'a, S> {
     complex_mode: (SparseMatrix<Complex64>, SparseLu<Complex64>),
     /// Step size of the kept factors.
     factored: Option<f64>,
-    /// Whether the matrix is renewed within a step.
-    renews: bool,
+    /// With finite elements: corrections of the kept factors, and the work with them. The matrix is then
+    /// renewed within a step.
+    broyden: Option<Broyden<S>>,
+    pace: Pace,
     scale: SceneScale,
     residuals: Vec<Vec<S>>,
     updates: Vec<Vec<S>>,
@@ -116,7 +124,8 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                 (SparseMatrix::new(pattern), factors)
             },
             factored: None,
-            renews: flexible::has_nodes(model),
+            broyden: flexible::has_nodes(model).then(Broyden::new),
+            pace: Pace::default(),
             scale: SceneScale::of(model),
             residuals: vec![vec![S::zero(); n]; scheme.stages()],
             updates: vec![vec![S::zero(); n]; scheme.stages()],
@@ -134,6 +143,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         let real = self.real_mode.as_mut();
         Memory {
             made: self.factored.map(|h| (self.middle.clone(), h)),
+            pace: self.pace,
             pivots: [
                 real.and_then(|(_, factors)| factors.pivots()),
                 self.complex_mode.1.pivots(),
@@ -155,6 +165,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             // This cannot fail: the same matrices were factorised before.
             let _ = self.factorise_there(*h, counts);
         }
+        self.pace = kept.pace;
     }
 
     /// Discards the kept factors.
@@ -217,6 +228,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         let scales = self.scale.step(numbering, known, h.re());
         let (mut previous, mut before, mut slowest) = (f64::INFINITY, 0.0_f64, 0.0_f64);
         let mut renewals = 0;
+        if let Some(broyden) = &mut self.broyden {
+            broyden.clear();
+        }
         for iteration in 1..=ITERATIONS {
             let size = self.improve(stages, h, &scales, nv, counts);
             if !size.is_finite() {
@@ -249,7 +263,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                 self.noise = noise;
                 if S::INFINITESIMAL {
                     let mut count = INFINITESIMAL_ITERATIONS;
-                    if self.renews {
+                    if self.broyden.is_some() {
                         self.factorise(stages, h.re(), at, counts)?;
                         count = RENEWED_INFINITESIMAL_ITERATIONS;
                     }
@@ -257,7 +271,11 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                         self.improve(stages, h, &scales, nv, counts);
                     }
                 }
-                if slowest > RENEW {
+                let lost = match self.broyden {
+                    Some(_) => self.pace.is_lost(iteration, FACTORS),
+                    None => slowest > RENEW,
+                };
+                if lost {
                     self.factored = None;
                 }
                 self.set_rates(stages, h);
@@ -265,7 +283,14 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             }
             if iteration > 1 {
                 slowest = slowest.max(contraction);
-                if self.renews && contraction > SLOW && renewals < RENEWALS {
+                let most = if S::INFINITESIMAL {
+                    SLOW_INFINITESIMAL
+                } else {
+                    SLOW
+                };
+                let renews = renewals < RENEWALS && contraction > most;
+                if let (true, Some(broyden)) = (renews, &mut self.broyden) {
+                    broyden.clear();
                     self.factorise(stages, h.re(), at, counts)?;
                     renewals += 1;
                 } else if slow && !self.is_round_off(&scales) {
@@ -340,6 +365,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         self.update(Scalar::re, S::from);
         if S::INFINITESIMAL {
             self.update(Scalar::infinitesimal, S::of_infinitesimal);
+        }
+        if let (false, Some(broyden)) = (S::INFINITESIMAL, &mut self.broyden) {
+            broyden.correct(&mut self.updates);
         }
         counts.newton_iterations += 1;
         counts.solves += self.scheme.modes.len();
@@ -436,6 +464,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             complex_mode,
             ..
         } = self;
+        self.pace = Pace::default();
         split.assemble(&mut self.real, &self.middle.instant(), h);
         // The matrix is affine in the eigenvalue.
         let mut found = Ok(());

@@ -22,7 +22,7 @@ use crate::system::numbering::Numbering;
 use crate::system::planar::PlanarJoints;
 use crate::system::reduce;
 use crate::system::redundant_rows::{RedundantRows, RowWeights};
-use crate::system::tree::Tree;
+use crate::system::tree::{self, Tree};
 use std::sync::Arc;
 
 /// Solver of the index-1 equations at consecutive states.
@@ -45,6 +45,8 @@ pub(crate) struct Accelerations<'a, S> {
     time: S,
     solver: Solver<S>,
     left_to_sparse: Option<FallbackReason>,
+    /// Whether the joints close loops.
+    loops: bool,
     rhs: Vec<S>,
     /// Number of factorisations so far.
     pub factorisations: usize,
@@ -106,6 +108,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             time: S::zero(),
             solver,
             left_to_sparse,
+            loops: tree::closes_loops(model, numbering),
             rhs: vec![S::zero(); numbering.velocities() + numbering.constraints()],
             factorisations: 0,
             solves: 0,
@@ -150,10 +153,11 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
 
     /// Whether the joints close loops, or the tree is not used because a body lacks inertia.
     pub(crate) fn closes_loops(&self) -> bool {
-        match &self.solver {
-            Solver::Tree(tree) => tree.closes_loops(),
-            Solver::Sparse(..) => true,
-        }
+        self.loops
+            || match self.left_to_sparse {
+                None | Some(FallbackReason::Loops | FallbackReason::Flexible) => false,
+                Some(FallbackReason::Body(_) | FallbackReason::Joint(_)) => true,
+            }
     }
 
     /// Redundant rows, which are not imposed.

@@ -7,7 +7,7 @@ use super::stiffness::tangent;
 use crate::linalg::Emit;
 use crate::math::scalar::skew;
 use crate::math::{Mat3, Scalar, Vec3};
-use crate::model::finite::{FiniteElements, NODES, ShellElement, UNKNOWNS};
+use crate::model::finite::{DISPLACEMENTS, FiniteElements, NODES, ShellElement};
 use crate::system::flexing::{Flexing, axial};
 
 /// Columns and rows that couple the frame with the coordinates, each a vector of three, and the block of
@@ -56,36 +56,95 @@ impl<S: Scalar> Frame<S> {
     }
 }
 
-/// Emits a matrix of an element; `entry` gives what stands at a row and column, if anything.
+/// Emits a matrix of some unknowns of an element, by rows. Those that the frame holds are left out.
 fn emit_element<S: Scalar>(
-    element: &ShellElement,
-    slots: &[usize],
+    (element, slots): (&ShellElement, &[usize]),
+    unknowns: &[usize],
     (row, column): (usize, usize),
     scale: S,
-    entry: impl Fn(usize, usize) -> Option<S>,
+    block: &[S],
     emit: &mut dyn Emit<S>,
 ) {
-    for (k, i) in element.coordinates.iter().enumerate() {
-        let Some(i) = i else { continue };
-        let at = row + slots[6 + i];
-        for (l, j) in element.coordinates.iter().enumerate() {
-            let Some(j) = j else { continue };
-            if let Some(x) = entry(k, l) {
-                emit.add(at, column + slots[6 + j], x * scale);
+    let place = |&k: &usize| element.coordinates[k].map(|i| slots[6 + i]);
+    let places: Vec<usize> = unknowns.iter().filter_map(place).collect();
+    let rows: Vec<usize> = places.iter().map(|i| row + i).collect();
+    let columns: Vec<usize> = places.iter().map(|i| column + i).collect();
+    if places.len() == unknowns.len() {
+        return emit.add_dense(&rows, &columns, scale, block);
+    }
+    let moves: Vec<bool> = unknowns.iter().map(|k| place(k).is_some()).collect();
+    let moving = block.chunks_exact(unknowns.len()).zip(&moves);
+    let kept: Vec<S> = moving
+        .filter(|(_, moves)| **moves)
+        .flat_map(|(row, _)| row.iter().zip(&moves).filter(|(_, moves)| **moves))
+        .map(|(&x, _)| x)
+        .collect();
+    emit.add_dense(&rows, &columns, scale, &kept);
+}
+
+/// Emits a mass matrix of an element: `positions` for each axis of the positions, `directors` for the
+/// directors.
+fn emit_masses<S: Scalar>(
+    (element, slots): (&ShellElement, &[usize]),
+    at: (usize, usize),
+    scale: S,
+    (positions, directors): (&[S], &[S]),
+    emit: &mut dyn Emit<S>,
+) {
+    for axis in 0..3 {
+        let along: [usize; NODES] = std::array::from_fn(|a| 3 * a + axis);
+        emit_element((element, slots), &along, at, scale, positions, emit);
+    }
+    let turning: Vec<usize> = (DISPLACEMENTS..element.moves.len()).collect();
+    emit_element((element, slots), &turning, at, scale, directors, emit);
+}
+
+/// Emits the part of a matrix of an element that couples positions with positions, and directors with
+/// directors.
+fn emit_parts<S: Scalar>(
+    (element, slots): (&ShellElement, &[usize]),
+    at: (usize, usize),
+    scale: S,
+    (positions, directors): (&[S], &[S]),
+    emit: &mut dyn Emit<S>,
+) {
+    let moving: [usize; DISPLACEMENTS] = std::array::from_fn(|k| k);
+    emit_element((element, slots), &moving, at, scale, positions, emit);
+    let turning: Vec<usize> = (DISPLACEMENTS..element.moves.len()).collect();
+    emit_element((element, slots), &turning, at, scale, directors, emit);
+}
+
+/// The matrix w A_ab a_k · (M a_l) of directors, a_k how unknown k moves its director.
+fn of_directors<S: Scalar>(
+    element: &ShellElement,
+    weight: S,
+    turn: impl Fn(&Vec3<f64>) -> Vec3<S>,
+) -> Vec<S> {
+    let moves = &element.moves[DISPLACEMENTS..];
+    let turned: Vec<Vec3<S>> = moves.iter().map(|(_, along)| turn(along)).collect();
+    let mut out = Vec::with_capacity(moves.len() * moves.len());
+    for (a, along) in moves {
+        let shares = &element.shares[a - NODES];
+        for ((b, _), by) in moves.iter().zip(&turned) {
+            let inner = by[0] * along[0] + by[1] * along[1] + by[2] * along[2];
+            out.push(weight * inner * shares[b - NODES]);
+        }
+    }
+    out
+}
+
+/// The matrix w A_ab M of positions, 27 × 27.
+fn of_positions<S: Scalar>(element: &ShellElement, weight: S, turn: &Mat3<S>) -> Vec<S> {
+    let mut out = Vec::with_capacity(DISPLACEMENTS * DISPLACEMENTS);
+    for shares in &element.shares {
+        for i in 0..3 {
+            for &share in shares {
+                let by = weight * share;
+                out.extend([0, 1, 2].map(|j| by * turn[(i, j)]));
             }
         }
     }
-}
-
-/// Whether the directions of two unknowns can have an inner product.
-fn couples(element: &ShellElement, k: usize, l: usize) -> bool {
-    let (a, b) = (element.moves[k].0, element.moves[l].0);
-    a / NODES == b / NODES && (a >= NODES || k % 3 == l % 3)
-}
-
-/// Share of two unknowns' points.
-fn shared(element: &ShellElement, k: usize, l: usize) -> f64 {
-    element.shares[element.moves[k].0 % NODES][element.moves[l].0 % NODES]
+    out
 }
 
 /// Emits the mass matrix without mass and undeformed inertia, times `scale`.
@@ -119,13 +178,12 @@ pub(crate) fn emit_mass<S: Scalar>(
             }
             frame.columns[1][*j] += weighed[*point].cross(&c);
         }
-        let entry = |k: usize, l: usize| {
-            couples(element, k, l).then(|| {
-                let along = element.moves[k].1.dot(&element.moves[l].1);
-                weights[element.moves[k].0 / NODES] * (shared(element, k, l) * along)
-            })
-        };
-        emit_element(element, slots, at, scale, entry, emit);
+        let positions: Vec<S> = (element.shares.as_flattened().iter())
+            .map(|&share| weights[0] * share)
+            .collect();
+        let directors = of_directors(element, weights[1], lift);
+        let masses = (&positions[..], &directors[..]);
+        emit_masses((element, slots), at, scale, masses, emit);
     }
     frame.rows = frame.columns.clone();
     let coupled = rotation * skew(&first);
@@ -143,17 +201,19 @@ pub(crate) fn emit_weights<S: Scalar>(
 ) {
     for (i, element) in finite.mesh.elements.iter().enumerate() {
         let weights = per_area(finite, i);
-        let entry = |k: usize, l: usize| {
-            couples(element, k, l).then(|| {
-                let own = if k == l {
-                    element.moves[k].1.norm_squared()
-                } else {
-                    0.0
-                };
-                weights[element.moves[k].0 / NODES] * (shared(element, k, l) * own)
-            })
-        };
-        emit_element(element, slots, (0, 0), S::one(), entry, emit);
+        let mut positions = [S::zero(); NODES * NODES];
+        for a in 0..NODES {
+            positions[a * (NODES + 1)] = weights[0] * element.shares[a][a];
+        }
+        let moves = &element.moves[DISPLACEMENTS..];
+        let mut directors = vec![S::zero(); moves.len() * moves.len()];
+        for (k, (point, along)) in moves.iter().enumerate() {
+            let a = point - NODES;
+            let square = along.norm_squared() * element.shares[a][a];
+            directors[k * (moves.len() + 1)] = weights[1] * square;
+        }
+        let masses = (&positions[..], &directors[..]);
+        emit_masses((element, slots), (0, 0), S::one(), masses, emit);
     }
     Frame::zero(finite.mesh.coordinates).emit(slots, (0, 0), S::one(), emit);
 }
@@ -181,7 +241,7 @@ pub(crate) fn emit_jacobian<S: Scalar>(
     let (mut in_y, mut in_v) = (Frame::zero(at.q.len()), Frame::zero(at.q.len()));
     let (mut first, mut first_rate, mut force) = (Vec3::zeros(), Vec3::zeros(), Vec3::zeros());
     let (mut moments, mut moments_rate) = (Mat3::zeros(), Mat3::zeros());
-    let mut stiffness = [[S::zero(); UNKNOWNS]; UNKNOWNS];
+    let mut stiffness = Vec::new();
     for (i, element) in finite.mesh.elements.iter().enumerate() {
         let weights = per_area(finite, i);
         let x = gather(element, &at.q);
@@ -206,46 +266,41 @@ pub(crate) fn emit_jacobian<S: Scalar>(
             .fold(Vec3::zeros(), |sum: Vec3<S>, f| sum + f);
         force -= at.gamma * (weights[0] * element.area);
         moments -= second(element, weights).transpose();
-        let mut turned = [Vec3::zeros(); UNKNOWNS];
-        let mut spun = [Vec3::zeros(); UNKNOWNS];
         for (l, (point, along)) in element.moves.iter().enumerate() {
             let c = lift::<S>(along);
-            (turned[l], spun[l]) = (b * c, twice * c);
             let Some(j) = element.coordinates[l] else {
                 continue;
             };
+            let (turned, spun) = (b * c, twice * c);
             if *point < NODES {
                 let share = weights[0] * element.shares[*point].iter().sum::<f64>();
-                in_y.columns[0][j] += rotation * (turned[l] * share);
-                in_v.columns[0][j] += rotation * (spun[l] * share);
+                in_y.columns[0][j] += rotation * (turned * share);
+                in_v.columns[0][j] += rotation * (spun * share);
                 in_y.rows[1][j] += (c * share).cross(&at.gamma);
             }
             let w = &weighed[*point];
-            in_y.columns[1][j] += c.cross(&forces[*point]) + w.cross(&turned[l]);
-            in_v.columns[1][j] += w.cross(&spun[l]);
+            in_y.columns[1][j] += c.cross(&forces[*point]) + w.cross(&turned);
+            in_v.columns[1][j] += w.cross(&spun);
             for (k, (square, double)) in units.iter().enumerate() {
                 let by = square * w + double * weighed_rate[*point];
                 in_v.rows[1][j][k] += c.dot(&by);
             }
         }
+        let n = element.moves.len();
+        stiffness.clear();
+        stiffness.resize(n * n, S::zero());
         tangent(finite, i, &x, &mut stiffness);
-        let rotated = |k: usize, l: usize, turned: &[Vec3<S>; UNKNOWNS]| {
-            let (point, along) = &element.moves[k];
-            let by = &turned[l];
-            let inner = by[0] * along[0] + by[1] * along[1] + by[2] * along[2];
-            weights[point / NODES] * inner * shared(element, k, l)
-        };
-        let same = |k: usize, l: usize| element.moves[k].0 / NODES == element.moves[l].0 / NODES;
-        let in_place = |k: usize, l: usize| {
-            let own = stiffness[k.max(l)][k.min(l)];
-            Some(match same(k, l) {
-                true => own + rotated(k, l, &turned),
-                false => own,
-            })
-        };
-        emit_element(element, slots, (row, y), by_y, in_place, emit);
-        let in_rate = |k: usize, l: usize| same(k, l).then(|| rotated(k, l, &spun));
-        emit_element(element, slots, (row, v), by_v, in_rate, emit);
+        let positions = of_positions(element, weights[0], &b);
+        let directors = of_directors(element, weights[1], |along| b * lift::<S>(along));
+        let (upper, lower) = stiffness.split_at_mut(DISPLACEMENTS * n);
+        add_part(upper, &positions, (n, 0));
+        add_part(lower, &directors, (n, DISPLACEMENTS));
+        let all: Vec<usize> = (0..n).collect();
+        emit_element((element, slots), &all, (row, y), by_y, &stiffness, emit);
+        let positions = of_positions(element, weights[0], &twice);
+        let directors = of_directors(element, weights[1], |along| twice * lift::<S>(along));
+        let parts = (&positions[..], &directors[..]);
+        emit_parts((element, slots), (row, v), by_v, parts, emit);
     }
     in_y.block[0][1] = -(rotation * skew(&force));
     in_y.block[1][1] = skew(&first) * skew(&at.gamma);
@@ -257,6 +312,16 @@ pub(crate) fn emit_jacobian<S: Scalar>(
     }
     in_y.emit(slots, (row, y), by_y, emit);
     in_v.emit(slots, (row, v), by_v, emit);
+}
+
+/// Adds the square matrix `part` to rows of length n, from `column` on.
+fn add_part<S: Scalar>(rows: &mut [S], part: &[S], (n, column): (usize, usize)) {
+    let width = rows.len() / n;
+    for (row, part) in rows.chunks_exact_mut(n).zip(part.chunks_exact(width)) {
+        for (x, &by) in row[column..].iter_mut().zip(part) {
+            *x += by;
+        }
+    }
 }
 
 /// Adds Σ w_k over positions, and Σ w_k p_kᵀ.

@@ -3,7 +3,7 @@
 use super::element::{Local, gather, scatter};
 use crate::math::Scalar;
 use crate::model::finite::{
-    DISPLACEMENTS, FiniteElements, QUADRATIC, STRAINS, ShellElement, UNKNOWNS,
+    DISPLACEMENTS, FiniteElements, NODES, QUADRATIC, STRAINS, ShellElement, UNKNOWNS,
 };
 
 /// Membrane strains, their gradients along the displacements, and products with slopes.
@@ -217,22 +217,33 @@ pub(crate) fn pull_forces(
     }
 }
 
-/// The tangent stiffness of an element, lower part: rows of the unknowns.
+/// Adds left ⊗ right to a matrix of displacements, rows up to the diagonal's block of nine.
+fn add_product<S: Scalar>(
+    left: &[S; DISPLACEMENTS],
+    right: &[S; DISPLACEMENTS],
+    out: &mut [[S; DISPLACEMENTS]; DISPLACEMENTS],
+) {
+    for (k, (row, &factor)) in out.iter_mut().zip(left).enumerate() {
+        let end = NODES * (k / NODES + 1);
+        for (out, &x) in row[..end].iter_mut().zip(&right[..end]) {
+            *out += factor * x;
+        }
+    }
+}
+
+/// The tangent stiffness of an element, by rows of its unknowns.
 pub(super) fn tangent<S: Scalar>(
     finite: &FiniteElements<S>,
     i: usize,
     x: &Local<S>,
-    out: &mut [[S; UNKNOWNS]; UNKNOWNS],
+    out: &mut [S],
 ) {
     let element = &finite.mesh.elements[i];
     let [thin, thick] = factors(finite, i);
     let n = element.coordinates.len();
     let [bending, shear] = &element.linear;
-    for (k, row) in out.iter_mut().enumerate().take(n) {
-        let both = bending[k * n..].iter().zip(&shear[k * n..]);
-        for (out, (&b, &s)) in row[..=k].iter_mut().zip(both) {
-            *out = thick * b + thin * s;
-        }
+    for (out, (&b, &s)) in out.iter_mut().zip(bending.iter().zip(shear)) {
+        *out = thick * b + thin * s;
     }
     let strained = Strained::of(element, x);
     let rows = strained.rows(element);
@@ -247,36 +258,44 @@ pub(super) fn tangent<S: Scalar>(
             }
         }
     }
-    let mut add = |left: &[S; DISPLACEMENTS], right: &[S; DISPLACEMENTS]| {
-        for (k, (row, &factor)) in out.iter_mut().zip(left).enumerate() {
-            for (out, &x) in row[..=k].iter_mut().zip(&right[..=k]) {
-                *out += factor * x;
-            }
-        }
-    };
+    let mut lower = [[S::zero(); DISPLACEMENTS]; DISPLACEMENTS];
     for (left, right) in rows.iter().zip(&scaled) {
-        add(left, right);
+        add_product(left, right, &mut lower);
     }
     let stress = stresses(element, &strained.strain);
     for ([r, s], &n) in element.slopes.iter().zip(&stress) {
         let half = thin * n * 0.5;
-        let (mut by_r, mut by_s) = ([S::zero(); DISPLACEMENTS], [S::zero(); DISPLACEMENTS]);
+        let mut by_r = [S::zero(); DISPLACEMENTS];
         add_row(r, half, &mut by_r);
+        if r == s {
+            add_row(r, half, &mut by_r);
+            add_product(&r.map(S::from), &by_r, &mut lower);
+            continue;
+        }
+        let mut by_s = [S::zero(); DISPLACEMENTS];
         add_row(s, half, &mut by_s);
-        add(&r.map(S::from), &by_s);
-        add(&s.map(S::from), &by_r);
+        add_product(&r.map(S::from), &by_s, &mut lower);
+        add_product(&s.map(S::from), &by_r, &mut lower);
+    }
+    for k in 0..DISPLACEMENTS {
+        for l in 0..k {
+            out[k * n + l] += lower[k][l];
+            out[l * n + k] += lower[k][l];
+        }
+        out[k * n + k] += lower[k][k];
     }
 }
 
 /// The diagonal of the linear stiffness.
 pub(crate) fn diagonal<S: Scalar>(finite: &FiniteElements<S>) -> Vec<S> {
     let mut out = vec![S::zero(); finite.mesh.coordinates];
-    let mut matrix = [[S::zero(); UNKNOWNS]; UNKNOWNS];
+    let mut matrix = [S::zero(); UNKNOWNS * UNKNOWNS];
     for (i, element) in finite.mesh.elements.iter().enumerate() {
+        let n = element.coordinates.len();
         tangent(finite, i, &[S::zero(); UNKNOWNS], &mut matrix);
         for (k, coordinate) in element.coordinates.iter().enumerate() {
             if let Some(j) = coordinate {
-                out[*j] += matrix[k][k];
+                out[*j] += matrix[k * (n + 1)];
             }
         }
     }

@@ -48,6 +48,11 @@ pub(crate) enum Tree<S> {
     Large(Elimination<S, MOST>),
 }
 
+/// Whether joints close loops.
+pub(crate) fn closes_loops<S>(model: &Model<S>, numbering: &Numbering) -> bool {
+    !links::forest(model, numbering).closing.is_empty()
+}
+
 impl<S: Scalar> Tree<S> {
     /// Plans the elimination; `None` if so many joints of `model` close loops that sparse LU costs
     /// less, or a body is flexible.
@@ -65,14 +70,6 @@ impl<S: Scalar> Tree<S> {
             true => Tree::Small(Elimination::plan(model, numbering, forest)?),
             false => Tree::Large(Elimination::plan(model, numbering, forest)?),
         })
-    }
-
-    /// Whether joints close loops.
-    pub(crate) fn closes_loops(&self) -> bool {
-        match self {
-            Tree::Small(elimination) => elimination.loops.is_some(),
-            Tree::Large(elimination) => elimination.loops.is_some(),
-        }
     }
 
     /// Summary of the elimination. A decomposition of order k counts k³/3 operations and a solution

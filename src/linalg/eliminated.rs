@@ -1,0 +1,244 @@
+//! Factors of a front of a multifrontal elimination. Its pivots are eliminated by panels with a search among
+//! their own rows (Golub & Van Loan 2013, section 3.4).
+
+use super::fronts::{Child, Front};
+use super::scaling::size;
+use super::sparse_lu::SolveScalar;
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
+use faer::{Accum, MatMut, MatRef, Par};
+
+/// Columns of a front that are eliminated together.
+const PANEL: usize = 16;
+
+/// Factors of a front of order f with p pivots, by columns.
+pub(super) struct Eliminated<S> {
+    /// The row that was exchanged with each pivot row.
+    exchanges: Vec<u32>,
+    /// Its first p columns: L below the diagonal, U above.
+    pub left: Vec<S>,
+    /// U of the other columns, p × (f − p).
+    pub upper: Vec<S>,
+}
+
+impl<S: SolveScalar> Eliminated<S> {
+    pub(super) fn new(front: &Front) -> Self {
+        let (left, upper) = front.sizes();
+        Self {
+            exchanges: vec![0; front.pivots.len()],
+            left: vec![S::zero(); left],
+            upper: vec![S::zero(); upper],
+        }
+    }
+}
+
+/// Whether a pivot is neither zero nor infinite nor NaN.
+pub(super) fn usable<S: SolveScalar>(pivot: S) -> bool {
+    let size = size(pivot);
+    size > 0.0 && size.is_finite()
+}
+
+/// Subtracts l x from y.
+fn subtract<S: SolveScalar>(y: &mut [S], l: &[S], x: S) {
+    for (y, &l) in y.iter_mut().zip(l) {
+        *y -= l * x;
+    }
+}
+
+fn dot<S: SolveScalar>(x: &[S], y: &[S]) -> S {
+    // Four sums, because an addition waits for the one before.
+    let (x4, x) = x[..y.len()].as_chunks::<4>();
+    let (y4, y) = y.as_chunks::<4>();
+    let mut sums = [S::zero(); 4];
+    for (x, y) in x4.iter().zip(y4) {
+        for (sum, (&x, &y)) in sums.iter_mut().zip(x.iter().zip(y)) {
+            *sum += x * y;
+        }
+    }
+    let rest = x.iter().zip(y).fold(S::zero(), |sum, (&x, &y)| sum + x * y);
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+}
+
+/// Adds −A B to C, each in columns of the given stride.
+fn subtract_product<S: SolveScalar>(
+    (c, c_stride): (&mut [S], usize),
+    (a, a_stride): (&[S], usize),
+    (b, b_stride): (&[S], usize),
+    [m, n, k]: [usize; 3],
+) {
+    if m == 0 || n == 0 || k == 0 {
+        return;
+    }
+    let a = MatRef::from_column_major_slice_with_stride(a, m, k, a_stride);
+    let b = MatRef::from_column_major_slice_with_stride(b, k, n, b_stride);
+    let c = MatMut::from_column_major_slice_with_stride_mut(c, m, n, c_stride);
+    matmul(c, Accum::Add, a, b, -S::one(), Par::Seq);
+}
+
+impl<S: SolveScalar> Eliminated<S> {
+    /// Adds the remainder of a child.
+    pub(super) fn extend(&mut self, rest: &mut [S], front: &Front, child: &Child, own: &[S]) {
+        let (order, p, r) = (front.order(), front.pivots.len(), front.rest.len());
+        let (inside, outside) = child.places.split_at(child.pivots);
+        let mut columns = own.chunks_exact(child.places.len());
+        for (&to, column) in inside.iter().zip(&mut columns) {
+            let own = &mut self.left[to as usize * order..][..order];
+            for (&x, &row) in column.iter().zip(&child.places) {
+                own[row as usize] += x;
+            }
+        }
+        for (&to, column) in outside.iter().zip(&mut columns) {
+            let to = to as usize - p;
+            let (above, below) = column.split_at(child.pivots);
+            let own = &mut self.upper[to * p..][..p];
+            for (&x, &row) in above.iter().zip(inside) {
+                own[row as usize] += x;
+            }
+            let own = &mut rest[to * r..][..r];
+            for (&x, &row) in below.iter().zip(outside) {
+                own[row as usize - p] += x;
+            }
+        }
+    }
+
+    /// Eliminates the pivots of the front; `rest` becomes the remainder. The error is the pivot that is
+    /// missing.
+    pub(super) fn eliminate(&mut self, rest: &mut [S], front: &Front) -> Result<(), usize> {
+        let (order, p, r) = (front.order(), front.pivots.len(), front.rest.len());
+        let left = &mut self.left;
+        for start in (0..p).step_by(PANEL) {
+            let end = (start + PANEL).min(p);
+            for k in start..end {
+                let column = &left[k * order..][..p];
+                let (mut best, mut largest) = (k, size(column[k]));
+                for (i, &x) in column.iter().enumerate().skip(k + 1) {
+                    if size(x) > largest {
+                        (best, largest) = (i, size(x));
+                    }
+                }
+                self.exchanges[k] = best as u32;
+                if best != k {
+                    for column in left.chunks_exact_mut(order) {
+                        column.swap(k, best);
+                    }
+                }
+                let pivot = left[k * order + k];
+                if !usable(pivot) {
+                    return Err(k);
+                }
+                let inverse = S::one() / pivot;
+                let (before, after) = left.split_at_mut((k + 1) * order);
+                let own = &mut before[k * order + k + 1..];
+                for x in &mut *own {
+                    *x *= inverse;
+                }
+                for other in after.chunks_exact_mut(order).take(end - k - 1) {
+                    let factor = other[k];
+                    subtract(&mut other[k + 1..], own, factor);
+                }
+            }
+            // The other columns of the pivots.
+            let (before, after) = left.split_at_mut(end * order);
+            for column in after.chunks_exact_mut(order) {
+                lower_solve(&before[start * order..], (order, start, end), column);
+            }
+            if end < p {
+                let above: Vec<S> = (after.chunks_exact(order))
+                    .flat_map(|column| &column[start..end])
+                    .copied()
+                    .collect();
+                let own = (&before[start * order + end..], order);
+                let shape = [order - end, p - end, end - start];
+                let beside = (&above[..], end - start);
+                subtract_product((&mut after[end..], order), own, beside, shape);
+            }
+        }
+        let left = &self.left;
+        for column in self.upper.chunks_exact_mut(p.max(1)) {
+            for (k, &other) in self.exchanges.iter().enumerate() {
+                column.swap(k, other as usize);
+            }
+        }
+        if p > 0 && r > 0 {
+            let lower = MatRef::from_column_major_slice_with_stride(&left[..], p, p, order);
+            let upper = MatMut::from_column_major_slice_mut(&mut self.upper, p, r);
+            solve_unit_lower_triangular_in_place(lower, upper, Par::Seq);
+            let below = (&left[p..], order);
+            subtract_product((rest, r), below, (&self.upper, p), [r, r, p]);
+        }
+        Ok(())
+    }
+
+    pub(super) fn forward(&self, front: &Front, x: &mut [S], beside: &mut [S]) {
+        let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
+        for (k, &other) in self.exchanges.iter().enumerate() {
+            x.swap(start + k, start + other as usize);
+        }
+        let beside = &mut beside[..front.rest.len()];
+        for (own, &i) in beside.iter_mut().zip(&front.rest) {
+            *own = x[i];
+        }
+        let own = &mut x[start..start + p];
+        for (k, column) in self.left.chunks_exact(order.max(1)).enumerate() {
+            let factor = own[k];
+            subtract(&mut own[k + 1..], &column[k + 1..p], factor);
+            subtract(beside, &column[p..], factor);
+        }
+        for (own, &i) in beside.iter().zip(&front.rest) {
+            x[i] = *own;
+        }
+    }
+
+    pub(super) fn backward(&self, front: &Front, x: &mut [S], _: &mut [S]) {
+        let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
+        for (&i, column) in front.rest.iter().zip(self.upper.chunks_exact(p.max(1))) {
+            let factor = x[i];
+            subtract(&mut x[start..start + p], column, factor);
+        }
+        let own = &mut x[start..start + p];
+        for k in (0..p).rev() {
+            let column = &self.left[k * order..][..order];
+            let factor = own[k] / column[k];
+            own[k] = factor;
+            subtract(&mut own[..k], column, factor);
+        }
+    }
+
+    pub(super) fn forward_transposed(&self, front: &Front, x: &mut [S], _: &mut [S]) {
+        let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
+        let own = &mut x[start..start + p];
+        for k in 0..p {
+            let column = &self.left[k * order..][..order];
+            own[k] = (own[k] - dot(column, &own[..k])) / column[k];
+        }
+        for (&i, column) in front.rest.iter().zip(self.upper.chunks_exact(p.max(1))) {
+            x[i] -= dot(column, &x[start..start + p]);
+        }
+    }
+
+    pub(super) fn backward_transposed(&self, front: &Front, x: &mut [S], beside: &mut [S]) {
+        let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
+        let beside = &mut beside[..front.rest.len()];
+        for (own, &i) in beside.iter_mut().zip(&front.rest) {
+            *own = x[i];
+        }
+        let own = &mut x[start..start + p];
+        for k in (0..p).rev() {
+            let column = &self.left[k * order..][..order];
+            let sum = dot(beside, &column[p..]) + dot(&own[k + 1..], &column[k + 1..p]);
+            own[k] -= sum;
+        }
+        for (k, &other) in self.exchanges.iter().enumerate().rev() {
+            x.swap(start + k, start + other as usize);
+        }
+    }
+}
+
+/// Solves with the unit lower triangle of the pivots from `start` to `end`, whose columns `own` are.
+fn lower_solve<S: SolveScalar>(own: &[S], (order, start, end): (usize, usize, usize), x: &mut [S]) {
+    for k in start..end {
+        let l = &own[(k - start) * order..][k + 1..end];
+        let factor = x[k];
+        subtract(&mut x[k + 1..end], l, factor);
+    }
+}
