@@ -1,6 +1,6 @@
 //! The table of estimated errors of functions and gradients.
 
-use crate::driver::error;
+use crate::driver::{bases, error};
 use crate::problem::Problem;
 use crate::report::summary::is_rounding;
 use std::fmt::Write;
@@ -42,6 +42,39 @@ pub(crate) fn table(problem: &Problem, found: &[error::FunctionError]) -> String
         for (variable, derivative) in problem.variables.iter().zip(&found.gradient) {
             line(name, &variable.name, derivative);
         }
+    }
+    text
+}
+
+/// The table of the estimated errors of reduced bases; empty if there are none.
+pub(crate) fn of_bases(problem: &Problem, found: &[bases::BasisError]) -> String {
+    if found.is_empty() {
+        return String::new();
+    }
+    let names = problem.function_names.iter();
+    let width = names
+        .map(|name| name.chars().count())
+        .max()
+        .unwrap_or(0)
+        .max(9);
+    let mut text = format!(
+        "estimated errors of reduced bases, by richer ones of this design\n{:width$}  {:>16}  {:>16}  {:>9}  {:>9}\n",
+        "function", "value", "richer basis", "error", "relative"
+    );
+    for found in found {
+        let name = &problem.function_names[found.function];
+        let relative = found.error() / found.value.abs();
+        let relative = match relative.is_finite() {
+            true => format!("{relative:.1e}"),
+            false => "-".into(),
+        };
+        let _ = writeln!(
+            text,
+            "{name:width$}  {:>16.9e}  {:>16.9e}  {:>9.1e}  {relative:>9}",
+            found.value,
+            found.richer,
+            found.error()
+        );
     }
     text
 }

@@ -1,7 +1,7 @@
 //! `optimize simulate` and `optimize check`.
 
 use super::arguments::Job;
-use super::error_table::table;
+use super::error_table::{self, table};
 use super::{DONE, Failure, NOT_REACHED, draw, load, print, read, refine, shown, tell};
 use crate::driver::tables::ReactionAxes;
 use crate::driver::{
@@ -40,7 +40,8 @@ pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Fa
         if job.error {
             let found = error::estimate(&problem, &simulation.at, &all(&problem), true);
             let text = table(&problem, &found.map_err(Failure::numerical)?);
-            print(&(text + &warned(&problem, &simulation.at)))?;
+            let bases = of_bases(&problem, &simulation.at)?;
+            print(&(text + &bases + &warned(&problem, &simulation.at)))?;
         }
     }
     if let Some(directory) = &job.output {
@@ -106,6 +107,10 @@ fn as_json(
                 (variable.name.clone(), both)
             });
             own["gradient"] = Value::Object(gradient.collect());
+        }
+        let found = driver::bases::errors(problem, &simulation.at, &all);
+        for found in found.map_err(Failure::numerical)? {
+            functions[&names[found.function]]["basis_error"] = json!(found.error());
         }
     }
     let mut warnings: Vec<String> = simulation.warning.iter().cloned().collect();
@@ -225,9 +230,18 @@ pub(crate) fn errors(problem: &Problem, at: &Simulated) -> Result<String, Failur
     let found = at.estimate(problem, &all(problem), true);
     let text = table(problem, &found.map_err(Failure::numerical)?);
     Ok(match at {
-        Simulated::Motion(simulation) => text + &warned(problem, &simulation.at),
+        Simulated::Motion(simulation) => {
+            text + &of_bases(problem, &simulation.at)? + &warned(problem, &simulation.at)
+        }
         Simulated::Statics(_) => text,
     })
+}
+
+/// A table of the estimated errors of reduced bases, if there are any.
+fn of_bases(problem: &Problem, at: &Evaluated) -> Result<String, Failure> {
+    let found = driver::bases::errors(problem, at, &all(problem));
+    let found = found.map_err(Failure::numerical)?;
+    Ok(error_table::of_bases(problem, &found))
 }
 
 /// A warning of a motion that magnifies round-off.

@@ -7,7 +7,6 @@ use crate::functions::measure::Snapshot;
 use crate::functions::{Function, Instant, Reduction};
 use crate::math::Vec3;
 use crate::model::Model;
-use crate::model::flexible::Form;
 use crate::problem::{DeformedLine, Drawing, ElasticPoint, Outline, Problem};
 use crate::report::plots::{History as Curves, Patch};
 
@@ -49,7 +48,7 @@ pub(super) fn patches(at: &Snapshot<f64>, body: usize, drawing: &Drawing) -> Vec
         }
         Outline::Shells(_) => match shells::of(at.model, body) {
             Some(finite) => {
-                let q = elastic(at.model, at, body);
+                let q = shells::unknowns(at.model, body, elastic(at.model, at, body));
                 shells::patches(finite, &q, place, drawing)
             }
             None => Vec::new(),
@@ -135,6 +134,7 @@ pub(crate) fn stresses(title: &str, simulation: &Simulation, drawing: &Drawing) 
     let (model, run) = (&simulation.written.model, simulation.motion());
     let largest = |body: usize, k: usize| {
         let q = elastic(model, &Snapshot::of(model, run, k), body);
+        let q = shells::unknowns(model, body, q);
         match (&drawing.outlines[body], shells::of(model, body)) {
             (Outline::Deformed(line), _) => {
                 let both = line.stresses.iter().flatten();
@@ -171,12 +171,8 @@ pub(crate) fn limits(problem: &Problem, simulation: &Simulation) -> Vec<(String,
         };
         match instant {
             Instant::ShellStress { flexible, .. } => {
-                match &scene.model.flexible.get(*flexible)?.form {
-                    Form::Finite(finite) => {
-                        Some(upper * finite.mesh.elements.first()?.yield_stress)
-                    }
-                    Form::Modal(_) => None,
-                }
+                let shells = scene.model.flexible.get(*flexible)?.form.shells()?;
+                Some(upper * shells.mesh.elements.first()?.yield_stress)
             }
             Instant::Deformation {
                 kind: DeformationKind::Stress,

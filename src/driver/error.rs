@@ -12,6 +12,7 @@
 //! size and sign. Motions that are sampled at the ends of equal steps have no cells: every second
 //! sample of the finer run is used instead.
 
+use super::bases;
 use super::evaluate::Evaluated;
 use super::event::{self, Admit};
 use super::integration::{Integration, looks_at_the_whole};
@@ -22,6 +23,8 @@ use crate::problem::{Problem, Simulation};
 
 /// Largest number of attempts to reach an accuracy.
 const ATTEMPTS: usize = 12;
+/// Largest number of richer bases.
+const BASES: usize = 5;
 /// Smallest tolerance and largest number of steps to try.
 const FINEST: (f64, usize) = (1e-14, 10_000_000);
 
@@ -211,6 +214,8 @@ pub(crate) struct Accuracy {
     pub spacing: Option<Spacing>,
     /// Number of samples, if it was increased.
     pub samples: Option<usize>,
+    /// Changes of reduced bases, as path=value.
+    pub bases: Vec<String>,
     /// Estimated error reached, relative to the function.
     pub error: f64,
 }
@@ -226,6 +231,7 @@ impl Accuracy {
             Some(Spacing::Frozen(_)) | None => Vec::new(),
         };
         all.extend((self.samples).map(|samples| format!("/simulation/samples={samples}")));
+        all.extend_from_slice(&self.bases);
         all
     }
 
@@ -242,8 +248,12 @@ impl Accuracy {
         let samples = self
             .samples
             .map_or_else(String::new, |samples| format!(", {samples} samples"));
+        let bases = match self.bases.len() {
+            0 => "",
+            _ => ", richer bases",
+        };
         format!(
-            "accuracy {asked:.1e}: {} steps{refined}{samples}; estimated relative error of the \
+            "accuracy {asked:.1e}: {} steps{refined}{samples}{bases}; estimated relative error of the \
              objective at the start {:.1e}{missed}",
             self.steps, self.error
         )
@@ -263,6 +273,7 @@ pub(crate) fn reach(
 ) -> Result<Accuracy, IntegrationFailure> {
     let x = problem.start();
     let asked = problem.simulation.clone();
+    let (of_bases, bases) = reach_bases(problem, which, accuracy)?;
     let mut attempts = ATTEMPTS;
     let (error, steps) = loop {
         let scene = problem.scene(&x);
@@ -287,8 +298,36 @@ pub(crate) fn reach(
         steps,
         spacing: (now.spacing != asked.spacing).then(|| now.spacing.clone()),
         samples: now.samples.filter(|_| now.samples != asked.samples),
-        error,
+        bases,
+        error: error.max(of_bases),
     })
+}
+
+/// Makes reduced bases richer until their estimated error is below `accuracy`, relative to the function; the
+/// error, and the changes. The steps are those of the problem.
+fn reach_bases(
+    problem: &mut Problem,
+    which: usize,
+    accuracy: f64,
+) -> Result<(f64, Vec<String>), IntegrationFailure> {
+    let x = problem.start();
+    let mut changes = Vec::new();
+    for attempt in 0..BASES {
+        let Some(richer) = problem.with_richer_bases(&x) else {
+            break;
+        };
+        let scene = problem.scene(&x);
+        let mut integration = Integration::new(problem, &scene, Some(&[which]), false);
+        let (at, _) = Evaluated::with(&mut integration, problem, &x)?;
+        let found = bases::errors(problem, &at, &[which])?[0];
+        let error = found.error() / found.value.abs().max(f64::MIN_POSITIVE);
+        if error <= accuracy || attempt + 1 == BASES {
+            return Ok((error, changes));
+        }
+        changes = richer.basis_overrides();
+        *problem = richer;
+    }
+    Ok((0.0, changes))
 }
 
 /// Refines steps and samples by the factors by which their errors exceed the allowed ones. `false`

@@ -1,5 +1,6 @@
 //! What lowering removes from a problem's scenes, and what remains.
 
+use super::bases;
 use super::evaluate::{Derivative, Evaluated};
 use super::integration::{Integration, looks_at_the_whole};
 use super::{memory, stretch};
@@ -186,6 +187,9 @@ fn explain_seen(problem: &Problem) -> Explanation {
         joints: problem.joint_count(),
         loads: written.loads.len(),
         flexible: problem.flexible_bodies(&x),
+        bases: motion
+            .as_ref()
+            .map_or_else(|_| Vec::new(), |motion| of_bases(problem, motion, &which)),
         left_out,
         kept,
         start: super::start::notes(problem, &x),
@@ -195,6 +199,27 @@ fn explain_seen(problem: &Problem) -> Explanation {
         integration: motion.ok().map(|motion| motion.used(problem)),
         idle_variables,
         functions,
+    }
+}
+
+/// How functions of the start change with richer bases; nothing of a stretch.
+fn of_bases(problem: &Problem, motion: &MotionExplanation, which: &[usize]) -> Vec<String> {
+    if motion.part.is_some() {
+        return Vec::new();
+    }
+    let name = |f: usize| &problem.function_names[f];
+    match bases::errors(problem, &motion.at, which) {
+        Ok(found) => (found.iter())
+            .map(|own| {
+                let value = own.value;
+                format!(
+                    "\"{}\" = {value:.9e} changes by {:.1e}",
+                    name(own.function),
+                    own.error()
+                )
+            })
+            .collect(),
+        Err(failure) => vec![format!("the run with richer bases fails: {failure}")],
     }
 }
 

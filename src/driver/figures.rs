@@ -242,7 +242,7 @@ fn lapse(
                 .map(|&k| {
                     let at = Snapshot::of(model, run, k);
                     let motion = at.motion(body);
-                    let q = elastic(model, &at, body);
+                    let q = shells::unknowns(model, body, elastic(model, &at, body));
                     outline(&drawing.outlines[body], &q, |s| flat(&motion.point(s)))
                 })
                 .collect(),

@@ -2,6 +2,7 @@
 //! methods on it, and test extreme scenes.
 
 pub(crate) mod analysed;
+pub(crate) mod bases;
 pub(crate) mod certificate;
 pub(crate) mod chaos;
 pub(crate) mod check;

@@ -4,7 +4,7 @@ use super::shells;
 use super::simulate::Simulation;
 use crate::functions::measure::Snapshot;
 use crate::math::Vec3;
-use crate::model::flexible::{FlexibleBody, Form};
+use crate::model::flexible::FlexibleBody;
 use crate::report::vtu::{Fields, pvd, vtu};
 use crate::system::flexible::{coordinates, rates};
 use std::path::{Path, PathBuf};
@@ -51,13 +51,13 @@ fn fields(at: &Snapshot<f64>) -> Fields {
     let (mut thickness, mut stress, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
     let motions = at.motions();
     let bodies = at.model.flexible.iter().enumerate();
-    let finite = bodies.filter_map(|(i, body): (usize, &FlexibleBody<f64>)| match &body.form {
-        Form::Finite(finite) => Some((i, body, finite)),
-        Form::Modal(_) => None,
-    });
+    let finite = bodies
+        .filter_map(|(i, body): (usize, &FlexibleBody<f64>)| Some((i, body, body.form.shells()?)));
     for (i, body, finite) in finite {
         let (mesh, motion) = (&finite.mesh, &motions[body.frame]);
-        let (q, rate) = (coordinates(body, &motions), rates(body, &motions));
+        let unknowns = |of: Vec<f64>| body.form.unknowns(of);
+        let q = unknowns(coordinates(body, &motions));
+        let rate = unknowns(rates(body, &motions));
         let first = fields.nodes.len();
         for (node, place) in shells::places(mesh, &q).iter().enumerate() {
             let rate = |k: usize| mesh.displacements[node][k].map_or(0.0, |i| rate[i]);

@@ -3,7 +3,6 @@
 use crate::math::Vec3;
 use crate::model::Model;
 use crate::model::finite::{ElementMesh, FiniteElements};
-use crate::model::flexible::Form;
 use crate::problem::Drawing;
 use crate::report::plots::Patch;
 use crate::system::finite::stress_ratios;
@@ -14,13 +13,18 @@ const IN_PARTS: usize = 40;
 /// The shells of a body, if it has some.
 pub(super) fn of(model: &Model<f64>, body: usize) -> Option<&FiniteElements<f64>> {
     let own = model.flexible.iter().find(|own| own.frame == body)?;
-    match &own.form {
-        Form::Finite(finite) => Some(finite),
-        Form::Modal(_) => None,
+    own.form.shells()
+}
+
+/// The unknowns of the nodes of the shells of a body at its elastic coordinates `q`; `q` of other bodies.
+pub(super) fn unknowns(model: &Model<f64>, body: usize, q: Vec<f64>) -> Vec<f64> {
+    match model.flexible.iter().find(|own| own.frame == body) {
+        Some(own) => own.form.unknowns(q),
+        None => q,
     }
 }
 
-/// Where the nodes are at the elastic coordinates `q`, in the axes of the body \[m\].
+/// Where the nodes are at their unknowns `q`, in the axes of the body \[m\].
 pub(super) fn places(mesh: &ElementMesh, q: &[f64]) -> Vec<Vec3<f64>> {
     let moved = |(place, by): (&Vec3<f64>, &[Option<usize>; 3])| {
         place + Vec3::from_fn(|k, _| by[k].map_or(0.0, |i| q[i]))

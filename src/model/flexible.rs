@@ -21,6 +21,7 @@
 //! `Attachment` (see [`Modes`]).
 
 use super::finite::FiniteElements;
+use super::reduced::ReducedShells;
 use crate::math::slices::{add_scaled, dot};
 use crate::math::{Mat3, Scalar, Vec3, parameters};
 
@@ -40,6 +41,10 @@ pub(crate) struct FlexibleBody<S> {
 
 /// What the coordinates of a flexible body are.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a scene has few flexible bodies, and each owns far more"
+)]
 pub(crate) enum Form<S> {
     /// Factors of shapes of the whole body.
     Modal(Modal<S>),
@@ -56,6 +61,8 @@ pub(crate) struct Modal<S> {
     pub stiffness: ModalStiffness<S>,
     /// Damping D: the force D q̇ acts against the coordinates; symmetric, m × m by rows.
     pub damping: Vec<S>,
+    /// What a body of shells in a reduced basis has beside them.
+    pub shells: Option<ReducedShells<S>>,
 }
 
 /// Integrals of the shapes over the mass.
@@ -132,6 +139,27 @@ pub(crate) fn places(first: usize, count: usize) -> impl Iterator<Item = (usize,
     })
 }
 
+impl<S: Scalar> Form<S> {
+    /// The shells of a body that has some, by all nodes or in a reduced basis.
+    pub(crate) fn shells(&self) -> Option<&FiniteElements<S>> {
+        match self {
+            Self::Modal(modal) => modal.shells.as_ref().map(|own| &own.elements),
+            Self::Finite(finite) => Some(finite),
+        }
+    }
+
+    /// The unknowns of the nodes of shells at the coordinates `q`; `q` of other bodies.
+    pub(crate) fn unknowns(&self, q: Vec<S>) -> Vec<S> {
+        match self {
+            Self::Modal(modal) => match &modal.shells {
+                Some(own) => own.unknowns(&q),
+                None => q,
+            },
+            Self::Finite(_) => q,
+        }
+    }
+}
+
 impl<S: Scalar> FlexibleBody<S> {
     /// Number m of elastic coordinates.
     pub(crate) fn modes(&self) -> usize {
@@ -159,7 +187,7 @@ parameters!(struct FlexibleBody {
 
 parameters!(enum Form { Modal(; modal), Finite(; finite) });
 
-parameters!(struct Modal {; inertia, stiffness, damping });
+parameters!(struct Modal {; inertia, stiffness, damping, shells });
 
 parameters!(struct ModalInertia {; centre, static_moments, with_position, products });
 

@@ -10,6 +10,7 @@ pub(crate) mod flexible;
 pub(crate) mod joint;
 pub(crate) mod load;
 pub(crate) mod mobility;
+pub(crate) mod reduced;
 pub(crate) mod rigid_body;
 pub(crate) mod table;
 pub(crate) mod time_function;

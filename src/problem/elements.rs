@@ -2,6 +2,7 @@
 
 use super::prepared::Prepared;
 use super::quantity::Quantity;
+use super::reduced;
 use super::schema::Document;
 use super::schema::elements::{ElementFrame, Elements, Held};
 use super::schema::structures::{Mesh as WrittenMesh, Structure as WrittenStructure};
@@ -13,6 +14,7 @@ use crate::structures::beam::{Section, SectionValues};
 use crate::structures::floating::{FrameNodes, element_mesh};
 use crate::structures::material::Material;
 use crate::structures::mesh::Mesh;
+use crate::structures::modes::PencilFailure;
 use crate::structures::structure::{Structure, Topology};
 use std::sync::Arc;
 
@@ -68,6 +70,21 @@ pub(crate) fn part_of_file(structure: &WrittenStructure) -> Part<f64> {
 
 /// Works out what no design changes. A checked file has all sets.
 pub(crate) fn prepared(document: &Document, elements: &Elements) -> Arc<Prepared> {
+    const CHECKED: &str = "stiffness is checked when a problem is read";
+    prepare(document, elements).expect(CHECKED)
+}
+
+/// As [`prepared`], of a file that need not have a stiffness that holds.
+///
+/// # Errors
+/// [`PencilFailure`]: the shells have no reduced basis, as they are a mechanism.
+pub(crate) fn prepare(
+    document: &Document,
+    elements: &Elements,
+) -> Result<Arc<Prepared>, PencilFailure> {
+    if let Some(known) = elements.prepared.get() {
+        return Ok(known.clone());
+    }
     let new = || {
         const CHECKED: &str = "sets are checked when a problem is read";
         let (written, none) = (&elements.structure, Section::Given(SectionValues::zeros()));
@@ -106,16 +123,32 @@ pub(crate) fn prepared(document: &Document, elements: &Elements) -> Arc<Prepared
             Held::Edge(set) => surface.edge(&part.mesh.edge_sets[set]),
         };
         let points = elements.points.iter();
-        Arc::new(Prepared {
+        Prepared {
             mesh: Arc::new(mesh),
             points: points
                 .map(|(name, held)| (name.clone(), motion(held)))
                 .collect(),
             slots,
             sets: part.mesh,
-        })
+            reduced: None,
+        }
     };
-    elements.prepared.get_or_init(new).clone()
+    let mut made = new();
+    let of_file = shells(document, elements, &made, |quantity| {
+        let other = elements.design.as_ref();
+        other.map_or(quantity.value, |x| quantity.get(x))
+    });
+    reduced::reduce(&elements.basis, &of_file, &mut made)?;
+    Ok(elements.prepared.get_or_init(|| Arc::new(made)).clone())
+}
+
+/// Gives the bound document what was worked out for the one it was bound from.
+pub(super) fn share(written: &Document, bound: &mut Document) {
+    for (from, to) in written.bodies.values().zip(bound.bodies.values_mut()) {
+        if let (Some(from), Some(to)) = (&from.elements, &mut to.elements) {
+            to.prepared.clone_from(&from.prepared);
+        }
+    }
 }
 
 /// The shells at the design `x`.
@@ -125,14 +158,24 @@ pub(crate) fn finite<S: Scalar>(
     x: &[S],
 ) -> FiniteElements<S> {
     let prepared = prepared(document, elements);
+    shells(document, elements, &prepared, |quantity| quantity.get(x))
+}
+
+/// The shells with the values that `get` gives to quantities.
+fn shells<S: Scalar>(
+    document: &Document,
+    elements: &Elements,
+    prepared: &Prepared,
+    get: impl Fn(Quantity) -> S,
+) -> FiniteElements<S> {
     let written = &elements.structure;
     let material = &document.materials[&written.material];
     let count = prepared.mesh.elements.len();
     let zero = Quantity::fixed(0.0);
-    let all = |quantity: Quantity| vec![quantity.get(x); count];
+    let all = |quantity: Quantity| vec![get(quantity); count];
     FiniteElements {
         thickness: (prepared.slots.iter())
-            .map(|&slot| thickness(written, slot).get(x))
+            .map(|&slot| get(thickness(written, slot)))
             .collect(),
         young: all(material.young),
         density: all(material.density.unwrap_or(zero)),

@@ -30,6 +30,7 @@ mod prepared;
 mod prune;
 mod quantity;
 mod read;
+mod reduced;
 mod scene;
 mod schema;
 mod section;
@@ -363,6 +364,29 @@ impl Problem {
     /// The flexible bodies at the design `x`: their coordinates and natural frequencies.
     pub(crate) fn flexible_bodies(&self, x: &[f64]) -> Vec<String> {
         flexible::described(&self.written, x)
+    }
+
+    /// The problem with richer reduced bases, made at the design `x`, and with shells that are not rigid.
+    /// `None` if no body has such a basis, or parts of the scene are left out for some functions.
+    pub(crate) fn with_richer_bases(&self, x: &[f64]) -> Option<Self> {
+        if self.focus.is_some() {
+            return None;
+        }
+        let mut written = self.written.clone();
+        let changed = reduced::enrich(&mut written);
+        for elements in written
+            .bodies
+            .values_mut()
+            .filter_map(|body| body.elements.as_mut())
+        {
+            elements.design = Some(x.to_vec());
+        }
+        changed.then(|| read::remade(self, written))
+    }
+
+    /// The bases of its bodies as changes of the problem file, path=value.
+    pub(crate) fn basis_overrides(&self) -> Vec<String> {
+        reduced::overrides(&self.written)
     }
 
     /// The axes to the right and up in pictures of structures: those of the file, else x and z.

@@ -2,6 +2,7 @@
 
 use super::bounds;
 use super::check::check;
+use super::elements;
 use super::fault::Faults;
 use super::finding::{Finding, Part};
 use super::first_scene::{collapsed, driven_twice, oblique, too_many, unassembled, unstarted};
@@ -23,6 +24,7 @@ use super::{Constraint, Objective, OptimiserSettings, Problem, Sense, Simulation
 use crate::integrate::{self, Spacing, Start};
 use crate::lower::{self, Lowering};
 use crate::math::Dual;
+use crate::model::Model;
 use crate::optimiser::Method;
 use crate::structures::quality::MeshFault;
 use crate::system::redundancy;
@@ -122,6 +124,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     match deserialise(&sound) {
         Ok(mut bound) => {
             modal::share(&written, &mut bound);
+            elements::share(&written, &mut bound);
             let mut problem = problem(document, (bound, &content), order, variables);
             if !problem.written.structures.is_empty() {
                 return match of_structures(&mut problem) {
@@ -142,12 +145,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
                 }
             }
             let mut model = scene.model;
-            problem.redundant = redundancy::leave_out(&mut model);
-            problem.left_out = model
-                .joints
-                .into_iter()
-                .map(|joint| joint.redundant)
-                .collect();
+            leave_out(&mut problem, &mut model);
             let finding = points::moved_meshes(&problem)
                 .or_else(|| too_many(&problem))
                 .or_else(|| unstarted(&problem))
@@ -211,6 +209,28 @@ fn of_structures(problem: &mut Problem) -> Result<(), Vec<Finding>> {
 
 /// Most faults of meshes that are told.
 const MOST_MESH_FAULTS: usize = 5;
+
+/// Leaves out redundant rows of the joints of a problem, whose start is `model`.
+fn leave_out(problem: &mut Problem, model: &mut Model<f64>) {
+    problem.redundant = redundancy::leave_out(model);
+    let rows = model.joints.iter().map(|joint| joint.redundant.clone());
+    problem.left_out = rows.collect();
+}
+
+/// The problem with other bodies in its document.
+pub(super) fn remade(problem: &Problem, written: Document) -> Problem {
+    let mut out = Problem {
+        written,
+        left_out: Vec::new(),
+        ..problem.clone()
+    };
+    let mut model = out.unlowered_scene(&out.start()).model;
+    leave_out(&mut out, &mut model);
+    if problem.lowering.is_some() {
+        out.lowering = Some(lowering(&out));
+    }
+    out
+}
 
 /// The reductions of the scenes of a problem.
 pub(super) fn lowering(problem: &Problem) -> Lowering {

@@ -19,6 +19,9 @@ pub(crate) struct Explanation {
     /// The flexible bodies: their coordinates and natural frequencies.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub flexible: Vec<String>,
+    /// What richer reduced bases change, by function.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bases: Vec<String>,
     /// The reductions made, and why they are allowed.
     pub left_out: Vec<String>,
     /// The reductions that failed, and the violated conditions.
@@ -111,6 +114,7 @@ impl Explanation {
         );
         for (title, lines) in [
             ("flexible bodies", &self.flexible),
+            ("with richer reduced bases", &self.bases),
             ("left out", &self.left_out),
             ("not left out", &self.kept),
             ("start", &self.start),

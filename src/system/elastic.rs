@@ -1,12 +1,14 @@
 //! Elastic forces ∂U/∂q + D q̇ of a flexible body, its strain energy, and their derivatives.
 
 use super::flexing::Block;
+use super::pairs;
 use crate::math::Scalar;
 use crate::math::slices::{add_scaled, dot};
 use crate::model::flexible::{Modal, ModalStiffness};
 
 /// Strain energy U \[J\].
-pub(crate) fn energy<S: Scalar>(stiffness: &ModalStiffness<S>, q: &[S]) -> S {
+pub(crate) fn energy<S: Scalar>(body: &Modal<S>, q: &[S]) -> S {
+    let stiffness = &body.stiffness;
     let mut linear = vec![S::zero(); q.len()];
     add_product(&stiffness.linear, q, &mut linear);
     let mut sum = dot(&linear, q);
@@ -14,17 +16,22 @@ pub(crate) fn energy<S: Scalar>(stiffness: &ModalStiffness<S>, q: &[S]) -> S {
         let e = strain.strain.value(q);
         sum += strain.weight * e * e;
     }
-    sum * S::from(0.5)
+    let of_pairs = body.shells.as_ref().map(|own| pairs::energy(&own.pairs, q));
+    sum * S::from(0.5) + of_pairs.unwrap_or_else(S::zero)
 }
 
 /// Pulls U times `scale` back to q (added to `by_q`) and to the parameters (added to `cot`).
 pub(crate) fn pull_energy(
-    stiffness: &ModalStiffness<f64>,
+    body: &Modal<f64>,
     q: &[f64],
     scale: f64,
     by_q: &mut [f64],
-    cot: &mut ModalStiffness<f64>,
+    cot: &mut Modal<f64>,
 ) {
+    if let (Some(own), Some(cot)) = (&body.shells, &mut cot.shells) {
+        pairs::pull_energy(&own.pairs, q, scale, by_q, &mut cot.pairs);
+    }
+    let (stiffness, cot) = (&body.stiffness, &mut cot.stiffness);
     let mut force = vec![0.0; q.len()];
     add_stiffness(stiffness, q, &mut force);
     add_scaled(by_q, scale, &force);
@@ -49,6 +56,9 @@ fn add_stiffness<S: Scalar>(stiffness: &ModalStiffness<S>, q: &[S], out: &mut [S
 /// Adds ∂U/∂q + D q̇.
 pub(crate) fn add_forces<S: Scalar>(body: &Modal<S>, q: &[S], rate: &[S], out: &mut [S]) {
     add_stiffness(&body.stiffness, q, out);
+    if let Some(shells) = &body.shells {
+        pairs::add_forces(&shells.pairs, q, out);
+    }
     add_product(&body.damping, rate, out);
 }
 
@@ -65,6 +75,9 @@ pub(crate) fn add_jacobian<S: Scalar>(
             by_y.add(6 + i, 6 + j, body.stiffness.linear[i * m + j]);
             by_v.add(6 + i, 6 + j, body.damping[i * m + j]);
         }
+    }
+    if let Some(shells) = &body.shells {
+        pairs::add_jacobian(&shells.pairs, q, by_y);
     }
     let mut gradient = vec![S::zero(); m];
     let mut add_square = |scale: S, g: &[S]| {
@@ -95,6 +108,9 @@ pub(crate) fn pull_forces(
     (by_q, by_rate): (&mut [f64], &mut [f64]),
     cot: &mut Modal<f64>,
 ) {
+    if let (Some(own), Some(cot)) = (&body.shells, &mut cot.shells) {
+        pairs::pull_forces(&own.pairs, (q, psi), by_q, &mut cot.pairs);
+    }
     add_transposed(&body.stiffness.linear, psi, by_q);
     add_transposed(&body.damping, psi, by_rate);
     add_outer(1.0, psi, q, &mut cot.stiffness.linear);

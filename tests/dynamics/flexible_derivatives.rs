@@ -17,7 +17,7 @@ use flexbody::system::{Numbering, flexible, initial, placement};
 use reference::cases::{Case, TIME, dot, lift, parameters, rows_agree, slopes, step, unit};
 use reference::flexible::{Points, modal, quadratic, stiffness, swing_of, totals};
 use reference::models::Numbers;
-use reference::shells::shell_swing;
+use reference::shells::{reduced_swing, shell_swing};
 
 /// Swings of shapes and of shells at random states, their attachments a little open.
 fn cases() -> Vec<Case> {
@@ -25,6 +25,9 @@ fn cases() -> Vec<Case> {
     let shapes = shapes.map(|(seed, modes)| (seed, swing_of(seed, modes, 40.0)));
     let shells = [(6, [1, 1]), (7, [2, 1])];
     let shells = shells.map(|(seed, elements)| (seed, shell_swing(seed, elements)));
+    let reduced = [(8, [1, 1], 3), (9, [2, 1], 4)];
+    let reduced =
+        reduced.map(|(seed, elements, vectors)| (seed, reduced_swing(seed, elements, vectors)));
     let case = |(seed, mut model): (u64, Model<f64>)| {
         let modes = model.flexible[0].modes();
         let mut numbers = Numbers(seed + 100);
@@ -49,7 +52,12 @@ fn cases() -> Vec<Case> {
             numbers,
         }
     };
-    shapes.into_iter().chain(shells).map(case).collect()
+    shapes
+        .into_iter()
+        .chain(shells)
+        .chain(reduced)
+        .map(case)
+        .collect()
 }
 
 /// Velocity coordinates that the mobilities admit.
@@ -360,7 +368,10 @@ fn pull_backs_of_quantities() {
             elements: vec![0],
             rho: 2.0,
         };
-        let shells = matches!(case.model.flexible[0].form, Form::Finite(_));
+        let shells = match &case.model.flexible[0].form {
+            Form::Modal(modal) => modal.shells.is_some(),
+            Form::Finite(_) => true,
+        };
         let instants = instants.into_iter().chain(shells.then_some(stress));
         let nv = case.v.len();
         let places = admitted(&case);

@@ -27,6 +27,7 @@ mod methods_match_references;
 mod planar_joints;
 mod reaction_functions;
 mod reactions_carry_weight;
+mod reduced_shells;
 mod redundant_joints;
 mod side_by_side;
 mod singular_positions;

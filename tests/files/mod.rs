@@ -12,6 +12,7 @@ mod modal;
 mod modal_scenes;
 mod problems_check;
 mod readme;
+mod reduced_shells;
 mod report_plots;
 mod report_records;
 mod second_order;

@@ -11,6 +11,7 @@ use flexbody::structures::generate::panel;
 use flexbody::structures::material::Material;
 use flexbody::structures::mesh::Mesh;
 use flexbody::structures::structure::Structure;
+use flexbody::system::reduction::{ProjectedShells, project};
 use std::sync::Arc;
 
 /// Shells of a body, and how their nodes move.
@@ -73,8 +74,29 @@ pub fn attach(model: &mut Model<f64>, flexible: usize, name: &str, motion: Point
 /// A panel on a revolute joint along its first edge; a rigid body on a revolute joint at a corner; a spring
 /// and a force at its points. Joints are closed at the start.
 pub fn shell_swing(seed: u64, elements: [usize; 2]) -> Model<f64> {
+    swing(seed, elements, None)
+}
+
+/// The same with this many coordinates: factors of any vectors.
+pub fn reduced_swing(seed: u64, elements: [usize; 2], vectors: usize) -> Model<f64> {
+    swing(seed, elements, Some(vectors))
+}
+
+/// Shells in a basis of any vectors.
+pub fn projected(numbers: &mut Numbers, shells: &Shells, vectors: usize) -> ProjectedShells {
+    let mesh = &shells.elements.mesh;
+    let each: Vec<usize> = (0..mesh.elements.len()).collect();
+    let basis = (0..vectors)
+        .map(|_| numbers.list(mesh.coordinates))
+        .collect();
+    let bending = (0..vectors).filter(|i| i % 3 < 2).collect();
+    project(mesh, &each, basis, bending)
+}
+
+fn swing(seed: u64, elements: [usize; 2], vectors: Option<usize>) -> Model<f64> {
     let mut numbers = Numbers(seed);
     let shells = shells(&mut numbers, elements, false);
+    let projected = vectors.map(|count| projected(&mut numbers, &shells, count));
     let mut frame = numbers.body("panel");
     (frame.mass, frame.inertia) = shells.elements.rigid();
     let load = numbers.body("load");
@@ -85,13 +107,21 @@ pub fn shell_swing(seed: u64, elements: [usize; 2]) -> Model<f64> {
         loads: Vec::new(),
         flexible: Vec::new(),
     };
-    let count = shells.elements.mesh.coordinates;
+    let count = vectors.unwrap_or(shells.elements.mesh.coordinates);
     let small = |x: Vec<f64>, by: f64| -> Vec<f64> { x.iter().map(|x| x * by).collect() };
     let start = (
         small(numbers.list(count), 0.02),
         small(numbers.list(count), 0.1),
     );
-    model.add_flexible(0, (&start.0, &start.1), Form::Finite(shells.elements));
+    let form = match &projected {
+        None => Form::Finite(shells.elements),
+        Some(projected) => Form::Modal(projected.modal(shells.elements)),
+    };
+    model.add_flexible(0, (&start.0, &start.1), form);
+    let motion = |point: PointMotion| match &projected {
+        None => point,
+        Some(projected) => projected.point(&point),
+    };
     let corner = *shells.mesh.edge_sets["x1"]
         .concat()
         .last()
@@ -100,14 +130,14 @@ pub fn shell_swing(seed: u64, elements: [usize; 2]) -> Model<f64> {
         &mut model,
         0,
         "root",
-        shells.surface.edge(&shells.mesh.edge_sets["y0"]),
+        motion(shells.surface.edge(&shells.mesh.edge_sets["y0"])),
     );
-    let tip = attach(&mut model, 0, "tip", shells.surface.node(corner));
+    let tip = attach(&mut model, 0, "tip", motion(shells.surface.node(corner)));
     let side = attach(
         &mut model,
         0,
         "side",
-        shells.surface.edge(&shells.mesh.edge_sets["x1"]),
+        motion(shells.surface.edge(&shells.mesh.edge_sets["x1"])),
     );
     for (name, between) in [("root", (root, None)), ("hinge", (1, Some(tip)))] {
         let at = between.1.unwrap_or(root);

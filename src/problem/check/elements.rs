@@ -1,10 +1,10 @@
 //! Bodies of finite elements.
 
 use super::Checker;
-use crate::problem::elements::{frame_nodes, nodes_of};
+use crate::problem::elements::{frame_nodes, nodes_of, prepare};
 use crate::problem::finding::Finding;
 use crate::problem::pointer::{advice, join};
-use crate::problem::schema::elements::{ElementFrame, Elements, Held};
+use crate::problem::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
 use crate::problem::schema::functions::ShellStress;
 use crate::problem::schema::mechanics::Body;
 use crate::problem::statics::mesh::part;
@@ -126,6 +126,35 @@ impl Checker<'_> {
             let found = "three nodes on a line";
             let expected = "three nodes that span a plane";
             self.fault(Finding::new(join(&frame, "chord"), found, expected));
+            return;
+        }
+        self.basis(&join(&pointer, "basis"), elements);
+    }
+
+    fn basis(&mut self, pointer: &str, elements: &Elements) {
+        let ElementBasis::Reduced(keys) = &elements.basis else {
+            return;
+        };
+        let pointer = join(pointer, "reduced");
+        if keys.modes.is_some() && keys.highest_frequency.is_some() {
+            let found = "\"highest_frequency\" beside \"modes\"";
+            let place = join(&pointer, "highest_frequency");
+            self.fault(Finding::new(place, found, "one of them").of_key());
+        }
+        for (k, name) in keys.interfaces.iter().flatten().enumerate() {
+            if !elements.points.contains_key(name) {
+                let place = join(&join(&pointer, "interfaces"), k);
+                let points = elements.points.keys().map(String::as_str);
+                let hint = advice(name, "points", points);
+                let found = format!("\"{name}\"");
+                let expected = "the name of a point of the \"elements\"";
+                self.fault(Finding::new(place, found, expected).hint(hint));
+            }
+        }
+        if self.findings.is_empty() && prepare(self.document, elements).is_err() {
+            let found = "shells that move without forces while their axes are held";
+            let expected = "shells that hang together, for a reduced basis";
+            self.fault(Finding::new(pointer, found, expected));
         }
     }
 

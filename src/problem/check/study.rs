@@ -8,6 +8,7 @@ use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join};
 use crate::problem::quantity::values;
 use crate::problem::scene::{GRAVITY, released};
+use crate::problem::schema::elements::ElementBasis;
 use crate::problem::schema::functions::{
     Clearance, Component, Function, Gate, Instant, OfMotion, Range,
 };
@@ -96,7 +97,8 @@ impl Checker<'_> {
             .document
             .bodies
             .values()
-            .any(|body| body.elements.is_some());
+            .filter_map(|body| body.elements.as_ref())
+            .any(|elements| matches!(elements.basis, ElementBasis::Full));
         if explicit && shells {
             let (place, found) = match &simulation.method {
                 Some(_) => (

@@ -5,6 +5,7 @@ use crate::problem::schema::flexible::Beam;
 use crate::problem::{beam, elements, modal};
 use crate::structures::modal::FlexibleBeam;
 use crate::structures::modal::frequencies::{Held, frequencies};
+use crate::system::reduction::ReducedBasis;
 
 /// Natural frequencies that are told of a body.
 const TOLD: usize = 4;
@@ -19,11 +20,19 @@ pub(crate) fn described(document: &Document, x: &[f64]) -> Vec<String> {
     let unknown = || "none, as its stiffness or mass is singular".to_owned();
     let shells = document.bodies.iter().filter_map(|(name, body)| {
         let elements = body.elements.as_ref()?;
-        let mesh = elements::prepared(document, elements).mesh.clone();
-        let (nodes, count) = (mesh.nodes.len(), mesh.coordinates);
-        let shells = mesh.elements.len();
+        let prepared = elements::prepared(document, elements);
+        let mesh = &prepared.mesh;
+        let (nodes, shells) = (mesh.nodes.len(), mesh.elements.len());
+        let count = prepared.coordinates();
+        let basis = match &prepared.reduced {
+            None => String::new(),
+            Some(reduced) => match &reduced.basis {
+                None => ", as a rigid body".to_owned(),
+                Some(basis) => of_basis(basis),
+            },
+        };
         Some(format!(
-            "shells \"{name}\": {count} coordinates of {nodes} nodes of {shells} elements"
+            "shells \"{name}\": {count} coordinates of {nodes} nodes of {shells} elements{basis}"
         ))
     });
     let shells: Vec<String> = shells.collect();
@@ -47,4 +56,28 @@ pub(crate) fn described(document: &Document, x: &[f64]) -> Vec<String> {
         })
         .chain(shells)
         .collect()
+}
+
+/// What a reduced basis is made of.
+fn of_basis(basis: &ReducedBasis) -> String {
+    let hertz = |all: &[f64]| -> String {
+        let told = all.iter().take(TOLD).map(|f| format!("{f:.4e}"));
+        told.collect::<Vec<String>>().join(", ")
+    };
+    let fixed = match basis.fixed.len() {
+        0 => "no fixed-interface modes".to_owned(),
+        count => {
+            let last = basis.fixed.last().map_or(0.0, |f| *f);
+            format!("{count} fixed-interface modes up to {last:.4e} Hz")
+        }
+    };
+    format!(
+        " in a reduced basis of the design in the file ({} boundary modes, {fixed}, {} vectors of static \
+         solutions, {} companions; {} vectors bend); frequencies with its axes held {} Hz",
+        basis.boundary,
+        basis.statics,
+        basis.companions,
+        basis.bending.len(),
+        hertz(&basis.frequencies)
+    )
 }

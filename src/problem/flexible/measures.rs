@@ -53,7 +53,7 @@ impl<S: Scalar> FlexibleBodies<S> {
         direction: Vec3<S>,
     ) -> Instant<S> {
         if let Some(shells) = self.shells_of(body) {
-            let mut linear = vec![S::zero(); shells.prepared.mesh.coordinates];
+            let mut linear = vec![S::zero(); shells.prepared.coordinates()];
             if let Some((_, motion)) = shells.at(&point) {
                 for (&i, n) in motion.coordinates.iter().zip(&motion.displacement) {
                     linear[i] = lift3(n).dot(&direction);

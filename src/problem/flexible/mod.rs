@@ -107,12 +107,17 @@ impl<S: Scalar> FlexibleBodies<S> {
             let (mass, inertia) = finite.rigid();
             model.bodies[frame].mass = mass;
             model.bodies[frame].inertia = inertia;
-            let still = vec![S::zero(); finite.mesh.coordinates];
-            let flexible = model.add_flexible(frame, (&still, &still), Form::Finite(finite));
+            let prepared = elements::prepared(document, elements);
+            let still = vec![S::zero(); prepared.coordinates()];
+            let form = match &prepared.reduced {
+                None => Form::Finite(finite),
+                Some(reduced) => Form::Modal(reduced.shells.modal(finite)),
+            };
+            let flexible = model.add_flexible(frame, (&still, &still), form);
             all.shells.push(Shells {
                 frame,
                 flexible,
-                prepared: elements::prepared(document, elements),
+                prepared,
             });
         }
         let bodies = document.bodies.values().enumerate();
@@ -126,6 +131,7 @@ impl<S: Scalar> FlexibleBodies<S> {
                     inertia: numbers.shapes,
                     stiffness: numbers.stiffness,
                     damping: numbers.damping,
+                    shells: None,
                 }),
             );
             all.bodies.push(Elastic {

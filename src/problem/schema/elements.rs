@@ -4,7 +4,7 @@ use super::structures::Structure;
 use crate::problem::prepared::Prepared;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::sync::{Arc, OnceLock};
 
 /// Shells that move: a structure in the axes of the body, in which it deforms.
@@ -15,9 +15,16 @@ pub(crate) struct Elements {
     pub structure: Structure,
     /// What holds the axes.
     pub frame: ElementFrame,
+    /// Which coordinates the body has, default all of its nodes.
+    #[serde(default)]
+    pub basis: ElementBasis,
     /// Nodes and edges by the names that joints, loads and functions use as points of the body.
     #[serde(default)]
     pub points: IndexMap<String, Held>,
+    /// The design of a reduced basis, if it is not that of the file.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub design: Option<Vec<f64>>,
     /// What no design changes, once it is worked out.
     #[serde(skip)]
     #[schemars(skip)]
@@ -34,6 +41,67 @@ pub(crate) enum ElementFrame {
     Chord([String; 3]),
     /// A set of nodes that do not move, or the name of an edge.
     Clamped(String),
+}
+
+/// Which coordinates shells have.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum ElementBasis {
+    /// Displacements and rotations of all nodes.
+    #[default]
+    Full,
+    /// None: the body is rigid.
+    Rigid,
+    /// Factors of the vectors of a reduced basis, which is that of the design in the file.
+    Reduced(ReducedKeys),
+}
+
+/// What a reduced basis is made of.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ReducedKeys {
+    /// Points that get boundary modes, as joints and loads hold them; default: all points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interfaces: Option<Vec<String>>,
+    /// Number of fixed-interface modes, default 6.
+    #[schemars(extend(
+        "maximum" = 200,
+        "design_variable" = "a number of modes is a count, not a physical number"
+    ))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub modes: Option<u32>,
+    /// All fixed-interface modes up to this frequency, instead of a number.
+    #[schemars(extend(
+        "unit" = "Hz",
+        "exclusiveMinimum" = 0,
+        "design_variable" = "the basis is that of the design in the file, and no design changes it"
+    ))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub highest_frequency: Option<f64>,
+    /// Whether the basis has the membrane displacements that bending needs, default true. Without them bent
+    /// shells lock.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub companions: Option<bool>,
+    /// Deflection up to which shells are solved for with von Karman's strains, as a part of the body's size;
+    /// default 0, no such solutions.
+    #[schemars(extend(
+        "unit" = "1",
+        "minimum" = 0,
+        "maximum" = 0.2,
+        "design_variable" = "the basis is that of the design in the file, and no design changes it"
+    ))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deflection: Option<f64>,
+    /// Part of the amplitude of the first below which companions and static solutions are left out, default
+    /// 0.03.
+    #[schemars(extend(
+        "unit" = "1",
+        "exclusiveMinimum" = 0,
+        "maximum" = 1,
+        "design_variable" = "the basis is that of the design in the file, and no design changes it"
+    ))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
 }
 
 /// Where something holds on to shells.

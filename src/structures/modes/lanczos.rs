@@ -17,7 +17,7 @@ const DEPENDENT: f64 = 1e-11;
 const MOST_BLOCKS: usize = 2000;
 
 /// A self-adjoint operator (K + sM)⁻¹ M.
-pub(super) trait Operator {
+pub(crate) trait Operator {
     /// Order of the matrices.
     fn order(&self) -> usize;
     /// y = M x.
@@ -28,7 +28,7 @@ pub(super) trait Operator {
 
 /// M-orthonormal vectors with their products with M.
 #[derive(Default)]
-pub(super) struct Basis {
+pub(crate) struct Basis {
     pub vectors: Vec<Vec<f64>>,
     pub products: Vec<Vec<f64>>,
 }
@@ -88,7 +88,7 @@ impl Basis {
 }
 
 /// What [`largest`] found.
-pub(super) struct Found {
+pub(crate) struct Found {
     /// The vectors, those of the largest eigenvalues first, M-orthonormal.
     pub vectors: Vec<Vec<f64>>,
     /// Right sides that were solved for.
@@ -114,7 +114,7 @@ fn random(seed: u64, n: usize) -> Vec<f64> {
 
 /// The `wanted` largest eigenvalues in the space orthogonal to `locked`; fewer if there are no more, or
 /// if they do not converge. Copies of an eigenvalue beyond the size of a block may be missed: count.
-pub(super) fn largest(
+pub(crate) fn largest(
     operator: &mut impl Operator,
     locked: &Basis,
     wanted: usize,

@@ -66,7 +66,7 @@ pub(super) fn points<S: Scalar>(element: &ShellElement, x: &Local<S>) -> Points<
 }
 
 /// Mass and rotary inertia per area of an element.
-pub(super) fn per_area<S: Scalar>(finite: &FiniteElements<S>, i: usize) -> [S; 2] {
+pub(crate) fn per_area<S: Scalar>(finite: &FiniteElements<S>, i: usize) -> [S; 2] {
     let (h, rho) = (finite.thickness[i], finite.density[i]);
     [
         rho * h + finite.surface_mass[i],

@@ -7,10 +7,13 @@ mod inertia;
 mod stiffness;
 mod stress;
 
+pub(crate) use element::{gather, per_area};
 pub(crate) use emit::{emit_jacobian, emit_mass, emit_weights};
 pub(crate) use inertia::{
     first_moment, inertial, moving, pull_back, pull_first_moment, pull_kinetic, pull_weights,
     weights,
 };
-pub(crate) use stiffness::{add_forces, diagonal, energy, pull_energy, pull_forces};
+pub(crate) use stiffness::{
+    add_forces, diagonal, energy, factors, pull_energy, pull_forces, tangent,
+};
 pub(crate) use stress::{pull_stress_ratios, stress_ratios};

@@ -111,7 +111,7 @@ fn inner<S: Scalar>(x: &[S], y: &[S]) -> S {
 }
 
 /// E h and E h³ of an element.
-pub(super) fn factors<S: Scalar>(finite: &FiniteElements<S>, i: usize) -> [S; 2] {
+pub(crate) fn factors<S: Scalar>(finite: &FiniteElements<S>, i: usize) -> [S; 2] {
     let (h, young) = (finite.thickness[i], finite.young[i]);
     [young * h, young * h * h * h]
 }
@@ -232,7 +232,7 @@ fn add_product<S: Scalar>(
 }
 
 /// The tangent stiffness of an element, by rows of its unknowns.
-pub(super) fn tangent<S: Scalar>(
+pub(crate) fn tangent<S: Scalar>(
     finite: &FiniteElements<S>,
     i: usize,
     x: &Local<S>,

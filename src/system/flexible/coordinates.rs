@@ -16,7 +16,15 @@ pub(super) fn slots<S: Scalar>(numbering: &Numbering, body: &FlexibleBody<S>) ->
     (frame..frame + 6).chain(elastic).collect()
 }
 
-/// Whether some body has finite elements.
+/// Whether a body has shells, by all nodes or in a reduced basis.
+fn is_of_shells<S: Scalar>(body: &FlexibleBody<S>) -> bool {
+    match &body.form {
+        Form::Modal(modal) => modal.shells.is_some(),
+        Form::Finite(_) => true,
+    }
+}
+
+/// Whether some body has all nodes of finite elements as coordinates.
 pub(crate) fn has_nodes<S: Scalar>(model: &Model<S>) -> bool {
     let finite = |body: &FlexibleBody<S>| match body.form {
         Form::Modal(_) => false,
@@ -25,16 +33,11 @@ pub(crate) fn has_nodes<S: Scalar>(model: &Model<S>) -> bool {
     model.flexible.iter().any(finite)
 }
 
-/// Unknowns of the coordinates of finite elements, in an order of little fill.
+/// Unknowns of the coordinates of shells, of nodes in an order of little fill.
 pub(crate) fn nodal_unknowns<S: Scalar>(model: &Model<S>, numbering: &Numbering) -> Vec<usize> {
     let mut all = Vec::new();
-    for body in &model.flexible {
-        match &body.form {
-            Form::Modal(_) => {}
-            Form::Finite(_) => {
-                all.extend((body.places()).map(|(carrier, k)| numbering.unknown(carrier) + k));
-            }
-        }
+    for body in model.flexible.iter().filter(|body| is_of_shells(body)) {
+        all.extend((body.places()).map(|(carrier, k)| numbering.unknown(carrier) + k));
     }
     all
 }

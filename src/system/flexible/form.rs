@@ -102,7 +102,7 @@ pub(super) fn pull_first_moment(
 /// Strain energy at elastic coordinates \[J\].
 pub(super) fn elastic_energy<S: Scalar>(form: &Form<S>, q: &[S]) -> S {
     match form {
-        Form::Modal(modal) => elastic::energy(&modal.stiffness, q),
+        Form::Modal(modal) => elastic::energy(modal, q),
         Form::Finite(own) => finite::energy(own, q),
     }
 }

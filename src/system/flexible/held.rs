@@ -64,7 +64,7 @@ pub(crate) fn pull_strain_energy(
     let mut by_q = vec![0.0; q.len()];
     match (&body.form, &mut own.form) {
         (Form::Modal(modal), Form::Modal(own)) => {
-            elastic::pull_energy(&modal.stiffness, &q, scale, &mut by_q, &mut own.stiffness);
+            elastic::pull_energy(modal, &q, scale, &mut by_q, own);
         }
         (Form::Finite(finite), Form::Finite(own)) => {
             finite::pull_energy(finite, &q, scale, &mut by_q, own);
@@ -75,15 +75,17 @@ pub(crate) fn pull_strain_energy(
     add_part(numbering, body, (&still, &still), &by_q, y);
 }
 
-/// Von Mises stress by yield stress at the points of some elements of a body of finite elements; none of
-/// others.
+/// Von Mises stress by yield stress at the points of some elements of a body of shells; none of others.
 pub(crate) fn stress_ratios<S: Scalar>(
     body: &FlexibleBody<S>,
     motions: &[BodyMotion<S>],
     elements: &[usize],
 ) -> Vec<S> {
     match &body.form {
-        Form::Modal(_) => Vec::new(),
+        Form::Modal(modal) => modal.shells.as_ref().map_or_else(Vec::new, |own| {
+            let unknowns = own.unknowns(&coordinates(body, motions));
+            finite::stress_ratios(&own.elements, &unknowns, elements)
+        }),
         Form::Finite(own) => finite::stress_ratios(own, &coordinates(body, motions), elements),
     }
 }
@@ -100,7 +102,15 @@ pub(crate) fn pull_stress_ratios(
     let q = coordinates(body, motions);
     let mut by_q = vec![0.0; q.len()];
     match (&body.form, &mut own.form) {
-        (Form::Modal(_), Form::Modal(_)) => {}
+        (Form::Modal(modal), Form::Modal(cot)) => {
+            if let (Some(own), Some(cot)) = (&modal.shells, &mut cot.shells) {
+                let unknowns = own.unknowns(&q);
+                let mut by = vec![0.0; unknowns.len()];
+                let cot = &mut cot.elements;
+                finite::pull_stress_ratios(&own.elements, (&unknowns, elements), bar, &mut by, cot);
+                own.basis.add_transposed(&by, &mut by_q);
+            }
+        }
         (Form::Finite(finite), Form::Finite(own)) => {
             finite::pull_stress_ratios(finite, (&q, elements), bar, &mut by_q, own);
         }

@@ -1,0 +1,114 @@
+//! Reduced bases of shells, and shells that are rigid, from a file.
+
+use super::pointer::join;
+use super::prepared::{Prepared, ReducedBody};
+use super::schema::Document;
+use super::schema::elements::{ElementBasis, ReducedKeys};
+use super::schema::mechanics::Body;
+use crate::model::finite::{ElementMesh, FiniteElements};
+use crate::structures::floating::PointMotion;
+use crate::structures::modes::PencilFailure;
+use crate::system::reduction::{ModeChoice, ReducedBasis, Request, project, reduced_basis};
+use serde_json::json;
+use std::sync::OnceLock;
+
+/// Fixed-interface modes where a file gives no number.
+const MODES: u32 = 6;
+/// Deflection of static solutions, as a part of the size of the body: none.
+const DEFLECTION: f64 = 0.0;
+/// Amplitude below which vectors are left out.
+const TOLERANCE: f64 = 0.03;
+
+/// Growth of the number of modes, or of their highest frequency, of a richer basis.
+const RICHER: f64 = 1.5;
+/// Its tolerance beside that of the basis.
+const FINER: f64 = 0.3;
+
+/// Asks for richer bases. Rigid shells get that of no keys. False if no body has a basis.
+pub(super) fn enrich(document: &mut Document) -> bool {
+    let mut changed = false;
+    for elements in (document.bodies.values_mut()).filter_map(|body| body.elements.as_mut()) {
+        elements.basis = match &elements.basis {
+            ElementBasis::Full => continue,
+            ElementBasis::Rigid => ElementBasis::Reduced(ReducedKeys::default()),
+            ElementBasis::Reduced(keys) => {
+                let modes = f64::from(keys.modes.unwrap_or(MODES));
+                let more = (RICHER * modes).ceil().max(modes + 1.0) as u32;
+                ElementBasis::Reduced(ReducedKeys {
+                    modes: keys.highest_frequency.is_none().then_some(more),
+                    highest_frequency: keys.highest_frequency.map(|f| RICHER * f),
+                    tolerance: Some(FINER * keys.tolerance.unwrap_or(TOLERANCE)),
+                    ..keys.clone()
+                })
+            }
+        };
+        elements.prepared = OnceLock::new();
+        changed = true;
+    }
+    changed
+}
+
+/// The reduced bases of a document as path=value.
+pub(super) fn overrides(document: &Document) -> Vec<String> {
+    let one = |(name, body): (&String, &Body)| match &body.elements.as_ref()?.basis {
+        ElementBasis::Full | ElementBasis::Rigid => None,
+        ElementBasis::Reduced(keys) => {
+            let path = join(&join(&join("/bodies", name), "elements"), "basis");
+            Some(format!("{path}={}", json!({ "reduced": keys })))
+        }
+    };
+    document.bodies.iter().filter_map(one).collect()
+}
+
+/// What a file asks for.
+pub(super) fn request(keys: &ReducedKeys, mesh: &ElementMesh) -> Request {
+    let first = mesh.nodes[0];
+    let size = (mesh.nodes.iter()).fold(0.0_f64, |size, node| size.max((node - first).norm()));
+    let count = ModeChoice::Count(keys.modes.unwrap_or(MODES) as usize);
+    Request {
+        modes: keys.highest_frequency.map_or(count, ModeChoice::Below),
+        companions: keys.companions.unwrap_or(true),
+        deflection: keys.deflection.unwrap_or(DEFLECTION) * size,
+        tolerance: keys.tolerance.unwrap_or(TOLERANCE),
+    }
+}
+
+/// Gives prepared shells the basis that their file asks for; `shells` are those of the design in the file.
+///
+/// # Errors
+/// [`PencilFailure`]: the stiffness is singular with the axes held.
+pub(super) fn reduce(
+    basis: &ElementBasis,
+    of_file: &FiniteElements<f64>,
+    prepared: &mut Prepared,
+) -> Result<(), PencilFailure> {
+    let basis = match basis {
+        ElementBasis::Full => return Ok(()),
+        ElementBasis::Rigid => None,
+        ElementBasis::Reduced(keys) => Some(make(keys, of_file, prepared)?),
+    };
+    let (mesh, slots) = (&prepared.mesh, &prepared.slots);
+    let (vectors, bending) = basis.as_ref().map_or_else(Default::default, |basis| {
+        (basis.vectors.clone(), basis.bending.clone())
+    });
+    let shells = project(mesh, slots, vectors, bending);
+    for point in prepared.points.values_mut() {
+        *point = shells.point(point);
+    }
+    prepared.reduced = Some(ReducedBody { shells, basis });
+    Ok(())
+}
+
+fn make(
+    keys: &ReducedKeys,
+    of_file: &FiniteElements<f64>,
+    prepared: &Prepared,
+) -> Result<ReducedBasis, PencilFailure> {
+    let points = prepared.points.iter();
+    let points = points.filter(|(name, _)| match &keys.interfaces {
+        None => true,
+        Some(interfaces) => interfaces.contains(name),
+    });
+    let points: Vec<&PointMotion> = points.map(|(_, point)| point).collect();
+    reduced_basis(of_file, &points, &request(keys, &prepared.mesh))
+}

@@ -1,0 +1,141 @@
+//! What a basis spans: vectors that bend and vectors that stretch a flat shell, or all those of another.
+
+use super::matrices::Matrices;
+use super::subspace::{Subspace, principal};
+use crate::math::slices::dot;
+use crate::model::finite::{DISPLACEMENTS, FiniteElements};
+
+/// What couples in-plane and out-of-plane unknowns of a flat shell, beside the largest entry.
+const FLAT: f64 = 1e-12;
+
+/// The unknowns that bend a flat shell, if the others stretch it alone; `None` of other shells.
+fn bending_unknowns(shells: &FiniteElements<f64>) -> Option<Vec<bool>> {
+    let mut bends = vec![false; shells.mesh.coordinates];
+    let elements = &shells.mesh.elements;
+    let largest = |k: usize| {
+        let rows = elements.iter().flat_map(|e| e.slopes.as_flattened());
+        let all = rows.flat_map(|row| row.iter().skip(k).step_by(3));
+        all.fold(0.0_f64, |most, x| most.max(x.abs()))
+    };
+    let sizes = [0, 1, 2].map(largest);
+    let normal = (0..3).max_by(|&a, &b| sizes[a].total_cmp(&sizes[b]))?;
+    if (0..3).any(|k| k != normal && sizes[k] > FLAT * sizes[normal]) {
+        return None;
+    }
+    for element in elements {
+        let n = element.coordinates.len();
+        let out = |i: usize| i >= DISPLACEMENTS || i % 3 == normal;
+        for linear in &element.linear {
+            let most = linear.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            let mixed = |at: usize| out(at / n) != out(at % n);
+            if linear
+                .iter()
+                .enumerate()
+                .any(|(at, x)| mixed(at) && x.abs() > FLAT * most)
+            {
+                return None;
+            }
+        }
+        let rows = element.membrane.iter();
+        let sizes = rows.map(|row| {
+            let size = |out: bool| {
+                let own = row
+                    .iter()
+                    .enumerate()
+                    .filter(|(i, _)| (i % 3 == normal) == out);
+                own.fold(0.0_f64, |most, (_, x)| most.max(x.abs()))
+            };
+            [size(true), size(false)]
+        });
+        let sizes = sizes.fold([0.0_f64; 2], |most, own| {
+            [0, 1].map(|k| most[k].max(own[k]))
+        });
+        if sizes[0] > FLAT * sizes[1] {
+            return None;
+        }
+        for (i, coordinate) in element.coordinates.iter().enumerate() {
+            if let Some(at) = coordinate {
+                bends[*at] = out(i);
+            }
+        }
+    }
+    Some(bends)
+}
+
+/// The two spaces of a flat shell; one of another.
+pub(super) struct Spaces {
+    pub bends: Option<Vec<bool>>,
+    /// What bends, or all.
+    pub bending: Subspace,
+    /// What stretches a flat shell.
+    pub membrane: Subspace,
+}
+
+impl Spaces {
+    pub(super) fn of(shells: &FiniteElements<f64>) -> Self {
+        Self {
+            bends: bending_unknowns(shells),
+            bending: Subspace::default(),
+            membrane: Subspace::default(),
+        }
+    }
+
+    /// Parts of x that bend and that stretch.
+    fn parts(&self, x: &[f64]) -> (Vec<f64>, Option<Vec<f64>>) {
+        let Some(bends) = &self.bends else {
+            return (x.to_vec(), None);
+        };
+        let part = |wanted: bool| {
+            let all = x.iter().zip(bends);
+            all.map(|(&x, &own)| if own == wanted { x } else { 0.0 })
+                .collect()
+        };
+        (part(true), Some(part(false)))
+    }
+
+    pub(super) fn add(&mut self, matrices: &Matrices, x: &[f64]) {
+        let (bending, membrane) = self.parts(x);
+        self.bending.add(matrices, bending);
+        if let Some(membrane) = membrane {
+            self.membrane.add(matrices, membrane);
+        }
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.bending.vectors.len() + self.membrane.vectors.len()
+    }
+
+    /// Adds what matters most of what vectors have beside the space of the one kind or the other.
+    pub(super) fn add_principal(
+        &mut self,
+        matrices: &Matrices,
+        list: Vec<Vec<f64>>,
+        tolerance: f64,
+    ) {
+        let mut kinds = [Vec::new(), Vec::new()];
+        for x in list {
+            let (bending, membrane) = self.parts(&x);
+            kinds[0].push(bending);
+            kinds[1].extend(membrane);
+        }
+        for (own, space) in kinds
+            .into_iter()
+            .zip([&mut self.bending, &mut self.membrane])
+        {
+            let energy = |x: &[f64]| dot(&matrices.stiff(x), x);
+            let most = own.iter().map(|x| energy(x)).fold(0.0, f64::max);
+            if most <= 0.0 {
+                continue;
+            }
+            let rest = own.into_iter().map(|mut x| {
+                space.remove(&mut x);
+                x.iter_mut().for_each(|x| *x /= most.sqrt());
+                x
+            });
+            let rest: Vec<Vec<f64>> = rest.collect();
+            for x in principal(matrices, &rest, tolerance * tolerance) {
+                space.add(matrices, x);
+            }
+        }
+    }
+}

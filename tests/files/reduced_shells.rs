@@ -1,0 +1,195 @@
+//! Shells in reduced bases, from files: against all nodes, with exact derivatives; what files may not say.
+
+use flexbody::driver::{bases, check, explain, simulate};
+use flexbody::problem::{Override, Problem};
+use serde_json::{Value, json};
+use std::path::Path;
+
+fn read(name: &str) -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    let text = std::fs::read_to_string(path).expect("a file");
+    serde_json::from_str(&text).expect("valid JSON")
+}
+
+/// The double plate with this mesh and basis, simulated by BDF.
+fn plates(elements: [usize; 2], basis: &Value, duration: f64, steps: usize) -> Value {
+    let mut document = read("problems/flexible/double_plate.json");
+    for body in ["first", "second"] {
+        let own = &mut document["bodies"][body]["elements"];
+        own["structure"]["mesh"]["plate"]["elements"] = json!(elements);
+        own["basis"] = basis.clone();
+    }
+    let method = json!({"bdf": {"order": 2}});
+    document["simulation"] = json!({"duration": duration, "steps": steps, "method": method});
+    document
+}
+
+fn parsed(document: &Value) -> Problem {
+    Problem::parse(&document.to_string(), "plates", &[]).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// Values of all functions.
+fn values(document: &Value) -> Vec<f64> {
+    let problem = parsed(document);
+    let motion = simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
+    (0..problem.function_names.len())
+        .map(|f| motion.at.function(f).value)
+        .collect()
+}
+
+fn interfaces(first: &str) -> Value {
+    json!([first, "hinge"])
+}
+
+/// Positions of the reduced plates against all nodes of the same mesh; and of rigid ones.
+#[test]
+fn reduced_plates_follow_the_full_ones() {
+    let run = |basis: Value| {
+        let mut document = plates([4, 1], &basis, 0.1, 50);
+        if basis["reduced"].is_object() {
+            for (body, first) in [("first", "root"), ("second", "tip")] {
+                document["bodies"][body]["elements"]["basis"]["reduced"]["interfaces"] =
+                    interfaces(first);
+            }
+        }
+        values(&document)
+    };
+    let full = run(json!("full"));
+    let off = |basis: Value| {
+        let found = run(basis);
+        let positions = full[..8].iter().zip(&found[..8]);
+        positions.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()))
+    };
+    let (reduced, rigid) = (off(json!({"reduced": {"modes": 4}})), off(json!("rigid")));
+    assert!(
+        reduced < 1e-5 && reduced < 0.05 * rigid,
+        "{reduced:e} {rigid:e}"
+    );
+}
+
+/// Derivatives of positions, energies and stresses by thickness of bands, modulus and density. The basis is that
+/// of the file, so that derivatives are exact.
+#[test]
+fn derivatives_are_exact() {
+    let basis = json!({"reduced": {"modes": 2, "interfaces": ["hinge"], "deflection": 0}});
+    let mut document = plates([2, 1], &basis, 0.02, 8);
+    document["bodies"]["second"]["elements"]["structure"]["thickness"] =
+        json!({"per": "band", "along": "x", "value": 0.04});
+    document["bodies"]["first"]["elements"]["structure"]["thickness"] = json!(0.05);
+    document["materials"]["aluminium"]["young"] = json!(7e7);
+    document["variables"] = json!({
+        "bands": {"path": "/bodies/second/elements/structure/thickness/value", "lower": 0.01, "upper": 0.1},
+        "thickness": {"path": "/bodies/first/elements/structure/thickness", "lower": 0.01, "upper": 0.1},
+        "modulus": {"path": "/materials/aluminium/young", "lower": 1e7, "upper": 1e8},
+        "density": {"path": "/materials/aluminium/density", "lower": 2000, "upper": 3000},
+    });
+    let problem = parsed(&document);
+    // Not the design of the basis.
+    let mut x = problem.start();
+    x[0] *= 1.2;
+    let found = check(&problem, &x).unwrap_or_else(|failure| panic!("{failure}"));
+    assert_eq!(found.len(), 5 * problem.function_names.len());
+    for derivative in &found {
+        let scale = |k: usize| problem.variables[k].scale;
+        let of_function = found.iter().filter(|d| d.function == derivative.function);
+        let gradient =
+            of_function.fold(0.0_f64, |m, d| m.hypot(d.complex_step * scale(d.variable)));
+        let off = (derivative.adjoint - derivative.complex_step).abs() * scale(derivative.variable);
+        let name = &problem.function_names[derivative.function];
+        assert!(
+            gradient > 0.0 && off <= 1e-12 * gradient,
+            "{name}: {off:e} {gradient:e}"
+        );
+    }
+}
+
+/// Rigid plates: a reduced basis tells by how much they are off the full ones. Reduced ones: a richer basis tells
+/// the order of magnitude.
+#[test]
+fn errors_of_bases_are_estimated() {
+    let full = values(&plates([2, 1], &json!("full"), 0.1, 25));
+    let mut found = Vec::new();
+    for basis in [
+        json!("rigid"),
+        json!({"reduced": {"modes": 1, "tolerance": 0.3}}),
+    ] {
+        let problem = parsed(&plates([2, 1], &basis, 0.1, 25));
+        let motion = simulate(&problem, &problem.start()).expect("runs");
+        let which: Vec<usize> = (0..4).collect();
+        let errors = bases::errors(&problem, &motion.at, &which).expect("runs");
+        let estimate = errors.iter().fold(0.0_f64, |most, e| most.max(e.error()));
+        let off = errors
+            .iter()
+            .zip(&full)
+            .map(|(e, exact)| (e.value - exact).abs());
+        let off = off.fold(0.0, f64::max);
+        found.push((estimate, off));
+    }
+    let (rigid, reduced) = (found[0], found[1]);
+    assert!((rigid.0 - rigid.1).abs() < 0.05 * rigid.1);
+    assert!(reduced.1 < 0.2 * rigid.1 && reduced.1 < 10.0 * reduced.0);
+    let problem = parsed(&plates([2, 1], &json!("full"), 0.1, 25));
+    let motion = simulate(&problem, &problem.start()).expect("runs");
+    assert!(
+        bases::errors(&problem, &motion.at, &[0])
+            .expect("none")
+            .is_empty()
+    );
+}
+
+/// The text of `explain` says what a basis is made of, and what richer ones change.
+#[test]
+fn a_basis_is_explained() {
+    let basis = json!({"reduced": {"modes": 2, "interfaces": ["hinge"], "deflection": 0.01}});
+    let text = explain(&parsed(&plates([2, 1], &basis, 0.02, 5))).text();
+    for expected in [
+        "6 boundary modes, 2 fixed-interface modes",
+        "companions",
+        "with richer",
+    ] {
+        assert!(text.contains(expected), "{expected}: {text}");
+    }
+    let text = explain(&parsed(&plates([2, 1], &json!("rigid"), 0.02, 5))).text();
+    assert!(text.contains("as a rigid body"), "{text}");
+}
+
+/// The changes of the file that `--accuracy` gives make the richer bases.
+#[test]
+fn richer_bases_are_changes_of_the_file() {
+    let basis = json!({"reduced": {"modes": 1, "tolerance": 0.5, "deflection": 0}});
+    let document = plates([2, 1], &basis, 0.04, 20);
+    let problem = parsed(&document);
+    let richer = problem
+        .with_richer_bases(&problem.start())
+        .expect("has bases");
+    let described = |problem: &Problem| problem.flexible_bodies(&problem.start());
+    assert_ne!(described(&richer), described(&problem));
+    let changes = richer.basis_overrides();
+    assert!(changes[0].starts_with("/bodies/first/elements/basis="));
+    let changes = changes
+        .iter()
+        .map(|change| Override::parse(change).expect("sound"));
+    let changes: Vec<Override> = changes.collect();
+    let again = Problem::parse(&document.to_string(), "plates", &changes).expect("sound");
+    assert_eq!(described(&again), described(&richer));
+}
+
+#[test]
+fn what_a_file_may_not_say() {
+    let cases = [
+        (
+            json!({"reduced": {"modes": 4, "highest_frequency": 100.0}}),
+            "one of them",
+        ),
+        (json!({"reduced": {"interfaces": ["hing"]}}), "did you mean"),
+        (json!({"reduced": {"tolerance": 0}}), "tolerance"),
+        (json!({"reduced": {"mode": 4}}), "mode"),
+        (json!("reduce"), "reduce"),
+    ];
+    for (basis, expected) in cases {
+        let document = plates([2, 1], &basis, 0.1, 10);
+        let faults = Problem::parse(&document.to_string(), "plates", &[]).err();
+        let text = faults.map_or_else(String::new, |faults| faults.to_string());
+        assert!(text.contains(expected), "{expected}: {text}");
+    }
+}
