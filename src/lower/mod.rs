@@ -217,8 +217,8 @@ impl Lowering {
     }
 }
 
-/// Bodies whose rotation nothing turns or looks at, but for those that `held` names. What stands against
-/// others is added to `kept`.
+/// Bodies whose rotation is neither loaded nor observed, without those that `held` names. The reasons of
+/// other bodies are added to `kept`.
 fn find_points(
     designs: &Designs,
     held: impl Fn(usize) -> bool,

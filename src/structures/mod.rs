@@ -2,7 +2,7 @@
 //! docs/structures.md.
 
 pub(crate) mod assembly;
-pub mod beam;
+pub(crate) mod beam;
 mod beams;
 pub mod damping;
 mod fields;
@@ -22,9 +22,12 @@ pub mod properties;
 pub mod quality;
 mod reactions;
 mod sheets;
-pub mod shell;
+pub(crate) mod shell;
 pub(crate) mod state;
 pub mod statics;
 pub mod structure;
 pub mod supports;
 pub mod von_karman;
+
+pub use beam::{Section, SectionFault, SectionValues};
+pub use shell::Terms;

@@ -1,7 +1,7 @@
 //! Load cases of structures, and functions of them.
 
 use super::Checker;
-use super::structures::Kind;
+use super::sets::Kind;
 use crate::problem::finding::Finding;
 use crate::problem::pointer::{advice, join};
 use crate::problem::schema::functions::Function;

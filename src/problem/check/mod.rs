@@ -8,6 +8,7 @@ mod loads;
 mod mechanics;
 mod modal;
 mod properties;
+mod sets;
 mod structures;
 mod study;
 
@@ -25,7 +26,7 @@ pub(super) fn check(document: &Document, damage: &Damage) -> Vec<Finding> {
         document,
         damage,
         findings: Vec::new(),
-        sets: structures::Sets::default(),
+        sets: sets::Sets::default(),
     };
     checker.mechanics();
     checker.joints();
@@ -41,7 +42,7 @@ struct Checker<'a> {
     document: &'a Document,
     damage: &'a Damage,
     findings: Vec<Finding>,
-    sets: structures::Sets,
+    sets: sets::Sets,
 }
 
 impl<'a> Checker<'a> {

@@ -1,4 +1,4 @@
-//! What is told of the flexible bodies of a document.
+//! Text about the flexible bodies of a document: coordinates and natural frequencies.
 
 use crate::problem::schema::Document;
 use crate::problem::schema::flexible::Beam;

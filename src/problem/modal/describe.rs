@@ -1,4 +1,4 @@
-//! What is told of bodies from files: what their coordinates are made of, and their frequencies.
+//! Text about bodies from files: their coordinates and natural frequencies.
 
 use super::numbers::numbers;
 use crate::problem::schema::modal::Modal;

@@ -7,33 +7,33 @@ use crate::structures::material::Material;
 
 /// What a beam is made of; or derivatives by that.
 #[derive(Clone, Copy, Debug)]
-pub struct Beam<S> {
+pub(crate) struct Beam<S> {
     /// Nodes \[m\].
-    pub points: [Vec3<S>; BEAM_NODES],
+    pub(crate) points: [Vec3<S>; BEAM_NODES],
     /// A vector in the plane of the beam and axis 2 of its section.
-    pub orientation: Vec3<S>,
+    pub(crate) orientation: Vec3<S>,
     /// The section.
-    pub section: Section<S>,
+    pub(crate) section: Section<S>,
     /// Where the centre of the section stands from the nodes along axes 2 and 3 \[m\].
-    pub offset: [S; 2],
+    pub(crate) offset: [S; 2],
     /// The material.
-    pub material: Material<S>,
+    pub(crate) material: Material<S>,
     /// Non-structural mass per length [kg/m], at the centre of the section.
-    pub line_mass: S,
+    pub(crate) line_mass: S,
 }
 
 /// Displacements \[m\] and rotations \[rad\] of the nodes in global axes; or forces \[N\] and moments [N m].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BeamMotion<S> {
+pub(crate) struct BeamMotion<S> {
     /// u_a.
-    pub displacement: [Vec3<S>; BEAM_NODES],
+    pub(crate) displacement: [Vec3<S>; BEAM_NODES],
     /// θ_a.
-    pub rotation: [Vec3<S>; BEAM_NODES],
+    pub(crate) rotation: [Vec3<S>; BEAM_NODES],
 }
 
 impl<S: Scalar> BeamMotion<S> {
     /// No motion.
-    pub fn zeros() -> Self {
+    pub(crate) fn zeros() -> Self {
         let zero = [Vec3::zeros(); BEAM_NODES];
         Self {
             displacement: zero,

@@ -75,7 +75,7 @@ impl<S: Scalar> Strain<S> {
 
 impl<S: Scalar> Beam<S> {
     /// The beam in another scalar.
-    pub fn map<T: Scalar>(&self, mut f: impl FnMut(S) -> T) -> Beam<T> {
+    pub(crate) fn map<T: Scalar>(&self, mut f: impl FnMut(S) -> T) -> Beam<T> {
         Beam {
             points: self.points.map(|x| x.map(&mut f)),
             orientation: self.orientation.map(&mut f),
@@ -87,7 +87,7 @@ impl<S: Scalar> Beam<S> {
     }
 
     /// Zeros in the place of every number.
-    pub fn zeros(&self) -> Self {
+    pub(crate) fn zeros(&self) -> Self {
         self.map(|_| S::zero())
     }
 
@@ -103,7 +103,7 @@ impl<S: Scalar> Beam<S> {
     }
 
     /// The strain energy of a motion \[J\].
-    pub fn energy(&self, motion: &BeamMotion<S>, von_karman: bool) -> S {
+    pub(crate) fn energy(&self, motion: &BeamMotion<S>, von_karman: bool) -> S {
         let line = Line::new(self);
         let motion = line.motion(motion);
         let stiffness = self.section.values(&self.material).stiffness;
@@ -120,7 +120,7 @@ impl<S: Scalar> Beam<S> {
 
     /// Adds the derivatives of the strain energy: by the motion (the internal force) to `force`, by
     /// everything else to `to`.
-    pub fn add_energy_transpose(
+    pub(crate) fn add_energy_transpose(
         &self,
         motion: &BeamMotion<S>,
         von_karman: bool,
@@ -180,7 +180,12 @@ impl<S: Scalar> Beam<S> {
 
     /// Writes the tangent stiffness at a motion, lower part, into `matrix`: unknowns are all u_a (3a + i),
     /// then all θ_a in global axes.
-    pub fn tangent(&self, motion: &BeamMotion<S>, von_karman: bool, matrix: &mut ElementMatrix<S>) {
+    pub(crate) fn tangent(
+        &self,
+        motion: &BeamMotion<S>,
+        von_karman: bool,
+        matrix: &mut ElementMatrix<S>,
+    ) {
         let line = Line::new(self);
         let moved = line.motion(motion);
         let stiffness = self.section.values(&self.material).stiffness;

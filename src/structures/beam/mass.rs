@@ -52,7 +52,7 @@ impl<S: Scalar> Beam<S> {
     }
 
     /// Kinetic energy of nodal velocities \[J\], in the place of displacements and rotations.
-    pub fn kinetic_energy(&self, rates: &BeamMotion<S>) -> S {
+    pub(crate) fn kinetic_energy(&self, rates: &BeamMotion<S>) -> S {
         let line = Line::new(self);
         let rates = line.motion(rates);
         let [m, m1, m2, m3] = self.per_length();
@@ -72,7 +72,7 @@ impl<S: Scalar> Beam<S> {
 
     /// Adds the derivatives of `factor` times the kinetic energy: by the rates (the momenta) to
     /// `momentum`, by everything else to `to`.
-    pub fn add_kinetic_energy_transpose(
+    pub(crate) fn add_kinetic_energy_transpose(
         &self,
         rates: &BeamMotion<S>,
         factor: S,
@@ -110,7 +110,7 @@ impl<S: Scalar> Beam<S> {
     }
 
     /// Writes the mass matrix, lower part, into `matrix`, in the order of [`Beam::tangent`].
-    pub fn mass_matrix(&self, matrix: &mut ElementMatrix<S>) {
+    pub(crate) fn mass_matrix(&self, matrix: &mut ElementMatrix<S>) {
         let line = Line::new(self);
         let [m, m1, m2, m3] = self.per_length();
         matrix.clear(6 * BEAM_NODES);
@@ -143,7 +143,7 @@ impl<S: Scalar> Beam<S> {
     }
 
     /// Mass, first and second moments of the mass of the line of centres.
-    pub fn mass_moments(&self) -> MassMoments<S> {
+    pub(crate) fn mass_moments(&self) -> MassMoments<S> {
         let line = Line::new(self);
         let mass = self.per_length()[0];
         let mut all = MassMoments::zeros();
@@ -155,7 +155,7 @@ impl<S: Scalar> Beam<S> {
     }
 
     /// Transpose of the derivative of [`Beam::mass_moments`].
-    pub fn add_mass_moments_transpose(&self, moments: &MassMoments<S>, to: &mut Self) {
+    pub(crate) fn add_mass_moments_transpose(&self, moments: &MassMoments<S>, to: &mut Self) {
         let line = Line::new(self);
         let mass = self.per_length()[0];
         let (mut bar, mut mass_bar) = (LineCotangent::zeros(), S::zero());

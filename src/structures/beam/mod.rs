@@ -17,8 +17,8 @@ mod mass;
 mod section;
 mod torsion;
 
-pub use element::{Beam, BeamMotion};
+pub(crate) use element::{Beam, BeamMotion};
 pub use section::{Section, SectionFault, SectionValues};
 
 /// Nodes of a beam, at r = −1, 0, 1.
-pub const BEAM_NODES: usize = 3;
+pub(crate) const BEAM_NODES: usize = 3;

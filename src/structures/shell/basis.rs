@@ -17,7 +17,7 @@
 use std::sync::LazyLock;
 
 /// Nodes of an element.
-pub const NODES: usize = 9;
+pub(crate) const NODES: usize = 9;
 /// Gauss points of an element, 3 × 3; point g = 3j + i like the nodes.
 pub(crate) const GAUSS_POINTS: usize = 9;
 /// The Gauss point in the middle, r = s = 0.
@@ -30,8 +30,8 @@ pub(crate) const SHEAR_POINTS: usize = 12;
 /// The shape functions N_a and their derivatives N_a,r and N_a,s at a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Basis {
-    pub n: [f64; NODES],
-    pub by: [[f64; NODES]; 2],
+    pub(crate) n: [f64; NODES],
+    pub(crate) by: [[f64; NODES]; 2],
 }
 
 impl Basis {
@@ -59,21 +59,21 @@ fn quadratic_slope(x: f64) -> [f64; 3] {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tied {
     /// Component rr (and γ_r) from two points A.
-    pub rr: [(usize, f64); 2],
+    pub(crate) rr: [(usize, f64); 2],
     /// Component ss (and γ_s) from two points B.
-    pub ss: [(usize, f64); 2],
+    pub(crate) ss: [(usize, f64); 2],
     /// Component rs from four points C.
-    pub rs: [(usize, f64); 4],
+    pub(crate) rs: [(usize, f64); 4],
 }
 
 /// Shape functions at every point that the element evaluates.
 pub(crate) struct Tables {
-    pub tying: [Basis; TYING_POINTS],
-    pub gauss: [Basis; GAUSS_POINTS],
-    pub weights: [f64; GAUSS_POINTS],
-    pub tied: [Tied; GAUSS_POINTS],
+    pub(crate) tying: [Basis; TYING_POINTS],
+    pub(crate) gauss: [Basis; GAUSS_POINTS],
+    pub(crate) weights: [f64; GAUSS_POINTS],
+    pub(crate) tied: [Tied; GAUSS_POINTS],
     /// At the nodes, for their normals.
-    pub nodes: [Basis; NODES],
+    pub(crate) nodes: [Basis; NODES],
 }
 
 /// Covariant components (rr, ss, rs) by the two directions that they pair.

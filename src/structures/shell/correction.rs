@@ -31,9 +31,9 @@ use crate::math::{Mat3, Scalar, Vec3, scalar::length};
 /// Σ_a bending_ka·u_a + turning_ka·q_a.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Correction<S> {
-    pub strain: Vectors<S>,
-    pub bending: Vectors<S>,
-    pub turning: Vectors<S>,
+    pub(crate) strain: Vectors<S>,
+    pub(crate) bending: Vectors<S>,
+    pub(crate) turning: Vectors<S>,
 }
 
 impl<S: Scalar> Correction<S> {

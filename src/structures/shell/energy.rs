@@ -23,35 +23,35 @@ pub(crate) const DRILLING: f64 = 1e-3;
 
 /// What an element is made of.
 #[derive(Clone, Copy, Debug)]
-pub struct Shell<S> {
+pub(crate) struct Shell<S> {
     /// Nodes X_a \[m\] and directors D_a [-].
-    pub geometry: Field<S>,
+    pub(crate) geometry: Field<S>,
     /// Thickness h \[m\].
-    pub thickness: S,
+    pub(crate) thickness: S,
     /// The material.
-    pub material: Material<S>,
+    pub(crate) material: Material<S>,
     /// Non-structural mass per area [kg/m²].
-    pub surface_mass: S,
+    pub(crate) surface_mass: S,
     /// If all nodes have three rotations, so that the drilling stiffness is needed.
-    pub drilling: bool,
+    pub(crate) drilling: bool,
 }
 
 /// Derivatives of a function by everything that an element is made of.
 #[derive(Clone, Copy, Debug)]
-pub struct ShellCotangent<S> {
+pub(crate) struct ShellCotangent<S> {
     /// By X_a and D_a.
-    pub geometry: Field<S>,
+    pub(crate) geometry: Field<S>,
     /// By h.
-    pub thickness: S,
+    pub(crate) thickness: S,
     /// By E, ν, ρ and the yield stress.
-    pub material: Material<S>,
+    pub(crate) material: Material<S>,
     /// By the non-structural mass per area.
-    pub surface_mass: S,
+    pub(crate) surface_mass: S,
 }
 
 impl<S: Scalar> ShellCotangent<S> {
     /// Nothing yet.
-    pub fn zeros() -> Self {
+    pub(crate) fn zeros() -> Self {
         Self {
             geometry: Field::zeros(),
             thickness: S::zero(),
@@ -64,16 +64,16 @@ impl<S: Scalar> ShellCotangent<S> {
 /// Displacements u_a \[m\] and rotations θ_a \[rad\] of the nodes, in global axes; or forces \[N\] and
 /// moments [N m].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion<S> {
+pub(crate) struct Motion<S> {
     /// u_a.
-    pub displacement: [Vec3<S>; NODES],
+    pub(crate) displacement: [Vec3<S>; NODES],
     /// θ_a.
-    pub rotation: [Vec3<S>; NODES],
+    pub(crate) rotation: [Vec3<S>; NODES],
 }
 
 impl<S: Scalar> Motion<S> {
     /// No motion.
-    pub fn zeros() -> Self {
+    pub(crate) fn zeros() -> Self {
         let zero = [Vec3::zeros(); NODES];
         Self {
             displacement: zero,
@@ -107,20 +107,20 @@ impl<S: Scalar> Motion<S> {
 
 /// Strain energy by its parts \[J\].
 #[derive(Clone, Copy, Debug)]
-pub struct EnergyParts<S> {
+pub(crate) struct EnergyParts<S> {
     /// Of the membrane strains.
-    pub membrane: S,
+    pub(crate) membrane: S,
     /// Of the curvatures.
-    pub bending: S,
+    pub(crate) bending: S,
     /// Of the transverse shear.
-    pub shear: S,
+    pub(crate) shear: S,
     /// Of the drilling stiffness.
-    pub drilling: S,
+    pub(crate) drilling: S,
 }
 
 impl<S: Scalar> EnergyParts<S> {
     /// Their sum \[J\].
-    pub fn total(&self) -> S {
+    pub(crate) fn total(&self) -> S {
         self.membrane + self.bending + self.shear + self.drilling
     }
 }
@@ -131,7 +131,7 @@ fn dot<S: Scalar, const N: usize>(a: &[S; N], b: &[S; N]) -> S {
 
 impl<S: Scalar> Shell<S> {
     /// The strain energy of a motion, by its parts \[J\].
-    pub fn energy(&self, motion: &Motion<S>, terms: Terms) -> EnergyParts<S> {
+    pub(crate) fn energy(&self, motion: &Motion<S>, terms: Terms) -> EnergyParts<S> {
         let field = motion.field(&self.geometry);
         let strain = ElementStrain::new(&self.geometry, &field, terms, Curvature::Tied);
         let (h, material) = (self.thickness, &self.material);
@@ -167,7 +167,7 @@ impl<S: Scalar> Shell<S> {
 
     /// Adds the derivatives of the strain energy: by the motion (the internal force [N, N m]) to
     /// `force`, by everything else to `to`.
-    pub fn add_energy_transpose(
+    pub(crate) fn add_energy_transpose(
         &self,
         motion: &Motion<S>,
         terms: Terms,
@@ -237,8 +237,8 @@ impl<S: Scalar> Shell<S> {
 /// With n̂ = a_r × a_s = J n, p a_r = e1 and u,1 = p u_r, u,2 = b u_r + c u_s it is
 /// (θ·n̂ + ½(a_r·u_s − a_s·u_r)) / J: the frame drops out.
 pub(crate) struct Drilling<S> {
-    pub area: S,
-    pub angle: S,
+    pub(crate) area: S,
+    pub(crate) angle: S,
     tangents: [Vec3<S>; 2],
     by: [Vec3<S>; 2],
     rotation: Vec3<S>,

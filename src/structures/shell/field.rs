@@ -8,16 +8,16 @@ use crate::math::{Scalar, Vec3};
 
 /// Nodal values of a field: points (X or u) \[m\] and directors (D or q) [-].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Field<S> {
+pub(crate) struct Field<S> {
     /// X_a or u_a \[m\].
-    pub points: [Vec3<S>; NODES],
+    pub(crate) points: [Vec3<S>; NODES],
     /// D_a or q_a [-].
-    pub directors: [Vec3<S>; NODES],
+    pub(crate) directors: [Vec3<S>; NODES],
 }
 
 impl<S: Scalar> Field<S> {
     /// The field that is nothing.
-    pub fn zeros() -> Self {
+    pub(crate) fn zeros() -> Self {
         let zero = [Vec3::zeros(); NODES];
         Self {
             points: zero,
@@ -29,9 +29,9 @@ impl<S: Scalar> Field<S> {
 /// A field at a point: derivatives of the points by r and s, the director and its derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AtPoint<S> {
-    pub by: [Vec3<S>; 2],
-    pub director: Vec3<S>,
-    pub director_by: [Vec3<S>; 2],
+    pub(crate) by: [Vec3<S>; 2],
+    pub(crate) director: Vec3<S>,
+    pub(crate) director_by: [Vec3<S>; 2],
 }
 
 impl<S: Scalar> AtPoint<S> {

@@ -31,8 +31,8 @@ pub(crate) fn add_area_transpose<S: Scalar>(
 /// The frame at a point: T [1/m], rows r and s, columns 1 and 2, and the area J [m²]; or cotangents.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame<S> {
-    pub t: [[S; 2]; 2],
-    pub area: S,
+    pub(crate) t: [[S; 2]; 2],
+    pub(crate) area: S,
 }
 
 /// The axes of a frame.

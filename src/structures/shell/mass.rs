@@ -16,11 +16,11 @@ use crate::math::{Scalar, Vec3};
 
 /// Scalar nodal masses of an element.
 #[derive(Clone, Debug)]
-pub struct NodalMasses<S> {
+pub(crate) struct NodalMasses<S> {
     /// m_ab \[kg\].
-    pub mass: [[S; NODES]; NODES],
+    pub(crate) mass: [[S; NODES]; NODES],
     /// i_ab [kg m²].
-    pub rotary: [[S; NODES]; NODES],
+    pub(crate) rotary: [[S; NODES]; NODES],
 }
 
 impl<S: Scalar> Shell<S> {
@@ -66,7 +66,7 @@ impl<S: Scalar> Shell<S> {
     }
 
     /// The scalar nodal masses m_ab and i_ab.
-    pub fn nodal_masses(&self) -> NodalMasses<S> {
+    pub(crate) fn nodal_masses(&self) -> NodalMasses<S> {
         let zero = [[S::zero(); NODES]; NODES];
         let mut all = NodalMasses {
             mass: zero,
@@ -87,7 +87,7 @@ impl<S: Scalar> Shell<S> {
     }
 
     /// Writes the mass matrix, lower part, into `matrix` [kg, kg m, kg m²].
-    pub fn mass_matrix(&self, axes: &RotationAxes<S>, matrix: &mut ElementMatrix<S>) {
+    pub(crate) fn mass_matrix(&self, axes: &RotationAxes<S>, matrix: &mut ElementMatrix<S>) {
         let masses = self.nodal_masses();
         let moved: [[Vec3<S>; 3]; NODES] = std::array::from_fn(|a| {
             axes.axes[a].map(|axis| axis.cross(&self.geometry.directors[a]))
@@ -118,7 +118,7 @@ impl<S: Scalar> Shell<S> {
     }
 
     /// Kinetic energy of nodal velocities \[J\], in the place of displacements and rotations.
-    pub fn kinetic_energy(&self, rates: &Motion<S>) -> S {
+    pub(crate) fn kinetic_energy(&self, rates: &Motion<S>) -> S {
         let field = rates.field(&self.geometry);
         let [mass, rotary] = self.per_area();
         (0..GAUSS_POINTS).fold(S::zero(), |energy, k| {
@@ -134,7 +134,7 @@ impl<S: Scalar> Shell<S> {
 
     /// Adds the derivatives of `factor` times the kinetic energy: by the rates (the momenta) to
     /// `momentum`, by everything else to `to`.
-    pub fn add_kinetic_energy_transpose(
+    pub(crate) fn add_kinetic_energy_transpose(
         &self,
         rates: &Motion<S>,
         factor: S,
@@ -163,7 +163,7 @@ impl<S: Scalar> Shell<S> {
     }
 
     /// Mass, first and second moments of the mass of the middle surface.
-    pub fn mass_moments(&self) -> MassMoments<S> {
+    pub(crate) fn mass_moments(&self) -> MassMoments<S> {
         let mut all = MassMoments::zeros();
         let mass = self.per_area()[0];
         for k in 0..GAUSS_POINTS {
@@ -174,7 +174,11 @@ impl<S: Scalar> Shell<S> {
     }
 
     /// Transpose of the derivative of [`Shell::mass_moments`].
-    pub fn add_mass_moments_transpose(&self, bar: &MassMoments<S>, to: &mut ShellCotangent<S>) {
+    pub(crate) fn add_mass_moments_transpose(
+        &self,
+        bar: &MassMoments<S>,
+        to: &mut ShellCotangent<S>,
+    ) {
         let mass = self.per_area()[0];
         for k in 0..GAUSS_POINTS {
             let basis = &TABLES.gauss[k];
@@ -190,13 +194,13 @@ impl<S: Scalar> Shell<S> {
 
 /// Moments of a mass: ∫ dm \[kg\], ∫ x dm [kg m], and ∫ x xᵀ dm [kg m²] as (xx, yy, zz, xy, yz, zx).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MassMoments<S> {
+pub(crate) struct MassMoments<S> {
     /// ∫ dm.
-    pub mass: S,
+    pub(crate) mass: S,
     /// ∫ x dm.
-    pub first: Vec3<S>,
+    pub(crate) first: Vec3<S>,
     /// ∫ x xᵀ dm.
-    pub second: [S; 6],
+    pub(crate) second: [S; 6],
 }
 
 /// Index pairs of the second moments.
@@ -204,7 +208,7 @@ pub(crate) const SECOND: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 
 
 impl<S: Scalar> MassMoments<S> {
     /// No mass.
-    pub fn zeros() -> Self {
+    pub(crate) fn zeros() -> Self {
         Self {
             mass: S::zero(),
             first: Vec3::zeros(),

@@ -4,19 +4,19 @@ use super::basis::NODES;
 use crate::math::{Scalar, Vec3};
 
 /// Unknowns of an element at most: three displacements and three rotations a node.
-pub const MOST_UNKNOWNS: usize = 6 * NODES;
+pub(crate) const MOST_UNKNOWNS: usize = 6 * NODES;
 /// The axes of the unknown rotations of each node: θ_a = Σ_k axis_k φ_k.
 #[derive(Clone, Copy, Debug)]
-pub struct RotationAxes<S> {
+pub(crate) struct RotationAxes<S> {
     /// Up to three axes a node.
-    pub axes: [[Vec3<S>; 3]; NODES],
+    pub(crate) axes: [[Vec3<S>; 3]; NODES],
     /// How many of them are used.
-    pub count: [usize; NODES],
+    pub(crate) count: [usize; NODES],
 }
 
 impl<S: Scalar> RotationAxes<S> {
     /// The global axes at every node.
-    pub fn global() -> Self {
+    pub(crate) fn global() -> Self {
         let one = |i: usize| Vec3::from_fn(|j, _| if i == j { S::one() } else { S::zero() });
         Self {
             axes: [[one(0), one(1), one(2)]; NODES],
@@ -31,16 +31,16 @@ impl<S: Scalar> RotationAxes<S> {
 
 /// A symmetric matrix of the element, lower part: row i holds the columns 0 ..= i. Unknowns are all
 /// u_a (3a + i), then the rotations of the nodes in order.
-pub struct ElementMatrix<S> {
+pub(crate) struct ElementMatrix<S> {
     /// Order of the matrix.
-    pub order: usize,
+    pub(crate) order: usize,
     /// Rows; what stands right of the diagonal is not used.
-    pub rows: Box<[[S; MOST_UNKNOWNS]; MOST_UNKNOWNS]>,
+    pub(crate) rows: Box<[[S; MOST_UNKNOWNS]; MOST_UNKNOWNS]>,
 }
 
 impl<S: Scalar> ElementMatrix<S> {
     /// An empty matrix, to be used again for every element.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             order: 0,
             rows: Box::new([[S::zero(); MOST_UNKNOWNS]; MOST_UNKNOWNS]),

@@ -14,11 +14,11 @@ mod stress;
 mod tangent;
 mod tying;
 
-pub use basis::NODES;
-pub use energy::{EnergyParts, Motion, Shell, ShellCotangent};
-pub use field::Field;
+pub(crate) use basis::NODES;
+pub(crate) use energy::{EnergyParts, Motion, Shell, ShellCotangent};
+pub(crate) use field::Field;
 pub(crate) use mass::SECOND;
-pub use mass::{MassMoments, NodalMasses};
-pub use matrix::{ElementMatrix, MOST_UNKNOWNS, RotationAxes};
+pub(crate) use mass::{MassMoments, NodalMasses};
+pub(crate) use matrix::{ElementMatrix, MOST_UNKNOWNS, RotationAxes};
 pub use strain::Terms;
-pub use stress::STRESS_POINTS;
+pub(crate) use stress::STRESS_POINTS;

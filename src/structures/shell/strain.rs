@@ -59,13 +59,13 @@ pub(crate) enum Curvature {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Strain<S> {
     /// (e_11, e_22, 2 e_12) of the middle surface [-].
-    pub membrane: [S; 3],
+    pub(crate) membrane: [S; 3],
     /// (κ_11, κ_22, 2 κ_12) [1/m].
-    pub bending: [S; 3],
+    pub(crate) bending: [S; 3],
     /// (γ_1, γ_2) [-].
-    pub shear: [S; 2],
+    pub(crate) shear: [S; 2],
     /// Area of the point, weight times J [m²].
-    pub area: S,
+    pub(crate) area: S,
 }
 
 impl<S: Scalar> Strain<S> {
@@ -183,7 +183,7 @@ pub(crate) struct ElementStrain<'a, S> {
     tied: TiedStrain<S>,
     correction: Option<Correction<S>>,
     /// The strains at the Gauss points.
-    pub points: [Strain<S>; GAUSS_POINTS],
+    pub(crate) points: [Strain<S>; GAUSS_POINTS],
 }
 
 impl<'a, S: Scalar> ElementStrain<'a, S> {

@@ -11,7 +11,7 @@ use super::strain::{Curvature, ElementStrain, Strain, Terms};
 use crate::math::Scalar;
 
 /// Places of an element whose stress is evaluated: (Gauss point, face), the face z = +h/2 first.
-pub const STRESS_POINTS: usize = 2 * GAUSS_POINTS;
+pub(crate) const STRESS_POINTS: usize = 2 * GAUSS_POINTS;
 
 /// Plane von Mises stress; its derivative at no stress counts as none.
 fn von_mises<S: Scalar>(stress: &[S; 3]) -> S {
@@ -43,7 +43,7 @@ fn at_face<S: Scalar>(shell: &Shell<S>, strain: &Strain<S>, face: usize) -> ([S;
 
 impl<S: Scalar> Shell<S> {
     /// σ_v / σ_yield at the Gauss points, face +h/2 and face −h/2 of each after one another.
-    pub fn stress_ratios(&self, motion: &Motion<S>, terms: Terms) -> [S; STRESS_POINTS] {
+    pub(crate) fn stress_ratios(&self, motion: &Motion<S>, terms: Terms) -> [S; STRESS_POINTS] {
         self.field_stress_ratios(&motion.field(&self.geometry), terms)
     }
 
@@ -58,7 +58,7 @@ impl<S: Scalar> Shell<S> {
 
     /// Transpose of the derivative of [`Shell::stress_ratios`]: by the motion to `force`, by
     /// everything else to `to`.
-    pub fn add_stress_ratios_transpose(
+    pub(crate) fn add_stress_ratios_transpose(
         &self,
         motion: &Motion<S>,
         terms: Terms,

@@ -111,13 +111,13 @@ struct Parameters<S> {
 /// parameters e_p, K_m / (E h), and K_b / (E h³) and K_s / (E h) between the unknowns.
 pub(crate) struct Operators {
     /// b_p over the displacements.
-    pub membrane: Vec<[f64; DISPLACEMENTS]>,
+    pub(crate) membrane: Vec<[f64; DISPLACEMENTS]>,
     /// g1_p and g2_p.
-    pub slopes: Vec<[[f64; DISPLACEMENTS]; 2]>,
+    pub(crate) slopes: Vec<[[f64; DISPLACEMENTS]; 2]>,
     /// K_m.
-    pub plane: [[f64; PARAMETERS]; PARAMETERS],
+    pub(crate) plane: [[f64; PARAMETERS]; PARAMETERS],
     /// K_b and K_s, by rows.
-    pub linear: [Vec<f64>; 2],
+    pub(crate) linear: [Vec<f64>; 2],
 }
 
 impl Shell<f64> {
@@ -162,7 +162,7 @@ impl Shell<f64> {
 
 impl<S: Scalar> Shell<S> {
     /// Writes the tangent stiffness at a motion, lower part, into `matrix` [N/m, N, N m].
-    pub fn tangent(
+    pub(crate) fn tangent(
         &self,
         axes: &RotationAxes<S>,
         motion: &Motion<S>,
