@@ -6,6 +6,7 @@ mod benchmarks;
 mod circles;
 mod faults;
 mod finite_elements;
+mod flexible_families;
 mod flexible_scenes;
 mod layers;
 mod modal;

@@ -10,7 +10,7 @@ use crate::problem::schema::structures::{
     Mesh, Per, Structure, Thickness, VariedSection, VariedThickness,
 };
 use crate::problem::statics::expand::{section_count, thickness_count};
-use crate::problem::statics::mesh::{element_count, generated, panel_elements, part};
+use crate::problem::statics::mesh::{element_count, panel_elements, part};
 
 /// Most elements of a structure.
 const MOST_ELEMENTS: usize = 200_000;

@@ -52,6 +52,7 @@ impl<S: Scalar> Beam<S> {
     }
 
     /// Kinetic energy of nodal velocities \[J\], in the place of displacements and rotations.
+    #[cfg(test)]
     pub(crate) fn kinetic_energy(&self, rates: &BeamMotion<S>) -> S {
         let line = Line::new(self);
         let rates = line.motion(rates);

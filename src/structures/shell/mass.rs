@@ -118,6 +118,7 @@ impl<S: Scalar> Shell<S> {
     }
 
     /// Kinetic energy of nodal velocities \[J\], in the place of displacements and rotations.
+    #[cfg(test)]
     pub(crate) fn kinetic_energy(&self, rates: &Motion<S>) -> S {
         let field = rates.field(&self.geometry);
         let [mass, rotary] = self.per_area();

@@ -15,10 +15,10 @@ mod tangent;
 mod tying;
 
 pub(crate) use basis::NODES;
-pub(crate) use energy::{EnergyParts, Motion, Shell, ShellCotangent};
+pub(crate) use energy::{Motion, Shell, ShellCotangent};
 pub(crate) use field::Field;
 pub(crate) use mass::SECOND;
-pub(crate) use mass::{MassMoments, NodalMasses};
+pub(crate) use mass::MassMoments;
 pub(crate) use matrix::{ElementMatrix, MOST_UNKNOWNS, RotationAxes};
 pub use strain::Terms;
 pub(crate) use stress::STRESS_POINTS;
