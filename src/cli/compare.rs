@@ -24,7 +24,7 @@ pub(crate) fn plot(directory: &Path) -> Result<u8, Failure> {
     let history = read_text(&directory.join("history.csv"))?;
     let history = crate::report::History::from_csv(&history)?;
     let _held = prepare_directory(directory)?;
-    let files = figures::of_record(&optimum, &history).map_err(Failure::bad_input)?;
+    let files = figures::of_record(&optimum, &history, directory).map_err(Failure::bad_input)?;
     let files: Vec<(PathBuf, Vec<u8>)> = files
         .into_iter()
         .map(|(name, bytes)| (directory.join(name), bytes))

@@ -14,7 +14,8 @@ use crate::optimiser::{Counts, Status};
 use crate::problem::Problem;
 use crate::report::optimum::Curvature;
 use crate::report::{
-    History, HistoryLog, ReportError, atomic_write, prepare_directory, summary, write_all,
+    History, HistoryLog, ReportError, atomic_write, path_between, prepare_directory, summary,
+    write_all,
 };
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -92,6 +93,10 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
             (problem, done, Start::Only, None, lost)
         }
     };
+    if problem.names_files() {
+        let beside = job.problem.parent().unwrap_or(Path::new(""));
+        done.optimum.problem.directory = path_between(&directory, beside);
+    }
     match (&done.outcome.status, &lost) {
         (Status::UndefinedStart { what }, None) => {
             return Err(Failure::new(NUMERICAL_FAILURE, what));

@@ -18,6 +18,7 @@ use crate::report::plots::{
     energy, histories, motion,
 };
 use crate::report::{History, Optimum, ReportError};
+use std::path::{Path, PathBuf};
 
 /// A file's name and content.
 pub(crate) type NamedFile = (&'static str, Vec<u8>);
@@ -70,17 +71,23 @@ pub(crate) fn of_simulation(problem: &Problem, simulation: &Simulation) -> Vec<N
     figures(problem, &[("", simulation)], None)
 }
 
-/// Figures of a recorded optimisation, from the problem and the designs in its record.
+/// Figures of a recorded optimisation, from the problem and the designs in its record, which lies in `directory`.
 ///
 /// # Errors
 /// If the record does not hold a readable problem and a value of each of its variables.
 pub(crate) fn of_record(
     optimum: &Optimum,
     history: &History,
+    directory: &Path,
 ) -> Result<Vec<NamedFile>, RedrawError> {
     let text = optimum.problem.document.to_string();
-    let problem =
-        Problem::parse(&text, &optimum.problem.file, &[]).map_err(RedrawError::Problem)?;
+    // Files of bodies lie beside the problem file.
+    let file = match &optimum.problem.directory {
+        Some(beside) => directory.join(beside).join(&optimum.problem.file),
+        None => PathBuf::from(&optimum.problem.file),
+    };
+    let file = file.display().to_string();
+    let problem = Problem::parse(&text, &file, &[]).map_err(RedrawError::Problem)?;
     let design = problem
         .variables
         .iter()

@@ -201,6 +201,7 @@ pub(super) fn record(
         problem: ProblemRecord {
             name: problem.name.clone(),
             file: file.to_string(),
+            directory: None,
             sha256: problem.hash.clone(),
             document: problem.document.clone(),
         },

@@ -351,6 +351,14 @@ impl Problem {
         scene::own_velocities(&self.written, x)
     }
 
+    /// Whether bodies have files of their own.
+    pub(crate) fn names_files(&self) -> bool {
+        self.written
+            .bodies
+            .values()
+            .any(|body| body.modal.is_some())
+    }
+
     /// Number of bodies in the file.
     pub(crate) fn body_count(&self) -> usize {
         self.written.bodies.len()

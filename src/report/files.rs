@@ -198,3 +198,20 @@ pub(crate) fn read_text(path: &Path) -> Result<String, ReportError> {
         source,
     })
 }
+
+/// The way from the directory `from` to the directory `to`, both of which exist. None if it cannot be written.
+pub(crate) fn path_between(from: &Path, to: &Path) -> Option<String> {
+    let to = if to.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        to
+    };
+    let [from, to] = [from, to].map(|path| std::fs::canonicalize(path).ok());
+    let (from, to) = (from?, to?);
+    let (from, to): (Vec<_>, Vec<_>) = (from.components().collect(), to.components().collect());
+    let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+    let up = from[shared..].iter().map(|_| Path::new(".."));
+    let down = to[shared..].iter().map(|part| Path::new(part.as_os_str()));
+    let path: std::path::PathBuf = up.chain(down).collect();
+    Some(path.to_str()?.to_owned())
+}

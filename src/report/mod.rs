@@ -48,7 +48,7 @@ pub(crate) use compare::{Tolerances, compare};
 pub(crate) use csv::csv_table;
 pub(crate) use error::ReportError;
 pub(crate) use explain::{Explanation, FunctionUse, IntegrationUse, SystemSize, size};
-pub(crate) use files::{atomic_write, prepare_directory, read_text, write_all};
+pub(crate) use files::{atomic_write, path_between, prepare_directory, read_text, write_all};
 pub(crate) use history::{History, HistoryRow};
 pub(crate) use history_log::HistoryLog;
 pub(crate) use mesh_precision::{MeshRow, PrecisionOfMesh};

@@ -368,6 +368,9 @@ pub(crate) struct ProblemRecord {
     pub name: String,
     /// Name of the problem file, without directories.
     pub file: String,
+    /// If the document names files of bodies: its directory, from that of the record.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub directory: Option<String>,
     /// SHA-256 of the document, hexadecimal.
     pub sha256: String,
     /// The document itself, with everything that was set on the command line.

@@ -289,6 +289,47 @@ fn plot_redraws_the_same_figures() {
     );
 }
 
+/// Files of bodies lie beside the problem file: a record knows the way to them, wherever the command runs.
+#[test]
+fn plot_finds_the_files_of_bodies() {
+    let at = scratch();
+    let path = |name: &str| at.path().join(name);
+    std::fs::create_dir_all(path("case")).expect("is made");
+    std::fs::create_dir_all(path("elsewhere")).expect("is made");
+    let along = |x: f64| serde_json::json!([[x, 0, 0], [0, 0, 0], [0, 0, 0]]);
+    let rod = serde_json::json!({
+        "version": 1, "mass": 5, "centre_of_mass": [0.6, 0, 0],
+        "inertia": [[0.1, 0, 0], [0, 3, 0], [0, 0, 3]],
+        "static_moments": [[3, 0, 0]], "with_position": [along(3.0)], "products": [[along(3.0)]],
+        "stiffness": [[500]],
+        "points": {"end": {"position": [1, 0, 0], "displacement": [[1, 0, 0]]}}
+    });
+    let problem = serde_json::json!({
+        "version": 1, "name": "rod", "gravity": [0, 0, 0],
+        "bodies": {"rod": {"modal": {"source": {"standard_input": "rod.json"}, "young_factor": 1,
+                                     "start": {"coordinates": [0.01]}}}},
+        "simulation": {"duration": 0.1, "steps": 20, "method": {"radau": {"stages": 3}}},
+        "functions": {"length": {"final": {"elastic_displacement":
+            {"body": "rod", "point": "end", "direction": [1, 0, 0]}}}},
+        "variables": {"stiffness": {"path": "/bodies/rod/modal/young_factor", "lower": 0.9, "upper": 1.1}},
+        "objective": {"minimise": "length"}
+    });
+    std::fs::write(path("case/rod.json"), rod.to_string()).expect("written");
+    std::fs::write(path("case/problem.json"), problem.to_string()).expect("written");
+    expect(
+        0,
+        at.path(),
+        &["case/problem.json", "-q", "-o", "out/drawn"],
+    );
+    let record = json(&read(&path("out/drawn/optimum.json")));
+    assert_eq!(record["problem"]["directory"], "../../case");
+    let figure = path("out/drawn/motion.svg");
+    let before = read(&figure);
+    std::fs::remove_file(&figure).expect("is removed");
+    expect(0, &path("elsewhere"), &["plot", "../out/drawn"]);
+    assert_eq!(read(&figure), before);
+}
+
 #[test]
 fn set_changes_one_value_for_this_run() {
     let at = scratch();

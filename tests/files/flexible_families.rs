@@ -179,7 +179,7 @@ fn scene(seed: u64, at: Written) -> (Value, Vec<[i32; 3]>) {
     }
     let last = format!("b{}", count - 1);
     let far = at.ground([1.5, 1.2, -0.7], LENGTH);
-    if seed % 3 == 0 {
+    if seed.is_multiple_of(3) {
         joints.insert(
             "rod".into(),
             json!({"rod": {"between": [last, "ground"], "at": {"a": "end", "b": far}}}),

@@ -124,6 +124,7 @@ fn optimum() -> Optimum {
         problem: ProblemRecord {
             name: "trebuchet".into(),
             file: "trebuchet.json".into(),
+            directory: None,
             sha256: "ab".repeat(32),
             document: json!({"version": 1, "description": null}),
         },

@@ -9,6 +9,10 @@ faults! {
         r#""con_rod": {"# => r##""bar": {"modal": {"source": {"matrix_market": {"nodes": "tests/data/modal/beam.nodes", "stiffness": "tests/data/modal/beam_k.mtx", "mass": "tests/data/modal/beam_m.mtx"}}, "interfaces": {"start": 1, "end": 21}, "frame": {"clamped": "strat"}}}, "con_rod": {"##;
     a_modal_body_held_by_a_line:
         r#""con_rod": {"# => r##""bar": {"modal": {"source": {"matrix_market": {"nodes": "tests/data/modal/beam.nodes", "stiffness": "tests/data/modal/beam_k.mtx", "mass": "tests/data/modal/beam_m.mtx"}}, "interfaces": {"start": 1, "middle": 12, "end": 21}, "frame": {"chord": ["start", "middle", "end"]}}}, "con_rod": {"##;
+    a_modal_body_of_an_unknown_node:
+        r#""con_rod": {"# => r##""bar": {"modal": {"source": {"matrix_market": {"nodes": "tests/data/modal/beam.nodes", "stiffness": "tests/data/modal/beam_k.mtx", "mass": "tests/data/modal/beam_m.mtx"}}, "interfaces": {"start": 1, "end": 210}}}, "con_rod": {"##;
+    a_modal_body_of_a_node_in_two_interfaces:
+        r#""con_rod": {"# => r##""bar": {"modal": {"source": {"matrix_market": {"nodes": "tests/data/modal/beam.nodes", "stiffness": "tests/data/modal/beam_k.mtx", "mass": "tests/data/modal/beam_m.mtx"}}, "interfaces": {"start": 1, "end": [21, 1]}}}, "con_rod": {"##;
     a_modal_body_of_no_file:
         r#""con_rod": {"# => r##""bar": {"modal": {"source": {"dmig": {"nodes": "tests/data/modal/beam.nodes", "file": "tests/data/modal/beam.pch"}}, "interfaces": {"start": 1}}}, "con_rod": {"##;
     a_modal_body_of_a_file_of_another_kind:
