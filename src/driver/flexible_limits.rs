@@ -54,7 +54,9 @@ fn fast_spin(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
     let mut most: Option<(f64, String)> = None;
     for body in &model.flexible {
         let modal = match &body.form {
-            Form::Modal(modal) if modal.stiffness.strains.is_empty() => modal,
+            Form::Modal(modal) if modal.stiffness.strains.is_empty() && modal.shells.is_none() => {
+                modal
+            }
             Form::Modal(_) | Form::Finite(_) => continue,
         };
         let frame = &model.bodies[body.frame];

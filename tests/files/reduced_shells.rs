@@ -107,13 +107,13 @@ fn derivatives_are_exact() {
 /// the order of magnitude.
 #[test]
 fn errors_of_bases_are_estimated() {
-    let full = values(&plates([2, 1], &json!("full"), 0.1, 25));
+    let full = values(&plates([2, 1], &json!("full"), 0.1, 50));
     let mut found = Vec::new();
     for basis in [
         json!("rigid"),
         json!({"reduced": {"modes": 1, "tolerance": 0.3}}),
     ] {
-        let problem = parsed(&plates([2, 1], &basis, 0.1, 25));
+        let problem = parsed(&plates([2, 1], &basis, 0.1, 50));
         let motion = simulate(&problem, &problem.start()).expect("runs");
         let which: Vec<usize> = (0..4).collect();
         let errors = bases::errors(&problem, &motion.at, &which).expect("runs");
@@ -128,7 +128,7 @@ fn errors_of_bases_are_estimated() {
     let (rigid, reduced) = (found[0], found[1]);
     assert!((rigid.0 - rigid.1).abs() < 0.05 * rigid.1);
     assert!(reduced.1 < 0.2 * rigid.1 && reduced.1 < 10.0 * reduced.0);
-    let problem = parsed(&plates([2, 1], &json!("full"), 0.1, 25));
+    let problem = parsed(&plates([2, 1], &json!("full"), 0.1, 50));
     let motion = simulate(&problem, &problem.start()).expect("runs");
     assert!(
         bases::errors(&problem, &motion.at, &[0])
@@ -141,7 +141,7 @@ fn errors_of_bases_are_estimated() {
 #[test]
 fn a_basis_is_explained() {
     let basis = json!({"reduced": {"modes": 2, "interfaces": ["hinge"], "deflection": 0.01}});
-    let text = explain(&parsed(&plates([2, 1], &basis, 0.02, 5))).text();
+    let text = explain(&parsed(&plates([2, 1], &basis, 0.02, 20))).text();
     for expected in [
         "6 boundary modes, 2 fixed-interface modes",
         "companions",

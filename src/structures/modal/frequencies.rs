@@ -17,6 +17,9 @@ pub(crate) enum Held {
 /// is not positive definite.
 pub(crate) fn frequencies(body: &ModalNumbers<f64>, held: Held) -> Option<Vec<f64>> {
     let m = body.modes();
+    if m == 0 {
+        return Some(Vec::new());
+    }
     let mut mass = DMatrix::from_row_slice(m, m, &body.elastic_mass());
     if held == Held::Nothing {
         // The rigid motion follows that of the coordinates: M_ee − M_er M_rr⁻¹ M_re.
