@@ -7,25 +7,16 @@ use std::fmt::Write;
 
 /// The table of estimated errors.
 pub(crate) fn table(problem: &Problem, found: &[error::FunctionError]) -> String {
-    let names = |all: &mut dyn Iterator<Item = &String>| {
-        let longest = all.map(|name| name.chars().count()).max();
-        longest.unwrap_or(0).max(9)
-    };
-    let f_width = names(&mut problem.function_names.iter());
-    let v_width = names(&mut problem.variables.iter().map(|v| &v.name));
+    let f_width = width(problem.function_names.iter());
+    let v_width = width(problem.variables.iter().map(|v| &v.name));
     let mut text = format!(
         "estimated discretisation errors\n{:f_width$}  {:v_width$}  {:>16}  {:>9}  {:>9}\n",
         "function", "variable", "value", "error", "relative"
     );
     let mut line = |function: &str, variable: &str, of: &error::Estimate| {
-        let relative = of.error / of.value.abs();
-        let relative = match relative.is_finite() && !is_rounding(of.error, of.value) {
-            true => format!("{relative:.1e}"),
-            false => "-".into(),
-        };
-        let error = match is_rounding(of.error, of.value) {
-            true => "rounding".into(),
-            false => format!("{:.1e}", of.error),
+        let (error, relative) = match is_rounding(of.error, of.value) {
+            true => ("rounding".into(), "-".into()),
+            false => (format!("{:.1e}", of.error), relative(of.error, of.value)),
         };
         let _ = writeln!(
             text,
@@ -46,28 +37,34 @@ pub(crate) fn table(problem: &Problem, found: &[error::FunctionError]) -> String
     text
 }
 
+/// Width of a column of names.
+fn width<'a>(names: impl Iterator<Item = &'a String>) -> usize {
+    let longest = names.map(|name| name.chars().count()).max();
+    longest.unwrap_or(0).max(9)
+}
+
+/// An error as a part of its value, or a dash.
+fn relative(error: f64, value: f64) -> String {
+    let part = error / value.abs();
+    match part.is_finite() {
+        true => format!("{part:.1e}"),
+        false => "-".into(),
+    }
+}
+
 /// The table of the estimated errors of reduced bases; empty if there are none.
 pub(crate) fn of_bases(problem: &Problem, found: &[bases::BasisError]) -> String {
     if found.is_empty() {
         return String::new();
     }
-    let names = problem.function_names.iter();
-    let width = names
-        .map(|name| name.chars().count())
-        .max()
-        .unwrap_or(0)
-        .max(9);
+    let width = width(problem.function_names.iter());
     let mut text = format!(
         "estimated errors of reduced bases, by richer ones of this design\n{:width$}  {:>16}  {:>16}  {:>9}  {:>9}\n",
         "function", "value", "richer basis", "error", "relative"
     );
     for found in found {
         let name = &problem.function_names[found.function];
-        let relative = found.error() / found.value.abs();
-        let relative = match relative.is_finite() {
-            true => format!("{relative:.1e}"),
-            false => "-".into(),
-        };
+        let relative = relative(found.error(), found.value);
         let _ = writeln!(
             text,
             "{name:width$}  {:>16.9e}  {:>16.9e}  {:>9.1e}  {relative:>9}",

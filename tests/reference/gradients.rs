@@ -2,24 +2,49 @@
 
 use flexbody::driver::check;
 use flexbody::problem::Problem;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Asserts that every derivative of every function at the start agrees with the complex step to 1e-12 of the
 /// function's gradient, whose entries are multiplied by their variables. `context` names the case.
 pub fn gradients_are_exact(problem: &Problem, context: &Value) {
-    let found = check(problem, &problem.start()).expect("runs");
+    let sizes: Vec<f64> = problem.variables.iter().map(|v| v.start.abs()).collect();
+    gradients_agree(problem, (&problem.start(), &sizes), context);
+}
+
+/// The same at the design `x`, for entries multiplied by the scales of their variables.
+pub fn scaled_gradients_are_exact(problem: &Problem, x: &[f64], context: &Value) {
+    let scales: Vec<f64> = problem.variables.iter().map(|v| v.scale).collect();
+    gradients_agree(problem, (x, &scales), context);
+}
+
+fn gradients_agree(problem: &Problem, (x, sizes): (&[f64], &[f64]), context: &Value) {
+    let found = check(problem, x).unwrap_or_else(|failure| panic!("{failure}"));
     let (functions, variables) = (problem.function_names.len(), problem.variables.len());
     assert_eq!(found.len(), functions * variables);
     for f in 0..functions {
-        let scaled = |i: usize, x: f64| x * problem.variables[i].start.abs();
         let of: Vec<_> = found.iter().filter(|d| d.function == f).collect();
         let gradient = of
             .iter()
-            .fold(0.0_f64, |m, d| m.hypot(scaled(d.variable, d.complex_step)));
+            .fold(0.0_f64, |m, d| m.hypot(d.complex_step * sizes[d.variable]));
         assert!(gradient > 0.0);
         for d in of {
-            let off = scaled(d.variable, d.adjoint - d.complex_step).abs() / gradient;
+            let off = ((d.adjoint - d.complex_step) * sizes[d.variable]).abs() / gradient;
             assert!(off <= 1e-12, "{context} {d:?}: {off:e}");
         }
     }
+}
+
+/// Makes the plates of a document thick and soft, so that all derivatives are of one size, with five variables:
+/// two bands of the second, the first, modulus and density.
+pub fn thick_and_soft(document: &mut Value) {
+    document["bodies"]["second"]["elements"]["structure"]["thickness"] =
+        json!({"per": "band", "along": "x", "value": 0.04});
+    document["bodies"]["first"]["elements"]["structure"]["thickness"] = json!(0.05);
+    document["materials"]["aluminium"]["young"] = json!(7e7);
+    document["variables"] = json!({
+        "bands": {"path": "/bodies/second/elements/structure/thickness/value", "lower": 0.01, "upper": 0.1},
+        "thickness": {"path": "/bodies/first/elements/structure/thickness", "lower": 0.01, "upper": 0.1},
+        "modulus": {"path": "/materials/aluminium/young", "lower": 1e7, "upper": 1e8},
+        "density": {"path": "/materials/aluminium/density", "lower": 2000, "upper": 3000},
+    });
 }

@@ -123,7 +123,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             made: (Stage::zero(numbering), [S::zero(); 2]),
             contraction: 1.0,
             unseen: 0,
-            broyden: (!S::INFINITESIMAL && flexible::has_nodes(model)).then(Broyden::new),
+            broyden: (!S::INFINITESIMAL && flexible::has_shells(model)).then(Broyden::new),
             pace: Pace::default(),
             scale: SceneScale::of(model),
             residual: vec![S::zero(); length],

@@ -124,7 +124,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                 (SparseMatrix::new(pattern), factors)
             },
             factored: None,
-            broyden: flexible::has_nodes(model).then(Broyden::new),
+            broyden: flexible::has_shells(model).then(Broyden::new),
             pace: Pace::default(),
             scale: SceneScale::of(model),
             residuals: vec![vec![S::zero(); n]; scheme.stages()],

@@ -7,6 +7,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, OnceLock};
 
+/// Why no design variable moves the settings of a basis.
+const FROZEN: &str = "the basis is that of the design in the file, and no design changes it";
+
 /// Shells that move: a structure in the axes of the body, in which it deforms.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -74,7 +77,7 @@ pub(crate) struct ReducedKeys {
     #[schemars(extend(
         "unit" = "Hz",
         "exclusiveMinimum" = 0,
-        "design_variable" = "the basis is that of the design in the file, and no design changes it"
+        "design_variable" = FROZEN
     ))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub highest_frequency: Option<f64>,
@@ -88,7 +91,7 @@ pub(crate) struct ReducedKeys {
         "unit" = "1",
         "minimum" = 0,
         "maximum" = 0.2,
-        "design_variable" = "the basis is that of the design in the file, and no design changes it"
+        "design_variable" = FROZEN
     ))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deflection: Option<f64>,
@@ -98,7 +101,7 @@ pub(crate) struct ReducedKeys {
         "unit" = "1",
         "exclusiveMinimum" = 0,
         "maximum" = 1,
-        "design_variable" = "the basis is that of the design in the file, and no design changes it"
+        "design_variable" = FROZEN
     ))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,

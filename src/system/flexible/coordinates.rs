@@ -24,13 +24,9 @@ fn is_of_shells<S: Scalar>(body: &FlexibleBody<S>) -> bool {
     }
 }
 
-/// Whether some body has all nodes of finite elements as coordinates.
-pub(crate) fn has_nodes<S: Scalar>(model: &Model<S>) -> bool {
-    let finite = |body: &FlexibleBody<S>| match body.form {
-        Form::Modal(_) => false,
-        Form::Finite(_) => true,
-    };
-    model.flexible.iter().any(finite)
+/// Whether some body has shells.
+pub(crate) fn has_shells<S: Scalar>(model: &Model<S>) -> bool {
+    model.flexible.iter().any(is_of_shells)
 }
 
 /// Unknowns of the coordinates of shells, of nodes in an order of little fill.

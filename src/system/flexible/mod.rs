@@ -6,7 +6,7 @@ mod displacement;
 mod form;
 mod held;
 
-pub(crate) use coordinates::{add_coordinates, coordinates, has_nodes, nodal_unknowns, rates};
+pub(crate) use coordinates::{add_coordinates, coordinates, has_shells, nodal_unknowns, rates};
 pub(crate) use displacement::{add_displacement, emit_displacement, pull_displacement};
 pub(crate) use form::alone;
 pub(crate) use held::{
