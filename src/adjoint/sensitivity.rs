@@ -2,8 +2,8 @@
 //! and its derivatives in the parameters so far.
 
 use super::compensated::Compensated;
-use crate::functions::evaluate::Linearised;
-use crate::functions::measure::{Snapshot, SnapshotCotangent};
+use crate::functions::linearised::Linearised;
+use crate::functions::snapshot::{Snapshot, SnapshotCotangent};
 use crate::functions::{JointMultipliers, Rows, Scene};
 use crate::integrate::Trajectory;
 use crate::integrate::{IntegrationFailure, WorkCounts};

@@ -1,6 +1,6 @@
 //! Where joints, rods, springs and arms are in a picture of the motion.
 
-use crate::functions::measure::Snapshot;
+use crate::functions::snapshot::Snapshot;
 use crate::integrate::Trajectory;
 use crate::math::Vec3;
 use crate::model::{JointKind, LoadKind, Model};

@@ -3,7 +3,7 @@
 use super::shells;
 use super::simulate::Simulation;
 use crate::functions::instant::DeformationKind;
-use crate::functions::measure::Snapshot;
+use crate::functions::snapshot::Snapshot;
 use crate::functions::{Function, Instant, Reduction};
 use crate::math::Vec3;
 use crate::model::Model;

@@ -8,7 +8,7 @@ use super::shells;
 use super::simulate::Simulation;
 use super::statics::figures as of_structures;
 use crate::functions::evaluate::sample;
-use crate::functions::measure::Snapshot;
+use crate::functions::snapshot::Snapshot;
 use crate::functions::turning::turns;
 use crate::functions::{Function, Instant, Reduction};
 use crate::math::Vec3;

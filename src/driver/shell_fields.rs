@@ -2,7 +2,7 @@
 
 use super::shells;
 use super::simulate::Simulation;
-use crate::functions::measure::Snapshot;
+use crate::functions::snapshot::Snapshot;
 use crate::math::Vec3;
 use crate::model::flexible::FlexibleBody;
 use crate::report::vtu::{Fields, pvd, vtu};

@@ -147,7 +147,9 @@ fn moved(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>) -
             )
         })
     };
-    model.bodies.iter().enumerate().filter_map(one).collect()
+    let of_the_file = |(i, _): &(usize, &RigidBody<f64>)| !model.is_internal(*i);
+    let bodies = model.bodies.iter().enumerate().filter(of_the_file);
+    bodies.filter_map(one).collect()
 }
 
 fn turn_angle(turn: &crate::math::Mat3<f64>) -> f64 {
@@ -174,7 +176,7 @@ fn changed(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>)
     }
     let one = |(i, (given, start)): (usize, (Velocities, Velocities))| {
         let ((v, omega), (v_start, omega_start)) = (given, start);
-        if v.norm() == 0.0 && omega.norm() == 0.0 {
+        if v.norm() == 0.0 && omega.norm() == 0.0 || model.is_internal(i) {
             return None;
         }
         let (by, turning) = ((v_start - v).norm(), (omega_start - omega).norm());

@@ -4,7 +4,7 @@ use super::figures::NamedFile;
 use super::simulate::Simulation;
 use crate::functions::Function;
 use crate::functions::evaluate::sample;
-use crate::functions::measure::Snapshot;
+use crate::functions::snapshot::Snapshot;
 use crate::functions::turning::turns;
 use crate::math::Vec3;
 use crate::model::{FlexibleBody, Form};

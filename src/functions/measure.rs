@@ -1,116 +1,19 @@
 //! Values of instant quantities, and their exact derivatives.
 
-use super::flight::{self, Flight};
-use super::instant::{EnergyPart, Gate, Instant, Projectile};
-use super::multipliers::Rows;
+use super::instant::{Instant, Projectile};
+use super::snapshot::{Snapshot, SnapshotCotangent};
 use super::turning::Rotation;
-use crate::integrate::Trajectory;
+use super::{energy, flight};
 use crate::math::soft_max::SoftMax;
 use crate::math::{Scalar, Vec3};
-use crate::model::Model;
 use crate::system::bodies::add6;
 use crate::system::joints::JointCotangent;
 use crate::system::loads::springs;
 use crate::system::marker::{self, MarkerKinematics};
-use crate::system::{BodyMotion, InMotion, Numbering, flexible, loads, measures};
+use crate::system::{flexible, measures};
 
 /// A point is at rest below this speed \[m/s\]. There the derivative of its speed is set to zero.
 const REST: f64 = 1e-25;
-
-/// A model at one instant.
-#[derive(Clone, Copy)]
-pub(crate) struct Snapshot<'a, S> {
-    /// The model.
-    pub model: &'a Model<S>,
-    /// Its numbering.
-    pub numbering: &'a Numbering,
-    /// Positions; one entry per position number.
-    pub q: &'a [S],
-    /// Velocities; one entry per velocity number.
-    pub v: &'a [S],
-    /// Accelerations; one entry per velocity number.
-    pub a: &'a [S],
-    /// Multipliers of the rows of the joint whose reaction is measured, if any.
-    pub joint: Rows<'a, S>,
-    /// Time \[s\].
-    pub time: S,
-}
-
-impl<'a, S: Scalar> Snapshot<'a, S> {
-    /// Instant k of a run.
-    pub(crate) fn of(model: &'a Model<S>, run: &'a Trajectory<S>, k: usize) -> Self {
-        Self {
-            model,
-            numbering: &run.numbering,
-            q: run.q(k),
-            v: run.v(k),
-            a: run.a(k),
-            joint: Rows::none(),
-            time: run.time(k),
-        }
-    }
-
-    /// Motion of a body.
-    pub(crate) fn motion(&self, body: usize) -> BodyMotion<S> {
-        let a = &self.a[self.numbering.velocity(body)..];
-        BodyMotion::of(self.numbering, body, self.q, self.v).accelerated(a)
-    }
-
-    /// Motions of all bodies.
-    pub(crate) fn motions(&self) -> Vec<BodyMotion<S>> {
-        let mut motions = Vec::with_capacity(self.numbering.bodies());
-        BodyMotion::all(self.numbering, self.q, self.v, &mut motions);
-        motions
-    }
-
-    /// The model with these motions.
-    fn in_motion<'b>(&'b self, motions: &'b [BodyMotion<S>]) -> InMotion<'b, S> {
-        InMotion::new(self.model, self.numbering, motions, self.time)
-    }
-
-    /// Elastic coordinates of a flexible body.
-    fn coordinates(&self, flexible: usize) -> Vec<S> {
-        flexible::coordinates(&self.model.flexible[flexible], &self.motions())
-    }
-
-    /// The flight of a projectile that is released now.
-    pub(crate) fn flight(&self, projectile: &Projectile<S>) -> Flight<S> {
-        Flight::new(
-            projectile,
-            &self.motion(projectile.body),
-            &self.model.gravity,
-        )
-    }
-
-    /// A rotation plus `turns`, a multiple of 2π \[rad\].
-    fn rotation(&self, rotation: &Rotation<S>, turns: f64) -> S {
-        rotation.angle(self.numbering, self.q) + turns
-    }
-
-    /// Openness of a gate; 1 without a gate.
-    pub(crate) fn openness(&self, gate: &Option<Gate<S>>, turns: f64) -> S {
-        gate.as_ref().map_or(S::one(), |gate| {
-            gate.openness(self.rotation(&gate.rotation, turns))
-        })
-    }
-}
-
-/// Cotangents of a snapshot, in tangent positions, velocities and accelerations (all in velocity
-/// numbering).
-pub(crate) struct SnapshotCotangent<'a> {
-    /// Of the tangent positions.
-    pub y: &'a mut [f64],
-    /// Of the velocities.
-    pub v: &'a mut [f64],
-    /// Of the accelerations.
-    pub a: &'a mut [f64],
-    /// Of the multipliers.
-    pub lambda: &'a mut [f64],
-    /// Of the time, through the motions that drives prescribe.
-    pub time: &'a mut f64,
-    /// Of the model's parameters.
-    pub model: &'a mut Model<f64>,
-}
 
 impl<S: Scalar> Instant<S> {
     /// The rotation whose whole turns must be counted, if any.
@@ -159,8 +62,8 @@ impl<S: Scalar> Instant<S> {
                 let motion = at.motion(*body);
                 direction.dot(&(motion.rotation * motion.omega))
             }
-            Instant::Momentum { direction } => direction.dot(&momentum(at)),
-            Instant::Energy(part) => energy(at, *part),
+            Instant::Momentum { direction } => direction.dot(&energy::momentum(at)),
+            Instant::Energy(part) => energy::energy(at, *part),
             Instant::StrainEnergy(body) => {
                 flexible::strain_energy(&at.model.flexible[*body], &at.motions())
             }
@@ -198,38 +101,6 @@ impl<S: Scalar> Instant<S> {
             }
         }
     }
-}
-
-/// Linear momentum of the model in a snapshot, ground axes \[kg m/s\].
-fn momentum<S: Scalar>(at: &Snapshot<S>) -> Vec3<S> {
-    let motions = at.motions();
-    let bodies = at.model.bodies.iter().zip(&motions);
-    let own = flexible::held(at.model, &motions).momentum;
-    bodies.fold(own, |sum, (body, motion)| sum + motion.velocity * body.mass)
-}
-
-/// Energy of the model in a snapshot \[J\].
-pub(crate) fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
-    let mut sum = S::zero();
-    let motions = at.motions();
-    for (body, motion) in at.model.bodies.iter().zip(&motions) {
-        if part != EnergyPart::Potential {
-            let linear = motion.velocity.dot(&motion.velocity) * body.mass;
-            let angular = motion.omega.dot(&(body.inertia * motion.omega));
-            sum += (linear + angular) * 0.5;
-        }
-        if part != EnergyPart::Kinetic {
-            sum -= at.model.gravity.dot(&motion.position) * body.mass;
-        }
-    }
-    let held = flexible::held(at.model, &motions);
-    if part != EnergyPart::Potential {
-        sum += held.kinetic;
-    }
-    if part != EnergyPart::Kinetic {
-        sum += held.potential + loads::potential(at.model, &motions);
-    }
-    sum
 }
 
 impl Instant<f64> {
@@ -334,17 +205,10 @@ impl Instant<f64> {
                     direction: by_direction,
                 },
             ) => {
-                *by_direction += momentum(at) * weight;
-                let (motions, along) = (at.motions(), direction * weight);
-                for (i, (body, motion)) in at.model.bodies.iter().zip(&motions).enumerate() {
-                    let o = at.numbering.velocity(i);
-                    add6(&mut out.v[o..], &(along * body.mass), &ZERO);
-                    out.model.bodies[i].mass += along.dot(&motion.velocity);
-                }
-                let of = (at.model, at.numbering);
-                flexible::pull_momentum(of, &motions, &along, (out.y, out.v), out.model);
+                *by_direction += energy::momentum(at) * weight;
+                energy::pull_momentum(at, &(direction * weight), out);
             }
-            (Instant::Energy(part), _) => pull_energy(at, *part, weight, out),
+            (Instant::Energy(part), _) => energy::pull_energy(at, *part, weight, out),
             (Instant::StrainEnergy(body), _) => {
                 let of = (at.model, at.numbering);
                 let part = (*body, weight);
@@ -511,36 +375,4 @@ pub(crate) fn pull_flight(
     own.point += by.marker.vector;
     own.direction += by.direction;
     out.model.gravity += by.gravity;
-}
-
-fn pull_energy(at: &Snapshot<f64>, part: EnergyPart, weight: f64, out: &mut SnapshotCotangent) {
-    let gravity = at.model.gravity;
-    let motions = at.motions();
-    for (i, (body, motion)) in at.model.bodies.iter().zip(&motions).enumerate() {
-        let o = at.numbering.velocity(i);
-        let own = &mut out.model.bodies[i];
-        if part != EnergyPart::Potential {
-            let (velocity, omega) = (&motion.velocity, &motion.omega);
-            let (momentum, spin) = (velocity * body.mass, body.inertia * omega);
-            add6(&mut out.v[o..], &(momentum * weight), &(spin * weight));
-            own.mass += 0.5 * weight * velocity.norm_squared();
-            own.inertia += omega * omega.transpose() * (0.5 * weight);
-        }
-        if part != EnergyPart::Kinetic {
-            add6(&mut out.y[o..], &(gravity * (-weight * body.mass)), &ZERO);
-            own.mass -= weight * gravity.dot(&motion.position);
-            out.model.gravity -= motion.position * (weight * body.mass);
-        }
-    }
-    if part != EnergyPart::Kinetic {
-        let (model, numbering) = (at.model, at.numbering);
-        loads::pull_potential(model, numbering, &motions, weight, out.y, out.model);
-    }
-    let parts = match part {
-        EnergyPart::Kinetic => [weight, 0.0],
-        EnergyPart::Potential => [0.0, weight],
-        EnergyPart::Total => [weight, weight],
-    };
-    let of = (at.model, at.numbering);
-    flexible::pull_energies(of, &motions, parts, (out.y, out.v), out.model);
 }

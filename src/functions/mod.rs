@@ -1,15 +1,18 @@
 //! Functions of interest: quantities at an instant, and their reduction over a run to a number.
 
+mod energy;
 pub(crate) mod evaluate;
 pub(crate) mod flight;
 pub(crate) mod function;
 pub(crate) mod instant;
-pub(crate) mod measure;
+pub(crate) mod linearised;
+mod measure;
 mod multipliers;
 pub(crate) mod peak;
 pub(crate) mod resolution;
 pub(crate) mod rest;
 pub(crate) mod scene;
+pub(crate) mod snapshot;
 pub(crate) mod stations;
 pub(crate) mod turning;
 

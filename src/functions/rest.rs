@@ -2,7 +2,7 @@
 
 use super::function::{Function, Reduction};
 use super::instant::Instant;
-use super::measure::Snapshot;
+use super::snapshot::Snapshot;
 use crate::integrate::Trajectory;
 use crate::math::Vec3;
 use crate::model::Model;

@@ -196,6 +196,32 @@ impl<S: Scalar> Trajectory<S> {
     }
 }
 
+impl Trajectory<f64> {
+    /// This run with the states `[q, v, a]` of another model, numbered by `numbering`. It has neither
+    /// multipliers nor data for an adjoint.
+    pub(crate) fn with_states(&self, numbering: Numbering, [q, v, a]: [Vec<f64>; 3]) -> Self {
+        Self {
+            method: self.method,
+            duration: self.duration,
+            grid: self.grid.clone(),
+            instants: self.instants.clone(),
+            places: self.places.clone(),
+            weights: self.weights.clone(),
+            has_cells: self.has_cells,
+            shown: self.shown.clone(),
+            q,
+            v,
+            a,
+            lambda: Vec::new(),
+            initial: self.initial.clone(),
+            step_error: self.step_error,
+            tape: Tape::Explicit(explicit::Tape::none(&numbering)),
+            counts: self.counts,
+            numbering,
+        }
+    }
+}
+
 impl Trajectory<Complex64> {
     /// The real part of a complex run.
     pub(crate) fn real(&self) -> Trajectory<f64> {

@@ -13,8 +13,7 @@
 //! motion follows from that of the host after a run.
 
 use crate::functions::{Function, Instant, Scene};
-use crate::integrate::explicit;
-use crate::integrate::{Tape, Trajectory};
+use crate::integrate::Trajectory;
 use crate::math::rotation::{self, Quat};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::{Axes, Joint, JointFrame, LoadKind, Mobility, Model};
@@ -272,25 +271,7 @@ pub(super) fn expand(
             }
         }
     }
-    Trajectory {
-        method: run.method,
-        duration: run.duration,
-        grid: run.grid.clone(),
-        instants: run.instants.clone(),
-        places: run.places.clone(),
-        weights: run.weights.clone(),
-        shown: run.shown.clone(),
-        has_cells: run.has_cells,
-        q,
-        v,
-        a,
-        lambda: Vec::new(),
-        initial: run.initial.clone(),
-        step_error: run.step_error,
-        tape: Tape::Explicit(explicit::Tape::none(&numbering)),
-        counts: run.counts,
-        numbering,
-    }
+    run.with_states(numbering, [q, v, a])
 }
 
 /// Bodies whose rotation a function of the scene observes.

@@ -8,8 +8,7 @@
 use super::welded::Groups;
 use crate::functions::function::Part;
 use crate::functions::{Function, Instant, Scene};
-use crate::integrate::explicit;
-use crate::integrate::{Tape, Trajectory};
+use crate::integrate::Trajectory;
 use crate::math::Scalar;
 use crate::model::{Load, LoadKind, Model};
 use crate::system::{Numbering, placement};
@@ -150,25 +149,7 @@ impl Seen {
                 a[to..to + 6].copy_from_slice(&run.a(k)[from..from + 6]);
             }
         }
-        Trajectory {
-            method: run.method,
-            duration: run.duration,
-            grid: run.grid.clone(),
-            instants: run.instants.clone(),
-            places: run.places.clone(),
-            weights: run.weights.clone(),
-            shown: run.shown.clone(),
-            has_cells: run.has_cells,
-            q,
-            v,
-            a,
-            lambda: Vec::new(),
-            initial: run.initial.clone(),
-            step_error: run.step_error,
-            tape: Tape::Explicit(explicit::Tape::none(&numbering)),
-            counts: run.counts,
-            numbering,
-        }
+        run.with_states(numbering, [q, v, a])
     }
 }
 

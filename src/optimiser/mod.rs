@@ -7,6 +7,7 @@ mod convergence;
 mod derivatives;
 mod doubts;
 mod ending;
+mod evaluations;
 mod feasibility;
 mod functions;
 mod interior_point;

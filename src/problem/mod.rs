@@ -16,6 +16,7 @@ mod finding;
 mod first_scene;
 mod flexible;
 mod focus;
+mod functions;
 mod hinge;
 mod joints;
 mod loads;

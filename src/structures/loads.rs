@@ -5,6 +5,7 @@
 
 use super::beam::BeamMotion;
 use super::mesh::UnknownSet;
+use super::shell::Motion;
 use super::shell::basis::{GAUSS_POINTS, TABLES};
 use super::state::{Configuration, Cotangent, NodalMotion};
 use crate::math::{Scalar, Vec3, scalar::length};
@@ -266,6 +267,12 @@ fn add_pressure_transpose<S: Scalar>(
     }
 }
 
+/// Displacement of an element of the shape functions `n` \[m\].
+fn displacement<S: Scalar>(motion: &Motion<S>, n: &[f64]) -> Vec3<S> {
+    let nodes = motion.displacement.iter().zip(n);
+    nodes.fold(Vec3::zeros(), |u, (of_node, n)| u + of_node * S::from(*n))
+}
+
 fn add_area_transpose<S: Scalar>(
     configuration: &Configuration<S>,
     shell: usize,
@@ -280,9 +287,7 @@ fn add_area_transpose<S: Scalar>(
     let mut bar = super::shell::ShellCotangent::zeros();
     for k in 0..GAUSS_POINTS {
         let basis = &TABLES.gauss[k];
-        let u = (0..element.len()).fold(Vec3::zeros(), |u, a| {
-            u + motion.displacement[a] * S::from(basis.n[a])
-        });
+        let u = displacement(&motion, &basis.n);
         let area = shape.area(k);
         *f_to += u * area;
         shape.add_area_transpose(k, f.dot(&u), &mut bar.geometry);
@@ -308,9 +313,7 @@ fn add_gravity_transpose<S: Scalar>(
     let mut bar = super::shell::ShellCotangent::zeros();
     for k in 0..GAUSS_POINTS {
         let basis = &TABLES.gauss[k];
-        let u = (0..element.len()).fold(Vec3::zeros(), |u, a| {
-            u + motion.displacement[a] * S::from(basis.n[a])
-        });
+        let u = displacement(&motion, &basis.n);
         let area = shape.area(k);
         let mass = shape.mass_per_area();
         *g_to += u * (area * mass);

@@ -4,7 +4,7 @@
 use crate::tests::reference;
 
 use flexbody::functions::instant::DeformationKind;
-use flexbody::functions::measure::{Snapshot, SnapshotCotangent};
+use flexbody::functions::snapshot::{Snapshot, SnapshotCotangent};
 use flexbody::functions::{EnergyPart, Instant, Rows};
 use flexbody::integrate::implicit::ggl::{Equations, StepState};
 use flexbody::linalg::SparseMatrix;

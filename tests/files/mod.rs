@@ -10,6 +10,7 @@ mod flexible_families;
 mod flexible_scenes;
 mod layers;
 mod modal;
+mod modal_faults;
 mod modal_scenes;
 mod problems_check;
 mod readme;

@@ -370,38 +370,9 @@ impl QuasiNewton {
             return None;
         }
         let base = self.base();
-        let (n, pairs) = (self.n, &self.pairs);
-        let compact = self.cached.compact.get_or_insert_with(|| {
-            let k = pairs.len();
-            let mut s = DMatrix::zeros(n, k);
-            let mut u = DMatrix::zeros(n, 2 * k);
-            for (p, pair) in pairs.iter().enumerate() {
-                s.set_column(p, &pair.s);
-                u.set_column(p, &pair.s.component_mul(&base));
-                u.column_mut(k + p).copy_from(&pair.y);
-            }
-            let products = s.transpose() * &u;
-            let mut middle = DMatrix::zeros(2 * k, 2 * k);
-            for i in 0..k {
-                for j in 0..k {
-                    middle[(i, j)] = products[(i, j)];
-                    if i > j {
-                        let l = products[(i, k + j)];
-                        middle[(i, k + j)] = l;
-                        middle[(k + j, i)] = l;
-                    }
-                }
-                middle[(k + i, k + i)] = -products[(i, k + i)];
-            }
-            let factors = middle.clone().lu();
-            Compact {
-                base,
-                u,
-                middle,
-                factors,
-            }
-        });
-        Some(compact)
+        let pairs = self.pairs.iter().map(|pair| (&pair.s, &pair.y));
+        let compact = &mut self.cached.compact;
+        Some(compact.get_or_insert_with(|| Compact::new(base, pairs)))
     }
 
     /// B + diag(`d`) as a matrix.
@@ -422,15 +393,7 @@ impl QuasiNewton {
         let Some(compact) = self.compact() else {
             return Some(force / sigma);
         };
-        // (D − U M⁻¹ Uᵀ)⁻¹ = D⁻¹ + D⁻¹ U (M − Uᵀ D⁻¹ U)⁻¹ Uᵀ D⁻¹
-        let (u, middle) = (&compact.u, &compact.middle);
-        let mut divided = u.clone();
-        for mut column in divided.column_iter_mut() {
-            column.component_div_assign(&compact.base);
-        }
-        let inner = (middle - u.transpose() * &divided).lu();
-        let small = inner.solve(&divided.tr_mul(force))?;
-        Some(force.component_div(&compact.base) + divided * small)
+        compact.solve(force)
     }
 }
 

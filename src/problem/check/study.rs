@@ -4,10 +4,11 @@ use super::Checker;
 use crate::math::Vec3;
 use crate::model::JointKind;
 use crate::problem::finding::Finding;
+use crate::problem::functions::released;
 use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join};
 use crate::problem::quantity::values;
-use crate::problem::scene::{GRAVITY, released};
+use crate::problem::scene::GRAVITY;
 use crate::problem::schema::elements::ElementBasis;
 use crate::problem::schema::functions::{
     Clearance, Component, Function, Gate, Instant, OfMotion, Range,

@@ -1,0 +1,172 @@
+//! Evaluations of the scaled program. They are counted, checked and limited, and every failure is
+//! recorded.
+
+use std::time::Instant;
+
+use nalgebra::DVector;
+
+use crate::optimiser::linear::jacobian::Jacobian;
+use crate::optimiser::nlp::{
+    Evaluation, EvaluationFailure, Gradients, fault_of_evaluation, fault_of_gradients,
+    length_of_evaluation, length_of_gradients,
+};
+use crate::optimiser::outcome::{FailedDesign, Status};
+use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
+
+/// Largest number of recorded designs with a failed evaluation.
+const FAILED_DESIGNS_KEPT: usize = 100;
+
+impl Program<'_> {
+    /// Values of the scaled functions at `x`.
+    pub(crate) fn evaluate(&mut self, x: &DVector<f64>) -> Result<Point, EarlyExit> {
+        self.check_limits()?;
+        let full = self.to_user(x);
+        let clock = Instant::now();
+        let mut result = self.nlp.evaluate(&full);
+        self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
+        self.counts.evaluations += 1;
+        if let Ok(e) = &result
+            && let Some(what) = length_of_evaluation(self.nlp, e)
+        {
+            return Err(EarlyExit::Halt(Status::IllPosed { what }));
+        }
+        if let Ok(e) = &result
+            && let Some(fault) = fault_of_evaluation(self.nlp, &self.rows, e)
+        {
+            result = Err(fault);
+        }
+        let Evaluation {
+            objective,
+            constraints,
+        } = result.map_err(|failure| self.record(full, failure))?;
+        let c = self
+            .rows
+            .iter()
+            .map(|&j| constraints[j] * self.scaling.constraints[j]);
+        let c = DVector::from_iterator(self.rows.len(), c);
+        Ok(Point {
+            x: x.clone(),
+            f: objective * self.scaling.objective,
+            c,
+        })
+    }
+
+    /// Announces points whose values may be requested next.
+    pub(crate) fn foresee(&mut self, points: impl Iterator<Item = DVector<f64>>) {
+        let points: Vec<Vec<f64>> = points.map(|x| self.to_user(&x)).collect();
+        let clock = Instant::now();
+        self.nlp.foresee(&points);
+        self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
+    }
+
+    /// Derivatives of the scaled functions at `x`.
+    pub(crate) fn gradients(&mut self, x: &DVector<f64>) -> Result<Derivatives, EarlyExit> {
+        let full = self.to_user(x);
+        let clock = Instant::now();
+        let mut result = self.nlp.gradients(&full);
+        self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
+        self.counts.gradients += 1;
+        if let Ok(g) = &result
+            && let Some(what) = length_of_gradients(self.nlp, g)
+        {
+            return Err(EarlyExit::Halt(Status::IllPosed { what }));
+        }
+        if let Ok(g) = &result
+            && let Some(fault) = fault_of_gradients(self.nlp, &self.rows, g)
+        {
+            result = Err(fault);
+        }
+        let Gradients {
+            objective,
+            jacobian,
+        } = result.map_err(|failure| self.record(full.clone(), failure))?;
+        let (free, rows, scaling) = (&self.free, &self.rows, &self.scaling);
+        let g = free
+            .iter()
+            .map(|&i| objective[i] * scaling.objective * scaling.variables[i]);
+        let mut g = DVector::from_iterator(free.len(), g);
+        // The place of each variable among the free or the fixed ones.
+        let mut place = vec![0; full.len()];
+        let mut is_free = vec![false; full.len()];
+        for (k, &i) in free.iter().enumerate() {
+            (place[i], is_free[i]) = (k, true);
+        }
+        for (k, &i) in self.fixed.iter().enumerate() {
+            place[i] = k;
+        }
+        let part = |of_free: bool, columns: usize| {
+            let row = |&j: &usize| {
+                let entries = jacobian.row(j).filter(|&(i, _)| is_free[i] == of_free);
+                let unit = |i: usize| if of_free { scaling.variables[i] } else { 1.0 };
+                let scaled = |(i, v): (usize, f64)| {
+                    let factor = scaling.constraints[j];
+                    (place[i], v * factor * unit(i))
+                };
+                entries.map(scaled).collect()
+            };
+            Jacobian::from_rows(columns, rows.iter().map(row))
+        };
+        let mut a = part(true, free.len());
+        let fixed_a = part(false, self.fixed.len());
+        let norm = free
+            .iter()
+            .map(|&i| (objective[i] / self.units_judged[i]).abs())
+            .fold(0.0, f64::max);
+        let reach = DVector::from_fn(free.len(), |k, _| {
+            let width = self.upper[k] - self.lower[k];
+            width.min(x[k].abs().max(1.0))
+        });
+        let all: Vec<usize> = (0..free.len()).collect();
+        drop_rounding(&all, g.as_mut_slice(), &reach);
+        for r in 0..rows.len() {
+            let (index, row) = a.row_mut(r);
+            drop_rounding(index, row, &reach);
+        }
+        let fixed = &self.fixed;
+        let fixed_g = fixed.iter().map(|&i| objective[i] * scaling.objective);
+        let slopes = Derivatives {
+            fixed_g: DVector::from_iterator(fixed.len(), fixed_g),
+            fixed_a,
+            g,
+            a,
+        };
+        self.measure_rows(x, &slopes);
+        if self.gradient_norms.last() != Some(&norm) {
+            self.gradient_norms.push(norm);
+        }
+        Ok(slopes)
+    }
+
+    fn record(&mut self, x: Vec<f64>, failure: EvaluationFailure) -> EarlyExit {
+        self.counts.failures += 1;
+        if self.failed.len() < FAILED_DESIGNS_KEPT {
+            self.failed.push(FailedDesign {
+                x,
+                what: failure.to_string(),
+            });
+        }
+        EarlyExit::Failed(failure)
+    }
+
+    pub(super) fn check_limits(&self) -> Result<(), EarlyExit> {
+        if self.counts.evaluations >= self.allowed.evaluations {
+            return Err(EarlyExit::Halt(Status::EvaluationLimit));
+        }
+        match self.options.max_seconds {
+            Some(limit) if self.seconds() >= limit => Err(EarlyExit::Halt(Status::TimeLimit)),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Sets derivatives to zero that are rounding errors. Over the `reach` of its variable such a
+/// derivative changes the function by less than the rounding of its largest change.
+fn drop_rounding(index: &[usize], slopes: &mut [f64], reach: &DVector<f64>) {
+    let changes = index.iter().zip(slopes.iter());
+    let largest = changes.fold(0.0_f64, |a, (&i, v)| a.max((v * reach[i]).abs()));
+    for (&i, slope) in index.iter().zip(slopes) {
+        if slope.abs() * reach[i] <= f64::EPSILON * largest {
+            *slope = 0.0;
+        }
+    }
+}
