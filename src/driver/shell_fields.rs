@@ -49,6 +49,7 @@ fn fields(at: &Snapshot<f64>) -> Fields {
     let mut fields = Fields::default();
     let (mut displacements, mut velocities) = (Vec::new(), Vec::new());
     let (mut thickness, mut stress, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+    let mut of_beams = Vec::new();
     let motions = at.motions();
     let bodies = at.model.flexible.iter().enumerate();
     let finite = bodies
@@ -71,11 +72,21 @@ fn fields(at: &Snapshot<f64>) -> Fields {
         fields
             .shells
             .extend(elements.map(|element| element.nodes.map(|node| first + node)));
+        let beams = mesh.beams.iter();
+        fields
+            .beams
+            .extend(beams.map(|beam| beam.map(|node| first + node)));
+        of_beams.extend(mesh.beams.iter().map(|_| (i + 1) as f64));
         thickness.extend(&finite.thickness);
         let largest = shells::stresses(finite, &q);
         stress.extend(largest.map(|all| all.into_iter().fold(0.0, f64::max)));
         numbers.extend(mesh.elements.iter().map(|_| (i + 1) as f64));
     }
+    // Shells come first; stress and thickness are theirs.
+    for own in [&mut stress, &mut thickness] {
+        own.resize(fields.shells.len() + fields.beams.len(), 0.0);
+    }
+    numbers.extend(of_beams);
     fields.vectors = vec![
         (
             "displacement against the body's axes [m]".to_owned(),

@@ -10,7 +10,12 @@
 //!
 //! with the unknowns v of an element, of which u are the displacements. A, P, K_b, K_s, b, r and s are
 //! those of the mesh and of Poisson's ratio, and no design changes them.
+//!
+//! Beams and lumped masses are parts with few unknowns each: a part has the numbers of a body of shapes, the shapes
+//! being those of its unknowns. Damping is that of Rayleigh for small motions, with forces that rigid motions do not
+//! have: −α M_ee q̇ and −β Σ k_p ∇e_p ė_p, e_p all strains.
 
+use super::shapes::{ModalInertia, ModalStiffness};
 use crate::math::{Mat3, Vec3, parameters};
 use std::sync::Arc;
 
@@ -40,9 +45,28 @@ pub(crate) struct FiniteElements<S> {
     pub density: Vec<S>,
     /// Non-structural mass per area μ \[kg/m²\].
     pub surface_mass: Vec<S>,
+    /// Beams, then lumped masses, in the order of the mesh.
+    pub parts: Vec<Part<S>>,
+    /// α \[1/s\] and β \[s\]; none if nothing is damped.
+    pub damping: Option<[S; 2]>,
 }
 
-parameters!(struct FiniteElements { mesh; thickness, young, density, surface_mass });
+parameters!(struct FiniteElements { mesh; thickness, young, density, surface_mass, parts, damping });
+
+/// A beam or a lumped mass among the elements of a body.
+#[derive(Clone, Debug)]
+pub(crate) struct Part<S> {
+    /// Mass \[kg\].
+    pub mass: S,
+    /// Σ m_kl X_k X_lᵀ of the undeformed part \[kg m²\].
+    pub second: Mat3<S>,
+    /// Integrals of the shapes of its unknowns.
+    pub inertia: ModalInertia<S>,
+    /// Strain energy; none of a lumped mass.
+    pub stiffness: ModalStiffness<S>,
+}
+
+parameters!(struct Part {; mass, second, inertia, stiffness });
 
 /// What no design changes of the shells of a body.
 #[derive(Clone, Debug)]
@@ -55,6 +79,10 @@ pub(crate) struct ElementMesh {
     pub nodes: Vec<Vec3<f64>>,
     /// Coordinates of the displacements of each node; none where the frame holds them.
     pub displacements: Vec<[Option<usize>; 3]>,
+    /// Coordinates of the unknowns of each part, without those that the frame holds.
+    pub parts: Vec<Vec<usize>>,
+    /// Nodes of the beams, which are the first parts: an end, the middle, the other end.
+    pub beams: Vec<[usize; 3]>,
 }
 
 /// A nine-node shell.

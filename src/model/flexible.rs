@@ -22,8 +22,8 @@
 
 use super::finite::FiniteElements;
 use super::reduced::ReducedShells;
-use crate::math::slices::{add_scaled, dot};
-use crate::math::{Mat3, Scalar, Vec3, parameters};
+pub(crate) use super::shapes::{ModalInertia, ModalStiffness, Quadratic, Strain};
+use crate::math::{Scalar, Vec3, parameters};
 
 /// A flexible body.
 #[derive(Clone, Debug)]
@@ -63,47 +63,6 @@ pub(crate) struct Modal<S> {
     pub damping: Vec<S>,
     /// What a body of shells in a reduced basis has beside them.
     pub shells: Option<ReducedShells<S>>,
-}
-
-/// Integrals of the shapes over the mass.
-#[derive(Clone, Debug)]
-pub(crate) struct ModalInertia<S> {
-    /// p_0 = ∫ X dm \[kg m\].
-    pub centre: Vec3<S>,
-    /// p_I \[kg m, for shapes without unit\].
-    pub static_moments: Vec<Vec3<S>>,
-    /// S_0I = ∫ X X_Iᵀ dm \[kg m²\].
-    pub with_position: Vec<Mat3<S>>,
-    /// S_IJ for J ≥ I, by rows of the upper triangle; S_JI = S_IJᵀ \[kg m²\].
-    pub products: Vec<Mat3<S>>,
-}
-
-/// Strain energy as a quartic polynomial.
-#[derive(Clone, Debug)]
-pub(crate) struct ModalStiffness<S> {
-    /// K, symmetric, m × m by rows \[N/m for coordinates in metres\].
-    pub linear: Vec<S>,
-    /// Strains e_p with their weights k_p.
-    pub strains: Vec<Strain<S>>,
-}
-
-/// A strain with its weight in the energy.
-#[derive(Clone, Debug)]
-pub(crate) struct Strain<S> {
-    /// k_p, for example E A times the weight of the quadrature.
-    pub weight: S,
-    /// e_p.
-    pub strain: Quadratic<S>,
-}
-
-/// A quadratic form without constant term, e = b · q + ½ Σ c_s (g_s · q)²: a strain, a section force or
-/// a stress.
-#[derive(Clone, Debug)]
-pub(crate) struct Quadratic<S> {
-    /// b.
-    pub linear: Vec<S>,
-    /// (c_s, g_s).
-    pub squares: Vec<(S, Vec<S>)>,
 }
 
 /// How an attachment's frame moves with the elastic coordinates: in the axes of the body, its point at
@@ -189,62 +148,4 @@ parameters!(enum Form { Modal(; modal), Finite(; finite) });
 
 parameters!(struct Modal {; inertia, stiffness, damping, shells });
 
-parameters!(struct ModalInertia {; centre, static_moments, with_position, products });
-
-parameters!(struct ModalStiffness {; linear, strains });
-
-parameters!(struct Strain {; weight, strain });
-
-parameters!(struct Quadratic {; linear, squares });
-
 parameters!(struct Modes { places; displacement, rotation });
-
-impl<S: Scalar> ModalInertia<S> {
-    /// Where S_IJ stands among the products, and whether it is transposed.
-    pub(crate) fn place(&self, i: usize, j: usize) -> (usize, bool) {
-        let m = self.static_moments.len();
-        let (low, high) = (i.min(j), i.max(j));
-        (low * m - low * (low + 1) / 2 + high, j < i)
-    }
-}
-
-impl<S: Scalar> Quadratic<S> {
-    /// Its value.
-    pub(crate) fn value(&self, q: &[S]) -> S {
-        let half = S::from(0.5);
-        let squares = self.squares.iter().map(|(c, g)| {
-            let w = dot(g, q);
-            *c * w * w * half
-        });
-        squares.fold(dot(&self.linear, q), |sum, x| sum + x)
-    }
-
-    /// Adds `scale` times its gradient b + Σ c_s (g_s · q) g_s to `out`.
-    pub(crate) fn add_gradient(&self, q: &[S], scale: S, out: &mut [S]) {
-        add_scaled(out, scale, &self.linear);
-        for (c, g) in &self.squares {
-            add_scaled(out, scale * *c * dot(g, q), g);
-        }
-    }
-
-    /// Adds the derivative of scale · value by the parameters to `cot`.
-    pub(crate) fn pull_value(&self, q: &[S], scale: S, cot: &mut Self) {
-        add_scaled(&mut cot.linear, scale, q);
-        for ((c, g), (by_c, by_g)) in self.squares.iter().zip(&mut cot.squares) {
-            let w = dot(g, q);
-            *by_c += scale * w * w * S::from(0.5);
-            add_scaled(by_g, scale * *c * w, q);
-        }
-    }
-
-    /// Adds the derivative of scale · ψ · gradient by the parameters to `cot`.
-    pub(crate) fn pull_gradient(&self, q: &[S], psi: &[S], scale: S, cot: &mut Self) {
-        add_scaled(&mut cot.linear, scale, psi);
-        for ((c, g), (by_c, by_g)) in self.squares.iter().zip(&mut cot.squares) {
-            let (w, along) = (dot(g, q), dot(g, psi));
-            *by_c += scale * w * along;
-            add_scaled(by_g, scale * *c * along, q);
-            add_scaled(by_g, scale * *c * w, psi);
-        }
-    }
-}

@@ -12,6 +12,7 @@ pub(crate) mod load;
 pub(crate) mod mobility;
 pub(crate) mod reduced;
 pub(crate) mod rigid_body;
+pub(crate) mod shapes;
 pub(crate) mod table;
 pub(crate) mod time_function;
 
@@ -58,8 +59,14 @@ impl<S: Scalar> Model<S> {
         };
         let driven = self.joints.iter().any(|joint| !joint.drives.is_empty());
         let undamped = |body: &FlexibleBody<S>| match &body.form {
-            Form::Modal(modal) => modal.damping.iter().all(|x| x.re() == 0.0),
-            Form::Finite(_) => true,
+            Form::Modal(modal) => {
+                let viscous = modal.shells.as_ref().is_some_and(|own| own.damps());
+                !viscous && modal.damping.iter().all(|x| x.re() == 0.0)
+            }
+            Form::Finite(finite) => {
+                let mut all = finite.damping.iter().flatten();
+                all.all(|x| x.re() == 0.0)
+            }
         };
         !driven && self.loads.iter().all(conserves) && self.flexible.iter().all(undamped)
     }

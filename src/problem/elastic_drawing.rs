@@ -46,7 +46,7 @@ pub(crate) struct ShellLine {
     pub nodes: Vec<usize>,
 }
 
-/// The free edges of shells, one after the other.
+/// The free edges of shells, one after the other, with the beams that start from them, there and back.
 pub(super) fn shell_line(mesh: &Arc<ElementMesh>) -> ShellLine {
     let edges = |element: &ShellElement| {
         let nodes = element.nodes;
@@ -60,18 +60,68 @@ pub(super) fn shell_line(mesh: &Arc<ElementMesh>) -> ShellLine {
     let mut next: BTreeMap<usize, [usize; 3]> = (all.filter(|edge| uses[&edge[1]] == 1))
         .map(|edge| (edge[0], edge))
         .collect();
+    let mut beams = Beams::new(&mesh.beams);
     let mut nodes = Vec::new();
     while let Some((&start, _)) = next.first_key_value() {
         let mut at = start;
         while let Some([from, middle, to]) = next.remove(&at) {
-            nodes.extend([from, middle]);
+            nodes.push(from);
+            beams.visit(from, &mut nodes);
+            nodes.push(middle);
             at = to;
         }
         nodes.push(at);
     }
+    if let (true, Some([start, ..])) = (mesh.elements.is_empty(), mesh.beams.first()) {
+        nodes.push(*start);
+        beams.visit(*start, &mut nodes);
+    }
     ShellLine {
         mesh: mesh.clone(),
         nodes,
+    }
+}
+
+/// Beams that a line has not visited yet, by the nodes at their ends.
+struct Beams {
+    at: BTreeMap<usize, Vec<[usize; 3]>>,
+}
+
+impl Beams {
+    fn new(beams: &[[usize; 3]]) -> Self {
+        let mut at: BTreeMap<usize, Vec<[usize; 3]>> = BTreeMap::new();
+        for &[start, middle, end] in beams {
+            at.entry(start).or_default().push([start, middle, end]);
+            at.entry(end).or_default().push([end, middle, start]);
+        }
+        Self { at }
+    }
+
+    /// A beam from a node, which is visited then.
+    fn next(&mut self, node: usize) -> Option<[usize; 3]> {
+        let [start, middle, end] = self.at.get_mut(&node)?.pop()?;
+        if let Some(back) = self.at.get_mut(&end) {
+            back.retain(|own| own[1] != middle);
+        }
+        Some([start, middle, end])
+    }
+
+    /// Adds the way along all beams that hang together with a node, and back to it.
+    fn visit(&mut self, node: usize, line: &mut Vec<usize>) {
+        let mut way: Vec<[usize; 3]> = Vec::new();
+        let mut at = node;
+        loop {
+            if let Some(beam) = self.next(at) {
+                line.extend([beam[1], beam[2]]);
+                at = beam[2];
+                way.push(beam);
+            } else if let Some([start, middle, _]) = way.pop() {
+                line.extend([middle, start]);
+                at = start;
+            } else {
+                return;
+            }
+        }
     }
 }
 

@@ -1,5 +1,6 @@
-//! From the shells of a body in a file to their coordinates and points.
+//! From the elements of a body in a file to their coordinates and points.
 
+use super::parts;
 use super::prepared::Prepared;
 use super::quantity::Quantity;
 use super::reduced;
@@ -15,6 +16,7 @@ use crate::structures::floating::{FrameNodes, element_mesh};
 use crate::structures::material::Material;
 use crate::structures::mesh::Mesh;
 use crate::structures::modes::PencilFailure;
+use crate::structures::parts::coordinates;
 use crate::structures::structure::{Structure, Topology};
 use std::sync::Arc;
 
@@ -48,9 +50,22 @@ pub(crate) fn mesh_quantities(mesh: &WrittenMesh) -> Vec<Quantity> {
             ..
         } => vec![*radius, *length, angles[0], angles[1]],
         WrittenMesh::Cylinder { radius, length, .. } => vec![*radius, *length],
-        WrittenMesh::StraightBeam { .. }
-        | WrittenMesh::CurvedBeam { .. }
-        | WrittenMesh::Frame { .. } => Vec::new(),
+        WrittenMesh::StraightBeam {
+            from,
+            to,
+            orientation,
+            ..
+        } => [*from, *to, *orientation].concat(),
+        WrittenMesh::CurvedBeam { radius, angles, .. } => vec![*radius, angles[0], angles[1]],
+        WrittenMesh::Frame { points, members } => {
+            let orientations = members.values().map(|member| member.orientation);
+            points
+                .values()
+                .copied()
+                .chain(orientations)
+                .flatten()
+                .collect()
+        }
     }
 }
 
@@ -88,9 +103,11 @@ pub(crate) fn prepare(
     let new = || {
         const CHECKED: &str = "sets are checked when a problem is read";
         let (written, none) = (&elements.structure, Section::Given(SectionValues::zeros()));
-        let part = part_of_file(written);
-        let slots = slots(written, &part);
+        let mut part = part_of_file(written);
+        let beams = parts::beams(elements, &mut part);
         let shells = part.mesh.shells.len();
+        let mut slots = slots(written, &part);
+        slots.truncate(shells);
         let material = document.materials.get(&written.material);
         let value =
             |quantity: Option<Quantity>, default: f64| quantity.map_or(default, |q| q.value);
@@ -98,16 +115,16 @@ pub(crate) fn prepare(
             topology: Arc::new(Topology::new(
                 part.mesh.clone(),
                 &part.nodes,
-                [vec![0; shells], Vec::new()],
+                [vec![0; shells], vec![0; beams.len()]],
                 Vec::new(),
             )),
             nodes: part.nodes,
             thickness: vec![1.0; shells],
             surface_mass: vec![0.0; shells],
-            sections: vec![none; 0],
-            orientations: Vec::new(),
-            offsets: Vec::new(),
-            line_mass: Vec::new(),
+            sections: vec![none; beams.len()],
+            orientations: part.orientations.clone(),
+            offsets: vec![[0.0; 2]; beams.len()],
+            line_mass: vec![0.0; beams.len()],
             masses: Vec::new(),
             materials: vec![Material {
                 young: 1.0,
@@ -117,7 +134,12 @@ pub(crate) fn prepare(
             }],
         };
         let frame = frame_nodes(&part.mesh, &elements.frame).expect(CHECKED);
-        let (mesh, surface) = element_mesh(&structure, &frame).expect(CHECKED);
+        let (mut mesh, surface) = element_mesh(&structure, &frame).expect(CHECKED);
+        let written_parts = parts::written(written, (beams, &structure), &surface, |set| {
+            part.mesh.node_sets.get(set).cloned().unwrap_or_default()
+        });
+        let all = written_parts.iter();
+        mesh.parts = all.map(|own| coordinates(&own.nodes)).collect();
         let motion = |held: &Held| match held {
             Held::Node(set) => surface.node(nodes_of(&part.mesh, set).expect(CHECKED)[0]),
             Held::Edge(set) => surface.edge(&part.mesh.edge_sets[set]),
@@ -129,6 +151,7 @@ pub(crate) fn prepare(
                 .map(|(name, held)| (name.clone(), motion(held)))
                 .collect(),
             slots,
+            parts: written_parts,
             sets: part.mesh,
             reduced: None,
         }
@@ -180,6 +203,11 @@ fn shells<S: Scalar>(
         young: all(material.young),
         density: all(material.density.unwrap_or(zero)),
         surface_mass: all(written.surface_mass.unwrap_or(zero)),
+        parts: parts::values(document, elements, prepared, &get),
+        damping: written.damping.as_ref().map(|own| {
+            let of = |factor: Option<Quantity>| get(factor.unwrap_or(zero));
+            [of(own.mass), of(own.stiffness)]
+        }),
         mesh: prepared.mesh.clone(),
     }
 }

@@ -24,6 +24,7 @@ mod mass;
 mod memory;
 mod modal;
 mod overrides;
+mod parts;
 mod placement;
 mod pointer;
 mod points;

@@ -1,7 +1,8 @@
 //! What no design changes of the shells of a body.
 
+use crate::math::Vec3;
 use crate::model::finite::ElementMesh;
-use crate::structures::floating::PointMotion;
+use crate::structures::floating::{NodeMotion, PointMotion};
 use crate::structures::mesh::Mesh;
 use crate::system::reduction::{ProjectedShells, ReducedBasis};
 use indexmap::IndexMap;
@@ -16,10 +17,34 @@ pub(crate) struct Prepared {
     pub sets: Mesh,
     /// Which thickness each shell has.
     pub slots: Vec<usize>,
+    /// Beams, then lumped masses.
+    pub parts: Vec<WrittenPart>,
     /// The named points, by the coordinates of the body.
     pub points: IndexMap<String, PointMotion>,
     /// The basis, if coordinates are not all unknowns of the nodes.
     pub reduced: Option<ReducedBody>,
+}
+
+/// A beam or a lumped mass of a body.
+#[derive(Clone, Debug)]
+pub(crate) struct WrittenPart {
+    /// Where the file has its numbers.
+    pub source: PartSource,
+    /// Its nodes: three of a beam, one of a mass.
+    pub nodes: Vec<NodeMotion>,
+    /// Of a beam: a vector in the plane of it and axis 2 of its section.
+    pub orientation: Vec3<f64>,
+}
+
+/// Where a file has the numbers of a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PartSource {
+    /// A beam of the mesh, with the section of this number.
+    Beam(usize),
+    /// A beam of the stiffener of this number.
+    Stiffener(usize),
+    /// The mass of this number.
+    Mass(usize),
 }
 
 /// Shells in a basis.

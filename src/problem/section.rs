@@ -1,6 +1,7 @@
 //! From the cross sections of a file to those of beams.
 
 use super::Problem;
+use super::parts::sections;
 use super::quantity::Quantity;
 use super::schema::section::Section as Written;
 use crate::math::Scalar;
@@ -9,11 +10,16 @@ use crate::structures::beam::{Section, SectionFault, SectionValues};
 impl Problem {
     /// The first body whose section cannot be built at the design `x`, and why.
     pub(crate) fn impossible_section(&self, x: &[f64]) -> Option<(String, SectionFault)> {
-        let bodies = self.written.bodies.iter();
-        let beams = bodies.filter_map(|(name, body)| Some((name, body.beam.as_ref()?)));
-        beams.into_iter().find_map(|(name, beam)| {
-            let section = section(&beam.section, x, |_| SectionValues::zeros());
-            Some((name.clone(), section.fault()?))
+        self.written.bodies.iter().find_map(|(name, body)| {
+            let of_beam = body
+                .beam
+                .as_ref()
+                .and_then(|beam| section(&beam.section, x, |_| SectionValues::zeros()).fault());
+            let of_elements = || {
+                let mut all = sections(body.elements.as_ref()?);
+                all.find_map(|own| section(own, x, |_| SectionValues::zeros()).fault())
+            };
+            Some((name.clone(), of_beam.or_else(of_elements)?))
         })
     }
 }
@@ -24,7 +30,15 @@ pub(crate) fn section<G, S: Scalar>(
     x: &[S],
     given: impl FnOnce(&G) -> SectionValues<S>,
 ) -> Section<S> {
-    let get = |quantity: &Quantity| quantity.get(x);
+    section_by(written, |quantity| quantity.get(x), given)
+}
+
+/// The section with the values that `get` gives to quantities.
+pub(crate) fn section_by<G, S: Scalar>(
+    written: &Written<G>,
+    get: impl Fn(&Quantity) -> S,
+    given: impl FnOnce(&G) -> SectionValues<S>,
+) -> Section<S> {
     match written {
         Written::Rectangle { width, height } => Section::Rectangle {
             width: get(width),

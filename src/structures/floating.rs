@@ -2,7 +2,7 @@
 //! with the coordinates.
 
 use super::assembly::Assembly;
-use super::mesh::UnknownSet;
+use super::mesh::{Mesh, UnknownSet};
 use super::shell::basis::TABLES;
 use super::state::Configuration;
 use super::structure::Structure;
@@ -35,6 +35,22 @@ const ON_LINE: f64 = 0.01;
 pub(crate) fn spans(nodes: &[Vec3<f64>], [o, b, c]: [usize; 3]) -> bool {
     let (b, c) = (nodes[b] - nodes[o], nodes[c] - nodes[o]);
     b.cross(&c).norm() > ON_LINE * b.norm() * c.norm()
+}
+
+/// The normal of the surface of shells at a node, not of length one; zero beside them.
+pub(crate) fn normal(mesh: &Mesh, nodes: &[Vec3<f64>], node: usize) -> Vec3<f64> {
+    let mut sum = Vec3::zeros();
+    for element in &mesh.shells {
+        let Some(local) = element.iter().position(|&own| own == node) else {
+            continue;
+        };
+        let tangent = |k: usize| {
+            let all = element.iter().zip(&TABLES.nodes[local].by[k]);
+            all.fold(Vec3::zeros(), |sum: Vec3<f64>, (&b, n)| sum + nodes[b] * *n)
+        };
+        sum += tangent(0).cross(&tangent(1));
+    }
+    sum
 }
 
 /// The mesh of a structure of shells in a floating frame. Its nodes are in the axes of the frame.
@@ -84,6 +100,8 @@ pub(crate) fn element_mesh(
         elements: elements.collect(),
         nodes: held.nodes.clone(),
         displacements: unknowns.nodes.iter().map(|at| at.displacements).collect(),
+        parts: Vec::new(),
+        beams: held.topology.mesh.beams.clone(),
     };
     Ok((mesh, surface))
 }
@@ -164,6 +182,10 @@ impl<S: Scalar> FiniteElements<S> {
             second += element.second[0].map(S::from) * per_area;
             second += element.second[1].map(S::from) * (rho * h * h * h * (1.0 / 12.0));
         }
+        for part in &self.parts {
+            mass += part.mass;
+            second += part.second;
+        }
         (mass, Mat3::identity() * second.trace() - second)
     }
 }
@@ -188,11 +210,24 @@ pub(crate) struct Surface {
     displacements: Vec<[Option<usize>; 3]>,
     /// Rotation of each node: coordinate and rotation vector.
     rotations: Vec<Vec<(usize, Vec3<f64>)>>,
+    /// Those of its own unknowns alone.
+    unknown_rotations: Vec<Vec<(usize, Vec3<f64>)>>,
+}
+
+/// The unknowns of a node and how they move it.
+#[derive(Clone, Debug)]
+pub(crate) struct NodeMotion {
+    /// Where it is in the undeformed body \[m\].
+    pub place: Vec3<f64>,
+    /// Coordinates of its displacements; none where the frame holds them.
+    pub displacements: [Option<usize>; 3],
+    /// Coordinates of its rotations, with the rotation by each.
+    pub rotations: Vec<(usize, Vec3<f64>)>,
 }
 
 impl Surface {
-    /// Rotations about tangents are those of the nodes; that about the normal of a smooth surface is
-    /// ½ (e2·u,1 − e1·u,2) there, the mean over the elements.
+    /// Rotations about tangents are those of the nodes; that about the normal of a smooth surface without beams
+    /// is ½ (e2·u,1 − e1·u,2) there, the mean over the elements.
     fn of(configuration: &Configuration<f64>) -> Self {
         let unknowns = configuration.unknowns;
         let mesh = &configuration.structure.topology.mesh;
@@ -205,15 +240,17 @@ impl Surface {
                 unknowns.rotations_of(node).zip(axes).collect()
             })
             .collect();
+        let unknown_rotations = rotations.clone();
+        let on_beams = mesh.on_beams();
         let mut uses = vec![0.0; nodes.len()];
         for element in &mesh.shells {
             element.iter().for_each(|&node| uses[node] += 1.0);
         }
         for element in &mesh.shells {
             for (local, &node) in element.iter().enumerate() {
-                let Some(_) = configuration.smooth_director(node) else {
+                if on_beams[node] || configuration.smooth_director(node).is_none() {
                     continue;
-                };
+                }
                 let basis = &TABLES.nodes[local];
                 let tangent = |k: usize| {
                     let all = element.iter().zip(&basis.by[k]);
@@ -237,6 +274,16 @@ impl Surface {
             nodes: nodes.clone(),
             displacements,
             rotations,
+            unknown_rotations,
+        }
+    }
+
+    /// The unknowns of a node.
+    pub(crate) fn unknowns(&self, node: usize) -> NodeMotion {
+        NodeMotion {
+            place: self.nodes[node],
+            displacements: self.displacements[node],
+            rotations: self.unknown_rotations[node].clone(),
         }
     }
 

@@ -18,6 +18,7 @@ pub mod material;
 pub mod mesh;
 pub(crate) mod modal;
 pub mod modes;
+pub(crate) mod parts;
 pub mod properties;
 pub mod quality;
 mod reactions;

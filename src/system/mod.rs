@@ -41,6 +41,7 @@ pub(crate) mod redundancy;
 pub(crate) mod redundant_rows;
 pub(crate) mod rows;
 pub(crate) mod side;
+mod strains;
 pub(crate) mod tree;
 
 pub(crate) use bodies::BodyMotion;

@@ -4,6 +4,8 @@
 //! U = qᵀ C s + ½ sᵀ G s,   ∂U/∂q = C s + Jᵀ n,   n = Cᵀ q + G s,   J = ∂s/∂q
 //! ∂²U/∂q² = C J + Jᵀ Cᵀ + Jᵀ G J + Σ n_k ∂²s_k/∂q²
 //! ```
+//!
+//! With t = J q̇ the viscous forces of the strains (see [`super::strains`]) are C t + Jᵀ (Cᵀ q̇ + G t).
 
 use super::flexing::Block;
 use crate::math::Scalar;
@@ -88,19 +90,10 @@ pub(super) fn add_forces<S: Scalar>(own: &PairEnergy<S>, q: &[S], out: &mut [S])
     add_transposed(own, q, &n, out);
 }
 
-/// Adds ∂²U/∂q² to the elastic part of a block.
-pub(super) fn add_jacobian<S: Scalar>(own: &PairEnergy<S>, q: &[S], by_y: &mut Block<S>) {
-    let (count, a) = (own.count(), own.of.len());
-    if count == 0 {
-        return;
-    }
-    let s = products(own, q);
-    for ((i, j), n) in own.pairs().zip(stresses(own, q, &s)) {
-        by_y.add(6 + i, 6 + j, n);
-        by_y.add(6 + j, 6 + i, n);
-    }
-    // J by columns: pair k has q_j at i and q_i at j.
-    let mut columns = vec![vec![S::zero(); count]; a];
+/// J by columns: pair k has q_j at i and q_i at j.
+fn columns<S: Scalar>(own: &PairEnergy<S>, q: &[S]) -> Vec<Vec<S>> {
+    let a = own.of.len();
+    let mut columns = vec![vec![S::zero(); own.count()]; a];
     let mut k = 0;
     for i in 0..a {
         for j in i..a {
@@ -109,18 +102,107 @@ pub(super) fn add_jacobian<S: Scalar>(own: &PairEnergy<S>, q: &[S], by_y: &mut B
             k += 1;
         }
     }
-    for (column, &at) in columns.iter().zip(&own.of) {
+    columns
+}
+
+/// Adds scale · Σ n_k ∂²s_k/∂q² to the elastic part of a block.
+fn add_curved<S: Scalar>(own: &PairEnergy<S>, n: &[S], scale: S, to: &mut Block<S>) {
+    for ((i, j), &n) in own.pairs().zip(n) {
+        to.add(6 + i, 6 + j, scale * n);
+        to.add(6 + j, 6 + i, scale * n);
+    }
+}
+
+/// Adds ∂²U/∂q² to the elastic part of a block.
+pub(super) fn add_jacobian<S: Scalar>(own: &PairEnergy<S>, q: &[S], by_y: &mut Block<S>) {
+    if own.count() == 0 {
+        return;
+    }
+    let s = products(own, q);
+    add_curved(own, &stresses(own, q, &s), S::one(), by_y);
+    let columns = columns(own, q);
+    add_tangent(own, (&columns, &columns), S::one(), true, by_y);
+}
+
+/// Adds scale · (C J' + Jᵀ G J'), and of all of it with J' = J scale · Jᵀ Cᵀ, to the elastic part of a block;
+/// J and J' by columns.
+fn add_tangent<S: Scalar>(
+    own: &PairEnergy<S>,
+    (left, right): (&[Vec<S>], &[Vec<S>]),
+    scale: S,
+    whole: bool,
+    to: &mut Block<S>,
+) {
+    let count = own.count();
+    for (column, &at) in right.iter().zip(&own.of) {
         let rows = own.cubic.chunks_exact(count);
         for (i, row) in rows.enumerate() {
-            let x = dot(row, column);
-            by_y.add(6 + i, 6 + at, x);
-            by_y.add(6 + at, 6 + i, x);
+            let x = scale * dot(row, column);
+            to.add(6 + i, 6 + at, x);
+            if whole {
+                to.add(6 + at, 6 + i, x);
+            }
         }
         let mut product = vec![S::zero(); count];
         add_quartic(own, column, &mut product);
-        for (other, &to) in columns.iter().zip(&own.of) {
-            by_y.add(6 + to, 6 + at, dot(other, &product));
+        for (other, &row) in left.iter().zip(&own.of) {
+            to.add(6 + row, 6 + at, scale * dot(other, &product));
         }
+    }
+}
+
+/// Adds C t + Jᵀ (Cᵀ q̇ + G t).
+pub(super) fn add_viscous<S: Scalar>(own: &PairEnergy<S>, q: &[S], rate: &[S], out: &mut [S]) {
+    let t = along(own, q, rate);
+    add_cubic(own, &t, out);
+    add_transposed(own, q, &stresses(own, rate, &t), out);
+}
+
+/// Adds the derivatives of `beta` times [`add_viscous`] in q and q̇ to the elastic parts of two blocks.
+pub(super) fn add_viscous_jacobian<S: Scalar>(
+    own: &PairEnergy<S>,
+    (q, rate): (&[S], &[S]),
+    beta: S,
+    (by_y, by_v): (&mut Block<S>, &mut Block<S>),
+) {
+    if own.count() == 0 {
+        return;
+    }
+    let (in_q, in_rate) = (columns(own, q), columns(own, rate));
+    add_tangent(own, (&in_q, &in_q), beta, true, by_v);
+    add_tangent(own, (&in_q, &in_rate), beta, false, by_y);
+    let t = along(own, q, rate);
+    add_curved(own, &stresses(own, rate, &t), beta, by_y);
+}
+
+/// Pulls `beta` times ψ · [`add_viscous`] back to q and q̇ (added) and to the parameters (added to `cot`).
+pub(super) fn pull_viscous(
+    own: &PairEnergy<f64>,
+    (q, rate, psi): (&[f64], &[f64], &[f64]),
+    beta: f64,
+    (by_q, by_rate): (&mut [f64], &mut [f64]),
+    cot: &mut PairEnergy<f64>,
+) {
+    // ψᵀ C t + q̇ᵀ C u + uᵀ G t with t = J q̇ and u = J ψ.
+    let psi: Vec<f64> = psi.iter().map(|x| beta * x).collect();
+    let (t, u) = (along(own, q, rate), along(own, q, &psi));
+    let (by_t, by_u) = (stresses(own, &psi, &u), stresses(own, rate, &t));
+    add_transposed(own, rate, &by_t, by_q);
+    add_transposed(own, &psi, &by_u, by_q);
+    add_transposed(own, q, &by_t, by_rate);
+    add_cubic(own, &u, by_rate);
+    let count = own.count();
+    for (i, row) in cot.cubic.chunks_exact_mut(count.max(1)).enumerate() {
+        add_scaled(row, psi[i], &t);
+        add_scaled(row, rate[i], &u);
+    }
+    let mut at = 0;
+    for k in 0..count {
+        cot.quartic[at] += t[k] * u[k];
+        let row = &mut cot.quartic[at + 1..at + count - k];
+        add_scaled(row, t[k], &u[k + 1..]);
+        add_scaled(row, u[k], &t[k + 1..]);
+        at += count - k;
     }
 }
 

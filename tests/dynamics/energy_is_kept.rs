@@ -240,6 +240,7 @@ fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance()
     let scale = Scale {
         length: 1.0,
         floor: [1.0, 1.0],
+        elastic: Default::default(),
     };
     for seed in 0..20 {
         let mut numbers = Numbers(seed);

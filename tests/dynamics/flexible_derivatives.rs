@@ -17,7 +17,7 @@ use flexbody::system::{Numbering, flexible, initial, placement};
 use reference::cases::{Case, TIME, dot, lift, parameters, rows_agree, slopes, step, unit};
 use reference::flexible::{Points, modal, quadratic, stiffness, swing_of, totals};
 use reference::models::Numbers;
-use reference::shells::{reduced_swing, shell_swing};
+use reference::shells::{reduced_swing, shell_swing, stiffened_swing};
 
 /// Swings of shapes and of shells at random states, their attachments a little open.
 fn cases() -> Vec<Case> {
@@ -28,6 +28,12 @@ fn cases() -> Vec<Case> {
     let reduced = [(8, [1, 1], 3), (9, [2, 1], 4)];
     let reduced =
         reduced.map(|(seed, elements, vectors)| (seed, reduced_swing(seed, elements, vectors)));
+    let stiffened = [
+        (10, [1, 1], None),
+        (11, [2, 1], None),
+        (12, [2, 1], Some(4)),
+    ];
+    let stiffened = stiffened.map(|(seed, elements, v)| (seed, stiffened_swing(seed, elements, v)));
     let case = |(seed, mut model): (u64, Model<f64>)| {
         let modes = model.flexible[0].modes();
         let mut numbers = Numbers(seed + 100);
@@ -56,6 +62,7 @@ fn cases() -> Vec<Case> {
         .into_iter()
         .chain(shells)
         .chain(reduced)
+        .chain(stiffened)
         .map(case)
         .collect()
 }

@@ -5,6 +5,7 @@ mod checkpoints;
 mod conserves;
 mod constraint_derivatives;
 mod drive_gradients;
+mod element_parts;
 mod elimination;
 mod energy_is_kept;
 mod error_estimate;

@@ -16,7 +16,7 @@ use flexbody::system::{Numbering, flexible, placement};
 use nalgebra::{DMatrix, DVector};
 use reference::flexible::totals;
 use reference::models::Numbers;
-use reference::shells::{projected, shells};
+use reference::shells::{projected, shells, stiffened};
 use std::sync::Arc;
 
 /// A free body in this form, with the motion of its frame and coordinates, and its accelerations.
@@ -60,17 +60,19 @@ fn balance((model, a): &(Model<f64>, Vec<f64>)) -> (Vec<f64>, Vec<f64>, Vec<f64>
     (out[..6].to_vec(), elastic.collect(), kept)
 }
 
-/// Forces on the frame, energies, momenta and stresses are those of the shells in the motion v = V q; forces on
+/// With beams, masses and damping too: forces on the frame, energies, momenta and stresses are those of the shells in the motion v = V q; forces on
 /// the coordinates are Vᵀ times theirs.
 #[test]
 fn a_basis_takes_the_mechanics_of_its_shells() {
-    for (seed, elements, clamped, vectors) in [
-        (1, [1, 1], false, 2),
-        (2, [2, 1], true, 5),
-        (3, [2, 2], false, 4),
+    for (seed, elements, clamped, vectors, more) in [
+        (1, [1, 1], false, 2, false),
+        (2, [2, 1], true, 5, false),
+        (3, [2, 2], false, 4, false),
+        (4, [2, 1], false, 4, true),
     ] {
         let mut numbers = Numbers(seed);
-        let shells = shells(&mut numbers, elements, clamped);
+        let make = if more { stiffened } else { shells };
+        let shells = make(&mut numbers, elements, clamped);
         let mut projected = projected(&mut numbers, &shells, vectors);
         // All of these bend.
         projected = flexbody::system::reduction::project(
@@ -135,6 +137,8 @@ fn plate() -> FiniteElements<f64> {
         young: vec![70e9; count],
         density: vec![2700.0; count],
         surface_mass: vec![0.0; count],
+        parts: Vec::new(),
+        damping: None,
         mesh: Arc::new(mesh),
     }
 }

@@ -4,6 +4,7 @@ mod beam_scenes;
 mod beams;
 mod benchmarks;
 mod circles;
+mod element_parts;
 mod faults;
 mod finite_elements;
 mod flexible_families;

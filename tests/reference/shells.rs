@@ -3,13 +3,16 @@
 
 use super::flexible::add_loads;
 use super::models::{Numbers, axes_along, joint};
-use flexbody::math::Vec3;
+use flexbody::math::{Mat3, Vec3};
 use flexbody::model::finite::FiniteElements;
 use flexbody::model::{Form, JointKind, Model};
+use flexbody::structures::beam::{Beam, Section, SectionValues};
 use flexbody::structures::floating::{FrameNodes, PointMotion, Surface, element_mesh};
 use flexbody::structures::generate::panel;
+use flexbody::structures::lumped_mass::LumpedMass;
 use flexbody::structures::material::Material;
 use flexbody::structures::mesh::Mesh;
+use flexbody::structures::parts::{coordinates, of_beam, of_mass};
 use flexbody::structures::structure::Structure;
 use flexbody::system::reduction::{ProjectedShells, project};
 use std::sync::Arc;
@@ -24,6 +27,51 @@ pub struct Shells {
 
 /// A curved and distorted panel whose elements differ in thickness and material.
 pub fn shells(numbers: &mut Numbers, elements: [usize; 2], clamped: bool) -> Shells {
+    panel_of(numbers, elements, clamped, false)
+}
+
+/// The same with beams along an edge, which have an offset, masses with inertia at three nodes, and damping.
+pub fn stiffened(numbers: &mut Numbers, elements: [usize; 2], clamped: bool) -> Shells {
+    panel_of(numbers, elements, clamped, true)
+}
+
+/// Any beam between three nodes, soft as the shells.
+pub fn any_beam(
+    numbers: &mut Numbers,
+    points: [Vec3<f64>; 3],
+    orientation: Vec3<f64>,
+) -> Beam<f64> {
+    let mut near = |size: f64| size * (1.0 + 0.3 * numbers.next());
+    Beam {
+        points,
+        orientation,
+        section: Section::Rectangle {
+            width: near(0.15),
+            height: near(0.1),
+        },
+        offset: [near(0.06), near(-0.04)],
+        material: Material {
+            young: near(90.0),
+            poisson: 0.3,
+            density: near(3.0),
+            yield_stress: 20.0,
+        },
+        line_mass: near(0.05),
+    }
+}
+
+fn any_mass(numbers: &mut Numbers) -> LumpedMass<f64> {
+    let second = Mat3::from_fn(|_, _| 0.1 * numbers.next());
+    let second = second * second.transpose();
+    let inertia = Mat3::identity() * second.trace() - second;
+    let at = |i: usize, j: usize| inertia[(i, j)];
+    LumpedMass {
+        mass: 0.2 + 0.1 * numbers.next(),
+        inertia: [at(0, 0), at(1, 1), at(2, 2), at(0, 1), at(1, 2), at(2, 0)],
+    }
+}
+
+fn panel_of(numbers: &mut Numbers, elements: [usize; 2], clamped: bool, more: bool) -> Shells {
     let bend = numbers.vector() * 0.2;
     let made = panel(elements, false, |x, y| {
         let z = 0.2 + bend.x * x * x + bend.y * x * y + bend.z * y * y;
@@ -35,25 +83,53 @@ pub fn shells(numbers: &mut Numbers, elements: [usize; 2], clamped: bool) -> She
         density: 3.0,
         yield_stress: 20.0,
     };
-    let structure = Structure::uniform(made.mesh.clone(), made.nodes, 0.2, material);
+    let mut mesh = made.mesh.clone();
+    if more {
+        mesh.beams = mesh.edge_sets["y0"].clone();
+    }
+    let orientations = vec![Vec3::new(0.2, 0.3, 1.0); mesh.beams.len()];
+    let none = Section::Given(SectionValues::zeros());
+    let structure =
+        Structure::with_beams(mesh, made.nodes, 0.2, none, orientations.clone(), material);
     let structure = structure.expect("a sound mesh");
     let last = structure.nodes.len() - 1;
     let frame = match clamped {
         true => FrameNodes::Clamped(made.mesh.edge_sets["x0"].concat()),
         false => FrameNodes::Chord([0, last, 2 * elements[0]]),
     };
-    let (mesh, surface) = element_mesh(&structure, &frame).expect("has its sets");
+    let (mut mesh, surface) = element_mesh(&structure, &frame).expect("has its sets");
     let count = mesh.elements.len();
     let mut any = |size: f64| {
         (0..count)
             .map(|_| size * (1.0 + 0.3 * numbers.next()))
             .collect()
     };
+    let (thickness, young) = (any(0.2), any(90.0));
+    let (density, surface_mass) = (any(3.0), any(0.1));
+    let mut parts = Vec::new();
+    for (nodes, orientation) in mesh.beams.iter().zip(&orientations) {
+        let own = nodes.map(|node| surface.unknowns(node));
+        let points = own.each_ref().map(|node| node.place);
+        parts.push((
+            of_beam(&own, &any_beam(numbers, points, *orientation)),
+            coordinates(&own),
+        ));
+    }
+    for node in [0, last / 2, last] {
+        if more {
+            let own = surface.unknowns(node);
+            parts.push((of_mass(&own, &any_mass(numbers)), coordinates(&[own])));
+        }
+    }
+    let (parts, own) = parts.into_iter().unzip();
+    mesh.parts = own;
     let elements = FiniteElements {
-        thickness: any(0.2),
-        young: any(90.0),
-        density: any(3.0),
-        surface_mass: any(0.1),
+        thickness,
+        young,
+        density,
+        surface_mass,
+        parts,
+        damping: more.then_some([0.3, 0.02]),
         mesh: Arc::new(mesh),
     };
     Shells {
@@ -74,12 +150,17 @@ pub fn attach(model: &mut Model<f64>, flexible: usize, name: &str, motion: Point
 /// A panel on a revolute joint along its first edge; a rigid body on a revolute joint at a corner; a spring
 /// and a force at its points. Joints are closed at the start.
 pub fn shell_swing(seed: u64, elements: [usize; 2]) -> Model<f64> {
-    swing(seed, elements, None)
+    swing(seed, elements, None, false)
+}
+
+/// The same of a panel with beams, masses and damping.
+pub fn stiffened_swing(seed: u64, elements: [usize; 2], vectors: Option<usize>) -> Model<f64> {
+    swing(seed, elements, vectors, true)
 }
 
 /// The same with this many coordinates: factors of any vectors.
 pub fn reduced_swing(seed: u64, elements: [usize; 2], vectors: usize) -> Model<f64> {
-    swing(seed, elements, Some(vectors))
+    swing(seed, elements, Some(vectors), false)
 }
 
 /// Shells in a basis of any vectors.
@@ -93,9 +174,9 @@ pub fn projected(numbers: &mut Numbers, shells: &Shells, vectors: usize) -> Proj
     project(mesh, &each, basis, bending)
 }
 
-fn swing(seed: u64, elements: [usize; 2], vectors: Option<usize>) -> Model<f64> {
+fn swing(seed: u64, elements: [usize; 2], vectors: Option<usize>, more: bool) -> Model<f64> {
     let mut numbers = Numbers(seed);
-    let shells = shells(&mut numbers, elements, false);
+    let shells = panel_of(&mut numbers, elements, false, more);
     let projected = vectors.map(|count| projected(&mut numbers, &shells, count));
     let mut frame = numbers.body("panel");
     (frame.mass, frame.inertia) = shells.elements.rigid();

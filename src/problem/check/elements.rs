@@ -3,12 +3,15 @@
 use super::Checker;
 use crate::problem::elements::{frame_nodes, nodes_of, prepare};
 use crate::problem::finding::Finding;
+use crate::problem::parts::beams;
 use crate::problem::pointer::{advice, join};
 use crate::problem::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
 use crate::problem::schema::functions::ShellStress;
 use crate::problem::schema::mechanics::Body;
+use crate::problem::schema::structures::Structure;
 use crate::problem::statics::mesh::part;
 use crate::structures::floating::{FrameNodes, spans};
+use crate::structures::quality::{faults, orientation_faults};
 
 impl Checker<'_> {
     pub(super) fn elements(
@@ -37,35 +40,35 @@ impl Checker<'_> {
         let own = join(&pointer, "structure");
         let structure = &elements.structure;
         let before = self.findings.len();
-        if structure.mesh.is_of_beams() {
-            let found = "a mesh of beams";
-            let expected = "a mesh of shells; a beam that moves is written as \"beam\"";
-            self.fault(Finding::new(join(&own, "mesh"), found, expected));
-            return;
-        }
         self.structure_at(own.clone(), name, structure);
-        let unused = [
-            ("supports", !structure.supports.is_empty()),
-            ("masses", !structure.masses.is_empty()),
-        ];
-        for (key, _) in unused.into_iter().filter(|(_, given)| *given) {
-            let found = format!("\"{key}\" of shells that move");
-            let expected = match key {
-                "supports" => "joints, which hold bodies that move",
-                _ => "point bodies that joints hold",
-            };
-            self.fault(Finding::new(join(&own, key), found, expected).of_key());
+        if !structure.supports.is_empty() {
+            let found = "\"supports\" of elements that move";
+            let expected = "joints, which hold bodies that move";
+            self.fault(Finding::new(join(&own, "supports"), found, expected).of_key());
         }
+        self.element_damping(&join(&own, "damping"), structure);
+        self.stiffeners(&join(&pointer, "stiffeners"), elements);
         if self.findings.len() > before {
             return;
         }
         let material = &self.document.materials[&structure.material];
         if material.density.is_none_or(|density| density.value <= 0.0) {
             let place = join(&join("/materials", &structure.material), "density");
-            let found = "no density of a material of shells that move";
+            let found = "no density of a material of elements that move";
             self.fault(Finding::new(place, found, "a density above 0 [kg/m³]").of_key());
         }
-        let part = part::<f64>(structure, &[], 1);
+        let mut part = part::<f64>(structure, &[], 1);
+        beams(elements, &mut part);
+        let mut wrong = faults(&part.mesh, &part.nodes);
+        if wrong.is_empty() {
+            wrong = orientation_faults(&part.mesh, &part.nodes, &part.orientations);
+        }
+        if let Some(fault) = wrong.first() {
+            let expected = "a mesh of sound elements";
+            let place = join(&own, "mesh");
+            self.fault(Finding::new(place, fault.to_string(), expected).of_key());
+            return;
+        }
         let nodes = part.mesh.node_sets.keys().map(String::as_str);
         let edges = part.mesh.edge_sets.keys().map(String::as_str);
         let all: Vec<&str> = nodes.chain(edges.clone()).collect();
@@ -131,6 +134,38 @@ impl Checker<'_> {
         self.basis(&join(&pointer, "basis"), elements);
     }
 
+    /// Damping of elements is α M + β K.
+    fn element_damping(&mut self, pointer: &str, structure: &Structure) {
+        let Some(damping) = &structure.damping else {
+            return;
+        };
+        let ratios = [
+            ("ratio", damping.ratio),
+            ("torsion_ratio", damping.torsion_ratio),
+            ("stretch_ratio", damping.stretch_ratio),
+        ];
+        for (key, _) in ratios.iter().filter(|(_, given)| given.is_some()) {
+            let found = format!("\"{key}\" of elements");
+            let expected = "\"mass\" and \"stiffness\", as elements have no modes of their own";
+            self.fault(Finding::new(join(pointer, key), found, expected).of_key());
+        }
+        if damping.mass.is_none() && damping.stiffness.is_none() {
+            let expected = "\"mass\", \"stiffness\" or both";
+            self.fault(Finding::new(pointer, "no factor of damping", expected));
+        }
+    }
+
+    fn stiffeners(&mut self, pointer: &str, elements: &Elements) {
+        for (name, stiffener) in &elements.stiffeners {
+            let place = join(pointer, name);
+            if elements.structure.mesh.is_of_beams() {
+                let found = "a stiffener of a mesh of beams";
+                self.fault(Finding::new(&place, found, "a mesh of shells").of_key());
+            }
+            self.sizes(&join(&place, "section"), &stiffener.section);
+        }
+    }
+
     fn basis(&mut self, pointer: &str, elements: &Elements) {
         let ElementBasis::Reduced(keys) = &elements.basis else {
             return;
@@ -152,8 +187,8 @@ impl Checker<'_> {
             }
         }
         if self.findings.is_empty() && prepare(self.document, elements).is_err() {
-            let found = "shells that move without forces while their axes are held";
-            let expected = "shells that hang together, for a reduced basis";
+            let found = "elements that move without forces while their axes are held";
+            let expected = "elements that hang together, for a reduced basis";
             self.fault(Finding::new(pointer, found, expected));
         }
     }
@@ -177,6 +212,12 @@ impl Checker<'_> {
             return;
         };
         let structure = &elements.structure;
+        if structure.mesh.is_of_beams() {
+            let found = "a body of beams";
+            let expected = "a body of shells, as these are stresses of shells";
+            self.fault(Finding::new(join(pointer, "body"), found, expected));
+            return;
+        }
         let material = self.document.materials.get(&structure.material);
         if material.is_some_and(|material| material.yield_stress.is_none()) {
             let place = join("/materials", &structure.material);

@@ -81,7 +81,14 @@ impl Checker<'_> {
     }
 
     fn structure(&mut self, name: &str, structure: &Structure) {
-        self.structure_at(join("/structures", name), name, structure);
+        let pointer = join("/structures", name);
+        if structure.damping.is_some() {
+            let found = "\"damping\" of a structure that does not move";
+            let expected =
+                "no damping: load cases are static, and frequencies those without damping";
+            self.fault(Finding::new(join(&pointer, "damping"), found, expected).of_key());
+        }
+        self.structure_at(pointer, name, structure);
     }
 
     /// Checks a structure that is written at `pointer`.
@@ -94,12 +101,6 @@ impl Checker<'_> {
             let found = format!("\"{material}\"");
             let finding = Finding::new(join(&pointer, "material"), found, "the name of a material");
             self.fault(finding.hint(hint));
-        }
-        if structure.damping.is_some() {
-            let found = "\"damping\" of a structure that does not move";
-            let expected =
-                "no damping: load cases are static, and frequencies those without damping";
-            self.fault(Finding::new(join(&pointer, "damping"), found, expected).of_key());
         }
         self.mesh(&join(&pointer, "mesh"), &structure.mesh);
         self.properties(&pointer, structure);

@@ -31,8 +31,28 @@ pub(crate) fn described(document: &Document, x: &[f64]) -> Vec<String> {
                 Some(basis) => of_basis(basis),
             },
         };
+        let beams = match mesh.beams.len() {
+            0 => String::new(),
+            beams => format!(" and {beams} beams"),
+        };
+        let masses = match mesh.parts.len() - mesh.beams.len() {
+            0 => String::new(),
+            masses => format!(", with masses at {masses} nodes"),
+        };
+        let kind = match shells {
+            0 => "beams",
+            _ => "shells",
+        };
+        let shells = match shells {
+            0 => mesh.beams.len().to_string(),
+            _ => format!("{shells} elements{beams}"),
+        };
+        let of = match kind {
+            "beams" => format!("{shells} elements"),
+            _ => shells,
+        };
         Some(format!(
-            "shells \"{name}\": {count} coordinates of {nodes} nodes of {shells} elements{basis}"
+            "{kind} \"{name}\": {count} coordinates of {nodes} nodes of {of}{masses}{basis}"
         ))
     });
     let shells: Vec<String> = shells.collect();

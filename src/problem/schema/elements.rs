@@ -1,7 +1,8 @@
 //! Bodies of finite elements as they are written in a file.
 
-use super::structures::Structure;
+use super::structures::{Direction, Section, Structure};
 use crate::problem::prepared::Prepared;
+use crate::problem::quantity::Quantity;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,12 +11,15 @@ use std::sync::{Arc, OnceLock};
 /// Why no design variable moves the settings of a basis.
 const FROZEN: &str = "the basis is that of the design in the file, and no design changes it";
 
-/// Shells that move: a structure in the axes of the body, in which it deforms.
+/// Shells or beams that move: a structure in the axes of the body, in which it deforms.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Elements {
-    /// Mesh, material and thickness.
+    /// Mesh, material, thickness or sections, masses at nodes, damping.
     pub structure: Structure,
+    /// Beams along lines of nodes of shells, by name.
+    #[serde(default)]
+    pub stiffeners: IndexMap<String, Stiffener>,
     /// What holds the axes.
     pub frame: ElementFrame,
     /// Which coordinates the body has, default all of its nodes.
@@ -32,6 +36,31 @@ pub(crate) struct Elements {
     #[serde(skip)]
     #[schemars(skip)]
     pub prepared: OnceLock<Arc<Prepared>>,
+}
+
+/// Beams along the line of nodes of a panel between its elements that is nearest to a place, of the material of the
+/// structure. Axis 2 of their section stands along the normal of the surface.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Stiffener {
+    /// The direction of the panel along which the line runs.
+    pub along: Direction,
+    /// Where it stands in the other direction, from 0 to 1.
+    #[schemars(extend(
+        "unit" = "1",
+        "minimum" = 0,
+        "maximum" = 1,
+        "design_variable" = "the nodes of a line are chosen once, for all designs"
+    ))]
+    pub at: f64,
+    /// Cross section.
+    pub section: Section,
+    /// Where the centre of the section stands from the nodes, along its axes 2 and 3, default there.
+    #[schemars(extend("unit" = "m"))]
+    pub offset: Option<[Quantity; 2]>,
+    /// Non-structural mass per length, default 0.
+    #[schemars(extend("unit" = "kg/m", "minimum" = 0))]
+    pub line_mass: Option<Quantity>,
 }
 
 /// What holds the axes of shells. It only says from where deformations count; forces and stresses do not

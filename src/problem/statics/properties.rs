@@ -62,7 +62,7 @@ pub(crate) fn thickness(structure: &written::Structure, slot: usize) -> Quantity
 }
 
 /// The section of this number.
-pub(super) fn section(structure: &written::Structure, slot: usize) -> Option<&WrittenSection> {
+pub(crate) fn section(structure: &written::Structure, slot: usize) -> Option<&WrittenSection> {
     match (&structure.section, &structure.sections) {
         (Some(one), _) => Some(one),
         (None, Some(varied)) => match &varied.values {
@@ -94,16 +94,24 @@ pub(super) fn quantities(section: &WrittenSection) -> Vec<Quantity> {
 }
 
 pub(super) fn section_at<S: Scalar>(written: Option<&WrittenSection>, x: &[S]) -> Section<S> {
+    section_by(written, |quantity| quantity.get(x))
+}
+
+/// The section with the values that `get` gives to quantities.
+pub(crate) fn section_by<S: Scalar>(
+    written: Option<&WrittenSection>,
+    get: impl Fn(&Quantity) -> S,
+) -> Section<S> {
     let Some(written) = written else {
         return Section::Given(SectionValues::zeros());
     };
-    crate::problem::section::section(written, x, |given| {
-        let [ea, ga2, ga3] = given.axial_and_shear.map(|q| q.get(x));
-        let [gj, ei2, ei3] = given.torsion_and_bending.map(|q| q.get(x));
-        let [i2, i3] = given.inertia.map(|q| q.get(x));
+    crate::problem::section::section_by(written, &get, |given| {
+        let [ea, ga2, ga3] = given.axial_and_shear.each_ref().map(&get);
+        let [gj, ei2, ei3] = given.torsion_and_bending.each_ref().map(&get);
+        let [i2, i3] = given.inertia.each_ref().map(&get);
         SectionValues {
             stiffness: [ea, ga2, ga3, gj, ei2, ei3],
-            inertia: [given.mass.get(x), i2, i3],
+            inertia: [get(&given.mass), i2, i3],
         }
     })
 }

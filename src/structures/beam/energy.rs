@@ -73,6 +73,16 @@ impl<S: Scalar> Strain<S> {
     }
 }
 
+/// A strain e = b·v + ½ Σ (g_s·v)² of a beam at a point, with its weight in the energy ½ k e².
+pub(crate) struct BeamStrain<S> {
+    /// k: stiffness times length.
+    pub(crate) weight: S,
+    /// b.
+    pub(crate) linear: [S; MOST_UNKNOWNS],
+    /// g_1 and g_2 of the axial strain.
+    pub(crate) slopes: Option<[[S; MOST_UNKNOWNS]; 2]>,
+}
+
 impl<S: Scalar> Beam<S> {
     /// The beam in another scalar.
     pub(crate) fn map<T: Scalar>(&self, mut f: impl FnMut(S) -> T) -> Beam<T> {
@@ -176,6 +186,40 @@ impl<S: Scalar> Beam<S> {
             &mut to.section,
             &mut to.material,
         );
+    }
+
+    /// The strains of von Karman at the points, by rows over the unknowns of [`Beam::tangent`].
+    pub(crate) fn strains(&self) -> Vec<BeamStrain<S>> {
+        let (line, still) = (Line::new(self), BeamMotion::zeros());
+        let stiffness = self.section.values(&self.material).stiffness;
+        let mut all = Vec::with_capacity(6 * strain_points().len());
+        for (r, weight) in strain_points() {
+            let (axes, at) = self.at(&line, &still, r);
+            let strain = Strain::new(&axes, &at, false);
+            for (k, stiffness) in stiffness.iter().enumerate() {
+                let mut unit = [S::zero(); 6];
+                unit[k] = S::one();
+                let mut gradient = AtPoint {
+                    w: Vec3::zeros(),
+                    turn: Vec3::zeros(),
+                    turn_by: Vec3::zeros(),
+                };
+                let unused = &mut Axes::zeros();
+                strain.add_transpose(&axes, &at, false, &unit, unused, &mut gradient);
+                let slope = |e: Vec3<S>| AtPoint {
+                    w: e / axes.speed,
+                    turn: Vec3::zeros(),
+                    turn_by: Vec3::zeros(),
+                };
+                let slopes = [axes.e2, axes.e3].map(|e| line_row(&line, r, &slope(e)));
+                all.push(BeamStrain {
+                    weight: *stiffness * axes.speed * weight,
+                    linear: line_row(&line, r, &gradient),
+                    slopes: (k == 0).then_some(slopes),
+                });
+            }
+        }
+        all
     }
 
     /// Writes the tangent stiffness at a motion, lower part, into `matrix`: unknowns are all u_a (3a + i),

@@ -49,6 +49,11 @@ impl<S: Scalar> Line<S> {
         }
     }
 
+    /// e2 and e3 at each node.
+    pub(crate) fn axes(&self) -> [[Vec3<S>; 2]; BEAM_NODES] {
+        self.axes.map(|axes| [axes.e2, axes.e3])
+    }
+
     /// The motion w_a of the line; rotations stay.
     pub(crate) fn motion(&self, motion: &BeamMotion<S>) -> BeamMotion<S> {
         let w = [0, 1, 2]

@@ -13,11 +13,48 @@ use super::section::SectionValues;
 use crate::math::{Scalar, Vec3};
 use crate::structures::shell::{ElementMatrix, MOST_UNKNOWNS, MassMoments};
 
+/// Masses of a beam between its positions and axes at the nodes.
+pub(crate) struct BeamMasses<S> {
+    /// ∫ N_a N_b ds.
+    pub(crate) shares: [[S; BEAM_NODES]; BEAM_NODES],
+    /// e2 and e3 at each node.
+    pub(crate) axes: [[Vec3<S>; 2]; BEAM_NODES],
+    /// Masses per length.
+    pub(crate) per_length: [[S; 3]; 3],
+}
+
 impl<S: Scalar> Beam<S> {
     /// Mass per length m [kg/m], and rotary inertia about t, e2 and e3 [kg m].
     fn per_length(&self) -> [S; 4] {
         let [mass, m2, m3] = self.section.values(&self.material).inertia;
         [mass + self.line_mass, m2 + m3, m2, m3]
+    }
+
+    /// ∫ N_a N_b ds \[m\], the axes e2 and e3 at the nodes, and the masses per length between the position of a node and
+    /// its e2 and e3: with the offset o the centres move by ẋ + o2 ė2 + o3 ė3, sections by ρI3 ė2 and ρI2 ė3.
+    pub(crate) fn masses(&self) -> BeamMasses<S> {
+        let line = Line::new(self);
+        let mut shares = [[S::zero(); BEAM_NODES]; BEAM_NODES];
+        for (r, weight) in mass_points() {
+            let length = self.axes_at(&line, r).speed * weight;
+            let n = shape(r).0;
+            for (row, &a) in shares.iter_mut().zip(&n) {
+                for (share, &b) in row.iter_mut().zip(&n) {
+                    *share += length * (a * b);
+                }
+            }
+        }
+        let [m, _, i2, i3] = self.per_length();
+        let [o2, o3] = self.offset;
+        BeamMasses {
+            shares,
+            axes: line.axes(),
+            per_length: [
+                [m, m * o2, m * o3],
+                [m * o2, m * o2 * o2 + i3, m * o2 * o3],
+                [m * o3, m * o2 * o3, m * o3 * o3 + i2],
+            ],
+        }
     }
 
     /// Transpose of the derivative of [`Beam::per_length`].

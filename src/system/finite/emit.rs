@@ -1,8 +1,10 @@
 //! Entries that a body of finite elements has in mass and iteration matrices. `slots` are the places of
 //! the body's coordinates among the velocities: six of the frame, then the elastic ones.
 
+use super::damping;
 use super::element::{Points, gather, lift, motion, per_area, points, second, weigh};
 use super::inertia::rotating;
+use super::parts;
 use super::stiffness::tangent;
 use crate::linalg::Emit;
 use crate::math::scalar::skew;
@@ -191,6 +193,7 @@ pub(crate) fn emit_mass<S: Scalar>(
     frame.block[1][0] = -coupled.transpose();
     frame.block[1][1] = Mat3::identity() * moments.trace() - moments;
     frame.emit(slots, at, scale, emit);
+    parts::emit_mass(finite, (rotation, q), slots, at, scale, emit);
 }
 
 /// Emits the diagonal of [`super::weights`], in the order of the mass matrix.
@@ -216,6 +219,7 @@ pub(crate) fn emit_weights<S: Scalar>(
         emit_masses((element, slots), (0, 0), S::one(), masses, emit);
     }
     Frame::zero(finite.mesh.coordinates).emit(slots, (0, 0), S::one(), emit);
+    parts::emit_weights(finite, slots, emit);
 }
 
 /// Emits the derivatives of inertial and elastic forces, the accelerations held: in tangent positions
@@ -299,8 +303,13 @@ pub(crate) fn emit_jacobian<S: Scalar>(
         emit_element((element, slots), &all, (row, y), by_y, &stiffness, emit);
         let positions = of_positions(element, weights[0], &twice);
         let directors = of_directors(element, weights[1], |along| twice * lift::<S>(along));
-        let parts = (&positions[..], &directors[..]);
-        emit_parts((element, slots), (row, v), by_v, parts, emit);
+        let both = (&positions[..], &directors[..]);
+        emit_parts((element, slots), (row, v), by_v, both, emit);
+        if let Some(factors) = finite.damping {
+            let [in_x, in_r] = damping::matrices(finite, i, factors, (&at.q, &at.rate));
+            emit_element((element, slots), &all, (row, y), by_y, &in_x, emit);
+            emit_element((element, slots), &all, (row, v), by_v, &in_r, emit);
+        }
     }
     in_y.block[0][1] = -(rotation * skew(&force));
     in_y.block[1][1] = skew(&first) * skew(&at.gamma);
@@ -312,6 +321,7 @@ pub(crate) fn emit_jacobian<S: Scalar>(
     }
     in_y.emit(slots, (row, y), by_y, emit);
     in_v.emit(slots, (row, v), by_v, emit);
+    parts::emit_jacobian(finite, at, slots, (row, y, v), (by_y, by_v), emit);
 }
 
 /// Adds the square matrix `part` to rows of length n, from `column` on.

@@ -9,6 +9,7 @@ use super::element::{
     Points, gather, motion, motion_transpose, per_area, points, pull_per_area, scatter, second,
     share, weigh,
 };
+use super::parts;
 use crate::math::scalar::skew;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::finite::{FiniteElements, NODES, POINTS, ShellElement};
@@ -80,6 +81,7 @@ pub(crate) fn inertial<S: Scalar>(finite: &FiniteElements<S>, at: &Flexing<S>) -
         );
     }
     out.linear = at.rotation * out.linear;
+    parts::add_inertial(finite, at, &mut out);
     out
 }
 
@@ -149,6 +151,7 @@ pub(crate) fn pull_back(
     out.omega -= axial(&(by_b * spin + spin * by_b));
     out.theta = by_gamma.cross(&at.gamma) + force.cross(&phi);
     out.gravity = -(at.rotation * by_gamma);
+    parts::pull_back(finite, at, psi, cot, &mut out);
     out
 }
 
@@ -192,6 +195,7 @@ pub(crate) fn moving<S: Scalar>(
         turning += (spin * spin * rigid).trace();
     }
     out.kinetic = nu.dot(&out.momentum) + turning * 0.5;
+    parts::add_moving(finite, at, nu, &mut out);
     out
 }
 
@@ -247,13 +251,14 @@ pub(crate) fn pull_kinetic(
         scatter(element, &motion_transpose(element, &by_rate), &mut out.rate);
     }
     out.theta = momentum.cross(nu) * scale;
-    (out, at.rotation * momentum * scale)
+    let of_parts = parts::pull_kinetic(finite, at, (nu, scale), cot, &mut out);
+    (out, at.rotation * momentum * scale + of_parts)
 }
 
 /// Static moment of the deformed body about the frame's origin, axes of the frame \[kg m\].
 pub(crate) fn first_moment<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> Vec3<S> {
     let elements = finite.mesh.elements.iter().enumerate();
-    elements.fold(Vec3::zeros(), |sum, (i, element)| {
+    elements.fold(parts::first_moment(finite, q), |sum, (i, element)| {
         let places = share(element, &points(element, &gather(element, q)));
         let own = places[..NODES].iter();
         sum + own.fold(Vec3::zeros(), |sum: Vec3<S>, p| sum + p) * per_area(finite, i)[0]
@@ -285,6 +290,7 @@ pub(crate) fn pull_first_moment(
         by[NODES..].fill(Vec3::zeros());
         scatter(element, &motion_transpose(element, &by), by_q);
     }
+    parts::pull_first_moment(finite, (q, placed), w, by_q, cot);
 }
 
 /// The diagonal of the mass matrix of the coordinates.
@@ -300,6 +306,7 @@ pub(crate) fn weights<S: Scalar>(finite: &FiniteElements<S>) -> Vec<S> {
             }
         }
     }
+    parts::add_weights(finite, &mut out);
     out
 }
 
@@ -319,4 +326,5 @@ pub(crate) fn pull_weights(
         }
         pull_per_area(finite, i, by_weight, cot);
     }
+    parts::pull_weights(finite, by, cot);
 }

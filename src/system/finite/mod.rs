@@ -1,18 +1,22 @@
 //! Flexible bodies of finite elements: inertial and elastic forces, and all their derivatives, as sums over
 //! elements.
 
+mod damping;
 mod element;
 mod emit;
 mod inertia;
+mod parts;
 mod stiffness;
 mod stress;
 
+pub(crate) use damping::{add_damping, pull_damping};
 pub(crate) use element::{gather, per_area};
 pub(crate) use emit::{emit_jacobian, emit_mass, emit_weights};
 pub(crate) use inertia::{
     first_moment, inertial, moving, pull_back, pull_first_moment, pull_kinetic, pull_weights,
     weights,
 };
+pub(crate) use parts::part_tangent;
 pub(crate) use stiffness::{
     add_forces, diagonal, energy, factors, pull_energy, pull_forces, tangent,
 };

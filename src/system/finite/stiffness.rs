@@ -1,6 +1,7 @@
 //! Elastic forces of a body of finite elements, its strain energy, and their derivatives.
 
 use super::element::{Local, gather, scatter};
+use super::parts;
 use crate::math::Scalar;
 use crate::model::finite::{
     DISPLACEMENTS, FiniteElements, NODES, QUADRATIC, STRAINS, ShellElement, UNKNOWNS,
@@ -47,7 +48,7 @@ impl<S: Scalar> Strained<S> {
     }
 
     /// Derivatives of the strains along y.
-    fn along(&self, element: &ShellElement, y: &Local<S>) -> [S; STRAINS] {
+    pub(super) fn along(&self, element: &ShellElement, y: &Local<S>) -> [S; STRAINS] {
         let mut out = [S::zero(); STRAINS];
         for (e, row) in out.iter_mut().zip(&element.membrane) {
             *e = product(row, y);
@@ -59,8 +60,27 @@ impl<S: Scalar> Strained<S> {
         out
     }
 
+    /// The rows ∂/∂u of the derivatives of the strains along r.
+    pub(super) fn turned_rows(
+        &self,
+        element: &ShellElement,
+        r: &Local<S>,
+    ) -> [[S; DISPLACEMENTS]; STRAINS] {
+        let mut rows = [[S::zero(); DISPLACEMENTS]; STRAINS];
+        for (row, [left, right]) in rows.iter_mut().zip(&element.slopes) {
+            add_row(right, product(left, r) * 0.5, row);
+            add_row(left, product(right, r) * 0.5, row);
+        }
+        rows
+    }
+
     /// Adds Σ n_p ∂e_p/∂u.
-    fn add_transpose(&self, element: &ShellElement, n: &[S; STRAINS], out: &mut Local<S>) {
+    pub(super) fn add_transpose(
+        &self,
+        element: &ShellElement,
+        n: &[S; STRAINS],
+        out: &mut Local<S>,
+    ) {
         for (row, &n) in element.membrane.iter().zip(n) {
             add_row(row, n, out);
         }
@@ -95,7 +115,7 @@ pub(super) fn stresses<S: Scalar>(element: &ShellElement, e: &[S; STRAINS]) -> [
 }
 
 /// K x for one of the linear stiffnesses.
-fn linear<S: Scalar>(matrix: &[f64], x: &Local<S>, n: usize) -> Local<S> {
+pub(super) fn linear<S: Scalar>(matrix: &[f64], x: &Local<S>, n: usize) -> Local<S> {
     let mut out = [S::zero(); UNKNOWNS];
     // The matrix is symmetric: its rows are its columns.
     for (row, &x) in matrix.chunks_exact(n).zip(x) {
@@ -106,7 +126,7 @@ fn linear<S: Scalar>(matrix: &[f64], x: &Local<S>, n: usize) -> Local<S> {
     out
 }
 
-fn inner<S: Scalar>(x: &[S], y: &[S]) -> S {
+pub(super) fn inner<S: Scalar>(x: &[S], y: &[S]) -> S {
     crate::math::slices::dot(x, y)
 }
 
@@ -117,7 +137,7 @@ pub(crate) fn factors<S: Scalar>(finite: &FiniteElements<S>, i: usize) -> [S; 2]
 }
 
 /// Transpose of the derivative of [`factors`].
-fn pull_factors(
+pub(super) fn pull_factors(
     finite: &FiniteElements<f64>,
     i: usize,
     by: [f64; 2],
@@ -135,7 +155,7 @@ pub(crate) fn energy<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> S {
         let ([thin, thick], by) = (factors(finite, i), energies(element, &gather(element, q)));
         sum += thin * by[0] + thick * by[1];
     }
-    sum
+    sum + parts::energy(finite, q)
 }
 
 /// Energies for E h = 1 and E h³ = 1.
@@ -164,6 +184,7 @@ pub(crate) fn add_forces<S: Scalar>(finite: &FiniteElements<S>, q: &[S], out: &m
         }
         scatter(element, &force, out);
     }
+    parts::add_forces(finite, q, out);
 }
 
 /// Pulls U times `scale` back to q (added to `by_q`) and to the parameters (added to `cot`).
@@ -181,6 +202,7 @@ pub(crate) fn pull_energy(
         let by = energies(element, &gather(element, q)).map(|u| u * scale);
         pull_factors(finite, i, by, cot);
     }
+    parts::pull_energy(finite, (q, scale), cot);
 }
 
 /// Pulls the cotangent ψ of [`add_forces`] back to q (added) and to the parameters (added to `cot`).
@@ -215,6 +237,7 @@ pub(crate) fn pull_forces(
         }
         scatter(element, &force, by_q);
     }
+    parts::pull_forces(finite, (q, psi), by_q, cot);
 }
 
 /// Adds left ⊗ right to a matrix of displacements, rows up to the diagonal's block of nine.
@@ -297,6 +320,13 @@ pub(crate) fn diagonal<S: Scalar>(finite: &FiniteElements<S>) -> Vec<S> {
             if let Some(j) = coordinate {
                 out[*j] += matrix[k * (n + 1)];
             }
+        }
+    }
+    for (part, coordinates) in parts::all(finite) {
+        let n = coordinates.len();
+        let matrix = parts::part_tangent(part, &vec![S::zero(); n]);
+        for (k, &j) in coordinates.iter().enumerate() {
+            out[j] += matrix[k * (n + 1)];
         }
     }
     out

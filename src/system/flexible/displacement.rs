@@ -5,10 +5,71 @@ use super::form::{emit_block, pull_weights, weights};
 use crate::linalg::Emit;
 use crate::math::Scalar;
 use crate::model::Model;
-use crate::model::flexible::Form;
+use crate::model::flexible::{FlexibleBody, Form};
 use crate::system::finite;
 use crate::system::flexing::Block;
 use crate::system::numbering::Numbering;
+
+/// The mean square of the displacement of a body over its mass, as a quadratic form of its elastic coordinates:
+/// ∫ |Σ x_I N_I|² dm / m of modes, and the part of its diagonal of finite elements.
+#[derive(Clone, Debug)]
+pub(crate) struct MeanSquare {
+    /// The body that carries each coordinate, and the component of its position.
+    places: Vec<(usize, usize)>,
+    form: Weights,
+}
+
+#[derive(Clone, Debug)]
+enum Weights {
+    /// By rows.
+    Full(Vec<f64>),
+    Diagonal(Vec<f64>),
+}
+
+impl MeanSquare {
+    /// The forms of all flexible bodies.
+    pub(crate) fn all<S: Scalar>(model: &Model<S>) -> Vec<Self> {
+        let one = |body: &FlexibleBody<S>| {
+            let mass = model.bodies[body.frame].mass.re();
+            let form = match &body.form {
+                Form::Modal(modal) => {
+                    let (inertia, m) = (&modal.inertia, body.modes());
+                    let trace = |i, j| inertia.products[inertia.place(i, j).0].trace().re() / mass;
+                    Weights::Full((0..m * m).map(|k| trace(k / m, k % m)).collect())
+                }
+                Form::Finite(_) => {
+                    let all = weights(&body.form);
+                    Weights::Diagonal(all.into_iter().map(|w| w.re() / mass).collect())
+                }
+            };
+            Self {
+                places: body.places().collect(),
+                form,
+            }
+        };
+        model.flexible.iter().map(one).collect()
+    }
+
+    /// Its value; `of` gives the component of a carrier.
+    pub(crate) fn value(&self, of: impl Fn(usize, usize) -> f64) -> f64 {
+        let x = |i: usize| of(self.places[i].0, self.places[i].1);
+        let count = self.places.len();
+        match &self.form {
+            Weights::Diagonal(all) => (0..count).map(|i| all[i] * x(i) * x(i)).sum(),
+            Weights::Full(all) => {
+                let row = |i: usize| -> f64 { (0..count).map(|j| all[i * count + j] * x(j)).sum() };
+                let sum: f64 = (0..count).map(|i| x(i) * row(i)).sum();
+                // Round-off may leave a negative sum; NaN stays.
+                if sum < 0.0 { 0.0 } else { sum }
+            }
+        }
+    }
+
+    /// The bodies that carry its coordinates, each as often as it carries one.
+    pub(crate) fn carriers(&self) -> impl Iterator<Item = usize> + '_ {
+        self.places.iter().map(|&(body, _)| body)
+    }
+}
 
 /// Adds the gradient of ½ Σ w_I (q_I − q_I')², q' the start, to tangent positions; `q` are positions.
 pub(crate) fn add_displacement<S: Scalar>(

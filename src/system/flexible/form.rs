@@ -187,7 +187,8 @@ pub(crate) fn alone<S: Scalar>(body: &FlexibleBody<S>) -> Vec<[S; 3]> {
         }
         Form::Finite(own) => {
             let both = finite::diagonal(own).into_iter().zip(weights);
-            both.map(|(k, m)| [k, m, S::zero()]).collect()
+            let [alpha, beta] = own.damping.unwrap_or([S::zero(); 2]);
+            both.map(|(k, m)| [k, m, alpha * m + beta * k]).collect()
         }
     }
 }

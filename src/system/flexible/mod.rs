@@ -7,7 +7,7 @@ mod form;
 mod held;
 
 pub(crate) use coordinates::{add_coordinates, coordinates, has_shells, nodal_unknowns, rates};
-pub(crate) use displacement::{add_displacement, emit_displacement, pull_displacement};
+pub(crate) use displacement::{MeanSquare, add_displacement, emit_displacement, pull_displacement};
 pub(crate) use form::alone;
 pub(crate) use held::{
     held, pull_energies, pull_momentum, pull_strain_energy, pull_stress_ratios, strain_energy,
@@ -40,7 +40,10 @@ pub(crate) fn add_force_balances<S: Scalar>(
             Form::Modal(modal) => {
                 elastic::add_forces(modal, &at.q, &at.rate, &mut forces.elastic);
             }
-            Form::Finite(own) => finite::add_forces(own, &at.q, &mut forces.elastic),
+            Form::Finite(own) => {
+                finite::add_forces(own, &at.q, &mut forces.elastic);
+                finite::add_damping(own, (&at.q, &at.rate), &mut forces.elastic);
+            }
         }
         let frame = (&forces.linear, &forces.angular);
         add_part(numbering, body, frame, &forces.elastic, out);
@@ -159,7 +162,7 @@ pub(crate) fn emit_force_balances<S: Scalar>(
         match &body.form {
             Form::Modal(modal) => {
                 let (mut in_y, mut in_v) = flexing::jacobian(&modal.inertia, &at);
-                elastic::add_jacobian(modal, &at.q, &mut in_y, &mut in_v);
+                elastic::add_jacobian(modal, (&at.q, &at.rate), &mut in_y, &mut in_v);
                 emit_block(&slots, &in_y, (row, y), by_y, emit);
                 emit_block(&slots, &in_v, (row, v), by_v, emit);
             }
@@ -197,6 +200,8 @@ pub(crate) fn pull_force_balances(
             }
             (Form::Finite(finite), Form::Finite(own)) => {
                 finite::pull_forces(finite, (&at.q, &psi.elastic), &mut by.q, own);
+                let motion = (&at.q[..], &at.rate[..], &psi.elastic[..]);
+                finite::pull_damping(finite, motion, (&mut by.q, &mut by.rate), own);
             }
             (Form::Modal(_), Form::Finite(_)) | (Form::Finite(_), Form::Modal(_)) => unlike(),
         }

@@ -4,7 +4,7 @@ use crate::linalg::cholesky::SymmetricPattern;
 use crate::math::slices::dot;
 use crate::model::finite::{FiniteElements, NODES, UNKNOWNS};
 use crate::structures::modes::{Pencil, PencilFailure};
-use crate::system::finite::{add_forces, energy, gather, per_area, tangent};
+use crate::system::finite::{add_forces, energy, gather, part_tangent, per_area, tangent};
 
 /// Newton iterations of a static solution.
 const ITERATIONS: usize = 60;
@@ -30,8 +30,10 @@ impl<'a> Matrices<'a> {
     pub(super) fn new(shells: &'a FiniteElements<f64>) -> Result<Self, PencilFailure> {
         let count = shells.mesh.coordinates;
         let mut columns: Vec<Vec<usize>> = (0..count).map(|j| vec![j]).collect();
-        for element in &shells.mesh.elements {
-            let all: Vec<usize> = element.coordinates.iter().flatten().copied().collect();
+        let elements = shells.mesh.elements.iter();
+        let elements = elements.map(|e| e.coordinates.iter().flatten().copied().collect());
+        for all in elements.chain(shells.mesh.parts.iter().cloned()) {
+            let all: Vec<usize> = all;
             for &j in &all {
                 columns[j].extend(all.iter().filter(|&&i| i > j));
             }
@@ -156,6 +158,29 @@ fn add_tangent(
             }
         }
     }
+    for (part, coordinates) in shells.parts.iter().zip(&shells.mesh.parts) {
+        let own: Vec<f64> = coordinates.iter().map(|&i| x[i]).collect();
+        let matrix = part_tangent(part, &own);
+        add_of_part(coordinates, pattern, values, |k, l| {
+            matrix[k * coordinates.len() + l]
+        });
+    }
+}
+
+/// Adds the lower triangle of a matrix of the coordinates of a part.
+fn add_of_part(
+    coordinates: &[usize],
+    pattern: &SymmetricPattern,
+    values: &mut [f64],
+    entry: impl Fn(usize, usize) -> f64,
+) {
+    for (k, &row) in coordinates.iter().enumerate() {
+        for (l, &column) in coordinates[..=k].iter().enumerate() {
+            if let Some(slot) = pattern.slot(row.max(column), row.min(column)) {
+                values[slot] += entry(k, l);
+            }
+        }
+    }
 }
 
 fn add_mass(shells: &FiniteElements<f64>, pattern: &SymmetricPattern, values: &mut [f64]) {
@@ -173,5 +198,11 @@ fn add_mass(shells: &FiniteElements<f64>, pattern: &SymmetricPattern, values: &m
                 }
             }
         }
+    }
+    for (part, coordinates) in shells.parts.iter().zip(&shells.mesh.parts) {
+        let inertia = &part.inertia;
+        add_of_part(coordinates, pattern, values, |k, l| {
+            inertia.products[inertia.place(k, l).0].trace()
+        });
     }
 }

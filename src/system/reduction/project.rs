@@ -2,15 +2,18 @@
 //! elements of one thickness and material. Design variables are factors of these parts, so all numbers of the
 //! body have exact derivatives with the basis as it is.
 
-use crate::math::slices::dot;
+use crate::math::slices::{add_scaled, dot};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::finite::{
-    DISPLACEMENTS, ElementMesh, FiniteElements, NODES, POINTS, QUADRATIC, STRAINS, ShellElement,
+    DISPLACEMENTS, ElementMesh, FiniteElements, NODES, POINTS, Part, QUADRATIC, STRAINS,
+    ShellElement,
 };
-use crate::model::flexible::{Modal, ModalInertia, ModalStiffness};
+use crate::model::flexible::Modal;
 use crate::model::reduced::{NodalBasis, PairEnergy, ReducedShells};
+use crate::model::shapes::{ModalInertia, ModalStiffness, Quadratic, Strain};
 use crate::structures::floating::PointMotion;
 use crate::system::finite::{factors, per_area};
+use nalgebra::SMatrix;
 use std::sync::Arc;
 
 /// A body of shells in a basis.
@@ -241,6 +244,27 @@ impl ProjectedShells {
             add_lifted(&mut pairs.cubic, both[0], &group.pairs.cubic);
             add_lifted(&mut pairs.quartic, both[0], &group.pairs.quartic);
         }
+        let mut strains = Vec::new();
+        for (part, coordinates) in elements.parts.iter().zip(&elements.mesh.parts) {
+            let own = self.part(part, coordinates);
+            inertia.centre += own.inertia.centre;
+            let vectors = inertia.static_moments.iter_mut();
+            for (to, own) in vectors.zip(&own.inertia.static_moments) {
+                *to += own;
+            }
+            let with = inertia.with_position.iter_mut();
+            let with = with.zip(&own.inertia.with_position);
+            let products = inertia.products.iter_mut().zip(&own.inertia.products);
+            for (to, own) in with.chain(products) {
+                *to += own;
+            }
+            add_scaled(&mut stiffness, S::one(), &own.stiffness.linear);
+            strains.extend(own.stiffness.strains);
+        }
+        let heavy = elements.damping.map(|[alpha, _]| {
+            let trace = |k: usize| inertia.products[inertia.place(k / m, k % m).0].trace();
+            (0..m * m).map(|k| alpha * trace(k)).collect()
+        });
         // Round-off leaves the sums unsymmetric.
         for i in 0..m {
             for j in 0..i {
@@ -253,14 +277,91 @@ impl ProjectedShells {
             inertia,
             stiffness: ModalStiffness {
                 linear: stiffness,
-                strains: Vec::new(),
+                strains,
             },
-            damping: vec![S::zero(); m * m],
+            damping: heavy.unwrap_or_else(|| vec![S::zero(); m * m]),
             shells: Some(ReducedShells {
                 basis: self.basis.clone(),
                 pairs,
                 elements,
             }),
+        }
+    }
+
+    /// A beam or a lumped mass by the coordinates of the body.
+    fn part<S: Scalar>(&self, part: &Part<S>, coordinates: &[usize]) -> Part<S> {
+        let vectors = &self.basis.vectors;
+        // The coordinates of the part in each vector.
+        let local: Vec<Vec<f64>> = (vectors.iter())
+            .map(|vector| coordinates.iter().map(|&i| vector[i]).collect())
+            .collect();
+        let (m, inertia) = (local.len(), &part.inertia);
+        let product = |k: usize, l: usize| match inertia.place(k, l) {
+            (at, false) => inertia.products[at],
+            (at, true) => inertia.products[at].transpose(),
+        };
+        // Σ_l S_kl V_lJ.
+        let half = |x: &Vec<f64>| -> Vec<Mat3<S>> {
+            let of = |k: usize| {
+                let all = x.iter().enumerate();
+                all.fold(Mat3::zeros(), |sum, (l, &x)| {
+                    sum + product(k, l) * S::from(x)
+                })
+            };
+            (0..coordinates.len()).map(of).collect()
+        };
+        let halves: Vec<Vec<Mat3<S>>> = local.iter().map(half).collect();
+        let mut products = Vec::with_capacity(m * (m + 1) / 2);
+        for (i, x) in local.iter().enumerate() {
+            for other in &halves[i..] {
+                products.push(weighted(x, other, Mat3::zeros()));
+            }
+        }
+        let row = |row: &Vec<S>| -> Vec<S> {
+            let all = local.iter();
+            all.map(|x| {
+                row.iter()
+                    .zip(x)
+                    .fold(S::zero(), |sum, (&a, &x)| sum + a * x)
+            })
+            .collect()
+        };
+        let n = coordinates.len().max(1);
+        let forces: Vec<Vec<S>> = (part.stiffness.linear.chunks_exact(n))
+            .map(|own| row(&own.to_vec()))
+            .collect();
+        let mut linear = vec![S::zero(); m * m];
+        for (i, x) in local.iter().enumerate() {
+            for (&x, force) in x.iter().zip(&forces) {
+                add_scaled(&mut linear[i * m..(i + 1) * m], S::from(x), force);
+            }
+        }
+        let strains = part.stiffness.strains.iter().map(|own| Strain {
+            weight: own.weight,
+            strain: Quadratic {
+                linear: row(&own.strain.linear),
+                squares: (own.strain.squares.iter())
+                    .map(|(c, g)| (*c, row(g)))
+                    .collect(),
+            },
+        });
+        Part {
+            mass: part.mass,
+            second: part.second,
+            inertia: ModalInertia {
+                centre: inertia.centre,
+                static_moments: (local.iter())
+                    .map(|x| weighted(x, &inertia.static_moments, Vec3::zeros()))
+                    .collect(),
+                with_position: (local.iter())
+                    .map(|x| weighted(x, &inertia.with_position, Mat3::zeros()))
+                    .collect(),
+                products,
+            },
+            stiffness: ModalStiffness {
+                linear,
+                strains: strains.collect(),
+            },
         }
     }
 
@@ -281,6 +382,16 @@ impl ProjectedShells {
             rotation: project(&point.rotation),
         }
     }
+}
+
+/// Σ x_k a_k.
+fn weighted<S: Scalar, const C: usize>(
+    x: &[f64],
+    all: &[SMatrix<S, 3, C>],
+    zero: SMatrix<S, 3, C>,
+) -> SMatrix<S, 3, C> {
+    let both = x.iter().zip(all);
+    both.fold(zero, |sum, (&x, own)| sum + own * S::from(x))
 }
 
 /// Adds a factor times constants.

@@ -10,6 +10,14 @@ const FLAT: f64 = 1e-12;
 
 /// The unknowns that bend a flat shell, if the others stretch it alone; `None` of other shells.
 fn bending_unknowns(shells: &FiniteElements<f64>) -> Option<Vec<bool>> {
+    // Beams beside shells bend and stretch at once.
+    if shells
+        .parts
+        .iter()
+        .any(|part| !part.stiffness.strains.is_empty())
+    {
+        return None;
+    }
     let mut bends = vec![false; shells.mesh.coordinates];
     let elements = &shells.mesh.elements;
     let largest = |k: usize| {

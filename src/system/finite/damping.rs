@@ -1,0 +1,165 @@
+//! Rayleigh damping of finite elements, without forces on rigid motions:
+//!
+//! ```text
+//! −α M_ee q̇ − β Σ_p k_p ∇e_p ė_p
+//! ```
+//!
+//! over all strains e_p of [`super::stiffness`], von Karman's among them. For small motions this is α M + β K
+//! with the axes held. A shell that bends far is not damped by the membrane strains that it does not have.
+
+use super::element::{
+    gather, motion, motion_transpose, per_area, pull_per_area, scatter, share, weigh,
+};
+use super::parts;
+use super::stiffness::{Strained, factors, inner, linear, pull_factors, stresses};
+use crate::math::Scalar;
+use crate::math::slices::{add_scaled, dot};
+use crate::model::finite::{DISPLACEMENTS, FiniteElements, NODES, STRAINS};
+
+/// M_ee q̇ and Σ k_p ∇e_p ė_p.
+fn both<S: Scalar>(finite: &FiniteElements<S>, (q, rate): (&[S], &[S])) -> [Vec<S>; 2] {
+    let (mut heavy, mut viscous) = (vec![S::zero(); q.len()], vec![S::zero(); q.len()]);
+    for (i, element) in finite.mesh.elements.iter().enumerate() {
+        let (x, r) = (gather(element, q), gather(element, rate));
+        let forces = weigh(element, per_area(finite, i), &motion(element, &r));
+        scatter(element, &motion_transpose(element, &forces), &mut heavy);
+        let [thin, thick] = factors(finite, i);
+        let n = element.coordinates.len();
+        let strained = Strained::of(element, &x);
+        let mut force = linear(&element.linear[1], &r, n);
+        let stress = stresses(element, &strained.along(element, &r));
+        strained.add_transpose(element, &stress, &mut force);
+        let bending = linear(&element.linear[0], &r, n);
+        for (f, &b) in force.iter_mut().zip(&bending) {
+            *f = *f * thin + b * thick;
+        }
+        scatter(element, &force, &mut viscous);
+    }
+    parts::add_heavy(finite, rate, &mut heavy);
+    parts::add_viscous(finite, (q, rate), &mut viscous);
+    [heavy, viscous]
+}
+
+/// Adds the forces of damping, as they stand beside ∂U/∂q.
+pub(crate) fn add_damping<S: Scalar>(
+    finite: &FiniteElements<S>,
+    motion: (&[S], &[S]),
+    out: &mut [S],
+) {
+    let Some(factors) = finite.damping else {
+        return;
+    };
+    for (force, factor) in both(finite, motion).iter().zip(factors) {
+        add_scaled(out, factor, force);
+    }
+}
+
+/// The derivatives of the forces of damping of a shell in its unknowns x and their rates r, by rows.
+pub(super) fn matrices<S: Scalar>(
+    finite: &FiniteElements<S>,
+    i: usize,
+    [alpha, beta]: [S; 2],
+    (q, rate): (&[S], &[S]),
+) -> [Vec<S>; 2] {
+    let element = &finite.mesh.elements[i];
+    let (x, r) = (gather(element, q), gather(element, rate));
+    let [thin, thick] = factors(finite, i).map(|factor| beta * factor);
+    let n = element.coordinates.len();
+    let (mut in_x, mut in_r) = (vec![S::zero(); n * n], Vec::with_capacity(n * n));
+    let [bending, shear] = &element.linear;
+    in_r.extend(
+        bending
+            .iter()
+            .zip(shear)
+            .map(|(&b, &s)| thick * b + thin * s),
+    );
+    let strained = Strained::of(element, &x);
+    let rows = strained.rows(element);
+    let turned = strained.turned_rows(element, &r);
+    let stress = stresses(element, &strained.along(element, &r));
+    for (p, plane) in element.plane.iter().enumerate() {
+        // P ∂e/∂u and P ∂ė/∂u.
+        let mut scaled = [[S::zero(); DISPLACEMENTS]; 2];
+        for (l, &a) in plane.iter().enumerate().filter(|(_, a)| **a != 0.0) {
+            for (to, from) in scaled.iter_mut().zip([&rows[l], &turned[l]]) {
+                add_scaled(to, thin * a, from);
+            }
+        }
+        for (k, &b) in rows[p].iter().enumerate() {
+            add_scaled(&mut in_r[k * n..k * n + DISPLACEMENTS], b, &scaled[0]);
+            add_scaled(&mut in_x[k * n..k * n + DISPLACEMENTS], b, &scaled[1]);
+        }
+    }
+    for ([left, right], &stress) in element.slopes.iter().zip(&stress) {
+        let half = thin * stress * 0.5;
+        for k in 0..DISPLACEMENTS {
+            for l in 0..DISPLACEMENTS {
+                in_x[k * n + l] += half * (left[k] * right[l] + right[k] * left[l]);
+            }
+        }
+    }
+    let weights = per_area(finite, i).map(|weight| alpha * weight);
+    for (k, (a, along)) in element.moves.iter().enumerate() {
+        for (l, (b, other)) in element.moves.iter().enumerate() {
+            if a / NODES == b / NODES {
+                let share = element.shares[a % NODES][b % NODES] * along.dot(other);
+                in_r[k * n + l] += weights[a / NODES] * share;
+            }
+        }
+    }
+    [in_x, in_r]
+}
+
+/// Pulls the cotangent ψ of [`add_damping`] back to q and q̇ (added) and to the parameters (added to `cot`).
+pub(crate) fn pull_damping(
+    finite: &FiniteElements<f64>,
+    (q, rate, psi): (&[f64], &[f64], &[f64]),
+    (by_q, by_rate): (&mut [f64], &mut [f64]),
+    cot: &mut FiniteElements<f64>,
+) {
+    let Some([alpha, beta]) = finite.damping else {
+        return;
+    };
+    let forces = both(finite, (q, rate));
+    if let Some(by) = &mut cot.damping {
+        for (by, force) in by.iter_mut().zip(&forces) {
+            *by += dot(psi, force);
+        }
+    }
+    // Both matrices are symmetric in q̇ and ψ.
+    for (force, factor) in both(finite, (q, psi)).iter().zip([alpha, beta]) {
+        add_scaled(by_rate, factor, force);
+    }
+    for (i, element) in finite.mesh.elements.iter().enumerate() {
+        let [x, r, y] = [q, rate, psi].map(|x| gather(element, x));
+        let n = element.coordinates.len();
+        let shared = share(element, &motion(element, &y));
+        let mut by_weight = [0.0; 2];
+        for (k, (own, v)) in shared.iter().zip(&motion(element, &r)).enumerate() {
+            by_weight[k / NODES] += alpha * own.dot(v);
+        }
+        pull_per_area(finite, i, by_weight, cot);
+        let strained = Strained::of(element, &x);
+        let [speed, virtually] = [&r, &y].map(|x| strained.along(element, x));
+        let [stress, virtual_stress] = [&speed, &virtually].map(|e| stresses(element, e));
+        let bending = inner(&linear(&element.linear[0], &y, n), &r);
+        let shear = inner(&linear(&element.linear[1], &y, n), &r);
+        let thin = inner(&virtually, &stress) + shear;
+        pull_factors(finite, i, [beta * thin, beta * bending], cot);
+        let scale = beta * factors(finite, i)[0];
+        let mut force = [0.0; crate::model::finite::UNKNOWNS];
+        for (rows, stress) in [
+            (strained.turned_rows(element, &r), &virtual_stress),
+            (strained.turned_rows(element, &y), &stress),
+        ] {
+            for (row, &stress) in rows.iter().zip(stress).take(STRAINS) {
+                add_scaled(&mut force[..DISPLACEMENTS], scale * stress, row);
+            }
+        }
+        scatter(element, &force, by_q);
+    }
+    parts::pull_heavy(finite, (rate, psi), alpha, cot);
+    // What the rates take is added above.
+    let mut unused = vec![0.0; q.len()];
+    parts::pull_viscous(finite, (q, rate, psi), beta, (by_q, &mut unused), cot);
+}
