@@ -4,7 +4,7 @@ use super::prepared::{PartSource, Prepared, WrittenPart};
 use super::quantity::Quantity;
 use super::schema::Document;
 use super::schema::elements::Elements;
-use super::schema::structures::{Direction, Mesh, Section as WrittenSection, Structure as Written};
+use super::schema::structures::{Direction, Mesh, Structure as Written};
 use super::statics::mesh::{Part as MeshPart, panel_elements};
 use super::statics::properties::{section, section_by, slots};
 use crate::math::scalar::lift3;
@@ -16,17 +16,6 @@ use crate::structures::lumped_mass::LumpedMass;
 use crate::structures::material::Material;
 use crate::structures::parts::{of_beam, of_mass};
 use crate::structures::structure::Structure;
-
-/// The sections of the beams of a body.
-pub(super) fn sections(elements: &Elements) -> impl Iterator<Item = &WrittenSection> {
-    let structure = &elements.structure;
-    let varied = structure.sections.as_ref();
-    let several = varied.and_then(|varied| varied.values.as_deref());
-    (structure.section.iter())
-        .chain(varied.and_then(|varied| varied.value.as_ref()))
-        .chain(several.unwrap_or(&[]))
-        .chain(elements.stiffeners.values().map(|own| &own.section))
-}
 
 /// The nodes of the beams of a line along a panel.
 fn line(mesh: &Mesh, along: Direction, at: f64) -> Vec<[usize; 3]> {

@@ -1,7 +1,6 @@
 //! From the cross sections of a file to those of beams.
 
 use super::Problem;
-use super::parts::sections;
 use super::quantity::Quantity;
 use super::schema::section::Section as Written;
 use crate::math::Scalar;
@@ -16,7 +15,7 @@ impl Problem {
                 .as_ref()
                 .and_then(|beam| section(&beam.section, x, |_| SectionValues::zeros()).fault());
             let of_elements = || {
-                let mut all = sections(body.elements.as_ref()?);
+                let mut all = body.elements.as_ref()?.sections();
                 all.find_map(|own| section(own, x, |_| SectionValues::zeros()).fault())
             };
             Some((name.clone(), of_beam.or_else(of_elements)?))

@@ -38,6 +38,18 @@ pub(crate) struct Elements {
     pub prepared: OnceLock<Arc<Prepared>>,
 }
 
+impl Elements {
+    /// The sections of the beams.
+    pub(crate) fn sections(&self) -> impl Iterator<Item = &Section> {
+        let varied = self.structure.sections.as_ref();
+        let several = varied.and_then(|varied| varied.values.as_deref());
+        (self.structure.section.iter())
+            .chain(varied.and_then(|varied| varied.value.as_ref()))
+            .chain(several.unwrap_or(&[]))
+            .chain(self.stiffeners.values().map(|own| &own.section))
+    }
+}
+
 /// Beams along the line of nodes of a panel between its elements that is nearest to a place, of the material of the
 /// structure. Axis 2 of their section stands along the normal of the surface.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
