@@ -1,8 +1,8 @@
 //! Where the equations of flexible bodies are no longer accurate: sections that turn far from the axes of their
-//! body, and bodies of linear strain that spin fast.
+//! body, bodies of linear strain that spin fast, and inertia that depends on the observer.
 
 use crate::integrate::Trajectory;
-use crate::model::{Form, Model};
+use crate::model::{Form, Inertia, Model};
 use crate::structures::modal::ModalNumbers;
 use crate::structures::modal::frequencies::{Held, frequencies};
 use crate::system::BodyMotion;
@@ -22,7 +22,25 @@ pub(super) fn warning(model: &Model<f64>, run: &Trajectory<f64>) -> Option<Strin
     if model.flexible.is_empty() {
         return None;
     }
-    large_rotation(model, run).or_else(|| fast_spin(model, run))
+    let other = large_rotation(model, run).or_else(|| fast_spin(model, run));
+    let all: Vec<String> = truncated_inertia(model).into_iter().chain(other).collect();
+    (!all.is_empty()).then(|| all.join("; "))
+}
+
+/// The bodies whose inertia leaves out how they are deformed.
+fn truncated_inertia(model: &Model<f64>) -> Option<String> {
+    let all = model
+        .flexible
+        .iter()
+        .filter(|body| body.inertia == Inertia::Paper);
+    let names: Vec<String> = all.map(|body| format!("\"{}\"", body.name)).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "the inertia of {} is that of equations 13 and 14 of Kennedy & Boopathy (2016): it leaves out products of \
+             places and deformations, and its results depend on the velocity of the observer",
+            names.join(", ")
+        )
+    })
 }
 
 /// The section that turns farthest, if it turns too far.

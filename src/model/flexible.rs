@@ -35,8 +35,20 @@ pub(crate) struct FlexibleBody<S> {
     pub frame: usize,
     /// The first of the carriers of the elastic coordinates, which stand one after the other.
     pub carriers: usize,
+    /// Which inertia it has.
+    pub inertia: Inertia,
     /// What its coordinates are.
     pub form: Form<S>,
+}
+
+/// Which inertia a flexible body has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Inertia {
+    /// That of the deformed body.
+    Full,
+    /// That of a kinetic energy without products of places and deformations (Kennedy & Boopathy 2016, equations 10,
+    /// 13, 14), which depends on the velocity of the observer.
+    Paper,
 }
 
 /// What the coordinates of a flexible body are.
@@ -140,7 +152,7 @@ impl<S: Scalar> FlexibleBody<S> {
 }
 
 parameters!(struct FlexibleBody {
-    name, frame, carriers;
+    name, frame, carriers, inertia;
     form
 });
 

@@ -17,7 +17,7 @@ pub(crate) mod table;
 pub(crate) mod time_function;
 
 pub(crate) use drive::{DegreeOfFreedom, Drive};
-pub(crate) use flexible::{FlexibleBody, Form, Modes};
+pub(crate) use flexible::{FlexibleBody, Form, Inertia, Modes};
 pub(crate) use joint::{ConstraintRow, Joint, JointFrame, JointKind};
 pub(crate) use load::{Axes, Load, LoadKind};
 pub(crate) use mobility::Mobility;
@@ -120,6 +120,7 @@ impl<S: Scalar> Model<S> {
             name,
             frame,
             carriers,
+            inertia: Inertia::Full,
             form,
         });
         self.flexible.len() - 1

@@ -17,7 +17,7 @@ pub(crate) mod emit_bodies;
 pub(crate) mod failure;
 pub(crate) mod finite;
 pub(crate) mod flexible;
-mod flexing;
+pub(crate) mod flexing;
 pub(crate) mod frame_motion;
 pub(crate) mod in_motion;
 pub(crate) mod initial;

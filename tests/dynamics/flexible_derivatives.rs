@@ -9,7 +9,7 @@ use flexbody::functions::{EnergyPart, Instant, Rows};
 use flexbody::integrate::implicit::ggl::{Equations, StepState};
 use flexbody::linalg::SparseMatrix;
 use flexbody::math::{Complex64, Parameters, Scalar, Vec3};
-use flexbody::model::{Form, Model};
+use flexbody::model::{Form, Inertia, Model};
 use flexbody::system::bodies::{BodyMotion, all_force_balances, rates, velocity_of_rates};
 use flexbody::system::kkt::SaddlePoint;
 use flexbody::system::marker::{MarkerKinematics, RelativeMotion};
@@ -34,6 +34,13 @@ fn cases() -> Vec<Case> {
         (12, [2, 1], Some(4)),
     ];
     let stiffened = stiffened.map(|(seed, elements, v)| (seed, stiffened_swing(seed, elements, v)));
+    // The inertia that leaves out deformations, of shells with beams, masses and damping, and in a basis.
+    let truncated = [(13, None), (14, Some(4))];
+    let truncated = truncated.map(|(seed, vectors)| {
+        let mut model = stiffened_swing(seed, [1, 1], vectors);
+        model.flexible[0].inertia = Inertia::Paper;
+        (seed, model)
+    });
     let case = |(seed, mut model): (u64, Model<f64>)| {
         let modes = model.flexible[0].modes();
         let mut numbers = Numbers(seed + 100);
@@ -63,6 +70,7 @@ fn cases() -> Vec<Case> {
         .chain(shells)
         .chain(reduced)
         .chain(stiffened)
+        .chain(truncated)
         .map(case)
         .collect()
 }

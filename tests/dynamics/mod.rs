@@ -30,6 +30,7 @@ mod reaction_functions;
 mod reactions_carry_weight;
 mod reduced_shells;
 mod redundant_joints;
+mod rotating_plates;
 mod side_by_side;
 mod singular_positions;
 mod steps_in_use;

@@ -1,6 +1,7 @@
 //! Text about the flexible bodies of a document: coordinates and natural frequencies.
 
 use crate::problem::schema::Document;
+use crate::problem::schema::elements::ElementInertia;
 use crate::problem::schema::flexible::Beam;
 use crate::problem::{beam, elements, modal};
 use crate::structures::modal::FlexibleBeam;
@@ -51,8 +52,12 @@ pub(crate) fn described(document: &Document, x: &[f64]) -> Vec<String> {
             "beams" => format!("{shells} elements"),
             _ => shells,
         };
+        let inertia = match elements.inertia {
+            ElementInertia::Full => "",
+            ElementInertia::Paper => "; inertia of equations 13 and 14 of Kennedy & Boopathy (2016)",
+        };
         Some(format!(
-            "{kind} \"{name}\": {count} coordinates of {nodes} nodes of {of}{masses}{basis}"
+            "{kind} \"{name}\": {count} coordinates of {nodes} nodes of {of}{masses}{basis}{inertia}"
         ))
     });
     let shells: Vec<String> = shells.collect();

@@ -13,11 +13,12 @@ use super::elements;
 use super::placement::Assembly;
 use super::prepared::Prepared;
 use super::schema::Document;
+use super::schema::elements::ElementInertia;
 use super::schema::loads::Load;
 use crate::functions::{Function, TerminalEvent};
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
-use crate::model::flexible::{Form, Modal};
+use crate::model::flexible::{Form, Inertia, Modal};
 use crate::model::{LoadKind, Model};
 use crate::structures::floating::PointMotion;
 use shapes::{Shapes, start, weighed};
@@ -114,6 +115,10 @@ impl<S: Scalar> FlexibleBodies<S> {
                 Some(reduced) => Form::Modal(reduced.shells.modal(finite)),
             };
             let flexible = model.add_flexible(frame, (&still, &still), form);
+            model.flexible[flexible].inertia = match elements.inertia {
+                ElementInertia::Full => Inertia::Full,
+                ElementInertia::Paper => Inertia::Paper,
+            };
             all.shells.push(Shells {
                 frame,
                 flexible,

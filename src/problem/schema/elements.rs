@@ -25,6 +25,9 @@ pub(crate) struct Elements {
     /// Which coordinates the body has, default all of its nodes.
     #[serde(default)]
     pub basis: ElementBasis,
+    /// Which inertia the body has, default that of the deformed body.
+    #[serde(default)]
+    pub inertia: ElementInertia,
     /// Nodes and edges by the names that joints, loads and functions use as points of the body.
     #[serde(default)]
     pub points: IndexMap<String, Held>,
@@ -85,6 +88,18 @@ pub(crate) enum ElementFrame {
     Chord([String; 3]),
     /// A set of nodes that do not move, or the name of an edge.
     Clamped(String),
+}
+
+/// Which inertia shells have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum ElementInertia {
+    /// That of the deformed body, with all Coriolis and centrifugal forces.
+    #[default]
+    Full,
+    /// That of Kennedy & Boopathy (2016), equations 13 and 14, which leaves out products of places and deformations and
+    /// depends on the velocity of the observer. It is here for comparison.
+    Paper,
 }
 
 /// Which coordinates shells have.

@@ -1,10 +1,11 @@
 //! Energy, momenta and stress of flexible bodies.
 
-use super::coordinates::{add_coordinates, add_part, at_rest, coordinates};
-use super::form::{elastic_energy, first_moment, moving, pull_first_moment, pull_kinetic, unlike};
+use super::coordinates::{add_coordinates, add_part, coordinates};
+use super::form::{elastic_energy, first_moment, moving, pull_first_moment, unlike};
+use super::truncated::{pull_kinetic, weighed};
 use crate::math::{Scalar, Vec3};
 use crate::model::Model;
-use crate::model::flexible::{FlexibleBody, Form};
+use crate::model::flexible::{FlexibleBody, Form, Inertia};
 use crate::system::bodies::BodyMotion;
 use crate::system::numbering::Numbering;
 use crate::system::{elastic, finite};
@@ -32,15 +33,16 @@ pub(crate) fn held<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> He
     };
     for body in &model.flexible {
         let frame = &motions[body.frame];
-        let at = at_rest(body, motions);
+        let at = weighed(body, motions);
         let nu = frame.rotation.tr_mul(&frame.velocity);
         let moving = moving(&body.form, &at, &nu);
         let momentum = frame.rotation * moving.momentum;
         out.kinetic += moving.kinetic;
         out.momentum += momentum;
         out.angular_momentum += frame.position.cross(&momentum) + frame.rotation * moving.spin;
-        let moment = frame.rotation * first_moment(&body.form, &at.q);
-        out.potential += elastic_energy(&body.form, &at.q) - model.gravity.dot(&moment);
+        let q = coordinates(body, motions);
+        let moment = frame.rotation * first_moment(&body.form, &q);
+        out.potential += elastic_energy(&body.form, &q) - model.gravity.dot(&moment);
     }
     out
 }
@@ -131,18 +133,19 @@ pub(crate) fn pull_energies(
     let still = Vec3::zeros();
     for (i, body) in model.flexible.iter().enumerate() {
         let frame = &motions[body.frame];
-        let at = at_rest(body, motions);
+        let at = weighed(body, motions);
         let nu = frame.rotation.tr_mul(&frame.velocity);
         let own = &mut cot.flexible[i].form;
-        let (by, velocity) = pull_kinetic(&body.form, &at, &nu, kinetic, own);
+        let (by, velocity) = pull_kinetic(body, (&at, &nu), kinetic, own);
         add_part(numbering, body, (&still, &by.theta), &by.q, y);
         add_part(numbering, body, (&velocity, &by.omega), &by.rate, v);
         // −g · R p.
         let down = frame.rotation.tr_mul(&model.gravity) * -potential;
-        let p = first_moment(&body.form, &at.q);
+        let q = coordinates(body, motions);
+        let p = first_moment(&body.form, &q);
         cot.gravity -= frame.rotation * p * potential;
-        let mut by_q = vec![0.0; at.q.len()];
-        pull_first_moment(&body.form, (&at.q, true), &down, &mut by_q, own);
+        let mut by_q = vec![0.0; q.len()];
+        pull_first_moment(&body.form, (&q, true), &down, &mut by_q, own);
         add_part(numbering, body, (&still, &p.cross(&down)), &by_q, y);
         pull_strain_energy((model, numbering), motions, (i, potential), y, cot);
     }
@@ -159,7 +162,7 @@ pub(crate) fn pull_momentum(
 ) {
     let still = Vec3::zeros();
     for (body, own) in model.flexible.iter().zip(&mut cot.flexible) {
-        let (frame, at) = (&motions[body.frame], at_rest(body, motions));
+        let (frame, at) = (&motions[body.frame], weighed(body, motions));
         // R (ω × p + ṗ) · d with p = Σ q_I p_I.
         let own_along = frame.rotation.tr_mul(along);
         let turned = own_along.cross(&at.omega);
@@ -169,6 +172,9 @@ pub(crate) fn pull_momentum(
         let (mut by_q, mut by_rate) = (vec![0.0; at.q.len()], vec![0.0; at.q.len()]);
         let form = &mut own.form;
         pull_first_moment(&body.form, (&at.q, true), &turned, &mut by_q, form);
+        if body.inertia == Inertia::Paper {
+            by_q.fill(0.0);
+        }
         pull_first_moment(
             &body.form,
             (&at.rate, false),

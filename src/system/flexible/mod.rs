@@ -5,6 +5,7 @@ mod coordinates;
 mod displacement;
 mod form;
 mod held;
+mod truncated;
 
 pub(crate) use coordinates::{add_coordinates, coordinates, has_shells, nodal_unknowns, rates};
 pub(crate) use displacement::{MeanSquare, add_displacement, emit_displacement, pull_displacement};
@@ -15,15 +16,41 @@ pub(crate) use held::{
 };
 
 use super::bodies::{self, BodyMotion};
-use super::flexing;
+use super::flexing::{self, Flexing, FlexingCotangent, Generalised};
 use super::numbering::Numbering;
 use super::{elastic, finite};
 use crate::linalg::Emit;
 use crate::math::{Scalar, Vec3, rotation};
 use crate::model::Model;
-use crate::model::flexible::Form;
+use crate::model::flexible::{FlexibleBody, Form, Inertia};
 use coordinates::{accelerated, add_part, motion_of, part_of, slots};
 use form::{emit_block, emit_mass_of, inertial, pull_inertial, unlike};
+use truncated::Beside;
+
+/// Inertial forces of a body without those of the rigid body.
+fn forces_of<S: Scalar>(
+    body: &FlexibleBody<S>,
+    at: &Flexing<S>,
+    beside: &Beside<S>,
+) -> Generalised<S> {
+    match body.inertia {
+        Inertia::Full => inertial(&body.form, at),
+        Inertia::Paper => truncated::inertial(&body.form, at, beside),
+    }
+}
+
+/// Transpose of the derivative of [`forces_of`], with that by the velocity of the origin (ground axes).
+fn pull_forces_of(
+    body: &FlexibleBody<f64>,
+    (at, beside): (&Flexing<f64>, &Beside<f64>),
+    psi: &Generalised<f64>,
+    cot: &mut Form<f64>,
+) -> (FlexingCotangent<f64>, Vec3<f64>) {
+    match body.inertia {
+        Inertia::Full => (pull_inertial(&body.form, at, psi, cot), Vec3::zeros()),
+        Inertia::Paper => truncated::pull_back(&body.form, (at, beside), psi, cot),
+    }
+}
 
 /// Adds what flexible bodies add to M v̇ − f(q, v) at the accelerations `a`.
 pub(crate) fn add_force_balances<S: Scalar>(
@@ -35,7 +62,8 @@ pub(crate) fn add_force_balances<S: Scalar>(
 ) {
     for body in &model.flexible {
         let at = motion_of(model, numbering, body, motions, a);
-        let mut forces = inertial(&body.form, &at);
+        let beside = Beside::of(model, &motions[body.frame]);
+        let mut forces = forces_of(body, &at, &beside);
         match &body.form {
             Form::Modal(modal) => {
                 elastic::add_forces(modal, &at.q, &at.rate, &mut forces.elastic);
@@ -60,7 +88,7 @@ pub(crate) fn add_mass_product<S: Scalar>(
 ) {
     for body in &model.flexible {
         let at = accelerated(numbering, body, motions, x);
-        let forces = inertial(&body.form, &at);
+        let forces = forces_of(body, &at, &Beside::none());
         let frame = (&forces.linear, &forces.angular);
         add_part(numbering, body, frame, &forces.elastic, out);
     }
@@ -104,6 +132,15 @@ pub(crate) fn add_metric<S: Scalar>(
     }
 }
 
+/// The coordinates at which a body has its mass matrix.
+fn weighed<S: Scalar>(body: &FlexibleBody<S>, mut q: Vec<S>) -> Vec<S> {
+    match body.inertia {
+        Inertia::Full => {}
+        Inertia::Paper => q.fill(S::zero()),
+    }
+    q
+}
+
 /// Emits what flexible bodies add to the mass matrix, times `scale`, at (`row`, `column`).
 pub(crate) fn emit_mass<S: Scalar>(
     (model, numbering): (&Model<S>, &Numbering),
@@ -114,7 +151,7 @@ pub(crate) fn emit_mass<S: Scalar>(
 ) {
     for body in &model.flexible {
         let rotation = &motions[body.frame].rotation;
-        let q = coordinates(body, motions);
+        let q = weighed(body, coordinates(body, motions));
         let slots = slots(numbering, body);
         emit_mass_of(
             &body.form,
@@ -142,6 +179,7 @@ pub(crate) fn emit_mass_at<S: Scalar>(
         let elastic: Vec<S> = places
             .map(|(carrier, k)| q[numbering.position(carrier) + k])
             .collect();
+        let elastic = weighed(body, elastic);
         let slots = slots(numbering, body);
         emit_mass_of(&body.form, (&rotation, &elastic), &slots, at, scale, emit);
     }
@@ -159,6 +197,11 @@ pub(crate) fn emit_force_balances<S: Scalar>(
     for body in &model.flexible {
         let at = motion_of(model, numbering, body, motions, a);
         let slots = slots(numbering, body);
+        if body.inertia == Inertia::Paper {
+            let at = (&at, &Beside::of(model, &motions[body.frame]));
+            truncated::emit_jacobian(&body.form, at, &slots, (row, y, v), (by_y, by_v), emit);
+            continue;
+        }
         match &body.form {
             Form::Modal(modal) => {
                 let (mut in_y, mut in_v) = flexing::jacobian(&modal.inertia, &at);
@@ -192,7 +235,8 @@ pub(crate) fn pull_force_balances(
     for (body, own) in model.flexible.iter().zip(&mut cot.flexible) {
         let at = motion_of(model, numbering, body, motions, a);
         let psi = part_of(numbering, body, psi);
-        let mut by = pull_inertial(&body.form, &at, &psi, &mut own.form);
+        let beside = Beside::of(model, &motions[body.frame]);
+        let (mut by, velocity) = pull_forces_of(body, (&at, &beside), &psi, &mut own.form);
         match (&body.form, &mut own.form) {
             (Form::Modal(modal), Form::Modal(own)) => {
                 let elastic = (&mut by.q[..], &mut by.rate[..]);
@@ -211,7 +255,7 @@ pub(crate) fn pull_force_balances(
             add_part(numbering, body, (&still, &by.theta), &by.q, y);
         }
         if let Some(v) = state.v.as_deref_mut() {
-            add_part(numbering, body, (&still, &by.omega), &by.rate, v);
+            add_part(numbering, body, (&velocity, &by.omega), &by.rate, v);
         }
     }
 }
@@ -227,7 +271,8 @@ pub(crate) fn pull_mass_product(
     for (body, own) in model.flexible.iter().zip(&mut cot.flexible) {
         let at = accelerated(numbering, body, motions, x);
         let psi = part_of(numbering, body, psi);
-        let by = pull_inertial(&body.form, &at, &psi, &mut own.form);
+        let still = (&at, &Beside::none());
+        let (by, _) = pull_forces_of(body, still, &psi, &mut own.form);
         add_part(numbering, body, (&Vec3::zeros(), &by.theta), &by.q, y);
     }
 }
