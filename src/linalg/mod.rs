@@ -4,6 +4,7 @@ pub(crate) mod cholesky;
 mod eliminated;
 mod factors;
 mod fronts;
+pub(crate) mod gmres;
 mod multifrontal;
 pub(crate) mod pattern;
 mod replay;

@@ -179,6 +179,11 @@ fn cannot_assemble(failure: &AssemblyFailure) -> Finding {
             "inertia in every direction that a body can move in",
             "give a thin rod a radius: at a spherical joint it can spin about itself",
         ),
+        AssemblyFailure::NoEquilibrium { .. } => (
+            "/start".to_owned(),
+            "gravity and loads that the flexible bodies bear with small deformations",
+            "look at stiffnesses and loads, or start undeformed",
+        ),
         AssemblyFailure::Singular => (
             "".to_owned(),
             "a scene whose equations have regular matrices in double precision",

@@ -6,6 +6,7 @@ use super::mass::mass_properties;
 use super::placement::Assembly;
 use super::quantity::{Vector, vector};
 use super::schema::Document;
+use super::schema::flexible::Start;
 use super::schema::mechanics::{Body, Shape};
 use super::start_rates;
 use super::starts::Starts;
@@ -14,6 +15,7 @@ use crate::math::rotation::matrix;
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Mobility, Model, RigidBody};
+use crate::system::equilibrium::settle;
 use crate::system::failure::AssemblyFailure;
 
 /// Default gravity \[m/s²\].
@@ -35,8 +37,11 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
         flexible: Vec::new(),
     };
     let beams = FlexibleBodies::weigh(document, &mut model, x);
-    let unstarted = start(document, &assembly, &mut model, x).err();
+    let mut unstarted = start(document, &assembly, &mut model, x).err();
     let mut flexible = FlexibleBodies::add(document, &assembly, &mut model, beams, x);
+    if document.start == Start::Equilibrium && unstarted.is_none() {
+        unstarted = settle(&mut model).err();
+    }
     let builder = FunctionBuilder {
         document,
         assembly: &assembly,

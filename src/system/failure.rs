@@ -61,6 +61,15 @@ pub(crate) enum AssemblyFailure {
         /// Names of the bodies.
         bodies: String,
     },
+    /// Newton's method finds no quasi-static start.
+    #[error(
+        "no start in equilibrium: Newton's method for the deformations under gravity and loads does not \
+         converge, stopped at iteration {iterations}"
+    )]
+    NoEquilibrium {
+        /// Number of iterations.
+        iterations: usize,
+    },
     /// The equations are singular or not finite for another reason.
     #[error(
         "the equations of motion are singular to working precision at this placement, though joints \

@@ -14,6 +14,7 @@ pub(crate) mod bodies;
 pub(crate) mod constraint;
 mod elastic;
 pub(crate) mod emit_bodies;
+pub(crate) mod equilibrium;
 pub(crate) mod failure;
 pub(crate) mod finite;
 pub(crate) mod flexible;

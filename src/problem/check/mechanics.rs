@@ -5,6 +5,7 @@ use crate::problem::finding::Finding;
 use crate::problem::mass::{mass_properties, volume};
 use crate::problem::placement::{GROUND, placement_order};
 use crate::problem::pointer::join;
+use crate::problem::schema::flexible::Start;
 use crate::problem::schema::mechanics::{Body, Location, Place, Shape, Turns};
 
 impl Checker<'_> {
@@ -39,11 +40,42 @@ impl Checker<'_> {
             }
             self.place(&join(&pointer, "place"), name, &body.place);
         }
+        self.start_of_deformations();
         if let Err(circle) = placement_order(document) {
             let pointer = join(&join("/bodies", &circle[0]), "place");
             let found = format!("the circle {}", circle.join(" → "));
             let expected = "bodies whose places lead to the ground";
             self.fault(Finding::new(pointer, found, expected));
+        }
+    }
+
+    /// Checks that a start in equilibrium has flexible bodies, and that these give no other.
+    fn start_of_deformations(&mut self) {
+        if self.document.start != Start::Equilibrium {
+            return;
+        }
+        let bodies = &self.document.bodies;
+        if !bodies.values().any(Body::is_flexible) && !self.damage.touches("bodies") {
+            let found = "a start in equilibrium without a flexible body";
+            let finding = Finding::new("/start", found, "a beam, shells or a modal body");
+            self.fault(finding);
+        }
+        for (name, body) in bodies {
+            let given = [
+                (
+                    "beam",
+                    body.beam.as_ref().is_some_and(|own| own.start.is_some()),
+                ),
+                (
+                    "modal",
+                    body.modal.as_ref().is_some_and(|own| own.start.is_some()),
+                ),
+            ];
+            for (key, _) in given.into_iter().filter(|(_, given)| *given) {
+                let pointer = join(&join(&join("/bodies", name), key), "start");
+                let found = "a start of coordinates beside that in equilibrium";
+                self.fault(Finding::new(pointer, found, "one of them").of_key());
+            }
         }
     }
 

@@ -213,3 +213,15 @@ pub(crate) struct Deformation {
     #[schemars(extend("unit" = "m/s"))]
     pub rates: Option<Vec<Quantity>>,
 }
+
+/// Deformations of flexible bodies at the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Start {
+    /// Those that the bodies give, else none.
+    #[default]
+    Given,
+    /// Those at which elastic coordinates neither move nor accelerate: static equilibrium under gravity, loads and the
+    /// inertia of the motions that the joints allow.
+    Equilibrium,
+}

@@ -63,6 +63,9 @@ pub(crate) struct Document {
     /// Bodies by name.
     #[serde(default)]
     pub bodies: IndexMap<String, Body>,
+    /// Deformations of flexible bodies at the start, default "given".
+    #[serde(default)]
+    pub start: flexible::Start,
     /// Velocity of the whole assembly at the start, default at rest.
     pub initial_velocity: Option<AssemblyVelocity>,
     /// Joints by name.

@@ -1,0 +1,171 @@
+//! The sparse matrix of the quasi-static start, without derivatives of M and G in the rows of rigid motions.
+
+use super::equations::{Layout, State};
+use crate::linalg::{Emit, KnownPivots, Pattern, SparseLu, SparseMatrix};
+use crate::model::Model;
+use crate::system::bodies::BodyMotion;
+use crate::system::emit_bodies::{Rates, emit_force_balance};
+use crate::system::flexible;
+use crate::system::in_motion::InMotion;
+use crate::system::joints;
+use crate::system::kkt::{emit_gradients, emit_reaction_jacobian, emit_transposed_gradients};
+use crate::system::loads::{self, LoadEntries};
+use crate::system::reduce::emit_reduced;
+
+/// Parts of rows and columns in velocity numbering: positions, accelerations, velocities.
+const PARTS: usize = 3;
+
+/// Factors of the matrix.
+pub(super) struct Factors(SparseLu<f64>);
+
+impl Factors {
+    /// Those at a state; `None` if the matrix is singular.
+    pub(super) fn new(layout: &Layout, model: &Model<f64>, x: &State<f64>) -> Option<Self> {
+        let places = places(layout);
+        let emit_all = |emit: &mut dyn Emit<f64>| {
+            let mut chosen = Chosen {
+                places: &places,
+                emit,
+            };
+            emit_reduced(layout.numbering, PARTS, &mut chosen, |emit| {
+                emit_matrix(layout, model, x, emit);
+            });
+        };
+        let nodal = flexible::nodal_unknowns(model, layout.numbering);
+        let pattern = Pattern::record(layout.order(), emit_all).with_pivots(KnownPivots {
+            short: Vec::new(),
+            inner: nodal.into_iter().map(|i| (i, i)).collect(),
+        });
+        let mut factors = SparseLu::new(&pattern);
+        let mut matrix = SparseMatrix::new(pattern);
+        matrix.assemble(emit_all);
+        factors.factorise(&matrix).ok()?;
+        Some(Self(factors))
+    }
+
+    /// Solves in place.
+    pub(super) fn solve(&mut self, b: &mut [f64]) {
+        self.0.solve(b);
+    }
+}
+
+/// The place of each reduced row or column among the unknowns; `None` of those that are none.
+fn places(layout: &Layout) -> Vec<Option<usize>> {
+    let (nu, nc) = (layout.numbering.unknowns(), layout.numbering.constraints());
+    let [y, a, v, lambda, sigma, tau] = layout.groups();
+    let mut out = vec![None; PARTS * (nu + nc)];
+    let mut set = |from: usize, to: usize| out[from] = Some(to);
+    for i in 0..nu {
+        set(i, y.start + i);
+    }
+    for (i, &unknown) in layout.rigid.iter().enumerate() {
+        set(nu + unknown, a.start + i);
+        set(2 * nu + unknown, v.start + i);
+    }
+    let rows = PARTS * nu;
+    for i in 0..nc {
+        set(rows + i, lambda.start + i);
+    }
+    for (i, &row) in layout.kept.iter().enumerate() {
+        set(rows + nc + row, sigma.start + i);
+        set(rows + 2 * nc + row, tau.start + i);
+    }
+    out
+}
+
+/// Passes entries of the unknowns on.
+struct Chosen<'a> {
+    places: &'a [Option<usize>],
+    emit: &'a mut dyn Emit<f64>,
+}
+
+impl Emit<f64> for Chosen<'_> {
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        if let (Some(row), Some(column)) = (self.places[row], self.places[column]) {
+            self.emit.add(row, column, value);
+        }
+    }
+}
+
+/// Passes the columns of rigid bodies on.
+struct OfRigid<'a> {
+    elastic: &'a [bool],
+    emit: &'a mut dyn Emit<f64>,
+}
+
+impl Emit<f64> for OfRigid<'_> {
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        if !self.elastic[column] {
+            self.emit.add(row, column, value);
+        }
+    }
+}
+
+fn emit_matrix(layout: &Layout, model: &Model<f64>, x: &State<f64>, emit: &mut dyn Emit<f64>) {
+    let numbering = layout.numbering;
+    let (nv, nc) = (numbering.velocities(), numbering.constraints());
+    let (y, a, v, lambda) = (0, nv, 2 * nv, 3 * nv);
+    let (sigma, tau) = (lambda + nc, lambda + 2 * nc);
+    let (mut motions, mut gradients) = (Vec::new(), Vec::new());
+    let speeds = layout.of_rigid(&x.v);
+    BodyMotion::all(numbering, &x.q, &speeds, &mut motions);
+    let here = InMotion::new(model, numbering, &motions, 0.0);
+    joints::gradients(&here, &mut gradients);
+    layout.left_out.clear_gradients(&mut gradients);
+    let of = (model, numbering);
+
+    let rates = Rates {
+        by_state: 0.0,
+        h: 1.0,
+    };
+    emit_force_balance(&here, (y, v), rates, emit);
+    let accelerations = layout.of_rigid(&x.a);
+    let at = (&motions[..], &accelerations[..]);
+    flexible::emit_force_balances(of, at, (y, y, v), (1.0, 1.0), emit);
+    let to = LoadEntries {
+        row: y,
+        y,
+        v,
+        by_y: -1.0,
+        by_v: -1.0,
+    };
+    loads::emit_jacobian(&here, &to, emit);
+    emit_reaction_jacobian(&here, &x.lambda, (y, y), 1.0, emit);
+    emit_transposed_gradients(model, numbering, &gradients, (y, lambda), 1.0, emit);
+    emit_gradients(model, numbering, &gradients, (lambda, y), emit);
+    for row in layout.left_out.numbers() {
+        emit.add(lambda + row, lambda + row, 1.0);
+    }
+
+    let mut elastic = vec![false; 3 * nv];
+    for (carrier, k) in model.flexible.iter().flat_map(|body| body.places()) {
+        let at = numbering.velocity(carrier) + k;
+        for start in [y, a, v] {
+            elastic[start + at] = true;
+        }
+    }
+    let parts = [
+        (y, a, None),
+        (a, y, Some((&x.sigma, sigma))),
+        (v, v, Some((&x.tau, tau))),
+    ];
+    for (row, column, multipliers) in parts {
+        let mut of_rigid = OfRigid {
+            elastic: &elastic,
+            emit: &mut *emit,
+        };
+        for (i, body) in model.bodies.iter().enumerate() {
+            let o = numbering.velocity(i);
+            of_rigid.add_identity(row + o, column + o, body.mass);
+            of_rigid.add_block(row + o + 3, column + o + 3, &body.inertia);
+        }
+        flexible::emit_mass(of, &motions, (row, column), 1.0, &mut of_rigid);
+        if let Some((values, column)) = multipliers {
+            let values = layout.of_kept(values);
+            emit_reaction_jacobian(&here, &values, (row, y), 1.0, emit);
+            emit_transposed_gradients(model, numbering, &gradients, (row, column), 1.0, emit);
+        }
+    }
+    emit_gradients(model, numbering, &gradients, (sigma, a), emit);
+    emit_gradients(model, numbering, &gradients, (tau, v), emit);
+}
