@@ -40,7 +40,7 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
     let mut unstarted = start(document, &assembly, &mut model, x).err();
     let mut flexible = FlexibleBodies::add(document, &assembly, &mut model, beams, x);
     if document.start == Start::Equilibrium && unstarted.is_none() {
-        unstarted = settle(&mut model).err();
+        unstarted = settle(&mut model, &document.known_starts).err();
     }
     let builder = FunctionBuilder {
         document,

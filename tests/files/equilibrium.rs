@@ -40,14 +40,16 @@ fn a_cantilever_stands_still() {
     let force = 1.5;
     let (width, height) = (0.03_f64, 0.02_f64);
     let area = width * height;
-    let bending = YOUNG * width * height.powi(3) / 12.0;
+    // So stiff that linear theory holds.
+    let young = 10.0 * YOUNG;
+    let bending = young * width * height.powi(3) / 12.0;
     let weight = 2000.0 * area * 9.81;
-    let shear = 5.0 / 6.0 * YOUNG / 2.6 * area;
+    let shear = 5.0 / 6.0 * young / 2.6 * area;
     let by_bending =
         weight * LENGTH.powi(4) / 8.0 / bending + force * LENGTH.powi(3) / 3.0 / bending;
     let expected = by_bending + (0.5 * weight * LENGTH + force) * LENGTH / shear;
     for frame in ["clamped", "chord"] {
-        let document = json!({
+        let mut document = json!({
             "version": 1, "name": "cantilever", "start": "equilibrium",
             "bodies": {"bar": {"beam": beam(frame), "place": {"put": "start"}}},
             "joints": {"wall": {"weld": {"between": ["bar", "ground"], "at": "bar.start"}}},
@@ -60,9 +62,9 @@ fn a_cantilever_stands_still() {
                 "wall": {"final": {"joint_force": {"joint": "wall", "on": "bar", "direction": [0, 1, 0]}}}
             }
         });
+        document["bodies"]["bar"]["beam"]["material"]["young"] = json!(young);
         let motion = run(&document);
         let value = |k: usize| motion.at.function(k).value;
-        // The deflection is 1.7 % of the length, so that linear theory holds to some 1e-4.
         assert!(
             (value(0) / expected - 1.0).abs() < 1e-3,
             "{frame} {} {expected}",
@@ -77,7 +79,7 @@ fn a_cantilever_stands_still() {
         assert!((value(3) / (weight * LENGTH + force) - 1.0).abs() < 1e-9);
         // By the other method too.
         let mut explicit = document.clone();
-        explicit["simulation"] = json!({"duration": 0.002, "steps": 400, "method": "dop853"});
+        explicit["simulation"] = json!({"duration": 5e-4, "steps": 400, "method": "dop853"});
         assert!((run(&explicit).at.function(0).value / value(0) - 1.0).abs() < 1e-8);
     }
 }
@@ -169,9 +171,9 @@ fn starts_in_equilibrium_have_exact_derivatives() {
     };
     let document = designed(swing("equilibrium"), &variables);
     gradients_are_exact(&parsed(&document), &document["simulation"]);
-    let mut explicit = document.clone();
-    explicit["simulation"] = json!({"duration": 5e-4, "steps": 100, "method": "dop853"});
-    gradients_are_exact(&parsed(&explicit), &explicit["simulation"]);
+    let mut other = document.clone();
+    other["simulation"]["method"] = json!({"bdf": {"order": 2}});
+    gradients_are_exact(&parsed(&other), &other["simulation"]);
     // A body of files that hangs on two hinges: a loop.
     let mut body = modal(json!({"clamped": "start"}));
     body["modes"] = json!(1);

@@ -14,6 +14,7 @@ pub(crate) mod statics;
 pub(crate) mod structures;
 
 use super::quantity::{Quantity, Vector};
+use crate::system::equilibrium::KnownStarts;
 use drives::Drive;
 use functions::{Function, Instant};
 use indexmap::IndexMap;
@@ -66,6 +67,10 @@ pub(crate) struct Document {
     /// Deformations of flexible bodies at the start, default "given".
     #[serde(default)]
     pub start: flexible::Start,
+    /// Starts in equilibrium that are known.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub known_starts: KnownStarts,
     /// Velocity of the whole assembly at the start, default at rest.
     pub initial_velocity: Option<AssemblyVelocity>,
     /// Joints by name.

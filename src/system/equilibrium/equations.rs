@@ -21,6 +21,7 @@ const INDEPENDENT: f64 = 1e-8;
 const LEAST_SCALE: f64 = 1e-30;
 
 /// Positions; accelerations and velocities of the rigid unknowns; reactions; multipliers of placement and velocities.
+#[derive(Clone, Debug)]
 pub(super) struct State<S> {
     pub q: Vec<S>,
     pub a: Vec<S>,

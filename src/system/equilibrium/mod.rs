@@ -34,6 +34,7 @@ use crate::math::{Parameters, Scalar};
 use crate::model::{Mobility, Model};
 use equations::{Layout, State};
 use matrix::Factors;
+use std::sync::{Arc, Mutex};
 
 const ITERATIONS: usize = 60;
 /// Newton's method stops at this change of positions, relative to the length scale; and at `STAGNANT`, if changes do
@@ -49,12 +50,57 @@ const FINE: f64 = 1e-15;
 const PRODUCTS: usize = 60;
 const REFINEMENTS: usize = 3;
 
+/// Number of starts that are kept.
+const KEPT: usize = 4;
+
+/// Real starts that are known, by the numbers of their models: a scene is made again and again at one design, for its
+/// values and for each derivative.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct KnownStarts(Arc<Mutex<Vec<Known>>>);
+
+#[derive(Clone, Debug)]
+struct Known {
+    numbers: Vec<f64>,
+    state: State<f64>,
+}
+
+impl KnownStarts {
+    /// The state of these numbers, or a new one.
+    fn get(
+        &self,
+        numbers: Vec<f64>,
+        find: impl FnOnce() -> Result<State<f64>, AssemblyFailure>,
+    ) -> Result<State<f64>, AssemblyFailure> {
+        let known = self.0.lock().ok();
+        let found = known.and_then(|all| {
+            let mut all = all.iter();
+            let same = all.find(|known| known.numbers == numbers);
+            same.map(|known| known.state.clone())
+        });
+        if let Some(state) = found {
+            return Ok(state);
+        }
+        let state = find()?;
+        if let Ok(mut all) = self.0.lock() {
+            if all.len() == KEPT {
+                all.remove(0);
+            }
+            let state = state.clone();
+            all.push(Known { numbers, state });
+        }
+        Ok(state)
+    }
+}
+
 /// Moves the bodies of `model`, which are placed and undeformed, to the quasi-static start, and gives them velocities
 /// without vibration.
 ///
 /// # Errors
 /// Joints that cannot be closed, or no equilibrium.
-pub(crate) fn settle<S: Scalar>(model: &mut Model<S>) -> Result<(), AssemblyFailure> {
+pub(crate) fn settle<S: Scalar>(
+    model: &mut Model<S>,
+    known: &KnownStarts,
+) -> Result<(), AssemblyFailure> {
     let mut own = model.clone();
     // Point masses do not rotate.
     for body in 0..own.bodies.len() {
@@ -66,18 +112,22 @@ pub(crate) fn settle<S: Scalar>(model: &mut Model<S>) -> Result<(), AssemblyFail
     let placed = nearest(&own)?.q;
     let numbering = Numbering::new(&own);
     let given = Given::of(&own, &numbering, placed);
-    let mut real = own.map(&mut |x| x.re());
+    let mut numbers = vec![numbering.unknowns() as f64, numbering.constraints() as f64];
+    let mut real = own.map(&mut |x| {
+        numbers.push(x.re());
+        x.re()
+    });
     redundancy::leave_out(&mut real);
     let left_out = RedundantRows::of(&real, &numbering);
     let start = given.map(|x| x.re());
     let layout = Layout::new(&real, &numbering, &left_out, &start.q);
-    let mut solver = Solver {
+    let solver = Solver {
         layout: &layout,
         model: &real,
         given: &start,
         scale: length_scale(&real),
     };
-    let found = solver.solve()?;
+    let found = known.get(numbers, || solver.solve())?;
     let mut state: State<S> = found.map(S::from);
     if S::INFINITESIMAL {
         let residual = layout.residual(&own, &given, &state);
@@ -129,7 +179,7 @@ struct Solver<'a> {
 
 impl Solver<'_> {
     /// Newton's method from the placement.
-    fn solve(&mut self) -> Result<State<f64>, AssemblyFailure> {
+    fn solve(&self) -> Result<State<f64>, AssemblyFailure> {
         let mut x = self.layout.start(self.given);
         let none = |iterations| AssemblyFailure::NoEquilibrium { iterations };
         let mut before = f64::INFINITY;
