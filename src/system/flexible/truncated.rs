@@ -254,7 +254,10 @@ pub(super) fn emit_jacobian<S: Scalar>(
             alone.q.clone_from(&at.q);
             alone.rate.clone_from(&at.rate);
             let columns = v + slots[3]..v + slots[3] + 3;
-            let mut emit = Without { columns, emit: &mut *emit };
+            let mut emit = Without {
+                columns,
+                emit: &mut *emit,
+            };
             finite::emit_jacobian(own, &alone, slots, (row, y, v), (by_y, by_v), &mut emit);
         }
     }
