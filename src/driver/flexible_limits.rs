@@ -1,17 +1,22 @@
 //! Where the equations of flexible bodies are no longer accurate: sections that turn far from the axes of their
-//! body, bodies of linear strain that spin fast, and inertia that depends on the observer.
+//! body, large strains, bodies of linear strain that spin fast, and inertia that depends on the observer.
 
 use crate::integrate::Trajectory;
-use crate::model::{Form, Inertia, Model};
+use crate::model::{FlexibleBody, Form, Inertia, Model};
 use crate::structures::modal::ModalNumbers;
 use crate::structures::modal::frequencies::{Held, frequencies};
-use crate::system::BodyMotion;
 use crate::system::attachment::section_rotation;
+use crate::system::{BodyMotion, flexible};
 use std::f64::consts::TAU;
 
 /// Rotation of a section relative to the frame of its body from which the strains of von Karman and
 /// the linear rotations of sections are no longer accurate \[rad\].
 const LARGE_ROTATION: f64 = 0.15;
+
+/// Strain from which it is no longer small, so that stress is not proportional to it.
+const LARGE_STRAIN: f64 = 0.1;
+/// Instants at which the strains of shells are looked at, beside the start.
+const LOOKS: usize = 8;
 
 /// Part of the lowest angular frequency above which a body of linear strain spins fast. A beam that turns with Ω
 /// gains a stiffness of about Ω²/ω² of its own by the tension, which linear strain does not have.
@@ -22,7 +27,9 @@ pub(super) fn warning(model: &Model<f64>, run: &Trajectory<f64>) -> Option<Strin
     if model.flexible.is_empty() {
         return None;
     }
-    let other = large_rotation(model, run).or_else(|| fast_spin(model, run));
+    let other = large_rotation(model, run)
+        .or_else(|| large_strain(model, run))
+        .or_else(|| fast_spin(model, run));
     let all: Vec<String> = truncated_inertia(model).into_iter().chain(other).collect();
     (!all.is_empty()).then(|| all.join("; "))
 }
@@ -65,6 +72,52 @@ fn large_rotation(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
             run.time(k)
         )
     })
+}
+
+/// The body with the largest strain, if it is too large.
+fn large_strain(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
+    let mut most: (f64, usize, &str) = (0.0, 0, "");
+    let mut motions = Vec::new();
+    let every = run.last().div_ceil(LOOKS).max(1);
+    for k in 0..=run.last() {
+        BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
+        for body in &model.flexible {
+            let looked = k % every == 0 || k == run.last();
+            let strain = strain(body, &motions, looked);
+            if strain > most.0 {
+                most = (strain, k, &body.name);
+            }
+        }
+    }
+    let (strain, k, name) = most;
+    (strain > LARGE_STRAIN).then(|| {
+        format!(
+            "\"{name}\" is strained by {strain:.2} at t = {:.4} s; above {LARGE_STRAIN} strains are not small, \
+             and stress is not proportional to them",
+            run.time(k)
+        )
+    })
+}
+
+/// The largest strain of a beam along its axis, or von Mises stress by Young's modulus of shells if `looked` at.
+fn strain(body: &FlexibleBody<f64>, motions: &[BodyMotion<f64>], looked: bool) -> f64 {
+    let mut most = 0.0_f64;
+    if let Form::Modal(modal) = &body.form
+        && !modal.stiffness.strains.is_empty()
+    {
+        let q = flexible::coordinates(body, motions);
+        for own in &modal.stiffness.strains {
+            most = most.max(own.strain.value(&q).abs());
+        }
+    }
+    if let (Some(shells), true) = (body.form.shells(), looked) {
+        for (i, element) in shells.mesh.elements.iter().enumerate() {
+            let ratios = flexible::stress_ratios(body, motions, &[i]);
+            let ratio = ratios.into_iter().fold(0.0_f64, f64::max);
+            most = most.max(ratio * element.yield_stress / shells.young[i]);
+        }
+    }
+    most
 }
 
 /// The body of linear strain that spins fastest relative to its lowest frequency, if it spins too fast.

@@ -240,6 +240,29 @@ fn plates_that_turn_start_stretched() {
     assert!(most > 1.5 * mean / 0.05, "{most} {mean}");
 }
 
+/// A bar that turns with √(E/ρ) / L is strained by 1 / cos 1 - 1 at its hinge: more than small strains allow, which
+/// the run says.
+#[test]
+fn large_strains_are_told() {
+    let document = json!({
+        "version": 1, "name": "turning bar", "start": "equilibrium", "gravity": [0, 0, 0],
+        "bodies": {"bar": {
+            "beam": {
+                "length": 1, "section": {"rectangle": {"width": 0.05, "height": 0.05}},
+                "material": {"young": 1e5, "density": 1000}, "frame": "clamped",
+                "modes": {"bending_y": 1, "bending_z": 0, "torsion": 0, "stretch": 8}
+            },
+            "place": {"put": "start", "at": [0, 0, 0]}
+        }},
+        "initial_velocity": {"angular": [0, 0, 10]},
+        "joints": {"hub": {"revolute": {"between": ["bar", "ground"], "at": "bar.start", "axis": [0, 0, 1]}}},
+        "simulation": {"duration": 0.1, "steps": 100, "method": {"bdf": {"order": 2}}},
+        "functions": {"x": {"final": {"position": {"body": "bar", "point": "end", "direction": [1, 0, 0]}}}}
+    });
+    let warning = run(&document).warning.unwrap_or_default();
+    assert!(warning.contains("\"bar\" is strained by 0.8"), "{warning}");
+}
+
 /// Derivatives of two hinged plates that turn and fall, by thickness of bands, modulus and density.
 #[test]
 fn starts_of_shells_have_exact_derivatives() {
