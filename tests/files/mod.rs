@@ -24,4 +24,5 @@ mod shell_pictures;
 mod stability;
 mod static_faults;
 mod statics;
+mod thickness_sheet;
 mod trebuchets;

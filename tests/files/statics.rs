@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-fn shipped(name: &str, changes: &[&str]) -> Problem {
+pub(super) fn shipped(name: &str, changes: &[&str]) -> Problem {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/{name}.json"));
     let changes: Vec<Override> = changes
         .iter()
@@ -22,13 +22,16 @@ fn parsed(document: &Value) -> Problem {
 }
 
 fn solved(problem: &Problem) -> StaticDesign {
+    solved_at(problem, &problem.start())
+}
+
+pub(super) fn solved_at(problem: &Problem, design: &[f64]) -> StaticDesign {
     let statics = problem.statics.as_ref().expect("structures");
-    StaticDesign::of(problem, statics, &problem.start(), None)
-        .unwrap_or_else(|failure| panic!("{failure}"))
+    StaticDesign::of(problem, statics, design, None).unwrap_or_else(|failure| panic!("{failure}"))
 }
 
 /// Asserts that all derivatives agree with the complex step, beside the gradient in scaled variables.
-fn assert_gradients(name: &str, problem: &Problem) {
+pub(super) fn assert_gradients(name: &str, problem: &Problem) {
     let found = check(problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
     assert_eq!(
         found.len(),
@@ -300,7 +303,7 @@ fn estimated_errors_are_those_against_a_converged_mesh() {
     }
 }
 
-fn solve(problem: &Problem) -> Optimisation {
+pub(super) fn solve(problem: &Problem) -> Optimisation {
     optimise(problem, "", None, KnownEvaluations::default(), &mut |_| {
         ControlFlow::Continue(())
     })
