@@ -49,6 +49,18 @@ pub(crate) enum StaticsFailure {
         /// The case.
         case: String,
     },
+    /// A finer mesh for an estimate of errors.
+    #[error(
+        "a mesh of {elements} elements needs about {needed} of memory, of which {available} is available"
+    )]
+    Memory {
+        /// Elements of the finer mesh.
+        elements: usize,
+        /// Memory needed.
+        needed: String,
+        /// Memory available.
+        available: String,
+    },
 }
 
 /// The value of a function.
