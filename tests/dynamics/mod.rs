@@ -25,6 +25,7 @@ mod load_derivatives;
 mod loads;
 mod lowering;
 mod methods_match_references;
+mod newton_krylov;
 mod planar_joints;
 mod reaction_functions;
 mod reactions_carry_weight;

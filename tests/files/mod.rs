@@ -5,6 +5,7 @@ mod beams;
 mod benchmarks;
 mod circles;
 mod element_parts;
+mod element_steps;
 mod equilibrium;
 mod faults;
 mod finite_elements;

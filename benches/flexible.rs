@@ -1,0 +1,149 @@
+//! Time steps of bodies of finite elements: chains of N hinged plates, and two plates of more and more elements.
+//!
+//! `cargo bench --bench flexible` prints the tables; `cargo bench --bench flexible -- chain 4` or
+//! `… -- mesh 32 radau` one line, with the peak resident set of that run alone. Times are processor times of the thread
+//! on Linux, and wall times elsewhere.
+//!
+//! Plates of 1 m by 0.25 m and 5 mm start flat, turn with 8 rad/s about z and hang on hinges along their
+//! edges, as in `problems/flexible/double_plate.json`. Each has a thickness for each element along it, which a design
+//! changes.
+
+mod watch;
+
+use flexbody::{Analysis, Problem, SimulationError};
+use serde_json::{Map, Value, json};
+use watch::fastest;
+
+/// Steps of a run.
+const STEPS: usize = 20;
+
+/// Plates with so many elements along and across.
+fn problem(plates: usize, elements: [usize; 2], method: &Value) -> Problem {
+    let (mut bodies, mut joints, mut variables) = (Map::new(), Map::new(), Map::new());
+    for i in 0..plates {
+        let name = format!("plate {i}");
+        let at = match i {
+            0 => json!([0, 0, 0]),
+            _ => json!(format!("plate {}.end", i - 1)),
+        };
+        bodies.insert(
+            name.clone(),
+            json!({
+                "elements": {
+                    "structure": {
+                        "mesh": {"plate": {"length": 1, "width": 0.25, "elements": elements}},
+                        "material": "aluminium",
+                        "thickness": {"per": "band", "along": "x", "value": 0.005},
+                        "sets": {"O": {"node": {"at": [0, 0.5]}}, "B": {"node": {"at": [1, 0.5]}}}
+                    },
+                    "frame": {"chord": ["O", "B", "x0y0"]},
+                    "points": {"start": {"edge": "x0"}, "end": {"edge": "x1"}}
+                },
+                "place": {"put": "start", "at": at,
+                          "turn": {"axis": [1, 0, 0], "angle": std::f64::consts::FRAC_PI_2}},
+                "velocity": {"linear": [0, 8.0 * i as f64, 0], "angular": [0, 0, 8]}
+            }),
+        );
+        let before = match i {
+            0 => "ground".to_owned(),
+            _ => format!("plate {}", i - 1),
+        };
+        let place = match i {
+            0 => "plate 0.start".to_owned(),
+            _ => format!("plate {}.end", i - 1),
+        };
+        joints.insert(
+            format!("hinge {i}"),
+            json!({"revolute": {"between": [&name, before], "at": place, "axis": [0, 0, 1]}}),
+        );
+        variables.insert(
+            format!("thickness {i}"),
+            json!({"path": format!("/bodies/{name}/elements/structure/thickness/value"),
+                   "lower": 0.001, "upper": 0.01}),
+        );
+    }
+    let position = |k: usize| {
+        let direction: [usize; 3] = std::array::from_fn(|i| usize::from(i == k));
+        let body = format!("plate {}", plates - 1);
+        json!({"final": {"position": {"body": body, "point": "end", "direction": direction}}})
+    };
+    let file = json!({
+        "version": 1, "name": "plates", "bodies": bodies, "joints": joints,
+        "materials": {"aluminium": {"young": 70e9, "poisson": 0.3, "density": 2700, "yield_stress": 2e8}},
+        "simulation": {"duration": 1e-3 * STEPS as f64, "steps": STEPS, "method": method},
+        "functions": {"x": position(0), "y": position(1)},
+        "variables": variables
+    });
+    let name = "plates.json";
+    Problem::parse(&file.to_string(), name, &[]).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// Largest resident memory of the process so far [MB], where the system tells.
+fn peak_memory() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find(|line| line.starts_with("VmHWM"));
+    let number = line.and_then(|line| line.split_whitespace().nth(1)?.parse::<f64>().ok());
+    number.unwrap_or(f64::NAN) / 1024.0
+}
+
+/// Prints a line of the table.
+fn line(plates: usize, elements: [usize; 2], method: &str) -> Result<(), SimulationError> {
+    let choice = match method {
+        "radau" => json!({"radau": {"stages": 3}}),
+        _ => json!({"bdf": {"order": 2}}),
+    };
+    let problem = problem(plates, elements, &choice);
+    let x = problem.start();
+    let repeats = if plates * elements[0] * elements[1] > 500 {
+        1
+    } else {
+        3
+    };
+    let (seconds, at) = fastest(repeats, || Analysis::new(&problem).at(&x));
+    let at = at?;
+    let work = at.work();
+    let [one, two] =
+        [&[0][..], &[0, 1]].map(|which| fastest(repeats, || at.gradients(which)).0 / seconds);
+    let nodes = (2 * elements[0] + 1) * (2 * elements[1] + 1);
+    let each = |count: usize| count as f64 / STEPS as f64;
+    println!(
+        "{plates:6} {:5} x {:2} {:8} {method:6} {:9.2} {:12.2} {:10.2} {:13.2} {:16.3} {:8.0}",
+        elements[0],
+        elements[1],
+        plates * (5 * nodes - 6),
+        1e3 * seconds / STEPS as f64,
+        each(work.factorisations),
+        each(work.newton_iterations),
+        one,
+        two - one,
+        peak_memory(),
+    );
+    Ok(())
+}
+
+fn main() -> Result<(), SimulationError> {
+    println!(
+        "plates   elements unknowns method   ms/step factors/step  iterations gradient/run second gradient       MB"
+    );
+    let arguments: Vec<String> = (std::env::args().skip(1))
+        .filter(|a| a != "--bench")
+        .collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let count = |text: &str| text.parse().expect("a count");
+    match arguments[..] {
+        ["chain", plates] => return line(count(plates), [8, 2], "bdf"),
+        ["chain", plates, method] => return line(count(plates), [8, 2], method),
+        ["mesh", along] => return line(2, [count(along), count(along) / 4], "bdf"),
+        ["mesh", along, method] => return line(2, [count(along), count(along) / 4], method),
+        _ => {}
+    }
+    for method in ["bdf", "radau"] {
+        for plates in [1, 2, 4, 8, 16] {
+            line(plates, [8, 2], method)?;
+        }
+    }
+    for along in [8, 16, 32, 64, 96] {
+        line(2, [along, along / 4], "bdf")?;
+    }
+    Ok(())
+}
