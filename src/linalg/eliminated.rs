@@ -45,6 +45,22 @@ fn subtract<S: SolveScalar>(y: &mut [S], l: &[S], x: S) {
     }
 }
 
+/// Subtracts A x from y, A in columns of the given stride. Four columns at a time read and write y once.
+fn subtract_columns<S: SolveScalar>(y: &mut [S], (a, stride): (&[S], usize), x: &[S]) {
+    let m = y.len();
+    let column = |k: usize| &a[k * stride..][..m];
+    let (fours, rest) = x.as_chunks::<4>();
+    for (k, x) in fours.iter().enumerate() {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| column(4 * k + i));
+        for i in 0..m {
+            y[i] -= (a[i] * x[0] + b[i] * x[1]) + (c[i] * x[2] + d[i] * x[3]);
+        }
+    }
+    for (k, &x) in rest.iter().enumerate() {
+        subtract(y, column(4 * fours.len() + k), x);
+    }
+}
+
 fn dot<S: SolveScalar>(x: &[S], y: &[S]) -> S {
     // Four sums, because an addition waits for the one before.
     let (x4, x) = x[..y.len()].as_chunks::<4>();
@@ -182,20 +198,23 @@ impl<S: SolveScalar> Eliminated<S> {
         for (k, column) in self.left.chunks_exact(order.max(1)).enumerate() {
             let factor = own[k];
             subtract(&mut own[k + 1..], &column[k + 1..p], factor);
-            subtract(beside, &column[p..], factor);
+        }
+        if p > 0 {
+            subtract_columns(beside, (&self.left[p..], order), own);
         }
         for (own, &i) in beside.iter().zip(&front.rest) {
             x[i] = *own;
         }
     }
 
-    pub(super) fn backward(&self, front: &Front, x: &mut [S], _: &mut [S]) {
+    pub(super) fn backward(&self, front: &Front, x: &mut [S], beside: &mut [S]) {
         let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
-        for (&i, column) in front.rest.iter().zip(self.upper.chunks_exact(p.max(1))) {
-            let factor = x[i];
-            subtract(&mut x[start..start + p], column, factor);
+        let beside = &mut beside[..front.rest.len()];
+        for (own, &i) in beside.iter_mut().zip(&front.rest) {
+            *own = x[i];
         }
         let own = &mut x[start..start + p];
+        subtract_columns(own, (&self.upper, p), beside);
         for k in (0..p).rev() {
             let column = &self.left[k * order..][..order];
             let factor = own[k] / column[k];

@@ -14,9 +14,9 @@ pub(super) struct Short {
     /// Slot of the pivot.
     pub pivot: usize,
     /// (row, slot).
-    pub below: Vec<(usize, usize)>,
+    pub below: Vec<[u32; 2]>,
     /// (column, slot).
-    pub beside: Vec<(usize, usize)>,
+    pub beside: Vec<[u32; 2]>,
 }
 
 /// A front: a dense matrix of pivots and of what they touch.
@@ -135,8 +135,8 @@ impl Plan {
                         assert_eq!(r, c, "short rows and columns share no entry");
                         short[r].pivot = slot;
                     }
-                    (true, false) => short[r].beside.push((column, slot)),
-                    (false, true) => short[c].below.push((row, slot)),
+                    (true, false) => short[r].beside.push([column, slot].map(|x| x as u32)),
+                    (false, true) => short[c].below.push([row, slot].map(|x| x as u32)),
                     (false, false) => entries.push((row_of[row], column_of[column], slot)),
                 }
             }
@@ -144,9 +144,9 @@ impl Plan {
         let touching = |f: &mut dyn FnMut(usize, usize)| {
             entries.iter().for_each(|&(r, c, _)| f(r, c));
             for own in &short {
-                for (row, _) in &own.below {
-                    for (column, _) in &own.beside {
-                        f(row_of[*row], column_of[*column]);
+                for &[row, _] in &own.below {
+                    for &[column, _] in &own.beside {
+                        f(row_of[row as usize], column_of[column as usize]);
                     }
                 }
             }
@@ -174,13 +174,12 @@ impl Plan {
             front.entries.push((*slot as u32, place as u32));
         }
         for (k, own) in short.iter().enumerate() {
-            for &(row, below) in &own.below {
-                for &(column, beside) in &own.beside {
-                    let (r, c) = (row_of[row], column_of[column]);
+            for &[row, below] in &own.below {
+                for &[column, beside] in &own.beside {
+                    let (r, c) = (row_of[row as usize], column_of[column as usize]);
                     let front = &mut fronts[front_of[r.min(c)]];
-                    let place = front.place(r, c);
-                    let product = [k, below, beside, place].map(|x| x as u32);
-                    front.products.push(product);
+                    let place = front.place(r, c) as u32;
+                    front.products.push([k as u32, below, beside, place]);
                 }
             }
         }

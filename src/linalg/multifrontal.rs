@@ -139,8 +139,8 @@ impl<S: SolveScalar> Multifrontal<S> {
         scale(b, &scaling.rows);
         for ((t, own), &inverse) in of_short.iter_mut().zip(&plan.short).zip(&*inverse) {
             *t = b[own.row] * inverse;
-            for &(row, slot) in &own.below {
-                b[row] -= scaled[slot] * *t;
+            for &[row, slot] in &own.below {
+                b[row as usize] -= scaled[slot as usize] * *t;
             }
         }
         for (x, &row) in inside.iter_mut().zip(&plan.rows) {
@@ -157,8 +157,8 @@ impl<S: SolveScalar> Multifrontal<S> {
         }
         for ((&t, own), &inverse) in of_short.iter().zip(&plan.short).zip(&*inverse) {
             let beside = own.beside.iter();
-            let sum = beside.fold(S::zero(), |sum, &(column, slot)| {
-                sum + scaled[slot] * b[column]
+            let sum = beside.fold(S::zero(), |sum, &[column, slot]| {
+                sum + scaled[slot as usize] * b[column as usize]
             });
             b[own.column] = t - sum * inverse;
         }
@@ -180,8 +180,8 @@ impl<S: SolveScalar> Multifrontal<S> {
         scale(b, &scaling.columns);
         for ((t, own), &inverse) in of_short.iter_mut().zip(&plan.short).zip(&*inverse) {
             *t = b[own.column] * inverse;
-            for &(column, slot) in &own.beside {
-                b[column] -= scaled[slot] * *t;
+            for &[column, slot] in &own.beside {
+                b[column as usize] -= scaled[slot as usize] * *t;
             }
         }
         for (x, &column) in inside.iter_mut().zip(&plan.columns) {
@@ -198,7 +198,9 @@ impl<S: SolveScalar> Multifrontal<S> {
         }
         for ((&t, own), &inverse) in of_short.iter().zip(&plan.short).zip(&*inverse) {
             let below = own.below.iter();
-            let sum = below.fold(S::zero(), |sum, &(row, slot)| sum + scaled[slot] * b[row]);
+            let sum = below.fold(S::zero(), |sum, &[row, slot]| {
+                sum + scaled[slot as usize] * b[row as usize]
+            });
             b[own.row] = t - sum * inverse;
         }
         scale(b, &scaling.rows);

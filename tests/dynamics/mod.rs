@@ -35,4 +35,5 @@ mod rotating_plates;
 mod side_by_side;
 mod singular_positions;
 mod steps_in_use;
+mod turned_factors;
 mod work_of_gradients;

@@ -62,6 +62,32 @@ fn two_plates_follow_their_reference() {
     }
 }
 
+/// Two hinged plates of 5 mm that turn with 8 rad/s, BDF2 with 1 ms: the factors of one step serve several, and
+/// no iteration changes round-off alone.
+#[test]
+fn kept_factors_serve_plates_that_turn() {
+    let steps = 100;
+    let problem = parsed(&plates([4, 1], 0.1, steps, &json!({"bdf": {"order": 2}})));
+    let motion = simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
+    let counts = motion.at.run.counts;
+    assert!(counts.factorisations <= 30, "{}", counts.factorisations);
+    let iterations = counts.newton_iterations;
+    assert!(10 * iterations <= 56 * steps, "{iterations}");
+}
+
+/// A strip of thin shells bends far. Its forces have more round-off than Newton's method asks of other scenes:
+/// it ends there with few iterations.
+#[test]
+fn iterations_of_thin_shells_end_at_round_off() {
+    let mut document = read("problems/flexible/spin_up_shells.json");
+    document["simulation"]["duration"] = json!(4);
+    document["simulation"]["steps"] = json!(400);
+    let problem = parsed(&document);
+    let motion = simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
+    let iterations = motion.at.run.counts.newton_iterations;
+    assert!(iterations <= 5 * 400, "{iterations}");
+}
+
 /// Derivatives of positions, energies and stresses by thickness of bands, modulus and density, by the methods
 /// that serve shells. The plates are thick and soft, so that positions depend on them; those of thin metal plates
 /// move by 1e-4 m only, and round-off of positions of 1 m is 1e-11 of that.

@@ -6,7 +6,7 @@ use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::ggl::Equations;
 use crate::integrate::implicit::radau::Scheme;
 use crate::integrate::implicit::split::SplitMatrix;
-use crate::linalg::{Emit, KnownPivots, Pattern, REFINED_SOLVES, SparseLu, SparseMatrix};
+use crate::linalg::{Emit, KnownPivots, Pattern, SparseLu, SparseMatrix};
 use crate::math::slices::add_scaled;
 use crate::model::Model;
 use crate::system::RedundantRows;
@@ -174,8 +174,7 @@ impl<'a> BackwardStage<'a> {
                 equations.compress(part);
                 psi[j * n..(j + 1) * n].copy_from_slice(&part[..n]);
             }
-            self.factors.solve_transposed_refined(&self.matrix, psi);
-            counts.solves += REFINED_SOLVES;
+            counts.solves += self.factors.solve_transposed_refined(&self.matrix, psi);
             let mut slope = 0.0;
             for (i, (stage, change)) in stages.iter().zip(&mut self.changes).enumerate() {
                 let reduced = &psi[i * n..(i + 1) * n];

@@ -111,6 +111,11 @@ impl<'a, S: Scalar> Equations<'a, S> {
         changes
     }
 
+    /// The redundant rows that are left out.
+    pub(crate) fn left_out(&self) -> &RedundantRows {
+        &self.left_out
+    }
+
     /// Mass by which the dynamics are divided \[kg\].
     pub(crate) fn mass(&self) -> f64 {
         self.mass

@@ -1,6 +1,7 @@
 //! Implicit methods on the GGL-stabilised equations: Radau IIA, and one-stage formulas with a
 //! memory (BDF, generalised-α).
 
+mod backward_error;
 mod broyden;
 mod estimate;
 pub(crate) mod formula;
@@ -15,6 +16,7 @@ pub(crate) mod solver;
 pub(crate) mod split;
 pub(crate) mod stage_newton;
 pub(crate) mod tape;
+pub(crate) mod turned;
 
 pub(crate) use replayer::Replayer;
 pub(crate) use tape::Tape;

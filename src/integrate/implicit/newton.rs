@@ -1,10 +1,12 @@
 //! Newton's method for one implicit step. The iteration matrix is kept while the method converges.
 
 use super::Stage;
+use super::backward_error::BackwardError;
 use super::broyden::{Broyden, Pace};
 use super::formula::Formula;
 use super::ggl::Equations;
 use super::scales::SceneScale;
+use super::turned::Turned;
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::work::WorkCounts;
 use crate::linalg::{Pivots, SolveScalar, SparseLu, SparseMatrix};
@@ -101,9 +103,13 @@ pub(crate) struct Newton<'a, S> {
     contraction: f64,
     /// Number of steps in a row with one iteration, which gives no contraction.
     unseen: usize,
-    /// With finite elements: corrections of the kept factors, and the work with them.
+    /// With finite elements: corrections of the kept factors, the turns since they were made, and the work
+    /// with them.
     broyden: Option<Broyden<S>>,
+    turned: Turned,
     pace: Pace,
+    /// With finite elements.
+    backward: Option<BackwardError>,
     scale: SceneScale,
     residual: Vec<S>,
 }
@@ -114,6 +120,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         let mut equations = Equations::new(model, numbering);
         let length = equations.length();
         let pattern = equations.pattern(&Stage::zero(numbering).instant());
+        let shells = flexible::has_shells(model);
         Self {
             equations,
             numbering,
@@ -123,8 +130,13 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             made: (Stage::zero(numbering), [S::zero(); 2]),
             contraction: 1.0,
             unseen: 0,
-            broyden: (!S::INFINITESIMAL && flexible::has_shells(model)).then(Broyden::new),
+            broyden: (!S::INFINITESIMAL && shells).then(Broyden::new),
+            turned: match shells {
+                true => Turned::new(model, numbering),
+                false => Turned::default(),
+            },
             pace: Pace::default(),
+            backward: shells.then(|| BackwardError::new(length)),
             scale: SceneScale::of(model),
             residual: vec![S::zero(); length],
         }
@@ -159,6 +171,15 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             self.factored = Some(*c * *h);
             self.made.0.set(stage);
             self.made.1 = [*h, *c];
+            self.fit();
+        }
+    }
+
+    /// Sets the terms of the backward error where the factors were made.
+    fn fit(&mut self) {
+        if let Some(backward) = &mut self.backward {
+            let at = (&self.made.0, self.made.1[0].re());
+            backward.fit(&self.equations, self.numbering, at, &[(1.0, &self.matrix)]);
         }
     }
 
@@ -198,6 +219,9 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         let mut previous = f64::INFINITY;
         let (mut polish, mut before) = (false, 0.0_f64);
         let renew = if self.broyden.is_some() { SLOW } else { RENEW };
+        if let Some(backward) = &mut self.backward {
+            backward.begin();
+        }
         for iteration in 1..=ITERATIONS {
             history.rates(x);
             let at = x.instant();
@@ -207,6 +231,11 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             let fresh = S::INFINITESIMAL || self.factored != Some(history.c * h);
             if let (true, Some(broyden)) = (fresh || iteration == 1, &mut self.broyden) {
                 broyden.clear();
+                let turn = (&self.made.0.q[..], &x.q[..]);
+                match fresh {
+                    true => self.turned.clear(),
+                    false => self.turned.set(numbering, turn, self.equations.left_out()),
+                }
             }
             if fresh {
                 self.pace = Pace::default();
@@ -224,12 +253,22 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 self.factored = Some(history.c * h);
                 self.made.0.set(x);
                 self.made.1 = [h, history.c];
+                self.fit();
+            }
+            if let Some(backward) = &mut self.backward {
+                backward.take(&self.equations, [&self.residual]);
+                if !S::INFINITESIMAL && iteration > 1 && backward.is_solved() {
+                    self.end_step(iteration);
+                    return Ok(());
+                }
             }
             counts.newton_iterations += 1;
             counts.solves += 1;
             let mut update = std::mem::take(&mut self.residual);
             let factors = &mut self.factors;
+            self.turned.back(&mut update);
             self.equations.through(&mut update, |x| factors.solve(x));
+            self.turned.forth(&mut update);
             if let Some(broyden) = &mut self.broyden {
                 broyden.correct(std::slice::from_mut(&mut update));
             }
@@ -254,10 +293,18 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             let slow = contraction.max(before);
             let remaining = size * (slow / (1.0 - slow.min(0.9))).min(1.0);
             before = contraction;
+            let standing = self
+                .backward
+                .as_ref()
+                .is_some_and(BackwardError::is_standing);
             let stagnant = iteration > 2
                 && contraction > RENEW
-                && (size <= scales.round_off.max(STAGNANT) || residual <= round_off);
-            if polish || remaining <= TOLERANCE || stagnant {
+                && (size <= scales.round_off.max(STAGNANT) || residual <= round_off || standing);
+            let solved = self
+                .backward
+                .as_ref()
+                .is_some_and(BackwardError::will_be_solved);
+            if polish || remaining <= TOLERANCE || stagnant || solved {
                 if S::INFINITESIMAL && !polish {
                     polish = true;
                     previous = size;
@@ -266,15 +313,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 if iteration > 1 && !stagnant {
                     self.contraction = contraction.clamp(1e-3, 1.0);
                 }
-                // Kept factors whose convergence is unknown are not used for long.
-                self.unseen = if iteration == 1 { self.unseen + 1 } else { 0 };
-                if self.unseen >= UNSEEN {
-                    self.factored = None;
-                    self.unseen = 0;
-                }
-                if self.broyden.is_some() && self.pace.is_lost(iteration, FACTORS) {
-                    self.factored = None;
-                }
+                self.end_step(iteration);
                 history.rates(x);
                 return Ok(());
             }
@@ -287,6 +326,19 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             previous = size;
         }
         Err(self.stalled(x, history, h, (step, time)))
+    }
+
+    /// Judges the kept factors after a step of so many iterations.
+    fn end_step(&mut self, iterations: usize) {
+        // Kept factors whose convergence is unknown are not used for long.
+        self.unseen = if iterations == 1 { self.unseen + 1 } else { 0 };
+        if self.unseen >= UNSEEN {
+            self.factored = None;
+            self.unseen = 0;
+        }
+        if self.broyden.is_some() && self.pace.is_lost(iterations, FACTORS) {
+            self.factored = None;
+        }
     }
 
     fn not_finite(&self, residual: &[f64], time: f64, step: usize) -> IntegrationFailure {

@@ -78,17 +78,41 @@ impl<S: SolveScalar> Past<S> {
 
     /// A Taylor polynomial over the time `h`, with constant multipliers.
     pub(crate) fn taylor(&mut self, numbering: &Numbering, h: S, out: &mut Stage<S>) {
+        self.go_on(numbering, h, out, S::one());
+    }
+
+    /// The motion over the time `h` with constant velocities and multipliers: for light parts, whose
+    /// accelerations last much shorter than a step.
+    pub(crate) fn coast(&mut self, numbering: &Numbering, h: S, out: &mut Stage<S>) {
+        self.go_on(numbering, h, out, S::zero());
+    }
+
+    /// Stages of a step of size h of Radau IIA by [`Past::coast`].
+    pub(crate) fn coast_stages(
+        &mut self,
+        numbering: &Numbering,
+        scheme: &Scheme,
+        h: S,
+        out: &mut [Stage<S>],
+    ) {
+        for (&c, far) in scheme.nodes.iter().zip(out) {
+            self.coast(numbering, h * c, far);
+        }
+    }
+
+    /// The motion over the time `h` with this part of the accelerations.
+    fn go_on(&mut self, numbering: &Numbering, h: S, out: &mut Stage<S>, part: S) {
         let from = &self.from;
         out.set(from);
         out.dq.fill(S::zero());
         let rates = from.v.iter().zip(&from.vdot);
         for (step, (&v, &a)) in self.tangent.iter_mut().zip(rates) {
-            *step = h * (v + h * a * 0.5);
+            *step = h * (v + h * (a * part) * 0.5);
         }
         bodies::advance(numbering, &mut out.q, &mut out.dq, &self.tangent);
         for (i, &a) in from.vdot.iter().enumerate() {
-            out.dv[i] = h * a;
-            out.v[i] += h * a;
+            out.dv[i] = h * (a * part);
+            out.v[i] += h * (a * part);
         }
     }
 

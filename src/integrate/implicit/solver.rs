@@ -14,7 +14,7 @@ use crate::integrate::work::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::initial::InitialState;
-use crate::system::{Numbering, RedundantRows, bodies};
+use crate::system::{Numbering, RedundantRows, bodies, flexible};
 
 /// Data that Newton's method keeps from step to step.
 #[derive(Clone, Debug)]
@@ -38,6 +38,9 @@ pub(crate) fn starting_stage<S: SolveScalar>(
     first
 }
 
+/// Sets a stage after the time h to a guess.
+type Guess<S> = fn(&mut Past<S>, &Numbering, S, &mut Stage<S>);
+
 /// Makes the steps of a method.
 pub(super) struct Solver<'a, S> {
     method: Method,
@@ -45,6 +48,8 @@ pub(super) struct Solver<'a, S> {
     real: &'a Model<f64>,
     numbering: &'a Numbering,
     scheme: &'a Scheme,
+    /// Whether some body has shells.
+    shells: bool,
     /// Newton's method for formulas, created when needed.
     one: Option<Newton<'a, S>>,
     /// Newton's method for Radau IIA, created when needed.
@@ -75,6 +80,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
             real,
             numbering,
             scheme,
+            shells: flexible::has_shells(model),
             one: None,
             coupled: None,
             estimate: estimates.then(|| Estimate::new(real, numbering, scheme)),
@@ -153,15 +159,27 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         let stages = &mut self.stages;
         let Some(formula) = Formula::of_step(self.method, at.0) else {
             past.predict_stages(numbering, self.scheme, h, stages);
-            for (stage, &c) in stages.iter_mut().zip(&self.scheme.nodes) {
-                stage.project_increments(numbering, &past.from);
-                stage.time = start + h * c;
-            }
+            let nodes = &self.scheme.nodes;
+            let place = |stages: &mut [Stage<S>], from: &Stage<S>| {
+                for (stage, &c) in stages.iter_mut().zip(nodes) {
+                    stage.project_increments(numbering, from);
+                    stage.time = start + h * c;
+                }
+            };
+            place(stages, &past.from);
             let (scheme, estimates) = (self.scheme, self.estimate.is_some());
             let newton = (self.coupled)
                 .get_or_insert_with(|| StageNewton::new(model, real, numbering, scheme, estimates));
             newton.leave_out(&self.left_out);
-            newton.solve(stages, h, at, counts)?;
+            let found = newton.solve(stages, h, at, counts);
+            if found.is_err() && self.shells {
+                past.coast_stages(numbering, scheme, h, stages);
+                place(stages, &past.from);
+                newton.forget();
+                newton.solve(stages, h, at, counts)?;
+            } else {
+                found?;
+            }
             return Ok(stages.len());
         };
         if at.0 == 1 && remembers_start(self.method) {
@@ -185,15 +203,20 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
             .one
             .get_or_insert_with(|| Newton::new(model, numbering));
         newton.leave_out(&self.left_out);
-        newton.solve(stage, history, h, at, counts).or_else(|_| {
-            // The extrapolation over large steps may be a bad guess.
-            past.taylor(numbering, h, stage);
-            stage.project_increments(numbering, &past.from);
-            stage.time = start + h;
-            newton.forget();
-            newton.solve(stage, history, h, at, counts)
-        })?;
-        Ok(1)
+        let found = newton.solve(stage, history, h, at, counts);
+        // The extrapolation over large steps may be a bad guess, and so are accelerations of light parts.
+        let guesses: [Guess<S>; 2] = [Past::taylor, Past::coast];
+        let others = if self.shells { 2 } else { 1 };
+        let found = guesses[..others].iter().fold(found, |found, guess| {
+            found.or_else(|_| {
+                guess(past, numbering, h, stage);
+                stage.project_increments(numbering, &past.from);
+                stage.time = start + h;
+                newton.forget();
+                newton.solve(stage, history, h, at, counts)
+            })
+        });
+        found.map(|()| 1)
     }
 
     /// Updates the memory after step k with `count` stages.

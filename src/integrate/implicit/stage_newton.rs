@@ -2,11 +2,13 @@
 //! are kept while the method converges (Hairer & Wanner 1996, section IV.8).
 
 use super::Stage;
+use super::backward_error::BackwardError;
 use super::broyden::{Broyden, Pace};
 use super::ggl::Equations;
 use super::radau::Scheme;
 use super::scales::{Scales, SceneScale};
 use super::split::SplitMatrix;
+use super::turned::Turned;
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::work::WorkCounts;
 use crate::linalg::{Pivots, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
@@ -75,10 +77,13 @@ pub(crate) struct StageNewton<'a, S> {
     complex_mode: (SparseMatrix<Complex64>, SparseLu<Complex64>),
     /// Step size of the kept factors.
     factored: Option<f64>,
-    /// With finite elements: corrections of the kept factors, and the work with them. The matrix is then
-    /// renewed within a step.
+    /// With finite elements: corrections of the kept factors, the turns since they were made, and the work
+    /// with them. The matrix is then renewed within a step.
     broyden: Option<Broyden<S>>,
+    turned: Turned,
     pace: Pace,
+    /// With finite elements.
+    backward: Option<BackwardError>,
     scale: SceneScale,
     residuals: Vec<Vec<S>>,
     updates: Vec<Vec<S>>,
@@ -87,6 +92,8 @@ pub(crate) struct StageNewton<'a, S> {
     /// Initial guess of a step, and the stage at which the matrices are evaluated.
     predicted: Vec<Stage<S>>,
     middle: Stage<f64>,
+    /// The middle stage at the start of an iteration.
+    here: Stage<f64>,
     /// Combinations of increments of q and v, for the error.
     combined: [Vec<f64>; 2],
     /// Change (δy, h δv) by round-off in the latest step, if a nearly singular matrix magnified it.
@@ -108,6 +115,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         let split = SplitMatrix::new(&mut equations, &zero);
         let pattern = split.held.pattern.clone();
         let n = equations.length();
+        let shells = flexible::has_shells(model);
         let real_mode = (scheme.modes[0].is_real() || estimates).then(|| {
             let matrix = SparseMatrix::new(pattern.clone());
             (matrix, SparseLu::new(&pattern))
@@ -124,8 +132,13 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                 (SparseMatrix::new(pattern), factors)
             },
             factored: None,
-            broyden: flexible::has_shells(model).then(Broyden::new),
+            broyden: shells.then(Broyden::new),
+            turned: match shells {
+                true => Turned::new(model, numbering),
+                false => Turned::default(),
+            },
             pace: Pace::default(),
+            backward: shells.then(|| BackwardError::new(n)),
             scale: SceneScale::of(model),
             residuals: vec![vec![S::zero(); n]; scheme.stages()],
             updates: vec![vec![S::zero(); n]; scheme.stages()],
@@ -133,6 +146,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             complex_rhs: vec![Complex64::new(0.0, 0.0); n],
             predicted: vec![Stage::zero(numbering); scheme.stages()],
             combined: [vec![0.0; zero.q.len()], vec![0.0; zero.v.len()]],
+            here: zero.clone(),
             middle: zero,
             noise: None,
         }
@@ -228,8 +242,14 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         let scales = self.scale.step(numbering, known, h.re());
         let (mut previous, mut before, mut slowest) = (f64::INFINITY, 0.0_f64, 0.0_f64);
         let mut renewals = 0;
-        if let Some(broyden) = &mut self.broyden {
+        if let (Some(broyden), Some(backward)) = (&mut self.broyden, &mut self.backward) {
             broyden.clear();
+            backward.begin();
+            if !S::INFINITESIMAL {
+                stages[(stages.len() - 1) / 2].real_into(&mut self.here);
+                let turn = (&self.middle.q[..], &self.here.q[..]);
+                self.turned.set(numbering, turn, self.real.left_out());
+            }
         }
         for iteration in 1..=ITERATIONS {
             let size = self.improve(stages, h, &scales, nv, counts);
@@ -259,7 +279,11 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                     noise = change;
                 }
             }
-            if remaining <= TOLERANCE || stagnant {
+            let solved = self
+                .backward
+                .as_ref()
+                .is_some_and(BackwardError::will_be_solved);
+            if remaining <= TOLERANCE || stagnant || solved {
                 self.noise = noise;
                 if S::INFINITESIMAL {
                     let mut count = INFINITESIMAL_ITERATIONS;
@@ -308,7 +332,8 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     fn is_round_off(&self, scales: &Scales) -> bool {
         let limit = ROUND_OFF * scales.place().max(1.0);
         let all = self.residuals.iter().flatten();
-        all.fold(0.0, |m: f64, x| m.max(x.re().abs())) <= limit
+        let standing = (self.backward.as_ref()).is_some_and(BackwardError::is_standing);
+        standing || all.fold(0.0, |m: f64, x| m.max(x.re().abs())) <= limit
     }
 
     /// Effect of round-off in the constraints: the largest change (δy, h δv) of a stage, and its
@@ -358,6 +383,12 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         self.set_rates(stages, h);
         for (stage, residual) in stages.iter().zip(&mut self.residuals) {
             self.equations.residual(&stage.instant(), h, residual);
+        }
+        if let Some(backward) = &mut self.backward {
+            backward.take(&self.equations, &self.residuals);
+            if !S::INFINITESIMAL && backward.is_solved() {
+                return 0.0;
+            }
         }
         for update in &mut self.updates {
             update.fill(S::zero());
@@ -414,7 +445,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                     }
                 }
                 let rhs = &mut self.real_rhs;
+                self.turned.back(rhs);
                 self.real.through(rhs, |x| factors.solve(x));
+                self.turned.forth(rhs);
                 for (update, r) in self.updates.iter_mut().zip(&mode.right) {
                     for (out, &x) in update.iter_mut().zip(&self.real_rhs) {
                         *out -= whole(r.re * x);
@@ -428,7 +461,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                     }
                 }
                 let (rhs, factors) = (&mut self.complex_rhs, &mut self.complex_mode.1);
+                self.turned.back(rhs);
                 self.real.through(rhs, |x| factors.solve(x));
+                self.turned.forth(rhs);
                 for (update, r) in self.updates.iter_mut().zip(&mode.right) {
                     for (out, x) in update.iter_mut().zip(&self.complex_rhs) {
                         *out -= whole(2.0 * (r * x).re);
@@ -465,7 +500,15 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             ..
         } = self;
         self.pace = Pace::default();
+        self.turned.clear();
         split.assemble(&mut self.real, &self.middle.instant(), h);
+        if let Some(backward) = &mut self.backward {
+            let largest = self.scheme.modes.iter().map(|mode| mode.value.norm());
+            let rates = largest.fold(0.0, f64::max);
+            let at = (&self.middle, h);
+            let parts = [(1.0, &split.held), (rates, &split.rates)];
+            backward.fit(&self.real, self.numbering, at, &parts);
+        }
         // The matrix is affine in the eigenvalue.
         let mut found = Ok(());
         for mode in &self.scheme.modes {
@@ -531,7 +574,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         rest[..nv].iter_mut().for_each(|x| *x *= scale);
         if let Some((_, factors)) = &mut self.real_mode {
             let rhs = &mut self.real_rhs;
+            self.turned.back(rhs);
             self.real.through(rhs, |x| factors.solve(x));
+            self.turned.forth(rhs);
         }
         &self.real_rhs[..2 * nv]
     }

@@ -1,0 +1,164 @@
+//! The backward error of an iterate: its residuals relative to the round-off of their terms (Oettli & Prager
+//! 1964),
+//!
+//! ```text
+//! ω = max_i |F_i| / Σ_j |K_ij| |x_j|
+//! ```
+//!
+//! with the scaled unknowns x and the iteration matrix K where the factors were made. The forces of stiff
+//! structures are small differences of large terms. An iterate whose ω is some units of round-off solves
+//! equations whose terms are rounded; more iterations only change the round-off.
+
+use super::Stage;
+use super::ggl::Equations;
+use super::scales::largest;
+use crate::linalg::SparseMatrix;
+use crate::math::Scalar;
+use crate::system::Numbering;
+
+/// Below this an iterate is a solution.
+const SOLVED: f64 = 2.0 * f64::EPSILON;
+/// Below this iterates that approach no further are solutions.
+const STANDING: f64 = 64.0 * f64::EPSILON;
+
+/// The backward errors of an iteration.
+#[derive(Debug)]
+pub(super) struct BackwardError {
+    /// Σ_j |K_ij| |x_j|, in the unknowns of the bodies.
+    terms: Vec<f64>,
+    /// A vector in velocity numbering.
+    all: Vec<f64>,
+    /// ω of the latest iterate.
+    latest: f64,
+    /// ω by that of the iterate before, for the latest two.
+    declines: [f64; 2],
+}
+
+impl BackwardError {
+    /// For vectors of this length.
+    pub(super) fn new(length: usize) -> Self {
+        Self {
+            terms: Vec::new(),
+            all: vec![0.0; length],
+            latest: f64::INFINITY,
+            declines: [1.0; 2],
+        }
+    }
+
+    /// Sets the terms at a stage of a step of size h, where the matrix is Σ s K over the `parts` (s, K).
+    pub(super) fn fit<S: Scalar>(
+        &mut self,
+        equations: &Equations<S>,
+        numbering: &Numbering,
+        (at, h): (&Stage<S>, f64),
+        parts: &[(f64, &SparseMatrix<S>)],
+    ) {
+        let (nv, nc) = (numbering.velocities(), numbering.constraints());
+        let (y, rest) = self.all.split_at_mut(nv);
+        let (v, rest) = rest.split_at_mut(nv);
+        let (lambda, mu) = rest.split_at_mut(nc);
+        let model = equations.model();
+        let gravity = largest(model.gravity.as_slice());
+        let moving = |v: f64, a: f64| h * (v + h * a);
+        // Lengths of all bodies have one size, and so have their velocities: joints take differences of points.
+        let [mut place, mut speed, mut turning, mut rates] = [0.0_f64; 4];
+        for body in 0..numbering.bodies() {
+            let (o, u) = (numbering.position(body), numbering.velocity(body));
+            place = place.max(largest(&at.q[o..o + 3]));
+            speed = speed.max(largest(&at.v[u..u + 3]));
+            turning = turning.max(largest(&at.v[u + 3..u + 6]));
+            rates = rates.max(largest(&at.vdot[u + 3..u + 6]));
+        }
+        for body in 0..numbering.bodies() {
+            let u = numbering.velocity(body);
+            y[u..u + 3].fill(place);
+            y[u + 3..u + 6].fill(1.0);
+            let rate = largest(&at.vdot[u..u + 3]);
+            v[u..u + 3].fill(moving(speed, rate + gravity));
+            v[u + 3..u + 6].fill(moving(turning, rates));
+        }
+        // Coordinates of a body have one size: small ones have the round-off of the large ones.
+        for body in &model.flexible {
+            let [mut place, mut speed, mut rate] = [0.0_f64; 3];
+            for (carrier, k) in body.places() {
+                let (o, u) = (
+                    numbering.position(carrier) + k,
+                    numbering.velocity(carrier) + k,
+                );
+                place = place.max(at.q[o].re().abs());
+                speed = speed.max(at.v[u].re().abs());
+                rate = rate.max(at.vdot[u].re().abs());
+            }
+            for (carrier, k) in body.places() {
+                let u = numbering.velocity(carrier) + k;
+                (y[u], v[u]) = (place, moving(speed, rate + gravity));
+            }
+        }
+        // Multipliers of rows that are left out are zero: only round-off of the others.
+        lambda.fill(h * h / equations.mass() * largest(&at.lambda));
+        mu.fill(v.iter().fold(0.0, |m, &x| m.max(x)));
+        equations.compress(&mut self.all);
+        self.terms.clear();
+        self.terms.resize(equations.order(), 0.0);
+        for (scale, matrix) in parts {
+            add_sizes(matrix, *scale, &self.all, &mut self.terms);
+        }
+    }
+
+    /// Begins an iteration.
+    pub(super) fn begin(&mut self) {
+        (self.latest, self.declines) = (f64::INFINITY, [1.0; 2]);
+    }
+
+    /// Takes the residuals of the next iterate.
+    pub(super) fn take<'r, S: Scalar>(
+        &mut self,
+        equations: &Equations<S>,
+        residuals: impl IntoIterator<Item = &'r Vec<S>>,
+    ) {
+        let mut largest = 0.0_f64;
+        for residual in residuals {
+            for (out, x) in self.all.iter_mut().zip(residual) {
+                *out = x.re();
+            }
+            equations.compress(&mut self.all);
+            for (x, &terms) in self.all.iter().zip(&self.terms) {
+                if *x != 0.0 {
+                    largest = largest.max(x.abs() / terms);
+                }
+            }
+        }
+        let decline = match self.latest.is_finite() {
+            true => (largest / self.latest).min(1.0),
+            false => 1.0,
+        };
+        self.declines = [decline, self.declines[0]];
+        self.latest = largest;
+    }
+
+    /// Whether the latest iterate is a solution.
+    pub(super) fn is_solved(&self) -> bool {
+        self.latest <= SOLVED
+    }
+
+    /// Whether the next one will be, if ω declines by the slower of the latest two rates.
+    pub(super) fn will_be_solved(&self) -> bool {
+        self.latest * self.declines[0].max(self.declines[1]) <= SOLVED
+    }
+
+    /// Whether it is one if the iterates approach no further.
+    pub(super) fn is_standing(&self) -> bool {
+        self.latest <= STANDING
+    }
+}
+
+/// Adds s |K| x, x without negative entries.
+fn add_sizes<S: Scalar>(matrix: &SparseMatrix<S>, scale: f64, x: &[f64], out: &mut [f64]) {
+    let starts = matrix.pattern.column_starts();
+    for (column, &x) in x.iter().take(matrix.pattern.order()).enumerate() {
+        for slot in starts[column]..starts[column + 1] {
+            let size = matrix.values[slot].re().abs();
+            out[matrix.pattern.rows()[slot]] += scale * size * x.abs();
+        }
+    }
+}
