@@ -2,6 +2,7 @@
 
 use super::case::{Case, Judge, Steps, TOLERANCE, Way, decade, equal, usual};
 use super::exact::Exact;
+use super::flexible;
 use super::loops;
 use super::scenes::{
     AGGREGATE, DOOR, DOUBLE_PENDULUM, DUMBBELL, INFEASIBLE, LOCKING, OPEN_JOINT, OSCILLATOR,
@@ -32,6 +33,12 @@ pub(super) fn all() -> Vec<Case> {
         loops::orders(),
         loops::rotations(),
         loops::units(),
+        flexible::thicknesses(),
+        flexible::loads(),
+        flexible::stiffnesses(),
+        flexible::long_times(),
+        flexible::spins(),
+        flexible::chains(),
     ];
     families.concat()
 }

@@ -1,6 +1,7 @@
 //! Motions of the scenes in `problems/extreme` that are known independently of the program: in
 //! closed form, or from equations in minimal coordinates.
 
+use super::elastic::Elastic;
 use super::reference::{integrate, jacobi};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -45,6 +46,8 @@ pub(super) enum Exact {
     FourBars { cells: usize, time: f64 },
     /// Bricard's mechanism (A04) after 10 s.
     Bricard,
+    /// A flexible body.
+    Elastic(Elastic),
 }
 
 /// Correct values of the functions of a scene, and the sizes to which errors are relative.
@@ -63,6 +66,7 @@ impl Exact {
             }
             Exact::SpringPendulum { .. } => "slow manifold to 1/ω² by extrapolation",
             Exact::FourBars { .. } => "minimal coordinate by extrapolation",
+            Exact::Elastic(own) => own.source(),
             Exact::Bricard => "an integration of its one coordinate to 1e-10",
             Exact::Pendulum { spin, .. } if spin != 0.0 => "minimal coordinate by extrapolation",
             Exact::Pendulum { .. } | Exact::Door { .. } => "elliptic functions",
@@ -129,6 +133,10 @@ impl Exact {
                 let stiffness = (0.5 * (n + 1.0) + n) * G / ((n + 1.0) / 3.0 + n);
                 let angle = pendulum(stiffness, PI, 1.0, time);
                 (vec![-angle.sin(), -angle.cos()], 1.0)
+            }
+            Exact::Elastic(own) => {
+                let (values, sizes) = own.numbers();
+                return Numbers { values, sizes };
             }
             Exact::Bricard => (
                 vec![0.999_999_963_8, -1.000_269_012_7, 0.999_730_951_1],

@@ -8,7 +8,9 @@
 
 mod case;
 mod cases;
+mod elastic;
 mod exact;
+mod flexible;
 mod loops;
 mod reference;
 mod run;

@@ -35,6 +35,11 @@ pub(super) const OPEN_JOINT: SceneFile = scene!("open_joint");
 pub(super) const LOCKING: SceneFile = scene!("locking_linkage");
 pub(super) const UNBOUNDED: SceneFile = scene!("unbounded_throw");
 pub(super) const INFEASIBLE: SceneFile = scene!("infeasible_throw");
+pub(super) const CANTILEVER_PLATE: SceneFile = scene!("cantilever_plate");
+pub(super) const FLEXIBLE_PENDULUM: SceneFile = scene!("flexible_pendulum");
+pub(super) const TURNING_BAR: SceneFile = scene!("turning_bar");
+pub(super) const FALLING_CHAIN_10: SceneFile = scene!("falling_chain_10");
+pub(super) const FALLING_CHAIN_100: SceneFile = scene!("falling_chain_100");
 pub(super) const PARALLELOGRAM: SceneFile = scene!("parallelogram");
 pub(super) const FOUR_BARS_1: SceneFile = scene!("benchmarks", "four_bars_1");
 pub(super) const FOUR_BARS_2: SceneFile = scene!("benchmarks", "four_bars_2");
@@ -45,7 +50,7 @@ pub(super) const SLIDER_CRANK: SceneFile = scene!("benchmarks", "balanced_slider
 pub(super) const GOVERNOR: SceneFile = scene!("benchmarks", "flyball_governor");
 
 /// The families with their descriptions.
-pub(super) const FAMILIES: [(&str, &str); 19] = [
+pub(super) const FAMILIES: [(&str, &str); 25] = [
     (
         "mass-ratio",
         "Two hinged rods swing for 2 s; the lower one has this many times the mass of the upper one.",
@@ -126,5 +131,31 @@ pub(super) const FAMILIES: [(&str, &str); 19] = [
     (
         "units",
         "Scenes with closed loops, lengths and masses multiplied by these numbers.",
+    ),
+    (
+        "thickness",
+        "A cantilever plate of shells of 1 m with this thickness (m), in equilibrium with a force that deflects \
+         it by 1 mm.",
+    ),
+    (
+        "load",
+        "A cantilever plate of shells of 10 mm, in equilibrium with this load P L² / EI at its end.",
+    ),
+    (
+        "elasticity",
+        "A beam on a hinge swings for 1 s; this is its Young's modulus (Pa).",
+    ),
+    (
+        "undamped",
+        "A beam on a hinge swings for so long (s) without damping.",
+    ),
+    (
+        "spin",
+        "A beam on a hinge turns steadily and is stretched; this is its angular velocity by √(E/ρ) / L. At π/2 \
+         it has no steady state.",
+    ),
+    (
+        "chain",
+        "A straight chain of this many hinged beams that falls freely.",
     ),
 ];

@@ -1,0 +1,132 @@
+//! Motions and deflections of flexible bodies that are known independently of the program.
+
+use std::f64::consts::{FRAC_PI_2, SQRT_2};
+
+/// Young's modulus \[Pa\], width and length \[m\] of the plate of `cantilever_plate.json`.
+const YOUNG: f64 = 1e9;
+const WIDTH: f64 = 0.25;
+/// Thickness of the plate that is bent far \[m\].
+pub(super) const THIN: f64 = 0.01;
+/// Deflection of the plates of different thickness \[m\].
+pub(super) const DEFLECTION: f64 = 1e-3;
+/// Points of the quadrature of the elastica.
+const POINTS: usize = 20_000;
+/// From this load on the elastica is asymptotic to 1e-6.
+const ASYMPTOTIC: f64 = 200.0;
+
+/// A known state of a flexible body.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Elastic {
+    /// A cantilever plate of 1 m and this thickness \[m\] whose end a force deflects by `DEFLECTION`.
+    Plate { thickness: f64 },
+    /// A thin cantilever with the load P L² / EI at its end.
+    Elastica { load: f64 },
+    /// A bar of 1 m that turns about its end with 10 rad/s = `turn` √(E/ρ) / L. From π/2 on it has no steady state.
+    Bar { turn: f64, time: f64 },
+    /// The end of a chain of this many beams of 1 m that falls with the velocity (1, 2) m/s.
+    Chain { beams: usize, time: f64 },
+}
+
+impl Elastic {
+    /// Description for the table.
+    pub(super) fn source(self) -> &'static str {
+        match self {
+            Elastic::Plate { .. } => "Timoshenko's beam",
+            Elastic::Elastica { .. } => "the elastica by quadrature",
+            Elastic::Bar { .. } | Elastic::Chain { .. } => "closed form",
+        }
+    }
+
+    /// Values of the functions, and their sizes.
+    pub(super) fn numbers(self) -> (Vec<f64>, Vec<f64>) {
+        match self {
+            Elastic::Plate { thickness } => {
+                let (force, stiffness) = (force(thickness), bending(thickness));
+                let shear = 5.0 / 6.0 * 0.5 * YOUNG * WIDTH * thickness;
+                let deflection = force / (3.0 * stiffness) + force / shear;
+                (
+                    vec![deflection, 0.0],
+                    vec![deflection, 0.5 * force * deflection],
+                )
+            }
+            Elastic::Elastica { load } => {
+                let energy = 0.5 * load * bending(THIN);
+                (vec![elastica(load), 0.0], vec![1.0, energy])
+            }
+            Elastic::Bar { turn, .. } if turn >= FRAC_PI_2 => (vec![f64::NAN; 2], vec![1.0; 2]),
+            Elastic::Bar { turn, time } => {
+                let (length, angle) = (turn.tan() / turn, 10.0 * time);
+                let values = vec![length * angle.cos(), length * angle.sin()];
+                (values, vec![length.abs(); 2])
+            }
+            Elastic::Chain { beams, time } => {
+                let fall = -0.5 * 9.81 * time * time;
+                (vec![beams as f64 + time, 2.0 * time + fall], vec![1.0; 2])
+            }
+        }
+    }
+}
+
+/// Bending stiffness of the plate \[N m²\].
+fn bending(thickness: f64) -> f64 {
+    YOUNG * WIDTH * thickness.powi(3) / 12.0
+}
+
+/// The force that bends a plate by `DEFLECTION` \[N\].
+pub(super) fn force(thickness: f64) -> f64 {
+    3.0 * bending(thickness) * DEFLECTION
+}
+
+/// The force of the load P L² / EI of the elastica \[N\].
+pub(super) fn force_of(load: f64) -> f64 {
+    load * bending(THIN)
+}
+
+/// Deflection of the end of a cantilever without stretch, by its length: θ'' = −p cos θ, θ(0) = θ'(1) = 0.
+///
+/// With sin θ = (1 − t²) sin θ₁, ds = √(2 sin θ₁ / p) dt / cos θ. For large loads θ₁ is a right angle.
+fn elastica(p: f64) -> f64 {
+    if p > ASYMPTOTIC {
+        return 1.0 - 2.0 * (SQRT_2 - 1.0) / (2.0 * p).sqrt();
+    }
+    // Length and deflection for an end that turns by θ₁.
+    let integrals = |end: f64| {
+        let (mut length, mut deflection) = (0.0, 0.0);
+        for k in 0..POINTS {
+            // More points where cos θ is small.
+            let u = (k as f64 + 0.5) / POINTS as f64;
+            let (t, weight) = (u.powi(3), 3.0 * u * u / POINTS as f64);
+            let sine = (1.0 - t * t) * end.sin();
+            // 1 − sin θ without cancellation.
+            let less = 2.0 * (0.5 * (FRAC_PI_2 - end)).sin().powi(2) + t * t * end.sin();
+            let arc = weight / (less * (1.0 + sine)).sqrt();
+            length += arc;
+            deflection += sine * arc;
+        }
+        let factor = (2.0 * end.sin() / p).sqrt();
+        [factor * length, factor * deflection]
+    };
+    let (mut low, mut high) = (0.0, FRAC_PI_2);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        match integrals(middle)[0] < 1.0 {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    integrals(0.5 * (low + high))[1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::elastica;
+
+    /// Small loads give p / 3; p = 1 and 10 the tabulated 0.30172 and 0.81061 (Bisshopp & Drucker 1945; Mattiasson 1981).
+    #[test]
+    fn the_elastica_has_its_known_values() {
+        assert!((elastica(1e-3) * 3e3 - 1.0).abs() < 1e-6);
+        assert!((elastica(1.0) - 0.30172).abs() < 1e-5);
+        assert!((elastica(10.0) - 0.81061).abs() < 1e-5);
+        assert!((elastica(199.0) - elastica(201.0)).abs() < 3e-4);
+    }
+}
