@@ -90,14 +90,16 @@ pub(super) fn record(
     let judged: Vec<usize> = std::iter::once(objective.function)
         .chain(constrained.filter(aggregates))
         .collect();
-    let estimates = end.map(|end| end.estimate(problem, &judged, false));
-    let estimates = estimates.transpose().unwrap_or_else(|failure| {
-        warnings.push(format!(
-            "the error of the objective is not estimated: {failure}"
-        ));
-        None
-    });
-    let estimates = estimates.unwrap_or_default();
+    let estimates = match end.map(|end| end.estimate(problem, &judged, false)) {
+        Some(Ok(all)) => all,
+        Some(Err(failure)) => {
+            warnings.push(format!(
+                "the error of the objective is not estimated: {failure}"
+            ));
+            Vec::new()
+        }
+        None => Vec::new(),
+    };
     let estimate = estimates.first().map(|found| found.value);
     let aggregate = |f: usize| end.and_then(|end| end.aggregate(problem, f, &estimates));
     let scales = problem.variables.iter().map(|v| v.scale);

@@ -191,19 +191,7 @@ pub(super) fn pull_viscous(
     add_transposed(own, &psi, &by_u, by_q);
     add_transposed(own, q, &by_t, by_rate);
     add_cubic(own, &u, by_rate);
-    let count = own.count();
-    for (i, row) in cot.cubic.chunks_exact_mut(count.max(1)).enumerate() {
-        add_scaled(row, psi[i], &t);
-        add_scaled(row, rate[i], &u);
-    }
-    let mut at = 0;
-    for k in 0..count {
-        cot.quartic[at] += t[k] * u[k];
-        let row = &mut cot.quartic[at + 1..at + count - k];
-        add_scaled(row, t[k], &u[k + 1..]);
-        add_scaled(row, u[k], &t[k + 1..]);
-        at += count - k;
-    }
+    add_products(own.count(), [(&psi, &t), (rate, &u)], cot);
 }
 
 /// Pulls U times `scale` back to q (added to `by_q`) and to the parameters (added to `cot`).
@@ -248,10 +236,14 @@ pub(super) fn pull_forces(
     add_transposed(own, q, &w, by_q);
     add_transposed(own, psi, &n, by_q);
     add_cubic(own, &t, by_q);
-    let count = own.count();
+    add_products(own.count(), [(psi, &s), (q, &t)], cot);
+}
+
+/// Adds the derivatives of aᵀ C s + bᵀ C t + sᵀ G t by C and G, of `count` products each.
+fn add_products(count: usize, [(a, s), (b, t)]: [(&[f64], &[f64]); 2], cot: &mut PairEnergy<f64>) {
     for (i, row) in cot.cubic.chunks_exact_mut(count.max(1)).enumerate() {
-        add_scaled(row, psi[i], &s);
-        add_scaled(row, q[i], &t);
+        add_scaled(row, a[i], s);
+        add_scaled(row, b[i], t);
     }
     let mut at = 0;
     for k in 0..count {

@@ -17,8 +17,8 @@ use flexbody::structures::structure::Structure;
 use flexbody::system::bodies::BodyMotion;
 use flexbody::system::{Numbering, finite, placement};
 use reference::flexible::totals;
-use reference::models::Numbers;
-use reference::shells::{any_beam, stiffened};
+use reference::models::{Numbers, alone};
+use reference::shells::{any_beam, elastic_at_end, stiffened};
 use std::sync::Arc;
 
 /// A straight beam of one element with an offset, clamped at its start, and a mass at its end; the unknowns of its
@@ -104,13 +104,7 @@ fn energies_are_those_of_statics() {
         (frame.velocity, frame.angular_velocity) = (Vec3::zeros(), Vec3::zeros());
         let (total, inertia) = finite.rigid();
         (frame.mass, frame.inertia) = (total, inertia);
-        let mut model = Model {
-            gravity: Vec3::zeros(),
-            bodies: vec![frame],
-            joints: Vec::new(),
-            loads: Vec::new(),
-            flexible: Vec::new(),
-        };
+        let mut model = alone(frame);
         let still = vec![0.0; rate.len()];
         model.add_flexible(0, (&still, &rate), Form::Finite(finite.clone()));
         let numbering = Numbering::new(&model);
@@ -141,13 +135,7 @@ fn free(seed: u64, damping: Option<[f64; 2]>) -> Model<f64> {
     shells.elements.damping = damping;
     let mut frame = numbers.body("panel");
     (frame.mass, frame.inertia) = shells.elements.rigid();
-    let mut model = Model {
-        gravity: Vec3::zeros(),
-        bodies: vec![frame],
-        joints: Vec::new(),
-        loads: Vec::new(),
-        flexible: Vec::new(),
-    };
+    let mut model = alone(frame);
     let count = shells.elements.mesh.coordinates;
     let mut start = |by: f64| -> Vec<f64> { numbers.list(count).iter().map(|x| x * by).collect() };
     let (q, rate) = (start(0.02), start(0.1));
@@ -191,13 +179,8 @@ fn a_free_body_moves_as_it_must() {
         let mut faster = model.clone();
         faster.bodies[0].velocity += Vec3::new(6.0, -8.0, 3.0);
         let (own, other) = (fine.1, run(&faster, 80));
-        let elastic = |run: &Trajectory<f64>| -> Vec<f64> {
-            let (places, q) = (model.flexible[0].places(), run.q(run.last()));
-            places
-                .map(|(b, k)| q[run.numbering.position(b) + k])
-                .collect()
-        };
-        for (x, y) in elastic(&own).iter().zip(elastic(&other)) {
+        let at_end = |run: &Trajectory<f64>| elastic_at_end(&model, run);
+        for (x, y) in at_end(&own).iter().zip(at_end(&other)) {
             assert!((x - y).abs() < 1e-10, "{x} {y}");
         }
     }

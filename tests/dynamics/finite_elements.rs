@@ -15,7 +15,7 @@ use flexbody::system::marker::{MarkerKinematics, RelativeMotion};
 use flexbody::system::{Numbering, finite, flexible, placement};
 use reference::flexible::totals;
 use reference::models::Numbers;
-use reference::shells::{Shells, shells};
+use reference::shells::{Shells, elastic_at_end, shells};
 
 /// A free body of shells at a random state.
 fn free(seed: u64, elements: [usize; 2], clamped: bool, size: f64) -> (Model<f64>, Shells) {
@@ -224,14 +224,8 @@ fn a_free_body_moves_as_it_must() {
     let mut faster = model.clone();
     faster.bodies[0].velocity += Vec3::new(6.0, -8.0, 3.0);
     let (own, other) = (fine.1, run(&faster, 0.2, 80));
-    let elastic = |run: &Trajectory<f64>| -> Vec<f64> {
-        let places = model.flexible[0].places();
-        let q = run.q(run.last());
-        places
-            .map(|(b, k)| q[run.numbering.position(b) + k])
-            .collect()
-    };
-    for (x, y) in elastic(&own).iter().zip(elastic(&other)) {
+    let at_end = |run: &Trajectory<f64>| elastic_at_end(&model, run);
+    for (x, y) in at_end(&own).iter().zip(at_end(&other)) {
         assert!((x - y).abs() < 1e-10, "{x} {y}");
     }
 }
@@ -258,12 +252,8 @@ fn truncated_inertia_depends_on_the_observer() {
     let mut faster = model.clone();
     faster.bodies[0].velocity += Vec3::new(6.0, -8.0, 3.0);
     let other = run(&faster, 0.2, 80);
-    let elastic = |run: &Trajectory<f64>| -> Vec<f64> {
-        let (places, q) = (model.flexible[0].places(), run.q(run.last()));
-        let all = places.map(|(b, k)| q[run.numbering.position(b) + k]);
-        all.collect()
-    };
-    let (own, other) = (elastic(&own), elastic(&other));
+    let at_end = |run: &Trajectory<f64>| elastic_at_end(&model, run);
+    let (own, other) = (at_end(&own), at_end(&other));
     let apart = own.iter().zip(&other).map(|(x, y)| (x - y).abs());
     let apart = apart.fold(0.0_f64, f64::max);
     assert!(apart > 0.1, "{apart:e}");

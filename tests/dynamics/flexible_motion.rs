@@ -13,7 +13,7 @@ use flexbody::model::{Mobility, Model};
 use flexbody::system::Numbering;
 use flexbody::system::observe::{Observation, observe};
 use reference::flexible::{Points, modal, modal_of, planar_swing, stiffness, swing_from, swing_of};
-use reference::models::Numbers;
+use reference::models::{Numbers, alone};
 
 const RADAU: Method = Method::Radau { stages: 3 };
 
@@ -23,13 +23,7 @@ fn free(seed: u64, modes: usize) -> Model<f64> {
     let points = Points::any(&mut numbers, 12, modes);
     let mut frame = numbers.body("body");
     (frame.mass, frame.inertia) = points.rigid();
-    let mut model = Model {
-        gravity: Vec3::zeros(),
-        bodies: vec![frame],
-        joints: Vec::new(),
-        loads: Vec::new(),
-        flexible: Vec::new(),
-    };
+    let mut model = alone(frame);
     let stiff = stiffness(&mut numbers, modes, 100.0);
     let (q, rate) = (numbers.list(modes), numbers.list(modes));
     let scaled = |x: &[f64], by: f64| -> Vec<f64> { x.iter().map(|x| x * by).collect() };

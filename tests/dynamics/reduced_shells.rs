@@ -6,18 +6,13 @@ use flexbody::math::{Mat3, Vec3};
 use flexbody::model::finite::FiniteElements;
 use flexbody::model::flexible::Modal;
 use flexbody::model::{Form, Model};
-use flexbody::structures::floating::{FrameNodes, element_mesh};
-use flexbody::structures::generate::panel;
-use flexbody::structures::material::Material;
-use flexbody::structures::structure::Structure;
 use flexbody::system::bodies::{BodyMotion, all_force_balances};
 use flexbody::system::reduction::{ModeChoice, ReducedBasis, Request, project, reduced_basis};
 use flexbody::system::{Numbering, flexible, placement};
 use nalgebra::{DMatrix, DVector};
 use reference::flexible::totals;
 use reference::models::Numbers;
-use reference::shells::{projected, shells, stiffened};
-use std::sync::Arc;
+use reference::shells::{aluminium_plate, projected, shells, stiffened};
 
 /// A free body in this form, with the motion of its frame and coordinates, and its accelerations.
 fn free(numbers: &Numbers, form: Form<f64>, start: [&[f64]; 3]) -> (Model<f64>, Vec<f64>) {
@@ -118,31 +113,6 @@ fn a_basis_takes_the_mechanics_of_its_shells() {
     }
 }
 
-/// A cantilever plate of aluminium of 1 m × 0.25 m × 1 mm, 8 × 2 elements.
-fn plate() -> FiniteElements<f64> {
-    let made = panel([8, 2], false, |x, y| Vec3::new(x, 0.25 * y, 0.0));
-    let material = Material {
-        young: 70e9,
-        poisson: 0.3,
-        density: 2700.0,
-        yield_stress: 2e8,
-    };
-    let structure = Structure::uniform(made.mesh.clone(), made.nodes, 1e-3, material);
-    let structure = structure.expect("a sound mesh");
-    let frame = FrameNodes::Clamped(made.mesh.edge_sets["x0"].concat());
-    let (mesh, _) = element_mesh(&structure, &frame).expect("has its sets");
-    let count = mesh.elements.len();
-    FiniteElements {
-        thickness: vec![1e-3; count],
-        young: vec![70e9; count],
-        density: vec![2700.0; count],
-        surface_mass: vec![0.0; count],
-        parts: Vec::new(),
-        damping: None,
-        mesh: Arc::new(mesh),
-    }
-}
-
 /// Energies of the plate in a basis, of bending and of what stretch remains if all else yields, when the first
 /// coordinate moves the tip by 20 mm.
 fn bent(shells: &FiniteElements<f64>, basis: &ReducedBasis) -> [f64; 2] {
@@ -176,7 +146,7 @@ fn bent(shells: &FiniteElements<f64>, basis: &ReducedBasis) -> [f64; 2] {
 /// cannot, and the plate is hundreds of times too stiff.
 #[test]
 fn bending_alone_locks() {
-    let shells = plate();
+    let shells = aluminium_plate([8, 2], 1e-3);
     let of = |companions: bool| {
         let request = Request {
             modes: ModeChoice::Count(6),

@@ -61,6 +61,17 @@ impl Numbers {
     }
 }
 
+/// A model of one body that nothing holds or pulls.
+pub fn alone(body: RigidBody<f64>) -> Model<f64> {
+    Model {
+        gravity: Vec3::zeros(),
+        bodies: vec![body],
+        joints: Vec::new(),
+        loads: Vec::new(),
+        flexible: Vec::new(),
+    }
+}
+
 /// Axes e1, e2, e3 of a joint along `axis`.
 pub fn axes_along(axis: &Vec3<f64>) -> [Vec3<f64>; 3] {
     let axis = axis.normalize();

@@ -3,6 +3,7 @@
 
 use super::flexible::add_loads;
 use super::models::{Numbers, axes_along, joint};
+use flexbody::integrate::Trajectory;
 use flexbody::math::{Mat3, Vec3};
 use flexbody::model::finite::FiniteElements;
 use flexbody::model::{Form, JointKind, Model};
@@ -23,6 +24,40 @@ pub struct Shells {
     pub elements: FiniteElements<f64>,
     pub surface: Surface,
     pub mesh: Mesh,
+}
+
+/// A plate of aluminium of 1 m × 0.25 m with this thickness \[m\], clamped to its frame at x = 0.
+pub fn aluminium_plate(elements: [usize; 2], thickness: f64) -> FiniteElements<f64> {
+    let made = panel(elements, false, |x, y| Vec3::new(x, 0.25 * y, 0.0));
+    let material = Material {
+        young: 70e9,
+        poisson: 0.3,
+        density: 2700.0,
+        yield_stress: 2e8,
+    };
+    let structure = Structure::uniform(made.mesh.clone(), made.nodes, thickness, material);
+    let structure = structure.expect("a sound mesh");
+    let frame = FrameNodes::Clamped(made.mesh.edge_sets["x0"].concat());
+    let (mesh, _) = element_mesh(&structure, &frame).expect("has its sets");
+    let count = mesh.elements.len();
+    FiniteElements {
+        thickness: vec![thickness; count],
+        young: vec![70e9; count],
+        density: vec![2700.0; count],
+        surface_mass: vec![0.0; count],
+        parts: Vec::new(),
+        damping: None,
+        mesh: Arc::new(mesh),
+    }
+}
+
+/// Elastic coordinates of flexible body 0 at the end of a run.
+pub fn elastic_at_end(model: &Model<f64>, run: &Trajectory<f64>) -> Vec<f64> {
+    let q = run.q(run.last());
+    let places = model.flexible[0].places();
+    places
+        .map(|(b, k)| q[run.numbering.position(b) + k])
+        .collect()
 }
 
 /// A curved and distorted panel whose elements differ in thickness and material.

@@ -42,6 +42,20 @@ impl<S: Scalar> Strain<S> {
         }
     }
 
+    /// Derivative of strain `k` by the motion.
+    fn gradient(&self, axes: &Axes<S>, at: &AtPoint<S>, von_karman: bool, k: usize) -> AtPoint<S> {
+        let mut unit = [S::zero(); 6];
+        unit[k] = S::one();
+        let mut gradient = AtPoint {
+            w: Vec3::zeros(),
+            turn: Vec3::zeros(),
+            turn_by: Vec3::zeros(),
+        };
+        let unused = &mut Axes::zeros();
+        self.add_transpose(axes, at, von_karman, &unit, unused, &mut gradient);
+        gradient
+    }
+
     /// Transpose of the derivative of [`Strain::new`], added to the cotangents of axes and motion.
     fn add_transpose(
         &self,
@@ -197,15 +211,7 @@ impl<S: Scalar> Beam<S> {
             let (axes, at) = self.at(&line, &still, r);
             let strain = Strain::new(&axes, &at, false);
             for (k, stiffness) in stiffness.iter().enumerate() {
-                let mut unit = [S::zero(); 6];
-                unit[k] = S::one();
-                let mut gradient = AtPoint {
-                    w: Vec3::zeros(),
-                    turn: Vec3::zeros(),
-                    turn_by: Vec3::zeros(),
-                };
-                let unused = &mut Axes::zeros();
-                strain.add_transpose(&axes, &at, false, &unit, unused, &mut gradient);
+                let gradient = strain.gradient(&axes, &at, false, k);
                 let slope = |e: Vec3<S>| AtPoint {
                     w: e / axes.speed,
                     turn: Vec3::zeros(),
@@ -239,15 +245,7 @@ impl<S: Scalar> Beam<S> {
             let strain = Strain::new(&axes, &at, von_karman);
             let length = axes.speed * weight;
             for k in 0..6 {
-                let mut unit = [S::zero(); 6];
-                unit[k] = S::one();
-                let mut gradient = AtPoint {
-                    w: Vec3::zeros(),
-                    turn: Vec3::zeros(),
-                    turn_by: Vec3::zeros(),
-                };
-                let unused = &mut Axes::zeros();
-                strain.add_transpose(&axes, &at, von_karman, &unit, unused, &mut gradient);
+                let gradient = strain.gradient(&axes, &at, von_karman, k);
                 let row = line_row(&line, r, &gradient);
                 add_square(matrix, &row, stiffness[k] * length);
             }

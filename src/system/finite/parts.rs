@@ -241,21 +241,6 @@ fn own_slots(slots: &[usize], coordinates: &[usize]) -> Vec<usize> {
     slots[..6].iter().copied().chain(elastic).collect()
 }
 
-fn emit_block<S: Scalar>(
-    slots: &[usize],
-    block: &Block<S>,
-    (row, column): (usize, usize),
-    scale: S,
-    emit: &mut dyn Emit<S>,
-) {
-    let mut entries = block.entries.iter();
-    for i in slots {
-        for (j, &x) in slots.iter().zip(&mut entries) {
-            emit.add(row + i, column + j, x * scale);
-        }
-    }
-}
-
 /// Emits the mass matrices.
 pub(super) fn emit_mass<S: Scalar>(
     finite: &FiniteElements<S>,
@@ -267,7 +252,7 @@ pub(super) fn emit_mass<S: Scalar>(
 ) {
     for (part, coordinates) in all(finite) {
         let block = flexing::mass(&part.inertia, rotation, &gather(coordinates, q));
-        emit_block(&own_slots(slots, coordinates), &block, at, scale, emit);
+        block.emit(&own_slots(slots, coordinates), at, scale, emit);
     }
 }
 
@@ -283,7 +268,7 @@ pub(super) fn emit_weights<S: Scalar>(
             block.add(6 + k, 6 + k, weight);
         }
         let slots = own_slots(slots, coordinates);
-        emit_block(&slots, &block, (0, 0), S::one(), emit);
+        block.emit(&slots, (0, 0), S::one(), emit);
     }
 }
 
@@ -312,8 +297,8 @@ pub(super) fn emit_jacobian<S: Scalar>(
             }
         }
         let slots = own_slots(slots, coordinates);
-        emit_block(&slots, &in_y, (row, y), by_y, emit);
-        emit_block(&slots, &in_v, (row, v), by_v, emit);
+        in_y.emit(&slots, (row, y), by_y, emit);
+        in_v.emit(&slots, (row, v), by_v, emit);
     }
 }
 

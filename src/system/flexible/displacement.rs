@@ -1,7 +1,7 @@
 //! Displacements of elastic coordinates from the start, which the assembly makes least.
 
 use super::coordinates::slots;
-use super::form::{emit_block, pull_weights, weights};
+use super::form::{pull_weights, weights};
 use crate::linalg::Emit;
 use crate::math::Scalar;
 use crate::model::Model;
@@ -101,7 +101,7 @@ pub(crate) fn emit_displacement<S: Scalar>(
                 for (i, weight) in weights(&body.form).into_iter().enumerate() {
                     block.add(6 + i, 6 + i, weight);
                 }
-                emit_block(&slots, &block, (0, 0), S::one(), emit);
+                block.emit(&slots, (0, 0), S::one(), emit);
             }
             Form::Finite(own) => finite::emit_weights(own, &slots, emit),
         }

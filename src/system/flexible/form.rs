@@ -4,7 +4,7 @@ use crate::linalg::Emit;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::flexible::FlexibleBody;
 use crate::model::flexible::Form;
-use crate::system::flexing::{self, Block, Flexing, FlexingCotangent, Generalised, Moving};
+use crate::system::flexing::{self, Flexing, FlexingCotangent, Generalised, Moving};
 use crate::system::{elastic, finite};
 
 /// A cotangent has the form of its body.
@@ -119,24 +119,9 @@ pub(super) fn emit_mass_of<S: Scalar>(
     match form {
         Form::Modal(modal) => {
             let block = flexing::mass(&modal.inertia, rotation, q);
-            emit_block(slots, &block, at, scale, emit);
+            block.emit(slots, at, scale, emit);
         }
         Form::Finite(own) => finite::emit_mass(own, (rotation, q), slots, at, scale, emit),
-    }
-}
-
-pub(super) fn emit_block<S: Scalar>(
-    slots: &[usize],
-    block: &Block<S>,
-    (row, column): (usize, usize),
-    scale: S,
-    emit: &mut dyn Emit<S>,
-) {
-    let mut entries = block.entries.iter();
-    for i in slots {
-        for (j, &x) in slots.iter().zip(&mut entries) {
-            emit.add(row + i, column + j, x * scale);
-        }
     }
 }
 

@@ -24,7 +24,7 @@ use crate::math::{Scalar, Vec3, rotation};
 use crate::model::Model;
 use crate::model::flexible::{FlexibleBody, Form, Inertia};
 use coordinates::{accelerated, add_part, motion_of, part_of, slots};
-use form::{emit_block, emit_mass_of, inertial, pull_inertial, unlike};
+use form::{emit_mass_of, inertial, pull_inertial, unlike};
 use truncated::Beside;
 
 /// Inertial forces of a body without those of the rigid body.
@@ -206,8 +206,8 @@ pub(crate) fn emit_force_balances<S: Scalar>(
             Form::Modal(modal) => {
                 let (mut in_y, mut in_v) = flexing::jacobian(&modal.inertia, &at);
                 elastic::add_jacobian(modal, (&at.q, &at.rate), &mut in_y, &mut in_v);
-                emit_block(&slots, &in_y, (row, y), by_y, emit);
-                emit_block(&slots, &in_v, (row, v), by_v, emit);
+                in_y.emit(&slots, (row, y), by_y, emit);
+                in_v.emit(&slots, (row, v), by_v, emit);
             }
             Form::Finite(own) => {
                 finite::emit_jacobian(own, &at, &slots, (row, y, v), (by_y, by_v), emit);

@@ -18,8 +18,8 @@
 
 use super::coordinates::at_rest;
 use super::form::{
-    emit_block, emit_mass_of, first_moment, inertial as complete, moving, pull_first_moment,
-    pull_inertial, pull_kinetic as pull_complete_kinetic,
+    emit_mass_of, first_moment, inertial as complete, moving, pull_first_moment, pull_inertial,
+    pull_kinetic as pull_complete_kinetic,
 };
 use crate::linalg::Emit;
 use crate::math::scalar::skew;
@@ -242,8 +242,8 @@ pub(super) fn emit_jacobian<S: Scalar>(
         Form::Modal(modal) => {
             let (mut in_y, mut in_v) = (Block::zero(count), Block::zero(count));
             elastic::add_jacobian(modal, (&at.q, &at.rate), &mut in_y, &mut in_v);
-            emit_block(slots, &in_y, (row, y), by_y, emit);
-            emit_block(slots, &in_v, (row, v), by_v, emit);
+            in_y.emit(slots, (row, y), by_y, emit);
+            in_v.emit(slots, (row, v), by_v, emit);
         }
         Form::Finite(own) => {
             // Without accelerations and rotation these are elastic and viscous forces, and Coriolis forces by the

@@ -21,6 +21,7 @@ mod kinetic;
 
 pub(crate) use kinetic::{Moving, moving, pull_kinetic};
 
+use crate::linalg::Emit;
 use crate::math::scalar::skew;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::flexible::ModalInertia;
@@ -91,6 +92,22 @@ impl<S: Scalar> Block<S> {
 
     pub(crate) fn add(&mut self, row: usize, column: usize, x: S) {
         self.entries[row * self.order + column] += x;
+    }
+
+    /// Emits this block times `scale` at the places `slots` from this row and column on.
+    pub(crate) fn emit(
+        &self,
+        slots: &[usize],
+        (row, column): (usize, usize),
+        scale: S,
+        emit: &mut dyn Emit<S>,
+    ) {
+        let mut entries = self.entries.iter();
+        for i in slots {
+            for (j, &x) in slots.iter().zip(&mut entries) {
+                emit.add(row + i, column + j, x * scale);
+            }
+        }
     }
 
     fn add_matrix(&mut self, row: usize, column: usize, x: &Mat3<S>) {
