@@ -187,6 +187,7 @@ fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
             (stiffness, damping, a + b.unwrap_or(0.0))
         }
         LoadKind::Force { .. }
+        | LoadKind::Distributed(_)
         | LoadKind::Torque { .. }
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }

@@ -87,6 +87,7 @@ impl Ledger {
             }
             LoadKind::TorsionSpring { stiffness, .. } => 0.5 * stiffness.re().abs(),
             LoadKind::Force { .. }
+            | LoadKind::Distributed(_)
             | LoadKind::Torque { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }

@@ -304,6 +304,8 @@ impl Plane {
                     let e = &joint.frame_a.axes[2];
                     examiner.vanishes((e - n * n.dot(e)).as_slice(), 1.0, what);
                 }
+                // Flexible bodies that carry it have no plane but by chance, which is not looked for.
+                LoadKind::Distributed(_) => examiner.zero(S::one(), 1.0, what),
                 LoadKind::Spring { .. }
                 | LoadKind::BallDamping { .. }
                 | LoadKind::Damping {

@@ -224,6 +224,8 @@ fn move_load<S: Scalar>(kind: &mut LoadKind<S>, on_host: &[Option<Pose<S>>]) {
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
         | LoadKind::Friction { .. } => {}
+        // It acts on a flexible body, and these are not merged.
+        LoadKind::Distributed(_) => {}
     }
 }
 

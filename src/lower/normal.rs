@@ -139,7 +139,8 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
             LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
-            | LoadKind::Friction { .. } => {}
+            | LoadKind::Friction { .. }
+            | LoadKind::Distributed(_) => {}
         }
     }
     let units = |all: Vec<Vec3<f64>>| {

@@ -325,7 +325,8 @@ pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, V
         | LoadKind::TorsionSpring { .. }
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
-        | LoadKind::Friction { .. } => [None, None],
+        | LoadKind::Friction { .. }
+        | LoadKind::Distributed(_) => [None, None],
     }
 }
 

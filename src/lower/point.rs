@@ -97,7 +97,8 @@ pub(super) fn holds<S: Scalar>(
                     vanishes(None, &turns);
                 }
             }
-            LoadKind::Force { .. } | LoadKind::Torque { .. } => {}
+            // No flexible body is a point.
+            LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Distributed(_) => {}
         }
     }
     let read = || "a function looks at its rotation".to_owned();

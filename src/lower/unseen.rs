@@ -157,6 +157,7 @@ impl Seen {
 fn ends<S>(load: &Load<S>, model: &Model<S>) -> [Option<usize>; 2] {
     match load.kind {
         LoadKind::Force { body, .. } | LoadKind::Torque { body, .. } => [Some(body), None],
+        LoadKind::Distributed(ref load) => [Some(load.body), None],
         LoadKind::Spring { body_a, body_b, .. } => [Some(body_a), body_b],
         LoadKind::TorsionSpring { joint, .. }
         | LoadKind::Damping { joint, .. }
@@ -191,6 +192,7 @@ fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) -> [Vec<
     for load in &mut model.loads {
         match &mut load.kind {
             LoadKind::Force { body, .. } | LoadKind::Torque { body, .. } => new(body),
+            LoadKind::Distributed(load) => new(&mut load.body),
             LoadKind::Spring { body_a, body_b, .. } => {
                 new(body_a);
                 body_b.iter_mut().for_each(new);

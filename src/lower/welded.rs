@@ -213,7 +213,10 @@ fn loads_on(scene: &Scene<f64>, joint: usize) -> Vec<ViolatedCondition> {
         | LoadKind::Damping { joint: own, .. }
         | LoadKind::BallDamping { joint: own, .. }
         | LoadKind::Friction { joint: own, .. } => *own == joint,
-        LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Spring { .. } => false,
+        LoadKind::Force { .. }
+        | LoadKind::Torque { .. }
+        | LoadKind::Spring { .. }
+        | LoadKind::Distributed(_) => false,
     };
     let loads = model.loads.iter().filter(|load| acts(&load.kind));
     let told =

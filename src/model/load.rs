@@ -14,9 +14,10 @@
 //! friction           M = −μ tanh(φ̇ / w) e   or   F = −μ tanh(ṡ / w) e
 //! ```
 //!
-//! and by the opposite on body B, so momentum is conserved. Forces and their derivatives are in
-//! `system::loads`.
+//! and by the opposite on body B, so momentum is conserved. Loads that are spread over the elements of a flexible body
+//! have a file of their own ([`super::distributed`]). Forces and their derivatives are in `system::loads`.
 
+use super::distributed::DistributedLoad;
 use super::drive::DegreeOfFreedom;
 use super::time_function::TimeFunction;
 use crate::math::{Scalar, Vec3, parameters};
@@ -125,6 +126,8 @@ pub(crate) enum LoadKind<S> {
         /// Rate w, at which tanh 1 of μ acts \[rad/s or m/s\].
         width: S,
     },
+    /// A pressure or a dead load on the elements of a flexible body.
+    Distributed(DistributedLoad<S>),
 }
 
 parameters!(struct Load { name; kind });
@@ -137,6 +140,7 @@ parameters!(enum LoadKind {
     Damping { joint, dof; coefficient },
     BallDamping { joint; coefficient },
     Friction { joint, dof; size, width },
+    Distributed(; load),
 });
 
 impl<S: Scalar> LoadKind<S> {
@@ -146,6 +150,7 @@ impl<S: Scalar> LoadKind<S> {
             LoadKind::Force { magnitude, .. } | LoadKind::Torque { magnitude, .. } => {
                 Some(magnitude)
             }
+            LoadKind::Distributed(load) => Some(&load.magnitude),
             LoadKind::Spring { .. }
             | LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }

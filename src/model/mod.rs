@@ -4,6 +4,7 @@
 //! A model of zeros in `f64` also serves as a cotangent: it holds the derivative of a function in
 //! each parameter.
 
+pub(crate) mod distributed;
 pub(crate) mod drive;
 pub(crate) mod finite;
 pub(crate) mod flexible;
@@ -16,6 +17,7 @@ pub(crate) mod shapes;
 pub(crate) mod table;
 pub(crate) mod time_function;
 
+pub(crate) use distributed::{DistributedLoad, Spread};
 pub(crate) use drive::{DegreeOfFreedom, Drive};
 pub(crate) use flexible::{FlexibleBody, Form, Inertia, Modes};
 pub(crate) use joint::{ConstraintRow, Joint, JointFrame, JointKind};
@@ -55,7 +57,7 @@ impl<S: Scalar> Model<S> {
                 coefficient.re() == 0.0
             }
             LoadKind::Friction { size, .. } => size.re() == 0.0,
-            LoadKind::Force { .. } | LoadKind::Torque { .. } => false,
+            LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Distributed(_) => false,
         };
         let driven = self.joints.iter().any(|joint| !joint.drives.is_empty());
         let undamped = |body: &FlexibleBody<S>| match &body.form {

@@ -1,6 +1,9 @@
 //! Makes the loads of a model from those of a file.
 
+use super::elements::prepared;
 use super::placement::{Assembly, GROUND};
+use super::prepared::Prepared;
+use super::quantity::Vector;
 use super::schema::Document;
 use super::schema::joints::Joint;
 use super::schema::loads::{
@@ -8,7 +11,12 @@ use super::schema::loads::{
 };
 use crate::math::scalar::unit;
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, DegreeOfFreedom, Load, LoadKind, Smoothness, TimeFunction};
+use crate::model::{
+    Axes, DegreeOfFreedom, DistributedLoad, Load, LoadKind, Smoothness, Spread, TimeFunction,
+};
+use crate::structures::loads::edge_shares;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The loads of a checked document, in its order.
 pub(crate) fn loads<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Load<S>> {
@@ -101,6 +109,78 @@ fn kind<S: Scalar>(
                 width: get(&friction.width),
             }
         }
+        WrittenLoad::Pressure(load) => LoadKind::Distributed(DistributedLoad {
+            body: body(&load.body),
+            spread: Spread::Pressure {
+                shells: elements(document, &load.body).sets.face_sets[&load.faces]
+                    .as_slice()
+                    .into(),
+            },
+            magnitude: course(assembly, load.pressure.parts()),
+        }),
+        WrittenLoad::Area(load) => LoadKind::Distributed(DistributedLoad {
+            body: body(&load.body),
+            spread: dead(
+                assembly,
+                area_shares(&elements(document, &load.body), &load.faces),
+                (&load.direction, load.axes),
+            ),
+            magnitude: course(assembly, load.magnitude.parts()),
+        }),
+        WrittenLoad::Edge(load) => {
+            let own = elements(document, &load.body);
+            let shares = edge_shares(&own.mesh.nodes, &own.sets.edge_sets[&load.edges]);
+            LoadKind::Distributed(DistributedLoad {
+                body: body(&load.body),
+                spread: dead(assembly, shares, (&load.direction, load.axes)),
+                magnitude: course(assembly, load.magnitude.parts()),
+            })
+        }
+        WrittenLoad::Line(load) => {
+            let own = elements(document, &load.body);
+            let beams = own.sets.beam_sets[&load.beams].iter();
+            let beams: Vec<[usize; 3]> = beams.map(|&beam| own.sets.beams[beam]).collect();
+            LoadKind::Distributed(DistributedLoad {
+                body: body(&load.body),
+                spread: dead(
+                    assembly,
+                    edge_shares(&own.mesh.nodes, &beams),
+                    (&load.direction, load.axes),
+                ),
+                magnitude: course(assembly, load.magnitude.parts()),
+            })
+        }
+    }
+}
+
+/// The elements of a body that has some.
+fn elements(document: &Document, body: &str) -> Arc<Prepared> {
+    let own = document.bodies[body].elements.as_ref();
+    let own = own.expect("bodies of distributed loads are checked when a problem is read");
+    prepared(document, own)
+}
+
+/// ∫ N_a dA of the nodes of a set of shells \[m²\].
+fn area_shares(own: &Prepared, faces: &str) -> BTreeMap<usize, f64> {
+    let mut shares = BTreeMap::new();
+    for &shell in &own.sets.face_sets[faces] {
+        let element = &own.mesh.elements[shell];
+        for (node, row) in element.nodes.iter().zip(&element.shares) {
+            *shares.entry(*node).or_default() += row.iter().sum::<f64>();
+        }
+    }
+    shares
+}
+
+fn dead<S: Scalar>(
+    assembly: &Assembly<S>,
+    shares: BTreeMap<usize, f64>,
+    (direction, own): (&Vector, WrittenAxes),
+) -> Spread<S> {
+    Spread::Dead {
+        shares: shares.into_iter().collect(),
+        direction: unit(assembly.ground(direction)),
+        axes: axes(own),
     }
 }
 

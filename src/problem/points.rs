@@ -121,7 +121,8 @@ pub(super) fn off_points(problem: &Problem) -> Option<Finding> {
             | LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
-            | LoadKind::Friction { .. } => {}
+            | LoadKind::Friction { .. }
+            | LoadKind::Distributed(_) => {}
         }
     }
     for (function, name) in scene.functions.iter_mut().zip(document.functions.keys()) {
@@ -315,6 +316,8 @@ pub(super) fn beside(problem: &Problem) -> Option<Finding> {
                         "damping of the rotation of",
                     ))
                 }
+                // Elements are no point masses.
+                Load::Pressure(_) | Load::Area(_) | Load::Edge(_) | Load::Line(_) => None,
                 Load::Force(_) | Load::Torque(_) | Load::TorsionSpring(_) | Load::Friction(_) => {
                     None
                 }

@@ -9,6 +9,7 @@ use super::shell::Motion;
 use super::shell::basis::{GAUSS_POINTS, TABLES};
 use super::state::{Configuration, Cotangent, NodalMotion};
 use crate::math::{Scalar, Vec3, scalar::length};
+use std::collections::BTreeMap;
 
 /// A load. Sets are named.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,6 +111,23 @@ fn edge_points() -> [([f64; 3], [f64; 3], f64); 3] {
         let n = [0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)];
         (n, [x - 0.5, -2.0 * x, x + 0.5], weight)
     })
+}
+
+/// ∫ N_a dl of the nodes of lines of three nodes \[m\].
+pub(crate) fn edge_shares(nodes: &[Vec3<f64>], edges: &[[usize; 3]]) -> BTreeMap<usize, f64> {
+    let mut shares = BTreeMap::new();
+    for edge in edges {
+        for (n, slope, weight) in edge_points() {
+            let along = edge.iter().zip(&slope);
+            let tangent = along.fold(Vec3::zeros(), |sum: Vec3<f64>, (&node, w)| {
+                sum + nodes[node] * *w
+            });
+            for (&node, n) in edge.iter().zip(&n) {
+                *shares.entry(node).or_default() += n * weight * tangent.norm();
+            }
+        }
+    }
+    shares
 }
 
 /// Adds the derivatives of the work of a load, whose sets exist, at a motion: by the motion to

@@ -17,9 +17,10 @@ use flexbody::system::{Numbering, flexible, initial, placement};
 use reference::cases::{Case, TIME, dot, lift, parameters, rows_agree, slopes, step, unit};
 use reference::flexible::{Points, modal, quadratic, stiffness, swing_of, totals};
 use reference::models::Numbers;
-use reference::shells::{reduced_swing, shell_swing, stiffened_swing};
+use reference::shells::{press, reduced_swing, shell_swing, stiffened_swing};
 
-/// Swings of shapes and of shells at random states, their attachments a little open.
+/// Swings of shapes and of shells at random states, their attachments a little open. Shells carry pressures and dead
+/// loads.
 fn cases() -> Vec<Case> {
     let shapes = [(1, 1), (2, 2), (3, 3), (4, 5), (5, 7)];
     let shapes = shapes.map(|(seed, modes)| (seed, swing_of(seed, modes, 40.0)));
@@ -43,6 +44,9 @@ fn cases() -> Vec<Case> {
     });
     let case = |(seed, mut model): (u64, Model<f64>)| {
         let modes = model.flexible[0].modes();
+        if model.flexible[0].form.shells().is_some() {
+            press(&mut model);
+        }
         let mut numbers = Numbers(seed + 100);
         for i in 0..model.bodies.len() {
             let count = model.bodies[i].mobility.translation.free();

@@ -4,6 +4,7 @@ mod allocations;
 mod checkpoints;
 mod conserves;
 mod constraint_derivatives;
+mod distributed_loads;
 mod drive_gradients;
 mod element_parts;
 mod elimination;

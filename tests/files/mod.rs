@@ -4,6 +4,7 @@ mod beam_scenes;
 mod beams;
 mod benchmarks;
 mod circles;
+mod distributed_loads;
 mod element_parts;
 mod element_steps;
 mod equilibrium;

@@ -6,7 +6,10 @@ use super::models::{Numbers, axes_along, joint};
 use flexbody::integrate::Trajectory;
 use flexbody::math::{Mat3, Vec3};
 use flexbody::model::finite::FiniteElements;
-use flexbody::model::{Form, JointKind, Model};
+use flexbody::model::{
+    Axes, DistributedLoad, Form, Interpolation, JointKind, Load, LoadKind, Model, Smoothness,
+    Spread, TimeFunction,
+};
 use flexbody::structures::beam::{Beam, Section, SectionValues};
 use flexbody::structures::floating::{FrameNodes, PointMotion, Surface, element_mesh};
 use flexbody::structures::generate::panel;
@@ -207,6 +210,56 @@ pub fn projected(numbers: &mut Numbers, shells: &Shells, vectors: usize) -> Proj
         .collect();
     let bending = (0..vectors).filter(|i| i % 3 < 2).collect();
     project(mesh, &each, basis, bending)
+}
+
+/// Adds loads to the shells of flexible body 0: a pressure that varies, and dead loads in both kinds of axes.
+pub fn press(model: &mut Model<f64>) {
+    let body = model.flexible[0].frame;
+    let shells = model.flexible[0].form.shells().expect("shells");
+    let mesh = &shells.mesh;
+    let shares = |every: usize| -> Vec<(usize, f64)> {
+        let nodes = (0..mesh.nodes.len()).step_by(every);
+        nodes.map(|node| (node, 0.1 + 0.01 * node as f64)).collect()
+    };
+    let dead = |every: usize, axes: Axes, direction: Vec3<f64>| Spread::Dead {
+        shares: shares(every).into(),
+        direction,
+        axes,
+    };
+    let table = TimeFunction::Table {
+        interpolation: Interpolation::Monotone,
+        smoothness: Smoothness::Magnitude,
+        times: vec![0.0, 0.2, 0.5],
+        values: vec![1.0, 2.0, 4.0],
+    };
+    let harmonic = TimeFunction::Harmonic {
+        mean: 2.0,
+        amplitude: 3.0,
+        frequency: 0.8,
+        phase: 0.3,
+    };
+    let pressure = Spread::Pressure {
+        shells: (0..mesh.elements.len()).collect(),
+    };
+    let all = [
+        (pressure, harmonic),
+        (dead(2, Axes::Ground, Vec3::new(0.3, -0.7, 0.5)), table),
+        (
+            dead(3, Axes::Body, Vec3::new(-0.2, 0.4, 0.9)),
+            TimeFunction::constant(1.5),
+        ),
+    ];
+    for (spread, magnitude) in all {
+        let load = DistributedLoad {
+            body,
+            spread,
+            magnitude,
+        };
+        model.loads.push(Load {
+            name: "spread".into(),
+            kind: LoadKind::Distributed(load),
+        });
+    }
 }
 
 fn swing(seed: u64, elements: [usize; 2], vectors: Option<usize>, more: bool) -> Model<f64> {

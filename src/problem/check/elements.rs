@@ -4,6 +4,7 @@ use super::Checker;
 use crate::problem::elements::{frame_nodes, nodes_of, prepare};
 use crate::problem::finding::Finding;
 use crate::problem::parts::beams;
+use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join};
 use crate::problem::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
 use crate::problem::schema::functions::ShellStress;
@@ -12,6 +13,13 @@ use crate::problem::schema::structures::Structure;
 use crate::problem::statics::mesh::part;
 use crate::structures::floating::{FrameNodes, spans};
 use crate::structures::quality::{faults, orientation_faults};
+use std::collections::BTreeMap;
+
+/// The names of the sets that have something.
+fn filled<T>(sets: &BTreeMap<String, Vec<T>>) -> Vec<&String> {
+    let some = sets.iter().filter(|(_, own)| !own.is_empty());
+    some.map(|(name, _)| name).collect()
+}
 
 impl Checker<'_> {
     pub(super) fn elements(
@@ -190,6 +198,53 @@ impl Checker<'_> {
             let found = "elements that move without forces while their axes are held";
             let expected = "elements that hang together, for a reduced basis";
             self.fault(Finding::new(pointer, found, expected));
+        }
+    }
+
+    /// A body of elements that has a set; the key of the set says of which kind it is.
+    pub(super) fn loaded_elements(&mut self, pointer: &str, name: &str, set: (&str, &String)) {
+        let place = join(pointer, "body");
+        if name == GROUND {
+            let expected = "the name of a body of elements, as ground does not move";
+            self.fault(Finding::new(place, "\"ground\"", expected));
+            return;
+        }
+        let Some(body) = self.body(&place, name) else {
+            return;
+        };
+        let Some(elements) = &body.elements else {
+            let bodies = self.document.bodies.iter();
+            let suitable = bodies.filter(|(_, body)| body.elements.is_some());
+            let names = suitable.map(|(name, _)| name.as_str());
+            let hint = advice(name, "bodies of elements", names);
+            let found = format!("\"{name}\", a body without \"elements\"");
+            let expected = "a body of elements, over which the load is spread";
+            self.fault(Finding::new(place, found, expected).hint(hint));
+            return;
+        };
+        let (key, set) = set;
+        let place = join(pointer, key);
+        if key == "beams" && elements.structure.offset.is_some() {
+            let found = "a load on beams whose section has an \"offset\"";
+            let expected = "beams without an offset, as the load acts at their nodes";
+            self.fault(Finding::new(place, found, expected));
+            return;
+        }
+        // A faulty structure has no mesh to look into.
+        if !self.findings.is_empty() {
+            return;
+        }
+        let mesh = part::<f64>(&elements.structure, &[], 1).mesh;
+        let names: Vec<&String> = match key {
+            "faces" => filled(&mesh.face_sets),
+            "edges" => filled(&mesh.edge_sets),
+            _ => filled(&mesh.beam_sets),
+        };
+        if !names.contains(&set) {
+            let what = format!("sets of {key}");
+            let hint = advice(set, &what, names.iter().map(|name| name.as_str()));
+            let expected = format!("the name of a set of {key} of \"{name}\" that has some");
+            self.fault(Finding::new(place, format!("\"{set}\""), expected).hint(hint));
         }
     }
 

@@ -87,6 +87,25 @@ impl Checker<'_> {
                 self.loaded_joint(pointer, &friction.joint, &kinds);
                 self.joint_motion(pointer, &friction.joint, friction.motion);
             }
+            Load::Pressure(load) => {
+                self.loaded_elements(pointer, &load.body, ("faces", &load.faces));
+                self.course(&join(pointer, "pressure"), load.pressure.parts());
+            }
+            Load::Area(load) => {
+                self.loaded_elements(pointer, &load.body, ("faces", &load.faces));
+                self.direction(&join(pointer, "direction"), &load.direction);
+                self.course(&join(pointer, "magnitude"), load.magnitude.parts());
+            }
+            Load::Edge(load) => {
+                self.loaded_elements(pointer, &load.body, ("edges", &load.edges));
+                self.direction(&join(pointer, "direction"), &load.direction);
+                self.course(&join(pointer, "magnitude"), load.magnitude.parts());
+            }
+            Load::Line(load) => {
+                self.loaded_elements(pointer, &load.body, ("beams", &load.beams));
+                self.direction(&join(pointer, "direction"), &load.direction);
+                self.course(&join(pointer, "magnitude"), load.magnitude.parts());
+            }
         }
     }
 
@@ -152,7 +171,14 @@ impl Checker<'_> {
         let fits = |load: &Load| match load {
             Load::Spring(_) => !torsion,
             Load::TorsionSpring(_) => torsion,
-            Load::Force(_) | Load::Torque(_) | Load::Damping(_) | Load::Friction(_) => false,
+            Load::Force(_)
+            | Load::Torque(_)
+            | Load::Damping(_)
+            | Load::Friction(_)
+            | Load::Pressure(_)
+            | Load::Area(_)
+            | Load::Edge(_)
+            | Load::Line(_) => false,
         };
         let loads = &self.document.loads;
         if loads.get(name).is_some_and(fits) || self.damage.holds("loads", name) {

@@ -252,11 +252,12 @@ impl<S: Scalar> FlexibleBodies<S> {
                         self.move_place(model, body, &mut point);
                     }
                 }
-                // These act on joints, which have moved.
+                // These act on joints, which have moved, or on all nodes.
                 LoadKind::TorsionSpring { .. }
                 | LoadKind::Damping { .. }
                 | LoadKind::BallDamping { .. }
-                | LoadKind::Friction { .. } => {}
+                | LoadKind::Friction { .. }
+                | LoadKind::Distributed(_) => {}
             }
             model.loads[k].kind = kind;
         }

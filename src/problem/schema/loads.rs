@@ -24,6 +24,14 @@ pub(crate) enum Load {
     Damping(Damping),
     /// Coulomb friction in a joint: size times tanh(rate / width).
     Friction(Friction),
+    /// A pressure on shells of a body of `elements`, along the normals of the deformed surface.
+    Pressure(Pressure),
+    /// A force per area on shells of a body of `elements`, in a fixed direction.
+    Area(AreaForce),
+    /// A force per length on edges of shells of a body of `elements`, in a fixed direction.
+    Edge(EdgeForce),
+    /// A force per length on beams of a body of `elements`, in a fixed direction.
+    Line(LineForce),
 }
 
 /// A force at a point of a body.
@@ -169,6 +177,8 @@ macro_rules! time_functions {
 
 time_functions!(ForceInTime, VaryingForce, "force", "N");
 time_functions!(TorqueInTime, VaryingTorque, "torque", "N m");
+time_functions!(PressureInTime, VaryingPressure, "pressure", "Pa");
+time_functions!(LineForceInTime, VaryingLineForce, "force per length", "N/m");
 
 /// A time function without its unit.
 pub(crate) enum TimeFunction<'a> {
@@ -268,6 +278,72 @@ pub(crate) struct Friction {
     pub width: Quantity,
 }
 
+/// A pressure on shells of a body of elements.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Pressure {
+    /// The body.
+    pub body: String,
+    /// Name of the set of faces.
+    pub faces: String,
+    /// Pressure, positive along the normal of the shells: a number, or a function of time.
+    pub pressure: PressureInTime,
+}
+
+/// A force per area on shells of a body of elements.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct AreaForce {
+    /// The body.
+    pub body: String,
+    /// Name of the set of faces.
+    pub faces: String,
+    /// Direction, of any length but zero.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+    /// Axes in which the direction is given and fixed, default ground.
+    #[serde(default)]
+    pub axes: Axes,
+    /// Force per area of the undeformed shells: a number, or a function of time.
+    pub magnitude: PressureInTime,
+}
+
+/// A force per length on edges of shells of a body of elements.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct EdgeForce {
+    /// The body.
+    pub body: String,
+    /// Name of the set of edges.
+    pub edges: String,
+    /// Direction, of any length but zero.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+    /// Axes in which the direction is given and fixed, default ground.
+    #[serde(default)]
+    pub axes: Axes,
+    /// Force per length of the undeformed edges: a number, or a function of time.
+    pub magnitude: LineForceInTime,
+}
+
+/// A force per length on beams of a body of elements, at their nodes.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LineForce {
+    /// The body.
+    pub body: String,
+    /// Name of the set of beams.
+    pub beams: String,
+    /// Direction, of any length but zero.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+    /// Axes in which the direction is given and fixed, default ground.
+    #[serde(default)]
+    pub axes: Axes,
+    /// Force per length of the undeformed beams: a number, or a function of time.
+    pub magnitude: LineForceInTime,
+}
+
 impl Load {
     /// Its key in the file.
     pub(crate) fn key(&self) -> &'static str {
@@ -278,6 +354,10 @@ impl Load {
             Load::TorsionSpring(_) => "torsion_spring",
             Load::Damping(_) => "damping",
             Load::Friction(_) => "friction",
+            Load::Pressure(_) => "pressure",
+            Load::Area(_) => "area",
+            Load::Edge(_) => "edge",
+            Load::Line(_) => "line",
         }
     }
 }

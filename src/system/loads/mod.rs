@@ -2,8 +2,10 @@
 //!
 //! For virtual velocities ψ, ψᵀf is the power of a load, linear in ψ. `power.rs` has the forces and
 //! `pull.rs` the transposed derivative of the power, once for each kind and for any scalar. Forces,
-//! Jacobians and pull-backs all use these two, so they agree.
+//! Jacobians and pull-backs all use these two, so they agree. Loads that are spread over the elements of a
+//! flexible body act on its coordinates too: `distributed.rs` has all of theirs.
 
+mod distributed;
 mod parameters;
 mod power;
 mod pull;
@@ -27,7 +29,7 @@ pub(super) struct Acting<'a, S> {
     b: JointSide<'a, S>,
 }
 
-/// Calls `visit(number of the load, its kind, its bodies)` for every load.
+/// Calls `visit(number of the load, its kind, its bodies)` for every load on one or two bodies.
 fn for_each_load<S: Scalar>(
     model: &Model<S>,
     motions: &[BodyMotion<S>],
@@ -66,13 +68,14 @@ fn for_each_load<S: Scalar>(
                 let joint = &model.joints[*joint];
                 acting((joint.body_a, joint.frame_a), (joint.body_b, joint.frame_b))
             }
+            LoadKind::Distributed(_) => continue,
         };
         visit(i, &load.kind, &acting);
     }
 }
 
 /// Adds the generalised forces f of all loads (force in ground axes, torque in body axes about the
-/// centre of mass) to `out`, in velocity numbering.
+/// reference point, those on elastic coordinates) to `out`, in velocity numbering.
 pub(crate) fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
     for_each_load(here.model, here.motions, |_, kind, at| {
         let forces = power::forces(kind, at, here.time);
@@ -81,6 +84,7 @@ pub(crate) fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
             add6(&mut out[here.numbering.velocity(body)..], &force, &torque);
         }
     });
+    distributed::add_forces(here, out);
 }
 
 /// Non-zero 3 × 3 blocks of the derivative of a load: (linear, angular) parts.
@@ -117,6 +121,7 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
             DegreeOfFreedom::Rotation => of(ANGULAR, ANGULAR, ANGULAR),
             DegreeOfFreedom::Translation => of(BOTH, BOTH, BOTH),
         },
+        LoadKind::Distributed(_) => of(NONE, NONE, NONE),
     }
 }
 
@@ -174,6 +179,7 @@ pub(crate) fn emit_jacobian<S: Scalar>(
             }
         }
     });
+    distributed::emit_jacobian(here, to, emit);
 }
 
 /// Destination of the pull-back of the loads.
@@ -202,6 +208,7 @@ pub(crate) fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotange
         give_to_states(&pulled, at, numbering, (&mut out.y, &mut out.v));
         give_to_parameters(kind, &pulled, (i, time), (out.model, out.time));
     });
+    distributed::pull_back(here, psi, out);
 }
 
 fn give_to_states(

@@ -83,9 +83,11 @@ pub(super) fn give_to_parameters(
             *width += s1;
             give_to_joint(model, *joint, pulled);
         }
+        (LoadKind::Distributed(_), LoadKind::Distributed(_)) => {}
         (
             LoadKind::Force { .. }
             | LoadKind::Torque { .. }
+            | LoadKind::Distributed(_)
             | LoadKind::Spring { .. }
             | LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }

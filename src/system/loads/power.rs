@@ -81,6 +81,7 @@ pub(super) fn forces<S: Scalar>(
                 (Vec3::zeros(), rb.tr_mul(&torque)),
             ]
         }
+        LoadKind::Distributed(_) => [none, none],
     }
 }
 
@@ -118,6 +119,7 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
         }
         LoadKind::Force { .. }
         | LoadKind::Torque { .. }
+        | LoadKind::Distributed(_)
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
         | LoadKind::Friction { .. } => S::zero(),

@@ -184,6 +184,7 @@ pub(super) fn pull<S: Scalar>(
             out.b.theta = (wb.cross(&yb) + pb.cross(&xb)) * c;
             out.b.omega = yb * c;
         }
+        LoadKind::Distributed(_) => {}
     }
     out
 }
@@ -222,6 +223,7 @@ pub(super) fn pull_potential<S: Scalar>(
         }
         LoadKind::Force { .. }
         | LoadKind::Torque { .. }
+        | LoadKind::Distributed(_)
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
         | LoadKind::Friction { .. } => return None,

@@ -65,6 +65,7 @@ fn of<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>, part: SpringPart) -> S {
             LoadKind::Spring { .. }
             | LoadKind::TorsionSpring { .. }
             | LoadKind::Force { .. }
+            | LoadKind::Distributed(_)
             | LoadKind::Torque { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
@@ -129,6 +130,7 @@ fn pull(kind: &LoadKind<f64>, at: &Acting<f64>, part: SpringPart, weight: f64) -
             LoadKind::Spring { .. }
             | LoadKind::TorsionSpring { .. }
             | LoadKind::Force { .. }
+            | LoadKind::Distributed(_)
             | LoadKind::Torque { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }

@@ -18,6 +18,12 @@ faults! {
     a_force_of_words:
         r#""joints": {"# =>
         r#""loads": {"load": {"force": {"body": "rod", "direction": [0, 1, 0], "magnitude": "5 N"}}}, "joints": {"#;
+    a_pressure_on_a_rigid_body:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"pressure": {"body": "rod", "faces": "all", "pressure": 5}}}, "joints": {"#;
+    a_line_load_on_ground_without_direction:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"line": {"body": "ground", "beams": "all", "direction": [0, 0, 0], "magnitude": 5}}}, "joints": {"#;
     a_torque_of_an_unknown_course:
         r#""joints": {"# =>
         r#""loads": {"load": {"torque": {"body": "rod", "direction": [0, 0, 1], "magnitude": {"sine": 3}}}}, "joints": {"#;

@@ -1,0 +1,376 @@
+//! Pressures and dead loads on the elements of flexible bodies.
+//!
+//! With virtual velocities φ of the frame (its axes), t its angular and e_a those of the nodes, node a has the virtual
+//! velocity w_a = φ + t × x_a + e_a, and a load the power Σ w_a · f_a ([`crate::model::distributed`]). A pressure is
+//! integrated at the Gauss points of the shells. In a reduced basis the nodes stand where the coordinates put them, and
+//! the forces on the coordinates are those of the nodes through the basis.
+
+use super::{LoadCotangent, LoadEntries};
+use crate::linalg::Emit;
+use crate::math::{Mat3, Scalar, Vec3, scalar::lift3};
+use crate::model::distributed::{DistributedLoad, Spread};
+use crate::model::finite::{FiniteElements, NODES};
+use crate::model::flexible::{FlexibleBody, Form};
+use crate::model::reduced::NodalBasis;
+use crate::model::{Axes, LoadKind};
+use crate::structures::shell::basis::{GAUSS_POINTS, TABLES};
+use crate::system::flexible::{add_coordinates, coordinates};
+use crate::system::in_motion::InMotion;
+
+/// A load on a flexible body at an instant.
+struct Acting<'a, S> {
+    load: &'a DistributedLoad<S>,
+    body: &'a FlexibleBody<S>,
+    finite: &'a FiniteElements<S>,
+    /// The vectors of a reduced basis.
+    basis: Option<&'a NodalBasis>,
+    /// From the axes of the frame to ground.
+    rotation: Mat3<S>,
+    q: Vec<S>,
+    /// m(t).
+    size: S,
+}
+
+/// Nodes that carry a part of a load together: those of a shell, or one.
+struct Patch<'a, S> {
+    nodes: &'a [usize],
+    /// Their places in the axes of the frame.
+    x: Vec<Vec3<S>>,
+    /// Forces on them at m = 1, axes of the frame.
+    unit: Vec<Vec3<S>>,
+    /// x,r and x,s at the Gauss points, of a pressure.
+    tangents: Option<[[Vec3<S>; 2]; GAUSS_POINTS]>,
+    /// s_a of a dead load.
+    share: f64,
+}
+
+/// Virtual velocities in the axes of the frame.
+struct Virtual<'a, S> {
+    linear: Vec3<S>,
+    angular: Vec3<S>,
+    nodes: &'a [Vec3<S>],
+}
+
+/// Derivatives of the power of a patch.
+struct Pulled<S> {
+    /// In the rotation of the frame.
+    theta: Vec3<S>,
+    /// In the places of the nodes.
+    nodes: Vec<Vec3<S>>,
+    /// In m and in n.
+    magnitude: S,
+    direction: Vec3<S>,
+}
+
+/// Calls `visit(number of the load, the load)` for every distributed load.
+fn for_each<S: Scalar>(here: &InMotion<S>, mut visit: impl FnMut(usize, &Acting<S>)) {
+    for (i, load) in here.model.loads.iter().enumerate() {
+        let LoadKind::Distributed(load) = &load.kind else {
+            continue;
+        };
+        let mut bodies = here.model.flexible.iter();
+        let body = bodies.find(|own| own.frame == load.body);
+        let found = body.and_then(|body| Some((body, body.form.shells()?)));
+        let (body, finite) = found.expect("a distributed load acts on a body of elements");
+        let basis = match &body.form {
+            Form::Modal(modal) => modal.shells.as_ref().map(|own| &*own.basis),
+            Form::Finite(_) => None,
+        };
+        let acting = Acting {
+            load,
+            body,
+            finite,
+            basis,
+            rotation: here.motions[load.body].rotation,
+            q: coordinates(body, here.motions),
+            size: load.magnitude.value(here.time),
+        };
+        visit(i, &acting);
+    }
+}
+
+impl<S: Scalar> Acting<'_, S> {
+    /// The values of component `k` of a node in all coordinates that move it.
+    fn displacement(&self, node: usize, k: usize) -> S {
+        let Some(unknown) = self.finite.mesh.displacements[node][k] else {
+            return S::zero();
+        };
+        match self.basis {
+            None => self.q[unknown],
+            Some(basis) => (basis.vectors.iter().zip(&self.q))
+                .fold(S::zero(), |sum, (vector, &q)| sum + q * vector[unknown]),
+        }
+    }
+
+    /// Adds a force on a node to those on the coordinates.
+    fn add_force(&self, node: usize, force: &Vec3<S>, out: &mut [S]) {
+        for (k, unknown) in self.finite.mesh.displacements[node].iter().enumerate() {
+            let Some(unknown) = *unknown else { continue };
+            match self.basis {
+                None => out[unknown] += force[k],
+                Some(basis) => {
+                    for (out, vector) in out.iter_mut().zip(&basis.vectors) {
+                        *out += force[k] * vector[unknown];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Where a node is.
+    fn place(&self, node: usize) -> Vec3<S> {
+        let own = lift3::<S>(&self.finite.mesh.nodes[node]);
+        own + Vec3::from_fn(|k, _| self.displacement(node, k))
+    }
+
+    /// Calls `visit` for every patch of the load.
+    fn for_each_patch(&self, mut visit: impl FnMut(&Patch<S>)) {
+        match &self.load.spread {
+            Spread::Pressure { shells } => {
+                for &shell in shells.iter() {
+                    visit(&self.pressed(&self.finite.mesh.elements[shell].nodes));
+                }
+            }
+            Spread::Dead {
+                shares,
+                direction,
+                axes,
+            } => {
+                let along = match axes {
+                    Axes::Ground => self.rotation.tr_mul(direction),
+                    Axes::Body => *direction,
+                };
+                for (node, share) in shares.iter() {
+                    visit(&Patch {
+                        nodes: std::slice::from_ref(node),
+                        x: vec![self.place(*node)],
+                        unit: vec![along * S::from(*share)],
+                        tangents: None,
+                        share: *share,
+                    });
+                }
+            }
+        }
+    }
+
+    fn pressed<'a>(&self, nodes: &'a [usize; NODES]) -> Patch<'a, S> {
+        let x: Vec<Vec3<S>> = nodes.iter().map(|&node| self.place(node)).collect();
+        let mut unit = vec![Vec3::zeros(); NODES];
+        let mut tangents = [[Vec3::zeros(); 2]; GAUSS_POINTS];
+        for (g, (basis, own)) in TABLES.gauss.iter().zip(&mut tangents).enumerate() {
+            for (along, by) in own.iter_mut().zip(&basis.by) {
+                for (x, &slope) in x.iter().zip(by) {
+                    *along += x * S::from(slope);
+                }
+            }
+            let normal = own[0].cross(&own[1]) * S::from(TABLES.weights[g]);
+            for (unit, &n) in unit.iter_mut().zip(&basis.n) {
+                *unit += normal * S::from(n);
+            }
+        }
+        Patch {
+            nodes,
+            x,
+            unit,
+            tangents: Some(tangents),
+            share: 0.0,
+        }
+    }
+
+    /// Derivatives of the power of a patch, the virtual velocities held.
+    fn pull(&self, patch: &Patch<S>, psi: &Virtual<S>) -> Pulled<S> {
+        let (size, t) = (self.size, &psi.angular);
+        let mut out = Pulled {
+            theta: Vec3::zeros(),
+            nodes: Vec::with_capacity(patch.nodes.len()),
+            magnitude: S::zero(),
+            direction: Vec3::zeros(),
+        };
+        let mut velocities = Vec::with_capacity(patch.nodes.len());
+        for ((x, unit), e) in patch.x.iter().zip(&patch.unit).zip(psi.nodes) {
+            let (force, own) = (unit * size, t.cross(x) + e);
+            let w = psi.linear + own;
+            out.magnitude += w.dot(unit);
+            out.nodes.push(force.cross(t));
+            let share = size * patch.share;
+            match &self.load.spread {
+                Spread::Dead {
+                    axes: Axes::Ground, ..
+                } => {
+                    out.theta += own.cross(&force);
+                    out.direction += self.rotation * w * share;
+                }
+                Spread::Dead {
+                    axes: Axes::Body, ..
+                } => {
+                    out.theta += force.cross(&psi.linear);
+                    out.direction += w * share;
+                }
+                Spread::Pressure { .. } => out.theta += force.cross(&psi.linear),
+            }
+            velocities.push(w);
+        }
+        let Some(tangents) = &patch.tangents else {
+            return out;
+        };
+        for (g, ([along_r, along_s], basis)) in tangents.iter().zip(&TABLES.gauss).enumerate() {
+            let mut w = Vec3::zeros();
+            for (own, &n) in velocities.iter().zip(&basis.n) {
+                w += own * S::from(n);
+            }
+            let by_normal = w * (size * TABLES.weights[g]);
+            let by = [along_s.cross(&by_normal), by_normal.cross(along_r)];
+            for (a, node) in out.nodes.iter_mut().enumerate() {
+                *node += by[0] * S::from(basis.by[0][a]) + by[1] * S::from(basis.by[1][a]);
+            }
+        }
+        out
+    }
+}
+
+/// Adds the forces on frames (force in ground axes, torque in body axes about the origin) and on elastic coordinates.
+pub(super) fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
+    for_each(here, |_, acting| {
+        let (mut force, mut torque) = (Vec3::zeros(), Vec3::zeros());
+        let mut elastic = vec![S::zero(); acting.q.len()];
+        acting.for_each_patch(|patch| {
+            for ((&node, x), unit) in patch.nodes.iter().zip(&patch.x).zip(&patch.unit) {
+                let own = unit * acting.size;
+                force += own;
+                torque += x.cross(&own);
+                acting.add_force(node, &own, &mut elastic);
+            }
+        });
+        let frame = here.numbering.velocity(acting.body.frame);
+        super::add6(&mut out[frame..], &(acting.rotation * force), &torque);
+        add_coordinates(here.numbering, acting.body, &elastic, out);
+    });
+}
+
+/// Emits the derivatives of [`add_forces`] in tangent positions; those in velocities vanish.
+pub(super) fn emit_jacobian<S: Scalar>(
+    here: &InMotion<S>,
+    to: &LoadEntries<S>,
+    emit: &mut dyn Emit<S>,
+) {
+    for_each(here, |_, acting| {
+        let frame = here.numbering.velocity(acting.body.frame);
+        let elastic = acting.body.places();
+        let elastic = elastic.map(|(carrier, k)| here.numbering.velocity(carrier) + k);
+        let slots: Vec<usize> = (frame..frame + 6).chain(elastic).collect();
+        let columns: Vec<usize> = slots[3..].iter().map(|slot| to.y + slot).collect();
+        let m = acting.q.len();
+        let mut of_basis = acting.basis.map(|_| vec![S::zero(); (6 + m) * (3 + m)]);
+        acting.for_each_patch(|patch| {
+            let still = vec![Vec3::zeros(); patch.nodes.len()];
+            for row in 0..6 + 3 * patch.nodes.len() {
+                let (mut parts, mut nodes) = ([Vec3::zeros(); 2], still.clone());
+                match row.checked_sub(6) {
+                    None => parts[row / 3][row % 3] = S::one(),
+                    Some(own) => nodes[own / 3][own % 3] = S::one(),
+                }
+                let psi = Virtual {
+                    linear: acting.rotation.tr_mul(&parts[0]),
+                    angular: parts[1],
+                    nodes: &nodes,
+                };
+                let by = acting.pull(patch, &psi);
+                let unknown =
+                    |own: usize| acting.finite.mesh.displacements[patch.nodes[own / 3]][own % 3];
+                match &mut of_basis {
+                    None => {
+                        let slot = match row.checked_sub(6) {
+                            None => Some(slots[row]),
+                            Some(own) => unknown(own).map(|i| slots[6 + i]),
+                        };
+                        let Some(slot) = slot else { continue };
+                        for k in 0..3 {
+                            emit.add(to.row + slot, columns[k], by.theta[k] * to.by_y);
+                        }
+                        for (own, x) in by.nodes.iter().flat_map(|x| x.iter()).enumerate() {
+                            if let Some(i) = unknown(own) {
+                                emit.add(to.row + slot, columns[3 + i], *x * to.by_y);
+                            }
+                        }
+                    }
+                    Some(sum) => {
+                        let mut of_row: Vec<S> = by.theta.iter().copied().collect();
+                        of_row.resize(3 + m, S::zero());
+                        for (&node, x) in patch.nodes.iter().zip(&by.nodes) {
+                            acting.add_force(node, x, &mut of_row[3..]);
+                        }
+                        let mut add = |i: usize, factor: S| {
+                            let to = &mut sum[i * (3 + m)..(i + 1) * (3 + m)];
+                            crate::math::slices::add_scaled(to, factor, &of_row);
+                        };
+                        match row.checked_sub(6) {
+                            None => add(row, S::one()),
+                            Some(own) => {
+                                let vectors = acting.basis.into_iter();
+                                let vectors = vectors.flat_map(|basis| &basis.vectors);
+                                if let Some(unknown) = unknown(own) {
+                                    for (i, vector) in vectors.enumerate() {
+                                        add(6 + i, vector[unknown].into());
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        });
+        if let Some(sum) = of_basis {
+            let rows: Vec<usize> = slots.iter().map(|slot| to.row + slot).collect();
+            emit.add_dense(&rows, &columns, to.by_y, &sum);
+        }
+    });
+}
+
+/// Pulls the cotangent ψ of [`add_forces`] back to tangent positions, time and parameters.
+pub(super) fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
+    let numbering = here.numbering;
+    for_each(here, |i, acting| {
+        let frame = numbering.velocity(acting.body.frame);
+        let (linear, angular) = super::velocities_of(&psi[frame..]);
+        let places = acting.body.places();
+        let elastic: Vec<f64> = places
+            .map(|(carrier, k)| psi[numbering.velocity(carrier) + k])
+            .collect();
+        // The virtual displacements of the nodes are those of the coordinates ψ.
+        let virtually = Acting {
+            q: elastic,
+            ..*acting
+        };
+        let mut by_q = vec![0.0; acting.q.len()];
+        let (mut theta, mut by_size, mut by_direction) = (Vec3::zeros(), 0.0, Vec3::zeros());
+        acting.for_each_patch(|patch| {
+            let of = |&node: &usize| Vec3::from_fn(|k, _| virtually.displacement(node, k));
+            let nodes: Vec<Vec3<f64>> = patch.nodes.iter().map(of).collect();
+            let psi = Virtual {
+                linear: acting.rotation.tr_mul(&linear),
+                angular,
+                nodes: &nodes,
+            };
+            let by = acting.pull(patch, &psi);
+            theta += by.theta;
+            by_size += by.magnitude;
+            by_direction += by.direction;
+            for (&node, x) in patch.nodes.iter().zip(&by.nodes) {
+                acting.add_force(node, x, &mut by_q);
+            }
+        });
+        if let Some(y) = out.y.as_deref_mut() {
+            super::add6(&mut y[frame..], &Vec3::zeros(), &theta);
+            add_coordinates(numbering, acting.body, &by_q, y);
+        }
+        let LoadKind::Distributed(own) = &mut out.model.loads[i].kind else {
+            unreachable!("a cotangent has the kind of its load");
+        };
+        match &mut own.spread {
+            Spread::Pressure { .. } => {}
+            Spread::Dead { direction, .. } => *direction += by_direction,
+        }
+        let magnitude = &acting.load.magnitude;
+        *out.time += magnitude.pull_back(here.time, [by_size, 0.0, 0.0], &mut own.magnitude);
+    });
+}
