@@ -1,6 +1,10 @@
 //! Tests of internals. They live in `tests/` with the tests of the command and the public library,
 //! and are compiled with the library.
 
+#[macro_use]
+#[path = "../tests/reference/json.rs"]
+pub(crate) mod json;
+
 #[path = "../tests/dynamics/mod.rs"]
 mod dynamics;
 #[path = "../tests/files/mod.rs"]

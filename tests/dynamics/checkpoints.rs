@@ -10,7 +10,7 @@ use flexbody::integrate::schedule::{Schedule, advances};
 use flexbody::integrate::{
     MEMORY, Method, Samples, Settings, Spacing, Start, Tape, Trajectory, simulate,
 };
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::Path;
 
 fn document(path: &str) -> Value {

@@ -7,7 +7,7 @@ use crate::tests::reference::documents::problem;
 use flexbody::driver::check;
 use flexbody::problem::Problem;
 use numbers::numbers;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 fn position(body: &str, direction: [f64; 3]) -> Value {
     json!({"final": {"position": {"body": body, "direction": direction}}})

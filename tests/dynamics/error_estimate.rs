@@ -9,7 +9,7 @@ use flexbody::driver::Evaluated;
 use flexbody::driver::error::{estimate, reach};
 use flexbody::integrate::{MEMORY, Method, Samples, Settings, Spacing, Start, simulate};
 use flexbody::problem::Problem;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::Path;
 
 const RADAU3: Method = Method::Radau { stages: 3 };

@@ -7,7 +7,7 @@ use flexbody::driver::{Evaluated, Optimisation, check, simulate};
 use flexbody::integrate::IntegrationFailure;
 use flexbody::problem::Problem;
 use flexbody::report::{Optimum, summary};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// A ball is thrown up and forward, until it returns to a height.
 fn throw(simulation: Value) -> Value {

@@ -8,7 +8,7 @@
 
 use flexbody::driver::evaluate::Evaluated;
 use flexbody::problem::Problem;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// A file of the package as JSON.
 fn json_file(path: &str) -> Value {

@@ -14,7 +14,7 @@ use flexbody::system::InMotion;
 use flexbody::system::initial;
 use flexbody::system::kkt::SaddlePoint;
 use flexbody::system::{BodyMotion, Numbering, joints};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// Position and velocity of a body, ground axes.
 #[derive(Clone, Copy, Debug)]
@@ -138,7 +138,7 @@ impl Link {
         if ["prismatic", "cylindrical"].contains(&self.kind) {
             start["slide"] = json!({"displacement": shift, "rate": speed});
         }
-        json!({self.kind: {"between": between, "at": list(&self.point), "axis": list(&self.axis),
+        json!({(self.kind): {"between": between, "at": list(&self.point), "axis": list(&self.axis),
                            "start": start}})
     }
 }

@@ -16,7 +16,7 @@ use flexbody::system::Numbering;
 use flexbody::system::initial;
 use flexbody::system::kkt::SaddlePoint;
 use flexbody::system::placement;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// Crank, coupler, rocker and distance of the pivots of a four-bar linkage.
 const LENGTHS: [f64; 4] = [0.4, 1.3, 0.9, 1.1];

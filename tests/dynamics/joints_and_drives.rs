@@ -2,7 +2,7 @@
 
 use crate::tests::reference::documents::problem;
 use flexbody::driver::simulate;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 /// Values of all functions.

@@ -8,7 +8,7 @@ use flexbody::integrate::headway::Stop;
 use flexbody::integrate::scale::Scale;
 use flexbody::integrate::{Method, Settings, Spacing};
 use flexbody::problem::{Override, Problem};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::Path;
 
 fn extreme(name: &str, changes: &[String]) -> Problem {

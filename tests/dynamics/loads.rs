@@ -6,7 +6,7 @@ use crate::tests::numbers;
 use flexbody::driver::{check, simulate};
 use flexbody::problem::Problem;
 use numbers::numbers;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// Half a second by BDF2 with a start of rising order.
 fn bdf(steps: usize) -> Value {

@@ -9,7 +9,7 @@ use flexbody::integrate::IntegrationFailure;
 use flexbody::problem::{Override, Problem};
 use flexbody::system::observe::Reaction;
 use reference::models::Numbers;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::Path;
 
 fn left_out(problem: &Problem) -> Vec<(&str, usize)> {

@@ -9,7 +9,6 @@ use flexbody::problem::Problem;
 use flexbody::structures::modes::Pencil;
 use flexbody::system::finite;
 use flexbody::system::flexing::Flexing;
-use serde_json::json;
 use std::collections::BTreeMap;
 
 /// A plate of 1 × 0.25 m and 1 mm, clamped at a short edge in axes that turn about this edge.

@@ -6,7 +6,7 @@ use crate::tests::reference;
 use flexbody::driver::simulate;
 use flexbody::problem::Problem;
 use reference::models::Numbers;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// Lengths [m] of crank and coupler, masses [kg] of crank, coupler and rocker, initial angle [rad]
 /// and rate [rad/s].

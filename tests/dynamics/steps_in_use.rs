@@ -112,7 +112,7 @@ fn a_stiff_scene_hands_over_by_itself() {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/benchmarks/stiff_pendulum.json");
     let text = std::fs::read_to_string(path).expect("a problem");
     let mut document: serde_json::Value = serde_json::from_str(&text).expect("valid JSON");
-    document["simulation"] = serde_json::json!({"duration": 3, "tolerance": 1e-7});
+    document["simulation"] = json!({"duration": 3, "tolerance": 1e-7});
     let problem = Problem::parse(&document.to_string(), "stiff.json", &[]).expect("no faults");
     let motion = simulate(&problem, &problem.start()).expect("runs");
     assert_eq!(motion.at.run.method, Method::Radau { stages: 3 });
@@ -127,7 +127,7 @@ fn a_stiff_scene_hands_over_by_itself() {
         motion.at.run.grid.steps()
     );
 
-    document["simulation"]["method"] = serde_json::json!("dop853");
+    document["simulation"]["method"] = json!("dop853");
     let problem = Problem::parse(&document.to_string(), "stiff.json", &[]).expect("no faults");
     let failure = simulate(&problem, &problem.start())
         .map(|_| ())
@@ -143,9 +143,9 @@ fn an_unstable_formula_is_told() {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/benchmarks/stiff_pendulum.json");
     let text = std::fs::read_to_string(path).expect("a problem");
     let mut document: serde_json::Value = serde_json::from_str(&text).expect("valid JSON");
-    document["loads"]["spring"]["spring"]["stiffness"] = serde_json::json!(1e6);
+    document["loads"]["spring"]["spring"]["stiffness"] = json!(1e6);
     for (order, told) in [(2, false), (3, true), (4, true), (5, true)] {
-        document["simulation"] = serde_json::json!({
+        document["simulation"] = json!({
             "duration": 0.3, "steps": 300, "method": {"bdf": {"order": order}}
         });
         let problem = Problem::parse(&document.to_string(), "stiff.json", &[]).expect("no faults");
@@ -200,7 +200,7 @@ fn steps_are_kept_until_they_do_not_suffice() {
 /// notice.
 #[test]
 fn a_short_load_is_not_stepped_over() {
-    let file = serde_json::json!({
+    let file = json!({
         "version": 1, "name": "blow", "gravity": [0, 0, 0],
         "bodies": {"ball": {"shape": {"sphere": {"radius": 0.1}}, "mass": 1}},
         "loads": {"blow": {"force": {
@@ -219,7 +219,7 @@ fn a_short_load_is_not_stepped_over() {
 /// Steps end at the kinks of a linear table, and at the ends of the rounded parts of a motion.
 #[test]
 fn steps_end_where_a_table_is_not_smooth() {
-    let file = serde_json::json!({
+    let file = json!({
         "version": 1, "name": "kinks", "gravity": [0, 0, 0],
         "bodies": {
             "ball": {"shape": {"sphere": {"radius": 0.1}}, "mass": 1},
@@ -308,7 +308,7 @@ fn a_method_that_took_over_stays_in_a_resumed_run() {
 /// A spring pendulum with a damper, with stiffness k, damping ratio ζ and tolerance.
 fn damped_spring(stiffness: f64, ratio: f64, tolerance: f64, method: Option<&str>) -> Problem {
     let damping = 2.0 * ratio * stiffness.sqrt();
-    let mut document = serde_json::json!({
+    let mut document = json!({
         "version": 1, "name": "damped spring", "gravity": [0, -9.81, 0],
         "bodies": {"bob": {"shape": {"sphere": {"radius": 0.05}}, "mass": 1, "place": {"at": [1, 0, 0]}}},
         "loads": {"spring": {"spring": {"between": ["bob", "ground"], "at": {"a": [0, 0, 0], "b": [0, 0, 0]},
@@ -421,7 +421,7 @@ fn explicit_steps_that_are_too_large_are_refused() {
     for stiffness in [1e1_f64, 1e2, 1e4, 1e6, 1e8] {
         for damping in [0.0, 10.0, 1e3] {
             for steps in [30, 100, 1500] {
-                let file = serde_json::json!({
+                let file = json!({
                     "version": 1, "name": "sprung bar", "gravity": [0, -9.81, 0],
                     "bodies": {"bar": {"shape": {"box": {"size": [1, 0.1, 0.1]}}, "mass": 1,
                                        "place": {"at": [0.5, 0, 0]}}},
@@ -470,7 +470,7 @@ fn long_durations_are_simulated_with_any_tolerance() {
         (1e15, 1e-6),
     ] {
         let spin = 10.0 / duration;
-        let file = serde_json::json!({
+        let file = json!({
             "version": 1, "name": "bar", "gravity": [0, 0, 0],
             "bodies": {"bar": {"shape": {"box": {"size": [1, 0.1, 0.1]}}, "mass": 1,
                                "place": {"at": [0.5, 0, 0]},
@@ -491,7 +491,7 @@ fn long_durations_are_simulated_with_any_tolerance() {
         if duration == 1e9 {
             // The number of its oscillations exceeds that of possible steps, and the message says
             // so.
-            falling["gravity"] = serde_json::json!([0, -9.81, 0]);
+            falling["gravity"] = json!([0, -9.81, 0]);
             let problem = Problem::parse(&falling.to_string(), "bar.json", &[]).expect("no faults");
             let told = simulate(&problem, &[])
                 .map(|_| ())

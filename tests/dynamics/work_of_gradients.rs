@@ -3,7 +3,7 @@
 
 use flexbody::driver::Evaluated;
 use flexbody::problem::Problem;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::Path;
 
 /// The trebuchet's start with a function: factorisations of its gradient and of its run.

@@ -3,7 +3,7 @@
 use flexbody::driver::figures::of_simulation;
 use flexbody::driver::{Simulation, check, simulate};
 use flexbody::problem::Problem;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 fn parsed(document: &Value) -> Problem {
     Problem::parse(&document.to_string(), "beams", &[]).unwrap_or_else(|faults| panic!("{faults}"))

@@ -9,7 +9,7 @@ use flexbody::driver::start::notes;
 use flexbody::driver::{Simulation, simulate};
 use flexbody::math::{Mat3, Vec3, rotation};
 use flexbody::problem::{Override, Problem};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::Path;
 
 fn load(name: &str, changes: &[String]) -> Problem {

@@ -4,7 +4,7 @@ use super::finite_elements::{parsed, plates};
 use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
 use flexbody::driver::simulate;
 use flexbody::problem::Problem;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// Two soft plates, the first with two stiffeners and masses, both damped.
 fn stiffened(elements: [usize; 2], duration: f64, steps: usize, method: &Value) -> Value {

@@ -2,7 +2,6 @@
 
 use super::finite_elements::{parsed, plates};
 use flexbody::driver::simulate;
-use serde_json::json;
 
 /// Place of the tip \[m\] and number of steps of the double plate of 5 mm by Radau IIA with a tolerance.
 fn tip(elements: [usize; 2], tolerance: f64) -> ([f64; 2], usize) {

@@ -11,7 +11,7 @@ use flexbody::problem::Problem;
 use flexbody::system::Numbering;
 use flexbody::system::initial;
 use flexbody::system::kkt::SaddlePoint;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 fn parsed(document: &Value) -> Problem {
     Problem::parse(&document.to_string(), "rest", &[]).unwrap_or_else(|faults| panic!("{faults}"))

@@ -4,7 +4,7 @@
 use super::modal::data;
 use flexbody::driver::simulate;
 use flexbody::problem::Problem;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
 /// Numbers between 0 and 1 by a linear congruence.
 struct Random(u64);

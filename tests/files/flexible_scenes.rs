@@ -4,7 +4,7 @@
 use super::finite_elements::parsed;
 use flexbody::driver::{Simulation, check, simulate};
 use flexbody::problem::Problem;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::Path;
 
 fn document(name: &str) -> Value {

@@ -4,7 +4,7 @@
 use crate::tests::reference::gradients::gradients_are_exact;
 use flexbody::driver::{Simulation, simulate};
 use flexbody::problem::Problem;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::Path;
 
 pub(super) const YOUNG: f64 = 70e9;

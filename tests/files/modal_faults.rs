@@ -2,7 +2,7 @@
 
 use super::modal::{beam, data, modal, pendulum};
 use flexbody::problem::Problem;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::PathBuf;
 
 /// A directory with copies of the files, in which one is changed.

@@ -2,7 +2,7 @@
 
 use super::modal::{YOUNG, beam, modal, parsed, pendulum, run, values};
 use flexbody::problem::Problem;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// The pendulum of the files with a tenth of the stiffness, so that it bends visibly.
 fn soft() -> Value {

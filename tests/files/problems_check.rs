@@ -97,7 +97,7 @@ fn with_energy(name: &str, duration: Option<f64>, tolerance: f64) -> Problem {
     if let Some(duration) = duration {
         document["simulation"]["duration"] = duration.into();
     }
-    document["functions"]["energy"] = serde_json::json!({"final": {"energy": "total"}});
+    document["functions"]["energy"] = json!({"final": {"energy": "total"}});
     Problem::parse(&document.to_string(), name, &[]).unwrap_or_else(|faults| panic!("{faults}"))
 }
 

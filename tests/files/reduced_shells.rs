@@ -3,7 +3,7 @@
 use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
 use flexbody::driver::{bases, explain, simulate};
 use flexbody::problem::{Override, Problem};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::Path;
 
 fn read(name: &str) -> Value {

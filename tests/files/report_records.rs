@@ -9,7 +9,6 @@ use flexbody::report::{
     History, HistoryRow, Optimum, ReportError, Tolerances, atomic_write, compare, read_text,
     summary, write_all,
 };
-use serde_json::json;
 
 fn history() -> History {
     let row = |iteration: usize, objective: f64, barrier: f64| HistoryRow {

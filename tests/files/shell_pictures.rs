@@ -5,7 +5,7 @@ use super::finite_elements::{parsed, plates};
 use flexbody::driver::elastic_figures::{deflections, limits, stresses};
 use flexbody::driver::figures::of_simulation;
 use flexbody::driver::{check, shell_fields, simulate};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::Path;
 
 /// A short run of two soft plates, with a limit of stress.

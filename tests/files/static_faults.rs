@@ -4,7 +4,7 @@ use flexbody::driver::analysed::AnalysisFailure;
 use flexbody::driver::statics::{StaticDesign, StaticsFailure};
 use flexbody::problem::Problem;
 use flexbody::structures::properties::PropertyFault;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 fn material() -> Value {
     json!({"metal": {"young": 70e9, "poisson": 0.3, "density": 2700, "yield_stress": 270e6}})

@@ -3,7 +3,7 @@
 use flexbody::driver::statics::{StaticDesign, error, figures};
 use flexbody::driver::{CheckedDerivative, KnownEvaluations, Optimisation, check, optimise};
 use flexbody::problem::{Override, Problem};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::Path;
 

@@ -12,7 +12,7 @@ use flexbody::math::Vec3;
 use flexbody::problem::{Override, Problem};
 use flexbody::report::optimum::{Activity, BoundSide};
 use nalgebra::Rotation3;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::f64::consts::PI;
 use std::path::Path;
 

@@ -3,7 +3,7 @@
 use flexbody::driver::known_evaluations::KnownEvaluations;
 use flexbody::driver::{Optimisation, optimise};
 use flexbody::problem::Problem;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 use std::ops::ControlFlow;
 use std::path::Path;
 

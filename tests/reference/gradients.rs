@@ -2,7 +2,7 @@
 
 use flexbody::driver::check;
 use flexbody::problem::Problem;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// Asserts that every derivative of every function at the start agrees with the complex step to 1e-12 of the
 /// function's gradient, whose entries are multiplied by their variables. `context` names the case.

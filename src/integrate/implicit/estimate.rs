@@ -3,13 +3,14 @@
 use super::Stage;
 use super::predict::dense;
 use super::radau::Scheme;
+use super::stage_factors::StageFactors;
 use super::stage_newton::StageNewton;
 use crate::integrate::scale::Scale;
 use crate::integrate::work::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
-use crate::system::{BodyMotion, InMotion, Numbering, RedundantRows, bodies, joints};
+use crate::system::{BodyMotion, InMotion, Numbering, RedundantRows, bodies, flexible, joints};
 
 /// Round-off in an estimated error relative to that in the stages, and its upper bound.
 const MORE_NOISE: f64 = 30.0;
@@ -28,6 +29,10 @@ pub(super) struct Estimate<'a> {
     middle: Stage<f64>,
     motions: Vec<BodyMotion<f64>>,
     rows: Vec<f64>,
+    /// Combinations of increments of q and v.
+    combined: [Vec<f64>; 2],
+    /// The estimated error (δy, h δv), and what follows it in a vector of the equations.
+    filtered: Vec<f64>,
 }
 
 impl<'a> Estimate<'a> {
@@ -39,6 +44,8 @@ impl<'a> Estimate<'a> {
             scheme,
             field: Accelerations::new(model, numbering),
             stages: vec![zero.clone(); scheme.stages()],
+            combined: [vec![0.0; zero.q.len()], vec![0.0; zero.v.len()]],
+            filtered: vec![0.0; 2 * (numbering.velocities() + numbering.constraints())],
             middle: zero.clone(),
             from: zero,
             motions: Vec::new(),
@@ -85,12 +92,12 @@ impl<'a> Estimate<'a> {
             return f64::NAN;
         }
         self.field.accelerations(vdot, lambda);
-        let found = newton.error(&self.stages, (&qdot[..], &vdot[..]), h);
-        let nv = v.len();
+        self.filter(newton.factors(), h);
+        let (v, nv) = (&self.from.v, self.from.v.len());
         let end = &self.stages[self.stages.len() - 1].v;
         let speeds = scale.speeds(numbering, &v[..], end);
         let size = |x: &[f64]| scale.tangent_square(&x[..nv], &x[nv..], h, speeds).sqrt();
-        let mut error = size(found);
+        let mut error = size(&self.filtered[..2 * nv]);
         if let Some(noise) = newton.noise().map(size) {
             // Round-off in the stages does not depend on the step size.
             error -= error.min((MORE_NOISE * noise).min(MOST_NOISE));
@@ -99,6 +106,41 @@ impl<'a> Estimate<'a> {
             return error;
         }
         error.max(self.drift(h, (scale, speeds)))
+    }
+
+    /// Sets the estimated error (δy, h δv) of a step of size h from its start and its stages. The difference of
+    /// the embedded formula is filtered by the real matrix: K δ = B (b̂_0 h ẏ_n + Σ e_i Z_i) / (b̂_0 h) in the
+    /// equations of motion, and 0 in the constraints (Hairer & Wanner 1996, eq. IV.8.19 and 20).
+    fn filter(&mut self, factors: &mut StageFactors, h: f64) {
+        let numbering = self.numbering;
+        let nv = numbering.velocities();
+        let (first, weights) = &self.scheme.error;
+        let [dq, dv] = &mut self.combined;
+        let start = |out: &mut [f64], rates: &[f64]| {
+            let rates = out.iter_mut().zip(rates);
+            rates.for_each(|(out, x)| *out = first * h * x);
+        };
+        start(dq, &self.from.qdot);
+        start(dv, &self.from.vdot);
+        let add = |out: &mut [f64], e: f64, increments: &[f64]| {
+            let increments = out.iter_mut().zip(increments);
+            increments.for_each(|(out, z)| *out += e * z);
+        };
+        for (stage, &e) in self.stages.iter().zip(weights) {
+            add(dq, e, &stage.dq);
+            add(dv, e, &stage.dv);
+        }
+        let end = &self.stages[self.stages.len() - 1].q;
+        self.filtered.fill(0.0);
+        let (f1, rest) = self.filtered.split_at_mut(nv);
+        bodies::velocity_of_rates(numbering, end, dq, f1);
+        f1.iter_mut().for_each(|x| *x /= *first);
+        // Rows of the dynamics are scaled by h² / m, those of the kinematics by h.
+        bodies::mass_product(self.model, numbering, dv, &mut rest[..nv]);
+        flexible::add_mass_product_at(self.model, numbering, end, dv, &mut rest[..nv]);
+        let scale = h / (first * factors.equations.mass());
+        rest[..nv].iter_mut().for_each(|x| *x *= scale);
+        factors.filter(&mut self.filtered);
     }
 
     /// Violation of the constraints at the middle of a step, relative to the scene's scale. The

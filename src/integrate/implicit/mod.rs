@@ -14,6 +14,7 @@ pub(crate) mod replayer;
 mod scales;
 pub(crate) mod solver;
 pub(crate) mod split;
+mod stage_factors;
 pub(crate) mod stage_newton;
 pub(crate) mod tape;
 pub(crate) mod turned;

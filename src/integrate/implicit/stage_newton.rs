@@ -1,5 +1,5 @@
-//! Newton's method for the coupled stages of Radau IIA, with one real and one complex matrix. They
-//! are kept while the method converges (Hairer & Wanner 1996, section IV.8).
+//! Newton's method for the coupled stages of Radau IIA, with factors that are kept while it converges (Hairer &
+//! Wanner 1996, section IV.8).
 
 use super::Stage;
 use super::backward_error::BackwardError;
@@ -7,14 +7,13 @@ use super::broyden::{Broyden, Pace};
 use super::ggl::Equations;
 use super::radau::Scheme;
 use super::scales::{Scales, SceneScale};
-use super::split::SplitMatrix;
-use super::turned::Turned;
+use super::stage_factors::StageFactors;
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::work::WorkCounts;
-use crate::linalg::{Pivots, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
-use crate::math::{Complex64, Scalar};
+use crate::linalg::{Pivots, SolveScalar};
+use crate::math::Scalar;
 use crate::model::Model;
-use crate::system::{Numbering, RedundantRows, bodies, flexible};
+use crate::system::{Numbering, RedundantRows, flexible};
 use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
@@ -36,8 +35,6 @@ const MAGNIFIED: f64 = 1e3;
 const RENEW: f64 = 0.05;
 /// The iteration is stopped above this contraction.
 const DIVERGENT: f64 = 0.9;
-/// The kept factors are used up to this relative change of the step size.
-const SAME_STEP: f64 = 1e-6;
 const ITERATIONS: usize = 20;
 /// With finite elements, whose strains stiffen them within a step, kept factors are corrected by Broyden's
 /// method, and renewed at the present iterate above this contraction, so often in a step. Infinitesimal parts
@@ -67,35 +64,22 @@ pub(crate) struct Memory {
 /// Newton's method with its workspace.
 pub(crate) struct StageNewton<'a, S> {
     equations: Equations<'a, S>,
-    /// The same equations in real numbers, for the matrices.
-    real: Equations<'a, f64>,
     numbering: &'a Numbering,
     scheme: &'a Scheme,
-    split: SplitMatrix,
-    /// The matrix of the real eigenvalue, or of the error filter if there is none.
-    real_mode: Option<(SparseMatrix<f64>, SparseLu<f64>)>,
-    complex_mode: (SparseMatrix<Complex64>, SparseLu<Complex64>),
-    /// Step size of the kept factors.
-    factored: Option<f64>,
-    /// With finite elements: corrections of the kept factors, the turns since they were made, and the work
-    /// with them. The matrix is then renewed within a step.
+    factors: StageFactors<'a>,
+    /// With finite elements: corrections of the kept factors, and the work with them. The factors are then
+    /// renewed within a step.
     broyden: Option<Broyden<S>>,
-    turned: Turned,
     pace: Pace,
     /// With finite elements.
     backward: Option<BackwardError>,
     scale: SceneScale,
     residuals: Vec<Vec<S>>,
     updates: Vec<Vec<S>>,
-    real_rhs: Vec<f64>,
-    complex_rhs: Vec<Complex64>,
-    /// Initial guess of a step, and the stage at which the matrices are evaluated.
+    /// Initial guess of a step.
     predicted: Vec<Stage<S>>,
-    middle: Stage<f64>,
     /// The middle stage at the start of an iteration.
     here: Stage<f64>,
-    /// Combinations of increments of q and v, for the error.
-    combined: [Vec<f64>; 2],
     /// Change (δy, h δv) by round-off in the latest step, if a nearly singular matrix magnified it.
     noise: Option<Vec<f64>>,
 }
@@ -110,88 +94,57 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         scheme: &'a Scheme,
         estimates: bool,
     ) -> Self {
-        let mut equations = Equations::new(real, numbering);
+        let real = Equations::new(real, numbering);
         let zero = Stage::zero(numbering);
-        let split = SplitMatrix::new(&mut equations, &zero);
-        let pattern = split.held.pattern.clone();
-        let n = equations.length();
+        let n = real.length();
         let shells = flexible::has_shells(model);
-        let real_mode = (scheme.modes[0].is_real() || estimates).then(|| {
-            let matrix = SparseMatrix::new(pattern.clone());
-            (matrix, SparseLu::new(&pattern))
-        });
         Self {
             equations: Equations::new(model, numbering),
-            real: equations,
             numbering,
             scheme,
-            split,
-            real_mode,
-            complex_mode: {
-                let factors = SparseLu::new(&pattern);
-                (SparseMatrix::new(pattern), factors)
-            },
-            factored: None,
+            factors: StageFactors::new(real, numbering, scheme, estimates),
             broyden: shells.then(Broyden::new),
-            turned: match shells {
-                true => Turned::new(model, numbering),
-                false => Turned::default(),
-            },
             pace: Pace::default(),
             backward: shells.then(|| BackwardError::new(n)),
             scale: SceneScale::of(model),
             residuals: vec![vec![S::zero(); n]; scheme.stages()],
             updates: vec![vec![S::zero(); n]; scheme.stages()],
-            real_rhs: vec![0.0; n],
-            complex_rhs: vec![Complex64::new(0.0, 0.0); n],
             predicted: vec![Stage::zero(numbering); scheme.stages()],
-            combined: [vec![0.0; zero.q.len()], vec![0.0; zero.v.len()]],
-            here: zero.clone(),
-            middle: zero,
+            here: zero,
             noise: None,
         }
     }
 
     /// The data that is kept from step to step.
     pub(crate) fn memory(&mut self) -> Memory {
-        let real = self.real_mode.as_mut();
         Memory {
-            made: self.factored.map(|h| (self.middle.clone(), h)),
+            made: self.factors.made(),
             pace: self.pace,
-            pivots: [
-                real.and_then(|(_, factors)| factors.pivots()),
-                self.complex_mode.1.pivots(),
-            ],
+            pivots: self.factors.pivots(),
         }
     }
 
     /// Restores kept data, and repeats its factorisations.
     pub(crate) fn restore(&mut self, kept: &Memory, counts: &mut WorkCounts) {
-        let [real, complex] = &kept.pivots;
-        if let Some((matrix, factors)) = &mut self.real_mode {
-            factors.set_pivots(&matrix.pattern, real.as_ref());
-        }
-        let (matrix, factors) = &mut self.complex_mode;
-        factors.set_pivots(&matrix.pattern, complex.as_ref());
-        self.factored = None;
+        self.factors.set_pivots(&kept.pivots);
+        self.factors.forget();
         if let Some((middle, h)) = &kept.made {
-            self.middle.set(middle);
             // This cannot fail: the same matrices were factorised before.
-            let _ = self.factorise_there(*h, counts);
+            let backward = self.backward.as_mut();
+            let _ = (self.factors).make(*h, |at| at.set(middle), backward, counts);
         }
         self.pace = kept.pace;
     }
 
     /// Discards the kept factors.
     pub(crate) fn forget(&mut self) {
-        self.factored = None;
+        self.factors.forget();
     }
 
     /// Sets the redundant rows that are left out.
     pub(crate) fn leave_out(&mut self, left_out: &RedundantRows) {
         if self.equations.leave_out(left_out) {
-            self.real.leave_out(left_out);
-            self.factored = None;
+            self.factors.leave_out(left_out);
         }
     }
 
@@ -208,10 +161,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         at: (usize, f64),
         counts: &mut WorkCounts,
     ) -> Result<(), IntegrationFailure> {
-        let kept = self
-            .factored
-            .is_some_and(|old| (old - h.re()).abs() < SAME_STEP * old);
-        if S::INFINITESIMAL || !kept {
+        if S::INFINITESIMAL || !self.factors.serve(h.re()) {
             self.factorise(stages, h.re(), at, counts)?;
             return self.iterate(stages, h, at, counts);
         }
@@ -247,8 +197,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             backward.begin();
             if !S::INFINITESIMAL {
                 stages[(stages.len() - 1) / 2].real_into(&mut self.here);
-                let turn = (&self.middle.q[..], &self.here.q[..]);
-                self.turned.set(numbering, turn, self.real.left_out());
+                self.factors.turn_to(&self.here.q);
             }
         }
         for iteration in 1..=ITERATIONS {
@@ -300,7 +249,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                     None => slowest > RENEW,
                 };
                 if lost {
-                    self.factored = None;
+                    self.factors.forget();
                 }
                 self.set_rates(stages, h);
                 return Ok(());
@@ -323,7 +272,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             }
             previous = size;
         }
-        self.factored = None;
+        self.factors.forget();
         Err(self.stalled(stages, h, at, counts))
     }
 
@@ -354,7 +303,8 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         for update in &mut self.updates {
             update.fill(S::zero());
         }
-        self.update(Scalar::re, S::from);
+        self.factors
+            .update(&self.residuals, &mut self.updates, Scalar::re, S::from);
         let mut all = vec![0.0_f64; n];
         let mut size = 0.0_f64;
         for update in &self.updates {
@@ -364,6 +314,11 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         }
         let largest = all.iter().fold(0.0_f64, |m, &x| m.max(x));
         ((largest > MAGNIFIED * unit).then_some(all), size)
+    }
+
+    /// The latest factors.
+    pub(super) fn factors(&mut self) -> &mut StageFactors<'a> {
+        &mut self.factors
     }
 
     /// Change (δy, h δv) by round-off in the latest step, if a nearly singular matrix magnified it.
@@ -393,9 +348,16 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         for update in &mut self.updates {
             update.fill(S::zero());
         }
-        self.update(Scalar::re, S::from);
+        self.factors
+            .update(&self.residuals, &mut self.updates, Scalar::re, S::from);
         if S::INFINITESIMAL {
-            self.update(Scalar::infinitesimal, S::of_infinitesimal);
+            let (residuals, updates) = (&self.residuals, &mut self.updates);
+            (self.factors).update(
+                residuals,
+                updates,
+                Scalar::infinitesimal,
+                S::of_infinitesimal,
+            );
         }
         if let (false, Some(broyden)) = (S::INFINITESIMAL, &mut self.broyden) {
             broyden.correct(&mut self.updates);
@@ -433,47 +395,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         }
     }
 
-    /// Adds the updates by one part of the residuals: x_i −= Σ r_i K⁻¹ Σ l_j F_j over the modes and
-    /// the conjugates of complex ones.
-    fn update(&mut self, part: impl Fn(S) -> f64, whole: impl Fn(f64) -> S) {
-        for mode in &self.scheme.modes {
-            if let (true, Some((_, factors))) = (mode.is_real(), &mut self.real_mode) {
-                self.real_rhs.fill(0.0);
-                for (residual, l) in self.residuals.iter().zip(&mode.left) {
-                    for (out, &x) in self.real_rhs.iter_mut().zip(residual) {
-                        *out += l.re * part(x);
-                    }
-                }
-                let rhs = &mut self.real_rhs;
-                self.turned.back(rhs);
-                self.real.through(rhs, |x| factors.solve(x));
-                self.turned.forth(rhs);
-                for (update, r) in self.updates.iter_mut().zip(&mode.right) {
-                    for (out, &x) in update.iter_mut().zip(&self.real_rhs) {
-                        *out -= whole(r.re * x);
-                    }
-                }
-            } else {
-                self.complex_rhs.fill(Complex64::new(0.0, 0.0));
-                for (residual, l) in self.residuals.iter().zip(&mode.left) {
-                    for (out, &x) in self.complex_rhs.iter_mut().zip(residual) {
-                        *out += l * part(x);
-                    }
-                }
-                let (rhs, factors) = (&mut self.complex_rhs, &mut self.complex_mode.1);
-                self.turned.back(rhs);
-                self.real.through(rhs, |x| factors.solve(x));
-                self.turned.forth(rhs);
-                for (update, r) in self.updates.iter_mut().zip(&mode.right) {
-                    for (out, x) in update.iter_mut().zip(&self.complex_rhs) {
-                        *out -= whole(2.0 * (r * x).re);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Assembles and factorises at the middle stage.
+    /// Makes new factors at the middle stage.
     fn factorise(
         &mut self,
         stages: &mut [Stage<S>],
@@ -482,103 +404,16 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         counts: &mut WorkCounts,
     ) -> Result<(), IntegrationFailure> {
         self.set_rates(stages, S::from(h));
-        stages[(stages.len() - 1) / 2].real_into(&mut self.middle);
-        self.factorise_there(h, counts)
+        self.pace = Pace::default();
+        let middle = &stages[(stages.len() - 1) / 2];
+        let backward = self.backward.as_mut();
+        (self.factors)
+            .make(h, |at| middle.real_into(at), backward, counts)
             .map_err(|singular| IntegrationFailure::Singular {
                 time,
                 step,
-                place: self.real.describe_reduced(singular.column),
+                place: self.factors.equations.describe_reduced(singular.column),
             })
-    }
-
-    /// Assembles and factorises at the stored middle stage.
-    fn factorise_there(&mut self, h: f64, counts: &mut WorkCounts) -> Result<(), SingularMatrix> {
-        let Self {
-            split,
-            real_mode,
-            complex_mode,
-            ..
-        } = self;
-        self.pace = Pace::default();
-        self.turned.clear();
-        split.assemble(&mut self.real, &self.middle.instant(), h);
-        if let Some(backward) = &mut self.backward {
-            let largest = self.scheme.modes.iter().map(|mode| mode.value.norm());
-            let rates = largest.fold(0.0, f64::max);
-            let at = (&self.middle, h);
-            let parts = [(1.0, &split.held), (rates, &split.rates)];
-            backward.fit(&self.real, self.numbering, at, &parts);
-        }
-        // The matrix is affine in the eigenvalue.
-        let mut found = Ok(());
-        for mode in &self.scheme.modes {
-            counts.factorisations += 1;
-            let factors = if let (true, Some((matrix, factors))) = (mode.is_real(), &mut *real_mode)
-            {
-                split.fill(mode.value.re, matrix);
-                factors.factorise(matrix)
-            } else {
-                let (matrix, factors) = &mut *complex_mode;
-                split.fill(mode.value, matrix);
-                factors.factorise(matrix)
-            };
-            found = found.and(factors);
-        }
-        if let (false, Some((matrix, factors))) = (self.scheme.modes[0].is_real(), real_mode) {
-            split.fill(1.0 / self.scheme.error.0, matrix);
-            counts.factorisations += 1;
-            found = found.and(factors.factorise(matrix));
-        }
-        self.factored = found.is_ok().then_some(h);
-        found
-    }
-
-    /// Estimated error (δy, h δv) of a step of size h. The difference of the embedded formula is
-    /// filtered by the real matrix: (K δ) = B (b̂_0 h ẏ_n + Σ e_i Z_i) / (b̂_0 h) in the equations
-    /// of motion, and 0 in the constraints (Hairer & Wanner 1996, eq. IV.8.19 and 20). `rates` are
-    /// the rates (q̇, v̇) at the start.
-    pub(crate) fn error(
-        &mut self,
-        stages: &[Stage<f64>],
-        (qdot, vdot): (&[f64], &[f64]),
-        h: f64,
-    ) -> &[f64] {
-        let numbering = self.numbering;
-        let nv = numbering.velocities();
-        let (first, weights) = &self.scheme.error;
-        let [dq, dv] = &mut self.combined;
-        let start = |out: &mut [f64], rates: &[f64]| {
-            let rates = out.iter_mut().zip(rates);
-            rates.for_each(|(out, x)| *out = first * h * x);
-        };
-        start(dq, qdot);
-        start(dv, vdot);
-        for (stage, e) in stages.iter().zip(weights) {
-            dq.iter_mut()
-                .zip(&stage.dq)
-                .for_each(|(out, z)| *out += e * z);
-            dv.iter_mut()
-                .zip(&stage.dv)
-                .for_each(|(out, z)| *out += e * z);
-        }
-        let end = &stages[stages.len() - 1].q;
-        self.real_rhs.fill(0.0);
-        let (f1, rest) = self.real_rhs.split_at_mut(nv);
-        bodies::velocity_of_rates(numbering, end, dq, f1);
-        f1.iter_mut().for_each(|x| *x /= *first);
-        // Rows of the dynamics are scaled by h² / m, those of the kinematics by h.
-        bodies::mass_product(self.real.model(), numbering, dv, &mut rest[..nv]);
-        let model = self.real.model();
-        flexible::add_mass_product_at(model, numbering, end, dv, &mut rest[..nv]);
-        let scale = h / (first * self.real.mass());
-        rest[..nv].iter_mut().for_each(|x| *x *= scale);
-        if let Some((_, factors)) = &mut self.real_mode {
-            let rhs = &mut self.real_rhs;
-            self.turned.back(rhs);
-            self.real.through(rhs, |x| factors.solve(x));
-            self.turned.forth(rhs);
-        }
-        &self.real_rhs[..2 * nv]
     }
 
     fn not_finite(&self, (step, time): (usize, f64)) -> IntegrationFailure {
@@ -588,7 +423,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         IntegrationFailure::NotFinite {
             time,
             step,
-            worst: self.real.describe(row),
+            worst: self.equations.describe(row),
         }
     }
 
@@ -606,15 +441,10 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             if let Err(singular) = self.factorise(stages, h.re(), (step, time), counts) {
                 return singular;
             }
-            self.factored = None;
-            // Stiff forces also cause small pivots, but in the rows of bodies.
-            let first = self.real.order() - 2 * self.numbering.constraints();
-            let complex = self.complex_mode.1.smallest_pivot(first);
-            let real = self.real_mode.as_mut();
-            let real = real.map_or(complex, |(_, factors)| factors.smallest_pivot(first));
-            let (pivot, column) = if real.0 < complex.0 { real } else { complex };
+            self.factors.forget();
+            let (pivot, column) = self.factors.smallest_pivot();
             if pivot < NEARLY_SINGULAR {
-                let place = self.real.describe_reduced(column);
+                let place = self.equations.describe_reduced(column);
                 near = format!(
                     "; the iteration matrix is nearly singular there (pivot {pivot:.1e} of 1), at {place}"
                 );
@@ -635,7 +465,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             step,
             iterations: ITERATIONS,
             residual: largest,
-            worst: self.real.describe(worst) + &near,
+            worst: self.equations.describe(worst) + &near,
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use super::*;
 use flexbody::driver;
-use serde_json::json;
 
 #[test]
 fn an_explanation_counts_what_is_left() {

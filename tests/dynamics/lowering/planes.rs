@@ -5,7 +5,6 @@ use flexbody::driver;
 use flexbody::lower::Plane;
 use flexbody::math::{Mat3, Vec3, rotation};
 use flexbody::model::{Axes, LoadKind, Mobility, Model};
-use serde_json::json;
 
 /// In the plane, the trebuchet of five bodies has 15 unknowns and 10 rows, against 30 and 21 in
 /// space.

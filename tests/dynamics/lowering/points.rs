@@ -3,7 +3,6 @@
 use super::*;
 use flexbody::driver;
 use flexbody::model::Mobility;
-use serde_json::json;
 
 /// A ball at the end of a spatial double pendulum.
 fn ball_on_a_double_pendulum(at: Value, function: Value) -> Value {

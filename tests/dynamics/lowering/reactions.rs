@@ -6,7 +6,7 @@ use crate::tests::reference::models::Numbers;
 
 use flexbody::integrate::{Method, Spacing};
 use flexbody::problem::Problem;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// A chain of bars in the plane across z that hangs from a block on ground. `welded` bars are one with the
 /// one before; the block is welded to ground; a slide runs on the last bar.
@@ -77,10 +77,10 @@ fn of_joint(joint: &str, other: &str, held: bool) -> Value {
         joint => format!("bar {}", &joint[6..]),
     };
     json!({
-        format!("{joint} x"): {"final": force([1.0, 0.0, 0.0], &own, "ground")},
-        format!("{joint} y"): {"ks": {"rho": 0.5, "of": force([0.0, 1.0, 0.0], other, "joint")}},
-        format!("{joint} z"): {"integral": moment(&own)},
-        format!("{joint} other"): {"induced_exponential": {"rho": 0.5, "of": moment(other)}}
+        (format!("{joint} x")): {"final": force([1.0, 0.0, 0.0], &own, "ground")},
+        (format!("{joint} y")): {"ks": {"rho": 0.5, "of": force([0.0, 1.0, 0.0], other, "joint")}},
+        (format!("{joint} z")): {"integral": moment(&own)},
+        (format!("{joint} other")): {"induced_exponential": {"rho": 0.5, "of": moment(other)}}
     })
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 use flexbody::driver::integration::Integration;
 use flexbody::driver::{self, KnownEvaluations};
-use serde_json::{Map, json};
+use serde_json::Map;
 use std::ops::ControlFlow;
 
 /// The names that a section of a document may refer to.

@@ -2,7 +2,6 @@
 
 use super::*;
 use flexbody::driver;
-use serde_json::json;
 
 /// A stand that is welded to ground, with a bracket welded to it, carries the trebuchet.
 #[test]
