@@ -9,7 +9,7 @@ use flexbody::library::Analysis;
 use flexbody::math::rotation::matrix;
 use flexbody::math::{Mat3, Vec3};
 use flexbody::problem::Problem;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// The values of all functions at the start.
 fn values(document: &Value) -> Vec<f64> {
