@@ -522,7 +522,7 @@ fn standard_input_data_move_as_they_say() {
     assert!(faults.to_string().contains("rod.json:1:"), "{faults}");
 }
 
-/// What is told of a body: boundary modes by number, and frequencies beside the full ones.
+/// What `explain` prints of a body: boundary modes by number, and frequencies beside the full ones.
 #[test]
 fn the_origin_of_coordinates_is_told() {
     let problem = parsed(&pendulum("modal", modal(json!({"clamped": "start"}))));

@@ -47,7 +47,7 @@ fn portal() -> Value {
     })
 }
 
-/// A fault: what stands where in the file, and what is told of it.
+/// A fault: the place in the file, the value put there, and the message in two parts.
 type Case = (&'static str, Value, &'static str, &'static str);
 
 /// Replaces the value at a pointer, or takes its key away if the value is null.
