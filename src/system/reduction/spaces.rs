@@ -7,6 +7,8 @@ use crate::model::finite::{DISPLACEMENTS, FiniteElements};
 
 /// What couples in-plane and out-of-plane unknowns of a flat shell, beside the largest entry.
 const FLAT: f64 = 1e-12;
+/// A vector whose part of one kind is smaller, beside the whole, has none of it.
+const ROUND_OFF: f64 = 1e-7;
 
 /// The unknowns that bend a flat shell, if the others stretch it alone; `None` of other shells.
 fn bending_unknowns(shells: &FiniteElements<f64>) -> Option<Vec<bool>> {
@@ -103,8 +105,14 @@ impl Spaces {
 
     pub(super) fn add(&mut self, matrices: &Matrices, x: &[f64]) {
         let (bending, membrane) = self.parts(x);
-        self.bending.add(matrices, bending);
-        if let Some(membrane) = membrane {
+        let size = |x: &[f64]| dot(&matrices.heavy(x), x);
+        let noise = ROUND_OFF * ROUND_OFF * size(x);
+        if size(&bending) > noise {
+            self.bending.add(matrices, bending);
+        }
+        if let Some(membrane) = membrane
+            && size(&membrane) > noise
+        {
             self.membrane.add(matrices, membrane);
         }
     }
@@ -120,8 +128,11 @@ impl Spaces {
         list: Vec<Vec<f64>>,
         tolerance: f64,
     ) {
+        let energy = |x: &[f64]| dot(&matrices.stiff(x), x);
         let mut kinds = [Vec::new(), Vec::new()];
+        let mut noise = 0.0_f64;
         for x in list {
+            noise = noise.max(ROUND_OFF * ROUND_OFF * energy(&x));
             let (bending, membrane) = self.parts(&x);
             kinds[0].push(bending);
             kinds[1].extend(membrane);
@@ -130,9 +141,8 @@ impl Spaces {
             .into_iter()
             .zip([&mut self.bending, &mut self.membrane])
         {
-            let energy = |x: &[f64]| dot(&matrices.stiff(x), x);
             let most = own.iter().map(|x| energy(x)).fold(0.0, f64::max);
-            if most <= 0.0 {
+            if most <= noise {
                 continue;
             }
             let rest = own.into_iter().map(|mut x| {
