@@ -8,6 +8,7 @@ mod workspace;
 
 use crate::functions::Scene;
 use crate::integrate::{IntegrationFailure, Tape, Trajectory, WorkCounts};
+use crate::system::flexible;
 
 /// Gradients and the work of computing them.
 #[derive(Clone, Debug)]
@@ -31,6 +32,9 @@ pub(crate) fn gradients(
 ) -> Result<AdjointRun, IntegrationFailure> {
     match &run.tape {
         Tape::Explicit(tape) => explicit::gradients(scene, run, tape, which),
+        Tape::Implicit(tape) if flexible::is_divided(&scene.model) => {
+            rayon::scope(|_| implicit::gradients(scene, run, tape, which))
+        }
         Tape::Implicit(tape) => implicit::gradients(scene, run, tape, which),
     }
 }

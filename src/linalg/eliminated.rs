@@ -1,7 +1,7 @@
 //! Factors of a front of a multifrontal elimination. Its pivots are eliminated by panels with a search among
 //! their own rows (Golub & Van Loan 2013, section 3.4).
 
-use super::fronts::{Child, Front};
+use super::front::{Child, Front, System};
 use super::scaling::size;
 use super::sparse_lu::SolveScalar;
 use faer::linalg::matmul::matmul;
@@ -10,6 +10,8 @@ use faer::{Accum, MatMut, MatRef, Par};
 
 /// Columns of a front that are eliminated together.
 const PANEL: usize = 16;
+/// Columns of a triangle that a solution takes together.
+const TOGETHER: usize = 4;
 
 /// Factors of a front of order f with p pivots, by columns.
 pub(super) struct Eliminated<S> {
@@ -185,7 +187,23 @@ impl<S: SolveScalar> Eliminated<S> {
         Ok(())
     }
 
-    pub(super) fn forward(&self, front: &Front, x: &mut [S], beside: &mut [S]) {
+    /// The forward substitution of a front in the unknowns x; `beside` is workspace.
+    pub(super) fn forward(&self, system: System, front: &Front, x: &mut [S], beside: &mut [S]) {
+        match system {
+            System::Plain => self.forward_plain(front, x, beside),
+            System::Transposed => self.forward_transposed(front, x),
+        }
+    }
+
+    /// The backward substitution of a front.
+    pub(super) fn backward(&self, system: System, front: &Front, x: &mut [S], beside: &mut [S]) {
+        match system {
+            System::Plain => self.backward_plain(front, x, beside),
+            System::Transposed => self.backward_transposed(front, x, beside),
+        }
+    }
+
+    fn forward_plain(&self, front: &Front, x: &mut [S], beside: &mut [S]) {
         let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
         for (k, &other) in self.exchanges.iter().enumerate() {
             x.swap(start + k, start + other as usize);
@@ -195,9 +213,15 @@ impl<S: SolveScalar> Eliminated<S> {
             *own = x[i];
         }
         let own = &mut x[start..start + p];
-        for (k, column) in self.left.chunks_exact(order.max(1)).enumerate() {
-            let factor = own[k];
-            subtract(&mut own[k + 1..], &column[k + 1..p], factor);
+        for from in (0..p).step_by(TOGETHER) {
+            let to = (from + TOGETHER).min(p);
+            for k in from..to {
+                let (column, factor) = (&self.left[k * order..], own[k]);
+                subtract(&mut own[k + 1..to], &column[k + 1..to], factor);
+            }
+            let (known, later) = own.split_at_mut(to);
+            let columns = (&self.left[from * order + to..], order);
+            subtract_columns(later, columns, &known[from..]);
         }
         if p > 0 {
             subtract_columns(beside, (&self.left[p..], order), own);
@@ -207,7 +231,7 @@ impl<S: SolveScalar> Eliminated<S> {
         }
     }
 
-    pub(super) fn backward(&self, front: &Front, x: &mut [S], beside: &mut [S]) {
+    fn backward_plain(&self, front: &Front, x: &mut [S], beside: &mut [S]) {
         let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
         let beside = &mut beside[..front.rest.len()];
         for (own, &i) in beside.iter_mut().zip(&front.rest) {
@@ -215,15 +239,21 @@ impl<S: SolveScalar> Eliminated<S> {
         }
         let own = &mut x[start..start + p];
         subtract_columns(own, (&self.upper, p), beside);
-        for k in (0..p).rev() {
-            let column = &self.left[k * order..][..order];
-            let factor = own[k] / column[k];
-            own[k] = factor;
-            subtract(&mut own[..k], column, factor);
+        for from in (0..p).step_by(TOGETHER).rev() {
+            let to = (from + TOGETHER).min(p);
+            for k in (from..to).rev() {
+                let column = &self.left[k * order..][..order];
+                let factor = own[k] / column[k];
+                own[k] = factor;
+                subtract(&mut own[from..k], &column[from..k], factor);
+            }
+            let (earlier, known) = own.split_at_mut(from);
+            let columns = (&self.left[from * order..], order);
+            subtract_columns(earlier, columns, &known[..to - from]);
         }
     }
 
-    pub(super) fn forward_transposed(&self, front: &Front, x: &mut [S], _: &mut [S]) {
+    fn forward_transposed(&self, front: &Front, x: &mut [S]) {
         let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
         let own = &mut x[start..start + p];
         for k in 0..p {
@@ -235,7 +265,7 @@ impl<S: SolveScalar> Eliminated<S> {
         }
     }
 
-    pub(super) fn backward_transposed(&self, front: &Front, x: &mut [S], beside: &mut [S]) {
+    fn backward_transposed(&self, front: &Front, x: &mut [S], beside: &mut [S]) {
         let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
         let beside = &mut beside[..front.rest.len()];
         for (own, &i) in beside.iter_mut().zip(&front.rest) {

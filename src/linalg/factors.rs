@@ -1,9 +1,12 @@
 //! Factors of a sparse matrix: by searched pivots, or by pivots that its pattern knows.
 
+use super::front::System;
+use super::matrix::SparseMatrix;
 use super::multifrontal::Multifrontal;
-use super::pattern::{Pattern, SparseMatrix};
+use super::pattern::Pattern;
 use super::scaling::size;
 use super::sparse_lu::{PivotedLu, Pivots, SingularMatrix, SolveScalar};
+use std::mem::take;
 use std::sync::Arc;
 
 /// Number of steps of iterative refinement of a transposed solution.
@@ -19,8 +22,15 @@ const NEGLIGIBLE: f64 = 1e-12;
 /// LU factors of a sparse matrix.
 pub(crate) struct SparseLu<S> {
     kind: Kind<S>,
-    /// Right-hand side and correction of a refined solution.
-    refined: [Vec<S>; 2],
+    refined: Refined<S>,
+}
+
+/// Workspace of refined solutions.
+struct Refined<S> {
+    rhs: Vec<Vec<S>>,
+    corrections: Vec<Vec<S>>,
+    /// Which need no further correction.
+    done: Vec<bool>,
 }
 
 /// How the matrix is eliminated.
@@ -34,13 +44,16 @@ enum Kind<S> {
 impl<S: SolveScalar> SparseLu<S> {
     /// Analyses a pattern.
     pub(crate) fn new(pattern: &Pattern) -> Self {
-        let n = pattern.order();
         Self {
             kind: match pattern.known_pivots() {
                 Some(known) => Kind::Fronts(Box::new(Multifrontal::new(pattern, known))),
                 None => Kind::Pivoted(Box::new(PivotedLu::new(pattern))),
             },
-            refined: [vec![S::zero(); n], vec![S::zero(); n]],
+            refined: Refined {
+                rhs: Vec::new(),
+                corrections: Vec::new(),
+                done: Vec::new(),
+            },
         }
     }
 
@@ -89,7 +102,7 @@ impl<S: SolveScalar> SparseLu<S> {
     pub(crate) fn solve(&mut self, b: &mut [S]) {
         match &mut self.kind {
             Kind::Pivoted(own) => own.solve(b),
-            Kind::Fronts(own) => own.solve(b),
+            Kind::Fronts(own) => own.solve(System::Plain, &mut [b]),
         }
     }
 
@@ -97,10 +110,11 @@ impl<S: SolveScalar> SparseLu<S> {
     ///
     /// # Panics
     /// No matrix has been factorised.
-    pub(crate) fn solve_transposed(&mut self, b: &mut [S]) {
+    #[cfg(test)]
+    pub fn solve_transposed(&mut self, b: &mut [S]) {
         match &mut self.kind {
             Kind::Pivoted(own) => own.solve_transposed(b),
-            Kind::Fronts(own) => own.solve_transposed(b),
+            Kind::Fronts(own) => own.solve(System::Transposed, &mut [b]),
         }
     }
 
@@ -116,38 +130,67 @@ impl<S: SolveScalar> SparseLu<S> {
         }
     }
 
-    /// Solves Aᵀ x = b in place for the matrix A that was factorised last, with two steps of
+    /// Solves Aᵀ x = b in place, for several b and the matrix A that was factorised last, with two steps of
     /// iterative refinement. The backward error of each equation is then small for any growth of
     /// the pivots (Skeel 1980). Of matrices with known pivots, which are large, the second step is left
     /// out if the first one shows that it would change round-off alone. Returns the number of solves.
-    ///
-    /// # Panics
-    /// No matrix has been factorised.
-    pub(crate) fn solve_transposed_refined(
+    pub(crate) fn solve_transposed_refined<T: AsRef<[S]> + AsMut<[S]>>(
         &mut self,
         matrix: &SparseMatrix<S>,
-        b: &mut [S],
+        b: &mut [T],
     ) -> usize {
-        let [mut rhs, mut correction] = std::mem::take(&mut self.refined);
-        rhs.copy_from_slice(b);
-        self.solve_transposed(b);
-        let mut solves = 1;
-        while solves < REFINED_SOLVES {
-            matrix.multiply_transposed(b, &mut correction);
-            for (r, &b) in correction.iter_mut().zip(&rhs) {
-                *r = b - *r;
+        let own = &mut self.refined;
+        let (mut rhs, mut corrections) = (take(&mut own.rhs), take(&mut own.corrections));
+        let (mut done, n) = (take(&mut own.done), matrix.pattern.order());
+        for all in [&mut rhs, &mut corrections] {
+            all.resize_with(b.len(), || vec![S::zero(); n]);
+        }
+        done.clear();
+        done.resize(b.len(), false);
+        for (rhs, b) in rhs.iter_mut().zip(&*b) {
+            rhs.copy_from_slice(&b.as_ref()[..n]);
+        }
+        let known = matches!(self.kind, Kind::Fronts(_));
+        self.solve_all_transposed(n, b);
+        let mut solves = b.len();
+        for _ in 0..REFINEMENTS {
+            for ((correction, rhs), b) in corrections.iter_mut().zip(&rhs).zip(&*b) {
+                matrix.multiply_transposed(b.as_ref(), correction);
+                for (r, &b) in correction.iter_mut().zip(rhs) {
+                    *r = b - *r;
+                }
             }
-            self.solve_transposed(&mut correction);
-            for (x, d) in b.iter_mut().zip(&correction) {
-                *x += *d;
+            self.solve_all_transposed(n, &mut corrections);
+            let all = corrections.iter().zip(&mut *b).zip(&mut done);
+            for ((correction, b), done) in all.filter(|(_, done)| !**done) {
+                let b = &mut b.as_mut()[..n];
+                for (x, d) in b.iter_mut().zip(correction) {
+                    *x += *d;
+                }
+                solves += 1;
+                *done = known && is_last(b, correction);
             }
-            solves += 1;
-            if matches!(self.kind, Kind::Fronts(_)) && is_last(b, &correction) {
+            if done.iter().all(|&done| done) {
                 break;
             }
         }
-        self.refined = [rhs, correction];
+        self.refined = Refined {
+            rhs,
+            corrections,
+            done,
+        };
         solves
+    }
+
+    /// Solves Aᵀ x = b in place for the first n entries of several b.
+    fn solve_all_transposed<T: AsMut<[S]>>(&mut self, n: usize, b: &mut [T]) {
+        match &mut self.kind {
+            Kind::Pivoted(own) => {
+                let all = b.iter_mut();
+                all.for_each(|b| own.solve_transposed(&mut b.as_mut()[..n]));
+            }
+            Kind::Fronts(own) => own.solve(System::Transposed, b),
+        }
     }
 }
 

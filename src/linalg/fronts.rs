@@ -1,92 +1,30 @@
 //! The analysis of a multifrontal elimination: which pivots are eliminated together, and where the entries
 //! of the matrix go (Duff & Reid 1983).
 
+use super::branches::{Branch, divide, postorder};
+use super::front::{Child, Front, Short};
 use super::pattern::{KnownPivots, Pattern};
 
 /// Columns by which a front may exceed what its pivots need, and the part of its size.
 const EXCESS: usize = 12;
 const EXCESS_PART: usize = 8;
 
-/// A short row that is eliminated first: its pivot, the other entries of its column and of its row.
-pub(super) struct Short {
-    pub row: usize,
-    pub column: usize,
-    /// Slot of the pivot.
-    pub pivot: usize,
-    /// (row, slot).
-    pub below: Vec<[u32; 2]>,
-    /// (column, slot).
-    pub beside: Vec<[u32; 2]>,
-}
-
-/// A front: a dense matrix of pivots and of what they touch.
-pub(super) struct Front {
-    /// Its pivots among the unknowns.
-    pub pivots: std::ops::Range<usize>,
-    /// The later unknowns that it touches, in order.
-    pub rest: Vec<usize>,
-    /// Fronts whose remainders are added.
-    pub children: Vec<Child>,
-    /// Slots of entries of the matrix, and their places in the front.
-    pub entries: Vec<(u32, u32)>,
-    /// Products of short rows: number, slot below, slot beside, place.
-    pub products: Vec<[u32; 4]>,
-}
-
-/// A front whose remainder is added to another.
-pub(super) struct Child {
-    pub front: usize,
-    /// Where its unknowns stand in the other front, ascending.
-    pub places: Vec<u32>,
-    /// Number of those that are pivots there.
-    pub pivots: usize,
-}
-
-impl Front {
-    /// Order of the front.
-    pub(super) fn order(&self) -> usize {
-        self.pivots.len() + self.rest.len()
-    }
-
-    /// Number of entries in the columns of the pivots, and in the other columns of their rows.
-    pub(super) fn sizes(&self) -> (usize, usize) {
-        let (p, r) = (self.pivots.len(), self.rest.len());
-        (p * (p + r), p * r)
-    }
-
-    fn number(&self, unknown: usize) -> usize {
-        match self.pivots.contains(&unknown) {
-            true => unknown - self.pivots.start,
-            false => {
-                let found = self.rest.binary_search(&unknown);
-                self.pivots.len() + found.expect("a front has all that its pivots touch")
-            }
-        }
-    }
-
-    /// Where an entry stands among the columns of the pivots, then the other columns of their rows, then
-    /// the remainder.
-    fn place(&self, row: usize, column: usize) -> usize {
-        let (row, column) = (self.number(row), self.number(column));
-        let (p, r) = (self.pivots.len(), self.rest.len());
-        let (left, upper) = self.sizes();
-        match (column < p, row < p) {
-            (true, _) => column * (p + r) + row,
-            (false, true) => left + (column - p) * p + row,
-            (false, false) => left + upper + (column - p) * r + row - p,
-        }
-    }
-}
-
 /// The plan of an elimination. Unknowns are numbered: known pivots in their order, then the others, which
 /// the last front has all.
 pub(super) struct Plan {
     pub short: Vec<Short>,
+    /// All entries beside short pivots: the number of the short row, and the slot.
+    pub beside: Vec<[u32; 2]>,
     /// Row and column of each unknown.
     pub rows: Vec<usize>,
     pub columns: Vec<usize>,
-    /// Fronts, children before parents.
+    /// Fronts, children before parents, each after its subtree.
     pub fronts: Vec<Front>,
+    /// Parts of the fronts that are eliminated side by side, ascending.
+    pub branches: Vec<Branch>,
+    /// The other fronts, and the short rows beside the branches.
+    pub trunk: Vec<usize>,
+    pub trunk_short: Vec<usize>,
 }
 
 impl Plan {
@@ -119,6 +57,7 @@ impl Plan {
                 row,
                 column,
                 pivot: usize::MAX,
+                first: usize::MAX,
                 below: Vec::new(),
                 beside: Vec::new(),
             })
@@ -136,7 +75,7 @@ impl Plan {
                         short[r].pivot = slot;
                     }
                     (true, false) => short[r].beside.push([column, slot].map(|x| x as u32)),
-                    (false, true) => short[c].below.push([row, slot].map(|x| x as u32)),
+                    (false, true) => short[c].below.push([row_of[row], slot].map(|x| x as u32)),
                     (false, false) => entries.push((row_of[row], column_of[column], slot)),
                 }
             }
@@ -146,7 +85,7 @@ impl Plan {
             for own in &short {
                 for &[row, _] in &own.below {
                     for &[column, _] in &own.beside {
-                        f(row_of[row as usize], column_of[column as usize]);
+                        f(row as usize, column_of[column as usize]);
                     }
                 }
             }
@@ -163,6 +102,14 @@ impl Plan {
                 }
             }
         });
+        let order = postorder(&later);
+        if !order.is_sorted() {
+            let again = KnownPivots {
+                short: known.short.clone(),
+                inner: order.iter().map(|&k| known.inner[k]).collect(),
+            };
+            return Self::new(pattern, &again);
+        }
         let mut fronts = fronts(later, rows.len());
         let mut front_of = vec![fronts.len() - 1; rows.len()];
         for (k, front) in fronts.iter().enumerate() {
@@ -170,24 +117,53 @@ impl Plan {
         }
         for (r, c, slot) in &entries {
             let front = &mut fronts[front_of[*r.min(c)]];
-            let place = front.place(*r, *c);
-            front.entries.push((*slot as u32, place as u32));
+            let (part, place) = front.place(*r, *c);
+            front.entries[part].push([*slot as u32, place]);
         }
+        let mut beside = Vec::new();
         for (k, own) in short.iter().enumerate() {
-            for &[row, below] in &own.below {
-                for &[column, beside] in &own.beside {
-                    let (r, c) = (row_of[row as usize], column_of[column as usize]);
+            for &[column, slot] in &own.beside {
+                let number = beside.len() as u32;
+                beside.push([k as u32, slot]);
+                for &[row, below] in &own.below {
+                    let (r, c) = (row as usize, column_of[column as usize]);
                     let front = &mut fronts[front_of[r.min(c)]];
-                    let place = front.place(r, c) as u32;
-                    front.products.push([k as u32, below, beside, place]);
+                    let (part, place) = front.place(r, c);
+                    front.products[part].push([below, number, place]);
                 }
             }
         }
+        for front in &mut fronts {
+            front.entries.iter_mut().for_each(Vec::shrink_to_fit);
+            front.products.iter_mut().for_each(Vec::shrink_to_fit);
+        }
+        for own in &mut short {
+            own.below.shrink_to_fit();
+            let columns = own
+                .beside
+                .iter()
+                .map(|&[column, _]| column_of[column as usize]);
+            let first = columns.min();
+            own.first = first.unwrap_or(rows.len());
+        }
+        let branches = divide(&mut fronts, &mut short);
+        let in_trunk = |k: &usize| !branches.iter().any(|own| own.fronts.contains(k));
+        let trunk = (0..fronts.len()).filter(in_trunk).collect();
+        let in_trunk = |k: &usize| {
+            !branches
+                .iter()
+                .any(|own| own.own.contains(&short[*k].first))
+        };
+        let trunk_short = (0..short.len()).filter(in_trunk).collect();
         Self {
             short,
+            beside,
             rows,
             columns,
             fronts,
+            branches,
+            trunk,
+            trunk_short,
         }
     }
 }
@@ -229,8 +205,8 @@ fn fronts(mut later: Vec<Vec<usize>>, count: usize) -> Vec<Front> {
             pivots: start..end,
             rest: later[end - 1].clone(),
             children: Vec::new(),
-            entries: Vec::new(),
-            products: Vec::new(),
+            entries: Default::default(),
+            products: Default::default(),
         });
         start = end;
     }
@@ -238,8 +214,8 @@ fn fronts(mut later: Vec<Vec<usize>>, count: usize) -> Vec<Front> {
         pivots: inner..count,
         rest: Vec::new(),
         children: Vec::new(),
-        entries: Vec::new(),
-        products: Vec::new(),
+        entries: Default::default(),
+        products: Default::default(),
     });
     let last = all.len() - 1;
     for k in 0..last {

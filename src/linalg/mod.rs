@@ -1,16 +1,21 @@
 //! Sparse linear algebra: static patterns, LU and Cholesky factorisation.
 
+mod branches;
 pub(crate) mod cholesky;
 mod eliminated;
 mod factors;
+mod front;
 mod fronts;
 pub(crate) mod gmres;
+mod matrix;
 mod multifrontal;
 pub(crate) mod pattern;
 mod replay;
 mod scaling;
 pub(crate) mod sparse_lu;
+mod substitution;
 
 pub(crate) use factors::{REFINED_SOLVES, SparseLu};
-pub(crate) use pattern::{Emit, KnownPivots, Pattern, SparseMatrix};
+pub(crate) use matrix::SparseMatrix;
+pub(crate) use pattern::{Emit, KnownPivots, Pattern};
 pub(crate) use sparse_lu::{Pivots, SingularMatrix, SolveScalar};

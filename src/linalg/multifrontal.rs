@@ -4,27 +4,120 @@
 //! Each front is a dense matrix. Its pivots are eliminated with a search among their own rows; the rest goes
 //! to the parent (Duff & Reid 1983).
 
+use super::branches::work;
 use super::eliminated::{Eliminated, usable};
 use super::fronts::Plan;
-use super::pattern::{KnownPivots, Pattern, SparseMatrix};
+use super::matrix::SparseMatrix;
+use super::pattern::{KnownPivots, Pattern};
 use super::scaling::{Equilibration, size};
 use super::sparse_lu::{SingularMatrix, SolveScalar};
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// The elimination of matrices of one pattern.
 pub(super) struct Multifrontal<S> {
-    plan: Plan,
-    scaling: Equilibration,
-    scaled: Vec<S>,
+    pub(super) plan: Plan,
+    pub(super) scaling: Equilibration,
+    /// The entries of the scaled matrix.
+    pub(super) scaled: Vec<S>,
     /// Inverse pivots of the short rows.
-    inverse: Vec<S>,
-    done: Vec<Eliminated<S>>,
-    /// Remainders of the fronts, and memory of remainders that are used up.
-    remainders: Vec<Vec<S>>,
-    free: Vec<Vec<S>>,
-    /// Right-hand sides: of the unknowns, of the short rows, and of what a front touches.
-    inside: Vec<S>,
-    of_short: Vec<S>,
+    pub(super) inverse: Vec<S>,
+    /// Entries beside short pivots by the pivots.
     beside: Vec<S>,
+    pub(super) done: Vec<Eliminated<S>>,
+    /// Remainders of the fronts.
+    remainders: Vec<Vec<S>>,
+    /// Workspace of the branches, and of the trunk.
+    pub(super) of_branches: Vec<Workspace<S>>,
+    pub(super) of_trunk: Workspace<S>,
+}
+
+/// Workspace of a branch or of the trunk.
+pub(super) struct Workspace<S> {
+    /// Memory of remainders that are used up.
+    free: Vec<Vec<S>>,
+    /// Right-hand sides of the unknowns and of the short rows.
+    pub(super) x: Vec<Vec<S>>,
+    pub(super) short: Vec<Vec<S>>,
+    /// Part of a right-hand side that a front touches.
+    pub(super) beside: Vec<S>,
+}
+
+/// What the eliminations of all fronts read.
+struct Shared<'a, S> {
+    plan: &'a Plan,
+    scaled: &'a [S],
+    beside: &'a [S],
+}
+
+/// The parts of a slice in some ranges, ascending.
+fn parts<T>(mut all: &mut [T], ranges: impl Iterator<Item = Range<usize>>) -> Vec<&mut [T]> {
+    let (mut out, mut at) = (Vec::new(), 0);
+    for range in ranges {
+        let (_, rest) = all.split_at_mut(range.start - at);
+        let (own, rest) = rest.split_at_mut(range.len());
+        out.push(own);
+        (all, at) = (rest, range.end);
+    }
+    out
+}
+
+impl<S: SolveScalar> Shared<'_, S> {
+    /// Eliminates the pivots of front k; `done` and `remainders` are those of the fronts from `first` on. `last` is
+    /// the last front of a branch, whose remainder stays where it is.
+    fn eliminate(
+        &self,
+        (k, first): (usize, usize),
+        (done, remainders): (&mut [Eliminated<S>], &mut [Vec<S>]),
+        free: &mut Vec<Vec<S>>,
+    ) -> Result<(), SingularMatrix> {
+        let front = &self.plan.fronts[k];
+        let done = &mut done[k - first];
+        let ends = |k: usize| self.plan.branches.iter().any(|own| own.fronts.end == k + 1);
+        let mut rest = match ends(k) {
+            true => std::mem::take(&mut remainders[k - first]),
+            false => free.pop().unwrap_or_default(),
+        };
+        rest.clear();
+        rest.resize(front.rest.len().pow(2), S::zero());
+        done.left.fill(S::zero());
+        done.upper.fill(S::zero());
+        let parts = [&mut done.left[..], &mut done.upper[..], &mut rest[..]];
+        for ((part, entries), products) in
+            (parts.into_iter().zip(&front.entries)).zip(&front.products)
+        {
+            for &[slot, place] in entries {
+                part[place as usize] += self.scaled[slot as usize];
+            }
+            for &[below, beside, place] in products {
+                let by = self.scaled[below as usize] * self.beside[beside as usize];
+                part[place as usize] -= by;
+            }
+        }
+        for child in &front.children {
+            let own = &mut remainders[child.front - first];
+            done.extend(&mut rest, front, child, own);
+            if !ends(child.front) {
+                free.push(std::mem::take(own));
+            }
+        }
+        done.eliminate(&mut rest, front)
+            .map_err(|pivot| self.singular(k, front.pivots.start + pivot))?;
+        remainders[k - first] = rest;
+        Ok(())
+    }
+
+    fn singular(&self, front: usize, pivot: usize) -> SingularMatrix {
+        let branch = self
+            .plan
+            .branches
+            .iter()
+            .find(|own| own.fronts.contains(&front));
+        let unknown = pivot + branch.map_or(0, |branch| branch.own.start);
+        SingularMatrix {
+            column: self.plan.columns[unknown],
+        }
+    }
 }
 
 impl<S: SolveScalar> Multifrontal<S> {
@@ -32,16 +125,21 @@ impl<S: SolveScalar> Multifrontal<S> {
         let plan = Plan::new(pattern, known);
         let widths = plan.fronts.iter().map(|front| front.rest.len());
         let widest = widths.max().unwrap_or(0);
+        let space = || Workspace {
+            free: Vec::new(),
+            x: Vec::new(),
+            short: Vec::new(),
+            beside: vec![S::zero(); widest],
+        };
         Self {
             scaling: Equilibration::new(pattern),
             scaled: vec![S::zero(); pattern.entries()],
             inverse: vec![S::zero(); plan.short.len()],
+            beside: vec![S::zero(); plan.beside.len()],
             done: plan.fronts.iter().map(Eliminated::new).collect(),
             remainders: plan.fronts.iter().map(|_| Vec::new()).collect(),
-            free: Vec::new(),
-            beside: vec![S::zero(); widest],
-            inside: vec![S::zero(); plan.rows.len()],
-            of_short: vec![S::zero(); plan.short.len()],
+            of_branches: plan.branches.iter().map(|_| space()).collect(),
+            of_trunk: space(),
             plan,
         }
     }
@@ -60,41 +158,34 @@ impl<S: SolveScalar> Multifrontal<S> {
             }
             *inverse = S::one() / pivot;
         }
-        for (k, front) in plan.fronts.iter().enumerate() {
-            let done = &mut self.done[k];
-            let mut rest = self.free.pop().unwrap_or_default();
-            rest.clear();
-            rest.resize(front.rest.len().pow(2), S::zero());
-            done.left.fill(S::zero());
-            done.upper.fill(S::zero());
-            let (left, upper) = front.sizes();
-            let mut add = |place: u32, x: S| {
-                let place = place as usize;
-                if place < left {
-                    done.left[place] += x;
-                } else if place < left + upper {
-                    done.upper[place - left] += x;
-                } else {
-                    rest[place - left - upper] += x;
-                }
-            };
-            for &(slot, place) in &front.entries {
-                add(place, self.scaled[slot as usize]);
-            }
-            for &[k, below, beside, place] in &front.products {
-                let by = self.scaled[below as usize] * self.scaled[beside as usize];
-                add(place, -(by * self.inverse[k as usize]));
-            }
-            for child in &front.children {
-                let own = std::mem::take(&mut self.remainders[child.front]);
-                done.extend(&mut rest, front, child, &own);
-                self.free.push(own);
-            }
-            done.eliminate(&mut rest, front)
-                .map_err(|pivot| SingularMatrix {
-                    column: plan.columns[front.pivots.start + pivot],
-                })?;
-            self.remainders[k] = rest;
+        for (by, &[k, slot]) in self.beside.iter_mut().zip(&plan.beside) {
+            *by = self.scaled[slot as usize] * self.inverse[k as usize];
+        }
+        let shared = Shared {
+            plan,
+            scaled: &self.scaled,
+            beside: &self.beside,
+        };
+        if !plan.branches.is_empty() {
+            let ranges = || plan.branches.iter().map(|branch| branch.fronts.clone());
+            let done = parts(&mut self.done, ranges());
+            let remainders = parts(&mut self.remainders, ranges());
+            let pieces =
+                (plan.branches.par_iter().zip(done).zip(remainders)).zip(&mut self.of_branches);
+            let eliminated = pieces.map(|(((branch, done), remainders), space)| {
+                let first = branch.fronts.start;
+                (branch.fronts.clone()).try_for_each(|k| {
+                    let own = (&mut *done, &mut *remainders);
+                    shared.eliminate((k, first), own, &mut space.free)
+                })
+            });
+            let all: Vec<Result<(), SingularMatrix>> = eliminated.collect();
+            all.into_iter().collect::<Result<(), SingularMatrix>>()?;
+        }
+        let free = &mut self.of_trunk.free;
+        for &k in &plan.trunk {
+            let own = (&mut self.done[..], &mut self.remainders[..]);
+            shared.eliminate((k, 0), own, free)?;
         }
         Ok(())
     }
@@ -106,8 +197,7 @@ impl<S: SolveScalar> Multifrontal<S> {
             .iter()
             .fold((0, 0), |(entries, all), front| {
                 let (p, r) = (front.pivots.len(), front.rest.len());
-                let work = p * p * p * 2 / 3 + 2 * p * p * r + 2 * p * r * r;
-                (entries + p * (p + 2 * r), all + work)
+                (entries + p * (p + 2 * r), all + work(front))
             })
     }
 
@@ -123,100 +213,13 @@ impl<S: SolveScalar> Multifrontal<S> {
         let later = all.filter(|(_, column)| *column >= first);
         later.fold(none, |least, own| if own.0 < least.0 { own } else { least })
     }
-
-    pub(super) fn solve(&mut self, b: &mut [S]) {
-        let Self {
-            plan,
-            scaled,
-            inverse,
-            inside,
-            of_short,
-            scaling,
-            done,
-            beside,
-            ..
-        } = self;
-        scale(b, &scaling.rows);
-        for ((t, own), &inverse) in of_short.iter_mut().zip(&plan.short).zip(&*inverse) {
-            *t = b[own.row] * inverse;
-            for &[row, slot] in &own.below {
-                b[row as usize] -= scaled[slot as usize] * *t;
-            }
-        }
-        for (x, &row) in inside.iter_mut().zip(&plan.rows) {
-            *x = b[row];
-        }
-        for (front, done) in plan.fronts.iter().zip(&*done) {
-            done.forward(front, inside, beside);
-        }
-        for (front, done) in plan.fronts.iter().zip(&*done).rev() {
-            done.backward(front, inside, beside);
-        }
-        for (&x, &column) in inside.iter().zip(&plan.columns) {
-            b[column] = x;
-        }
-        for ((&t, own), &inverse) in of_short.iter().zip(&plan.short).zip(&*inverse) {
-            let beside = own.beside.iter();
-            let sum = beside.fold(S::zero(), |sum, &[column, slot]| {
-                sum + scaled[slot as usize] * b[column as usize]
-            });
-            b[own.column] = t - sum * inverse;
-        }
-        scale(b, &scaling.columns);
-    }
-
-    pub(super) fn solve_transposed(&mut self, b: &mut [S]) {
-        let Self {
-            plan,
-            scaled,
-            inverse,
-            inside,
-            of_short,
-            scaling,
-            done,
-            beside,
-            ..
-        } = self;
-        scale(b, &scaling.columns);
-        for ((t, own), &inverse) in of_short.iter_mut().zip(&plan.short).zip(&*inverse) {
-            *t = b[own.column] * inverse;
-            for &[column, slot] in &own.beside {
-                b[column as usize] -= scaled[slot as usize] * *t;
-            }
-        }
-        for (x, &column) in inside.iter_mut().zip(&plan.columns) {
-            *x = b[column];
-        }
-        for (front, done) in plan.fronts.iter().zip(&*done) {
-            done.forward_transposed(front, inside, beside);
-        }
-        for (front, done) in plan.fronts.iter().zip(&*done).rev() {
-            done.backward_transposed(front, inside, beside);
-        }
-        for (&x, &row) in inside.iter().zip(&plan.rows) {
-            b[row] = x;
-        }
-        for ((&t, own), &inverse) in of_short.iter().zip(&plan.short).zip(&*inverse) {
-            let below = own.below.iter();
-            let sum = below.fold(S::zero(), |sum, &[row, slot]| {
-                sum + scaled[slot as usize] * b[row as usize]
-            });
-            b[own.row] = t - sum * inverse;
-        }
-        scale(b, &scaling.rows);
-    }
-}
-
-fn scale<S: SolveScalar>(b: &mut [S], by: &[f64]) {
-    for (b, &by) in b.iter_mut().zip(by) {
-        *b = *b * by;
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::factors::SparseLu;
-    use super::super::pattern::{Emit, KnownPivots, Pattern, SparseMatrix};
+    use super::super::matrix::SparseMatrix;
+    use super::super::pattern::{Emit, KnownPivots, Pattern};
     use crate::math::Complex64;
     use nalgebra::{DMatrix, DVector};
 

@@ -5,7 +5,8 @@
 //! (left-looking, Gilbert & Peierls 1988; refactorisation of KLU, Davis & Palamadai Natarajan
 //! 2010). The replay fails if a pivot has become too small.
 
-use super::pattern::{Pattern, SparseMatrix};
+use super::matrix::SparseMatrix;
+use super::pattern::Pattern;
 use super::scaling::{Equilibration, size};
 use crate::math::Scalar;
 use std::cmp::Reverse;

@@ -1,6 +1,7 @@
 //! Scaling of the rows and columns of a matrix before elimination.
 
-use super::pattern::{Pattern, SparseMatrix};
+use super::matrix::SparseMatrix;
+use super::pattern::Pattern;
 use crate::math::Scalar;
 
 /// Largest exponent of a scale, and largest exponent that needs no scale.

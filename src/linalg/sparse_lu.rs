@@ -1,7 +1,8 @@
 //! Sparse LU with partial pivoting: one analysis, many factorisations. faer orders the columns and
 //! chooses the pivots. Only this folder uses faer.
 
-use super::pattern::{Pattern, SparseMatrix};
+use super::matrix::SparseMatrix;
+use super::pattern::Pattern;
 use super::replay::Replay;
 use super::scaling::Equilibration;
 use crate::math::Scalar;

@@ -15,9 +15,10 @@
 //! being those of its unknowns. Damping is that of Rayleigh for small motions, with forces that rigid motions do not
 //! have: −α M_ee q̇ and −β Σ k_p ∇e_p ė_p, e_p all strains.
 
+use super::element_operators::{Columns, Symmetric};
 use super::shapes::{ModalInertia, ModalStiffness};
 use crate::math::{Mat3, Vec3, parameters};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Nodes of an element.
 pub(crate) const NODES: usize = 9;
@@ -31,6 +32,21 @@ pub(crate) const UNKNOWNS: usize = 6 * NODES;
 pub(crate) const STRAINS: usize = 19;
 /// Those with von Karman's term.
 pub(crate) const QUADRATIC: usize = 16;
+/// Those of them whose slopes r_p and s_p are one, which come first.
+pub(crate) const SQUARES: usize = 12;
+/// Slopes of an element: r_p, then the s_p that are others.
+pub(crate) const SLOPES: usize = 2 * QUADRATIC - SQUARES;
+/// Strains or curvatures at its Gauss points, three each.
+pub(crate) const AT_GAUSS_POINTS: usize = 27;
+
+/// Where s_p stands among the slopes.
+pub(crate) fn other_slope(p: usize) -> usize {
+    if p < SQUARES {
+        p
+    } else {
+        p + QUADRATIC - SQUARES
+    }
+}
 
 /// Shells of a flexible body: the mesh, and what a design can change of each element.
 #[derive(Clone, Debug)]
@@ -94,7 +110,7 @@ pub(crate) struct ShellElement {
     pub coordinates: Vec<Option<usize>>,
     /// X_a \[m\], then D_a.
     pub points: [Vec3<f64>; POINTS],
-    /// The point that each unknown moves, and how.
+    /// The point that each unknown moves, and how: displacements along the axes, node by node, then rotations.
     pub moves: Vec<(usize, Vec3<f64>)>,
     /// A_ab \[m²\].
     pub shares: [[f64; NODES]; NODES],
@@ -102,16 +118,27 @@ pub(crate) struct ShellElement {
     pub area: f64,
     /// Σ A_ab X_a X_bᵀ \[m⁴\], and that of the directors \[m²\].
     pub second: [Mat3<f64>; 2],
-    /// b_p.
-    pub membrane: Vec<[f64; DISPLACEMENTS]>,
-    /// r_p and s_p.
-    pub slopes: Vec<[[f64; DISPLACEMENTS]; 2]>,
+    /// b_p of the displacements.
+    pub membrane: Columns<STRAINS>,
+    /// r_p and s_p of the displacements.
+    pub slopes: Columns<SLOPES>,
     /// P for E = h = 1.
     pub plane: [[f64; STRAINS]; STRAINS],
-    /// K_b and K_s for E = h = 1, by rows.
-    pub linear: [Vec<f64>; 2],
+    /// K_b and K_s for E = h = 1.
+    pub linear: [Symmetric; 2],
+    /// What stresses need; made for the first of them.
+    pub stress: OnceLock<Box<StressOperator>>,
     /// Poisson's ratio.
     pub poisson: f64,
     /// Yield stress \[Pa\].
     pub yield_stress: f64,
+}
+
+/// Strains and curvatures at the Gauss points of an element, in the frames there.
+#[derive(Clone, Debug)]
+pub(crate) struct StressOperator {
+    /// Strains of the middle surface by the e_p.
+    pub membrane: Columns<AT_GAUSS_POINTS>,
+    /// Curvatures by the unknowns \[1/m\].
+    pub curvature: Columns<AT_GAUSS_POINTS>,
 }

@@ -6,6 +6,7 @@
 
 pub(crate) mod distributed;
 pub(crate) mod drive;
+pub(crate) mod element_operators;
 pub(crate) mod finite;
 pub(crate) mod flexible;
 pub(crate) mod joint;

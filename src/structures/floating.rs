@@ -8,9 +8,12 @@ use super::state::Configuration;
 use super::structure::Structure;
 use super::supports::{NodeUnknowns, Support};
 use crate::math::{Mat3, Scalar, Vec3};
-use crate::model::finite::{ElementMesh, FiniteElements, NODES, ShellElement};
+use crate::model::element_operators::{Columns, Symmetric};
+use crate::model::finite::{
+    DISPLACEMENTS, ElementMesh, FiniteElements, NODES, QUADRATIC, SQUARES, ShellElement,
+};
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// What holds the axes of a body of shells.
 #[derive(Clone, Debug)]
@@ -159,13 +162,21 @@ fn element(configuration: &Configuration<f64>, index: usize) -> ShellElement {
         coordinates,
         second: [second(&points[..NODES]), second(&points[NODES..])],
         points,
-        moves,
         shares,
         area,
-        membrane: operators.membrane,
-        slopes: operators.slopes,
+        membrane: Columns::of(
+            (0..DISPLACEMENTS).map(|i| std::array::from_fn(|p| operators.membrane[p][i])),
+        ),
+        slopes: Columns::of((0..DISPLACEMENTS).map(|i| {
+            std::array::from_fn(|p| match p < QUADRATIC {
+                true => operators.slopes[p][0][i],
+                false => operators.slopes[p - QUADRATIC + SQUARES][1][i],
+            })
+        })),
         plane: operators.plane,
-        linear: operators.linear,
+        linear: operators.linear.map(|all| Symmetric::of(&all, moves.len())),
+        stress: OnceLock::new(),
+        moves,
         poisson: shell.material.poisson,
         yield_stress: shell.material.yield_stress,
     }

@@ -290,7 +290,7 @@ impl<S: SolveScalar> SaddlePoint<S> {
         self.left_out.clear(&mut rhs[self.numbering.velocities()..]);
         let (factors, matrix) = (&mut self.factors, &self.matrix);
         through(&self.numbering, 1, rhs, |rhs| {
-            factors.solve_transposed_refined(matrix, rhs);
+            factors.solve_transposed_refined(matrix, &mut [rhs]);
         });
     }
 }

@@ -1,6 +1,6 @@
 //! A backward step of a one-stage formula.
 
-use super::sweep::{Pair, Sweep, add, add_state, clear, copy, move_back, pair, rates_of, work};
+use super::sweep::{Pair, Sweep, add, add_state, clear, move_back, pair, rates_of, work};
 use crate::integrate::WorkCounts;
 use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::formula::Formula;
@@ -20,11 +20,11 @@ pub(super) struct BackwardStage<'a> {
     matrix: SparseMatrix<f64>,
     split: SplitMatrix,
     factors: SparseLu<f64>,
-    /// Cotangents of the increment, of the whole stage, and of the rates by the adjoint.
-    increment: Pair,
-    total: Pair,
+    /// By function: the cotangent of the whole stage, and the adjoint.
+    totals: Vec<Pair>,
+    adjoints: Vec<Vec<f64>>,
+    /// Cotangents of the rates by the adjoint, and the derivative of the equations in the state times it.
     own: Pair,
-    psi: Vec<f64>,
     change: Vec<f64>,
 }
 
@@ -41,10 +41,9 @@ impl<'a> BackwardStage<'a> {
             factors: SparseLu::new(&matrix.pattern),
             matrix,
             split,
-            increment: pair(numbering),
-            total: pair(numbering),
+            totals: Vec::new(),
+            adjoints: Vec::new(),
             own: pair(numbering),
-            psi: vec![0.0; length],
             change: vec![0.0; length],
         }
     }
@@ -80,29 +79,32 @@ impl<'a> BackwardStage<'a> {
             .factorise(&self.matrix)
             .map_err(|singular| equations.describe_reduced(singular.column))?;
         counts.factorisations += 1;
-        for sweep in sweeps {
+        let (length, order) = (equations.length(), equations.order());
+        let (totals, adjoints) = (&mut self.totals, &mut self.adjoints);
+        totals.resize_with(sweeps.len(), || pair(numbering));
+        adjoints.resize_with(sweeps.len(), || vec![0.0; length]);
+        for ((sweep, total), psi) in sweeps.iter().zip(&mut *totals).zip(&mut *adjoints) {
             // By the increment Δ: contributions of the rates and the memory.
-            let (by_increment, total) = (&mut self.increment, &mut self.total);
-            clear(by_increment);
-            add(by_increment, c, &sweep.rates);
+            clear(total);
+            add(total, c, &sweep.rates);
             let [memory_q, memory_v] = &sweep.memory;
             for ((f, _), (q, v)) in (formula.memory().iter()).zip(memory_q.iter().zip(memory_v)) {
-                add_scaled(&mut by_increment.0, *f, q);
-                add_scaled(&mut by_increment.1, *f, v);
+                add_scaled(&mut total.0, *f, q);
+                add_scaled(&mut total.1, *f, v);
             }
-            copy(total, by_increment);
             add_state(total, &sweep.of);
-            let (psi, change) = (&mut self.psi, &mut self.change);
             psi.fill(0.0);
             bodies::tangent_of_cotangent(numbering, &stage.q, &total.0, &mut psi[..nv]);
             psi[nv..2 * nv].copy_from_slice(&total.1);
             psi.iter_mut().for_each(|x| *x = -*x);
             equations.scale_columns(h, psi);
             equations.compress(psi);
-            let reduced = &mut psi[..equations.order()];
-            counts.solves += self.factors.solve_transposed_refined(&self.matrix, reduced);
+        }
+        counts.solves += (self.factors).solve_transposed_refined(&self.matrix, adjoints);
+        for ((sweep, total), psi) in sweeps.iter_mut().zip(totals).zip(adjoints) {
+            let (held, change) = (&self.split.held, &mut self.change);
             change.fill(0.0);
-            self.split.held.multiply_transposed(reduced, change);
+            held.multiply_transposed(&psi[..order], &mut change[..order]);
             equations.expand(psi);
             equations.expand(change);
             equations.unscale_columns(h, change);

@@ -34,6 +34,7 @@ use crate::integrate::implicit::solver::starting_stage;
 use crate::integrate::implicit::{Replayer, Stage, Tape};
 use crate::integrate::replay::Replay;
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
+use crate::system::flexible;
 use crate::system::kkt::SaddlePoint;
 use sweep::Sweep;
 
@@ -54,6 +55,7 @@ pub(super) fn gradients(
     let mut sweeps: Vec<Sweep> = which.iter().map(new).collect();
     let mut one = None;
     let mut coupled = None;
+    let shells = flexible::has_shells(model);
     let mut counts = WorkCounts::default();
     let mut replay = Replay::new(tape, run.grid.steps(), || {
         Replayer::new(model, run, &scheme)
@@ -86,10 +88,16 @@ pub(super) fn gradients(
                     &mut sweeps,
                     &mut counts,
                 ),
-            None => coupled
-                .get_or_insert_with(|| radau::BackwardStage::new(model, numbering, &scheme))
-                .leaving_out(run.grid.left_out(k))
-                .step(step, (h, width, end), &mut sweeps, &mut counts),
+            None => {
+                // Matrices of shells are large, and the first steps of a formula are the last ones here.
+                if shells {
+                    one = None;
+                }
+                coupled
+                    .get_or_insert_with(|| radau::BackwardStage::new(model, numbering, &scheme))
+                    .leaving_out(run.grid.left_out(k))
+                    .step(step, (h, width, end), &mut sweeps, &mut counts)
+            }
         };
         found.map_err(|place| IntegrationFailure::Singular {
             time: run.duration * run.grid.ends()[k],
@@ -107,6 +115,7 @@ pub(super) fn gradients(
         counts += again.counts;
     }
     counts.recomputed += replay.again;
+    drop((one, coupled));
     let mut saddle = SaddlePoint::new(model, numbering);
     let start = &start;
     for sweep in &mut sweeps {

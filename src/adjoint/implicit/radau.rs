@@ -21,11 +21,11 @@ pub(super) struct BackwardStage<'a> {
     blocks: Blocks,
     matrix: SparseMatrix<f64>,
     factors: SparseLu<f64>,
-    /// Cotangents of the increments, and of the rates of a stage by its adjoint.
-    by: Vec<Pair>,
+    /// By function: cotangents of the increments, and the adjoint of all stages.
+    by: Vec<Vec<Pair>>,
+    psi: Vec<Vec<f64>>,
+    /// Cotangents of the rates of a stage by its adjoint, and that in velocity numbering.
     own: Pair,
-    /// Adjoint of all stages, and that of one stage in velocity numbering.
-    psi: Vec<f64>,
     part: Vec<f64>,
     /// By stage: derivative of its equations in its state, times the adjoint.
     changes: Vec<Vec<f64>>,
@@ -105,9 +105,9 @@ impl<'a> BackwardStage<'a> {
             blocks,
             factors: SparseLu::new(&pattern),
             matrix: SparseMatrix::new(pattern),
-            by: vec![pair(numbering); count],
+            by: Vec::new(),
+            psi: Vec::new(),
             own: pair(numbering),
-            psi: vec![0.0; order],
             part: vec![0.0; length],
             changes: vec![vec![0.0; length]; count],
         }
@@ -143,8 +143,11 @@ impl<'a> BackwardStage<'a> {
             .map_err(|singular| equations.describe_reduced(singular.column % n))?;
         counts.factorisations += 1;
         let last = stages.len() - 1;
-        let (psi, part, by) = (&mut self.psi, &mut self.part, &mut self.by);
-        for sweep in sweeps {
+        let (order, part) = (self.matrix.pattern.order(), &mut self.part);
+        self.psi.resize_with(sweeps.len(), || vec![0.0; order]);
+        self.by
+            .resize_with(sweeps.len(), || vec![pair(numbering); stages.len()]);
+        for ((sweep, psi), by) in sweeps.iter_mut().zip(&mut self.psi).zip(&mut self.by) {
             // The first memory vector of a formula is the increment of the step.
             let newest = &mut sweep.increments[last];
             let newest = [&mut newest.0, &mut newest.1];
@@ -174,13 +177,15 @@ impl<'a> BackwardStage<'a> {
                 equations.compress(part);
                 psi[j * n..(j + 1) * n].copy_from_slice(&part[..n]);
             }
-            counts.solves += self.factors.solve_transposed_refined(&self.matrix, psi);
+        }
+        counts.solves += (self.factors).solve_transposed_refined(&self.matrix, &mut self.psi);
+        for ((sweep, psi), by) in sweeps.iter_mut().zip(&self.psi).zip(&mut self.by) {
             let mut slope = 0.0;
             for (i, (stage, change)) in stages.iter().zip(&mut self.changes).enumerate() {
                 let reduced = &psi[i * n..(i + 1) * n];
                 change.fill(0.0);
                 let held = &self.blocks.stages[i].held;
-                held.multiply_transposed(reduced, change);
+                held.multiply_transposed(reduced, &mut change[..n]);
                 equations.expand(change);
                 equations.unscale_columns(h, change);
                 part[..n].copy_from_slice(reduced);

@@ -22,7 +22,7 @@ use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::initial::InitialState;
 use crate::system::redundant_rows::EXCHANGE_WEIGHT;
-use crate::system::{BodyMotion, Numbering, bodies};
+use crate::system::{BodyMotion, Numbering, bodies, flexible};
 
 /// Integrates from a consistent start.
 ///
@@ -35,7 +35,12 @@ pub(crate) fn march<S: SolveScalar>(
     settings: &Settings,
     start: InitialState<S>,
 ) -> Result<Trajectory<S>, IntegrationFailure> {
-    march_until((model, numbering), duration, settings, start, None)
+    let run = || march_until((model, numbering), duration, settings, start, None);
+    // Among the threads that share the work, none waits for the others to begin.
+    match flexible::is_divided(model) {
+        true => rayon::scope(|_| run()),
+        false => run(),
+    }
 }
 
 /// A part of a motion, for measuring the pace of a method.

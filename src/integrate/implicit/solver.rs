@@ -193,6 +193,10 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
                 }
             }
         }
+        // The matrices of the first steps of shells are large, and not needed again.
+        if self.shells {
+            self.coupled = None;
+        }
         let stage = &mut stages[0];
         past.predict(numbering, h, stage);
         stage.project_increments(numbering, &past.from);

@@ -21,4 +21,6 @@ pub(crate) use mass::MassMoments;
 pub(crate) use mass::SECOND;
 pub(crate) use matrix::{ElementMatrix, MOST_UNKNOWNS, RotationAxes};
 pub use strain::Terms;
-pub(crate) use stress::STRESS_POINTS;
+pub(crate) use stress::{
+    STRESS_POINTS, curvatures, membrane_strains, pull_stress_ratios_of, stress_ratios_of,
+};

@@ -4,14 +4,20 @@
 //! stress. Transverse shear stresses vanish at the faces. Curvatures κ are those of the motion, not the tied
 //! ones of the energy.
 
-use super::basis::GAUSS_POINTS;
+use super::basis::{GAUSS_POINTS, MIDDLE, TABLES, TYING_POINTS};
 use super::energy::{Motion, Shell, ShellCotangent};
-use super::field::Field;
+use super::field::{Field, sum};
+use super::frame::Frame;
 use super::strain::{Curvature, ElementStrain, Strain, Terms};
+use super::tying::carry;
 use crate::math::Scalar;
+use crate::structures::material::Material;
 
 /// Places of an element whose stress is evaluated: (Gauss point, face), the face z = +h/2 first.
 pub(crate) const STRESS_POINTS: usize = 2 * GAUSS_POINTS;
+
+/// Strains or curvatures at the Gauss points, three of each after one another.
+pub(crate) type AtGaussPoints<S> = [S; 3 * GAUSS_POINTS];
 
 /// Plane von Mises stress; its derivative at no stress counts as none.
 fn von_mises<S: Scalar>(stress: &[S; 3]) -> S {
@@ -34,26 +40,116 @@ fn von_mises_slope<S: Scalar>(stress: &[S; 3], value: S) -> [S; 3] {
     [(x * 2.0 - y) / by, (y * 2.0 - x) / by, xy * 6.0 / by]
 }
 
-/// Strain at a face, and the distance of the face from the middle surface.
-fn at_face<S: Scalar>(shell: &Shell<S>, strain: &Strain<S>, face: usize) -> ([S; 3], S) {
-    let z = shell.thickness * if face == 0 { 0.5 } else { -0.5 };
-    let e = std::array::from_fn(|c| strain.membrane[c] + z * strain.bending[c]);
+/// Strain at a face of a Gauss point, and the distance of the face from the middle surface.
+fn at_face<S: Scalar>(
+    thickness: S,
+    (membrane, curvature): (&AtGaussPoints<S>, &AtGaussPoints<S>),
+    k: usize,
+) -> ([S; 3], S) {
+    let z = thickness * if k.is_multiple_of(2) { 0.5 } else { -0.5 };
+    let at = 3 * (k / 2);
+    let e = std::array::from_fn(|c| membrane[at + c] + z * curvature[at + c]);
     (e, z)
+}
+
+/// σ_v / σ_yield of strains of the middle surface and curvatures at the Gauss points, face +h/2 and face −h/2 of each
+/// after one another.
+pub(crate) fn stress_ratios_of<S: Scalar>(
+    material: &Material<S>,
+    thickness: S,
+    of: (&AtGaussPoints<S>, &AtGaussPoints<S>),
+) -> [S; STRESS_POINTS] {
+    std::array::from_fn(|k| {
+        let (e, _) = at_face(thickness, of, k);
+        von_mises(&material.plane_stress(&e)) / material.yield_stress
+    })
+}
+
+/// Cotangents of what [`stress_ratios_of`] depends on.
+pub(crate) struct StressCotangent<S> {
+    pub(crate) membrane: AtGaussPoints<S>,
+    pub(crate) curvature: AtGaussPoints<S>,
+    pub(crate) thickness: S,
+    pub(crate) material: Material<S>,
+}
+
+/// Transpose of the derivative of [`stress_ratios_of`].
+pub(crate) fn pull_stress_ratios_of<S: Scalar>(
+    material: &Material<S>,
+    thickness: S,
+    of: (&AtGaussPoints<S>, &AtGaussPoints<S>),
+    bar: &[S; STRESS_POINTS],
+) -> StressCotangent<S> {
+    let mut out = StressCotangent {
+        membrane: [S::zero(); 3 * GAUSS_POINTS],
+        curvature: [S::zero(); 3 * GAUSS_POINTS],
+        thickness: S::zero(),
+        material: Material::zeros(),
+    };
+    let yield_stress = material.yield_stress;
+    for (k, &bar) in bar.iter().enumerate() {
+        let (e, z) = at_face(thickness, of, k);
+        let stress = material.plane_stress(&e);
+        let value = von_mises(&stress);
+        out.material.yield_stress -= bar * value / (yield_stress * yield_stress);
+        let slope = von_mises_slope(&stress, value).map(|x| x * bar / yield_stress);
+        material.add_plane_stress_transpose(&e, &slope, &mut out.material);
+        let e_bar = material.plane_stress(&slope);
+        let sign = if k.is_multiple_of(2) { 0.5 } else { -0.5 };
+        let at = 3 * (k / 2);
+        for c in 0..3 {
+            out.membrane[at + c] += e_bar[c];
+            out.curvature[at + c] += z * e_bar[c];
+            out.thickness += e_bar[c] * of.1[at + c] * sign;
+        }
+    }
+    out
+}
+
+/// Strains of the middle surface at the Gauss points by components at the tying points, and the mean that the
+/// correction adds.
+pub(crate) fn membrane_strains(
+    geometry: &Field<f64>,
+    tied: &[f64; TYING_POINTS],
+    mean: &[f64; 3],
+) -> AtGaussPoints<f64> {
+    let reference = sum(&TABLES.gauss[MIDDLE].by[0], &geometry.points);
+    let mut out = [0.0; 3 * GAUSS_POINTS];
+    for (k, out) in out.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+        let by = &TABLES.gauss[k].by;
+        let tangents = [0, 1].map(|d| sum(&by[d], &geometry.points));
+        let own = Frame::of(&tangents, &reference).strain(&carry(k, tied));
+        *out = std::array::from_fn(|c| own[c] + mean[c]);
+    }
+    out
+}
+
+/// Curvatures of a motion at the Gauss points, which stresses have.
+pub(crate) fn curvatures(geometry: &Field<f64>, motion: &Field<f64>) -> AtGaussPoints<f64> {
+    let terms = Terms {
+        von_karman: false,
+        patch_correction: false,
+    };
+    let strain = ElementStrain::new(geometry, motion, terms, Curvature::OfMotion);
+    std::array::from_fn(|i| strain.points[i / 3].bending[i % 3])
+}
+
+/// Strains of the middle surface and curvatures of an element.
+fn flat<S: Scalar>(strain: &ElementStrain<S>) -> [AtGaussPoints<S>; 2] {
+    let points = &strain.points;
+    [
+        std::array::from_fn(|i| points[i / 3].membrane[i % 3]),
+        std::array::from_fn(|i| points[i / 3].bending[i % 3]),
+    ]
 }
 
 impl<S: Scalar> Shell<S> {
     /// σ_v / σ_yield at the Gauss points, face +h/2 and face −h/2 of each after one another.
     pub(crate) fn stress_ratios(&self, motion: &Motion<S>, terms: Terms) -> [S; STRESS_POINTS] {
-        self.field_stress_ratios(&motion.field(&self.geometry), terms)
-    }
-
-    /// As [`Shell::stress_ratios`], of the motion of points and directors.
-    pub(crate) fn field_stress_ratios(&self, field: &Field<S>, terms: Terms) -> [S; STRESS_POINTS] {
-        let strain = ElementStrain::new(&self.geometry, field, terms, Curvature::OfMotion);
-        std::array::from_fn(|k| {
-            let (e, _) = at_face(self, &strain.points[k / 2], k % 2);
-            von_mises(&self.material.plane_stress(&e)) / self.material.yield_stress
-        })
+        let field = motion.field(&self.geometry);
+        let strain = ElementStrain::new(&self.geometry, &field, terms, Curvature::OfMotion);
+        let [membrane, curvature] = flat(&strain);
+        stress_ratios_of(&self.material, self.thickness, (&membrane, &curvature))
     }
 
     /// Transpose of the derivative of [`Shell::stress_ratios`]: by the motion to `force`, by
@@ -67,40 +163,19 @@ impl<S: Scalar> Shell<S> {
         to: &mut ShellCotangent<S>,
     ) {
         let field = motion.field(&self.geometry);
+        let strain = ElementStrain::new(&self.geometry, &field, terms, Curvature::OfMotion);
+        let [membrane, curvature] = flat(&strain);
+        let of = (&membrane, &curvature);
+        let by = pull_stress_ratios_of(&self.material, self.thickness, of, bar);
+        to.thickness += by.thickness;
+        to.material.add(&by.material);
+        let strain_bar = std::array::from_fn(|k| Strain {
+            membrane: std::array::from_fn(|c| by.membrane[3 * k + c]),
+            bending: std::array::from_fn(|c| by.curvature[3 * k + c]),
+            ..Strain::zeros()
+        });
         let mut motion_bar = Field::zeros();
-        self.add_field_stress_ratios_transpose(&field, terms, bar, &mut motion_bar, to);
+        strain.add_transpose(&strain_bar, &mut to.geometry, &mut motion_bar);
         motion.add_field_transpose(&self.geometry, &motion_bar, force, &mut to.geometry);
-    }
-
-    /// Transpose of the derivative of [`Shell::field_stress_ratios`].
-    pub(crate) fn add_field_stress_ratios_transpose(
-        &self,
-        field: &Field<S>,
-        terms: Terms,
-        bar: &[S; STRESS_POINTS],
-        motion_bar: &mut Field<S>,
-        to: &mut ShellCotangent<S>,
-    ) {
-        let strain = ElementStrain::new(&self.geometry, field, terms, Curvature::OfMotion);
-        let mut strain_bar = [Strain::zeros(); GAUSS_POINTS];
-        let yield_stress = self.material.yield_stress;
-        for (k, &bar) in bar.iter().enumerate() {
-            let (point, point_bar) = (&strain.points[k / 2], &mut strain_bar[k / 2]);
-            let (e, z) = at_face(self, point, k % 2);
-            let stress = self.material.plane_stress(&e);
-            let value = von_mises(&stress);
-            to.material.yield_stress -= bar * value / (yield_stress * yield_stress);
-            let slope = von_mises_slope(&stress, value).map(|x| x * bar / yield_stress);
-            self.material
-                .add_plane_stress_transpose(&e, &slope, &mut to.material);
-            let e_bar = self.material.plane_stress(&slope);
-            let sign = if k % 2 == 0 { 0.5 } else { -0.5 };
-            for c in 0..3 {
-                point_bar.membrane[c] += e_bar[c];
-                point_bar.bending[c] += z * e_bar[c];
-                to.thickness += e_bar[c] * point.bending[c] * sign;
-            }
-        }
-        strain.add_transpose(&strain_bar, &mut to.geometry, motion_bar);
     }
 }

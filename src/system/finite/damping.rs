@@ -11,10 +11,13 @@ use super::element::{
     gather, motion, motion_transpose, per_area, pull_per_area, scatter, share, weigh,
 };
 use super::parts;
-use super::stiffness::{Strained, factors, inner, linear, pull_factors, stresses};
+use super::stiffness::{
+    Strained, add_curvature, add_curved, add_linear, add_products, factors, inner, pull_factors,
+    stresses,
+};
 use crate::math::Scalar;
 use crate::math::slices::{add_scaled, dot};
-use crate::model::finite::{DISPLACEMENTS, FiniteElements, NODES, STRAINS};
+use crate::model::finite::{FiniteElements, NODES, UNKNOWNS};
 
 /// M_ee q̇ and Σ k_p ∇e_p ė_p.
 fn both<S: Scalar>(finite: &FiniteElements<S>, (q, rate): (&[S], &[S])) -> [Vec<S>; 2] {
@@ -23,16 +26,12 @@ fn both<S: Scalar>(finite: &FiniteElements<S>, (q, rate): (&[S], &[S])) -> [Vec<
         let (x, r) = (gather(element, q), gather(element, rate));
         let forces = weigh(element, per_area(finite, i), &motion(element, &r));
         scatter(element, &motion_transpose(element, &forces), &mut heavy);
-        let [thin, thick] = factors(finite, i);
-        let n = element.coordinates.len();
+        let both = factors(finite, i);
         let strained = Strained::of(element, &x);
-        let mut force = linear(&element.linear[1], &r, n);
-        let stress = stresses(element, &strained.along(element, &r));
+        let mut force = [S::zero(); UNKNOWNS];
+        let stress = stresses(element, &strained.along(element, &r)).map(|n| n * both[0]);
         strained.add_transpose(element, &stress, &mut force);
-        let bending = linear(&element.linear[0], &r, n);
-        for (f, &b) in force.iter_mut().zip(&bending) {
-            *f = *f * thin + b * thick;
-        }
+        add_linear(element, both, &r, &mut force);
         scatter(element, &force, &mut viscous);
     }
     parts::add_heavy(finite, rate, &mut heavy);
@@ -65,39 +64,20 @@ pub(super) fn matrices<S: Scalar>(
     let (x, r) = (gather(element, q), gather(element, rate));
     let [thin, thick] = factors(finite, i).map(|factor| beta * factor);
     let n = element.coordinates.len();
-    let (mut in_x, mut in_r) = (vec![S::zero(); n * n], Vec::with_capacity(n * n));
+    let (mut in_x, mut in_r) = (vec![S::zero(); n * n], vec![S::zero(); n * n]);
     let [bending, shear] = &element.linear;
-    in_r.extend(
-        bending
-            .iter()
-            .zip(shear)
-            .map(|(&b, &s)| thick * b + thin * s),
-    );
+    bending.add_to(thick, n, &mut in_r);
+    shear.add_to(thin, n, &mut in_r);
     let strained = Strained::of(element, &x);
-    let rows = strained.rows(element);
-    let turned = strained.turned_rows(element, &r);
-    let stress = stresses(element, &strained.along(element, &r));
-    for (p, plane) in element.plane.iter().enumerate() {
-        // P ∂e/∂u and P ∂ė/∂u.
-        let mut scaled = [[S::zero(); DISPLACEMENTS]; 2];
-        for (l, &a) in plane.iter().enumerate().filter(|(_, a)| **a != 0.0) {
-            for (to, from) in scaled.iter_mut().zip([&rows[l], &turned[l]]) {
-                add_scaled(to, thin * a, from);
-            }
-        }
-        for (k, &b) in rows[p].iter().enumerate() {
-            add_scaled(&mut in_r[k * n..k * n + DISPLACEMENTS], b, &scaled[0]);
-            add_scaled(&mut in_x[k * n..k * n + DISPLACEMENTS], b, &scaled[1]);
-        }
-    }
-    for ([left, right], &stress) in element.slopes.iter().zip(&stress) {
-        let half = thin * stress * 0.5;
-        for k in 0..DISPLACEMENTS {
-            for l in 0..DISPLACEMENTS {
-                in_x[k * n + l] += half * (left[k] * right[l] + right[k] * left[l]);
-            }
-        }
-    }
+    let own = strained.gradients(element);
+    let turned = Strained::turned_gradients(element, &r);
+    // P ∂e/∂u and P ∂ė/∂u.
+    let [scaled, scaled_rates] =
+        [&own, &turned].map(|all| all.map(|column| stresses(element, &column).map(|n| n * thin)));
+    add_products((&own, &scaled), true, n, &mut in_r);
+    add_products((&own, &scaled_rates), false, n, &mut in_x);
+    let stress = stresses(element, &strained.along(element, &r)).map(|n| n * thin);
+    add_curvature(element, &stress, n, &mut in_x);
     let weights = per_area(finite, i).map(|weight| alpha * weight);
     for (k, (a, along)) in element.moves.iter().enumerate() {
         for (l, (b, other)) in element.moves.iter().enumerate() {
@@ -132,7 +112,6 @@ pub(crate) fn pull_damping(
     }
     for (i, element) in finite.mesh.elements.iter().enumerate() {
         let [x, r, y] = [q, rate, psi].map(|x| gather(element, x));
-        let n = element.coordinates.len();
         let shared = share(element, &motion(element, &y));
         let mut by_weight = [0.0; 2];
         for (k, (own, v)) in shared.iter().zip(&motion(element, &r)).enumerate() {
@@ -142,19 +121,14 @@ pub(crate) fn pull_damping(
         let strained = Strained::of(element, &x);
         let [speed, virtually] = [&r, &y].map(|x| strained.along(element, x));
         let [stress, virtual_stress] = [&speed, &virtually].map(|e| stresses(element, e));
-        let bending = inner(&linear(&element.linear[0], &y, n), &r);
-        let shear = inner(&linear(&element.linear[1], &y, n), &r);
+        let [bending, shear] = element.linear.each_ref().map(|own| own.inner(&r, &y));
         let thin = inner(&virtually, &stress) + shear;
         pull_factors(finite, i, [beta * thin, beta * bending], cot);
         let scale = beta * factors(finite, i)[0];
-        let mut force = [0.0; crate::model::finite::UNKNOWNS];
-        for (rows, stress) in [
-            (strained.turned_rows(element, &r), &virtual_stress),
-            (strained.turned_rows(element, &y), &stress),
-        ] {
-            for (row, &stress) in rows.iter().zip(stress).take(STRAINS) {
-                add_scaled(&mut force[..DISPLACEMENTS], scale * stress, row);
-            }
+        let mut force = [0.0; UNKNOWNS];
+        for (moved, stress) in [(&r, &virtual_stress), (&y, &stress)] {
+            let scaled = stress.map(|n| n * scale);
+            add_curved(element, &scaled, &element.slopes.times(moved), &mut force);
         }
         scatter(element, &force, by_q);
     }

@@ -1,7 +1,7 @@
 //! From the coordinates of a body to the unknowns and points of an element, and back.
 
 use crate::math::{Mat3, Scalar, Vec3};
-use crate::model::finite::{FiniteElements, NODES, POINTS, ShellElement, UNKNOWNS};
+use crate::model::finite::{DISPLACEMENTS, FiniteElements, NODES, POINTS, ShellElement, UNKNOWNS};
 
 /// Unknowns of an element, or forces on them.
 pub(crate) type Local<S> = [S; UNKNOWNS];
@@ -36,7 +36,10 @@ pub(super) fn scatter<S: Scalar>(element: &ShellElement, x: &Local<S>, out: &mut
 /// How unknowns, or their rates, move the points.
 pub(crate) fn motion<S: Scalar>(element: &ShellElement, x: &Local<S>) -> Points<S> {
     let mut out = [Vec3::zeros(); POINTS];
-    for (&x, (point, along)) in x.iter().zip(&element.moves) {
+    for (l, &x) in x.iter().enumerate().take(DISPLACEMENTS) {
+        out[l / 3][l % 3] = x;
+    }
+    for (&x, (point, along)) in x.iter().zip(&element.moves).skip(DISPLACEMENTS) {
         for k in 0..3 {
             out[*point][k] += x * along[k];
         }
@@ -47,7 +50,10 @@ pub(crate) fn motion<S: Scalar>(element: &ShellElement, x: &Local<S>) -> Points<
 /// Transpose of [`motion`].
 pub(super) fn motion_transpose<S: Scalar>(element: &ShellElement, by: &Points<S>) -> Local<S> {
     let mut out = [S::zero(); UNKNOWNS];
-    for (out, (point, along)) in out.iter_mut().zip(&element.moves) {
+    for (l, out) in out.iter_mut().enumerate().take(DISPLACEMENTS) {
+        *out = by[l / 3][l % 3];
+    }
+    for (out, (point, along)) in out.iter_mut().zip(&element.moves).skip(DISPLACEMENTS) {
         let by = &by[*point];
         *out = by[0] * along[0] + by[1] * along[1] + by[2] * along[2];
     }

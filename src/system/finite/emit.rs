@@ -2,6 +2,7 @@
 //! the body's coordinates among the velocities: six of the frame, then the elastic ones.
 
 use super::damping;
+use super::each::each;
 use super::element::{Points, gather, lift, motion, per_area, points, second, weigh};
 use super::inertia::rotating;
 use super::parts;
@@ -245,24 +246,17 @@ pub(crate) fn emit_jacobian<S: Scalar>(
     let (mut in_y, mut in_v) = (Frame::zero(at.q.len()), Frame::zero(at.q.len()));
     let (mut first, mut first_rate, mut force) = (Vec3::zeros(), Vec3::zeros(), Vec3::zeros());
     let (mut moments, mut moments_rate) = (Mat3::zeros(), Mat3::zeros());
-    let mut stiffness = Vec::new();
-    for (i, element) in finite.mesh.elements.iter().enumerate() {
-        let weights = per_area(finite, i);
-        let x = gather(element, &at.q);
-        let place = points(element, &x);
-        let rate = motion(element, &gather(element, &at.rate));
-        let mut a = motion(element, &gather(element, &at.acceleration));
-        for (k, a) in a.iter_mut().enumerate() {
-            *a += b * place[k] + twice * rate[k];
-            if k < NODES {
-                *a += at.gamma;
-            }
-        }
-        let (weighed, weighed_rate) = (
-            weigh(element, weights, &place),
-            weigh(element, weights, &rate),
-        );
-        let forces = weigh(element, weights, &a);
+    let elements = &finite.mesh.elements;
+    let work = |i: usize| OfElement::of(finite, i, at);
+    each(elements.len(), work, |i, own| {
+        let (element, weights) = (&elements[i], per_area(finite, i));
+        let OfElement {
+            place,
+            weighed,
+            weighed_rate,
+            forces,
+            matrices,
+        } = own;
         add_moments(&place, &weighed, &mut first, &mut moments);
         add_moments(&place, &weighed_rate, &mut first_rate, &mut moments_rate);
         force += forces[..NODES]
@@ -290,27 +284,22 @@ pub(crate) fn emit_jacobian<S: Scalar>(
                 in_v.rows[1][j][k] += c.dot(&by);
             }
         }
-        let n = element.moves.len();
-        stiffness.clear();
-        stiffness.resize(n * n, S::zero());
-        tangent(finite, i, &x, &mut stiffness);
-        let positions = of_positions(element, weights[0], &b);
-        let directors = of_directors(element, weights[1], |along| b * lift::<S>(along));
-        let (upper, lower) = stiffness.split_at_mut(DISPLACEMENTS * n);
-        add_part(upper, &positions, (n, 0));
-        add_part(lower, &directors, (n, DISPLACEMENTS));
-        let all: Vec<usize> = (0..n).collect();
-        emit_element((element, slots), &all, (row, y), by_y, &stiffness, emit);
-        let positions = of_positions(element, weights[0], &twice);
-        let directors = of_directors(element, weights[1], |along| twice * lift::<S>(along));
-        let both = (&positions[..], &directors[..]);
+        let all: Vec<usize> = (0..element.moves.len()).collect();
+        emit_element(
+            (element, slots),
+            &all,
+            (row, y),
+            by_y,
+            &matrices.stiffness,
+            emit,
+        );
+        let both = (&matrices.positions[..], &matrices.directors[..]);
         emit_parts((element, slots), (row, v), by_v, both, emit);
-        if let Some(factors) = finite.damping {
-            let [in_x, in_r] = damping::matrices(finite, i, factors, (&at.q, &at.rate));
-            emit_element((element, slots), &all, (row, y), by_y, &in_x, emit);
-            emit_element((element, slots), &all, (row, v), by_v, &in_r, emit);
+        if let Some([in_x, in_r]) = &matrices.damping {
+            emit_element((element, slots), &all, (row, y), by_y, in_x, emit);
+            emit_element((element, slots), &all, (row, v), by_v, in_r, emit);
         }
-    }
+    });
     in_y.block[0][1] = -(rotation * skew(&force));
     in_y.block[1][1] = skew(&first) * skew(&at.gamma);
     for (k, (square, double)) in units.iter().enumerate() {
@@ -322,6 +311,65 @@ pub(crate) fn emit_jacobian<S: Scalar>(
     in_y.emit(slots, (row, y), by_y, emit);
     in_v.emit(slots, (row, v), by_v, emit);
     parts::emit_jacobian(finite, at, slots, (row, y, v), (by_y, by_v), emit);
+}
+
+/// Places, rates and forces of the points of an element, and its matrices.
+struct OfElement<S> {
+    place: Points<S>,
+    weighed: Points<S>,
+    weighed_rate: Points<S>,
+    forces: Points<S>,
+    matrices: Box<Matrices<S>>,
+}
+
+/// Derivatives of the forces of an element, without those of the frame.
+struct Matrices<S> {
+    /// Elastic and centrifugal forces by the unknowns.
+    stiffness: Vec<S>,
+    /// Coriolis forces of positions by positions, and of directors by directors.
+    positions: Vec<S>,
+    directors: Vec<S>,
+    /// Damping by unknowns and rates.
+    damping: Option<[Vec<S>; 2]>,
+}
+
+impl<S: Scalar> OfElement<S> {
+    fn of(finite: &FiniteElements<S>, i: usize, at: &Flexing<S>) -> Self {
+        let (element, weights) = (&finite.mesh.elements[i], per_area(finite, i));
+        let (b, twice) = rotating(at);
+        let x = gather(element, &at.q);
+        let place = points(element, &x);
+        let rate = motion(element, &gather(element, &at.rate));
+        let mut a = motion(element, &gather(element, &at.acceleration));
+        for (k, a) in a.iter_mut().enumerate() {
+            *a += b * place[k] + twice * rate[k];
+            if k < NODES {
+                *a += at.gamma;
+            }
+        }
+        let n = element.moves.len();
+        let mut stiffness = vec![S::zero(); n * n];
+        tangent(finite, i, &x, &mut stiffness);
+        let turned = of_positions(element, weights[0], &b);
+        let of_directors_turned = of_directors(element, weights[1], |along| b * lift::<S>(along));
+        let (upper, lower) = stiffness.split_at_mut(DISPLACEMENTS * n);
+        add_part(upper, &turned, (n, 0));
+        add_part(lower, &of_directors_turned, (n, DISPLACEMENTS));
+        let factors = finite.damping;
+        Self {
+            weighed: weigh(element, weights, &place),
+            weighed_rate: weigh(element, weights, &rate),
+            forces: weigh(element, weights, &a),
+            place,
+            matrices: Box::new(Matrices {
+                stiffness,
+                positions: of_positions(element, weights[0], &twice),
+                directors: of_directors(element, weights[1], |along| twice * lift::<S>(along)),
+                damping: factors
+                    .map(|factors| damping::matrices(finite, i, factors, (&at.q, &at.rate))),
+            }),
+        }
+    }
 }
 
 /// Adds the square matrix `part` to rows of length n, from `column` on.

@@ -5,6 +5,7 @@
 //! parts of F_k. Terms of the mass alone and of the undeformed inertia are those of a rigid body; they are
 //! in [`crate::system::bodies`] and left out here, as in [`crate::system::flexing`].
 
+use super::each::each;
 use super::element::{
     Points, gather, motion, motion_transpose, per_area, points, pull_per_area, scatter, second,
     share, weigh,
@@ -61,28 +62,40 @@ pub(crate) fn inertial<S: Scalar>(finite: &FiniteElements<S>, at: &Flexing<S>) -
         angular: Vec3::zeros(),
         elastic: vec![S::zero(); at.q.len()],
     };
-    for (i, element) in finite.mesh.elements.iter().enumerate() {
-        let weights = per_area(finite, i);
+    let elements = &finite.mesh.elements;
+    let work = |i: usize| {
+        let (element, weights) = (&elements[i], per_area(finite, i));
         let moved = Moved::of(element, at);
         let a = accelerations(element, &moved, &by_rotation, at);
         let forces = weigh(element, weights, &a);
+        let (mut linear, mut angular) = (Vec3::zeros(), Vec3::zeros());
         for (k, (place, force)) in moved.place.iter().zip(&forces).enumerate() {
             if k < NODES {
-                out.linear += force;
+                linear += force;
             }
-            out.angular += place.cross(force);
+            angular += place.cross(force);
         }
-        out.linear -= at.gamma * (weights[0] * element.area);
-        out.angular -= axial(&(by_rotation.0 * second(element, weights)));
-        scatter(
-            element,
-            &motion_transpose(element, &forces),
-            &mut out.elastic,
-        );
-    }
+        linear -= at.gamma * (weights[0] * element.area);
+        angular -= axial(&(by_rotation.0 * second(element, weights)));
+        (linear, angular, motion_transpose(element, &forces))
+    };
+    each(elements.len(), work, |i, (linear, angular, forces)| {
+        out.linear += linear;
+        out.angular += angular;
+        scatter(&elements[i], &forces, &mut out.elastic);
+    });
     out.linear = at.rotation * out.linear;
     parts::add_inertial(finite, at, &mut out);
     out
+}
+
+/// What an element adds to the cotangents of B, γ, ω and the masses per area, and its force on the frame.
+struct OfElement {
+    b: Mat3<f64>,
+    gamma: Vec3<f64>,
+    force: Vec3<f64>,
+    omega: Vec3<f64>,
+    weight: [f64; 2],
 }
 
 /// Pulls the cotangent ψ of [`inertial`] back to the motion, the accelerations held, and to the
@@ -107,8 +120,9 @@ pub(crate) fn pull_back(
         gravity: Vec3::zeros(),
     };
     let (mut by_b, mut by_gamma, mut force) = (Mat3::zeros(), Vec3::zeros(), Vec3::zeros());
-    for (i, element) in finite.mesh.elements.iter().enumerate() {
-        let weights = per_area(finite, i);
+    let elements = &finite.mesh.elements;
+    let work = |i: usize| {
+        let (element, weights) = (&elements[i], per_area(finite, i));
         let moved = Moved::of(element, at);
         let a = accelerations(element, &moved, &by_rotation, at);
         let mut virtually = motion(element, &gather(element, &psi.elastic));
@@ -121,32 +135,41 @@ pub(crate) fn pull_back(
         let shared = share(element, &virtually);
         let forces = weigh(element, weights, &a);
         let (mut by_place, mut by_rate) = ([Vec3::zeros(); POINTS], [Vec3::zeros(); POINTS]);
-        let mut by_weight = [0.0; 2];
-        for k in 0..POINTS {
-            let by_a = shared[k] * weights[k / NODES];
-            by_weight[k / NODES] += shared[k].dot(&a[k]);
-            by_b += by_a * moved.place[k].transpose();
-            by_place[k] = b.tr_mul(&by_a) + forces[k].cross(t);
-            by_rate[k] = twice.tr_mul(&by_a);
-            out.omega += moved.rate[k].cross(&by_a) * 2.0;
-            if k < NODES {
-                by_gamma += by_a;
-                force += forces[k];
-            }
-        }
+        let mut by = OfElement {
+            b: -(turn * second(element, weights)),
+            gamma: -phi * (weights[0] * element.area),
+            force: -at.gamma * (weights[0] * element.area),
+            omega: Vec3::zeros(),
+            weight: [-phi.dot(&at.gamma) * element.area, 0.0],
+        };
         // What the rigid body has.
-        let mass = weights[0] * element.area;
-        by_gamma -= phi * mass;
-        force -= at.gamma * mass;
-        by_b -= turn * second(element, weights);
-        by_weight[0] -= phi.dot(&at.gamma) * element.area;
-        for (by, second) in by_weight.iter_mut().zip(&element.second) {
+        for (by, second) in by.weight.iter_mut().zip(&element.second) {
             *by -= t.dot(&axial(&(b * second)));
         }
-        pull_per_area(finite, i, by_weight, cot);
-        scatter(element, &motion_transpose(element, &by_place), &mut out.q);
-        scatter(element, &motion_transpose(element, &by_rate), &mut out.rate);
-    }
+        for k in 0..POINTS {
+            let by_a = shared[k] * weights[k / NODES];
+            by.weight[k / NODES] += shared[k].dot(&a[k]);
+            by.b += by_a * moved.place[k].transpose();
+            by_place[k] = b.tr_mul(&by_a) + forces[k].cross(t);
+            by_rate[k] = twice.tr_mul(&by_a);
+            by.omega += moved.rate[k].cross(&by_a) * 2.0;
+            if k < NODES {
+                by.gamma += by_a;
+                by.force += forces[k];
+            }
+        }
+        let state = [&by_place, &by_rate].map(|by| motion_transpose(element, by));
+        (by, state)
+    };
+    each(elements.len(), work, |i, (by, [by_place, by_rate])| {
+        by_b += by.b;
+        by_gamma += by.gamma;
+        force += by.force;
+        out.omega += by.omega;
+        pull_per_area(finite, i, by.weight, cot);
+        scatter(&elements[i], &by_place, &mut out.q);
+        scatter(&elements[i], &by_rate, &mut out.rate);
+    });
     let spin = skew(&at.omega);
     out.omega -= axial(&(by_b * spin + spin * by_b));
     out.theta = by_gamma.cross(&at.gamma) + force.cross(&phi);

@@ -2,6 +2,7 @@
 //! elements.
 
 mod damping;
+mod each;
 mod element;
 mod emit;
 mod inertia;
@@ -10,6 +11,7 @@ mod stiffness;
 mod stress;
 
 pub(crate) use damping::{add_damping, pull_damping};
+pub(crate) use each::SIDE_BY_SIDE;
 pub(crate) use element::{gather, per_area};
 pub(crate) use emit::{emit_jacobian, emit_mass, emit_weights};
 pub(crate) use inertia::{

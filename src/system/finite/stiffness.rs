@@ -1,77 +1,43 @@
 //! Elastic forces of a body of finite elements, its strain energy, and their derivatives.
 
+use super::each::each;
 use super::element::{Local, gather, scatter};
 use super::parts;
 use crate::math::Scalar;
 use crate::model::finite::{
-    DISPLACEMENTS, FiniteElements, NODES, QUADRATIC, STRAINS, ShellElement, UNKNOWNS,
+    DISPLACEMENTS, FiniteElements, QUADRATIC, SLOPES, STRAINS, ShellElement, UNKNOWNS, other_slope,
 };
 
-/// Membrane strains, their gradients along the displacements, and products with slopes.
+/// Derivatives of the strains by the displacements, by columns.
+pub(super) type Gradients<S> = [[S; STRAINS]; DISPLACEMENTS];
+
+/// Membrane strains of an element, and its slopes.
 pub(super) struct Strained<S> {
     /// e_p.
     pub strain: [S; STRAINS],
     /// r_p·u and s_p·u.
-    slopes: [[S; 2]; QUADRATIC],
-}
-
-/// Σ a_j x_j over displacements.
-fn product<S: Scalar>(row: &[f64; DISPLACEMENTS], x: &Local<S>) -> S {
-    let mut sum = S::zero();
-    for (&a, &x) in row.iter().zip(x) {
-        sum += x * a;
-    }
-    sum
-}
-
-/// Adds `scale` times a row.
-fn add_row<S: Scalar>(row: &[f64; DISPLACEMENTS], scale: S, out: &mut [S]) {
-    for (out, &a) in out.iter_mut().zip(row) {
-        *out += scale * a;
-    }
+    slopes: [S; SLOPES],
 }
 
 impl<S: Scalar> Strained<S> {
     pub(super) fn of(element: &ShellElement, x: &Local<S>) -> Self {
-        let mut out = Self {
-            strain: [S::zero(); STRAINS],
-            slopes: [[S::zero(); 2]; QUADRATIC],
-        };
-        for (e, row) in out.strain.iter_mut().zip(&element.membrane) {
-            *e = product(row, x);
+        let mut strain = element.membrane.times(x);
+        let slopes = element.slopes.times(x);
+        for (p, e) in strain.iter_mut().enumerate().take(QUADRATIC) {
+            *e += slopes[p] * slopes[other_slope(p)] * 0.5;
         }
-        for (p, [r, s]) in element.slopes.iter().enumerate() {
-            out.slopes[p] = [product(r, x), product(s, x)];
-            out.strain[p] += out.slopes[p][0] * out.slopes[p][1] * 0.5;
-        }
-        out
+        Self { strain, slopes }
     }
 
     /// Derivatives of the strains along y.
     pub(super) fn along(&self, element: &ShellElement, y: &Local<S>) -> [S; STRAINS] {
-        let mut out = [S::zero(); STRAINS];
-        for (e, row) in out.iter_mut().zip(&element.membrane) {
-            *e = product(row, y);
-        }
-        for (p, [r, s]) in element.slopes.iter().enumerate() {
-            let [ru, su] = self.slopes[p];
-            out[p] += (product(r, y) * su + product(s, y) * ru) * 0.5;
+        let mut out = element.membrane.times(y);
+        let slopes = element.slopes.times(y);
+        for (p, e) in out.iter_mut().enumerate().take(QUADRATIC) {
+            let q = other_slope(p);
+            *e += (slopes[p] * self.slopes[q] + slopes[q] * self.slopes[p]) * 0.5;
         }
         out
-    }
-
-    /// The rows ∂/∂u of the derivatives of the strains along r.
-    pub(super) fn turned_rows(
-        &self,
-        element: &ShellElement,
-        r: &Local<S>,
-    ) -> [[S; DISPLACEMENTS]; STRAINS] {
-        let mut rows = [[S::zero(); DISPLACEMENTS]; STRAINS];
-        for (row, [left, right]) in rows.iter_mut().zip(&element.slopes) {
-            add_row(right, product(left, r) * 0.5, row);
-            add_row(left, product(right, r) * 0.5, row);
-        }
-        rows
     }
 
     /// Adds Σ n_p ∂e_p/∂u.
@@ -81,49 +47,78 @@ impl<S: Scalar> Strained<S> {
         n: &[S; STRAINS],
         out: &mut Local<S>,
     ) {
-        for (row, &n) in element.membrane.iter().zip(n) {
-            add_row(row, n, out);
-        }
-        for (p, [r, s]) in element.slopes.iter().enumerate() {
-            let [ru, su] = self.slopes[p];
-            add_row(r, n[p] * su * 0.5, out);
-            add_row(s, n[p] * ru * 0.5, out);
-        }
+        element.membrane.add_transposed(n, out);
+        add_curved(element, n, &self.slopes, out);
     }
 
-    /// The rows ∂e_p/∂u.
-    pub(super) fn rows(&self, element: &ShellElement) -> [[S; DISPLACEMENTS]; STRAINS] {
-        let mut rows = [[S::zero(); DISPLACEMENTS]; STRAINS];
-        for (to, row) in rows.iter_mut().zip(&element.membrane) {
-            add_row(row, S::one(), to);
+    /// ∂e_p/∂u.
+    pub(super) fn gradients(&self, element: &ShellElement) -> Gradients<S> {
+        let mut out = [[S::zero(); STRAINS]; DISPLACEMENTS];
+        for (i, column) in element.membrane.iter() {
+            for (out, &b) in out[i].iter_mut().zip(column) {
+                *out = S::from(b);
+            }
         }
-        for (p, [r, s]) in element.slopes.iter().enumerate() {
-            let [ru, su] = self.slopes[p];
-            add_row(r, su * 0.5, &mut rows[p]);
-            add_row(s, ru * 0.5, &mut rows[p]);
-        }
-        rows
+        add_gradients(element, &self.slopes, &mut out);
+        out
     }
+
+    /// ∂/∂u of the derivatives of the strains along r.
+    pub(super) fn turned_gradients(element: &ShellElement, r: &Local<S>) -> Gradients<S> {
+        let mut out = [[S::zero(); STRAINS]; DISPLACEMENTS];
+        add_gradients(element, &element.slopes.times(r), &mut out);
+        out
+    }
+}
+
+/// Adds ½ (r_p (s_p·y) + s_p (r_p·y)) for the slopes of y.
+fn add_gradients<S: Scalar>(element: &ShellElement, slopes: &[S; SLOPES], out: &mut Gradients<S>) {
+    for (i, column) in element.slopes.iter() {
+        for (p, out) in out[i].iter_mut().enumerate().take(QUADRATIC) {
+            let q = other_slope(p);
+            *out += (slopes[q] * column[p] + slopes[p] * column[q]) * 0.5;
+        }
+    }
+}
+
+/// Adds ½ Σ n_p (r_p (s_p·y) + s_p (r_p·y)) for the slopes of y.
+pub(super) fn add_curved<S: Scalar>(
+    element: &ShellElement,
+    n: &[S; STRAINS],
+    slopes: &[S; SLOPES],
+    out: &mut Local<S>,
+) {
+    let mut by = [S::zero(); SLOPES];
+    for (p, &n) in n.iter().enumerate().take(QUADRATIC) {
+        let (q, half) = (other_slope(p), n * 0.5);
+        by[p] += half * slopes[q];
+        by[q] += half * slopes[p];
+    }
+    element.slopes.add_transposed(&by, out);
 }
 
 /// P e.
 pub(super) fn stresses<S: Scalar>(element: &ShellElement, e: &[S; STRAINS]) -> [S; STRAINS] {
-    std::array::from_fn(|p| {
-        let row = element.plane[p].iter().zip(e);
-        row.fold(S::zero(), |sum, (&a, &e)| sum + e * a)
-    })
-}
-
-/// K x for one of the linear stiffnesses.
-pub(super) fn linear<S: Scalar>(matrix: &[f64], x: &Local<S>, n: usize) -> Local<S> {
-    let mut out = [S::zero(); UNKNOWNS];
-    // The matrix is symmetric: its rows are its columns.
-    for (row, &x) in matrix.chunks_exact(n).zip(x) {
+    // P is symmetric: its rows are its columns.
+    let mut out = [S::zero(); STRAINS];
+    for (row, &e) in element.plane.iter().zip(e) {
         for (out, &a) in out.iter_mut().zip(row) {
-            *out += x * a;
+            *out += e * a;
         }
     }
     out
+}
+
+/// Adds `thin` and `thick` times the linear forces of E h = 1 and E h³ = 1.
+pub(super) fn add_linear<S: Scalar>(
+    element: &ShellElement,
+    [thin, thick]: [S; 2],
+    x: &Local<S>,
+    out: &mut Local<S>,
+) {
+    let [bending, shear] = &element.linear;
+    bending.add_product(thick, x, out);
+    shear.add_product(thin, x, out);
 }
 
 pub(super) fn inner<S: Scalar>(x: &[S], y: &[S]) -> S {
@@ -160,30 +155,32 @@ pub(crate) fn energy<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> S {
 
 /// Energies for E h = 1 and E h³ = 1.
 fn energies<S: Scalar>(element: &ShellElement, x: &Local<S>) -> [S; 2] {
-    let n = element.coordinates.len();
     let e = Strained::of(element, x).strain;
-    let [bending, shear] = [0, 1].map(|k| inner(&linear(&element.linear[k], x, n), x));
+    let [bending, shear] = element.linear.each_ref().map(|own| own.inner(x, x));
     [
         (inner(&stresses(element, &e), &e) + shear) * 0.5,
         bending * 0.5,
     ]
 }
 
+/// The elastic forces of an element.
+fn forces<S: Scalar>(finite: &FiniteElements<S>, i: usize, q: &[S]) -> Local<S> {
+    let element = &finite.mesh.elements[i];
+    let both = factors(finite, i);
+    let x = gather(element, q);
+    let strained = Strained::of(element, &x);
+    let stress = stresses(element, &strained.strain).map(|n| n * both[0]);
+    let mut out = [S::zero(); UNKNOWNS];
+    strained.add_transpose(element, &stress, &mut out);
+    add_linear(element, both, &x, &mut out);
+    out
+}
+
 /// Adds ∂U/∂q.
 pub(crate) fn add_forces<S: Scalar>(finite: &FiniteElements<S>, q: &[S], out: &mut [S]) {
-    for (i, element) in finite.mesh.elements.iter().enumerate() {
-        let [thin, thick] = factors(finite, i);
-        let (x, n) = (gather(element, q), element.coordinates.len());
-        let strained = Strained::of(element, &x);
-        let mut force = linear(&element.linear[1], &x, n);
-        let stress = stresses(element, &strained.strain);
-        strained.add_transpose(element, &stress, &mut force);
-        let bending = linear(&element.linear[0], &x, n);
-        for (f, &b) in force.iter_mut().zip(&bending) {
-            *f = *f * thin + b * thick;
-        }
-        scatter(element, &force, out);
-    }
+    let elements = &finite.mesh.elements;
+    let add = |i: usize, force: Local<S>| scatter(&elements[i], &force, out);
+    each(elements.len(), |i| forces(finite, i, q), add);
     parts::add_forces(finite, q, out);
 }
 
@@ -205,51 +202,95 @@ pub(crate) fn pull_energy(
     parts::pull_energy(finite, (q, scale), cot);
 }
 
-/// Pulls the cotangent ψ of [`add_forces`] back to q (added) and to the parameters (added to `cot`).
+/// Pulls the cotangent ψ of [`add_forces`] back to q (added, if wanted) and to the parameters (added to `cot`).
 pub(crate) fn pull_forces(
     finite: &FiniteElements<f64>,
     (q, psi): (&[f64], &[f64]),
-    by_q: &mut [f64],
+    mut by_q: Option<&mut [f64]>,
     cot: &mut FiniteElements<f64>,
 ) {
-    for (i, element) in finite.mesh.elements.iter().enumerate() {
-        let [thin, thick] = factors(finite, i);
+    let (elements, wanted) = (&finite.mesh.elements, by_q.is_some());
+    let work = |i: usize| {
+        let (element, both) = (&elements[i], factors(finite, i));
         let (x, y) = (gather(element, q), gather(element, psi));
-        let n = element.coordinates.len();
         let strained = Strained::of(element, &x);
         let along = strained.along(element, &y);
         let stress = stresses(element, &strained.strain);
-        let shear = linear(&element.linear[1], &y, n);
-        let bending = linear(&element.linear[0], &y, n);
-        let by = [
-            inner(&along, &stress) + inner(&shear, &x),
-            inner(&bending, &x),
-        ];
+        let [bending, shear] = element.linear.each_ref().map(|own| own.inner(&x, &y));
+        let mut force = [0.0; UNKNOWNS];
+        if wanted {
+            let by_strain = stresses(element, &along).map(|n| n * both[0]);
+            strained.add_transpose(element, &by_strain, &mut force);
+            let curved = stress.map(|n| n * both[0]);
+            add_curved(element, &curved, &element.slopes.times(&y), &mut force);
+            add_linear(element, both, &y, &mut force);
+        }
+        ([inner(&along, &stress) + shear, bending], force)
+    };
+    each(elements.len(), work, |i, (by, force)| {
         pull_factors(finite, i, by, cot);
-        let mut force = shear;
-        strained.add_transpose(element, &stresses(element, &along), &mut force);
-        for (p, [r, s]) in element.slopes.iter().enumerate() {
-            add_row(r, stress[p] * product(s, &y) * 0.5, &mut force);
-            add_row(s, stress[p] * product(r, &y) * 0.5, &mut force);
+        if let Some(by_q) = by_q.as_deref_mut() {
+            scatter(&elements[i], &force, by_q);
         }
-        for (f, &b) in force.iter_mut().zip(&bending) {
-            *f = *f * thin + b * thick;
-        }
-        scatter(element, &force, by_q);
-    }
+    });
+    let mut unused = Vec::new();
+    let by_q = by_q.unwrap_or_else(|| {
+        unused.resize(if finite.parts.is_empty() { 0 } else { q.len() }, 0.0);
+        &mut unused
+    });
     parts::pull_forces(finite, (q, psi), by_q, cot);
 }
 
-/// Adds left ⊗ right to a matrix of displacements, rows up to the diagonal's block of nine.
-fn add_product<S: Scalar>(
-    left: &[S; DISPLACEMENTS],
-    right: &[S; DISPLACEMENTS],
-    out: &mut [[S; DISPLACEMENTS]; DISPLACEMENTS],
+/// Adds Gᵀ H for two matrices by columns to the displacements' part of a matrix of order n; what stands right of
+/// the diagonal is taken from the left if `symmetric`.
+pub(super) fn add_products<S: Scalar>(
+    (left, right): (&Gradients<S>, &Gradients<S>),
+    symmetric: bool,
+    n: usize,
+    out: &mut [S],
 ) {
-    for (k, (row, &factor)) in out.iter_mut().zip(left).enumerate() {
-        let end = NODES * (k / NODES + 1);
-        for (out, &x) in row[..end].iter_mut().zip(&right[..end]) {
-            *out += factor * x;
+    for (k, left) in left.iter().enumerate() {
+        let end = if symmetric { k + 1 } else { DISPLACEMENTS };
+        for (l, right) in right.iter().enumerate().take(end) {
+            let x = inner4(left, right);
+            out[k * n + l] += x;
+            if symmetric && l < k {
+                out[l * n + k] += x;
+            }
+        }
+    }
+}
+
+/// The inner product by four sums, because an addition waits for the one before.
+fn inner4<S: Scalar>(x: &[S; STRAINS], y: &[S; STRAINS]) -> S {
+    let mut sums = [S::zero(); 4];
+    let (x4, x) = x.as_chunks::<4>();
+    let (y4, y) = y.as_chunks::<4>();
+    for (x, y) in x4.iter().zip(y4) {
+        for k in 0..4 {
+            sums[k] += x[k] * y[k];
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + inner(x, y)
+}
+
+/// Adds ½ Σ n_p (r_p s_pᵀ + s_p r_pᵀ) to the displacements' part of a matrix of order n.
+pub(super) fn add_curvature<S: Scalar>(
+    element: &ShellElement,
+    n_p: &[S; STRAINS],
+    n: usize,
+    out: &mut [S],
+) {
+    for (k, own) in element.slopes.iter() {
+        let mut by = [S::zero(); SLOPES];
+        for (p, &force) in n_p.iter().enumerate().take(QUADRATIC) {
+            let (q, half) = (other_slope(p), force * 0.5);
+            by[p] += half * own[q];
+            by[q] += half * own[p];
+        }
+        for (l, other) in element.slopes.iter() {
+            let sum = by.iter().zip(other);
+            out[k * n + l] += sum.fold(S::zero(), |sum, (&by, &a)| sum + by * a);
         }
     }
 }
@@ -264,49 +305,16 @@ pub(crate) fn tangent<S: Scalar>(
     let element = &finite.mesh.elements[i];
     let [thin, thick] = factors(finite, i);
     let n = element.coordinates.len();
+    out.fill(S::zero());
     let [bending, shear] = &element.linear;
-    for (out, (&b, &s)) in out.iter_mut().zip(bending.iter().zip(shear)) {
-        *out = thick * b + thin * s;
-    }
+    bending.add_to(thick, n, out);
+    shear.add_to(thin, n, out);
     let strained = Strained::of(element, x);
-    let rows = strained.rows(element);
-    let mut scaled = [[S::zero(); DISPLACEMENTS]; STRAINS];
-    for (to, plane) in scaled.iter_mut().zip(&element.plane) {
-        for (row, &a) in rows.iter().zip(plane) {
-            if a != 0.0 {
-                let factor = thin * a;
-                for (to, &x) in to.iter_mut().zip(row) {
-                    *to += factor * x;
-                }
-            }
-        }
-    }
-    let mut lower = [[S::zero(); DISPLACEMENTS]; DISPLACEMENTS];
-    for (left, right) in rows.iter().zip(&scaled) {
-        add_product(left, right, &mut lower);
-    }
-    let stress = stresses(element, &strained.strain);
-    for ([r, s], &n) in element.slopes.iter().zip(&stress) {
-        let half = thin * n * 0.5;
-        let mut by_r = [S::zero(); DISPLACEMENTS];
-        add_row(r, half, &mut by_r);
-        if r == s {
-            add_row(r, half, &mut by_r);
-            add_product(&r.map(S::from), &by_r, &mut lower);
-            continue;
-        }
-        let mut by_s = [S::zero(); DISPLACEMENTS];
-        add_row(s, half, &mut by_s);
-        add_product(&r.map(S::from), &by_s, &mut lower);
-        add_product(&s.map(S::from), &by_r, &mut lower);
-    }
-    for k in 0..DISPLACEMENTS {
-        for l in 0..k {
-            out[k * n + l] += lower[k][l];
-            out[l * n + k] += lower[k][l];
-        }
-        out[k * n + k] += lower[k][k];
-    }
+    let own = strained.gradients(element);
+    let scaled = own.map(|column| stresses(element, &column).map(|n| n * thin));
+    add_products((&own, &scaled), true, n, out);
+    let stress = stresses(element, &strained.strain).map(|n| n * thin);
+    add_curvature(element, &stress, n, out);
 }
 
 /// The diagonal of the linear stiffness.
@@ -315,7 +323,7 @@ pub(crate) fn diagonal<S: Scalar>(finite: &FiniteElements<S>) -> Vec<S> {
     let mut matrix = [S::zero(); UNKNOWNS * UNKNOWNS];
     for (i, element) in finite.mesh.elements.iter().enumerate() {
         let n = element.coordinates.len();
-        tangent(finite, i, &[S::zero(); UNKNOWNS], &mut matrix);
+        tangent(finite, i, &[S::zero(); UNKNOWNS], &mut matrix[..n * n]);
         for (k, coordinate) in element.coordinates.iter().enumerate() {
             if let Some(j) = coordinate {
                 out[*j] += matrix[k * (n + 1)];

@@ -5,6 +5,7 @@ use crate::math::{Scalar, Vec3};
 use crate::model::Model;
 use crate::model::flexible::{FlexibleBody, Form};
 use crate::system::bodies::BodyMotion;
+use crate::system::finite;
 use crate::system::flexing::{Flexing, Generalised};
 use crate::system::numbering::Numbering;
 
@@ -27,6 +28,17 @@ fn is_of_shells<S: Scalar>(body: &FlexibleBody<S>) -> bool {
 /// Whether some body has shells.
 pub(crate) fn has_shells<S: Scalar>(model: &Model<S>) -> bool {
     model.flexible.iter().any(is_of_shells)
+}
+
+/// Whether some body has so many elements that work on them is divided among processors.
+pub(crate) fn is_divided<S: Scalar>(model: &Model<S>) -> bool {
+    model.flexible.iter().any(|body| match &body.form {
+        Form::Modal(modal) => {
+            let shells = modal.shells.as_ref();
+            shells.is_some_and(|own| own.elements.mesh.elements.len() >= finite::SIDE_BY_SIDE)
+        }
+        Form::Finite(own) => own.mesh.elements.len() >= finite::SIDE_BY_SIDE,
+    })
 }
 
 /// Unknowns of the coordinates of shells, of nodes in an order of little fill.

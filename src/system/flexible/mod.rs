@@ -7,7 +7,9 @@ mod form;
 mod held;
 mod truncated;
 
-pub(crate) use coordinates::{add_coordinates, coordinates, has_shells, nodal_unknowns, rates};
+pub(crate) use coordinates::{
+    add_coordinates, coordinates, has_shells, is_divided, nodal_unknowns, rates,
+};
 pub(crate) use displacement::{MeanSquare, add_displacement, emit_displacement, pull_displacement};
 pub(crate) use form::alone;
 pub(crate) use held::{
@@ -243,7 +245,9 @@ pub(crate) fn pull_force_balances(
                 elastic::pull_forces(modal, (&at.q, &at.rate), &psi.elastic, elastic, own);
             }
             (Form::Finite(finite), Form::Finite(own)) => {
-                finite::pull_forces(finite, (&at.q, &psi.elastic), &mut by.q, own);
+                let wanted = state.y.is_some();
+                let by_q = wanted.then_some(&mut by.q[..]);
+                finite::pull_forces(finite, (&at.q, &psi.elastic), by_q, own);
                 let motion = (&at.q[..], &at.rate[..], &psi.elastic[..]);
                 finite::pull_damping(finite, motion, (&mut by.q, &mut by.rate), own);
             }

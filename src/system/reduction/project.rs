@@ -5,8 +5,8 @@
 use crate::math::slices::{add_scaled, dot};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::finite::{
-    DISPLACEMENTS, ElementMesh, FiniteElements, NODES, POINTS, Part, QUADRATIC, STRAINS,
-    ShellElement,
+    ElementMesh, FiniteElements, NODES, POINTS, Part, QUADRATIC, SLOPES, STRAINS, ShellElement,
+    other_slope,
 };
 use crate::model::flexible::Modal;
 use crate::model::reduced::{NodalBasis, PairEnergy, ReducedShells};
@@ -103,31 +103,31 @@ impl Group {
 
     /// Adds the stiffness of an element; `local` are its unknowns in each vector.
     fn add_stiffness(&mut self, element: &ShellElement, local: &[Vec<f64>]) {
-        let (m, n) = (local.len(), element.coordinates.len());
+        let m = local.len();
         // Bending goes with E h³, shear with E h.
         for (kind, linear) in element.linear.iter().enumerate() {
             let to = &mut self.stiffness[1 - kind];
             for (j, y) in local.iter().enumerate() {
-                let force: Vec<f64> = (linear.chunks_exact(n)).map(|row| dot(row, y)).collect();
+                let mut force = vec![0.0; y.len()];
+                linear.add_product(1.0, y, &mut force);
                 for (i, x) in local.iter().enumerate() {
                     to[i * m + j] += dot(x, &force);
                 }
             }
         }
-        let along = |row: &[f64; DISPLACEMENTS], x: &[f64]| dot(row, x);
         // Strains of the vectors and of their pairs, each with the stresses.
-        let strains: Vec<[f64; STRAINS]> = (local.iter())
-            .map(|x| std::array::from_fn(|p| along(&element.membrane[p], x)))
-            .collect();
-        let slopes: Vec<[[f64; 2]; QUADRATIC]> = (self.pairs.of.iter())
-            .map(|&i| std::array::from_fn(|p| element.slopes[p].map(|row| along(&row, &local[i]))))
+        let strains: Vec<[f64; STRAINS]> =
+            local.iter().map(|x| element.membrane.times(x)).collect();
+        let slopes: Vec<[f64; SLOPES]> = (self.pairs.of.iter())
+            .map(|&i| element.slopes.times(&local[i]))
             .collect();
         let mut of_pairs: Vec<[f64; STRAINS]> = Vec::with_capacity(self.pairs.count());
         for (i, x) in slopes.iter().enumerate() {
             for (j, y) in slopes.iter().enumerate().skip(i) {
                 let mut e = [0.0; STRAINS];
                 for p in 0..QUADRATIC {
-                    let ([rx, sx], [ry, sy]) = (x[p], y[p]);
+                    let q = other_slope(p);
+                    let ([rx, sx], [ry, sy]) = ([x[p], x[q]], [y[p], y[q]]);
                     e[p] = if i == j {
                         0.5 * rx * sx
                     } else {

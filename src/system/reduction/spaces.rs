@@ -23,9 +23,8 @@ fn bending_unknowns(shells: &FiniteElements<f64>) -> Option<Vec<bool>> {
     let mut bends = vec![false; shells.mesh.coordinates];
     let elements = &shells.mesh.elements;
     let largest = |k: usize| {
-        let rows = elements.iter().flat_map(|e| e.slopes.as_flattened());
-        let all = rows.flat_map(|row| row.iter().skip(k).step_by(3));
-        all.fold(0.0_f64, |most, x| most.max(x.abs()))
+        let own = elements.iter().map(|e| e.slopes.largest(|i| i % 3 == k));
+        own.fold(0.0, f64::max)
     };
     let sizes = [0, 1, 2].map(largest);
     let normal = (0..3).max_by(|&a, &b| sizes[a].total_cmp(&sizes[b]))?;
@@ -33,33 +32,17 @@ fn bending_unknowns(shells: &FiniteElements<f64>) -> Option<Vec<bool>> {
         return None;
     }
     for element in elements {
-        let n = element.coordinates.len();
         let out = |i: usize| i >= DISPLACEMENTS || i % 3 == normal;
         for linear in &element.linear {
-            let most = linear.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-            let mixed = |at: usize| out(at / n) != out(at % n);
-            if linear
-                .iter()
-                .enumerate()
-                .any(|(at, x)| mixed(at) && x.abs() > FLAT * most)
-            {
+            let most = linear
+                .entries()
+                .fold(0.0_f64, |most, (_, x)| most.max(x.abs()));
+            let mut all = linear.entries();
+            if all.any(|([i, j], x)| out(i) != out(j) && x.abs() > FLAT * most) {
                 return None;
             }
         }
-        let rows = element.membrane.iter();
-        let sizes = rows.map(|row| {
-            let size = |out: bool| {
-                let own = row
-                    .iter()
-                    .enumerate()
-                    .filter(|(i, _)| (i % 3 == normal) == out);
-                own.fold(0.0_f64, |most, (_, x)| most.max(x.abs()))
-            };
-            [size(true), size(false)]
-        });
-        let sizes = sizes.fold([0.0_f64; 2], |most, own| {
-            [0, 1].map(|k| most[k].max(own[k]))
-        });
+        let sizes = [true, false].map(|out| element.membrane.largest(|i| (i % 3 == normal) == out));
         if sizes[0] > FLAT * sizes[1] {
             return None;
         }
