@@ -10,7 +10,7 @@
 //!
 //! n is fixed in ground axes or in those of the frame. Forces and their derivatives are in `system::loads`.
 
-use super::load::Axes;
+use super::axes::Axes;
 use super::time_function::TimeFunction;
 use crate::math::{Vec3, parameters};
 use std::sync::Arc;

@@ -17,6 +17,7 @@
 //! and by the opposite on body B, so momentum is conserved. Loads that are spread over the elements of a flexible body
 //! have a file of their own ([`super::distributed`]). Forces and their derivatives are in `system::loads`.
 
+use super::axes::Axes;
 use super::distributed::DistributedLoad;
 use super::drive::DegreeOfFreedom;
 use super::time_function::TimeFunction;
@@ -29,15 +30,6 @@ pub(crate) struct Load<S> {
     pub name: String,
     /// Kind and parameters.
     pub kind: LoadKind<S>,
-}
-
-/// The axes in which the direction of a force or torque is fixed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Axes {
-    /// Ground axes.
-    Ground,
-    /// Axes of the loaded body.
-    Body,
 }
 
 /// The kinds of load.

@@ -4,6 +4,7 @@
 //! A model of zeros in `f64` also serves as a cotangent: it holds the derivative of a function in
 //! each parameter.
 
+pub(crate) mod axes;
 pub(crate) mod distributed;
 pub(crate) mod drive;
 pub(crate) mod element_operators;
@@ -18,11 +19,12 @@ pub(crate) mod shapes;
 pub(crate) mod table;
 pub(crate) mod time_function;
 
+pub(crate) use axes::Axes;
 pub(crate) use distributed::{DistributedLoad, Spread};
 pub(crate) use drive::{DegreeOfFreedom, Drive};
 pub(crate) use flexible::{FlexibleBody, Form, Inertia, Modes};
 pub(crate) use joint::{ConstraintRow, Joint, JointFrame, JointKind};
-pub(crate) use load::{Axes, Load, LoadKind};
+pub(crate) use load::{Load, LoadKind};
 pub(crate) use mobility::Mobility;
 pub(crate) use rigid_body::RigidBody;
 pub(crate) use table::{Interpolation, Smoothness};
