@@ -3,6 +3,7 @@
 use super::evaluate::Evaluated;
 use super::event;
 use super::integration::Integration;
+use crate::functions::snapshot::Snapshot;
 use crate::functions::{Function, Instant, Reduction};
 use crate::integrate::{IntegrationFailure, Settings, Trajectory, simulate};
 use crate::math::Complex64;
@@ -170,14 +171,20 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
             let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
             mass * length * length / time
         }
-        Instant::Deformation { flexible, form, .. } => form_size(at, *flexible, form),
+        Instant::Deformation {
+            flexible,
+            unknowns,
+            form,
+            ..
+        } => form_size(form, &largest_of(at, *flexible, unknowns.as_deref())),
         Instant::LargestDeformation {
-            flexible, largest, ..
+            flexible,
+            unknowns,
+            largest,
+            ..
         } => {
-            let sizes = largest
-                .forms
-                .iter()
-                .map(|form| form_size(at, *flexible, form));
+            let most = largest_of(at, *flexible, unknowns.as_deref());
+            let sizes = largest.forms.iter().map(|form| form_size(form, &most));
             sizes.fold(0.0, f64::max)
         }
         Instant::Slide(_) => length,
@@ -202,16 +209,22 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
     size.max(at.function(f).value.abs())
 }
 
-/// The size of a form in the elastic coordinates, by the largest of each in the motion.
-fn form_size(at: &Evaluated, flexible: usize, form: &Quadratic<f64>) -> f64 {
-    let body = &at.scene.model.flexible[flexible];
-    let (numbering, run) = (&at.run.numbering, &at.run);
-    let places = body.places().zip(&form.linear);
-    let terms = places.map(|((carrier, k), b)| {
-        let place = numbering.position(carrier) + k;
-        let most = (0..=run.last()).fold(0.0_f64, |m, i| m.max(run.q(i)[place].abs()));
-        b.abs() * most
-    });
+/// The largest of each elastic coordinate in the motion, or of each of these unknowns of nodes.
+fn largest_of(at: &Evaluated, flexible: usize, unknowns: Option<&[usize]>) -> Vec<f64> {
+    let mut most: Vec<f64> = Vec::new();
+    for k in 0..=at.run.last() {
+        let now = Snapshot::of(&at.scene.model, &at.run, k).unknowns(flexible, unknowns);
+        most.resize(now.len(), 0.0);
+        for (most, x) in most.iter_mut().zip(now) {
+            *most = most.max(x.abs());
+        }
+    }
+    most
+}
+
+/// The size of a form by the largest of each coordinate.
+fn form_size(form: &Quadratic<f64>, most: &[f64]) -> f64 {
+    let terms = form.linear.iter().zip(most).map(|(b, most)| b.abs() * most);
     terms.fold(0.0, f64::max)
 }
 

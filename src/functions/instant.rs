@@ -7,6 +7,7 @@ use crate::model::flexible::Quadratic;
 use crate::system::angular_momentum::AngularMomentum;
 use crate::system::loads::springs::{Spring, SpringPart};
 use crate::system::measures::{Wrench, WrenchPart};
+use std::sync::Arc;
 
 /// A thrown point and the definition of its range. Up is against gravity.
 #[derive(Clone, Copy, Debug)]
@@ -167,6 +168,8 @@ pub(crate) enum Instant<S> {
         flexible: usize,
         /// What it measures.
         kind: DeformationKind,
+        /// The unknowns of nodes that it is a form in, instead of all coordinates.
+        unknowns: Option<Arc<[usize]>>,
         /// The form.
         form: Quadratic<S>,
     },
@@ -176,6 +179,8 @@ pub(crate) enum Instant<S> {
         flexible: usize,
         /// What they measure.
         kind: DeformationKind,
+        /// As of a form.
+        unknowns: Option<Arc<[usize]>>,
         /// The forms.
         largest: Largest<S>,
     },
@@ -214,8 +219,8 @@ parameters!(enum Instant {
     Energy(part;),
     StrainEnergy(body;),
     ShellStress { flexible, elements, rho; },
-    Deformation { flexible, kind; form },
-    LargestDeformation { flexible, kind; largest },
+    Deformation { flexible, kind, unknowns; form },
+    LargestDeformation { flexible, kind, unknowns; largest },
     Reaction(; wrench),
     Slide(joint;),
     Spring(spring;),

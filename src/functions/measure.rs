@@ -78,14 +78,16 @@ impl<S: Scalar> Instant<S> {
             }
             Instant::Deformation {
                 flexible: body,
+                unknowns,
                 form,
                 ..
-            } => form.value(&at.coordinates(*body)),
+            } => form.value(&at.unknowns(*body, unknowns.as_deref())),
             Instant::LargestDeformation {
                 flexible: body,
+                unknowns,
                 largest,
                 ..
-            } => largest.value(&at.coordinates(*body)),
+            } => largest.value(&at.unknowns(*body, unknowns.as_deref())),
             Instant::AngularMomentum(momentum) => {
                 momentum.value(&at.in_motion(&at.motions()), at.v)
             }
@@ -238,21 +240,24 @@ impl Instant<f64> {
             (
                 Instant::Deformation {
                     flexible: body,
+                    unknowns,
                     form,
                     ..
                 },
                 Instant::Deformation { form: by_form, .. },
             ) => {
-                let q = at.coordinates(*body);
+                let unknowns = unknowns.as_deref();
+                let q = at.unknowns(*body, unknowns);
                 let mut by_q = vec![0.0; q.len()];
                 form.add_gradient(&q, weight, &mut by_q);
                 form.pull_value(&q, weight, by_form);
                 let body = &at.model.flexible[*body];
-                flexible::add_coordinates(at.numbering, body, &by_q, out.y);
+                flexible::add_unknowns(at.numbering, (body, unknowns), &by_q, out.y);
             }
             (
                 Instant::LargestDeformation {
                     flexible: body,
+                    unknowns,
                     largest,
                     ..
                 },
@@ -261,11 +266,12 @@ impl Instant<f64> {
                     ..
                 },
             ) => {
-                let q = at.coordinates(*body);
+                let unknowns = unknowns.as_deref();
+                let q = at.unknowns(*body, unknowns);
                 let mut by_q = vec![0.0; q.len()];
                 largest.pull_back(&q, weight, &mut by_q, by_largest);
                 let body = &at.model.flexible[*body];
-                flexible::add_coordinates(at.numbering, body, &by_q, out.y);
+                flexible::add_unknowns(at.numbering, (body, unknowns), &by_q, out.y);
             }
             (Instant::AngularMomentum(momentum), Instant::AngularMomentum(own)) => {
                 let motions = at.motions();

@@ -65,6 +65,15 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
         flexible::coordinates(&self.model.flexible[flexible], &self.motions())
     }
 
+    /// These unknowns of its nodes, or all elastic coordinates.
+    pub(crate) fn unknowns(&self, flexible: usize, unknowns: Option<&[usize]>) -> Vec<S> {
+        flexible::unknowns_of(
+            &self.model.flexible[flexible],
+            &self.coordinates(flexible),
+            unknowns,
+        )
+    }
+
     /// The flight of a projectile that is released now.
     pub(crate) fn flight(&self, projectile: &Projectile<S>) -> Flight<S> {
         Flight::new(

@@ -1,8 +1,10 @@
 //! Constant matrices of an element. Only those of its unknowns are stored that have entries: the membrane of a flat
 //! plate has none for deflections, its bending none for displacements in the plane.
 
-use super::finite::UNKNOWNS;
 use crate::math::Scalar;
+
+/// Unknowns of an element at most: six of each of nine nodes.
+pub(crate) const UNKNOWNS: usize = 54;
 
 /// A matrix with N rows, by columns.
 #[derive(Clone, Debug)]

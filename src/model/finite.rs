@@ -15,6 +15,7 @@
 //! being those of its unknowns. Damping is that of Rayleigh for small motions, with forces that rigid motions do not
 //! have: −α M_ee q̇ and −β Σ k_p ∇e_p ė_p, e_p all strains.
 
+pub(crate) use super::element_operators::UNKNOWNS;
 use super::element_operators::{Columns, Symmetric};
 use super::shapes::{ModalInertia, ModalStiffness};
 use crate::math::{Mat3, Vec3, parameters};
@@ -26,8 +27,6 @@ pub(crate) const NODES: usize = 9;
 pub(crate) const POINTS: usize = 2 * NODES;
 /// Displacements of the nodes of an element.
 pub(crate) const DISPLACEMENTS: usize = 3 * NODES;
-/// Unknowns of an element at most.
-pub(crate) const UNKNOWNS: usize = 6 * NODES;
 /// Membrane strains of an element, with the three of the patch correction.
 pub(crate) const STRAINS: usize = 19;
 /// Those with von Karman's term.

@@ -1,6 +1,6 @@
 //! The functions of a scene from those of a problem file.
 
-use super::flexible::{FlexibleBodies, station, stations};
+use super::flexible::{FlexibleBodies, Sections, station, stations};
 use super::placement::{Assembly, GROUND};
 use super::quantity::vector;
 use super::schema::Document;
@@ -172,22 +172,30 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
             }
             I::SectionForce(of) => {
                 let station = station(self.document, self.assembly, &of.body, &of.station);
-                (self.flexible).section(self.body(&of.body), of.component, station)
+                let sections = self.sections(&of.body, of.beams.as_ref());
+                sections.force(of.component, station)
             }
             I::FibreStress(of) => {
                 let station = station(self.document, self.assembly, &of.body, &of.station);
-                let fibre = of.fibre.map(S::from);
-                (self.flexible).stress(self.body(&of.body), station, fibre)
+                let sections = self.sections(&of.body, of.beams.as_ref());
+                sections.stress(station, of.fibre)
             }
             I::LargestSectionForce(of) => {
                 let stations = stations(self.document, self.assembly, &of.body, &of.stations);
-                (self.flexible).largest_section(self.body(&of.body), of, &stations)
+                let sections = self.sections(&of.body, of.beams.as_ref());
+                sections.largest_force(of, &stations)
             }
             I::LargestFibreStress(of) => {
                 let stations = stations(self.document, self.assembly, &of.body, &of.stations);
-                (self.flexible).largest_stress(self.body(&of.body), of, &stations)
+                let sections = self.sections(&of.body, of.beams.as_ref());
+                sections.largest_stress(of, &stations)
             }
         }
+    }
+
+    fn sections(&self, body: &str, beams: Option<&String>) -> Sections<'_, S> {
+        let of = (body, self.body(body));
+        self.flexible.sections(self.document, of, beams, self.x)
     }
 
     fn joint(&self, name: &str) -> usize {

@@ -11,7 +11,8 @@ use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
 use crate::model::finite::Part;
 use crate::structures::beam::Beam;
-use crate::structures::floating::{Surface, normal};
+use crate::structures::beam_sections::BeamLine;
+use crate::structures::floating::{NodeMotion, Surface, normal};
 use crate::structures::lumped_mass::LumpedMass;
 use crate::structures::material::Material;
 use crate::structures::parts::{of_beam, of_mass};
@@ -89,45 +90,103 @@ pub(super) fn values<S: Scalar>(
     prepared: &Prepared,
     get: impl Fn(Quantity) -> S,
 ) -> Vec<Part<S>> {
+    let one = |own: &WrittenPart| match beam(document, elements, own, &get) {
+        Some((nodes, beam)) => of_beam(&nodes, &beam),
+        None => of_mass(&own.nodes[0], &mass(elements, own, &get)),
+    };
+    prepared.parts.iter().map(one).collect()
+}
+
+/// The numbers of a lumped mass.
+fn mass<S: Scalar>(
+    elements: &Elements,
+    own: &WrittenPart,
+    get: impl Fn(Quantity) -> S,
+) -> LumpedMass<S> {
+    let PartSource::Mass(k) = own.source else {
+        unreachable!("what is no beam is a mass");
+    };
+    let mass = &elements.structure.masses[k];
+    LumpedMass {
+        mass: get(mass.mass),
+        inertia: mass.inertia.map_or([S::zero(); 6], |all| all.map(&get)),
+    }
+}
+
+/// A beam of a body with its nodes; none if the part is a mass.
+fn beam<S: Scalar>(
+    document: &Document,
+    elements: &Elements,
+    own: &WrittenPart,
+    get: impl Fn(Quantity) -> S,
+) -> Option<([NodeMotion; 3], Beam<S>)> {
     let structure = &elements.structure;
     let written = &document.materials[&structure.material];
     let of = |quantity: Option<Quantity>| quantity.map_or(S::zero(), &get);
-    let material = Material {
-        young: get(written.young),
-        poisson: get(written.poisson),
-        density: of(written.density),
-        yield_stress: of(written.yield_stress),
+    let (section, offset, line_mass) = match own.source {
+        PartSource::Mass(_) => return None,
+        PartSource::Beam(slot) => {
+            let section = section(structure, slot);
+            (section, structure.offset, structure.line_mass)
+        }
+        PartSource::Stiffener(k) => {
+            let own = &elements.stiffeners[k];
+            (Some(&own.section), own.offset, own.line_mass)
+        }
     };
-    let one = |own: &WrittenPart| {
-        let (section, offset, line_mass) = match own.source {
-            PartSource::Mass(k) => {
-                let mass = &structure.masses[k];
-                let inertia = mass.inertia.map_or([S::zero(); 6], |all| all.map(&get));
-                let mass = LumpedMass {
-                    mass: get(mass.mass),
-                    inertia,
-                };
-                return of_mass(&own.nodes[0], &mass);
-            }
-            PartSource::Beam(slot) => {
-                let section = section(structure, slot);
-                (section, structure.offset, structure.line_mass)
-            }
-            PartSource::Stiffener(k) => {
-                let own = &elements.stiffeners[k];
-                (Some(&own.section), own.offset, own.line_mass)
-            }
-        };
-        let nodes = [0, 1, 2].map(|a: usize| own.nodes[a].clone());
-        let beam = Beam {
-            points: nodes.each_ref().map(|node| lift3(&node.place)),
-            orientation: lift3(&own.orientation),
-            section: section_by(section, |quantity| get(*quantity)),
-            offset: offset.map_or([S::zero(); 2], |all| all.map(&get)),
-            material,
-            line_mass: of(line_mass),
-        };
-        of_beam(&nodes, &beam)
+    let nodes = [0, 1, 2].map(|a: usize| own.nodes[a].clone());
+    let beam = Beam {
+        points: nodes.each_ref().map(|node| lift3(&node.place)),
+        orientation: lift3(&own.orientation),
+        section: section_by(section, |quantity| get(*quantity)),
+        offset: offset.map_or([S::zero(); 2], |all| all.map(&get)),
+        material: Material {
+            young: get(written.young),
+            poisson: get(written.poisson),
+            density: of(written.density),
+            yield_stress: of(written.yield_stress),
+        },
+        line_mass: of(line_mass),
     };
-    prepared.parts.iter().map(one).collect()
+    Some((nodes, beam))
+}
+
+/// The beams of a set, of a stiffener, or all: their numbers among the parts of the body.
+pub(crate) fn chosen(
+    elements: &Elements,
+    prepared: &Prepared,
+    name: Option<&String>,
+) -> Vec<usize> {
+    let all = 0..prepared.mesh.beams.len();
+    let Some(name) = name else {
+        return all.collect();
+    };
+    match elements.stiffeners.get_index_of(name) {
+        Some(k) => {
+            let own = |&part: &usize| prepared.parts[part].source == PartSource::Stiffener(k);
+            all.filter(own).collect()
+        }
+        None => prepared
+            .sets
+            .beam_sets
+            .get(name)
+            .cloned()
+            .unwrap_or_default(),
+    }
+}
+
+/// The sections of these beams at the design `x`.
+pub(crate) fn line_of<S: Scalar>(
+    document: &Document,
+    elements: &Elements,
+    prepared: &Prepared,
+    (name, x): (Option<&String>, &[S]),
+) -> BeamLine<S> {
+    let parts = chosen(elements, prepared, name).into_iter();
+    let beams = parts.filter_map(|part| {
+        beam(document, elements, &prepared.parts[part], |quantity| {
+            quantity.get(x)
+        })
+    });
+    BeamLine::new(&beams.collect::<Vec<_>>())
 }

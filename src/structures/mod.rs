@@ -3,6 +3,7 @@
 
 pub(crate) mod assembly;
 pub(crate) mod beam;
+pub(crate) mod beam_sections;
 mod beams;
 pub mod damping;
 mod fields;

@@ -1,7 +1,7 @@
 //! Beams and lumped masses as parts of a body that moves: points with masses between them, and strains, by the
 //! unknowns of their nodes.
 
-use super::beam::{BEAM_NODES, Beam};
+use super::beam::{BEAM_NODES, Beam, BeamStrain};
 use super::floating::NodeMotion;
 use super::lumped_mass::LumpedMass;
 use crate::math::scalar::lift3;
@@ -142,6 +142,19 @@ pub(crate) fn of_beam<S: Scalar>(nodes: &[NodeMotion; BEAM_NODES], beam: &Beam<S
         let share = masses.shares[k % BEAM_NODES][l % BEAM_NODES];
         share * masses.per_length[k / BEAM_NODES][l / BEAM_NODES]
     };
+    let count = points.shapes.len();
+    let stiffness = ModalStiffness {
+        linear: vec![S::zero(); count * count],
+        strains: strains(nodes, beam),
+    };
+    points.part(mass, stiffness)
+}
+
+/// The strains of a beam, those of one point after those of the other, by the unknowns of its nodes.
+pub(crate) fn strains<S: Scalar>(
+    nodes: &[NodeMotion; BEAM_NODES],
+    beam: &Beam<S>,
+) -> Vec<Strain<S>> {
     let moves = moves(nodes);
     // A row over all displacements and rotations of the nodes, as one over the unknowns.
     let row = |row: &[S]| -> Vec<S> {
@@ -154,7 +167,7 @@ pub(crate) fn of_beam<S: Scalar>(nodes: &[NodeMotion; BEAM_NODES], beam: &Beam<S
         };
         moves.iter().map(of).collect()
     };
-    let strains = beam.strains().into_iter().map(|strain| Strain {
+    let one = |strain: BeamStrain<S>| Strain {
         weight: strain.weight,
         strain: Quadratic {
             linear: row(&strain.linear),
@@ -162,12 +175,8 @@ pub(crate) fn of_beam<S: Scalar>(nodes: &[NodeMotion; BEAM_NODES], beam: &Beam<S
                 .map(|slope| (S::one(), row(slope)))
                 .collect(),
         },
-    });
-    let stiffness = ModalStiffness {
-        linear: vec![S::zero(); moves.len() * moves.len()],
-        strains: strains.collect(),
     };
-    points.part(mass, stiffness)
+    beam.strains().into_iter().map(one).collect()
 }
 
 /// A mass at a node. Its second moments are Σ s_ij e_i e_jᵀ with s = ½ tr(J) 1 − J.

@@ -177,3 +177,38 @@ fn links_among_the_results_are_not_followed() {
         assert!(!out.join(name).is_symlink(), "{name}");
     }
 }
+
+/// The record of an optimum by the labelled inertia says so among its warnings; by the full inertia it has none of that.
+#[test]
+fn an_optimum_by_the_labelled_inertia_says_so() {
+    let at = scratch();
+    for (inertia, labelled) in [("paper", true), ("full", false)] {
+        let problem = serde_json::json!({
+            "version": 1, "name": "plate", "gravity": [0, 0, -9.81],
+            "materials": {"soft": {"young": 1e8, "poisson": 0.3, "density": 1000}},
+            "bodies": {"plate": {"elements": {
+                "structure": {"mesh": {"plate": {"length": 1, "width": 0.5, "elements": [1, 1]}}, "material": "soft",
+                              "thickness": 0.03},
+                "frame": {"clamped": "x0"}, "points": {"root": {"edge": "x0"}}, "inertia": inertia
+            }}},
+            "joints": {"root": {"weld": {"between": ["plate", "ground"], "at": "plate.root"}}},
+            "simulation": {"duration": 0.02, "steps": 4, "method": {"bdf": {"order": 2}}},
+            "functions": {"energy": {"final": {"strain_energy": {"body": "plate"}}}},
+            "variables": {"thickness": {"path": "/bodies/plate/elements/structure/thickness", "lower": 0.01, "upper": 0.05}},
+            "objective": {"minimise": "energy"}
+        });
+        std::fs::write(at.path().join("plate.json"), problem.to_string()).expect("is written");
+        expect(
+            0,
+            at.path(),
+            &["plate.json", "--output", inertia, "--quiet"],
+        );
+        let record = optimum(&at.path().join(inertia));
+        let warnings = record["warnings"].as_array().expect("a list");
+        let told = warnings.iter().any(|warning| {
+            let text = warning.as_str().unwrap_or_default();
+            text.contains("\"plate\" is that of equations 13 and 14 of Kennedy & Boopathy (2016)")
+        });
+        assert_eq!(told, labelled, "{warnings:?}");
+    }
+}

@@ -379,6 +379,7 @@ fn pull_backs_of_quantities() {
             Instant::Deformation {
                 flexible: 0,
                 kind: DeformationKind::Stress,
+                unknowns: None,
                 form: quadratic(&mut case.numbers, modes),
             },
         ];

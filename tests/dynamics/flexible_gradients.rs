@@ -18,6 +18,7 @@ fn scene(model: &Model<f64>, duration: f64) -> Scene<f64> {
     let form = quadratic(&mut numbers, model.flexible[0].modes());
     let deformation = Instant::Deformation {
         flexible: 0,
+        unknowns: None,
         kind: DeformationKind::Moment,
         form,
     };

@@ -215,6 +215,7 @@ fn flexible(model: &Model<f64>, first: usize) -> Vec<Function<f64>> {
         };
         let instant = Instant::LargestDeformation {
             flexible: 0,
+            unknowns: None,
             kind,
             largest,
         };
@@ -379,6 +380,7 @@ fn sections_and_time_are_one_maximum() {
     let rho = 6.0;
     let one = |forms: &[_]| Instant::LargestDeformation {
         flexible: 0,
+        unknowns: None,
         kind: DeformationKind::Stress,
         largest: Largest {
             signs: vec![1.0; forms.len()],

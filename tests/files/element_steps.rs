@@ -34,11 +34,13 @@ fn the_error_follows_the_tolerance() {
     }
 }
 
-/// 69, 129 and 219 coordinates a plate; with 8 × 2 elements, 419 coordinates, there are no more steps than with 4 × 2.
+/// 69, 129 and 219 coordinates a plate. The highest frequencies of a mesh grow at least as 1/h (stretch; bending as 1/h²),
+/// so that of 4 × 2 elements are at least twice those of 2 × 1: steps that the mesh set would double. With 8 × 2 elements, 419
+/// coordinates, there are no more steps than with 4 × 2.
 #[test]
 fn the_mesh_does_not_set_the_steps() {
     let counts = [[2, 1], [4, 1], [4, 2]].map(|elements| tip(elements, 1e-4).1);
     let most = counts.iter().max().expect("some");
     let least = counts.iter().min().expect("some");
-    assert!(2 * most <= 3 * least, "{counts:?}");
+    assert!(*most < 2 * least, "{counts:?}");
 }

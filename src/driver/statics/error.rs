@@ -29,7 +29,7 @@ pub(crate) fn estimate(
     which: &[usize],
     gradients: bool,
 ) -> Result<Vec<FunctionError>, StaticsFailure> {
-    admit(at)?;
+    admit(at, available_memory())?;
     let fine = refined(problem, &at.x, 2 * at.statics.cuts, which)?;
     let slopes = |of: &StaticDesign| -> Result<Vec<Vec<f64>>, StaticsFailure> {
         if !gradients {
@@ -72,10 +72,13 @@ pub(crate) fn estimate(
 /// 84 and 87 bytes with 5000 and 20,000 elements.
 const BY_ENTRY: usize = 100;
 
-/// Rejects an estimate that needs more memory than available.
-fn admit(at: &StaticDesign) -> Result<(), StaticsFailure> {
+/// Rejects an estimate that needs more memory than available \[bytes\], if that is known.
+///
+/// # Errors
+/// [`StaticsFailure::Memory`].
+fn admit(at: &StaticDesign, available: Option<usize>) -> Result<(), StaticsFailure> {
     let needed = at.factor_entries().unwrap_or(0).saturating_mul(BY_ENTRY);
-    match available_memory() {
+    match available {
         Some(available) if needed > available => Err(StaticsFailure::Memory {
             elements: 4 * at.statics.mesh().shells.len(),
             needed: size(needed),
@@ -165,5 +168,39 @@ fn gain(function: &Asked) -> f64 {
         | Asked::Frequency(_)
         | Asked::LowestFrequency(_)
         | Asked::DistanceFromStart => 4.0 / 3.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An estimate cuts every shell into four. Where that needs more memory than there is, it is refused, with numbers
+    /// that say how much is missing.
+    #[test]
+    fn an_estimate_beyond_memory_is_refused() {
+        let text = r#"{
+            "version": 1, "name": "plate",
+            "materials": {"metal": {"young": 70e9, "poisson": 0.3, "density": 2700}},
+            "structures": {"plate": {
+                "mesh": {"plate": {"length": 1, "width": 1, "elements": [4, 3]}}, "material": "metal", "thickness": 0.01,
+                "supports": {"edges": {"nodes": ["x0"]}}
+            }},
+            "load_cases": {"pressure": {"p": {"pressure": {"faces": "all", "pressure": 10}}}},
+            "functions": {"compliance": {"compliance": {"case": "pressure"}}}
+        }"#;
+        let problem = Problem::parse(text, "plate.json", &[]).expect("a sound file");
+        let statics = problem.statics.as_ref().expect("structures");
+        let at = StaticDesign::of(&problem, statics, &[], None).expect("a solution");
+        let needed = at.factor_entries().expect("a factor") * BY_ENTRY;
+        assert!(needed > 100_000, "{needed}");
+        assert_eq!(admit(&at, None), Ok(()));
+        assert_eq!(admit(&at, Some(needed)), Ok(()));
+        let refused = admit(&at, Some(needed - 1)).expect_err("too little");
+        let told = refused.to_string();
+        assert!(
+            told.starts_with("a mesh of 48 elements needs about"),
+            "{told}"
+        );
     }
 }

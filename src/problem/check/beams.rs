@@ -1,20 +1,16 @@
-//! Beams with elastic coordinates, and what is measured of them.
+//! Beams with elastic coordinates.
 
 use super::Checker;
 use crate::problem::beam::{modes, shears};
 use crate::problem::finding::Finding;
 use crate::problem::pointer::{advice, join};
-use crate::problem::quantity::{Quantity, Vector};
+use crate::problem::quantity::Vector;
 use crate::problem::schema::flexible::{Beam, BeamSection, Functions, Strain};
 use crate::problem::schema::joints::PointPair;
-use crate::problem::schema::measured::{SectionPlace, SectionPlaces};
 use crate::problem::schema::mechanics::{Body, Point};
 
 /// Part of the length by which a point may lie beyond an end.
 const BEYOND: f64 = 1e-9;
-
-/// Largest number of sections at equal distances.
-const MOST_SECTIONS: usize = 1000;
 
 impl Checker<'_> {
     pub(super) fn beam(&mut self, pointer: &str, body: &Body, beam: &Beam) {
@@ -164,7 +160,7 @@ impl Checker<'_> {
         self.sizes(&place, &beam.section);
     }
 
-    fn part(&mut self, pointer: &str, part: f64) {
+    pub(super) fn part(&mut self, pointer: &str, part: f64) {
         if !(-BEYOND..=1.0 + BEYOND).contains(&part) {
             let finding = Finding::new(
                 pointer,
@@ -181,106 +177,6 @@ impl Checker<'_> {
             let found = format!("a point at x = {x} m");
             let expected = format!("one on the beam, x from 0 to {length} m");
             self.fault(Finding::new(pointer, found, expected));
-        }
-    }
-
-    /// The beam of this name, for what is measured of beams only.
-    pub(super) fn measured_beam(&mut self, pointer: &str, name: &str) -> Option<&Beam> {
-        let place = join(pointer, "body");
-        let body = self.document.bodies.get(name);
-        if let Some(beam) = body.and_then(|body| body.beam.as_ref()) {
-            return Some(beam);
-        }
-        if !self.damage.holds("bodies", name) {
-            let bodies = self.document.bodies.iter();
-            let beams = bodies.filter(|(_, body)| body.beam.is_some());
-            let hint = advice(name, "beams", beams.map(|(name, _)| name.as_str()));
-            let found = format!("\"{name}\"");
-            self.fault(Finding::new(place, found, "the name of a beam").hint(hint));
-        }
-        None
-    }
-
-    /// Checks where a section of a beam is.
-    pub(super) fn station(&mut self, pointer: &str, name: &str, place: &SectionPlace) {
-        if self.measured_beam(pointer, name).is_some() {
-            self.section_place(&join(pointer, "station"), name, place);
-        }
-    }
-
-    /// Checks where several sections of a beam are.
-    pub(super) fn stations(&mut self, pointer: &str, name: &str, places: &SectionPlaces) {
-        if self.measured_beam(pointer, name).is_none() {
-            return;
-        }
-        let pointer = join(pointer, "stations");
-        let fault = |found: &str, expected| Finding::new(&pointer, found, expected);
-        let several = format!("a list of sections, or a number of them from 2 to {MOST_SECTIONS}");
-        match places {
-            SectionPlaces::Count(count) if (2..=MOST_SECTIONS).contains(count) => {}
-            SectionPlaces::Count(count) => {
-                let finding = fault(&format!("{count}"), &several);
-                self.fault(finding);
-            }
-            SectionPlaces::List(all) if all.is_empty() => {
-                let finding = fault("an empty list", &several);
-                self.fault(finding);
-            }
-            SectionPlaces::List(all) => {
-                for (k, place) in all.iter().enumerate() {
-                    self.section_place(&join(&pointer, k), name, place);
-                }
-            }
-        }
-    }
-
-    /// Checks where a section of the beam of this name is.
-    fn section_place(&mut self, pointer: &str, name: &str, place: &SectionPlace) {
-        let body = self.document.bodies.get(name);
-        let Some(beam) = body.and_then(|body| body.beam.as_ref()) else {
-            return;
-        };
-        match place {
-            SectionPlace::Fraction(Quantity { value, .. }) => self.part(pointer, *value),
-            SectionPlace::Named(text) if beam.station(text).is_some() => {}
-            SectionPlace::Named(text) => {
-                let names: Vec<&str> = beam.station_names().collect();
-                let hint = advice(text, "stations", names);
-                let expected = "the name of a station, or a fraction of the length";
-                self.fault(Finding::new(pointer, format!("\"{text}\""), expected).hint(hint));
-            }
-        }
-    }
-
-    /// Checks that the section of a beam has stresses.
-    pub(super) fn has_stress(&mut self, pointer: &str, name: &str) {
-        let body = self.document.bodies.get(name);
-        if let Some(beam) = body.and_then(|body| body.beam.as_ref())
-            && matches!(beam.section, BeamSection::Given(_))
-        {
-            let found = format!("stress in \"{name}\", which has given stiffnesses");
-            let expected = "a beam whose section has sizes";
-            self.fault(Finding::new(join(pointer, "body"), found, expected));
-        }
-    }
-
-    /// Checks that a fibre is in the section.
-    pub(super) fn fibre(&mut self, pointer: &str, [y, z]: [f64; 2]) {
-        if [y, z].iter().any(|part| part.abs() > 1.0) {
-            let found = format!("the fibre [{y}, {z}]");
-            let expected = "parts of half the section's size along y and z, from -1 to 1";
-            self.fault(Finding::new(pointer, found, expected));
-        }
-    }
-
-    /// Checks several fibres.
-    pub(super) fn fibres(&mut self, pointer: &str, fibres: Option<&[[f64; 2]]>) {
-        if fibres.is_some_and(<[_]>::is_empty) {
-            let expected = "at least one fibre, or none for those at the corners";
-            self.fault(Finding::new(pointer, "an empty list", expected));
-        }
-        for (k, fibre) in fibres.into_iter().flatten().enumerate() {
-            self.fibre(&join(pointer, k), *fibre);
         }
     }
 

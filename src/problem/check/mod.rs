@@ -8,6 +8,7 @@ mod loads;
 mod mechanics;
 mod modal;
 mod properties;
+mod sections;
 mod sets;
 mod structures;
 mod study;

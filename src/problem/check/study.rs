@@ -239,24 +239,22 @@ impl Checker<'_> {
             }
             Instant::VonMises(of) => self.shell_stress(&join(pointer, "von_mises"), of),
             Instant::SectionForce(of) => {
-                self.station(&join(pointer, "section_force"), &of.body, &of.station);
+                let pointer = join(pointer, "section_force");
+                self.station(&pointer, (&of.body, of.beams.as_ref()), &of.station);
             }
             Instant::FibreStress(of) => {
                 let pointer = join(pointer, "fibre_stress");
-                self.station(&pointer, &of.body, &of.station);
+                self.station(&pointer, (&of.body, of.beams.as_ref()), &of.station);
                 self.has_stress(&pointer, &of.body);
                 self.fibre(&join(&pointer, "fibre"), of.fibre);
             }
             Instant::LargestSectionForce(of) => {
-                self.stations(
-                    &join(pointer, "largest_section_force"),
-                    &of.body,
-                    &of.stations,
-                );
+                let pointer = join(pointer, "largest_section_force");
+                self.stations(&pointer, (&of.body, of.beams.as_ref()), &of.stations);
             }
             Instant::LargestFibreStress(of) => {
                 let pointer = join(pointer, "largest_fibre_stress");
-                self.stations(&pointer, &of.body, &of.stations);
+                self.stations(&pointer, (&of.body, of.beams.as_ref()), &of.stations);
                 self.has_stress(&pointer, &of.body);
                 self.fibres(&join(&pointer, "fibres"), of.fibres.as_deref());
             }

@@ -7,6 +7,7 @@ use crate::functions::{Bound, Instant};
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
 use crate::model::flexible::Quadratic;
+use crate::problem::parts::line_of;
 use crate::problem::placement::Assembly;
 use crate::problem::schema::Document;
 use crate::problem::schema::measured::{
@@ -14,6 +15,7 @@ use crate::problem::schema::measured::{
     SectionPlaces, Sign,
 };
 use crate::structures::beam::Section;
+use crate::structures::beam_sections::BeamLine;
 use crate::structures::modal::sections::SectionForce;
 
 impl<S: Scalar> FlexibleBodies<S> {
@@ -59,109 +61,143 @@ impl<S: Scalar> FlexibleBodies<S> {
                     linear[i] = lift3(n).dot(&direction);
                 }
             }
-            return Instant::Deformation {
-                flexible: shells.flexible,
-                kind: DeformationKind::Displacement,
-                form: Quadratic {
-                    linear,
-                    squares: Vec::new(),
-                },
+            let form = Quadratic {
+                linear,
+                squares: Vec::new(),
             };
+            return of_coordinates(shells.flexible, DeformationKind::Displacement, form);
         }
         let Elastic {
             flexible, shapes, ..
         } = self.of(body);
         let modes = shapes.point(point);
-        Instant::Deformation {
-            flexible: *flexible,
-            kind: DeformationKind::Displacement,
-            form: Quadratic {
-                linear: modes
-                    .displacement
-                    .iter()
-                    .map(|n| n.dot(&direction))
-                    .collect(),
-                squares: Vec::new(),
-            },
+        let along = modes.displacement.iter().map(|n| n.dot(&direction));
+        let form = Quadratic {
+            linear: along.collect(),
+            squares: Vec::new(),
+        };
+        of_coordinates(*flexible, DeformationKind::Displacement, form)
+    }
+
+    /// The sections of a beam, or of beams of a body of elements: `set` of them, or all.
+    pub(crate) fn sections(
+        &self,
+        document: &Document,
+        (name, body): (&str, usize),
+        set: Option<&String>,
+        x: &[S],
+    ) -> Sections<'_, S> {
+        let Some(shells) = self.shells_of(body) else {
+            return Sections::OfBeam(self.of(body));
+        };
+        let elements = document.bodies[name].elements.as_ref();
+        let elements = elements.expect("a body of elements is written as one");
+        let line = line_of(document, elements, &shells.prepared, (set, x));
+        Sections::OfElements(shells.flexible, line)
+    }
+}
+
+/// The sections of a beam whose forces and stresses are measured.
+pub(crate) enum Sections<'a, S> {
+    /// Of a beam with functions.
+    OfBeam(&'a Elastic<S>),
+    /// Of beams among the elements of a flexible body, an index into those of the model.
+    OfElements(usize, BeamLine<S>),
+}
+
+impl<S: Scalar> Sections<'_, S> {
+    /// A section force or moment.
+    pub(crate) fn force(&self, component: SectionComponent, station: S) -> Instant<S> {
+        use DeformationKind::{Force, Moment};
+        // N, V2, V3, T, M2, M3 of elements, whose y and z are axes 2 and 3 of the section.
+        let (force, number, kind) = match component {
+            SectionComponent::Axial => (SectionForce::Axial, 0, Force),
+            SectionComponent::ShearY => (SectionForce::ShearY, 1, Force),
+            SectionComponent::ShearZ => (SectionForce::ShearZ, 2, Force),
+            SectionComponent::Torsion => (SectionForce::Torsion, 3, Moment),
+            SectionComponent::BendingY => (SectionForce::BendingY, 4, Moment),
+            SectionComponent::BendingZ => (SectionForce::BendingZ, 5, Moment),
+        };
+        match self {
+            Self::OfBeam(own) => {
+                let form = own.shapes.beam().section_force(force, station);
+                of_coordinates(own.flexible, kind, form)
+            }
+            Self::OfElements(flexible, line) => {
+                let form = line.force(number, station);
+                of_unknowns((*flexible, line), kind, form)
+            }
         }
     }
 
-    /// A section force or moment.
-    pub(crate) fn section(
-        &self,
-        body: usize,
-        component: SectionComponent,
-        station: S,
-    ) -> Instant<S> {
-        use DeformationKind::{Force, Moment};
-        let Elastic {
-            flexible, shapes, ..
-        } = self.of(body);
-        let (force, kind) = match component {
-            SectionComponent::Axial => (SectionForce::Axial, Force),
-            SectionComponent::ShearY => (SectionForce::ShearY, Force),
-            SectionComponent::ShearZ => (SectionForce::ShearZ, Force),
-            SectionComponent::Torsion => (SectionForce::Torsion, Moment),
-            SectionComponent::BendingY => (SectionForce::BendingY, Moment),
-            SectionComponent::BendingZ => (SectionForce::BendingZ, Moment),
-        };
-        Instant::Deformation {
-            flexible: *flexible,
-            kind,
-            form: shapes.beam().section_force(force, station),
+    /// The stress along a fibre, at parts of half the section's size.
+    pub(crate) fn stress(&self, station: S, fibre: [f64; 2]) -> Instant<S> {
+        let kind = DeformationKind::Stress;
+        match self {
+            Self::OfBeam(own) => {
+                let beam = own.shapes.beam();
+                let half = beam.half_sizes();
+                let half = half.expect("a section with stresses has a size, which is checked");
+                let place = [half[0] * fibre[0], half[1] * fibre[1]];
+                of_coordinates(own.flexible, kind, beam.fibre_stress(station, place))
+            }
+            Self::OfElements(flexible, line) => {
+                let form = line.stress(fibre, station);
+                of_unknowns((*flexible, line), kind, form)
+            }
         }
+    }
+
+    /// The outer fibres of a section.
+    fn outer(&self, station: S) -> &'static [[f64; 2]] {
+        let round = match self {
+            Self::OfBeam(own) => matches!(own.shapes.beam().section, Section::Tube { .. }),
+            Self::OfElements(_, line) => line.is_round(station),
+        };
+        if round { &ROUND } else { &CORNERS }
     }
 
     /// The largest section force or moment of several sections.
-    pub(crate) fn largest_section(
-        &self,
-        body: usize,
-        of: &LargestSectionForce,
-        stations: &[S],
-    ) -> Instant<S> {
-        let all = stations
-            .iter()
-            .map(|&at| self.section(body, of.component, at));
-        let settings = (of.sign, of.rho, of.bound);
-        largest(all, settings)
+    pub(crate) fn largest_force(&self, of: &LargestSectionForce, stations: &[S]) -> Instant<S> {
+        let all = stations.iter().map(|&at| self.force(of.component, at));
+        largest(all, (of.sign, of.rho, of.bound))
     }
 
     /// The largest stress of several sections and fibres.
-    pub(crate) fn largest_stress(
-        &self,
-        body: usize,
-        of: &LargestFibreStress,
-        stations: &[S],
-    ) -> Instant<S> {
-        let outer: &[[f64; 2]] = match &self.of(body).shapes.beam().section {
-            Section::Tube { .. } => &ROUND,
-            Section::Rectangle { .. } | Section::I { .. } | Section::Given(_) => &CORNERS,
+    pub(crate) fn largest_stress(&self, of: &LargestFibreStress, stations: &[S]) -> Instant<S> {
+        let at = |&station: &S| {
+            let fibres = of.fibres.as_deref().unwrap_or(self.outer(station));
+            fibres.iter().map(move |&fibre| self.stress(station, fibre))
         };
-        let fibres = of.fibres.as_deref().unwrap_or(outer);
-        let at = |station: S| {
-            let fibre = move |fibre: &[f64; 2]| self.stress(body, station, fibre.map(S::from));
-            fibres.iter().map(fibre)
-        };
-        let settings = (of.sign, of.rho, of.bound);
-        largest(stations.iter().flat_map(|&station| at(station)), settings)
-    }
-
-    /// The stress along a fibre, at parts of half the section's height and width.
-    pub(crate) fn stress(&self, body: usize, station: S, fibre: [S; 2]) -> Instant<S> {
-        let Elastic {
-            flexible, shapes, ..
-        } = self.of(body);
-        let beam = shapes.beam();
-        let half = beam
-            .half_sizes()
-            .expect("a section with stresses has a size, which is checked");
-        Instant::Deformation {
-            flexible: *flexible,
-            kind: DeformationKind::Stress,
-            form: beam.fibre_stress(station, [half[0] * fibre[0], half[1] * fibre[1]]),
-        }
+        largest(stations.iter().flat_map(at), (of.sign, of.rho, of.bound))
     }
 }
+
+fn of_coordinates<S>(flexible: usize, kind: DeformationKind, form: Quadratic<S>) -> Instant<S> {
+    Instant::Deformation {
+        flexible,
+        kind,
+        unknowns: None,
+        form,
+    }
+}
+
+fn of_unknowns<S>(
+    (flexible, line): (usize, &BeamLine<S>),
+    kind: DeformationKind,
+    form: Quadratic<S>,
+) -> Instant<S> {
+    Instant::Deformation {
+        flexible,
+        kind,
+        unknowns: Some(line.unknowns.clone()),
+        form,
+    }
+}
+
+/// The named sections of a line of elements.
+pub(crate) const START: &str = "start";
+pub(crate) const END: &str = "end";
 
 /// The outermost fibres of a rectangle and of an I.
 const CORNERS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
@@ -185,7 +221,7 @@ fn largest<S: Scalar>(
     all: impl Iterator<Item = Instant<S>>,
     (sign, rho, bound): (Option<Sign>, f64, Option<Side>),
 ) -> Instant<S> {
-    let mut found: Option<(usize, DeformationKind)> = None;
+    let mut found = None;
     let mut largest = Largest {
         forms: Vec::new(),
         signs: Vec::new(),
@@ -199,21 +235,23 @@ fn largest<S: Scalar>(
         let Instant::Deformation {
             flexible,
             kind,
+            unknowns,
             form,
         } = instant
         else {
             unreachable!("section forces and stresses are deformations");
         };
-        found = Some((flexible, kind));
+        found = Some((flexible, kind, unknowns));
         for &factor in sign.unwrap_or_default().factors() {
             largest.forms.push(form.clone());
             largest.signs.push(factor);
         }
     }
-    let (flexible, kind) = found.expect("there is a section, which is checked");
+    let (flexible, kind, unknowns) = found.expect("there is a section, which is checked");
     Instant::LargestDeformation {
         flexible,
         kind,
+        unknowns,
         largest,
     }
 }
@@ -246,10 +284,12 @@ pub(crate) fn station<S: Scalar>(
 ) -> S {
     match place {
         SectionPlace::Fraction(fraction) => assembly.quantity(fraction),
-        SectionPlace::Named(name) => {
-            let beam = document.bodies[body].beam.as_ref();
-            let station = beam.and_then(|beam| beam.station(name));
-            assembly.quantity(&station.expect("stations are checked"))
-        }
+        SectionPlace::Named(name) => match &document.bodies[body].beam {
+            Some(beam) => {
+                let station = beam.station(name);
+                assembly.quantity(&station.expect("stations are checked"))
+            }
+            None => S::from(if name == END { 1.0 } else { 0.0 }),
+        },
     }
 }

@@ -6,7 +6,7 @@ mod measures;
 mod shapes;
 
 pub(crate) use described::described;
-pub(crate) use measures::{station, stations};
+pub(crate) use measures::{END, START, Sections, station, stations};
 pub(crate) use shapes::Weighed;
 
 use super::elements;
@@ -25,7 +25,7 @@ use shapes::{Shapes, start, weighed};
 use std::sync::Arc;
 
 /// A body with elastic coordinates.
-struct Elastic<S> {
+pub(crate) struct Elastic<S> {
     /// The body that is its frame.
     frame: usize,
     /// Its index among those of the model.

@@ -220,8 +220,10 @@ pub(crate) struct ElasticDisplacement {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SectionForce {
-    /// The beam.
+    /// The beam, or a body of elements that has beams.
     pub body: String,
+    /// Of a body of elements: the name of a set of its beams, or of a stiffener; default all its beams.
+    pub beams: Option<String>,
     /// Where the section is.
     pub station: SectionPlace,
     /// Which of its forces and moments.
@@ -232,8 +234,10 @@ pub(crate) struct SectionForce {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FibreStress {
-    /// The beam.
+    /// The beam, or a body of elements that has beams.
     pub body: String,
+    /// Of a body of elements: the name of a set of its beams, or of a stiffener; default all its beams.
+    pub beams: Option<String>,
     /// Where the section is.
     pub station: SectionPlace,
     /// Where the fibre is in it along y and z, in parts of half the section's size: [1, 0] is outermost

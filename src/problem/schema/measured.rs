@@ -101,8 +101,10 @@ impl Sign {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LargestSectionForce {
-    /// The beam.
+    /// The beam, or a body of elements that has beams.
     pub body: String,
+    /// Of a body of elements: the name of a set of its beams, or of a stiffener; default all its beams.
+    pub beams: Option<String>,
     /// Where the sections are: a list of stations or fractions of the length, or a number of sections at equal
     /// distances.
     pub stations: SectionPlaces,
@@ -126,8 +128,10 @@ pub(crate) struct LargestSectionForce {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LargestFibreStress {
-    /// The beam.
+    /// The beam, or a body of elements that has beams.
     pub body: String,
+    /// Of a body of elements: the name of a set of its beams, or of a stiffener; default all its beams.
+    pub beams: Option<String>,
     /// Where the sections are: a list of stations or fractions of the length, or a number of sections at equal
     /// distances.
     pub stations: SectionPlaces,

@@ -18,6 +18,7 @@ mod section;
 mod torsion;
 
 pub(crate) use element::{Beam, BeamMotion};
+pub(crate) use energy::BeamStrain;
 pub use section::{Section, SectionFault, SectionValues};
 
 /// Nodes of a beam, at r = −1, 0, 1.

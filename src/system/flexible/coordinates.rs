@@ -4,6 +4,7 @@
 use crate::math::{Scalar, Vec3};
 use crate::model::Model;
 use crate::model::flexible::{FlexibleBody, Form};
+use crate::model::reduced::NodalBasis;
 use crate::system::bodies::BodyMotion;
 use crate::system::finite;
 use crate::system::flexing::{Flexing, Generalised};
@@ -101,6 +102,56 @@ pub(crate) fn add_coordinates<S: Scalar>(
 ) {
     for ((carrier, k), &x) in body.places().zip(elastic) {
         out[numbering.velocity(carrier) + k] += x;
+    }
+}
+
+/// These unknowns of the nodes of a body of elements at the coordinates `q`, by all nodes or through the basis; all
+/// coordinates if none are named.
+pub(crate) fn unknowns_of<S: Scalar>(
+    body: &FlexibleBody<S>,
+    q: &[S],
+    unknowns: Option<&[usize]>,
+) -> Vec<S> {
+    let Some(unknowns) = unknowns else {
+        return q.to_vec();
+    };
+    let of = |&unknown: &usize| match basis_of(body) {
+        None => q[unknown],
+        Some(basis) => (basis.vectors.iter().zip(q))
+            .fold(S::zero(), |sum, (vector, &q)| sum + q * vector[unknown]),
+    };
+    unknowns.iter().map(of).collect()
+}
+
+/// Adds the transpose of [`unknowns_of`] to a vector in velocity numbering.
+pub(crate) fn add_unknowns(
+    numbering: &Numbering,
+    (body, unknowns): (&FlexibleBody<f64>, Option<&[usize]>),
+    by: &[f64],
+    out: &mut [f64],
+) {
+    let Some(unknowns) = unknowns else {
+        return add_coordinates(numbering, body, by, out);
+    };
+    let mut elastic = vec![0.0; body.modes()];
+    for (&unknown, by) in unknowns.iter().zip(by) {
+        match basis_of(body) {
+            None => elastic[unknown] += by,
+            Some(basis) => {
+                for (out, vector) in elastic.iter_mut().zip(&basis.vectors) {
+                    *out += by * vector[unknown];
+                }
+            }
+        }
+    }
+    add_coordinates(numbering, body, &elastic, out);
+}
+
+/// The vectors of a reduced basis.
+pub(crate) fn basis_of<S: Scalar>(body: &FlexibleBody<S>) -> Option<&NodalBasis> {
+    match &body.form {
+        Form::Modal(modal) => modal.shells.as_ref().map(|own| &*own.basis),
+        Form::Finite(_) => None,
     }
 }
 

@@ -10,11 +10,11 @@ use crate::linalg::Emit;
 use crate::math::{Mat3, Scalar, Vec3, scalar::lift3};
 use crate::model::distributed::{DistributedLoad, Spread};
 use crate::model::finite::{FiniteElements, NODES};
-use crate::model::flexible::{FlexibleBody, Form};
+use crate::model::flexible::FlexibleBody;
 use crate::model::reduced::NodalBasis;
 use crate::model::{Axes, LoadKind};
 use crate::structures::shell::basis::{GAUSS_POINTS, TABLES};
-use crate::system::flexible::{add_coordinates, coordinates};
+use crate::system::flexible::{add_coordinates, basis_of, coordinates};
 use crate::system::in_motion::InMotion;
 
 /// A load on a flexible body at an instant.
@@ -72,15 +72,11 @@ fn for_each<S: Scalar>(here: &InMotion<S>, mut visit: impl FnMut(usize, &Acting<
         let body = bodies.find(|own| own.frame == load.body);
         let found = body.and_then(|body| Some((body, body.form.shells()?)));
         let (body, finite) = found.expect("a distributed load acts on a body of elements");
-        let basis = match &body.form {
-            Form::Modal(modal) => modal.shells.as_ref().map(|own| &*own.basis),
-            Form::Finite(_) => None,
-        };
         let acting = Acting {
             load,
             body,
             finite,
-            basis,
+            basis: basis_of(body),
             rotation: here.motions[load.body].rotation,
             q: coordinates(body, here.motions),
             size: load.magnitude.value(here.time),
