@@ -29,7 +29,7 @@ pub(crate) enum AnalysisFailure {
     /// The structures.
     #[error(transparent)]
     Statics(#[from] StaticsFailure),
-    /// A motion is asked for, and nothing moves.
+    /// A motion was requested of structures that do not move.
     #[error("the problem has structures that do not move, so there is no motion to simulate")]
     NoMotion,
 }
@@ -107,7 +107,7 @@ impl Analysed {
         })
     }
 
-    /// What is known of a value that is not finite.
+    /// The origin of a value that is not finite.
     pub(super) fn not_finite_value(&self, problem: &Problem, f: usize, value: f64) -> String {
         match self {
             Self::Motion(at) => not_finite::value(problem, at, f, value),
@@ -117,7 +117,7 @@ impl Analysed {
         }
     }
 
-    /// What is known of a derivative that is not finite.
+    /// The origin of a derivative that is not finite.
     pub(super) fn not_finite_derivative(
         &self,
         problem: &Problem,
@@ -135,7 +135,7 @@ impl Analysed {
     }
 }
 
-/// A design with all that a record and figures show of it.
+/// A design with the data of its record and figures.
 pub(crate) enum Simulated {
     /// A motion with its observations.
     Motion(Box<Simulation>),
@@ -219,7 +219,7 @@ impl Simulated {
         })
     }
 
-    /// What a user should know of the result; `used` are the functions that matter.
+    /// Notes for the user on the result; `used` are the functions of objective and constraints.
     pub(super) fn warnings(&self, problem: &Problem, used: &[usize]) -> Vec<String> {
         match self {
             Self::Motion(simulation) => {
@@ -342,7 +342,7 @@ pub(crate) fn place(cases: &[String], peak: &Peak) -> String {
     )
 }
 
-/// What a user should know of the start at the design `x`, a sentence each.
+/// Notes for the user on the start at the design `x`, one sentence each.
 pub(super) fn notes_of_start(problem: &Problem, x: &[f64]) -> Vec<String> {
     match problem.statics {
         Some(_) => Vec::new(),

@@ -1,8 +1,8 @@
 //! The error of reduced bases: the same run with richer ones, made at the design itself.
 //!
-//! A basis has more fixed-interface modes then, and vectors of smaller amplitudes; rigid shells get a basis. What
-//! changes is an estimate of what the basis leaves out, and of what it is off because it was made for the design
-//! in the file.
+//! A richer basis has more fixed-interface modes and vectors of smaller amplitudes; rigid shells
+//! get a basis. The change of a function estimates the error by truncation, and the error of a
+//! basis that was made for the design in the file.
 
 use super::evaluate::Evaluated;
 use super::integration::Integration;

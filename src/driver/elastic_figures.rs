@@ -1,4 +1,4 @@
-//! What pictures show of bodies that deform: coloured parts, displacements and stresses against time.
+//! Figures of bodies that deform: coloured parts, displacements and stresses against time.
 
 use super::shells;
 use super::simulate::Simulation;

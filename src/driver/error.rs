@@ -41,7 +41,7 @@ pub(crate) struct Estimate {
     pub of_samples: f64,
 }
 
-/// A function's value and, if asked for, its gradient in the design variables.
+/// A function's value and, if requested, its gradient in the design variables.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FunctionError {
     /// The function, by index.
@@ -50,7 +50,7 @@ pub(crate) struct FunctionError {
     pub value: Estimate,
     /// The largest value over the motion, if it is an aggregate.
     pub maximum: Option<Estimate>,
-    /// Its derivatives in the variables; empty if they were not asked for.
+    /// Its derivatives in the variables; empty if they were not requested.
     pub gradient: Vec<Estimate>,
 }
 

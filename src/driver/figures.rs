@@ -81,7 +81,7 @@ pub(crate) fn of_record(
     directory: &Path,
 ) -> Result<Vec<NamedFile>, RedrawError> {
     let text = optimum.problem.document.to_string();
-    // Files of bodies lie beside the problem file.
+    // Paths of files of bodies are relative to the problem file.
     let file = match &optimum.problem.directory {
         Some(beside) => directory.join(beside).join(&optimum.problem.file),
         None => PathBuf::from(&optimum.problem.file),

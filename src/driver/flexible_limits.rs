@@ -9,13 +9,13 @@ use crate::system::attachment::section_rotation;
 use crate::system::{BodyMotion, flexible};
 use std::f64::consts::TAU;
 
-/// Rotation of a section relative to the frame of its body from which the strains of von Karman and
-/// the linear rotations of sections are no longer accurate \[rad\].
+/// Rotation of a section relative to the frame of its body above which von Karman's strains and the
+/// linear rotations of sections are no longer accurate \[rad\].
 const LARGE_ROTATION: f64 = 0.15;
 
-/// Strain from which it is no longer small, so that stress is not proportional to it.
+/// Strain above which stress is no longer proportional to it.
 const LARGE_STRAIN: f64 = 0.1;
-/// Instants at which the strains of shells are looked at, beside the start.
+/// Number of instants, besides the start, at which the strains of shells are evaluated.
 const LOOKS: usize = 8;
 
 /// Part of the lowest angular frequency above which a body of linear strain spins fast. A beam that turns with Ω
@@ -99,7 +99,8 @@ fn large_strain(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
     })
 }
 
-/// The largest strain of a beam along its axis, or von Mises stress by Young's modulus of shells if `looked` at.
+/// The largest strain of a beam along its axis or, if `looked`, von Mises stress of shells by
+/// Young's modulus.
 fn strain(body: &FlexibleBody<f64>, motions: &[BodyMotion<f64>], looked: bool) -> f64 {
     let mut most = 0.0_f64;
     if let Form::Modal(modal) = &body.form

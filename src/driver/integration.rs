@@ -122,8 +122,7 @@ impl Integration {
         }
     }
 
-    /// As [`Integration::new`] for the scene of the start; of structures nothing is integrated, and it stays
-    /// as it is.
+    /// As [`Integration::new`] for the scene of the start. Structures are not integrated.
     pub(crate) fn of(problem: &Problem, asked: Option<&[usize]>, gradients: bool) -> Self {
         if problem.statics.is_none() {
             return Self::new(problem, &problem.scene(&problem.start()), asked, gradients);

@@ -63,7 +63,8 @@ pub(super) fn variable(problem: &Problem, i: usize) -> String {
     format!("\"{}\" ({})", variable.name, variable.paths.join(", "))
 }
 
-/// The first body whose motion is not finite, and since when. Empty if all motions are finite.
+/// The first body whose motion is not finite, and the time from which on. Empty if all motions are
+/// finite.
 pub(super) fn body(at: &Evaluated) -> String {
     let run = &at.run;
     let lost = (0..=run.last()).find_map(|k| {

@@ -1,4 +1,4 @@
-//! What a parameter of the problem file that is not designed is worth at the optimum.
+//! Sensitivity of the optimum to a parameter of the problem file that is not designed.
 
 use super::evaluator::{Evaluator, unscaled};
 use super::known_evaluations::KnownEvaluations;

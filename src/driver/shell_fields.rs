@@ -9,7 +9,7 @@ use crate::report::vtu::{Fields, pvd, vtu};
 use crate::system::flexible::{coordinates, rates};
 use std::path::{Path, PathBuf};
 
-/// Instants at most.
+/// Largest number of instants.
 const INSTANTS: usize = 101;
 
 /// `fields_0000.vtu` … and `fields.pvd`; nothing if no body has finite elements. The instants have equal

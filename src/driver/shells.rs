@@ -7,7 +7,7 @@ use crate::problem::Drawing;
 use crate::report::plots::Patch;
 use crate::system::finite::stress_ratios;
 
-/// Up to so many elements of a body are drawn in four parts each, others in one.
+/// Bodies with at most this number of elements are drawn in four parts an element, others in one.
 const IN_PARTS: usize = 40;
 
 /// The shells of a body, if it has some.

@@ -186,7 +186,7 @@ fn sample_at<S: SolveScalar>(
     run: &Trajectory<S>,
     instants: RangeInclusive<usize>,
 ) -> Vec<S> {
-    // Rows that were left out of the run may stand in the model.
+    // The model may have rows that were left out of the run.
     let numbering = instant.reacting_joint().map(|_| Numbering::new(model));
     let joint = numbering.as_ref().zip(instant.reacting_joint());
     let mut joint = joint.map(|(numbering, j)| JointMultipliers::new(model, numbering, j));

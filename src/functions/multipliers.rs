@@ -25,14 +25,14 @@ pub(crate) struct JointMultipliers<'a, S> {
 /// Multipliers of the rows of a joint at an instant.
 #[derive(Clone, Copy)]
 pub(crate) struct Rows<'a, S> {
-    /// λ; empty if none are asked for.
+    /// λ; empty if none are requested.
     pub lambda: &'a [S],
-    /// What may be added to them and moves no body.
+    /// Changes of the multipliers that move no body.
     pub undetermined: &'a [Vec<f64>],
 }
 
 impl<S> Rows<'_, S> {
-    /// Of no joint.
+    /// Those of no joint.
     pub(crate) fn none() -> Self {
         Self {
             lambda: &[],

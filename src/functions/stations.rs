@@ -1,6 +1,6 @@
-//! The largest of several section forces or stresses of a flexible body: a soft maximum over stations,
-//! fibres and signs. With the ρ of a Kreisselmeier–Steinhauser function over time it is one such function
-//! over both.
+//! The largest of several section forces or stresses of a flexible body: a soft maximum over
+//! stations, fibres and signs. With the same ρ as a Kreisselmeier–Steinhauser function over time,
+//! both are one such function.
 
 use crate::math::soft_max::{Bound, SoftMax};
 use crate::math::{Scalar, parameters};

@@ -174,7 +174,7 @@ pub(crate) enum IntegrationFailure {
     RedundancyLost {
         /// The joint.
         joint: String,
-        /// |Φ| of the row (m or 1).
+        /// |Φ| of the row \[m or 1\].
         gap: f64,
         /// Time of the step's end \[s\].
         time: f64,

@@ -1,8 +1,9 @@
 //! Scales of the errors of steps.
 //!
-//! Positions, rotations and velocities of bodies count component by component. The elastic coordinates of a
-//! flexible body count as the three components of one displacement, its mean over the mass: many coordinates do not
-//! drown the joints, and coordinates of any unit count by what they move.
+//! Positions, rotations and velocities of bodies count component by component. The elastic
+//! coordinates of a flexible body count as the three components of one displacement, its mean over
+//! the mass. So many coordinates do not hide the joints, and coordinates of any unit count by the
+//! displacement that they cause.
 
 use crate::math::Scalar;
 use crate::model::Model;
@@ -28,7 +29,7 @@ pub(crate) struct Elastic {
     displacements: Vec<MeanSquare>,
     /// By body: whether it carries elastic coordinates; empty if none does.
     carries: Vec<bool>,
-    /// Number of components that count, in positions and velocities.
+    /// Number of components that count, of positions and velocities.
     components: [usize; 2],
 }
 

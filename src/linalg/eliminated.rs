@@ -119,8 +119,8 @@ impl<S: SolveScalar> Eliminated<S> {
         }
     }
 
-    /// Eliminates the pivots of the front; `rest` becomes the remainder. The error is the pivot that is
-    /// missing.
+    /// Eliminates the pivots of the front; `rest` becomes the remainder. The error is the missing
+    /// pivot.
     pub(super) fn eliminate(&mut self, rest: &mut [S], front: &Front) -> Result<(), usize> {
         let (order, p, r) = (front.order(), front.pivots.len(), front.rest.len());
         let left = &mut self.left;

@@ -1,4 +1,4 @@
-//! Factors of a sparse matrix: by searched pivots, or by pivots that its pattern knows.
+//! Factors of a sparse matrix: with pivots that are searched, or known from its pattern.
 
 use super::front::System;
 use super::matrix::SparseMatrix;

@@ -1,8 +1,10 @@
-//! Generalised minimal residuals (Saad & Schultz 1986), for a matrix that is only known by its products.
+//! Generalised minimal residuals (Saad & Schultz 1986), for a matrix that is given by its products
+//! with vectors.
 
 use crate::math::slices::{add_scaled, dot};
 
-/// Part of a vector that is left of it by which it is taken to lie in the space of those before.
+/// A vector lies in the space of those before if orthogonalisation leaves less than this part of
+/// it.
 const DEPENDENT: f64 = 1e-15;
 
 /// The x with the smallest |b − A x| in the Krylov space of at most `most` products.

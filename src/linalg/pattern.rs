@@ -66,8 +66,8 @@ pub(crate) struct Pattern {
     known_pivots: Option<Arc<KnownPivots>>,
 }
 
-/// Pivots (row, column) that are known before the values, in the order of their elimination: of structures
-/// with many elastic coordinates, whose own matrices are nearly symmetric and definite.
+/// Pivots (row, column) that are known before the values, in the order of their elimination: those
+/// of structures with many elastic coordinates, whose matrices are nearly symmetric and definite.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct KnownPivots {
     /// Rows with few entries, eliminated first; no two of their rows and columns share an entry.

@@ -121,8 +121,8 @@ impl Lowering {
         found
     }
 
-    /// The reductions of scenes with flexible bodies: a plane, or else the rotation of bodies that are
-    /// points. The others take bodies as rigid.
+    /// The reductions of scenes with flexible bodies: a plane, or else the rotation of bodies that
+    /// are points. The other reductions assume rigid bodies.
     fn of_flexible(designs: &Designs) -> Self {
         let model = &designs.start.model;
         let (mut points, mut kept) = (Vec::new(), Vec::new());
@@ -231,7 +231,7 @@ fn find_points(
         if held(index) || body.mobility == Mobility::fixed() {
             continue;
         }
-        // What the start says is enough.
+        // The conditions at the start suffice.
         let start = point::holds(&designs.start, &characteristic_length, index, 0.0);
         let verdict = start.and_then(|()| {
             designs.ask(

@@ -280,9 +280,9 @@ impl Plane {
     }
 }
 
-/// Rotation that turns the axes of a joint's frames along or across the normal; `None` if they are
-/// so, or may not be turned. A joint with e3 in the plane may be turned about e3, a weld about any
-/// axis.
+/// Rotation that turns the axes of a joint's frames along or across the normal; `None` if they
+/// already are, or may not be turned. A joint with e3 in the plane may be turned about e3, a weld
+/// about any axis.
 fn turn_to(joint: &Joint<f64>, normal: &Vec3<f64>) -> Option<Mat3<f64>> {
     const ALIGNED: f64 = 4.0 * f64::EPSILON;
     let [e1, e2, e3] = &joint.frame_a.axes;

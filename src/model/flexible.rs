@@ -1,10 +1,10 @@
 //! Flexible bodies: a frame that moves as a body does, and elastic coordinates q that deform the
 //! body beside it.
 //!
-//! A point X of the body stands at x = X + Σ_I q_I X_I(X) in the axes of the frame; X_I is the shape of
-//! mode I. What the motion needs of the shapes are integrals over the mass (Shabana 2013, *Dynamics of
-//! Multibody Systems*, ch. 5), with mode 0 the undeformed position X, of which mass and inertia are those
-//! of the frame:
+//! A point X of the body is at x = X + Σ_I q_I X_I(X) in the axes of the frame; X_I is the shape of
+//! mode I. The motion depends on integrals of the shapes over the mass (Shabana 2013, *Dynamics of
+//! Multibody Systems*, ch. 5), with mode 0 the undeformed position X, of which mass and inertia are
+//! those of the frame:
 //!
 //! ```text
 //! p_I = ∫ X_I dm                              (3)
@@ -14,11 +14,11 @@
 //!
 //! e_p are von Karman's strains at points with weights, so U is a quartic polynomial.
 //!
-//! The elastic coordinates stand in the states as positions of *carriers*: bodies without mass that are
-//! listed in [`super::Model::bodies`], cannot turn, and have three coordinates or one each. So states,
-//! steps and their adjoints have one layout for all bodies. A point of the deformed body that carries
-//! joints, loads or functions is a body without mass as well, its *interface*, held by a joint of kind
-//! `Attachment` (see [`Modes`]).
+//! The elastic coordinates are in the states as positions of *carriers*: bodies without mass that
+//! are listed in [`super::Model::bodies`], cannot turn, and have three coordinates or one each. So
+//! states, steps and their adjoints have one layout for all bodies. A point of the deformed body
+//! that carries joints, loads or functions is a body without mass as well, its *interface*, held by
+//! a joint of kind `Attachment` (see [`Modes`]).
 
 use super::finite::FiniteElements;
 use super::reduced::ReducedShells;
@@ -33,11 +33,11 @@ pub(crate) struct FlexibleBody<S> {
     /// The body that is the floating frame: its position is the frame's origin; its mass is ∫dm, and its
     /// inertia that of the undeformed body about the origin.
     pub frame: usize,
-    /// The first of the carriers of the elastic coordinates, which stand one after the other.
+    /// The first of the carriers of the elastic coordinates, which are consecutive.
     pub carriers: usize,
-    /// Which inertia it has.
+    /// Kind of its inertia.
     pub inertia: Inertia,
-    /// What its coordinates are.
+    /// Kind of its coordinates.
     pub form: Form<S>,
 }
 
@@ -64,7 +64,7 @@ pub(crate) enum Form<S> {
     Finite(FiniteElements<S>),
 }
 
-/// A body whose coordinates are factors of shapes. Coordinates I = 1 … m stand at index I − 1.
+/// A body whose coordinates are factors of shapes. Coordinates I = 1 … m have the index I − 1.
 #[derive(Clone, Debug)]
 pub(crate) struct Modal<S> {
     /// Integrals of the shapes.
@@ -73,7 +73,7 @@ pub(crate) struct Modal<S> {
     pub stiffness: ModalStiffness<S>,
     /// Damping D: the force D q̇ acts against the coordinates; symmetric, m × m by rows.
     pub damping: Vec<S>,
-    /// What a body of shells in a reduced basis has beside them.
+    /// Further numbers of a body of shells in a reduced basis.
     pub shells: Option<ReducedShells<S>>,
 }
 

@@ -43,7 +43,7 @@ pub(crate) struct Model<S> {
     pub joints: Vec<Joint<S>>,
     /// Loads in the order of the problem file.
     pub loads: Vec<Load<S>>,
-    /// What deforms: flexible bodies, each beside the body that is its frame.
+    /// Flexible bodies; the frame of each is one of the bodies.
     pub flexible: Vec<FlexibleBody<S>>,
 }
 
@@ -94,14 +94,14 @@ impl<S: Scalar> Model<S> {
         self.joints.iter().any(of)
     }
 
-    /// Whether a body is none of the problem file: it carries elastic coordinates or is a point of a
+    /// Whether a body is not in the problem file: it carries elastic coordinates or is a point of a
     /// flexible body.
     pub(crate) fn is_internal(&self, body: usize) -> bool {
         self.is_carrier(body) || self.is_interface(body)
     }
 
-    /// Adds a flexible body whose frame is body `frame`, with the start of its coordinates and their rates;
-    /// its index among the flexible ones. The carriers come after all bodies there are.
+    /// Adds a flexible body whose frame is body `frame`, with the start of its coordinates and
+    /// their rates; its index among the flexible ones. The carriers follow all present bodies.
     pub(crate) fn add_flexible(
         &mut self,
         frame: usize,

@@ -13,7 +13,7 @@ use super::finite::FiniteElements;
 use crate::math::{Scalar, parameters};
 use std::sync::Arc;
 
-/// What a body has beside integrals and stiffness if its shapes are those of shells.
+/// Further numbers of a body whose shapes are those of shells, besides integrals and stiffness.
 #[derive(Clone, Debug)]
 pub(crate) struct ReducedShells<S> {
     /// V.

@@ -54,7 +54,7 @@ parameters!(struct Strain {; weight, strain });
 parameters!(struct Quadratic {; linear, squares });
 
 impl<S: Scalar> ModalInertia<S> {
-    /// Where S_IJ stands among the products, and whether it is transposed.
+    /// Index of S_IJ among the products, and whether it is transposed.
     pub(crate) fn place(&self, i: usize, j: usize) -> (usize, bool) {
         let m = self.static_moments.len();
         let (low, high) = (i.min(j), i.max(j));

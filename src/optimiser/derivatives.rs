@@ -32,7 +32,7 @@ const STEPS: [f64; 3] = [1e-4, 1e-5, 1e-6];
 /// ```
 ///
 /// # Errors
-/// [`EvaluationFailure`] if the functions or their derivatives are undefined at `x` or beside it.
+/// [`EvaluationFailure`] if the functions or their derivatives are undefined at or near `x`.
 pub fn derivative_errors(
     nlp: &mut dyn Nlp,
     x: &[f64],

@@ -1,4 +1,5 @@
-//! Checks of a run's end by further evaluations: a solution that is none, gradients that are wrong.
+//! Checks of a run's end by further evaluations: whether it is a solution, and whether gradients
+//! are right.
 
 use nalgebra::DVector;
 

@@ -1,7 +1,7 @@
 //! Optimiser for smooth nonlinear programs of which only first derivatives are known.
 //!
-//! `solve` starts a run, chooses the method and tells what it found. `convergence` says when a run has
-//! converged, `ending` how it ended. Each method has a folder.
+//! `solve` starts a run, chooses the method and reports the result. `convergence` says when a run
+//! has converged, `ending` how it ended. Each method has a folder.
 
 mod convergence;
 mod derivatives;

@@ -61,9 +61,8 @@ pub trait Nlp {
     /// [`EvaluationFailure`] as for [`Nlp::evaluate`].
     fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure>;
 
-    /// Second derivatives of f + yᵀc at `x`, of which gradients were requested last, for the
-    /// multipliers `y` of the rows. Without them, as by default, they are approximated from
-    /// gradients.
+    /// Second derivatives of f + yᵀc for the multipliers `y` of the rows, at the point `x` of the
+    /// last requested gradients. Without them, as by default, they are approximated from gradients.
     fn curvature(&mut self, _x: &[f64], _y: &[f64]) -> Option<Curvature> {
         None
     }

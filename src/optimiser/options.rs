@@ -44,7 +44,7 @@ pub struct Options {
     pub max_iterations: usize,
     /// Evaluations of the functions allowed (default 3000).
     pub max_evaluations: usize,
-    /// Wall time allowed (s) (default unlimited).
+    /// Wall time allowed \[s\] (default unlimited).
     pub max_seconds: Option<f64>,
     /// An objective f that changes by this part of max(1, |f|) from the first point to a feasible one
     /// is called unbounded (default −1e20).

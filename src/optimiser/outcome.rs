@@ -87,11 +87,11 @@ pub struct Counts {
     pub failures: usize,
     /// Quadratic programs solved.
     pub quadratic_programs: usize,
-    /// Wall time spent in the quadratic programs (s).
+    /// Wall time spent in the quadratic programs \[s\].
     pub quadratic_program_seconds: f64,
-    /// Wall time spent in evaluating functions and gradients (s).
+    /// Wall time spent in evaluating functions and gradients \[s\].
     pub evaluation_seconds: f64,
-    /// Wall time of the run (s).
+    /// Wall time of the run \[s\].
     pub seconds: f64,
 }
 
@@ -100,7 +100,7 @@ pub struct Counts {
 pub struct FailedDesign {
     /// The design.
     pub x: Vec<f64>,
-    /// What failed, and why.
+    /// The failed function, and the reason.
     pub what: String,
 }
 

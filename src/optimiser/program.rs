@@ -221,7 +221,7 @@ impl<'a> Program<'a> {
         full
     }
 
-    /// Wall time since the start of the run (s).
+    /// Wall time since the start of the run \[s\].
     pub(crate) fn seconds(&self) -> f64 {
         self.started.elapsed().as_secs_f64()
     }

@@ -46,13 +46,13 @@ pub(crate) fn shears(beam: &Beam) -> bool {
     }
 }
 
-/// The beam at the design `x`. What a checked file cannot lack counts as one here.
+/// The beam at the design `x`. Missing entries, which a checked file does not lack, count as one.
 pub(crate) fn beam<S: Scalar>(written: &Beam, x: &[S]) -> FlexibleBeam<S> {
     let get = |quantity: &Quantity| quantity.get(x);
     let or = |quantity: &Option<Quantity>, default: f64| {
         quantity.as_ref().map_or(S::from(default), |q| q.get(x))
     };
-    // Axis 3 of a section is y, its axis 2 is z. EI2 resists what bends along axis 3.
+    // Axis 3 of a section is y, its axis 2 is z. EI2 resists bending along axis 3.
     let section = section(&written.section, x, |given| {
         let (along_y, along_z) = (or(&given.ga_y, 1.0), or(&given.ga_z, 1.0));
         SectionValues {

@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 
 /// Default number of instants of the time lapse.
 const SNAPSHOTS: usize = 12;
-/// How far to the left and down a point is drawn that is a metre nearer to the viewer.
+/// Shift to the left and down of a point that is a metre nearer to the viewer.
 const OBLIQUE: [f64; 2] = [0.4, 0.3];
 /// Number of corners of the polygon that approximates a circle.
 const CORNERS: usize = 32;
@@ -47,10 +47,10 @@ pub(crate) struct BarrierLine {
 /// How the motion of a design is drawn.
 #[derive(Clone, Debug)]
 pub(crate) struct Drawing {
-    /// A point p stands at right · p to the right: a ground axis, or for shells an axis less a part of the one
-    /// that points to the viewer.
+    /// A point p is drawn at right · p to the right: a ground axis, or for shells an axis less a
+    /// part of the one that points to the viewer.
     pub right: Vec3<f64>,
-    /// A point p stands at up · p above the origin.
+    /// A point p is drawn at up · p above the origin.
     pub up: Vec3<f64>,
     /// Number of instants of the time lapse.
     pub snapshots: usize,
@@ -67,12 +67,12 @@ pub(crate) struct Drawing {
 }
 
 impl Drawing {
-    /// Where a point of ground stands in the picture, to the right and up.
+    /// Place of a point of ground in the picture, to the right and up.
     pub(crate) fn flat(&self, point: &Vec3<f64>) -> [f64; 2] {
         [self.right.dot(point), self.up.dot(point)]
     }
 
-    /// The direction to the viewer: points along it stand at one place of the picture.
+    /// The direction to the viewer: points along it have one place in the picture.
     pub(crate) fn sight(&self) -> Vec3<f64> {
         self.right.cross(&self.up)
     }
@@ -118,7 +118,7 @@ pub(crate) fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawin
     });
     let mut elastic_points = beam_points(document, x);
     elastic_points.extend(shell_points(document));
-    // Shells that are seen along their surface show nothing, so they are seen from above and beside.
+    // Shells seen along their surface are lines, so the view is from above and beside.
     let shells = document.bodies.values().any(|body| body.elements.is_some());
     let oblique = if shells { OBLIQUE } else { [0.0; 2] };
     Drawing {

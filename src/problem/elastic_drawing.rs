@@ -1,4 +1,4 @@
-//! What is drawn of bodies that deform: their outlines, and displacements of their points.
+//! Drawing of bodies that deform: their outlines, and displacements of their points.
 
 use super::elements::{nodes_of, prepared};
 use super::schema::Document;
@@ -19,14 +19,14 @@ const EDGES: [[usize; 3]; 4] = [[0, 1, 2], [2, 5, 8], [8, 7, 6], [6, 3, 0]];
 /// A closed line of points that move on their body.
 #[derive(Clone, Debug)]
 pub(crate) struct DeformedLine {
-    /// Its points: where they are in the undeformed body (m), and their displacements by each coordinate.
+    /// Its points: where they are in the undeformed body \[m\], and their displacements by each coordinate.
     pub points: Vec<(Vec3<f64>, Vec<Vec3<f64>>)>,
-    /// Between each pair of neighbouring points on one side and the next: the stress along both sides (Pa).
+    /// Between each pair of neighbouring points on one side and the next: the stress along both sides \[Pa\].
     /// Empty for a section without size. The points of the other side follow in opposite order.
     pub stresses: Vec<[Quadratic<f64>; 2]>,
 }
 
-/// A displacement of a point of a flexible body against its axes, in its axes (m).
+/// A displacement of a point of a flexible body against its axes, in its axes \[m\].
 #[derive(Clone, Debug)]
 pub(crate) struct ElasticPoint {
     /// Name of the body, the point and the direction.
@@ -97,7 +97,7 @@ impl Beams {
         Self { at }
     }
 
-    /// A beam from a node, which is visited then.
+    /// A beam from a node; it counts as visited afterwards.
     fn next(&mut self, node: usize) -> Option<[usize; 3]> {
         let [start, middle, end] = self.at.get_mut(&node)?.pop()?;
         if let Some(back) = self.at.get_mut(&end) {
@@ -106,7 +106,7 @@ impl Beams {
         Some([start, middle, end])
     }
 
-    /// Adds the way along all beams that hang together with a node, and back to it.
+    /// Adds the way along all beams connected with a node, and back to it.
     fn visit(&mut self, node: usize, line: &mut Vec<usize>) {
         let mut way: Vec<[usize; 3]> = Vec::new();
         let mut at = node;

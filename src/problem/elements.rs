@@ -83,13 +83,13 @@ pub(crate) fn part_of_file(structure: &WrittenStructure) -> Part<f64> {
     part(structure, &x, 1)
 }
 
-/// Works out what no design changes. A checked file has all sets.
+/// Computes the data that no design changes. A checked file has all sets.
 pub(crate) fn prepared(document: &Document, elements: &Elements) -> Arc<Prepared> {
     const CHECKED: &str = "stiffness is checked when a problem is read";
     prepare(document, elements).expect(CHECKED)
 }
 
-/// As [`prepared`], of a file that need not have a stiffness that holds.
+/// As [`prepared`], for a file whose stiffness may be singular.
 ///
 /// # Errors
 /// [`PencilFailure`]: the shells have no reduced basis, as they are a mechanism.
@@ -165,7 +165,7 @@ pub(crate) fn prepare(
     Ok(elements.prepared.get_or_init(|| Arc::new(made)).clone())
 }
 
-/// Gives the bound document what was worked out for the one it was bound from.
+/// Copies the prepared data to the bound document from the one it was bound from.
 pub(super) fn share(written: &Document, bound: &mut Document) {
     for (from, to) in written.bodies.values().zip(bound.bodies.values_mut()) {
         if let (Some(from), Some(to)) = (&from.elements, &mut to.elements) {

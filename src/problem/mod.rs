@@ -286,7 +286,7 @@ impl Problem {
         })
     }
 
-    /// How the numbers of structures beside thickness and sections move with the design.
+    /// Derivatives of the numbers of structures, except thickness and sections, in the design.
     pub(crate) fn moved(&self, statics: &Statics, x: &[f64]) -> Moved {
         let moves = |variable: &Variable| {
             let mut paths = variable.paths.iter();

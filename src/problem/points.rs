@@ -1,4 +1,5 @@
-//! Places that bodies do not have: those beside a point mass, and those beyond the ends of a beam.
+//! Points that bodies do not have: those away from a point mass, and those beyond the ends of a
+//! beam.
 
 use super::Problem;
 use super::elements::{mesh_quantities, prepared};
@@ -17,7 +18,7 @@ use crate::system::placement::length_scale;
 /// Two points are the same up to this distance, relative to the length scale.
 const SAME: f64 = 1e-9;
 
-/// The first beam that something holds beyond its ends, where its shapes say nothing.
+/// The first beam that is held beyond its ends, where its shapes are not defined.
 pub(super) fn off_beams(problem: &Problem) -> Option<Finding> {
     let model = problem.scene(&problem.start()).model;
     model.joints.iter().find_map(|joint| {
@@ -153,8 +154,8 @@ pub(super) fn off_points(problem: &Problem) -> Option<Finding> {
 /// Distance of a place from an interface, relative to the size of its body, up to which it is there.
 const AT_INTERFACE: f64 = 1e-6;
 
-/// The first joint, load or function that holds a body of files beside its interfaces, or the first joint or torque
-/// that turns one whose rotation is not known.
+/// The first joint, load or function that holds a body from files away from its interfaces, or the
+/// first joint or torque at an interface whose rotation is not known.
 pub(super) fn off_interfaces(problem: &Problem) -> Option<Finding> {
     let written = &problem.written;
     if !written.bodies.values().any(|body| body.modal.is_some()) {

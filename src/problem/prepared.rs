@@ -52,7 +52,7 @@ pub(crate) enum PartSource {
 pub(crate) struct ReducedBody {
     /// Their parts.
     pub shells: ProjectedShells,
-    /// What the basis is made of; `None` of a rigid body.
+    /// The vectors of the basis; `None` for a rigid body.
     pub basis: Option<ReducedBasis>,
 }
 

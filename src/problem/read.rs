@@ -100,7 +100,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
             return faults(findings);
         }
     };
-    // Files are read beside a sound document only.
+    // Other files are read only if the document has no faults.
     let content = match structure.findings.is_empty() {
         true => modal::load(&mut written, (file, &source))?,
         false => String::new(),
@@ -169,7 +169,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     }
 }
 
-/// Completes a problem of structures, or says what is wrong with their meshes and supports.
+/// Completes a problem of structures, or reports the faults of their meshes and supports.
 fn of_structures(problem: &mut Problem) -> Result<(), Vec<Finding>> {
     let start = problem.start();
     let mut statics = Statics::new(&problem.written, &start, 1).map_err(|found| {
@@ -207,7 +207,7 @@ fn of_structures(problem: &mut Problem) -> Result<(), Vec<Finding>> {
     Ok(())
 }
 
-/// Most faults of meshes that are told.
+/// Largest number of reported faults of meshes.
 const MOST_MESH_FAULTS: usize = 5;
 
 /// Leaves out redundant rows of the joints of a problem, whose start is `model`.

@@ -21,10 +21,10 @@ const TOLERANCE: f64 = 0.03;
 
 /// Growth of the number of modes, or of their highest frequency, of a richer basis.
 const RICHER: f64 = 1.5;
-/// Its tolerance beside that of the basis.
+/// Its tolerance relative to that of the basis.
 const FINER: f64 = 0.3;
 
-/// Asks for richer bases. Rigid shells get that of no keys. False if no body has a basis.
+/// Requests richer bases. Rigid shells get the default basis. False if no body has a basis.
 pub(super) fn enrich(document: &mut Document) -> bool {
     let mut changed = false;
     for elements in (document.bodies.values_mut()).filter_map(|body| body.elements.as_mut()) {
@@ -60,7 +60,7 @@ pub(super) fn overrides(document: &Document) -> Vec<String> {
     document.bodies.iter().filter_map(one).collect()
 }
 
-/// What a file asks for.
+/// The basis that a file requests.
 pub(super) fn request(keys: &ReducedKeys, mesh: &ElementMesh) -> Request {
     let first = mesh.nodes[0];
     let size = (mesh.nodes.iter()).fold(0.0_f64, |size, node| size.max((node - first).norm()));
@@ -73,7 +73,8 @@ pub(super) fn request(keys: &ReducedKeys, mesh: &ElementMesh) -> Request {
     }
 }
 
-/// Gives prepared shells the basis that their file asks for; `shells` are those of the design in the file.
+/// Gives prepared shells the basis that their file requests; `shells` are those of the design in
+/// the file.
 ///
 /// # Errors
 /// [`PencilFailure`]: the stiffness is singular with the axes held.

@@ -19,7 +19,7 @@ pub(crate) struct Explanation {
     /// The flexible bodies: their coordinates and natural frequencies.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub flexible: Vec<String>,
-    /// What richer reduced bases change, by function.
+    /// Changes by richer reduced bases, by function.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub bases: Vec<String>,
     /// The reductions made, and why they are allowed.

@@ -199,7 +199,8 @@ pub(crate) fn read_text(path: &Path) -> Result<String, ReportError> {
     })
 }
 
-/// The way from the directory `from` to the directory `to`, both of which exist. None if it cannot be written.
+/// The relative path from the directory `from` to the directory `to`, which exist. None if there is
+/// none.
 pub(crate) fn path_between(from: &Path, to: &Path) -> Option<String> {
     let to = if to.as_os_str().is_empty() {
         Path::new(".")

@@ -4,16 +4,16 @@ use super::csv::csv_table;
 use super::number::significant;
 use super::table::render;
 
-/// What was found on one mesh.
+/// Results on one mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MeshRow {
-    /// Into how many each element of the file is cut along each direction.
+    /// Number of cuts of each element of the file along each direction.
     pub cuts: usize,
     /// Number of elements.
     pub elements: usize,
     /// Number of unknowns.
     pub unknowns: usize,
-    /// CPU time of the solution, and of one gradient on top (s).
+    /// CPU time of the solution, and of one gradient on top \[s\].
     pub seconds: f64,
     /// See above.
     pub gradient_seconds: f64,

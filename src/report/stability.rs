@@ -95,9 +95,9 @@ pub(crate) struct StabilityRow {
     pub judge: String,
     /// Largest change of energy relative to the largest kinetic energy, if energy is conserved.
     pub energy_drift: Option<f64>,
-    /// Largest |Φ| (m or 1).
+    /// Largest |Φ| \[m or 1\].
     pub position_drift: Option<f64>,
-    /// Largest |G v| (m/s or 1/s).
+    /// Largest |G v| \[m/s or 1/s\].
     pub velocity_drift: Option<f64>,
     /// Largest difference of a derivative by the adjoint from the complex step, relative to the
     /// largest derivative of the scene (in relative changes of variables and functions).
@@ -204,9 +204,9 @@ impl StabilityTable {
     /// The rows as Markdown, one table per family.
     pub(crate) fn to_markdown(&self) -> String {
         let mut text = String::from(
-            "# Stability\n\nWhat becomes of extreme scenes, as `optimize stability` finds it; how it is \
-             judged, and why: [docs/stability.md](../../docs/stability.md).\nThe command of every \
-             row stands in [stability.csv](stability.csv).\n\n",
+            "# Stability\n\nResults of `optimize stability` on extreme scenes. \
+             [docs/stability.md](../../docs/stability.md) says how they are judged.\nThe command of \
+             every row is in [stability.csv](stability.csv).\n\n",
         );
         text += "| what is extreme | cases |";
         CLASSES

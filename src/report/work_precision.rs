@@ -22,9 +22,9 @@ pub(crate) struct PrecisionRow {
     pub gradient_error: Option<f64>,
     /// Largest |E(t) − E(0)| of kinetic and potential energy \[J\].
     pub energy_drift: f64,
-    /// Largest |Φ| (m or 1).
+    /// Largest |Φ| \[m or 1\].
     pub position_drift: f64,
-    /// Largest |G v| (m/s or 1/s).
+    /// Largest |G v| \[m/s or 1/s\].
     pub velocity_drift: f64,
     /// Work of the simulation.
     pub counts: WorkCounts,

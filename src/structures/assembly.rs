@@ -11,7 +11,7 @@ use crate::linalg::cholesky::{SymmetricPattern, fill_reducing_order};
 use crate::math::Scalar;
 use rayon::prelude::*;
 
-/// Shells from which on their matrices are made side by side.
+/// Number of shells above which their matrices are computed in parallel.
 const SIDE_BY_SIDE: usize = 64;
 /// Matrices of elements that each processor makes before they are added.
 const AT_ONCE: usize = 16;
@@ -19,8 +19,8 @@ const AT_ONCE: usize = 16;
 /// A slot of an unknown that is fixed.
 const FIXED: u32 = u32::MAX;
 
-/// What follows from mesh and supports alone: the unknowns, the pattern of the stiffness, and where
-/// the entries of each element go.
+/// Data of mesh and supports alone: the unknowns, the pattern of the stiffness, and the slots of
+/// the entries of each element.
 #[derive(Clone, Debug)]
 pub(crate) struct Assembly {
     pub unknowns: Unknowns,
@@ -133,8 +133,8 @@ impl Assembly {
         }
     }
 
-    /// Adds the matrices of all shells. They are made side by side, some at a time, and added in order, so
-    /// the sums are the same on any number of processors.
+    /// Adds the matrices of all shells. They are computed in parallel, some at a time, and added in
+    /// order, so the sums are the same on any number of processors.
     fn add_shells(
         &self,
         count: usize,

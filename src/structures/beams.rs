@@ -67,7 +67,7 @@ impl<S: Scalar> Configuration<'_, S> {
         })
     }
 
-    /// Adds what each beam makes of its motion: derivatives by the motion to `force`, by the beam to `to`.
+    /// Adds the derivatives of each beam: by the motion to `force`, by the beam to `to`.
     pub(crate) fn add_beams_transpose(
         &self,
         motion: &NodalMotion<S>,

@@ -40,7 +40,7 @@ pub(crate) fn spans(nodes: &[Vec3<f64>], [o, b, c]: [usize; 3]) -> bool {
     b.cross(&c).norm() > ON_LINE * b.norm() * c.norm()
 }
 
-/// The normal of the surface of shells at a node, not of length one; zero beside them.
+/// The normal of the surface of shells at a node, not of length one; zero at nodes without shells.
 pub(crate) fn normal(mesh: &Mesh, nodes: &[Vec3<f64>], node: usize) -> Vec3<f64> {
     let mut sum = Vec3::zeros();
     for element in &mesh.shells {

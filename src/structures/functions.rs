@@ -88,7 +88,7 @@ pub enum Aggregate {
     InducedExponential,
 }
 
-/// The largest stress ratio of a function, and where it is.
+/// The largest stress ratio of a function, and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Peak {
     /// σ_v / σ_yield.

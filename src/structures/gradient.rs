@@ -113,7 +113,7 @@ fn gradient_of(
         if let Some(psi) = psi {
             let (v, assembly) = (configuration.spread(x), &problem.assembly);
             let product = stiffness_times(structure, assembly, &v, psi, terms);
-            // What directors take from it is in the adjoint product.
+            // The part through directors is in the adjoint product.
             let mut unused = to.directors.clone();
             configuration.add_spread_transpose(x, &product, &mut right, &mut unused);
         }

@@ -7,8 +7,8 @@ use crate::math::{Scalar, Vec3};
 pub struct LumpedMass<S> {
     /// Mass m \[kg\].
     pub mass: S,
-    /// Inertia about the node, J = (xx, yy, zz, xy, yz, zx) in global axes [kg m²], as in the torque J ω̇.
-    /// On a smooth surface what turns about the director takes no part.
+    /// Inertia about the node, J = (xx, yy, zz, xy, yz, zx) in global axes [kg m²], as in the
+    /// torque J ω̇. On a smooth surface rotations about the director have no part.
     pub inertia: [S; 6],
 }
 

@@ -16,7 +16,7 @@ pub struct Material<S> {
 }
 
 impl<S: Scalar> Material<S> {
-    /// A material whose values are nothing: the cotangent of a material starts like this.
+    /// A material of zeros: the initial cotangent of a material.
     pub fn zeros() -> Self {
         let zero = S::zero();
         Self {

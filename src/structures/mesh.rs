@@ -8,8 +8,8 @@ use super::shell::NODES;
 /// Local nodes of the four edges of a shell element, along s = −1, r = +1, s = +1, r = −1.
 pub(crate) const SHELL_EDGES: [[usize; 3]; 4] = [[0, 1, 2], [2, 5, 8], [6, 7, 8], [0, 3, 6]];
 
-/// A mesh of nine-node shells and three-node beams. Node k = 3j + i of an element stands at (r, s) = (i − 1, j − 1); the
-/// normal is a_r × a_s.
+/// A mesh of nine-node shells and three-node beams. Node k = 3j + i of an element is at (r, s) = (i
+/// − 1, j − 1); the normal is a_r × a_s.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Number of nodes.
@@ -32,7 +32,7 @@ pub struct Mesh {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no {kind} of the name \"{name}\"; there are: {known}")]
 pub struct UnknownSet {
-    /// What was looked for.
+    /// Kind of the set.
     pub kind: &'static str,
     /// The name.
     pub name: String,

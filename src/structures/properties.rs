@@ -1,4 +1,4 @@
-//! Whether the properties of a structure can be those of a real one.
+//! Checks of the properties of a structure: sections that can be built, inertias of solids.
 
 use super::beam::SectionFault;
 use super::lumped_mass::LumpedMass;
@@ -6,7 +6,7 @@ use super::structure::Structure;
 use crate::math::Mat3;
 use crate::model::rigid_body::is_inertia_of_solid;
 
-/// A property that no structure has.
+/// A property that no real structure has.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PropertyFault {
     /// A section.
@@ -14,7 +14,7 @@ pub enum PropertyFault {
     Section {
         /// The beam.
         beam: usize,
-        /// What is wrong.
+        /// The fault.
         fault: SectionFault,
     },
     /// An inertia.
@@ -35,7 +35,7 @@ impl LumpedMass<f64> {
 }
 
 impl Structure<f64> {
-    /// The first property that cannot be.
+    /// The first impossible property.
     pub fn property_fault(&self) -> Option<PropertyFault> {
         let sections = self.sections.iter().enumerate();
         let mut wrong = sections.filter_map(|(beam, section)| {

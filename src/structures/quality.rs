@@ -1,4 +1,4 @@
-//! What is wrong with a mesh: loose nodes, inverted or warped elements, mid nodes out of place.
+//! Faults of a mesh: loose nodes, inverted or warped elements, mid nodes out of place.
 
 use super::mesh::{Mesh, SHELL_EDGES};
 use super::shell::NODES;
@@ -32,7 +32,7 @@ pub enum MeshFault {
         /// The node.
         node: usize,
     },
-    /// A place that is no number.
+    /// A place that is not finite.
     #[error("node {node} has no finite place")]
     NoPlace {
         /// The node.
@@ -59,7 +59,7 @@ pub enum MeshFault {
         shell: usize,
         /// The local node.
         local: usize,
-        /// Where it stands along the edge.
+        /// Its position along the edge.
         fraction: f64,
     },
     /// A beam names a node that does not exist, or one twice.
@@ -78,7 +78,7 @@ pub enum MeshFault {
     BeamShape {
         /// The beam.
         beam: usize,
-        /// Where the middle node stands along the chord.
+        /// Position of the middle node along the chord.
         fraction: f64,
     },
     /// A beam without an orientation.
@@ -162,7 +162,7 @@ fn connectivity(mesh: &Mesh) -> Vec<MeshFault> {
     all
 }
 
-/// Edges that two elements run through in the same direction.
+/// Edges through which two elements run in the same direction.
 fn opposite_normals(mesh: &Mesh) -> Vec<MeshFault> {
     // An element's boundary runs 0 → 2 → 8 → 6; its neighbour runs through the same edge backwards.
     let mut seen: std::collections::HashMap<[usize; 3], Vec<usize>> = Default::default();

@@ -1,9 +1,9 @@
 //! Reactions: forces and moments of the supports on a set of nodes, and their partial derivatives.
 //!
-//! R = F(v) − f at the nodes, F the internal forces, f the loads; what it does in a rigid motion
-//! ψ = (d + m × (x − o), m) is the force along d and the moment about the axis m through o. In the
-//! adjoint product ψ and the adjoint stand together: each jumps at the supports, their difference does not,
-//! so nothing cancels.
+//! R = F(v) − f at the nodes, F the internal forces, f the loads; its work in a rigid motion ψ = (d
+//! + m × (x − o), m) is the force along d and the moment about the axis m through o. The adjoint
+//! product has the difference of ψ and the adjoint: each jumps at the supports, their difference
+//! does not, so nothing cancels.
 
 use super::assembly::{Assembly, add_energy_transpose};
 use super::loads::{Load, add_work_transpose};
@@ -34,8 +34,8 @@ pub(super) struct State<'a, S> {
 
 impl Reaction<'_> {
     /// ψ at the nodes of the set, and at all others what their unknowns admit of it. In equilibrium
-    /// R vanishes along the unknowns, so that makes no difference but to rounding: a motion that jumps beside
-    /// the set would multiply the rounding of the displacements by the stiffness.
+    /// R vanishes along the unknowns, so this only affects rounding: a motion that jumps at the
+    /// border of the set would multiply the rounding of the displacements by the stiffness.
     fn virtual_motion<S: Scalar>(
         &self,
         configuration: &Configuration<S>,

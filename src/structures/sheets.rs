@@ -9,7 +9,7 @@ use super::shell::NODES;
 use super::shell::basis::TABLES;
 use crate::math::{Scalar, Vec3, scalar::length};
 
-/// Angle between normals from which on a node stands on a fold [rad].
+/// Angle between normals above which a node is on a fold [rad].
 pub(crate) const FOLD_ANGLE: f64 = 0.35;
 
 /// Which director each corner of each element has.
@@ -17,7 +17,7 @@ pub(crate) const FOLD_ANGLE: f64 = 0.35;
 pub struct Sheets {
     /// Director of each local node of each shell.
     pub(crate) corners: Vec<[usize; NODES]>,
-    /// The node that each director stands at.
+    /// The node of each director.
     pub(crate) nodes: Vec<usize>,
     /// Directors of each node: from, to.
     pub(crate) of_node: Vec<std::ops::Range<usize>>,

@@ -15,7 +15,7 @@ pub struct NodalMotion<S> {
 }
 
 impl<S: Scalar> NodalMotion<S> {
-    /// Nothing moves.
+    /// No motion.
     pub fn zeros(nodes: usize) -> Self {
         Self {
             displacement: vec![Vec3::zeros(); nodes],
@@ -109,7 +109,7 @@ impl<'a, S: Scalar> Configuration<'a, S> {
         }
     }
 
-    /// Ends a collection: what the directors take from the nodes.
+    /// Ends a collection: adds the derivatives by the directors to those by the nodes.
     pub(crate) fn finish(&self, mut cotangent: Cotangent<S>) -> Structure<S> {
         let topology = &self.structure.topology;
         topology.sheets.add_directors_transpose(

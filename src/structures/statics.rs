@@ -1,8 +1,8 @@
 //! Linear static equilibrium of a structure under its load cases.
 //!
-//! F(x) = f, F the derivative of the strain energy, f that of the work of the loads. The iteration is
-//! x ← x + K⁻¹ (f − F(x)), with K in real numbers and x in any scalar: one step after the real part has
-//! converged the derivative that a complex or dual number carries has too.
+//! F(x) = f, F the derivative of the strain energy, f that of the work of the loads. The iteration
+//! is x ← x + K⁻¹ (f − F(x)), with K in real numbers and x in any scalar: one step after the real
+//! part, the derivative of a complex or dual number has converged too.
 
 use super::assembly::{Assembly, add_energy_transpose};
 use super::loads::{Load, add_work_transpose};
@@ -14,7 +14,7 @@ use super::supports::{NodeUnknowns, Support};
 use crate::linalg::cholesky::{NotPositiveDefinite, SparseCholesky};
 use crate::math::Scalar;
 
-/// What softens where the load cannot be carried.
+/// Kind of the point at which the load cannot be carried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Critical {
     /// The load has a maximum.
@@ -64,14 +64,14 @@ pub enum StaticFailure {
         kind: Critical,
         /// The part of the load that was reached.
         factor: f64,
-        /// The node that moves most in the direction that goes soft.
+        /// The node that moves most in the direction without stiffness.
         node: usize,
         /// Where it stands \[m\].
         place: [f64; 3],
         /// Which of its unknowns moves most.
         dof: &'static str,
     },
-    /// The iteration comes to no end though the tangent is definite.
+    /// The iteration does not converge although the tangent is definite.
     #[error(
         "no equilibrium was found beyond {factor:.4} of the load, though the structure is stable there"
     )]
@@ -240,8 +240,8 @@ impl StaticProblem {
     ) -> Result<Vec<S>, UnknownSet> {
         let load = self.load_vector(structure, case)?;
         let mut x = self.solve_factorised(&load);
-        // The first step gives the infinitesimal part what it takes from the stiffness, the second
-        // refines that.
+        // The first step adds the effect of the stiffness to the infinitesimal part, the second
+        // refines it.
         for _ in 0..2 {
             let force = self.internal_force(structure, &x, Terms::LINEAR);
             let rest: Vec<S> = load.iter().zip(&force).map(|(&f, &g)| f - g).collect();

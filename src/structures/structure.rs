@@ -1,4 +1,4 @@
-//! A structure: a mesh with the numbers that a design may move.
+//! A structure: a mesh with the numbers that a design may change.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use super::quality::{MeshFault, faults, orientation_faults};
 use super::sheets::{FOLD_ANGLE, Sheets};
 use crate::math::{Scalar, Vec3};
 
-/// What a structure is made of that no design moves.
+/// Data of a structure that no design changes.
 #[derive(Clone, Debug)]
 pub struct Topology {
     /// The mesh.
@@ -26,8 +26,8 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// A mesh of shells and beams with their materials and the nodes of masses; sheets are found where the
-    /// nodes stand.
+    /// A mesh of shells and beams with their materials and the nodes of masses; sheets are found in
+    /// the given places of the nodes.
     pub fn new(
         mesh: Mesh,
         nodes: &[Vec3<f64>],
@@ -59,7 +59,7 @@ pub struct Structure<S> {
     pub sections: Vec<Section<S>>,
     /// A vector in the plane of each beam and axis 2 of its section.
     pub orientations: Vec<Vec3<S>>,
-    /// Where the centre of each section stands from the nodes, along its axes 2 and 3 \[m\].
+    /// Offset of the centre of each section from the nodes, along its axes 2 and 3 \[m\].
     pub offsets: Vec<[S; 2]>,
     /// Non-structural mass per length of each beam [kg/m].
     pub line_mass: Vec<S>,

@@ -1,9 +1,9 @@
 //! Supports, and the unknowns that they leave to the nodes.
 //!
-//! A node on a smooth surface has two unknown rotations, about tangents; a node on a fold or a beam, or
-//! any node if six unknowns are asked for, three about the global axes. A support fixes displacements and
-//! rotations in the global axes. The rotation about a director has no unknown on a smooth surface, so
-//! a fixed axis f within 0.1 rad of the director D fixes nothing there; else
+//! A node on a smooth surface has two unknown rotations, about tangents; a node on a fold or a
+//! beam, or any node if six unknowns are requested, three about the global axes. A support fixes
+//! displacements and rotations in the global axes. The rotation about a director has no unknown on
+//! a smooth surface, so a fixed axis f within 0.1 rad of the director D fixes nothing there; else
 //!
 //! | fixed axes | unknown rotations |
 //! |---|---|

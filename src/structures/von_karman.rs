@@ -1,10 +1,10 @@
 //! Static equilibrium with von Karman's strains: load steps, Newton's iteration and a line search.
 //!
-//! F(x) = t f for load factors t from 0 to 1. The tangent K_T = ∂F/∂x is positive definite on a stable
-//! path, so the Newton step is a descent of the potential Π = U − t f·x, and the line search is one on Π.
-//! Where K_T ceases to be definite the path is at a limit point (the direction φ that goes soft does work
-//! with the load, φ·f ≠ 0) or at a bifurcation (φ·f = 0). A step that moves far more than its tangent
-//! foretells has left the path, and is taken again in smaller ones.
+//! F(x) = t f for load factors t from 0 to 1. The tangent K_T = ∂F/∂x is positive definite on a
+//! stable path, so the Newton step is a descent of the potential Π = U − t f·x, and the line search
+//! is one on Π. Where K_T ceases to be definite the path is at a limit point (the direction φ that
+//! goes soft does work with the load, φ·f ≠ 0) or at a bifurcation (φ·f = 0). A step that moves far
+//! more than its tangent predicts has left the path, and is repeated in smaller ones.
 
 use super::loads::Load;
 use super::shell::Terms;
@@ -14,16 +14,16 @@ use crate::linalg::cholesky::NotPositiveDefinite;
 use crate::math::Scalar;
 use crate::math::slices::dot;
 
-/// How the load is put on.
+/// Settings of the load steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadSteps {
     /// The first step, as a part of the load.
     pub first: f64,
-    /// The smallest step; the load that can be carried is known as well as that.
+    /// The smallest step, and so the accuracy of the load that can be carried.
     pub smallest: f64,
-    /// Iterations of a step at most.
+    /// Largest number of iterations of a step.
     pub iterations: usize,
-    /// Energy of a last Newton step beside the work of the load; the step is taken.
+    /// Energy of the last Newton step, relative to the work of the load; the step is taken.
     pub tolerance: f64,
 }
 
@@ -43,7 +43,7 @@ impl Default for LoadSteps {
 pub struct LoadWork {
     /// Load steps that were kept.
     pub steps: usize,
-    /// Load steps that were taken again in smaller ones.
+    /// Load steps that were repeated in smaller ones.
     pub repeated: usize,
     /// Tangents that were assembled and factorised.
     pub tangents: usize,
@@ -60,9 +60,10 @@ pub struct Equilibrium {
     pub work: LoadWork,
 }
 
-/// φ·f beside |φ| |f|, in the norms of the diagonal, from which on a critical point is a limit point.
+/// A critical point is a limit point if φ·f relative to |φ| |f|, in the norms of the diagonal, is
+/// above this.
 const DOES_WORK: f64 = 1e-5;
-/// A step that moves more times as far as its tangent foretells has left the path.
+/// A step has left the path if it moves farther than its tangent predicts by this factor.
 const LEFT: f64 = 4.0;
 /// Sufficient decrease of the potential (Armijo).
 const DECREASE: f64 = 1e-4;

@@ -59,8 +59,8 @@ pub(crate) fn deformed_frame<S: Scalar>(
     (moved, motion)
 }
 
-/// Derivatives of a row's rate in the rates of the elastic coordinates, and where they stand among the
-/// velocities: of a row with this force and torque on the section (body axes).
+/// Derivatives of a row's rate in the rates of the elastic coordinates, with their places among the
+/// velocities, for a row with this force and torque on the section (body axes).
 pub(crate) fn elastic_gradient<'a, S: Scalar>(
     modes: &'a Modes<S>,
     numbering: &'a Numbering,
@@ -80,8 +80,8 @@ fn moment<S: Scalar>(frame: &JointFrame<S>, by: &JointFrame<S>) -> Vec3<S> {
     axes.fold(Vec3::zeros(), |sum, (e, f)| sum + e.cross(f))
 }
 
-/// Derivatives in the elastic coordinates of what has the cotangents `by` in frame A, and where they stand
-/// among the tangent positions.
+/// Derivatives in the elastic coordinates of a quantity with the cotangents `by` in frame A, with
+/// their places among the tangent positions.
 pub(crate) fn by_coordinates<'a, S: Scalar>(
     joint: &Joint<S>,
     modes: &'a Modes<S>,

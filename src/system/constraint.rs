@@ -122,7 +122,8 @@ impl<S: Scalar> RowGradient<S> {
     }
 }
 
-/// What a row does to the section of body A that deforms, in body axes: force at its point, and torque.
+/// Action of a row on the section of body A that deforms, in body axes: force at its point, and
+/// torque.
 fn local_gradient<S: Scalar>(
     row: ConstraintRow,
     a: &JointSide<S>,

@@ -13,7 +13,7 @@ pub(crate) enum AssemblyFailure {
         joint: String,
         /// The row with the gap.
         row: String,
-        /// The gap (m or 1).
+        /// The gap \[m or 1\].
         gap: f64,
         /// Number of iterations.
         iterations: usize,

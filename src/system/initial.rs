@@ -9,7 +9,6 @@
 //! E is the mean square displacement of the mass (see [`super::assembly`]). Its metric is M for
 //! small displacements, so the start does not depend on the units of length, mass and angle. The
 //! velocity projection is the effect of an impulse of the joints on the given velocities.
-//! projection is what an impulse of the joints does to the given velocities.
 
 use super::assembly::{assemble, displacement_metric, finite, second_moment, turned_by};
 use super::bodies::{self, BodyMotion, all_force_balances, positions_of, velocities_of};
@@ -314,7 +313,7 @@ pub(crate) fn pull_back(
         .factorise(&at, &state.s, metric, Metric::Displacement)
         .map_err(singular)?;
     let (psi, chi) = transposed(saddle, &y_bar);
-    // Through the positions that stay as placed.
+    // Part through the positions that stay as placed.
     pull_rate(&psi, &state.s, &mut y_bar, cot);
     let cotangents = RowCotangents {
         value: Some(&chi),

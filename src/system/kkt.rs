@@ -142,7 +142,7 @@ pub(crate) struct BodyBlocks<S> {
     pub angular: Mat3<S>,
 }
 
-/// What flexible bodies have in the upper left block.
+/// The terms of flexible bodies in the upper left block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Metric {
     /// Their mass matrix.

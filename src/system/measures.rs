@@ -1,4 +1,4 @@
-//! What functions measure of joints: reactions and slides, with their derivatives.
+//! Quantities of joints for functions: reactions and slides, with their derivatives.
 //!
 //! The joint acts on body A with −Gᵀλ, and on body B with the opposite. A component of its force along d,
 //! and of its moment about a point P along d, is the power of the reaction in a virtual motion w of body A
@@ -34,7 +34,7 @@ pub(crate) enum End {
     B,
 }
 
-/// What is asked of a reaction.
+/// Kind of component of a reaction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum WrenchPart {
     /// The force \[N\].
@@ -108,8 +108,8 @@ impl<S: Scalar> Wrench<S> {
         }
     }
 
-    /// Its value, with the multipliers λ of the rows of its joint. NaN if what the motion does not determine
-    /// of them changes it.
+    /// Its value, with the multipliers λ of the rows of its joint. NaN if it depends on multipliers
+    /// that the motion does not determine.
     pub(crate) fn value(&self, at: &InMotion<S>, (lambda, undetermined): (&[S], &[Vec<f64>])) -> S {
         let joint = &at.model.joints[self.joint];
         let ground = BodyMotion::ground();

@@ -83,7 +83,7 @@ fn without_inertia(model: &Model<f64>, g: &DMatrix<f64>) -> AssemblyFailure {
     }
     for body in &model.flexible {
         for (carrier, _) in body.places() {
-            // Coordinates have inertia of their own; what a carrier lacks is no motion.
+            // Coordinates have inertia of their own; missing inertia of a carrier is no motion.
             for k in 6 * carrier..6 * carrier + 6 {
                 inertia[(k, k)] = 1.0;
             }

@@ -339,7 +339,7 @@ pub(crate) struct Widest {
     pub joint: usize,
     /// The row.
     pub row: ConstraintRow,
-    /// |Φ| (m or 1).
+    /// |Φ| \[m or 1\].
     pub gap: f64,
 }
 

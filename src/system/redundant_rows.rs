@@ -135,8 +135,8 @@ impl RedundantRows {
         }
     }
 
-    /// Multipliers of all rows that together move no body, one list for each redundant row: what the motion
-    /// does not determine. `solve` is as in [`RedundantRows::exchanged`].
+    /// Multipliers of all rows that together move no body, one list for each redundant row. The
+    /// motion does not determine them. `solve` is as in [`RedundantRows::exchanged`].
     pub(crate) fn undetermined<S: Scalar>(
         &self,
         at: &InMotion<S>,

@@ -5,8 +5,9 @@
 //! U = ½ qᵀ K q + ½ Σ_p k_p e_p²,     ∂U/∂q = K q + Σ_p k_p e_p ∇e_p
 //! ```
 //!
-//! The strains of a material that is damped in proportion to its stiffness (Kelvin & Voigt) add the forces
-//! β (K q̇ + Σ_p k_p ∇e_p ė_p). They vanish where the strains stand still, also while large deflections change.
+//! The strains of a material that is damped in proportion to its stiffness (Kelvin & Voigt) add the
+//! forces β (K q̇ + Σ_p k_p ∇e_p ė_p). They vanish where the strains are constant, also while large
+//! deflections change.
 
 use super::flexing::Block;
 use crate::math::Scalar;

@@ -21,7 +21,8 @@ pub(super) enum Elastic {
     Plate { thickness: f64 },
     /// A thin cantilever with the load P L² / EI at its end.
     Elastica { load: f64 },
-    /// A bar of 1 m that turns about its end with 10 rad/s = `turn` √(E/ρ) / L. From π/2 on it has no steady state.
+    /// A bar of 1 m that turns about its end with 10 rad/s = `turn` √(E/ρ) / L. It has a steady
+    /// state below π/2 only.
     Bar { turn: f64, time: f64 },
     /// The end of a chain of this many beams of 1 m that falls with the velocity (1, 2) m/s.
     Chain { beams: usize, time: f64 },

@@ -59,7 +59,7 @@ pub(super) fn loads() -> Vec<Case> {
             let exact = Exact::Elastic(Elastic::Elastica { load });
             let name = ("load", decade(load));
             let case = Case::known(name, CANTILEVER_PLATE, (way, 0.1), exact);
-            // What rotations of 0.15 rad leave, from which on a run warns.
+            // Error at rotations of 0.15 rad, above which a run warns.
             all.push(Case {
                 bound: 2e-3,
                 conservative: false,

@@ -1,4 +1,4 @@
-//! Every derivative of functions of structures by the adjoint beside the complex step.
+//! Every derivative of functions of structures, by the adjoint and by the complex step.
 
 use super::lifted::along;
 use super::{StaticDesign, StaticsFailure};

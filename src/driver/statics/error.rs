@@ -6,9 +6,10 @@
 //! f_h − f ≈ (f_h − f_{h/2}) 2ᵐ / (2ᵐ − 1)
 //! ```
 //!
-//! m = 1 for stresses, whose Gauss points come nearer to the edges with the size of the elements, and m = 2
-//! for all else: both are the least that is seen where edges are clamped, so an estimate is rather large.
-//! A KS function over more points is larger by ln(points) / ρ; that is no error and is taken off.
+//! m = 1 for stresses, whose Gauss points come nearer to the edges with the size of the elements,
+//! and m = 2 for all else. Both are the smallest observed orders, at clamped edges, so an estimate
+//! is rather large. A KS function over more points is larger by ln(points) / ρ; this is no error
+//! and is subtracted.
 
 use super::{StaticDesign, StaticValue, StaticsFailure};
 use crate::driver::error::{Estimate, FunctionError};
@@ -88,9 +89,9 @@ fn admit(at: &StaticDesign, available: Option<usize>) -> Result<(), StaticsFailu
     }
 }
 
-/// Functions whose estimate is not to be trusted: a force or moment at a point of a shell makes displacements
-/// there grow with the logarithm of the mesh (Naghdi's shells have no finite limit), and stresses with its
-/// inverse.
+/// Functions whose estimate is unreliable: a force or moment at a point of a shell makes
+/// displacements there grow with the logarithm of the mesh (Naghdi's shells have no finite limit),
+/// and stresses with its inverse.
 pub(crate) fn doubts(problem: &Problem, at: &StaticDesign, which: &[usize]) -> Option<String> {
     let mesh = at.statics.mesh();
     let of_shells: HashSet<usize> = mesh.shells.iter().flatten().copied().collect();

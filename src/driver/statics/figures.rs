@@ -9,9 +9,9 @@ use crate::report::vtu::{Fields, vtu};
 use crate::structures::mesh::Mesh;
 use std::f64::consts::PI;
 
-/// Part of the size of a structure that its largest displacement takes in a picture.
+/// Largest displacement in a picture, relative to the size of the structure.
 const SHOWN: f64 = 0.1;
-/// Load cases and modes that are drawn at most.
+/// Largest number of load cases and of modes that are drawn.
 const MOST_CASES: usize = 3;
 const MOST_MODES: usize = 4;
 

@@ -1,4 +1,4 @@
-//! What a solved design shows of itself.
+//! Data of a solved design for figures and texts.
 
 use super::StaticDesign;
 use crate::math::Vec3;

@@ -43,7 +43,7 @@ pub(crate) enum StaticsFailure {
     /// Modes.
     #[error(transparent)]
     Modal(#[from] ModalFailure),
-    /// Something that is no number.
+    /// A value that is not a number.
     #[error("load case \"{case}\": the displacements are not finite")]
     NotFinite {
         /// The case.
@@ -78,11 +78,11 @@ pub(crate) struct StaticDesign {
     pub x: Vec<f64>,
     /// Structures and loads there.
     pub scene: StaticScene<f64>,
-    /// What no design changes.
+    /// Data that no design changes.
     pub statics: Arc<Statics>,
     /// The solution of each load case; empty if no function needs them.
     pub solutions: Vec<Vec<f64>>,
-    /// The lowest modes, if single frequencies are asked for.
+    /// The lowest modes, if single frequencies are requested.
     pub modes: Option<Modes>,
     lowest: Vec<Option<LowestFrequency>>,
     values: Vec<Option<StaticValue>>,
@@ -330,10 +330,10 @@ impl StaticDesign {
         })
     }
 
-    /// The value of a function that was asked for.
+    /// The value of a requested function.
     ///
     /// # Panics
-    /// If it was not asked for.
+    /// If it was not requested.
     pub(crate) fn function(&self, f: usize) -> StaticValue {
         self.values[f].expect("the function was asked for")
     }

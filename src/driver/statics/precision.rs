@@ -6,7 +6,7 @@ use crate::driver::work_precision::clock::cpu_seconds;
 use crate::problem::Problem;
 use crate::report::{MeshRow, PrecisionOfMesh};
 
-/// Unknowns of the finest mesh at most.
+/// Largest number of unknowns of the finest mesh.
 const MOST_UNKNOWNS: usize = 60_000;
 /// Numbers of cuts that are tried.
 const CUTS: [usize; 5] = [1, 2, 3, 4, 6];

@@ -24,7 +24,7 @@ use crate::system::initial::InitialState;
 /// What an explicit march watches for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Watch {
-    /// Steps that stability bounds, whatever another method would cost.
+    /// Steps that stability bounds, for any cost of another method.
     Stability,
     /// A method that costs less.
     Cost,

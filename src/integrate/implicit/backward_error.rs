@@ -5,9 +5,9 @@
 //! ω = max_i |F_i| / Σ_j |K_ij| |x_j|
 //! ```
 //!
-//! with the scaled unknowns x and the iteration matrix K where the factors were made. The forces of stiff
-//! structures are small differences of large terms. An iterate whose ω is some units of round-off solves
-//! equations whose terms are rounded; more iterations only change the round-off.
+//! with the scaled unknowns x and the iteration matrix K where the factors were made. The forces of
+//! stiff structures are small differences of large terms. An iterate whose ω is some units of
+//! round-off solves the equations with rounded terms; more iterations only change the round-off.
 
 use super::Stage;
 use super::ggl::Equations;
@@ -30,7 +30,7 @@ pub(super) struct BackwardError {
     all: Vec<f64>,
     /// ω of the latest iterate.
     latest: f64,
-    /// ω by that of the iterate before, for the latest two.
+    /// ω relative to that of the iterate before, for the latest two.
     declines: [f64; 2],
 }
 

@@ -10,7 +10,7 @@
 use crate::math::Scalar;
 use crate::math::slices::{add_scaled, dot};
 
-/// Largest part of a step that the next one may find to be missing.
+/// Largest correction of a step by the next one, relative to it.
 const MOST: f64 = 0.7;
 
 /// The steps of an iteration. Their memory is kept.

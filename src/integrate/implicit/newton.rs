@@ -27,8 +27,8 @@ const RENEW: f64 = 0.1;
 /// The iteration matrix is renewed after this many steps of one iteration each.
 const UNSEEN: usize = 8;
 const ITERATIONS: usize = 25;
-/// With finite elements, whose factors are dear, kept factors are corrected by Broyden's method and renewed
-/// within a step above this contraction.
+/// With finite elements, whose factors are expensive, Broyden's method corrects kept factors. They
+/// are renewed within a step above this contraction.
 const SLOW: f64 = 0.5;
 /// Their assembly and factorisation cost as much as so many iterations.
 const FACTORS: usize = 4;

@@ -36,9 +36,9 @@ const RENEW: f64 = 0.05;
 /// The iteration is stopped above this contraction.
 const DIVERGENT: f64 = 0.9;
 const ITERATIONS: usize = 20;
-/// With finite elements, whose strains stiffen them within a step, kept factors are corrected by Broyden's
-/// method, and renewed at the present iterate above this contraction, so often in a step. Infinitesimal parts
-/// take them as they are.
+/// With finite elements, whose strains stiffen them within a step, Broyden's method corrects kept
+/// factors. Above this contraction they are renewed at the present iterate, at most so often in a
+/// step. Infinitesimal parts use them uncorrected.
 const SLOW: f64 = 0.5;
 const SLOW_INFINITESIMAL: f64 = 0.25;
 const RENEWALS: usize = 6;

@@ -1,9 +1,10 @@
 //! Kept factors in the axes of bodies that have turned since.
 //!
-//! Where a whole scene turns by Q, its iteration matrix changes by the axes of its vectors alone, K' = T K Tᵀ:
-//! T turns what stands along ground axes, the translations of bodies and the rows and multipliers of points
-//! that coincide, and leaves elastic coordinates and rotations, which stand in the axes of bodies. So
-//! T K⁻¹ Tᵀ, each body with its own turn Q = R' Rᵀ, serves longer than K⁻¹ where flexible bodies turn.
+//! Where a whole scene turns by Q, its iteration matrix changes by the axes of its vectors alone,
+//! K' = T K Tᵀ. T turns vectors in ground axes: the translations of bodies, and the rows and
+//! multipliers of points that coincide. It leaves elastic coordinates and rotations, which are in
+//! the axes of bodies. So T K⁻¹ Tᵀ, each body with its own turn Q = R' Rᵀ, serves longer than K⁻¹
+//! where flexible bodies turn.
 
 use crate::math::{Mat3, Scalar, Vec3, rotation};
 use crate::model::{ConstraintRow, Model};

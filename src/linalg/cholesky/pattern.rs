@@ -49,8 +49,9 @@ impl SymmetricPattern {
         (self.starts[j]..self.starts[j + 1]).map(|at| (at, self.rows[at]))
     }
 
-    /// r = b − A x, every entry rounded once or twice only: products and sums keep what they lose (Dekker
-    /// 1971, Knuth 1969). Refinement with such residuals gives solutions of full accuracy.
+    /// r = b − A x, every entry rounded only once or twice: the rounding errors of products and
+    /// sums are added (Dekker 1971, Knuth 1969). Refinement with such residuals gives solutions of
+    /// full accuracy.
     pub(crate) fn exact_residual(&self, values: &[f64], x: &[f64], b: &[f64], r: &mut [f64]) {
         let mut lost = vec![0.0; b.len()];
         r.copy_from_slice(b);
@@ -91,14 +92,14 @@ impl SymmetricPattern {
     }
 }
 
-/// a + b, and what its rounding loses.
+/// a + b, and its rounding error.
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let part = sum - a;
     (sum, (a - (sum - part)) + (b - part))
 }
 
-/// a b, and what its rounding loses.
+/// a b, and its rounding error.
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let split = |x: f64| {
         let large = 134_217_729.0 * x;

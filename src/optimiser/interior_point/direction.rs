@@ -28,7 +28,7 @@ pub(crate) struct Direction {
 pub(crate) struct NewtonSystem {
     system: KktSystem,
     sigma: DVector<f64>,
-    /// What was added to Σ.
+    /// The addition to Σ.
     pub stiffness: DVector<f64>,
 }
 

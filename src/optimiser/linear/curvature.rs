@@ -23,7 +23,7 @@ pub struct Curvature {
 }
 
 impl Curvature {
-    /// What makes the curvature useless for `n` variables.
+    /// The reason why the curvature is useless for `n` variables.
     pub(crate) fn fault(&self, n: usize) -> Option<String> {
         let (k, columns) = self.coupling.shape();
         let shapes = (self.diagonal.len(), columns, self.stiffness.shape());

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::optimiser::linear::jacobian::Jacobian;
 use crate::optimiser::linear::quasi_newton::Spectrum;
 
-/// Tolerance asked of Clarabel, in scaled units.
+/// Tolerance of Clarabel, in scaled units.
 const TOLERANCE: f64 = 1e-10;
 
 /// Positive definite matrix of a subproblem.
@@ -43,7 +43,7 @@ pub(crate) struct QpData<'a> {
     pub g: &'a DVector<f64>,
     pub b: &'a Hessian<'a>,
     pub a: &'a Jacobian,
-    /// Room c_U − c and c − c_L of every row; infinite where there is no bound.
+    /// Distances c_U − c and c − c_L of every row; infinite where there is no bound.
     pub above: &'a DVector<f64>,
     pub below: &'a DVector<f64>,
     pub penalty: &'a DVector<f64>,

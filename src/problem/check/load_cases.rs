@@ -40,7 +40,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Every material that is used has a density, as something asks for it.
+    /// Every material that is used has a density, if a load or function needs it.
     fn densities(&mut self, what: &str) {
         self.property(what, "density", |m| m.density.is_none());
     }

@@ -1,4 +1,4 @@
-//! Bodies from files of other codes: what can be said before the files are read, and what fits them.
+//! Bodies from files of other codes: conditions before and after the files are read.
 
 use super::Checker;
 use crate::problem::finding::Finding;

@@ -1,4 +1,4 @@
-//! Sets of nodes, edges and elements: their names, and that they hold something.
+//! Sets of nodes, edges and elements: their names, and that they are not empty.
 
 use super::Checker;
 use crate::problem::finding::Finding;

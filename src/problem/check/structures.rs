@@ -12,7 +12,7 @@ use crate::problem::schema::structures::{
 use crate::problem::statics::expand::{section_count, thickness_count};
 use crate::problem::statics::mesh::{element_count, panel_elements, part};
 
-/// Most elements of a structure.
+/// Largest number of elements of a structure.
 const MOST_ELEMENTS: usize = 200_000;
 
 impl Checker<'_> {

@@ -8,7 +8,7 @@ use crate::structures::modal::FlexibleBeam;
 use crate::structures::modal::frequencies::{Held, frequencies};
 use crate::system::reduction::ReducedBasis;
 
-/// Natural frequencies that are told of a body.
+/// Largest number of natural frequencies of a body in the text.
 const TOLD: usize = 4;
 
 /// Coordinates and natural frequencies of the flexible bodies of a document.
@@ -83,7 +83,7 @@ pub(crate) fn described(document: &Document, x: &[f64]) -> Vec<String> {
         .collect()
 }
 
-/// What a reduced basis is made of.
+/// The vectors of a reduced basis.
 fn of_basis(basis: &ReducedBasis) -> String {
     let hertz = |all: &[f64]| -> String {
         let told = all.iter().take(TOLD).map(|f| format!("{f:.4e}"));

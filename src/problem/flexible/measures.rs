@@ -1,4 +1,4 @@
-//! What functions look at on flexible bodies: displacements, section forces, stresses.
+//! Quantities of flexible bodies for functions: displacements, section forces, stresses.
 
 use super::{Elastic, FlexibleBodies, Shells};
 use crate::functions::instant::DeformationKind;

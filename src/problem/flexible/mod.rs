@@ -57,7 +57,7 @@ impl Shells {
     }
 }
 
-/// A point that something holds on to.
+/// A point that a joint, load or function holds.
 struct Interface<S> {
     flexible: usize,
     point: Vec3<S>,
@@ -263,7 +263,7 @@ impl<S: Scalar> FlexibleBodies<S> {
         }
     }
 
-    /// Moves what functions look at to the points of these bodies.
+    /// Moves the points that functions observe to the points of these bodies.
     pub(crate) fn move_functions(
         &mut self,
         model: &mut Model<S>,

@@ -7,13 +7,13 @@ use crate::structures::modal::interfaces::Holding;
 use crate::structures::modal::loaded::{Loaded, Reduced};
 use crate::structures::modes::Pencil;
 
-/// Natural frequencies that are told of a body.
+/// Largest number of natural frequencies of a body in the text.
 const TOLD: usize = 6;
 
-/// Uncertainty of a stiffness by the digits of its file, relative to it, from which it is told.
+/// Relative uncertainty of a stiffness by the digits of its file above which the text has it.
 const TOLD_UNCERTAIN: f64 = 1e-4;
 
-/// A body in words; what it says of the free body costs the modes of the full matrices.
+/// A body in words. Its sentence on the free body needs the modes of the full matrices.
 pub(in crate::problem) fn described(name: &str, modal: &Modal, x: &[f64]) -> String {
     let Some(loaded) = &modal.loaded else {
         return format!("body \"{name}\": its files are not read");
@@ -48,7 +48,7 @@ pub(in crate::problem) fn described(name: &str, modal: &Modal, x: &[f64]) -> Str
     )
 }
 
-/// What the coordinates are made of.
+/// The vectors of the coordinates.
 fn coordinates(reduced: &Reduced, count: usize) -> String {
     let Reduced {
         free,
@@ -64,7 +64,7 @@ fn coordinates(reduced: &Reduced, count: usize) -> String {
         let names: Vec<&str> = own.map(|(_, name)| name.as_str()).collect();
         match names.len() {
             0 => format!("\"{}\" none", interfaces[k].name),
-            // All of a kind are told by their number.
+            // Vectors of one kind are counted.
             n if n > 3 => format!("\"{}\" {n}", interfaces[k].name),
             _ => format!("\"{}\" {}", interfaces[k].name, names.join(" and ")),
         }

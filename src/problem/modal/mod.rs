@@ -1,4 +1,5 @@
-//! Bodies from files of other codes: reads their files, reduces their matrices, and tells what came out.
+//! Bodies from files of other codes: reads their files, reduces their matrices, and describes the
+//! result.
 
 mod describe;
 mod dmig;
@@ -33,11 +34,11 @@ use text::TextFault;
 /// Fixed-interface modes where a file gives no number.
 const MODES: u32 = 10;
 
-/// Reads the files of all bodies of a document that lies beside them; their content as a text for the hash
-/// of the problem.
+/// Reads the files of all bodies of a document in this directory. Returns their content as a text
+/// for the hash of the problem.
 ///
 /// # Errors
-/// The first fault of a file, or of what the document says of it.
+/// The first fault of a file, or of the entries of the document about it.
 pub(super) fn load(
     document: &mut Document,
     (file, source): (&str, &Source),
@@ -70,7 +71,7 @@ pub(super) fn load(
     Ok(content)
 }
 
-/// Gives the bodies of `to` what the files of the same bodies say.
+/// Copies the data of the files to the same bodies of `to`.
 pub(super) fn share(from: &Document, to: &mut Document) {
     for (from, to) in from.bodies.values().zip(to.bodies.values_mut()) {
         if let (Some(from), Some(to)) = (&from.modal, &mut to.modal) {
@@ -79,7 +80,7 @@ pub(super) fn share(from: &Document, to: &mut Document) {
     }
 }
 
-/// What is wrong with a body.
+/// A fault of a body.
 enum LoadFault {
     /// In a file of it.
     Data {
@@ -97,7 +98,8 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// A body; none if the document names interfaces that it does not have, which is told elsewhere.
+    /// A body; none if the document names interfaces that it does not have. That fault is reported
+    /// elsewhere.
     fn body(&mut self, pointer: &str, modal: &Modal) -> Result<Option<Loaded>, Box<LoadFault>> {
         let source = join(pointer, "source");
         match &modal.source {
@@ -216,7 +218,7 @@ fn reduced(
         mass: kilograms,
         time,
     } = *units;
-    // A rotation is none of length: its rows are moments, its columns act by angles.
+    // A rotation has no length: its rows are moments, its columns act by angles.
     let factor = |i: usize, j: usize| {
         let rotations = [i, j].iter().filter(|key| **key % 6 >= 3).count();
         kilograms * length.powi(rotations as i32)
@@ -301,7 +303,7 @@ fn reduced(
     }))
 }
 
-/// What holds the axes; none if an interface that it names is not there.
+/// Support of the axes; none if an interface that it names does not exist.
 fn holding(modal: &Modal) -> Option<Holding> {
     if modal
         .interfaces

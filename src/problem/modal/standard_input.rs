@@ -18,7 +18,7 @@ const SYMMETRIC: f64 = 1e-9;
 type Triple = [f64; 3];
 type Square = [[f64; 3]; 3];
 
-/// A body whose point X stands at X + Σ q_I X_I(X) in its axes.
+/// A body whose point X is at X + Σ q_I X_I(X) in its axes.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct StandardInput {

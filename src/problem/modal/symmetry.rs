@@ -5,8 +5,8 @@ use crate::structures::modal::free_body::COMPONENTS;
 use crate::structures::modal::written::WrittenMatrix;
 use std::collections::HashMap;
 
-/// Characters that a number may have less than the longest of its file and yet be rounded: a sign, and a digit of the
-/// exponent. A shorter one had room for more digits: it is exact.
+/// A number is rounded if it is shorter than the longest of its file by at most these characters: a
+/// sign, and a digit of the exponent. A shorter one had room for more digits and is exact.
 const SHORTER: usize = 2;
 
 /// Difference of two entries that should be equal, relative to the entries on the diagonal.
@@ -28,14 +28,14 @@ pub(super) struct Place {
     pub row: usize,
     pub column: usize,
     pub value: f64,
-    /// By how much rounding may have changed it, and the characters of the number.
+    /// Largest change by rounding, and number of characters.
     pub rounding: f64,
     pub length: usize,
     /// Byte at which it begins.
     pub at: usize,
 }
 
-/// Each pair of keys once. Both halves of a matrix may differ by what rounding makes of them.
+/// Each pair of keys once. Both halves of a matrix may differ by rounding.
 pub(super) fn symmetric(
     mut places: Vec<Place>,
     given: Given,

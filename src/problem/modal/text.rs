@@ -1,8 +1,8 @@
-//! Texts of data files: their words with places, and what is wrong with them.
+//! Texts of data files: their words with places, and their faults.
 
 use std::ops::Range;
 
-/// What is wrong at a place of a data file.
+/// A fault at a place of a data file.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct TextFault {
     /// Bytes of the file.
@@ -73,14 +73,14 @@ pub(super) fn number(word: &Word) -> Result<f64, TextFault> {
     let plain = text.parse::<f64>().ok();
     let found = plain.or_else(|| fortran(text));
     match found {
-        // "nan" and "infinity" are words to us.
+        // "nan" and "infinity" are no numbers here.
         Some(x) if x.is_finite() && !text.contains(['n', 'N']) => Ok(x),
         _ => Err(TextFault::new(bytes(word), quoted(text), "a finite number")),
     }
 }
 
-/// Half a unit of the last digit of a written number: by how much rounding may have changed it. A whole number
-/// without point and exponent is exact.
+/// Half a unit of the last digit of a written number: the largest change by rounding. A whole
+/// number without point and exponent is exact.
 pub(super) fn rounding(word: &Word) -> f64 {
     let text = word.1.trim().trim_start_matches(['+', '-']);
     let mantissa = text

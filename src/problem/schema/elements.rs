@@ -35,7 +35,7 @@ pub(crate) struct Elements {
     #[serde(skip)]
     #[schemars(skip)]
     pub design: Option<Vec<f64>>,
-    /// What no design changes, once it is worked out.
+    /// Data that no design changes, once computed.
     #[serde(skip)]
     #[schemars(skip)]
     pub prepared: OnceLock<Arc<Prepared>>,
@@ -53,14 +53,14 @@ impl Elements {
     }
 }
 
-/// Beams along the line of nodes of a panel between its elements that is nearest to a place, of the material of the
-/// structure. Axis 2 of their section stands along the normal of the surface.
+/// Beams along the line of nodes of a panel between its elements that is nearest to a place, of the
+/// material of the structure. Axis 2 of their section is along the normal of the surface.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Stiffener {
     /// The direction of the panel along which the line runs.
     pub along: Direction,
-    /// Where it stands in the other direction, from 0 to 1.
+    /// Its place in the other direction, from 0 to 1.
     #[schemars(extend(
         "unit" = "1",
         "minimum" = 0,
@@ -70,7 +70,7 @@ pub(crate) struct Stiffener {
     pub at: f64,
     /// Cross section.
     pub section: Section,
-    /// Where the centre of the section stands from the nodes, along its axes 2 and 3, default there.
+    /// Offset of the centre of the section from the nodes, along its axes 2 and 3, default 0.
     #[schemars(extend("unit" = "m"))]
     pub offset: Option<[Quantity; 2]>,
     /// Non-structural mass per length, default 0.

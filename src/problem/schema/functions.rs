@@ -29,27 +29,27 @@ pub(crate) enum Function {
     Clearance(Clearance),
     /// Duration of the run; with `until`, the time of the event [s].
     Duration,
-    /// Mass of all bodies, or of all structures (kg).
+    /// Mass of all bodies, or of all structures [kg].
     Mass,
-    /// Coordinate of the centre of mass of all structures (m).
+    /// Coordinate of the centre of mass of all structures [m].
     CentreOfMass(CentreOfMass),
-    /// Moment of inertia of all structures about an axis through their centre of mass (kg m²).
+    /// Moment of inertia of all structures about an axis through their centre of mass [kg m²].
     MomentOfInertia(MomentOfInertia),
-    /// Strain energy of a load case (J).
+    /// Strain energy of a load case [J].
     StrainEnergy(OfCase),
-    /// Work of the loads of a case in its displacements (J).
+    /// Work of the loads of a case in its displacements [J].
     Compliance(OfCase),
-    /// Mean displacement of a set of nodes (m).
+    /// Mean displacement of a set of nodes [m].
     Displacement(Displacement),
-    /// Force of the supports on a set of nodes (N).
+    /// Force of the supports on a set of nodes [N].
     Reaction(StaticReaction),
-    /// Moment of the supports on a set of nodes (N m).
+    /// Moment of the supports on a set of nodes [N m].
     ReactionMoment(ReactionMoment),
     /// Aggregate of von Mises stress by yield stress.
     VonMises(Stress),
-    /// A natural frequency (Hz).
+    /// A natural frequency [Hz].
     Frequency(Frequency),
-    /// Smooth lower bound of the natural frequencies (Hz).
+    /// Smooth lower bound of the natural frequencies [Hz].
     LowestFrequency(LowestFrequency),
 }
 
@@ -164,17 +164,17 @@ pub(crate) enum Instant {
     Range(Range),
     /// Von Mises stress by yield stress of a body of shells, aggregated over both faces of their Gauss points.
     VonMises(ShellStress),
-    /// Displacement of a point of a beam or of shells from where it is in the undeformed body (m).
+    /// Displacement of a point of a beam or of shells from where it is in the undeformed body [m].
     ElasticDisplacement(ElasticDisplacement),
-    /// Strain energy of a beam or of shells (J).
+    /// Strain energy of a beam or of shells [J].
     StrainEnergy(OfBeam),
-    /// Force (N) or moment (N m) in a section of a beam.
+    /// Force [N] or moment [N m] in a section of a beam.
     SectionForce(SectionForce),
-    /// Stress of bending and stretch along a fibre of a beam (Pa).
+    /// Stress of bending and stretch along a fibre of a beam [Pa].
     FibreStress(FibreStress),
-    /// Largest force (N) or moment (N m) of several sections of a beam, by a smooth maximum.
+    /// Largest force [N] or moment [N m] of several sections of a beam, by a smooth maximum.
     LargestSectionForce(LargestSectionForce),
-    /// Largest stress of bending and stretch of several sections and fibres of a beam, by a smooth maximum (Pa).
+    /// Largest stress of bending and stretch of several sections and fibres of a beam, by a smooth maximum [Pa].
     LargestFibreStress(LargestFibreStress),
 }
 

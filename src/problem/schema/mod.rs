@@ -67,7 +67,7 @@ pub(crate) struct Document {
     /// Deformations of flexible bodies at the start, default "given".
     #[serde(default)]
     pub start: flexible::Start,
-    /// Starts in equilibrium that are known.
+    /// Known starts in equilibrium.
     #[serde(skip)]
     #[schemars(skip)]
     pub known_starts: KnownStarts,

@@ -1,4 +1,4 @@
-//! Bodies with elastic coordinates whose numbers stand in files of other codes.
+//! Bodies with elastic coordinates whose numbers are in files of other codes.
 
 use super::flexible::Deformation;
 use crate::problem::quantity::Quantity;
@@ -16,8 +16,8 @@ use std::sync::Arc;
 pub(crate) struct Modal {
     /// The files. Paths are relative to the directory of the problem file.
     pub source: Source,
-    /// Nodes that joints, loads and functions hold, by name; each name is a point of the body. Those of
-    /// "standard_input" stand in its file.
+    /// Nodes that joints, loads and functions hold, by name; each name is a point of the body.
+    /// Those of "standard_input" are in its file.
     #[serde(default)]
     pub interfaces: IndexMap<String, InterfaceNodes>,
     /// What holds the axes of a body of matrices; default: clamped at the first interface.
@@ -41,7 +41,7 @@ pub(crate) struct Modal {
     pub damping: Option<ModalDamping>,
     /// Elastic coordinates at the start, by ascending frequency, default 0.
     pub start: Option<Deformation>,
-    /// What the files say.
+    /// Data of the files.
     #[serde(skip)]
     #[schemars(skip)]
     pub loaded: Option<Arc<Loaded>>,
@@ -181,7 +181,7 @@ pub(crate) enum ModalFrame {
     Chord(Vec<String>),
 }
 
-/// Damping of the elastic coordinates beside that of the file.
+/// Damping of the elastic coordinates in addition to that of the file.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ModalDamping {

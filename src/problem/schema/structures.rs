@@ -14,7 +14,7 @@ pub(crate) struct Structure {
     pub mesh: Mesh,
     /// Name of the material.
     pub material: String,
-    /// Where the origin of the mesh stands, default [0, 0, 0].
+    /// Origin of the mesh, default [0, 0, 0].
     #[schemars(extend("unit" = "m"))]
     pub at: Option<Vector>,
     /// Thickness of shells: one number, or one of its own for each element, band, patch or group.
@@ -29,10 +29,11 @@ pub(crate) struct Structure {
     /// Non-structural mass per length of beams, default 0.
     #[schemars(extend("unit" = "kg/m", "minimum" = 0))]
     pub line_mass: Option<Quantity>,
-    /// Where the centre of the section stands from the nodes of beams, along its axes 2 and 3, default there.
+    /// Offset of the centre of the section from the nodes of beams, along its axes 2 and 3, default
+    /// 0.
     #[schemars(extend("unit" = "m"))]
     pub offset: Option<[Quantity; 2]>,
-    /// Sets of nodes or elements by name, beside those that the generator names.
+    /// Sets of nodes or elements by name, besides those that the generator names.
     #[serde(default)]
     pub sets: IndexMap<String, Set>,
     /// Supports by name.

@@ -33,7 +33,8 @@ pub(crate) fn section_count(structure: &Structure) -> usize {
     }
 }
 
-/// The varied properties of a document that have one value: their pointers, and how many they stand for.
+/// The varied properties of a document that have one value: their pointers, and their numbers of
+/// variables.
 fn varied(document: &Document) -> Vec<(String, usize)> {
     let mut all = Vec::new();
     let still = document.structures.iter();

@@ -1,4 +1,4 @@
-//! What a file asks of structures.
+//! Functions of the structures of a file.
 
 use super::mesh::of_file;
 use crate::math::Vec3;

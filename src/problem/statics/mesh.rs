@@ -254,7 +254,7 @@ fn add_set<S: Scalar>(part: &mut Part<S>, mesh: &Written, name: &str, set: &Set,
     }
 }
 
-/// Name of the set of those nodes of a set that the mesh of the file has.
+/// Name of the set of those nodes of a set that are in the mesh of the file.
 pub(super) fn of_file(set: &str, cuts: usize) -> String {
     match cuts {
         1 => set.to_owned(),

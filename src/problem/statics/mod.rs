@@ -41,16 +41,16 @@ pub(crate) struct StaticScene<S> {
     pub cases: Vec<Vec<Load<S>>>,
 }
 
-/// What no design changes of the structures of a file.
+/// Data of the structures of a file that no design changes.
 #[derive(Clone, Debug)]
 pub(crate) struct Statics {
     topology: Arc<Topology>,
-    /// Into how many each element of the file is cut along each direction.
+    /// Number of cuts of each element of the file along each direction.
     pub cuts: usize,
     /// The structure of each shell and beam, and which of its values they have.
     shells: Vec<(usize, usize)>,
     beams: Vec<(usize, usize)>,
-    /// The mass of the file that stands at each node with one: structure and number.
+    /// The mass of the file at each node with one: structure and number.
     masses: Vec<(usize, usize)>,
     /// All supports.
     pub supports: Vec<Support>,
@@ -60,9 +60,9 @@ pub(crate) struct Statics {
     pub terms: Terms,
     /// Names of the load cases.
     pub cases: Vec<String>,
-    /// What is asked.
+    /// The functions.
     pub functions: Vec<Asked>,
-    /// Problems whose analysis is done, for the next designs.
+    /// Analysed problems, for the next designs.
     pub workspaces: Workspaces,
 }
 
@@ -167,7 +167,7 @@ impl Statics {
         &self.topology.mesh
     }
 
-    /// The structure of which a part can move without strain though there are load cases, and the node that
+    /// The structure with load cases of which a part can move without strain, and the node that
     /// moves.
     pub(crate) fn mechanism(
         &self,
@@ -210,8 +210,8 @@ impl Statics {
         Some((name.clone(), failure))
     }
 
-    /// The functions that ask for the reaction of nodes that no support holds in their direction: it is
-    /// zero at all designs.
+    /// The functions of reactions of nodes that no support holds in their direction: these are zero
+    /// at all designs.
     pub(crate) fn unsupported(&self) -> Vec<usize> {
         let sets = &self.mesh().node_sets;
         let nodes_of = |set: &String| sets.get(set).map_or(&[][..], Vec::as_slice);

@@ -25,10 +25,10 @@ impl PulledBack {
     }
 }
 
-/// How the numbers beside thickness and sections move with some variables.
+/// Derivatives of the numbers except thickness and sections in some variables.
 pub(crate) struct Moved(Vec<(usize, Vec<f64>)>);
 
-/// All numbers beside thickness and sections, in one order.
+/// All numbers except thickness and sections, in one order.
 fn others<S: Scalar>(structure: &Structure<S>, cases: &[Vec<Load<S>>]) -> Vec<S> {
     let mut all: Vec<S> = structure.nodes.iter().flatten_xyz().collect();
     all.extend(structure.surface_mass.iter().copied());
@@ -59,7 +59,7 @@ impl<'a, S: Scalar, I: Iterator<Item = &'a crate::math::Vec3<S>>> FlattenXyz<S> 
 }
 
 impl Statics {
-    /// How the numbers beside thickness and sections move with the variables `which`.
+    /// Derivatives of the numbers except thickness and sections in the variables `which`.
     pub(crate) fn moved(&self, document: &Document, x: &[f64], which: &[usize]) -> Moved {
         let one = |&i: &usize| {
             let seeded = x.iter().enumerate();

@@ -1,5 +1,5 @@
-//! Static problems and problems of modes whose analysis is done once and that designs take one after the
-//! other, as many as are computed at a time.
+//! Static and modal problems with one analysis each. Designs use them one after the other; there
+//! are as many as designs are computed at a time.
 
 use crate::structures::modes::ModalProblem;
 use crate::structures::statics::StaticProblem;

@@ -98,7 +98,7 @@ impl Axis {
         }
     }
 
-    /// Width of the widest number at a tick (px).
+    /// Width of the widest number at a tick \[px\].
     pub(crate) fn widest(&self) -> f64 {
         let widths = self.ticks.iter().map(|(_, text)| text_width(text));
         widths.fold(0.0, f64::max)

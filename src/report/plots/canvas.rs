@@ -14,10 +14,10 @@ const FINE: f64 = 10.0;
 /// plotters divides font sizes by this number.
 const FONT_SHRINK: f64 = 1.24;
 
-/// Size of ordinary text (px).
+/// Size of ordinary text \[px\].
 pub(super) const TEXT: f64 = 12.0;
 
-/// Width of a text of ordinary size (px), estimated on the generous side: fonts differ.
+/// Width of a text of ordinary size \[px\], estimated on the generous side: fonts differ.
 pub(super) fn text_width(text: &str) -> f64 {
     let width = |character: char| match character {
         'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' => 0.34,
@@ -44,7 +44,7 @@ pub(super) const PALETTE: [RGBColor; 7] = [
     RGBColor(110, 110, 110),
 ];
 
-/// A point of the picture (px), y downwards.
+/// A point of the picture \[px\], y downwards.
 pub(super) type Pixel = (f64, f64);
 
 /// Where the given point of a text lies within it.

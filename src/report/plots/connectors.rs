@@ -40,7 +40,7 @@ pub(crate) struct Connector {
 const WHITE: RGBColor = RGBColor(255, 255, 255);
 const ROD: RGBColor = RGBColor(120, 60, 20);
 const SPRING: RGBColor = RGBColor(150, 0, 100);
-/// Windings and amplitude of a drawn spring (px).
+/// Windings and amplitude of a drawn spring \[px\].
 const WINDINGS: usize = 6;
 const AMPLITUDE: f64 = 4.5;
 

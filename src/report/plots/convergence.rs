@@ -7,7 +7,7 @@ use crate::report::{History, HistoryRow, ReportError};
 use plotters::style::RGBColor;
 
 const WIDTH: f64 = 640.0;
-/// Room between a panel and the legend of the next one (px).
+/// Room between a panel and the legend of the next one \[px\].
 const SPACE: f64 = 12.0;
 /// Up to this many iterations each one is marked by a dot.
 const DOTS: usize = 60;

@@ -6,12 +6,12 @@ use super::panel::{BELOW, Key, Legend, Panel, room_left};
 use crate::report::{PrecisionOfMesh, ReportError};
 use plotters::style::RGBColor;
 
-/// Width of the picture, and height of its frame (px).
+/// Width of the picture, and height of its frame \[px\].
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 420.0;
-/// Margin of the picture (px).
+/// Margin of the picture \[px\].
 const MARGIN: f64 = 14.0;
-/// Room below the title (px).
+/// Room below the title \[px\].
 const TITLE: f64 = 24.0;
 /// Relative errors below this one are rounding.
 const ROUNDING: f64 = 1e-12;

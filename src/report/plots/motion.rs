@@ -223,7 +223,7 @@ pub(crate) fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, Re
 }
 
 /// A panel that shows all points, and the ground if it is near, with the same scale in both
-/// directions. Width and height (px) have limits. It is as wide as possible, and narrower if it
+/// directions. Width and height \[px\] have limits. It is as wide as possible, and narrower if it
 /// would be too high. If that does not suffice, more is shown in one direction.
 fn equal_axes(points: &[Point], scenery: &Scenery, widths: [f64; 2], heights: [f64; 2]) -> Panel {
     let (mut west, mut east) = range(points.iter().map(|point| point[0]));

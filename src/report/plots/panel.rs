@@ -5,7 +5,7 @@ use super::canvas::{Anchor, Canvas, GRID, INK, Pixel, text_width};
 use super::colours::colour;
 use plotters::style::RGBColor;
 
-/// A frame at a place of the picture (px) with its axes.
+/// A frame at a place of the picture \[px\] with its axes.
 pub(super) struct Panel {
     pub left: f64,
     pub top: f64,
@@ -15,10 +15,10 @@ pub(super) struct Panel {
     pub y: Axis,
 }
 
-/// Room below a panel for numbers and label of the x axis (px).
+/// Room below a panel for numbers and label of the x axis \[px\].
 pub(super) const BELOW: f64 = 42.0;
 
-/// Room left of a panel for numbers and label of its y axis (px).
+/// Room left of a panel for numbers and label of its y axis \[px\].
 pub(super) fn room_left<'a>(axes: impl IntoIterator<Item = &'a Axis>) -> f64 {
     axes.into_iter().map(Axis::widest).fold(0.0, f64::max) + 32.0
 }
@@ -146,7 +146,7 @@ impl Panel {
     }
 }
 
-/// The text, cut where it would be longer than the given length (px).
+/// The text, cut where it would be longer than the given length \[px\].
 fn fitted(text: &str, length: f64) -> String {
     if text_width(text) <= length {
         return text.to_owned();
@@ -175,10 +175,10 @@ pub(super) enum Key {
     Note,
 }
 
-/// Width of a scale of colours (px).
+/// Width of a scale of colours \[px\].
 const SCALE: f64 = 90.0;
 
-/// Height of a row of a legend (px).
+/// Height of a row of a legend \[px\].
 const ROW: f64 = 20.0;
 
 /// A legend in rows above a panel, so that it covers no data.
@@ -187,7 +187,7 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// Fills rows of the given width (px).
+    /// Fills rows of the given width \[px\].
     pub(crate) fn new(entries: Vec<(Key, String)>, width: f64) -> Legend {
         let mut rows: Vec<Vec<(Key, String, f64)>> = Vec::new();
         let mut x = f64::INFINITY;
@@ -211,7 +211,7 @@ impl Legend {
         Legend { rows }
     }
 
-    /// Height of all rows (px).
+    /// Height of all rows \[px\].
     pub(crate) fn height(&self) -> f64 {
         ROW * self.rows.len() as f64
     }

@@ -69,7 +69,7 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
     a.map(|x| x / size)
 }
 
-/// Sizes of a view and of its legend (px).
+/// Sizes of a view and of its legend \[px\].
 const WIDTH: f64 = 330.0;
 const HEIGHT: f64 = 250.0;
 const LEGEND: f64 = 92.0;

@@ -6,12 +6,12 @@ use super::panel::{BELOW, Key, Legend, Panel, room_left};
 use crate::report::{PrecisionRow, ReportError, WorkPrecision};
 use plotters::style::RGBColor;
 
-/// Width of a panel with its axis, and height of its frame (px).
+/// Width of a panel with its axis, and height of its frame \[px\].
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 460.0;
-/// Margin of the picture (px).
+/// Margin of the picture \[px\].
 const MARGIN: f64 = 14.0;
-/// Room below a panel's title (px).
+/// Room below a panel's title \[px\].
 const TITLE: f64 = 24.0;
 const WHITE: RGBColor = RGBColor(255, 255, 255);
 

@@ -1,11 +1,11 @@
-//! What a beam is made of, and how it moves.
+//! The numbers of a beam, and its motion.
 
 use super::BEAM_NODES;
 use super::section::Section;
 use crate::math::{Scalar, Vec3};
 use crate::structures::material::Material;
 
-/// What a beam is made of; or derivatives by that.
+/// The numbers of a beam; or derivatives by them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Beam<S> {
     /// Nodes \[m\].
@@ -14,7 +14,7 @@ pub(crate) struct Beam<S> {
     pub(crate) orientation: Vec3<S>,
     /// The section.
     pub(crate) section: Section<S>,
-    /// Where the centre of the section stands from the nodes along axes 2 and 3 \[m\].
+    /// Offset of the centre of the section from the nodes along axes 2 and 3 \[m\].
     pub(crate) offset: [S; 2],
     /// The material.
     pub(crate) material: Material<S>,

@@ -7,7 +7,7 @@ use super::element::{Beam, BeamMotion};
 use super::frame::{Axes, add_sum_transpose, shape, sum};
 use crate::math::{Scalar, Vec3};
 
-/// Where the nodes stand on the element.
+/// Coordinates r of the nodes.
 const PLACES: [f64; BEAM_NODES] = [-1.0, 0.0, 1.0];
 
 /// Arms and places of the line.

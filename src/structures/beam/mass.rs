@@ -70,7 +70,7 @@ impl<S: Scalar> Beam<S> {
         Axes::of(&sum(&shape(r).1, &line.points), &self.orientation)
     }
 
-    /// Adds what the axes at a point make of cotangents to those of the line.
+    /// Adds the contributions of the axes at a point to the cotangents of the line.
     fn add_axes_transpose(
         &self,
         axes: &Axes<S>,

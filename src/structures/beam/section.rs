@@ -47,7 +47,7 @@ pub struct SectionValues<S> {
 }
 
 impl<S: Scalar> SectionValues<S> {
-    /// Nothing.
+    /// Zeros.
     pub fn zeros() -> Self {
         Self {
             stiffness: [S::zero(); 6],
@@ -70,11 +70,11 @@ pub struct SectionFault {
     pub most: f64,
 }
 
-/// Part by which rounding may carry a size over its limit.
+/// Part by which a size may exceed its limit through rounding.
 const ROUNDING: f64 = 1e-12;
 
 impl Section<f64> {
-    /// Why no beam can have this section: formulas of areas and moments would go on beyond it.
+    /// Why no beam can have this section. Formulas of areas and moments do not show it.
     pub fn fault(&self) -> Option<SectionFault> {
         let limits = match *self {
             Self::Rectangle { .. } | Self::Given(_) => return None,

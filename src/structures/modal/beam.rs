@@ -24,7 +24,7 @@ use crate::structures::beam::{Section, SectionValues};
 use crate::structures::damping::RayleighDamping;
 use crate::structures::material::Material;
 
-/// How many functions a beam has of each kind. Coordinates stand in this order.
+/// Numbers of functions of each kind. Coordinates have this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct BeamModes {
     /// Bending along y and along z.
@@ -49,7 +49,7 @@ pub(crate) enum StrainMeasure {
 pub(crate) struct BeamDamping<S> {
     /// Ratio ζ of critical damping for all modes of bending, of torsion, of stretch.
     pub ratios: [S; 3],
-    /// α M + β K beside it.
+    /// α M + β K in addition.
     pub rayleigh: RayleighDamping<S>,
 }
 
@@ -76,7 +76,7 @@ pub(crate) struct FlexibleBeam<S> {
     pub damping: BeamDamping<S>,
 }
 
-/// What one coordinate does to a section.
+/// Effect of one coordinate on a section.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SectionMode<S> {
     /// Displacement of its centre.
@@ -89,7 +89,7 @@ pub(super) struct SectionMode<S> {
     pub slopes: [S; 2],
     /// κ1, κ2, κ3: twist, and curvatures about axes 2 and 3.
     pub curvature: [S; 3],
-    /// V2 / EI3 and V3 / EI2: what the moments' slopes are.
+    /// V2 / EI3 and V3 / EI2: the slopes of the moments.
     pub moment_slopes: [S; 2],
 }
 
@@ -139,7 +139,7 @@ impl<S: Scalar> FlexibleBeam<S> {
         }
     }
 
-    /// What each coordinate does to the section at ξ.
+    /// Effect of each coordinate on the section at ξ.
     pub(super) fn section_modes(&self, xi: S) -> Vec<SectionMode<S>> {
         let [_, ga2, ga3, _, ei2, ei3] = self.values().stiffness;
         let length = self.length;
@@ -294,7 +294,7 @@ impl<S: Scalar> FlexibleBeam<S> {
         damping
     }
 
-    /// How the point of the section at ξ moves that stands beside its centre by `offset` (y, z).
+    /// Motion of the point of the section at ξ with the distance `offset` (y, z) from its centre.
     pub(crate) fn point(&self, xi: S, offset: [S; 2]) -> PointModes<S> {
         let arm = Vec3::new(S::zero(), offset[0], offset[1]);
         let modes = self.section_modes(xi);
@@ -333,8 +333,9 @@ impl<S: Scalar> Sums<S> {
         }
     }
 
-    /// A slice of the beam at x. A point of its section stands at X + y e2 + z e3; a mode moves it by
-    /// U + y θ×e2 + z θ×e3, so S_IJ = ∫ρA U_I U_Jᵀ + ρI3 A_I A_Jᵀ + ρI2 B_I B_Jᵀ with A = θ×e2, B = θ×e3.
+    /// A slice of the beam at x. A point of its section is at X + y e2 + z e3; a mode moves it by U
+    /// + y θ×e2 + z θ×e3, so S_IJ = ∫ρA U_I U_Jᵀ + ρI3 A_I A_Jᵀ + ρI2 B_I B_Jᵀ with A = θ×e2, B =
+    /// θ×e3.
     fn add_mass(&mut self, x: S, modes: &[SectionMode<S>], [m, m2, m3]: &[S; 3]) {
         let (e2, e3) = (Vec3::y(), Vec3::z());
         let place = Vec3::new(x, S::zero(), S::zero());

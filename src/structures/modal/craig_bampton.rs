@@ -27,7 +27,7 @@ const MASSLESS: f64 = 1e-14;
 /// Largest standard deviation of the stiffness of a coordinate by the digits of a file, relative to it.
 const UNCERTAIN: f64 = 0.1;
 
-/// A reduced body, and what it was made of.
+/// A reduced body, and the data of its reduction.
 #[derive(Clone, Debug)]
 pub(crate) struct Reduction {
     /// Its numbers.
@@ -265,8 +265,8 @@ fn interior(
     Ok((statics, fixed, found.frequencies()))
 }
 
-/// The node that moves most where the stiffness between the interfaces is singular; or that the digits of the
-/// stiffness do not tell whether it is.
+/// The node that moves most where the stiffness between the interfaces is singular; or the fault
+/// that the digits of the stiffness do not show whether it is.
 fn mechanism(free: &FreeBody, inside: &[usize], failure: &NotPositiveDefinite) -> NoReduction {
     let mut x = vec![0.0; free.unknowns.len()];
     for (&i, &value) in inside.iter().zip(&failure.direction) {

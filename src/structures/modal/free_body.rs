@@ -7,10 +7,10 @@ use super::written::{Entry, WrittenMatrix};
 use crate::linalg::cholesky::{SymmetricPattern, fill_reducing_order};
 use crate::math::Vec3;
 
-/// Part of the forces of all its entries that a rigid motion may leave in the stiffness of a free body, beside
-/// what the digits of its entries explain.
+/// Forces of a rigid motion that the stiffness of a free body may have, relative to the forces of
+/// all its entries, in addition to the effect of rounding.
 const FREE: f64 = 1e-5;
-/// Relative difference of the masses in three directions, beside what the digits explain.
+/// Relative difference of the masses in three directions, in addition to the effect of rounding.
 const ONE_MASS: f64 = 1e-5;
 
 /// A component of the motion of a node.
@@ -27,7 +27,7 @@ pub(crate) struct Unknown {
 pub(crate) struct FreeBody {
     /// Positions of the nodes \[m\].
     pub nodes: Vec<Vec3<f64>>,
-    /// What the rows of the matrices are.
+    /// Component of each row of the matrices.
     pub unknowns: Vec<Unknown>,
     /// The common pattern of both matrices.
     pub pattern: SymmetricPattern,
@@ -35,7 +35,7 @@ pub(crate) struct FreeBody {
     pub stiffness: Vec<f64>,
     /// M.
     pub mass: Vec<f64>,
-    /// By how much rounding may have changed the entries of K and of M.
+    /// Largest changes of the entries of K and of M by rounding.
     pub rounding: [Vec<f64>; 2],
     /// Components of the nodes without stiffness and mass.
     pub empty: usize,

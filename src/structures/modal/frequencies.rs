@@ -1,4 +1,4 @@
-//! Natural frequencies of a body with elastic coordinates, without the motion.
+//! Natural frequencies of a body with elastic coordinates.
 
 use super::ModalNumbers;
 use crate::math::Vec3;
@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 /// What holds the axes of a body while it vibrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Held {
-    /// The axes stand still.
+    /// The axes are at rest.
     Axes,
     /// Nothing: the body floats freely.
     Nothing,

@@ -63,7 +63,7 @@ pub(crate) struct Factors<S> {
     pub length: S,
 }
 
-/// Damping beside that of the file.
+/// Damping in addition to that of the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ImportedDamping<S> {
     /// Ratio ζ of critical damping for all modes.
@@ -78,7 +78,7 @@ impl ImportedBody {
         self.static_moments.len()
     }
 
-    /// Mass of the elastic coordinates in axes that stand still, by rows.
+    /// Mass of the elastic coordinates with the axes at rest, by rows.
     pub(crate) fn elastic_mass(&self) -> Vec<f64> {
         let factors = Factors {
             young: 1.0,
@@ -158,7 +158,7 @@ impl ImportedBody {
         self.points.iter().min_by(by_distance)
     }
 
-    /// Largest distance between the points, or from the origin \[m\]: what a distance is measured by.
+    /// Largest distance between the points, or from the origin \[m\]: the scale of distances.
     pub(crate) fn size(&self) -> f64 {
         let far = self.points.iter().map(|point| point.position.norm());
         let gyration = (self.inertia.trace() / self.mass.max(f64::MIN_POSITIVE)).sqrt();

@@ -1,10 +1,10 @@
-//! Interfaces of a free body: what they can do, and which of their motions what holds the frame leaves.
+//! Interfaces of a free body: their motions, and the motions that remain when the frame is held.
 
 use super::free_body::{COMPONENTS, FreeBody};
 use crate::math::Vec3;
 use nalgebra::SymmetricEigen;
 
-/// Part of a motion of several nodes below which it does not exist.
+/// A motion of several nodes below this part of its size does not exist.
 const NOTHING: f64 = 1e-9;
 
 /// A part of the body that moves as one.
@@ -59,9 +59,9 @@ pub(crate) enum NoReduction {
     Loose,
     #[error("the search for fixed-interface modes came to no end: {found} of {asked} were found")]
     NoConvergence {
-        /// How many were asked for.
+        /// Requested number.
         asked: usize,
-        /// How many were found.
+        /// Number found.
         found: usize,
     },
     #[error("no static or fixed-interface mode, so no elastic coordinate")]
@@ -76,7 +76,7 @@ pub(super) struct Column {
     pub name: String,
 }
 
-/// What an interface can do.
+/// The motions of an interface.
 pub(super) struct Abilities {
     pub centre: Vec3<f64>,
     pub displacements: [bool; 3],
@@ -130,7 +130,7 @@ pub(super) fn abilities(free: &FreeBody, interface: &Interface) -> Result<Abilit
     })
 }
 
-/// The boundary modes that what holds the frame leaves.
+/// The boundary modes that remain when the frame is held.
 pub(super) fn columns(
     interfaces: &[Interface],
     abilities: &[Abilities],

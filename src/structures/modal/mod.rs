@@ -19,7 +19,7 @@ pub(crate) use shapes::{BeamFrame, BendingFunctions};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::flexible::{ModalInertia, ModalStiffness};
 
-/// What the motion needs of a body with elastic coordinates.
+/// The numbers of a body with elastic coordinates for its motion.
 #[derive(Clone, Debug)]
 pub(crate) struct ModalNumbers<S> {
     /// ∫ dm \[kg\].
@@ -66,7 +66,7 @@ impl<S: Scalar> ModalNumbers<S> {
         k
     }
 
-    /// Mass of the elastic coordinates in axes that stand still, M_IJ = tr S_IJ, by rows.
+    /// Mass of the elastic coordinates with the axes at rest, M_IJ = tr S_IJ, by rows.
     pub(crate) fn elastic_mass(&self) -> Vec<S> {
         let m = self.modes();
         let mut mass = vec![S::zero(); m * m];

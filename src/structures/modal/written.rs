@@ -1,6 +1,7 @@
-//! Matrices as files write them: entries with a number of digits. Rounding changes an entry by up to half a unit
-//! of its last digit. Entries of slender bodies cancel in slow motions, so a relative error of 1e-5 in each may be
-//! one of 1 in the stiffness of a mode. What rounding does to a quadratic form is its standard deviation,
+//! Matrices as files write them: entries with a number of digits. Rounding changes an entry by up
+//! to half a unit of its last digit. Entries of slender bodies cancel in slow motions, so a
+//! relative error of 1e-5 in each may be one of 1 in the stiffness of a mode. The effect of
+//! rounding on a quadratic form is its standard deviation,
 //!
 //! ```text
 //! s² = ⅓ Σ_ij (δ_ij x_i x_j)²,     δ_ij half a unit of the last digit of K_ij,
@@ -10,8 +11,8 @@
 
 use crate::linalg::cholesky::SymmetricPattern;
 
-/// An entry of a symmetric matrix: the keys 6 × node + component of row and column, and its value. Each
-/// pair of keys stands once.
+/// An entry of a symmetric matrix: the keys 6 × node + component of row and column, and its value.
+/// Each pair of keys occurs once.
 pub(crate) type Entry = (usize, usize, f64);
 
 /// A symmetric matrix of a file.
@@ -19,7 +20,7 @@ pub(crate) type Entry = (usize, usize, f64);
 pub(crate) struct WrittenMatrix {
     /// Each pair of keys once.
     pub entries: Vec<Entry>,
-    /// By entry: by how much rounding may have changed it.
+    /// By entry: largest change by rounding.
     pub rounding: Vec<f64>,
 }
 

@@ -13,9 +13,9 @@ use crate::structures::shell::Terms;
 use crate::structures::state::NodalMotion;
 use crate::structures::structure::Structure;
 
-/// e^{−ρ(f − f_1)} of the first mode that is left out, at most.
+/// Largest e^{−ρ(f − f_1)} of the first mode that is left out.
 const NEGLIGIBLE: f64 = 38.0;
-/// Modes that an aggregate takes in at most.
+/// Largest number of modes of an aggregate.
 const MOST_MODES: usize = 160;
 /// Relative distance below which an eigenvalue counts as repeated.
 const REPEATED: f64 = 1e-6;
@@ -25,7 +25,7 @@ const REPEATED: f64 = 1e-6;
 pub struct LowestFrequency {
     /// −(1/ρ) ln Σ e^{−ρ f_k}, not above the lowest frequency \[Hz\].
     pub value: f64,
-    /// The modes that it was made of.
+    /// Its modes.
     pub modes: Modes,
     /// Derivatives by the structure.
     pub gradient: Structure<f64>,

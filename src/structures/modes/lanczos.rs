@@ -9,11 +9,11 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Vectors of a block.
 const BLOCK: usize = 4;
-/// Residual ‖A x − θ x‖ beside θ at which a pair has converged.
+/// Residual ‖A x − θ x‖ relative to θ at which a pair has converged.
 const TOLERANCE: f64 = 1e-12;
-/// A vector that orthogonalisation leaves so little of is no new direction.
+/// A vector is no new direction if orthogonalisation leaves less than this part of it.
 const DEPENDENT: f64 = 1e-11;
-/// Blocks that are solved for at most.
+/// Largest number of blocks that are solved for.
 const MOST_BLOCKS: usize = 2000;
 
 /// A self-adjoint operator (K + sM)⁻¹ M.
@@ -38,7 +38,7 @@ impl Basis {
         self.vectors.len()
     }
 
-    /// Takes from `w` its parts along the basis, twice; gives the parts.
+    /// Subtracts from `w` its parts along the basis, twice; returns the parts.
     pub(crate) fn orthogonalise(&self, w: &mut [f64]) -> Vec<f64> {
         let mut parts = vec![0.0; self.len()];
         for _ in 0..2 {
@@ -53,8 +53,8 @@ impl Basis {
         parts
     }
 
-    /// Adds a vector that is orthogonal to the others after scaling it; gives its length before, or
-    /// nothing if it is not longer than `least`.
+    /// Scales a vector that is orthogonal to the others and adds it; returns its length before, or
+    /// `None` if that is not above `least`.
     pub(crate) fn push(
         &mut self,
         operator: &impl Operator,
@@ -93,7 +93,7 @@ pub(crate) struct Found {
     pub vectors: Vec<Vec<f64>>,
     /// Right sides that were solved for.
     pub solves: usize,
-    /// True if there are no more eigenvalues than these (beside zeros).
+    /// True if there are no other eigenvalues but zeros.
     pub exhausted: bool,
 }
 
@@ -112,8 +112,9 @@ fn random(seed: u64, n: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The `wanted` largest eigenvalues in the space orthogonal to `locked`; fewer if there are no more, or
-/// if they do not converge. Copies of an eigenvalue beyond the size of a block may be missed: count.
+/// The `wanted` largest eigenvalues in the space orthogonal to `locked`; fewer if there are no
+/// more, or if they do not converge. Copies of an eigenvalue beyond the size of a block may be
+/// missed, so the caller must count.
 pub(crate) fn largest(
     operator: &mut impl Operator,
     locked: &Basis,
@@ -167,7 +168,7 @@ pub(crate) fn largest(
         }
         let new = old..basis.len();
         let (values, y) = ritz(&h, old);
-        // The residual of a Ritz pair stands in the new vectors.
+        // The residual of a Ritz pair is in the new vectors.
         let residual = |i: usize| {
             let squares = new.clone().map(|r| {
                 let sum: f64 = open.clone().map(|c| h[(r, c)] * y[(c, i)]).sum();
@@ -223,7 +224,7 @@ fn ritz(h: &DMatrix<f64>, order: usize) -> (Vec<f64>, DMatrix<f64>) {
     (values, vectors)
 }
 
-/// Keeps the best Ritz vectors and the newest block; gives where that block stands.
+/// Keeps the best Ritz vectors and the newest block; returns the place of that block.
 fn restart(
     basis: &mut Basis,
     h: &mut DMatrix<f64>,

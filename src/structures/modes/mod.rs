@@ -2,7 +2,7 @@
 //!
 //! K x = λ M x, f = √λ / 2π. The lowest eigenvalues are found by block Lanczos on (K + sM)⁻¹ M. The
 //! negative pivots of K − μM count the eigenvalues below μ (Sylvester's law of inertia), so none is
-//! missed. Rigid motions are known beforehand and kept out; only where there are some is s > 0.
+//! missed. Rigid motions are known beforehand and left out; s > 0 only if there are some.
 
 mod frequencies;
 mod lanczos;
@@ -33,23 +33,23 @@ pub enum ModalFailure {
     /// Nothing has mass.
     #[error("the structure has no mass, so it has no natural frequencies; give a density")]
     NoMass,
-    /// The structure has fewer modes than were asked for.
+    /// The structure has fewer modes than requested.
     #[error("{asked} modes are asked for, and the structure has {there}")]
     TooMany {
-        /// How many were asked for.
+        /// Requested number.
         asked: usize,
-        /// How many there are.
+        /// Existing number.
         there: usize,
     },
-    /// The iteration came to no end.
+    /// The iteration did not converge.
     #[error("the {asked} lowest modes did not converge; {found} were found")]
     NoConvergence {
-        /// How many were asked for.
+        /// Requested number.
         asked: usize,
-        /// How many were found.
+        /// Number found.
         found: usize,
     },
-    /// A single frequency is asked for that another one equals.
+    /// A single frequency is requested that equals another one.
     #[error(
         "frequency {index} has no derivative: it lies within {gap:.1e} of its neighbour, relatively; take \
          a smooth function of the lowest frequencies"
@@ -60,7 +60,7 @@ pub enum ModalFailure {
         /// Relative distance of the eigenvalues.
         gap: f64,
     },
-    /// The aggregate takes in more modes than are sensible.
+    /// The aggregate would have too many modes.
     #[error(
         "the aggregate with rho = {rho:.3e} s takes in more than {most} modes; a larger rho takes in fewer"
     )]
@@ -90,7 +90,7 @@ pub struct Modes {
     pub eigenvalues: Vec<f64>,
     /// Values of the unknowns in each mode; xᵀ M x = 1.
     pub vectors: Vec<Vec<f64>>,
-    /// What it took.
+    /// Work of the solution.
     pub work: ModalWork,
 }
 
@@ -126,7 +126,7 @@ impl ModalProblem {
         })
     }
 
-    /// The `count` lowest modes beside rigid motions, and those that form a cluster with the last.
+    /// The `count` lowest modes besides rigid motions, and those that form a cluster with the last.
     ///
     /// # Errors
     /// [`ModalFailure`] if the structure is a mechanism without being rigid, has no mass or fewer modes.

@@ -1,4 +1,4 @@
-//! Rigid motions that the supports leave, part by part of a structure that does not hang together.
+//! Rigid motions that the supports leave, for each connected part of a structure.
 
 use nalgebra::{DMatrix, SymmetricEigen, Vector6};
 
@@ -17,7 +17,7 @@ pub(super) fn rigid_motions(configuration: &Configuration<f64>) -> Vec<Vec<f64>>
         .collect()
 }
 
-/// The nodes of each part that hangs together.
+/// The nodes of each connected part.
 fn parts(configuration: &Configuration<f64>) -> Vec<Vec<usize>> {
     let mesh = &configuration.structure.topology.mesh;
     let mut parent: Vec<usize> = (0..mesh.nodes).collect();

@@ -9,7 +9,7 @@ use crate::linalg::cholesky::{NotPositiveDefinite, SparseCholesky, SymmetricPatt
 
 /// Relative distance of eigenvalues below which they count as one cluster.
 const CLUSTER: f64 = 1e-6;
-/// Shift of a structure with rigid motions beside its largest eigenvalues.
+/// Shift of a structure with rigid motions, relative to its largest eigenvalues.
 const SHIFT: f64 = 1e-9;
 /// Searches for what the count says is missing.
 const SEARCHES: u64 = 6;
@@ -59,18 +59,18 @@ pub(crate) enum PencilFailure {
     NotDefinite(NotPositiveDefinite),
     /// Nothing has mass.
     NoMass,
-    /// There are fewer modes than were asked for.
+    /// There are fewer modes than requested.
     TooMany {
-        /// How many were asked for.
+        /// Requested number.
         asked: usize,
-        /// How many there are.
+        /// Existing number.
         there: usize,
     },
-    /// The iteration came to no end.
+    /// The iteration did not converge.
     NoConvergence {
-        /// How many were asked for.
+        /// Requested number.
         asked: usize,
-        /// How many were found.
+        /// Number found.
         found: usize,
     },
 }
@@ -100,10 +100,11 @@ impl Pencil {
         }
     }
 
-    /// The `count` lowest modes beside the rigid `motions`, and those that form a cluster with the last.
+    /// The `count` lowest modes besides the rigid `motions`, and those that form a cluster with the
+    /// last.
     ///
     /// # Errors
-    /// [`PencilFailure`] if K is singular beside these motions, or there is no mass or fewer modes.
+    /// [`PencilFailure`] if K is singular for other motions, or there is no mass or fewer modes.
     pub(crate) fn lowest(
         &mut self,
         motions: Vec<Vec<f64>>,
@@ -159,7 +160,7 @@ impl Pencil {
                     work,
                 });
             }
-            // Some copies were missed: look beside what is known.
+            // Some copies were missed: search orthogonally to the known ones.
             wanted = values.len() + below.saturating_sub(rigid + whole).max(1);
             exhausted = false;
         }
@@ -198,7 +199,7 @@ impl Pencil {
         }
     }
 
-    /// A shift that is small beside the large eigenvalues.
+    /// A shift that is small relative to the large eigenvalues.
     fn shift(&self) -> f64 {
         let pattern = &self.pattern;
         let slots = (0..pattern.order()).filter_map(|j| pattern.slot(j, j));

@@ -1,8 +1,8 @@
 //! Shape functions of the nine-node element, its tying points and its Gauss points.
 //!
-//! Node k = 3j + i stands at (r, s) = (i − 1, j − 1). The shape functions are products of the
-//! quadratic Lagrange polynomials of {−1, 0, 1}. Tying points, p = 1/√3, c = √(3/5)
-//! (Bucalem & Bathe 1993, MITC9):
+//! Node k = 3j + i is at (r, s) = (i − 1, j − 1). The shape functions are products of the quadratic
+//! Lagrange polynomials of {−1, 0, 1}. Tying points, p = 1/√3, c = √(3/5) (Bucalem & Bathe 1993,
+//! MITC9):
 //!
 //! | set | points (r, s) | covariant components tied there |
 //! |---|---|---|
@@ -10,9 +10,9 @@
 //! | B | r ∈ {−c, 0, c}, s = ±p | ε_ss, κ_ss, γ_s |
 //! | C | r = ±p, s = ±p | ε_rs, κ_rs |
 //!
-//! Between the points a component is linear where two points stand in a row and quadratic where
-//! three do. The Gauss points share the coordinates c with the tying points, so a component rr or
-//! ss at a Gauss point follows from two tying points, and rs from four.
+//! Between the points a component is linear where two points are in a row and quadratic where three
+//! are. The Gauss points share the coordinates c with the tying points, so a component rr or ss at
+//! a Gauss point follows from two tying points, and rs from four.
 
 use std::sync::LazyLock;
 
@@ -55,7 +55,7 @@ fn quadratic_slope(x: f64) -> [f64; 3] {
     [x - 0.5, -2.0 * x, x + 0.5]
 }
 
-/// What a Gauss point takes from the tying points: indices and weights.
+/// Interpolation from the tying points to a Gauss point: indices and weights.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tied {
     /// Component rr (and γ_r) from two points A.

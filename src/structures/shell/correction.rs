@@ -7,10 +7,10 @@
 //! E^ = Ē + (1/A) ∫ T (E − Ē) dA
 //! ```
 //!
-//! for the linear membrane strains of the displacements and, with the same formula, for the curvatures
-//! of the directors' motion. E and Ē in the mean are those of the element laid into the plane of its
-//! middle, ã_α = (I − n nᵀ) a_α: what tying takes away of a curved element's strains is its locking,
-//! and must not come back. For parallelograms the correction vanishes.
+//! for the linear membrane strains of the displacements and, with the same formula, for the
+//! curvatures of the directors' motion. E and Ē in the mean are those of the element laid into the
+//! plane of its middle, ã_α = (I − n nᵀ) a_α: tying removes the locking strains of a curved
+//! element, which must not return. For parallelograms the correction vanishes.
 //!
 //! A curved element in a plane does not know its rigid rotations. So displacements −ω × r_a (r_a from
 //! the centre of the nodes) are added to the vectors c_a that make the means, such that
@@ -19,7 +19,7 @@
 //! Σ l_a × c_a = (Σ r_a·r_a I − r_a r_aᵀ) ω,   l_a = r_a for strains, D_a for curvatures
 //! ```
 //!
-//! and a rotation makes no mean. For flat elements ω vanishes.
+//! and a rotation has no mean. For flat elements ω vanishes.
 
 use super::basis::{COMPONENTS, GAUSS_POINTS, MIDDLE, NODES, TABLES, TYING_POINTS, component};
 use super::field::{Field, add_sum_transpose, sum};

@@ -21,7 +21,7 @@ pub(crate) const SHEAR_FACTOR: f64 = 5.0 / 6.0;
 /// Drilling stiffness as a fraction of G h.
 pub(crate) const DRILLING: f64 = 1e-3;
 
-/// What an element is made of.
+/// The numbers of an element.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shell<S> {
     /// Nodes X_a \[m\] and directors D_a [-].
@@ -36,7 +36,7 @@ pub(crate) struct Shell<S> {
     pub(crate) drilling: bool,
 }
 
-/// Derivatives of a function by everything that an element is made of.
+/// Derivatives of a function by all numbers of an element.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShellCotangent<S> {
     /// By X_a and D_a.
@@ -50,7 +50,7 @@ pub(crate) struct ShellCotangent<S> {
 }
 
 impl<S: Scalar> ShellCotangent<S> {
-    /// Nothing yet.
+    /// Zero.
     pub(crate) fn zeros() -> Self {
         Self {
             geometry: Field::zeros(),

@@ -16,7 +16,7 @@ pub(crate) struct Field<S> {
 }
 
 impl<S: Scalar> Field<S> {
-    /// The field that is nothing.
+    /// The zero field.
     pub(crate) fn zeros() -> Self {
         let zero = [Vec3::zeros(); NODES];
         Self {
@@ -81,7 +81,7 @@ pub(crate) fn interpolate<S: Scalar>(basis: &Basis, field: &Field<S>) -> AtPoint
     }
 }
 
-/// Transpose of [`interpolate`]: adds to the nodal cotangents what those at a point make of them.
+/// Transpose of [`interpolate`]: adds the contributions of a point to the nodal cotangents.
 #[inline]
 pub(crate) fn add_interpolate_transpose<S: Scalar>(
     basis: &Basis,

@@ -5,7 +5,7 @@
 //! T = ½ Σ m_ab u̇_a·u̇_b + ½ Σ i_ab q̇_a·q̇_b
 //! ```
 //!
-//! μ is the non-structural mass per area, which stands in the middle surface.
+//! μ is the non-structural mass per area, in the middle surface.
 
 use super::basis::{GAUSS_POINTS, NODES, TABLES};
 use super::energy::{Motion, Shell, ShellCotangent};

@@ -3,7 +3,7 @@
 use super::basis::NODES;
 use crate::math::{Scalar, Vec3};
 
-/// Unknowns of an element at most: three displacements and three rotations a node.
+/// Largest number of unknowns of an element: three displacements and three rotations a node.
 pub(crate) const MOST_UNKNOWNS: usize = 6 * NODES;
 /// The axes of the unknown rotations of each node: θ_a = Σ_k axis_k φ_k.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +34,7 @@ impl<S: Scalar> RotationAxes<S> {
 pub(crate) struct ElementMatrix<S> {
     /// Order of the matrix.
     pub(crate) order: usize,
-    /// Rows; what stands right of the diagonal is not used.
+    /// Rows; entries right of the diagonal are not used.
     pub(crate) rows: Box<[[S; MOST_UNKNOWNS]; MOST_UNKNOWNS]>,
 }
 

@@ -331,8 +331,8 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
         }
     }
 
-    /// Transpose of the derivative of [`ElementStrain::new`]: adds to the cotangents of geometry and
-    /// motion what those of the strains and areas make of them.
+    /// Transpose of the derivative of [`ElementStrain::new`]: adds the contributions of the
+    /// cotangents of strains and areas to those of geometry and motion.
     pub(crate) fn add_transpose(
         &self,
         bar: &[Strain<S>; GAUSS_POINTS],

@@ -107,8 +107,8 @@ struct Parameters<S> {
     strain: [S; PARAMETERS],
 }
 
-/// The numbers of which the strain energy of an element is made for E = h = 1: those of the membrane
-/// parameters e_p, K_m / (E h), and K_b / (E h³) and K_s / (E h) between the unknowns.
+/// The numbers of the strain energy of an element for E = h = 1: those of the membrane parameters
+/// e_p, K_m / (E h), and K_b / (E h³) and K_s / (E h) between the unknowns.
 pub(crate) struct Operators {
     /// b_p over the displacements.
     pub(crate) membrane: Vec<[f64; DISPLACEMENTS]>,

@@ -17,7 +17,7 @@ use std::ops::Range;
 
 /// Part of a row that is independent of the rows before, relative to it, above which it counts.
 const INDEPENDENT: f64 = 1e-8;
-/// Smallest scale of a group of unknowns beside the largest.
+/// Smallest scale of a group of unknowns, relative to the largest.
 const LEAST_SCALE: f64 = 1e-30;
 
 /// Positions; accelerations and velocities of the rigid unknowns; reactions; multipliers of placement and velocities.
@@ -45,15 +45,15 @@ impl State<f64> {
     }
 }
 
-/// Which unknowns and rows there are. Unknowns stand as (positions, a, v, λ, σ, τ); rows as (balance, placement,
-/// velocities, Φ, accelerations of constraints, rates of constraints), so that each group has the length of its
-/// unknowns.
+/// The unknowns and rows. Unknowns have the order (positions, a, v, λ, σ, τ), rows as (balance,
+/// placement, velocities, Φ, accelerations of constraints, rates of constraints), so that each
+/// group has the length of its unknowns.
 pub(super) struct Layout<'a> {
     pub numbering: &'a Numbering,
     pub left_out: &'a RedundantRows,
-    /// Unknowns of velocity that are no elastic coordinates.
+    /// Unknowns of velocity without the elastic coordinates.
     pub rigid: Vec<usize>,
-    /// Rows of constraints that are independent while elastic coordinates stand still.
+    /// Rows of constraints that are independent while elastic coordinates are at rest.
     pub kept: Vec<usize>,
 }
 
@@ -132,7 +132,8 @@ impl<'a> Layout<'a> {
         out
     }
 
-    /// Largest change of a position, rotations as radians, displacements beside the length `scale`.
+    /// Largest change of a position, rotations in radians, displacements relative to the length
+    /// `scale`.
     pub(super) fn moved(&self, change: &[f64], scale: f64) -> f64 {
         let y = self.expanded(change[self.groups()[0].clone()].to_vec());
         let part = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
@@ -260,7 +261,8 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Chooses the rows that are independent at the placement while elastic coordinates stand still.
+    /// Chooses the rows that are independent at the placement while elastic coordinates are at
+    /// rest.
     fn keep_independent(&mut self, model: &Model<f64>, placed: &[f64]) {
         let (numbering, left_out) = (self.numbering, self.left_out);
         let (nv, nc) = (numbering.velocities(), numbering.constraints());

@@ -19,7 +19,7 @@ const PARTS: usize = 3;
 pub(super) struct Factors(SparseLu<f64>);
 
 impl Factors {
-    /// Those at a state; `None` if the matrix is singular.
+    /// The factors at a state; `None` if the matrix is singular.
     pub(super) fn new(layout: &Layout, model: &Model<f64>, x: &State<f64>) -> Option<Self> {
         let places = places(layout);
         let emit_all = |emit: &mut dyn Emit<f64>| {
@@ -49,7 +49,8 @@ impl Factors {
     }
 }
 
-/// The place of each reduced row or column among the unknowns; `None` of those that are none.
+/// The place of each reduced row or column among the unknowns; `None` of those that are no
+/// unknowns.
 fn places(layout: &Layout) -> Vec<Option<usize>> {
     let (nu, nc) = (layout.numbering.unknowns(), layout.numbering.constraints());
     let [y, a, v, lambda, sigma, tau] = layout.groups();

@@ -1,4 +1,4 @@
-//! Quasi-static start: deformations that neither move nor accelerate at first.
+//! Quasi-static start: deformations without velocity and acceleration.
 //!
 //! Let rigid motions be those with all elastic coordinates at rest. Sought are positions q, rigid velocities v,
 //! rigid accelerations a and reactions λ with
@@ -53,8 +53,8 @@ const REFINEMENTS: usize = 3;
 /// Number of starts that are kept.
 const KEPT: usize = 4;
 
-/// Real starts that are known, by the numbers of their models: a scene is made again and again at one design, for its
-/// values and for each derivative.
+/// Known real starts, keyed by the numbers of their models. A scene is made repeatedly at one
+/// design, for its values and for each derivative.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct KnownStarts(Arc<Mutex<Vec<Known>>>);
 
@@ -147,7 +147,7 @@ pub(crate) fn settle<S: Scalar>(
     Ok(())
 }
 
-/// Where the bodies are placed, and the velocities that they are given.
+/// The placement of the bodies, and their given velocities.
 pub(super) struct Given<S> {
     q: Vec<S>,
     v: Vec<S>,

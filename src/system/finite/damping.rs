@@ -4,8 +4,9 @@
 //! −α M_ee q̇ − β Σ_p k_p ∇e_p ė_p
 //! ```
 //!
-//! over all strains e_p of [`super::stiffness`], von Karman's among them. For small motions this is α M + β K
-//! with the axes held. A shell that bends far is not damped by the membrane strains that it does not have.
+//! over all strains e_p of [`super::stiffness`], von Karman's among them. For small motions this is
+//! α M + β K with the axes held. So a shell that bends far without stretching is not damped by
+//! linear membrane strains.
 
 use super::element::{
     gather, motion, motion_transpose, per_area, pull_per_area, scatter, share, weigh,
@@ -39,7 +40,7 @@ fn both<S: Scalar>(finite: &FiniteElements<S>, (q, rate): (&[S], &[S])) -> [Vec<
     [heavy, viscous]
 }
 
-/// Adds the forces of damping, as they stand beside ∂U/∂q.
+/// Adds the forces of damping, with the sign of ∂U/∂q.
 pub(crate) fn add_damping<S: Scalar>(
     finite: &FiniteElements<S>,
     motion: (&[S], &[S]),
@@ -133,7 +134,7 @@ pub(crate) fn pull_damping(
         scatter(element, &force, by_q);
     }
     parts::pull_heavy(finite, (rate, psi), alpha, cot);
-    // What the rates take is added above.
+    // The part by the rates is added above.
     let mut unused = vec![0.0; q.len()];
     parts::pull_viscous(finite, (q, rate, psi), beta, (by_q, &mut unused), cot);
 }

@@ -53,7 +53,7 @@ pub(super) fn add_inertial<S: Scalar>(
     }
 }
 
-/// Adds what the parts make of a cotangent of the inertial forces.
+/// Adds the pull-back of a cotangent of the inertial forces through the parts.
 pub(super) fn pull_back(
     finite: &FiniteElements<f64>,
     at: &Flexing<f64>,
@@ -100,8 +100,8 @@ pub(super) fn add_moving<S: Scalar>(
     }
 }
 
-/// Adds what the parts make of a cotangent `scale` of the kinetic energy; gives that by the velocity of the
-/// frame's origin.
+/// Adds the pull-back of a cotangent `scale` of the kinetic energy through the parts; returns that
+/// by the velocity of the frame's origin.
 pub(super) fn pull_kinetic(
     finite: &FiniteElements<f64>,
     at: &Flexing<f64>,

@@ -1,5 +1,5 @@
-//! Where the coordinates of a flexible body stand in the vectors of the system, and the motion that they
-//! describe.
+//! Places of the coordinates of a flexible body in the vectors of the system, and the motion that
+//! they describe.
 
 use crate::math::{Scalar, Vec3};
 use crate::model::Model;
@@ -10,7 +10,7 @@ use crate::system::finite;
 use crate::system::flexing::{Flexing, Generalised};
 use crate::system::numbering::Numbering;
 
-/// Where the coordinates of a flexible body stand among the velocities: six of the frame, then the
+/// Places of the coordinates of a flexible body among the velocities: six of the frame, then the
 /// elastic ones.
 pub(super) fn slots<S: Scalar>(numbering: &Numbering, body: &FlexibleBody<S>) -> Vec<usize> {
     let frame = numbering.velocity(body.frame);

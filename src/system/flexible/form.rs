@@ -1,4 +1,4 @@
-//! What a flexible body does by its form: sums over modes, or over finite elements.
+//! Formulas of a flexible body by its form: sums over modes, or over finite elements.
 
 use crate::linalg::Emit;
 use crate::math::{Mat3, Scalar, Vec3};

@@ -10,7 +10,7 @@ use crate::system::bodies::BodyMotion;
 use crate::system::numbering::Numbering;
 use crate::system::{elastic, finite};
 
-/// What flexible bodies add to energy and momenta.
+/// Energy and momenta of flexible bodies besides those of rigid ones.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Held<S> {
     /// Kinetic energy \[J\].

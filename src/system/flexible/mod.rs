@@ -1,5 +1,6 @@
-//! What flexible bodies add to the equations of all bodies: their share of M(q) v̇ − f(q, v), of its
-//! derivatives, of the energy and of the momenta. A model without flexible bodies passes through.
+//! The terms of flexible bodies in the equations of all bodies: their share of M(q) v̇ − f(q, v),
+//! of its derivatives, of the energy and of the momenta. A model without flexible bodies passes
+//! through.
 
 mod coordinates;
 mod displacement;
@@ -55,7 +56,7 @@ fn pull_forces_of(
     }
 }
 
-/// Adds what flexible bodies add to M v̇ − f(q, v) at the accelerations `a`.
+/// Adds the terms of flexible bodies to M v̇ − f(q, v) at the accelerations `a`.
 pub(crate) fn add_force_balances<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
@@ -114,7 +115,7 @@ pub(crate) fn add_mass_product_at<S: Scalar>(
     add_mass_product(model, numbering, &motions, x, out);
 }
 
-/// T(q)⁺ (q − q'): how far positions are from others, as velocities.
+/// T(q)⁺ (q − q'): the distance of positions from others, as velocities.
 pub(crate) fn distance<S: Scalar>(numbering: &Numbering, q: &[S], from: &[S]) -> Vec<S> {
     let away: Vec<S> = q.iter().zip(from).map(|(&q, &from)| q - from).collect();
     let mut out = vec![S::zero(); numbering.velocities()];
@@ -122,7 +123,7 @@ pub(crate) fn distance<S: Scalar>(numbering: &Numbering, q: &[S], from: &[S]) ->
     out
 }
 
-/// Adds M(q) T(q)⁺ (q − q') of the flexible bodies, which stand at q.
+/// Adds M(q) T(q)⁺ (q − q') of the flexible bodies at the positions q.
 pub(crate) fn add_metric<S: Scalar>(
     (model, numbering): (&Model<S>, &Numbering),
     motions: &[BodyMotion<S>],
@@ -144,7 +145,7 @@ fn weighed<S: Scalar>(body: &FlexibleBody<S>, mut q: Vec<S>) -> Vec<S> {
     q
 }
 
-/// Emits what flexible bodies add to the mass matrix, times `scale`, at (`row`, `column`).
+/// Emits the terms of flexible bodies in the mass matrix, times `scale`, at (`row`, `column`).
 pub(crate) fn emit_mass<S: Scalar>(
     (model, numbering): (&Model<S>, &Numbering),
     motions: &[BodyMotion<S>],
@@ -188,8 +189,9 @@ pub(crate) fn emit_mass_at<S: Scalar>(
     }
 }
 
-/// Emits the derivatives of what flexible bodies add to M v̇ − f(q, v), the accelerations held: in
-/// tangent positions times `by_y` at (row, y), in velocities times `by_v` at (row, v).
+/// Emits the derivatives of the terms of flexible bodies in M v̇ − f(q, v) at constant
+/// accelerations: in tangent positions times `by_y` at (row, y), in velocities times `by_v` at
+/// (row, v).
 pub(crate) fn emit_force_balances<S: Scalar>(
     (model, numbering): (&Model<S>, &Numbering),
     (motions, a): (&[BodyMotion<S>], &[S]),

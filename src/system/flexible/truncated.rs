@@ -1,4 +1,4 @@
-//! The inertia of a kinetic energy that leaves out how the body is deformed.
+//! The inertia of a kinetic energy that leaves out deformations.
 //!
 //! Kennedy & Boopathy (2016), equations (10), (13) and (14), neglect products of places with deformations:
 //!
@@ -9,9 +9,9 @@
 //! elastic pᵀ v̇ + hᵀ ω̇ + M q̈,     v̇ = Rᵀ r̈ − ω × v
 //! ```
 //!
-//! v is the velocity of the frame's origin in the axes of the frame. The equations keep this T, but they depend on v
-//! itself, so that a body that moves on with 10 m/s deforms otherwise than one that does not. Gravity is exact: it has
-//! the potential of the deformed body.
+//! v is the velocity of the frame's origin in the axes of the frame. The equations keep this T, but
+//! they depend on v itself, so a constant velocity of 10 m/s changes the deformation. Gravity is
+//! exact: it has the potential of the deformed body.
 //!
 //! At q = 0, q̇ = 0 and ω = 0 the complete inertia gives the part that is linear in accelerations, for each form of body.
 //! The rest is a product of v, ω and gravity with c, π = p q̇, H = h q̇ and s = p q.
@@ -68,7 +68,7 @@ fn undeformed<S: Scalar>(at: &Flexing<S>, gamma: Vec3<S>) -> Flexing<S> {
     }
 }
 
-/// What the formulas share: c, π, H and s.
+/// Common terms of the formulas: c, π, H and s.
 struct Moments<S> {
     c: Vec3<S>,
     pi: Vec3<S>,
@@ -208,7 +208,7 @@ impl<S: Scalar> Emit<S> for Columns<S> {
     fn add_dense(&mut self, _rows: &[usize], _columns: &[usize], _scale: S, _block: &[S]) {}
 }
 
-/// Passes on what does not stand in some columns.
+/// Passes on the entries that are not in some columns.
 struct Without<'a, S> {
     columns: std::ops::Range<usize>,
     emit: &'a mut dyn Emit<S>,

@@ -181,7 +181,7 @@ pub(crate) fn static_moment<S: Scalar>(inertia: &ModalInertia<S>, first: S, x: &
     all.fold(inertia.centre * first, |sum, (p, &x)| sum + p * x)
 }
 
-/// What the formulas of a motion share.
+/// Common terms of the formulas of a motion.
 struct Shared<S> {
     spin: Mat3<S>,
     b: Mat3<S>,

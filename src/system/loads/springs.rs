@@ -1,4 +1,4 @@
-//! What functions measure of springs, with its derivatives.
+//! Quantities of springs for functions, with their derivatives.
 
 use super::power::{angle, stretch, tension, torsion, turn_rate};
 use super::pull::{Pulled, pull_angle, pull_rate, pull_turn};
@@ -8,7 +8,7 @@ use crate::model::LoadKind;
 use crate::system::InMotion;
 use crate::system::joints::JointCotangent;
 
-/// What is measured of a spring.
+/// Kind of quantity of a spring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SpringPart {
     /// The distance of its points \[m\].
@@ -24,7 +24,7 @@ pub(crate) enum SpringPart {
 pub(crate) struct Spring {
     /// The load.
     pub load: usize,
-    /// What is measured.
+    /// The quantity.
     pub part: SpringPart,
 }
 

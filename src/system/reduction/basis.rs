@@ -9,11 +9,11 @@ use crate::structures::floating::PointMotion;
 use crate::structures::modes::{Basis, Operator, PencilFailure, largest};
 use std::f64::consts::TAU;
 
-/// Part of the energy of a static motion below which it is no new one.
+/// A static motion is no new one if less than this part of its energy is left.
 const DEPENDENT: f64 = 1e-10;
 /// Lowest vibrations, held and free, whose forces give static solutions.
 const PATTERNS: usize = 4;
-/// Parts of the deflection at which they are solved for.
+/// Parts of the deflection at which they are computed.
 const LEVELS: [f64; 3] = [0.25, 0.5, 1.0];
 
 /// Which fixed-interface modes are taken.
@@ -25,7 +25,7 @@ pub(crate) enum ModeChoice {
     Below(f64),
 }
 
-/// What a basis is made of.
+/// Settings of a basis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Request {
     /// Fixed-interface modes.
@@ -34,7 +34,7 @@ pub(crate) struct Request {
     pub companions: bool,
     /// Largest deflection of the static solutions \[m\], were they linear; none if zero.
     pub deflection: f64,
-    /// Amplitude beside that of the first below which a companion or a static solution is left out.
+    /// Amplitude, relative to the first, below which a companion or a static solution is left out.
     pub tolerance: f64,
 }
 

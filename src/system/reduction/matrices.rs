@@ -10,7 +10,7 @@ use crate::system::finite::{add_forces, energy, gather, part_tangent, per_area, 
 const ITERATIONS: usize = 60;
 /// Halvings of a Newton step.
 const HALVINGS: usize = 12;
-/// Residual beside the load at which a static solution has converged.
+/// Residual, relative to the load, at which a static solution has converged.
 const TOLERANCE: f64 = 1e-8;
 
 /// Shells with the matrices of their unknowns.

@@ -1,11 +1,13 @@
-//! What a basis spans: vectors that bend and vectors that stretch a flat shell, or all those of another.
+//! The spaces of a basis: vectors that bend and vectors that stretch a flat shell, or one space for
+//! other shells.
 
 use super::matrices::Matrices;
 use super::subspace::{Subspace, principal};
 use crate::math::slices::dot;
 use crate::model::finite::{DISPLACEMENTS, FiniteElements};
 
-/// What couples in-plane and out-of-plane unknowns of a flat shell, beside the largest entry.
+/// Largest entry that couples in-plane and out-of-plane unknowns of a flat shell, relative to the
+/// largest of all.
 const FLAT: f64 = 1e-12;
 /// A vector whose part of one kind is smaller, beside the whole, has none of it.
 const ROUND_OFF: f64 = 1e-7;
@@ -58,9 +60,9 @@ fn bending_unknowns(shells: &FiniteElements<f64>) -> Option<Vec<bool>> {
 /// The two spaces of a flat shell; one of another.
 pub(super) struct Spaces {
     pub bends: Option<Vec<bool>>,
-    /// What bends, or all.
+    /// Vectors that bend, or all.
     pub bending: Subspace,
-    /// What stretches a flat shell.
+    /// Vectors that stretch a flat shell.
     pub membrane: Subspace,
 }
 
@@ -104,7 +106,7 @@ impl Spaces {
         self.bending.vectors.len() + self.membrane.vectors.len()
     }
 
-    /// Adds what matters most of what vectors have beside the space of the one kind or the other.
+    /// Adds the combinations of largest energy of the vectors, without their parts in the space.
     pub(super) fn add_principal(
         &mut self,
         matrices: &Matrices,

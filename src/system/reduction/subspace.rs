@@ -1,10 +1,11 @@
-//! Bases of vectors: orthonormal in the mass, as vibrations of the held body, and by what matters most.
+//! Bases of vectors: orthonormal in the mass, vibrations of the held body, and combinations of
+//! largest energy.
 
 use super::matrices::Matrices;
 use crate::math::slices::{add_scaled, dot};
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// A vector that orthogonalisation leaves so little of is no new direction.
+/// A vector is no new direction if orthogonalisation leaves less than this part of it.
 const DEPENDENT: f64 = 1e-7;
 
 /// M-orthonormal vectors with their products with M.
@@ -15,7 +16,7 @@ pub(super) struct Subspace {
 }
 
 impl Subspace {
-    /// Takes from x its part in the space.
+    /// Subtracts from x its part in the space.
     pub(super) fn remove(&self, x: &mut [f64]) {
         for _ in 0..2 {
             for (vector, heavy) in self.vectors.iter().zip(&self.heavy) {
@@ -24,7 +25,7 @@ impl Subspace {
         }
     }
 
-    /// Adds what is new of x; false if nothing is.
+    /// Adds the new direction of x; false if there is none.
     pub(super) fn add(&mut self, matrices: &Matrices, mut x: Vec<f64>) -> bool {
         let before = dot(&matrices.heavy(&x), &x).sqrt();
         self.remove(&mut x);
