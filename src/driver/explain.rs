@@ -285,7 +285,7 @@ fn lowering(
             left_out.push(format!("the rotation of body {name}: its joints hold it"));
         } else if body.mobility == Mobility::point() {
             left_out.push(format!(
-                "the rotation of body {name}: nothing turns it, and no function looks at it"
+                "the rotation of body {name}: it is neither loaded nor observed by a function"
             ));
         } else if lowering.fixed.contains(i) {
             left_out.push(format!("body {name}: it is welded to ground"));

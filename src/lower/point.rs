@@ -101,7 +101,7 @@ pub(super) fn holds<S: Scalar>(
             LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Distributed(_) => {}
         }
     }
-    let read = || "a function looks at its rotation".to_owned();
+    let read = || "a function observes its rotation".to_owned();
     let event = scene.until.as_ref().map(|until| &until.measure);
     for function in scene.functions.iter().chain(event) {
         for (body, point) in looks_at(scene, function) {

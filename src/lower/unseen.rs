@@ -114,7 +114,7 @@ impl Seen {
         let event = scene.until.as_mut().map(|until| &mut until.measure);
         for function in scene.functions.iter_mut().chain(event) {
             function.for_each_place(&mut |body, _| {
-                *body = number[*body].expect("a body that a function looks at is kept");
+                *body = number[*body].expect("a body that a function observes is kept");
             });
         }
         let [joints, loads] = leave_out(&mut scene.model, &number);
@@ -125,7 +125,7 @@ impl Seen {
                 Some(Part::Load(load)) => (load, &loads),
                 None => continue,
             };
-            *own = new[*own].expect("a part that a function looks at is kept");
+            *own = new[*own].expect("a part that a function observes is kept");
         }
     }
 

@@ -214,7 +214,7 @@ impl Explanation {
             };
             let rows: Vec<Vec<String>> = self.functions.iter().map(row).collect();
             text.push('\n');
-            let headings = ["function", "use", "looks at", "depends at the start on"];
+            let headings = ["function", "use", "observes", "depends at the start on"];
             text.push_str(&render(&headings, &rows));
         }
         if !self.idle_variables.is_empty() {

@@ -186,7 +186,7 @@ fn a_free_body_moves_as_it_must() {
     }
 }
 
-/// Forces of damping are those of strain rates: none where strains stand still. The derivative of the strain energy
+/// Forces of damping are those of strain rates: none where strains are constant. The derivative of the strain energy
 /// along the rates is the power of the forces; damping's power is what it takes.
 #[test]
 fn damping_takes_energy_and_leaves_still_strains_alone() {

@@ -246,7 +246,7 @@ fn planes_are_found() {
             let relative = off(by, by_lowered) / largest(by);
             assert!(relative <= 1e-10, "{relative:e}");
         }
-        // A mode that leaves the plane is told.
+        // A mode that leaves the plane is named.
         let mut tilted = model.clone();
         modal_of(&mut tilted.flexible[0].form)
             .inertia

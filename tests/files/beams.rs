@@ -237,7 +237,7 @@ fn every_number_of_a_beam_has_an_exact_derivative() {
     }
 }
 
-/// What stands in the file against a part of the fault's text.
+/// Change of the file, and a part of the message of its fault.
 #[test]
 fn files_are_told_what_a_beam_cannot_be() {
     let base = || {

@@ -274,7 +274,7 @@ fn starts_of_shells_have_exact_derivatives() {
     scaled_gradients_are_exact(&problem, &problem.start(), &method);
 }
 
-/// What cannot start in equilibrium is told.
+/// The message names what cannot start in equilibrium.
 #[test]
 fn starts_without_equilibrium_are_told() {
     let told = |document: &Value| {

@@ -451,7 +451,7 @@ fn every_number_of_a_body_of_files_has_an_exact_derivative() {
 fn standard_input_data_move_as_they_say() {
     let directory = tempfile::tempdir().expect("a directory");
     let path = directory.path().join("rod.json");
-    // The frame stands on the first mass; the mode moves the second along x.
+    // The frame is on the first mass; the mode moves the second along x.
     let (m1, m2, k) = (2.0, 3.0, 500.0);
     let zero = [[0.0; 3]; 3];
     let square = |x: f64| [[x, 0.0, 0.0], [0.0; 3], [0.0; 3]];

@@ -70,7 +70,7 @@ fn torques_turn_interfaces() {
 }
 
 /// A stiffness matrix does not stiffen by rotation: a body that spins with more than a tenth of its lowest
-/// frequency is told, a slower one is not, and neither is a beam of von Karman's strain.
+/// frequency gives a warning, a slower one is not, and neither is a beam of von Karman's strain.
 #[test]
 fn fast_rotation_of_linear_strain_is_told() {
     let spun = |mut document: Value, rate: f64| {

@@ -1,4 +1,4 @@
-//! Faults of files with structures: each is told with its place.
+//! Faults of files with structures: each is reported with its place.
 
 use flexbody::driver::analysed::AnalysisFailure;
 use flexbody::driver::statics::{StaticDesign, StaticsFailure};

@@ -125,7 +125,7 @@ fn motion(row: &mut StabilityRow, case: &Case, problem: &Problem) {
     let steps = seen.at.run.grid.steps();
     drop(seen);
     if steps > MOST_STEPS {
-        row.no_gradient = Some(format!("not asked for beyond {MOST_STEPS} steps"));
+        row.no_gradient = Some(format!("not requested beyond {MOST_STEPS} steps"));
         return;
     }
     match check(problem, &start) {

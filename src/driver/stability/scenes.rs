@@ -66,7 +66,7 @@ pub(super) const FAMILIES: [(&str, &str); 25] = [
     ),
     (
         "step-size",
-        "Two hinged rods swing for 2 s by equal steps of this size (s).",
+        "Two hinged rods swing for 2 s by equal steps of this size [s].",
     ),
     (
         "many-steps",
@@ -79,7 +79,7 @@ pub(super) const FAMILIES: [(&str, &str); 25] = [
     ),
     (
         "hinge-distance",
-        "A door of 1 m by 2 m on two ball joints this far (m) apart, its centre far beside both.",
+        "A door of 1 m by 2 m on two ball joints at this distance [m]; its centre is far from both.",
     ),
     (
         "no-inertia",
@@ -87,24 +87,24 @@ pub(super) const FAMILIES: [(&str, &str); 25] = [
     ),
     (
         "open-start",
-        "A rod beside its hinge by this gap (m), its centre pushed across at this speed (m/s).",
+        "A rod at this distance [m] from its hinge; its centre is pushed across at this speed [m/s].",
     ),
     (
         "length",
-        "Two hinged rods of this length (m) swing for the same number of their own periods.",
+        "Two hinged rods of this length [m] swing for the same number of their own periods.",
     ),
     (
         "rho",
-        "The Kreisselmeier–Steinhauser function of a point that circles once, with this ρ (1/m).",
+        "The Kreisselmeier–Steinhauser function of a point that circles once, with this ρ [1/m].",
     ),
     (
         "speed",
-        "Two hinged cylinders fly at this speed (m/s) and turn at 3 rad/s; a box whose end turns at this \
+        "Two hinged cylinders fly at this speed [m/s] and turn at 3 rad/s; a box whose end turns at this \
          speed.",
     ),
     (
         "locking",
-        "A four-bar linkage whose coupler is at its longest 2.1 m; this is its length (m).",
+        "A four-bar linkage whose coupler is at its longest 2.1 m; this is its length [m].",
     ),
     (
         "optimum",
@@ -112,8 +112,8 @@ pub(super) const FAMILIES: [(&str, &str); 25] = [
     ),
     (
         "passage",
-        "A parallelogram of rods turns without gravity, ends so far (rad) from one of the positions in \
-         which all rods lie in a line, and passes four of them at this speed (rad/s).",
+        "A parallelogram of rods turns without gravity, ends so far [rad] from one of the positions in \
+         which all rods lie in a line, and passes four of them at this speed [rad/s].",
     ),
     (
         "tolerance",
@@ -134,7 +134,7 @@ pub(super) const FAMILIES: [(&str, &str); 25] = [
     ),
     (
         "thickness",
-        "A cantilever plate of shells of 1 m with this thickness (m), in equilibrium with a force that deflects \
+        "A cantilever plate of shells of 1 m with this thickness [m], in equilibrium with a force that deflects \
          it by 1 mm.",
     ),
     (
@@ -143,11 +143,11 @@ pub(super) const FAMILIES: [(&str, &str); 25] = [
     ),
     (
         "elasticity",
-        "A beam on a hinge swings for 1 s; this is its Young's modulus (Pa).",
+        "A beam on a hinge swings for 1 s; this is its Young's modulus [Pa].",
     ),
     (
         "undamped",
-        "A beam on a hinge swings for so long (s) without damping.",
+        "A beam on a hinge swings for so long [s] without damping.",
     ),
     (
         "spin",

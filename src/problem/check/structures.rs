@@ -27,8 +27,7 @@ impl Checker<'_> {
         if document.structures.len() > 1 {
             for name in document.structures.keys().filter(|name| name.contains('.')) {
                 let found = format!("the name \"{name}\"");
-                let expected =
-                    "a name without a dot, which stands between a structure and its sets";
+                let expected = "a name without a dot, which separates a structure from its sets";
                 self.fault(Finding::new(join("/structures", name), found, expected).of_key());
             }
         }

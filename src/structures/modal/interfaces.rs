@@ -57,7 +57,7 @@ pub(crate) enum NoReduction {
     },
     #[error("what holds the frame leaves a rigid motion of the body")]
     Loose,
-    #[error("the search for fixed-interface modes came to no end: {found} of {asked} were found")]
+    #[error("the search for fixed-interface modes did not converge: {found} of {asked} were found")]
     NoConvergence {
         /// Requested number.
         asked: usize,

@@ -34,7 +34,7 @@ pub enum ModalFailure {
     #[error("the structure has no mass, so it has no natural frequencies; give a density")]
     NoMass,
     /// The structure has fewer modes than requested.
-    #[error("{asked} modes are asked for, and the structure has {there}")]
+    #[error("{asked} modes are requested, and the structure has {there}")]
     TooMany {
         /// Requested number.
         asked: usize,
