@@ -1,9 +1,9 @@
 //! Reactions: forces and moments of the supports on a set of nodes, and their partial derivatives.
 //!
-//! R = F(v) − f at the nodes, F the internal forces, f the loads; its work in a rigid motion ψ = (d
-//! + m × (x − o), m) is the force along d and the moment about the axis m through o. The adjoint
-//! product has the difference of ψ and the adjoint: each jumps at the supports, their difference
-//! does not, so nothing cancels.
+//! R = F(v) − f at the nodes, F the internal forces, f the loads; its work in a rigid motion
+//! ψ = (d + m × (x − o), m) is the force along d and the moment about the axis m through o. The
+//! adjoint product has the difference of ψ and the adjoint: each jumps at the supports, their
+//! difference does not, so nothing cancels.
 
 use super::assembly::{Assembly, add_energy_transpose};
 use super::loads::{Load, add_work_transpose};

@@ -333,9 +333,9 @@ impl<S: Scalar> Sums<S> {
         }
     }
 
-    /// A slice of the beam at x. A point of its section is at X + y e2 + z e3; a mode moves it by U
-    /// + y θ×e2 + z θ×e3, so S_IJ = ∫ρA U_I U_Jᵀ + ρI3 A_I A_Jᵀ + ρI2 B_I B_Jᵀ with A = θ×e2, B =
-    /// θ×e3.
+    /// A slice of the beam at x. A point of its section is at X + y e2 + z e3; a mode moves it by
+    /// U + y θ×e2 + z θ×e3, so S_IJ = ∫ρA U_I U_Jᵀ + ρI3 A_I A_Jᵀ + ρI2 B_I B_Jᵀ with A = θ×e2 and
+    /// B = θ×e3.
     fn add_mass(&mut self, x: S, modes: &[SectionMode<S>], [m, m2, m3]: &[S; 3]) {
         let (e2, e3) = (Vec3::y(), Vec3::z());
         let place = Vec3::new(x, S::zero(), S::zero());
