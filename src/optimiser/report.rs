@@ -136,9 +136,9 @@ pub(crate) fn steepness(program: &Program<'_>, slopes: &Derivatives) -> Vec<f64>
     all
 }
 
-/// Active entries: their distance to a bound, as a distance in the variables, is less than 1e-6 of
-/// max(1, |bound|), or small relative to their force as a part of `gradient`. One unit of a
-/// variable changes entry i by `steepness(i)`.
+/// Active entries: their distance to a bound is less than 1e-6 of max(1, |bound|), or as a distance in
+/// the variables less than 1e-6 or small relative to their force as a part of `gradient`. One unit of
+/// a variable changes entry i by `steepness(i)`.
 pub(crate) fn active(
     values: &[f64],
     bounds: (&[f64], &[f64]),
@@ -154,7 +154,7 @@ pub(crate) fn active(
         let close = |distance: f64, bound: f64, z: f64| {
             let (far, near) = (distance / steep, bound.abs().max(1.0));
             bound.is_finite()
-                && (distance.min(far) <= 1e-6 * near || far <= 1e-3 * z * steep / gradient)
+                && (distance <= 1e-6 * near || far <= (1e-3 * z * steep / gradient).max(1e-6))
                 && (z > 0.0 || distance <= 1e-9 * near)
         };
         let (side, multiplier) = if l == u {
