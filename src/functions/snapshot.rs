@@ -67,11 +67,14 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
 
     /// These unknowns of its nodes, or all elastic coordinates.
     pub(crate) fn unknowns(&self, flexible: usize, unknowns: Option<&[usize]>) -> Vec<S> {
-        flexible::unknowns_of(
-            &self.model.flexible[flexible],
-            &self.coordinates(flexible),
-            unknowns,
-        )
+        let q = self.coordinates(flexible);
+        let Some(unknowns) = unknowns else {
+            return q;
+        };
+        let basis = flexible::basis_of(&self.model.flexible[flexible]);
+        let all = unknowns.iter();
+        all.map(|&unknown| flexible::unknown_of(basis, unknown, &q))
+            .collect()
     }
 
     /// The flight of a projectile that is released now.

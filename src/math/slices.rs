@@ -1,11 +1,30 @@
 //! Sums of products and scaled sums of slices, in any scalar.
 
 use super::Scalar;
+use std::ops::Mul;
 
 /// Σ a_i b_i over the common indices.
 pub(crate) fn dot<S: Scalar>(a: &[S], b: &[S]) -> S {
     let products = a.iter().zip(b);
     products.fold(S::zero(), |sum, (&a, &b)| sum + a * b)
+}
+
+/// Σ a_i b_i by four sums, because an addition waits for the one before.
+pub(crate) fn dot_by_four<S, T, const N: usize>(a: &[S; N], b: &[T; N]) -> S
+where
+    S: Scalar + Mul<T, Output = S>,
+    T: Copy,
+{
+    let mut sums = [S::zero(); 4];
+    let (a4, a) = a.as_chunks::<4>();
+    let (b4, b) = b.as_chunks::<4>();
+    for (a, b) in a4.iter().zip(b4) {
+        for k in 0..4 {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    let rest = a.iter().zip(b).fold(S::zero(), |sum, (&a, &b)| sum + a * b);
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 /// Adds `scale` times `x` to `out`.

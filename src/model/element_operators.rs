@@ -2,6 +2,7 @@
 //! plate has none for deflections, its bending none for displacements in the plane.
 
 use crate::math::Scalar;
+use crate::math::slices::dot_by_four;
 
 /// Unknowns of an element at most: six of each of nine nodes.
 pub(crate) const UNKNOWNS: usize = 54;
@@ -52,23 +53,9 @@ impl<const N: usize> Columns<N> {
     /// Adds Aᵀ y.
     pub(crate) fn add_transposed<S: Scalar>(&self, y: &[S; N], out: &mut [S]) {
         for (i, column) in self.iter() {
-            out[i] += inner(y, column);
+            out[i] += dot_by_four(y, column);
         }
     }
-}
-
-/// Σ y_k a_k by four sums, because an addition waits for the one before.
-fn inner<S: Scalar, const N: usize>(y: &[S; N], a: &[f64; N]) -> S {
-    let mut sums = [S::zero(); 4];
-    let (y4, y) = y.as_chunks::<4>();
-    let (a4, a) = a.as_chunks::<4>();
-    for (y, a) in y4.iter().zip(a4) {
-        for k in 0..4 {
-            sums[k] += y[k] * a[k];
-        }
-    }
-    let rest = y.iter().zip(a).fold(S::zero(), |sum, (&y, &a)| sum + y * a);
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 /// A symmetric matrix.

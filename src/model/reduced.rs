@@ -54,6 +54,19 @@ pub(crate) struct NodalBasis {
 }
 
 impl NodalBasis {
+    /// An unknown at the coordinates q.
+    pub(crate) fn unknown<S: Scalar>(&self, unknown: usize, q: &[S]) -> S {
+        let all = self.vectors.iter().zip(q);
+        all.fold(S::zero(), |sum, (vector, &q)| sum + q * vector[unknown])
+    }
+
+    /// Transpose of [`NodalBasis::unknown`], added to the cotangent of the coordinates.
+    pub(crate) fn add_unknown<S: Scalar>(&self, unknown: usize, by: S, out: &mut [S]) {
+        for (out, vector) in out.iter_mut().zip(&self.vectors) {
+            *out += by * vector[unknown];
+        }
+    }
+
     /// Adds Vᵀ x.
     pub(crate) fn add_transposed(&self, x: &[f64], out: &mut [f64]) {
         for (vector, out) in self.vectors.iter().zip(out) {

@@ -38,6 +38,13 @@ fn kind<S: Scalar>(
             .index(name)
             .expect("a load acts on a body, not on ground")
     };
+    let distributed = |name: &str, spread: Spread<S>, magnitude: Written| {
+        LoadKind::Distributed(DistributedLoad {
+            body: body(name),
+            spread,
+            magnitude: course(assembly, magnitude),
+        })
+    };
     match written {
         WrittenLoad::Force(force) => {
             let pose = assembly.pose(&force.body);
@@ -109,46 +116,30 @@ fn kind<S: Scalar>(
                 width: get(&friction.width),
             }
         }
-        WrittenLoad::Pressure(load) => LoadKind::Distributed(DistributedLoad {
-            body: body(&load.body),
-            spread: Spread::Pressure {
-                shells: elements(document, &load.body).sets.face_sets[&load.faces]
-                    .as_slice()
-                    .into(),
-            },
-            magnitude: course(assembly, load.pressure.parts()),
-        }),
-        WrittenLoad::Area(load) => LoadKind::Distributed(DistributedLoad {
-            body: body(&load.body),
-            spread: dead(
-                assembly,
-                area_shares(&elements(document, &load.body), &load.faces),
-                (&load.direction, load.axes),
-            ),
-            magnitude: course(assembly, load.magnitude.parts()),
-        }),
+        WrittenLoad::Pressure(load) => {
+            let own = elements(document, &load.body);
+            let shells = own.sets.face_sets[&load.faces].as_slice().into();
+            let spread = Spread::Pressure { shells };
+            distributed(&load.body, spread, load.pressure.parts())
+        }
+        WrittenLoad::Area(load) => {
+            let shares = area_shares(&elements(document, &load.body), &load.faces);
+            let spread = dead(assembly, shares, (&load.direction, load.axes));
+            distributed(&load.body, spread, load.magnitude.parts())
+        }
         WrittenLoad::Edge(load) => {
             let own = elements(document, &load.body);
             let shares = edge_shares(&own.mesh.nodes, &own.sets.edge_sets[&load.edges]);
-            LoadKind::Distributed(DistributedLoad {
-                body: body(&load.body),
-                spread: dead(assembly, shares, (&load.direction, load.axes)),
-                magnitude: course(assembly, load.magnitude.parts()),
-            })
+            let spread = dead(assembly, shares, (&load.direction, load.axes));
+            distributed(&load.body, spread, load.magnitude.parts())
         }
         WrittenLoad::Line(load) => {
             let own = elements(document, &load.body);
             let beams = own.sets.beam_sets[&load.beams].iter();
             let beams: Vec<[usize; 3]> = beams.map(|&beam| own.sets.beams[beam]).collect();
-            LoadKind::Distributed(DistributedLoad {
-                body: body(&load.body),
-                spread: dead(
-                    assembly,
-                    edge_shares(&own.mesh.nodes, &beams),
-                    (&load.direction, load.axes),
-                ),
-                magnitude: course(assembly, load.magnitude.parts()),
-            })
+            let shares = edge_shares(&own.mesh.nodes, &beams);
+            let spread = dead(assembly, shares, (&load.direction, load.axes));
+            distributed(&load.body, spread, load.magnitude.parts())
         }
     }
 }
@@ -172,6 +163,7 @@ fn area_shares(own: &Prepared, faces: &str) -> BTreeMap<usize, f64> {
     shares
 }
 
+/// A load in a fixed direction.
 fn dead<S: Scalar>(
     assembly: &Assembly<S>,
     shares: BTreeMap<usize, f64>,

@@ -369,6 +369,36 @@ pub(crate) fn mass_product<S: Scalar>(
     }
 }
 
+/// Pulls ψᵀ times the force balances of all bodies at the accelerations `a` back to the parameters, and to the
+/// velocities if wanted.
+pub(crate) fn pull_force_balances(
+    (model, numbering): (&Model<f64>, &Numbering),
+    (motions, a): (&[BodyMotion<f64>], &[f64]),
+    psi: &[f64],
+    mut v: Option<&mut [f64]>,
+    cot: &mut Model<f64>,
+) {
+    for (i, body) in model.bodies.iter().enumerate() {
+        let o = numbering.velocity(i);
+        let (a, alpha) = velocities_of(&a[o..]);
+        let (psi_r, psi_theta) = velocities_of(&psi[o..]);
+        let by_omega = pull_force_balance(
+            body,
+            &model.gravity,
+            &motions[i].omega,
+            (&a, &alpha),
+            (&psi_r, &psi_theta),
+            &mut cot.bodies[i],
+            &mut cot.gravity,
+        );
+        if let Some(v) = v.as_deref_mut() {
+            for k in 0..3 {
+                v[o + 3 + k] += by_omega[k];
+            }
+        }
+    }
+}
+
 /// Inertial minus applied forces of all bodies; `out` has length n_v.
 pub(crate) fn all_force_balances<S: Scalar>(
     model: &Model<S>,

@@ -1,18 +1,9 @@
 //! Scenes with beams from files: torques at their points, starts of joints, pictures.
 
+use crate::tests::reference::documents::{problem as parsed, run};
 use flexbody::driver::figures::of_simulation;
-use flexbody::driver::{Simulation, check, simulate};
-use flexbody::problem::Problem;
+use flexbody::driver::{check, simulate};
 use serde_json::Value;
-
-fn parsed(document: &Value) -> Problem {
-    Problem::parse(&document.to_string(), "beams", &[]).unwrap_or_else(|faults| panic!("{faults}"))
-}
-
-fn run(document: &Value) -> Simulation {
-    let problem = parsed(document);
-    simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"))
-}
 
 /// A torque at the end of a cantilever turns it there by T L / EI and moves it by T L² / 2 EI; one at a
 /// part a of the length by T a L / EI and T a L² (1 − a / 2) / EI. So in each plane, turned by any angle.

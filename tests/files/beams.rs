@@ -2,8 +2,9 @@
 //! with an elastic rod (Simeon 1996; crank.f of the IVP test set); beams that are nearly rigid; derivatives in
 //! every parameter; what files may not say.
 
+use crate::tests::reference::documents::{problem as parsed, run, value};
 use crate::tests::reference::gradients::gradients_are_exact;
-use flexbody::driver::{Simulation, simulate};
+use flexbody::driver::simulate;
 use flexbody::problem::Problem;
 use serde_json::Value;
 use std::path::Path;
@@ -12,25 +13,6 @@ fn document(name: &str) -> Value {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/flexible/{name}.json"));
     let text = std::fs::read_to_string(path).expect("a problem");
     serde_json::from_str(&text).expect("valid JSON")
-}
-
-fn parsed(document: &Value) -> Problem {
-    Problem::parse(&document.to_string(), "beams", &[]).unwrap_or_else(|faults| panic!("{faults}"))
-}
-
-fn run(document: &Value) -> Simulation {
-    let problem = parsed(document);
-    simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"))
-}
-
-fn value(document: &Value, function: &str) -> f64 {
-    let motion = run(document);
-    let names = parsed(document).function_names;
-    let index = names
-        .iter()
-        .position(|name| name == function)
-        .expect("a function");
-    motion.at.function(index).value
 }
 
 /// Tip displacement in the turning axes: an independent Reissner beam of finite elements, converged to 3e-5 m.

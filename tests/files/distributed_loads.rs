@@ -1,24 +1,15 @@
 //! Pressures and dead loads on bodies of elements, from files: against statics, in other axes and units, gradients, and
 //! what files may not say.
 
-use super::finite_elements::{parsed, plates};
+use super::finite_elements::plates;
+use crate::tests::reference::documents::{problem as parsed, values};
 use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
 use crate::tests::reference::models::Numbers;
-use flexbody::driver::simulate;
 use flexbody::library::Analysis;
 use flexbody::math::rotation::matrix;
 use flexbody::math::{Mat3, Vec3};
 use flexbody::problem::Problem;
 use serde_json::Value;
-
-/// The values of all functions at the start.
-fn values(document: &Value) -> Vec<f64> {
-    let problem = parsed(document);
-    let motion = simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
-    (0..problem.function_names.len())
-        .map(|f| motion.at.function(f).value)
-        .collect()
-}
 
 const LOADS: [&str; 3] = ["pressure", "edge", "area"];
 

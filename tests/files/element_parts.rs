@@ -1,6 +1,7 @@
 //! Beams, lumped masses and damping of bodies of elements, from files.
 
-use super::finite_elements::{parsed, plates};
+use super::finite_elements::plates;
+use crate::tests::reference::documents::problem as parsed;
 use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
 use flexbody::driver::simulate;
 use flexbody::problem::Problem;

@@ -1,6 +1,7 @@
 //! Steps by tolerance of bodies of elements: the error follows the tolerance, and the mesh does not set the steps.
 
-use super::finite_elements::{parsed, plates};
+use super::finite_elements::plates;
+use crate::tests::reference::documents::problem as parsed;
 use flexbody::driver::simulate;
 
 /// Place of the tip \[m\] and number of steps of the double plate of 5 mm by Radau IIA with a tolerance.

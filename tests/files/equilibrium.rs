@@ -3,24 +3,15 @@
 
 use super::finite_elements::plates;
 use super::modal::modal;
+use crate::tests::reference::documents::{problem as parsed, run};
 use crate::tests::reference::gradients::{
     gradients_are_exact, scaled_gradients_are_exact, thick_and_soft,
 };
-use flexbody::driver::{Simulation, simulate};
 use flexbody::problem::Problem;
 use flexbody::system::Numbering;
 use flexbody::system::initial;
 use flexbody::system::kkt::SaddlePoint;
 use serde_json::Value;
-
-fn parsed(document: &Value) -> Problem {
-    Problem::parse(&document.to_string(), "rest", &[]).unwrap_or_else(|faults| panic!("{faults}"))
-}
-
-fn run(document: &Value) -> Simulation {
-    let problem = parsed(document);
-    simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"))
-}
 
 const LENGTH: f64 = 1.5;
 const YOUNG: f64 = 7e9;

@@ -1,6 +1,7 @@
 //! Shells that move, from files: two hinged plates against an independent code of geometrically exact shells;
 //! derivatives of all functions by the complex step; what files may not say.
 
+use crate::tests::reference::documents::problem as parsed;
 use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
 use flexbody::driver::simulate;
 use flexbody::problem::Problem;
@@ -22,10 +23,6 @@ pub(super) fn plates(elements: [usize; 2], duration: f64, steps: usize, method: 
     }
     document["simulation"] = json!({"duration": duration, "steps": steps, "method": method});
     document
-}
-
-pub(super) fn parsed(document: &Value) -> Problem {
-    Problem::parse(&document.to_string(), "plates", &[]).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
 /// Positions after 0.1 s. The plates hardly bend, so a coarse mesh suffices.

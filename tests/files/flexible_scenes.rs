@@ -1,7 +1,7 @@
 //! Scenes of flexible bodies with published results: a four-bar mechanism with a misaligned joint, and the spin-up
 //! of a strip of shells.
 
-use super::finite_elements::parsed;
+use crate::tests::reference::documents::problem as parsed;
 use flexbody::driver::{Simulation, check, simulate};
 use flexbody::problem::Problem;
 use serde_json::Value;

@@ -1,8 +1,8 @@
 //! Bodies from files of other codes: the beam of tests/data/modal (20 cubic elements, written by another program)
 //! against the beam of the problem format, similar bodies, free motions, derivatives, and faults of files.
 
+use crate::tests::reference::documents::{problem as parsed, values};
 use crate::tests::reference::gradients::gradients_are_exact;
-use flexbody::driver::{Simulation, simulate};
 use flexbody::problem::Problem;
 use serde_json::Value;
 use std::path::Path;
@@ -15,21 +15,6 @@ const SECTION: (f64, f64, f64) = (0.03, 0.02, 807.692_307_692_307_7);
 pub(super) fn data(file: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/modal");
     path.join(file).display().to_string()
-}
-
-pub(super) fn parsed(document: &Value) -> Problem {
-    Problem::parse(&document.to_string(), "modal", &[]).unwrap_or_else(|faults| panic!("{faults}"))
-}
-
-pub(super) fn run(document: &Value) -> Simulation {
-    let problem = parsed(document);
-    simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"))
-}
-
-pub(super) fn values(document: &Value) -> Vec<f64> {
-    let motion = run(document);
-    let count = parsed(document).function_names.len();
-    (0..count).map(|k| motion.at.function(k).value).collect()
 }
 
 fn matrices() -> Value {

@@ -1,6 +1,7 @@
 //! Bodies from files in scenes: starts of joints, torques, fast rotation, and files of few digits.
 
-use super::modal::{YOUNG, beam, modal, parsed, pendulum, run, values};
+use super::modal::{YOUNG, beam, modal, pendulum};
+use crate::tests::reference::documents::{problem as parsed, run, values};
 use flexbody::problem::Problem;
 use serde_json::Value;
 

@@ -1,5 +1,6 @@
 //! Shells in reduced bases, from files: against all nodes, with exact derivatives; what files may not say.
 
+use crate::tests::reference::documents::{problem as parsed, values};
 use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
 use flexbody::driver::{bases, explain, simulate};
 use flexbody::problem::{Override, Problem};
@@ -23,19 +24,6 @@ fn plates(elements: [usize; 2], basis: &Value, duration: f64, steps: usize) -> V
     let method = json!({"bdf": {"order": 2}});
     document["simulation"] = json!({"duration": duration, "steps": steps, "method": method});
     document
-}
-
-fn parsed(document: &Value) -> Problem {
-    Problem::parse(&document.to_string(), "plates", &[]).unwrap_or_else(|faults| panic!("{faults}"))
-}
-
-/// Values of all functions.
-fn values(document: &Value) -> Vec<f64> {
-    let problem = parsed(document);
-    let motion = simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
-    (0..problem.function_names.len())
-        .map(|f| motion.at.function(f).value)
-        .collect()
 }
 
 fn interfaces(first: &str) -> Value {

@@ -1,8 +1,8 @@
 //! Torsion springs in hinges along the edges of shells: energy, the limit of rigid plates, derivatives.
 
-use super::finite_elements::{parsed, plates};
+use super::finite_elements::plates;
+use crate::tests::reference::documents::{problem as parsed, value};
 use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
-use flexbody::driver::simulate;
 use serde_json::Value;
 
 /// Two plates with torsion springs in both hinges.
@@ -20,13 +20,6 @@ fn sprung(
     document["functions"]["torque"] = json!({"final": {"spring_torque": {"load": "knee"}}});
     document["functions"]["energy"] = json!({"final": {"energy": "total"}});
     document
-}
-
-fn value(document: &Value, name: &str) -> f64 {
-    let problem = parsed(document);
-    let motion = simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
-    let index = problem.function_names.iter().position(|own| own == name);
-    motion.at.function(index.expect("a function")).value
 }
 
 /// Energy is kept, that of the springs included, but for vibrations that the steps do not resolve and damp; dampers

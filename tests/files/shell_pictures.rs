@@ -1,7 +1,8 @@
 //! What is drawn and written of shells that move: colours and histories of stress, displacements of points, files for
 //! ParaView; and the mass of a scene as a function.
 
-use super::finite_elements::{parsed, plates};
+use super::finite_elements::plates;
+use crate::tests::reference::documents::problem as parsed;
 use flexbody::driver::elastic_figures::{deflections, limits, stresses};
 use flexbody::driver::figures::of_simulation;
 use flexbody::driver::{check, shell_fields, simulate};

@@ -1,7 +1,7 @@
 //! Problem files as JSON values, for tests of families of scenes.
 
 use flexbody::driver::known_evaluations::KnownEvaluations;
-use flexbody::driver::{Optimisation, optimise};
+use flexbody::driver::{Optimisation, Simulation, optimise, simulate};
 use flexbody::problem::Problem;
 use serde_json::{Map, Value};
 use std::ops::ControlFlow;
@@ -67,6 +67,26 @@ pub fn children(value: &Value) -> Vec<(String, &Value)> {
 /// The problem in a file without faults.
 pub fn problem(file: &Value) -> Problem {
     Problem::parse(&file.to_string(), "scene.json", &[]).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// The motion at the start of a file.
+pub fn run(file: &Value) -> Simulation {
+    let problem = problem(file);
+    simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"))
+}
+
+/// The values of all functions there.
+pub fn values(file: &Value) -> Vec<f64> {
+    let motion = run(file);
+    let count = problem(file).function_names.len();
+    (0..count).map(|f| motion.at.function(f).value).collect()
+}
+
+/// The value of a function there.
+pub fn value(file: &Value, function: &str) -> f64 {
+    let names = problem(file).function_names;
+    let index = names.iter().position(|name| name == function);
+    run(file).at.function(index.expect("a function")).value
 }
 
 /// Optimises a problem from its start.

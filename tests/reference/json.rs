@@ -83,19 +83,11 @@ macro_rules! write_json {
     };
 }
 
-/// The values of an array, with commas between them.
+/// The values of an array, with commas between them: JSON is one token, an expression may be several.
 macro_rules! write_items {
     ($writer:ident) => {};
-    ($writer:ident null $(, $($rest:tt)*)?) => {
-        write_json!($writer null);
-        $(write_items!($writer $($rest)*);)?
-    };
-    ($writer:ident [ $($tokens:tt)* ] $(, $($rest:tt)*)?) => {
-        write_json!($writer [ $($tokens)* ]);
-        $(write_items!($writer $($rest)*);)?
-    };
-    ($writer:ident { $($tokens:tt)* } $(, $($rest:tt)*)?) => {
-        write_json!($writer { $($tokens)* });
+    ($writer:ident $value:tt $(, $($rest:tt)*)?) => {
+        write_json!($writer $value);
         $(write_items!($writer $($rest)*);)?
     };
     ($writer:ident $value:expr $(, $($rest:tt)*)?) => {
@@ -107,19 +99,9 @@ macro_rules! write_items {
 /// The entries `key: value` of an object, with commas between them.
 macro_rules! write_entries {
     ($writer:ident) => {};
-    ($writer:ident $key:tt : null $(, $($rest:tt)*)?) => {
+    ($writer:ident $key:tt : $value:tt $(, $($rest:tt)*)?) => {
         $writer.key(&$key);
-        write_json!($writer null);
-        $(write_entries!($writer $($rest)*);)?
-    };
-    ($writer:ident $key:tt : [ $($tokens:tt)* ] $(, $($rest:tt)*)?) => {
-        $writer.key(&$key);
-        write_json!($writer [ $($tokens)* ]);
-        $(write_entries!($writer $($rest)*);)?
-    };
-    ($writer:ident $key:tt : { $($tokens:tt)* } $(, $($rest:tt)*)?) => {
-        $writer.key(&$key);
-        write_json!($writer { $($tokens)* });
+        write_json!($writer $value);
         $(write_entries!($writer $($rest)*);)?
     };
     ($writer:ident $key:tt : $value:expr $(, $($rest:tt)*)?) => {

@@ -266,9 +266,8 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             counts.solves += 1;
             let mut update = std::mem::take(&mut self.residual);
             let factors = &mut self.factors;
-            self.turned.back(&mut update);
-            self.equations.through(&mut update, |x| factors.solve(x));
-            self.turned.forth(&mut update);
+            let turned = &self.turned;
+            turned.through(&self.equations, &mut update, |x| factors.solve(x));
             if let Some(broyden) = &mut self.broyden {
                 broyden.correct(std::slice::from_mut(&mut update));
             }

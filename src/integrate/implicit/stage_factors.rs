@@ -189,9 +189,8 @@ impl<'a> StageFactors<'a> {
                     }
                 }
                 let rhs = &mut self.real_rhs;
-                self.turned.back(rhs);
-                self.equations.through(rhs, |x| factors.solve(x));
-                self.turned.forth(rhs);
+                self.turned
+                    .through(&self.equations, rhs, |x| factors.solve(x));
                 for (update, r) in updates.iter_mut().zip(&mode.right) {
                     for (out, &x) in update.iter_mut().zip(&self.real_rhs) {
                         *out -= whole(r.re * x);
@@ -205,9 +204,8 @@ impl<'a> StageFactors<'a> {
                     }
                 }
                 let (rhs, factors) = (&mut self.complex_rhs, &mut self.complex_mode.1);
-                self.turned.back(rhs);
-                self.equations.through(rhs, |x| factors.solve(x));
-                self.turned.forth(rhs);
+                self.turned
+                    .through(&self.equations, rhs, |x| factors.solve(x));
                 for (update, r) in updates.iter_mut().zip(&mode.right) {
                     for (out, x) in update.iter_mut().zip(&self.complex_rhs) {
                         *out -= whole(2.0 * (r * x).re);
@@ -220,9 +218,8 @@ impl<'a> StageFactors<'a> {
     /// Solves with the real matrix, in place.
     pub(super) fn filter(&mut self, rhs: &mut [f64]) {
         if let Some((_, factors)) = &mut self.real_mode {
-            self.turned.back(rhs);
-            self.equations.through(rhs, |x| factors.solve(x));
-            self.turned.forth(rhs);
+            self.turned
+                .through(&self.equations, rhs, |x| factors.solve(x));
         }
     }
 

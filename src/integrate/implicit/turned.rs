@@ -6,6 +6,7 @@
 //! the axes of bodies. So T K⁻¹ Tᵀ, each body with its own turn Q = R' Rᵀ, serves longer than K⁻¹
 //! where flexible bodies turn.
 
+use super::ggl::Equations;
 use crate::math::{Mat3, Scalar, Vec3, rotation};
 use crate::model::{ConstraintRow, Model};
 use crate::system::bodies::positions_of;
@@ -81,6 +82,18 @@ impl Turned {
             let (at, turn) = (2 * nv + row, turn(body));
             self.turns.extend([(at, turn), (nc + at, turn)]);
         }
+    }
+
+    /// T K⁻¹ Tᵀ x in place; `solve` applies K⁻¹ to the reduced form of a residual.
+    pub(crate) fn through<S: Scalar, T: Scalar>(
+        &self,
+        equations: &Equations<S>,
+        x: &mut [T],
+        solve: impl FnOnce(&mut [T]),
+    ) {
+        self.back(x);
+        equations.through(x, solve);
+        self.forth(x);
     }
 
     /// Turns a residual back, Tᵀ x.

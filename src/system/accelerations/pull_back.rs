@@ -2,7 +2,7 @@
 
 use super::Accelerations;
 use crate::model::Model;
-use crate::system::bodies::{self, velocities_of};
+use crate::system::bodies;
 use crate::system::flexible::{self, StateCotangent};
 use crate::system::in_motion::InMotion;
 use crate::system::joints::{self, JointCotangent, RowCotangents};
@@ -48,29 +48,13 @@ impl Accelerations<'_, f64> {
         };
         loads::pull_back(&self.here(), &psi[..nv], &mut out);
         psi.iter_mut().for_each(|x| *x = -*x);
-        for (i, body) in model.bodies.iter().enumerate() {
-            let o = numbering.velocity(i);
-            let (linear, alpha) = velocities_of(&a[o..]);
-            let (psi_r, psi_theta) = velocities_of(&psi[o..]);
-            let by_omega = bodies::pull_force_balance(
-                body,
-                &model.gravity,
-                &self.motions[i].omega,
-                (&linear, &alpha),
-                (&psi_r, &psi_theta),
-                &mut cot.bodies[i],
-                &mut cot.gravity,
-            );
-            for k in 0..3 {
-                v[o + 3 + k] += by_omega[k];
-            }
-        }
+        let (of, here) = ((model, numbering), (&self.motions[..], a));
+        bodies::pull_force_balances(of, here, &psi[..nv], Some(&mut *v), cot);
         let mut bars = StateCotangent {
             y: Some(&mut *y),
             v: Some(&mut *v),
         };
-        let here = (&self.motions[..], a);
-        flexible::pull_force_balances((model, numbering), here, &psi[..nv], &mut bars, cot);
+        flexible::pull_force_balances(of, here, &psi[..nv], &mut bars, cot);
         // χᵀ (G a + bias) and λᵀ G ψ in one pass.
         let cotangents = RowCotangents {
             acceleration: Some(&psi[nv..]),

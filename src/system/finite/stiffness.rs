@@ -4,9 +4,11 @@ use super::each::each;
 use super::element::{Local, gather, scatter};
 use super::parts;
 use crate::math::Scalar;
+use crate::math::slices::{add_scaled, dot, dot_by_four};
 use crate::model::finite::{
     DISPLACEMENTS, FiniteElements, QUADRATIC, SLOPES, STRAINS, ShellElement, UNKNOWNS, other_slope,
 };
+use std::ops::Mul;
 
 /// Derivatives of the strains by the displacements, by columns.
 pub(super) type Gradients<S> = [[S; STRAINS]; DISPLACEMENTS];
@@ -88,13 +90,22 @@ pub(super) fn add_curved<S: Scalar>(
     slopes: &[S; SLOPES],
     out: &mut Local<S>,
 ) {
+    element.slopes.add_transposed(&by_slopes(n, slopes), out);
+}
+
+/// Derivatives of Σ n_p r_p s_p / 2 by the slopes r_p and s_p.
+fn by_slopes<S, T>(n: &[S; STRAINS], slopes: &[T; SLOPES]) -> [S; SLOPES]
+where
+    S: Scalar + Mul<T, Output = S>,
+    T: Copy,
+{
     let mut by = [S::zero(); SLOPES];
     for (p, &n) in n.iter().enumerate().take(QUADRATIC) {
         let (q, half) = (other_slope(p), n * 0.5);
         by[p] += half * slopes[q];
         by[q] += half * slopes[p];
     }
-    element.slopes.add_transposed(&by, out);
+    by
 }
 
 /// P e.
@@ -119,10 +130,6 @@ pub(super) fn add_linear<S: Scalar>(
     let [bending, shear] = &element.linear;
     bending.add_product(thick, x, out);
     shear.add_product(thin, x, out);
-}
-
-pub(super) fn inner<S: Scalar>(x: &[S], y: &[S]) -> S {
-    crate::math::slices::dot(x, y)
 }
 
 /// E h and E h³ of an element.
@@ -158,7 +165,7 @@ fn energies<S: Scalar>(element: &ShellElement, x: &Local<S>) -> [S; 2] {
     let e = Strained::of(element, x).strain;
     let [bending, shear] = element.linear.each_ref().map(|own| own.inner(x, x));
     [
-        (inner(&stresses(element, &e), &e) + shear) * 0.5,
+        (dot(&stresses(element, &e), &e) + shear) * 0.5,
         bending * 0.5,
     ]
 }
@@ -194,7 +201,7 @@ pub(crate) fn pull_energy(
 ) {
     let mut force = vec![0.0; q.len()];
     add_forces(finite, q, &mut force);
-    crate::math::slices::add_scaled(by_q, scale, &force);
+    add_scaled(by_q, scale, &force);
     for (i, element) in finite.mesh.elements.iter().enumerate() {
         let by = energies(element, &gather(element, q)).map(|u| u * scale);
         pull_factors(finite, i, by, cot);
@@ -225,7 +232,7 @@ pub(crate) fn pull_forces(
             add_curved(element, &curved, &element.slopes.times(&y), &mut force);
             add_linear(element, both, &y, &mut force);
         }
-        ([inner(&along, &stress) + shear, bending], force)
+        ([dot(&along, &stress) + shear, bending], force)
     };
     each(elements.len(), work, |i, (by, force)| {
         pull_factors(finite, i, by, cot);
@@ -252,26 +259,13 @@ pub(super) fn add_products<S: Scalar>(
     for (k, left) in left.iter().enumerate() {
         let end = if symmetric { k + 1 } else { DISPLACEMENTS };
         for (l, right) in right.iter().enumerate().take(end) {
-            let x = inner4(left, right);
+            let x = dot_by_four(left, right);
             out[k * n + l] += x;
             if symmetric && l < k {
                 out[l * n + k] += x;
             }
         }
     }
-}
-
-/// The inner product by four sums, because an addition waits for the one before.
-fn inner4<S: Scalar>(x: &[S; STRAINS], y: &[S; STRAINS]) -> S {
-    let mut sums = [S::zero(); 4];
-    let (x4, x) = x.as_chunks::<4>();
-    let (y4, y) = y.as_chunks::<4>();
-    for (x, y) in x4.iter().zip(y4) {
-        for k in 0..4 {
-            sums[k] += x[k] * y[k];
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + inner(x, y)
 }
 
 /// Adds ½ Σ n_p (r_p s_pᵀ + s_p r_pᵀ) to the displacements' part of a matrix of order n.
@@ -282,12 +276,7 @@ pub(super) fn add_curvature<S: Scalar>(
     out: &mut [S],
 ) {
     for (k, own) in element.slopes.iter() {
-        let mut by = [S::zero(); SLOPES];
-        for (p, &force) in n_p.iter().enumerate().take(QUADRATIC) {
-            let (q, half) = (other_slope(p), force * 0.5);
-            by[p] += half * own[q];
-            by[q] += half * own[p];
-        }
+        let by = by_slopes(n_p, own);
         for (l, other) in element.slopes.iter() {
             let sum = by.iter().zip(other);
             out[k * n + l] += sum.fold(S::zero(), |sum, (&by, &a)| sum + by * a);

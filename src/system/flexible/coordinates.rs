@@ -105,25 +105,28 @@ pub(crate) fn add_coordinates<S: Scalar>(
     }
 }
 
-/// These unknowns of the nodes of a body of elements at the coordinates `q`, by all nodes or through the basis; all
-/// coordinates if none are named.
-pub(crate) fn unknowns_of<S: Scalar>(
-    body: &FlexibleBody<S>,
-    q: &[S],
-    unknowns: Option<&[usize]>,
-) -> Vec<S> {
-    let Some(unknowns) = unknowns else {
-        return q.to_vec();
-    };
-    let of = |&unknown: &usize| match basis_of(body) {
+/// An unknown of the nodes of a body of elements at the coordinates `q`, through the basis if there is one.
+pub(crate) fn unknown_of<S: Scalar>(basis: Option<&NodalBasis>, unknown: usize, q: &[S]) -> S {
+    match basis {
         None => q[unknown],
-        Some(basis) => (basis.vectors.iter().zip(q))
-            .fold(S::zero(), |sum, (vector, &q)| sum + q * vector[unknown]),
-    };
-    unknowns.iter().map(of).collect()
+        Some(basis) => basis.unknown(unknown, q),
+    }
 }
 
-/// Adds the transpose of [`unknowns_of`] to a vector in velocity numbering.
+/// Transpose of [`unknown_of`], added to the cotangent of the coordinates.
+pub(crate) fn add_unknown<S: Scalar>(
+    basis: Option<&NodalBasis>,
+    unknown: usize,
+    by: S,
+    out: &mut [S],
+) {
+    match basis {
+        None => out[unknown] += by,
+        Some(basis) => basis.add_unknown(unknown, by, out),
+    }
+}
+
+/// Adds cotangents of these unknowns, or of all coordinates, to a vector in velocity numbering.
 pub(crate) fn add_unknowns(
     numbering: &Numbering,
     (body, unknowns): (&FlexibleBody<f64>, Option<&[usize]>),
@@ -135,14 +138,7 @@ pub(crate) fn add_unknowns(
     };
     let mut elastic = vec![0.0; body.modes()];
     for (&unknown, by) in unknowns.iter().zip(by) {
-        match basis_of(body) {
-            None => elastic[unknown] += by,
-            Some(basis) => {
-                for (out, vector) in elastic.iter_mut().zip(&basis.vectors) {
-                    *out += by * vector[unknown];
-                }
-            }
-        }
+        add_unknown(basis_of(body), unknown, *by, &mut elastic);
     }
     add_coordinates(numbering, body, &elastic, out);
 }

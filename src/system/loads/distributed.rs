@@ -14,7 +14,7 @@ use crate::model::flexible::FlexibleBody;
 use crate::model::reduced::NodalBasis;
 use crate::model::{Axes, LoadKind};
 use crate::structures::shell::basis::{GAUSS_POINTS, TABLES};
-use crate::system::flexible::{add_coordinates, basis_of, coordinates};
+use crate::system::flexible::{add_coordinates, add_unknown, basis_of, coordinates, unknown_of};
 use crate::system::in_motion::InMotion;
 
 /// A load on a flexible body at an instant.
@@ -86,29 +86,19 @@ fn for_each<S: Scalar>(here: &InMotion<S>, mut visit: impl FnMut(usize, &Acting<
 }
 
 impl<S: Scalar> Acting<'_, S> {
-    /// The values of component `k` of a node in all coordinates that move it.
+    /// Component `k` of the displacement of a node.
     fn displacement(&self, node: usize, k: usize) -> S {
         let Some(unknown) = self.finite.mesh.displacements[node][k] else {
             return S::zero();
         };
-        match self.basis {
-            None => self.q[unknown],
-            Some(basis) => (basis.vectors.iter().zip(&self.q))
-                .fold(S::zero(), |sum, (vector, &q)| sum + q * vector[unknown]),
-        }
+        unknown_of(self.basis, unknown, &self.q)
     }
 
     /// Adds a force on a node to those on the coordinates.
     fn add_force(&self, node: usize, force: &Vec3<S>, out: &mut [S]) {
         for (k, unknown) in self.finite.mesh.displacements[node].iter().enumerate() {
-            let Some(unknown) = *unknown else { continue };
-            match self.basis {
-                None => out[unknown] += force[k],
-                Some(basis) => {
-                    for (out, vector) in out.iter_mut().zip(&basis.vectors) {
-                        *out += force[k] * vector[unknown];
-                    }
-                }
+            if let Some(unknown) = *unknown {
+                add_unknown(self.basis, unknown, force[k], out);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{Equations, StepState};
 use crate::model::Model;
-use crate::system::bodies::{self, BodyMotion, velocities_of};
+use crate::system::bodies::{self, BodyMotion};
 use crate::system::flexible::{self, StateCotangent};
 use crate::system::in_motion::InMotion;
 use crate::system::joints::{self, JointCotangent, RowCotangents};
@@ -34,26 +34,13 @@ impl Equations<'_, f64> {
         y.clear();
         y.resize(if wanted { held.len() } else { 0 }, 0.0);
         let (psi1, psi2, psi3, psi4) = (&psi[..f2], &psi[f2..f3], &psi[f3..f4], &psi[f4..]);
-        for (i, body) in model.bodies.iter().enumerate() {
-            let o = numbering.velocity(i);
-            let (psi_r, psi_theta) = velocities_of(&psi2[o..]);
-            let (a, alpha) = velocities_of(&at.vdot[o..]);
-            bodies::pull_force_balance(
-                body,
-                &model.gravity,
-                &self.motions[i].omega,
-                (&a, &alpha),
-                (&psi_r, &psi_theta),
-                &mut cot.bodies[i],
-                &mut cot.gravity,
-            );
-        }
+        let (of, here_at) = ((model, numbering), (&self.motions[..], at.vdot));
+        bodies::pull_force_balances(of, here_at, psi2, None, cot);
         let mut bars = StateCotangent {
             y: wanted.then_some(&mut y[..]),
             v: None,
         };
-        let here_at = (&self.motions[..], at.vdot);
-        flexible::pull_force_balances((model, numbering), here_at, psi2, &mut bars, cot);
+        flexible::pull_force_balances(of, here_at, psi2, &mut bars, cot);
         for (minus, psi) in self.loads.iter_mut().zip(psi2) {
             *minus = -psi;
         }
