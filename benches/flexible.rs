@@ -1,8 +1,8 @@
 //! Time steps of bodies of finite elements: chains of N hinged plates, and two plates of more and more elements.
 //!
-//! `cargo bench --bench flexible` prints the tables; `cargo bench --bench flexible -- chain 4` or
-//! `… -- mesh 32 radau` one line, with the peak resident set of that run alone. Times are wall times, the least of some;
-//! `RAYON_NUM_THREADS` sets the number of threads.
+//! `cargo bench --bench flexible` prints the tables; `cargo bench --bench flexible -- chain 4 bdf 20` or
+//! `… -- mesh 32 radau 100` one line of a run of so many steps, with the peak resident set of that run alone. Times are
+//! wall times, the least of some, with the plans of the matrices; `RAYON_NUM_THREADS` sets the number of threads.
 //!
 //! Plates of 1 m by 0.25 m and 5 mm start flat, turn with 8 rad/s about z and hang on hinges along their
 //! edges, as in `problems/flexible/double_plate.json`. Each has a thickness for each element along it, which a design
@@ -12,11 +12,13 @@ use flexbody::{Analysis, Problem, SimulationError};
 use serde_json::{Map, Value, json};
 use std::time::Instant;
 
-/// Steps of a run.
-const STEPS: usize = 20;
+/// Steps of a run in the tables.
+const STEPS: usize = 100;
+/// Length of a step [s].
+const STEP: f64 = 1e-3;
 
 /// Plates with so many elements along and across.
-fn problem(plates: usize, elements: [usize; 2], method: &Value) -> Problem {
+fn problem(plates: usize, elements: [usize; 2], method: &Value, steps: usize) -> Problem {
     let (mut bodies, mut joints, mut variables) = (Map::new(), Map::new(), Map::new());
     for i in 0..plates {
         let name = format!("plate {i}");
@@ -68,7 +70,7 @@ fn problem(plates: usize, elements: [usize; 2], method: &Value) -> Problem {
     let file = json!({
         "version": 1, "name": "plates", "bodies": bodies, "joints": joints,
         "materials": {"aluminium": {"young": 70e9, "poisson": 0.3, "density": 2700, "yield_stress": 2e8}},
-        "simulation": {"duration": 1e-3 * STEPS as f64, "steps": STEPS, "method": method},
+        "simulation": {"duration": STEP * steps as f64, "steps": steps, "method": method},
         "functions": {"x": position(0), "y": position(1)},
         "variables": variables
     });
@@ -97,12 +99,17 @@ fn peak_memory() -> f64 {
 }
 
 /// Prints a line of the table.
-fn line(plates: usize, elements: [usize; 2], method: &str) -> Result<(), SimulationError> {
+fn line(
+    plates: usize,
+    elements: [usize; 2],
+    method: &str,
+    steps: usize,
+) -> Result<(), SimulationError> {
     let choice = match method {
         "radau" => json!({"radau": {"stages": 3}}),
         _ => json!({"bdf": {"order": 2}}),
     };
-    let problem = problem(plates, elements, &choice);
+    let problem = problem(plates, elements, &choice, steps);
     let x = problem.start();
     let repeats = if plates * elements[0] * elements[1] > 500 {
         1
@@ -115,13 +122,13 @@ fn line(plates: usize, elements: [usize; 2], method: &str) -> Result<(), Simulat
     let [one, two] =
         [&[0][..], &[0, 1]].map(|which| fastest(repeats, || at.gradients(which)).0 / seconds);
     let nodes = (2 * elements[0] + 1) * (2 * elements[1] + 1);
-    let each = |count: usize| count as f64 / STEPS as f64;
+    let each = |count: usize| count as f64 / steps as f64;
     println!(
         "{plates:6} {:5} x {:2} {:8} {method:6} {:9.2} {:12.2} {:10.2} {:13.2} {:16.3} {:8.0}",
         elements[0],
         elements[1],
         plates * (5 * nodes - 6),
-        1e3 * seconds / STEPS as f64,
+        1e3 * seconds / steps as f64,
         each(work.factorisations),
         each(work.newton_iterations),
         one,
@@ -141,20 +148,20 @@ fn main() -> Result<(), SimulationError> {
         .collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let count = |text: &str| text.parse().expect("a count");
-    match arguments[..] {
-        ["chain", plates] => return line(count(plates), [8, 2], "bdf"),
-        ["chain", plates, method] => return line(count(plates), [8, 2], method),
-        ["mesh", along] => return line(2, [count(along), count(along) / 4], "bdf"),
-        ["mesh", along, method] => return line(2, [count(along), count(along) / 4], method),
-        _ => {}
+    if let [kind, size, method, steps] = arguments[..] {
+        let (size, steps) = (count(size), count(steps));
+        return match kind {
+            "chain" => line(size, [8, 2], method, steps),
+            _ => line(2, [size, size / 4], method, steps),
+        };
     }
     for method in ["bdf", "radau"] {
         for plates in [1, 2, 4, 8, 16] {
-            line(plates, [8, 2], method)?;
+            line(plates, [8, 2], method, STEPS)?;
         }
     }
     for along in [8, 16, 32, 64, 96] {
-        line(2, [along, along / 4], "bdf")?;
+        line(2, [along, along / 4], "bdf", STEPS)?;
     }
     Ok(())
 }

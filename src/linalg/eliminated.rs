@@ -1,12 +1,14 @@
 //! Factors of a front of a multifrontal elimination. Its pivots are eliminated by panels with a search among
 //! their own rows (Golub & Van Loan 2013, section 3.4).
 
-use super::front::{Child, Front, System};
+use super::front::{Child, Front, Run, System};
 use super::scaling::size;
 use super::sparse_lu::SolveScalar;
+use crate::math::slices::vectorised;
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
+use std::ops::Range;
 
 /// Columns of a front that are eliminated together.
 const PANEL: usize = 16;
@@ -40,7 +42,18 @@ pub(super) fn usable<S: SolveScalar>(pivot: S) -> bool {
     size > 0.0 && size.is_finite()
 }
 
+/// Adds runs of numbers to their places.
+fn add_runs<S: SolveScalar>(out: &mut [S], own: &[S], runs: &[Run]) {
+    for run in runs {
+        let (from, to, length) = (run.from as usize, run.to as usize, run.length as usize);
+        let out = &mut out[to..to + length];
+        let own = &own[from..from + length];
+        out.iter_mut().zip(own).for_each(|(x, &own)| *x += own);
+    }
+}
+
 /// Subtracts l x from y.
+#[inline(always)]
 fn subtract<S: SolveScalar>(y: &mut [S], l: &[S], x: S) {
     for (y, &l) in y.iter_mut().zip(l) {
         *y -= l * x;
@@ -48,6 +61,7 @@ fn subtract<S: SolveScalar>(y: &mut [S], l: &[S], x: S) {
 }
 
 /// Subtracts A x from y, A in columns of the given stride. Four columns at a time read and write y once.
+#[inline(always)]
 fn subtract_columns<S: SolveScalar>(y: &mut [S], (a, stride): (&[S], usize), x: &[S]) {
     let m = y.len();
     let column = |k: usize| &a[k * stride..][..m];
@@ -63,18 +77,20 @@ fn subtract_columns<S: SolveScalar>(y: &mut [S], (a, stride): (&[S], usize), x: 
     }
 }
 
+#[inline(always)]
 fn dot<S: SolveScalar>(x: &[S], y: &[S]) -> S {
-    // Four sums, because an addition waits for the one before.
-    let (x4, x) = x[..y.len()].as_chunks::<4>();
-    let (y4, y) = y.as_chunks::<4>();
-    let mut sums = [S::zero(); 4];
-    for (x, y) in x4.iter().zip(y4) {
+    // Eight sums, because an addition waits for the one before.
+    let (x8, x) = x[..y.len()].as_chunks::<8>();
+    let (y8, y) = y.as_chunks::<8>();
+    let mut sums = [S::zero(); 8];
+    for (x, y) in x8.iter().zip(y8) {
         for (sum, (&x, &y)) in sums.iter_mut().zip(x.iter().zip(y)) {
             *sum += x * y;
         }
     }
     let rest = x.iter().zip(y).fold(S::zero(), |sum, (&x, &y)| sum + x * y);
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+    let [a, b, c, d, e, f, g, h] = sums;
+    ((a + b) + (c + d)) + ((e + f) + (g + h)) + rest
 }
 
 /// Adds −A B to C, each in columns of the given stride.
@@ -97,25 +113,18 @@ impl<S: SolveScalar> Eliminated<S> {
     /// Adds the remainder of a child.
     pub(super) fn extend(&mut self, rest: &mut [S], front: &Front, child: &Child, own: &[S]) {
         let (order, p, r) = (front.order(), front.pivots.len(), front.rest.len());
-        let (inside, outside) = child.places.split_at(child.pivots);
-        let mut columns = own.chunks_exact(child.places.len());
-        for (&to, column) in inside.iter().zip(&mut columns) {
-            let own = &mut self.left[to as usize * order..][..order];
-            for (&x, &row) in column.iter().zip(&child.places) {
-                own[row as usize] += x;
-            }
+        let inside: usize = child.inside.iter().map(|run| run.length as usize).sum();
+        let mut columns = own.chunks_exact(child.order);
+        for (to, column) in child.inside.iter().flat_map(Run::targets).zip(&mut columns) {
+            let (above, below) = column.split_at(inside);
+            let (top, bottom) = self.left[to * order..][..order].split_at_mut(p);
+            add_runs(top, above, &child.inside);
+            add_runs(bottom, below, &child.outside);
         }
-        for (&to, column) in outside.iter().zip(&mut columns) {
-            let to = to as usize - p;
-            let (above, below) = column.split_at(child.pivots);
-            let own = &mut self.upper[to * p..][..p];
-            for (&x, &row) in above.iter().zip(inside) {
-                own[row as usize] += x;
-            }
-            let own = &mut rest[to * r..][..r];
-            for (&x, &row) in below.iter().zip(outside) {
-                own[row as usize - p] += x;
-            }
+        for (to, column) in child.outside.iter().flat_map(Run::targets).zip(columns) {
+            let (above, below) = column.split_at(inside);
+            add_runs(&mut self.upper[to * p..][..p], above, &child.inside);
+            add_runs(&mut rest[to * r..][..r], below, &child.outside);
         }
     }
 
@@ -126,40 +135,8 @@ impl<S: SolveScalar> Eliminated<S> {
         let left = &mut self.left;
         for start in (0..p).step_by(PANEL) {
             let end = (start + PANEL).min(p);
-            for k in start..end {
-                let column = &left[k * order..][..p];
-                let (mut best, mut largest) = (k, size(column[k]));
-                for (i, &x) in column.iter().enumerate().skip(k + 1) {
-                    if size(x) > largest {
-                        (best, largest) = (i, size(x));
-                    }
-                }
-                self.exchanges[k] = best as u32;
-                if best != k {
-                    for column in left.chunks_exact_mut(order) {
-                        column.swap(k, best);
-                    }
-                }
-                let pivot = left[k * order + k];
-                if !usable(pivot) {
-                    return Err(k);
-                }
-                let inverse = S::one() / pivot;
-                let (before, after) = left.split_at_mut((k + 1) * order);
-                let own = &mut before[k * order + k + 1..];
-                for x in &mut *own {
-                    *x *= inverse;
-                }
-                for other in after.chunks_exact_mut(order).take(end - k - 1) {
-                    let factor = other[k];
-                    subtract(&mut other[k + 1..], own, factor);
-                }
-            }
-            // The other columns of the pivots.
+            eliminate_panel(left, (order, p), start..end, &mut self.exchanges)?;
             let (before, after) = left.split_at_mut(end * order);
-            for column in after.chunks_exact_mut(order) {
-                lower_solve(&before[start * order..], (order, start, end), column);
-            }
             if end < p {
                 let above: Vec<S> = (after.chunks_exact(order))
                     .flat_map(|column| &column[start..end])
@@ -189,20 +166,27 @@ impl<S: SolveScalar> Eliminated<S> {
 
     /// The forward substitution of a front in the unknowns x; `beside` is workspace.
     pub(super) fn forward(&self, system: System, front: &Front, x: &mut [S], beside: &mut [S]) {
-        match system {
-            System::Plain => self.forward_plain(front, x, beside),
-            System::Transposed => self.forward_transposed(front, x),
-        }
+        vectorised(
+            #[inline(always)]
+            || match system {
+                System::Plain => self.forward_plain(front, x, beside),
+                System::Transposed => self.forward_transposed(front, x),
+            },
+        );
     }
 
     /// The backward substitution of a front.
     pub(super) fn backward(&self, system: System, front: &Front, x: &mut [S], beside: &mut [S]) {
-        match system {
-            System::Plain => self.backward_plain(front, x, beside),
-            System::Transposed => self.backward_transposed(front, x, beside),
-        }
+        vectorised(
+            #[inline(always)]
+            || match system {
+                System::Plain => self.backward_plain(front, x, beside),
+                System::Transposed => self.backward_transposed(front, x, beside),
+            },
+        );
     }
 
+    #[inline(always)]
     fn forward_plain(&self, front: &Front, x: &mut [S], beside: &mut [S]) {
         let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
         for (k, &other) in self.exchanges.iter().enumerate() {
@@ -231,6 +215,7 @@ impl<S: SolveScalar> Eliminated<S> {
         }
     }
 
+    #[inline(always)]
     fn backward_plain(&self, front: &Front, x: &mut [S], beside: &mut [S]) {
         let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
         let beside = &mut beside[..front.rest.len()];
@@ -253,6 +238,7 @@ impl<S: SolveScalar> Eliminated<S> {
         }
     }
 
+    #[inline(always)]
     fn forward_transposed(&self, front: &Front, x: &mut [S]) {
         let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
         let own = &mut x[start..start + p];
@@ -265,6 +251,7 @@ impl<S: SolveScalar> Eliminated<S> {
         }
     }
 
+    #[inline(always)]
     fn backward_transposed(&self, front: &Front, x: &mut [S], beside: &mut [S]) {
         let (order, p, start) = (front.order(), front.pivots.len(), front.pivots.start);
         let beside = &mut beside[..front.rest.len()];
@@ -284,10 +271,60 @@ impl<S: SolveScalar> Eliminated<S> {
 }
 
 /// Solves with the unit lower triangle of the pivots from `start` to `end`, whose columns `own` are.
+#[inline(always)]
 fn lower_solve<S: SolveScalar>(own: &[S], (order, start, end): (usize, usize, usize), x: &mut [S]) {
     for k in start..end {
         let l = &own[(k - start) * order..][k + 1..end];
         let factor = x[k];
         subtract(&mut x[k + 1..end], l, factor);
     }
+}
+
+/// Eliminates some pivots of the first p columns of a front. The error is the missing pivot.
+fn eliminate_panel<S: SolveScalar>(
+    left: &mut [S],
+    (order, p): (usize, usize),
+    Range { start, end }: Range<usize>,
+    exchanges: &mut [u32],
+) -> Result<(), usize> {
+    vectorised(
+        #[inline(always)]
+        || {
+            for k in start..end {
+                let column = &left[k * order..][..p];
+                let (mut best, mut largest) = (k, size(column[k]));
+                for (i, &x) in column.iter().enumerate().skip(k + 1) {
+                    if size(x) > largest {
+                        (best, largest) = (i, size(x));
+                    }
+                }
+                exchanges[k] = best as u32;
+                if best != k {
+                    for column in left.chunks_exact_mut(order) {
+                        column.swap(k, best);
+                    }
+                }
+                let pivot = left[k * order + k];
+                if !usable(pivot) {
+                    return Err(k);
+                }
+                let inverse = S::one() / pivot;
+                let (before, after) = left.split_at_mut((k + 1) * order);
+                let own = &mut before[k * order + k + 1..];
+                for x in &mut *own {
+                    *x *= inverse;
+                }
+                for other in after.chunks_exact_mut(order).take(end - k - 1) {
+                    let factor = other[k];
+                    subtract(&mut other[k + 1..], own, factor);
+                }
+            }
+            // The other columns of the pivots.
+            let (before, after) = left.split_at_mut(end * order);
+            for column in after.chunks_exact_mut(order) {
+                lower_solve(&before[start * order..], (order, start, end), column);
+            }
+            Ok(())
+        },
+    )
 }

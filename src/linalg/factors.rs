@@ -72,7 +72,7 @@ impl<S: SolveScalar> SparseLu<S> {
     pub(crate) fn pivots(&mut self) -> Option<Arc<Pivots>> {
         match &mut self.kind {
             Kind::Pivoted(own) => own.pivots(),
-            Kind::Fronts(_) => None,
+            Kind::Fronts(own) => own.border.as_mut()?.pivots(),
         }
     }
 
@@ -80,7 +80,11 @@ impl<S: SolveScalar> SparseLu<S> {
     pub(crate) fn set_pivots(&mut self, pattern: &Pattern, pivots: Option<&Arc<Pivots>>) {
         match &mut self.kind {
             Kind::Pivoted(own) => own.set_pivots(pattern, pivots),
-            Kind::Fronts(_) => {}
+            Kind::Fronts(own) => {
+                if let Some(border) = &mut own.border {
+                    border.set_pivots(pivots);
+                }
+            }
         }
     }
 

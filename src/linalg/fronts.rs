@@ -1,8 +1,9 @@
 //! The analysis of a multifrontal elimination: which pivots are eliminated together, and where the entries
 //! of the matrix go (Duff & Reid 1983).
 
+use super::border::Border;
 use super::branches::{Branch, divide, postorder};
-use super::front::{Child, Front, Short};
+use super::front::{Child, Front, Run, Short};
 use super::pattern::{KnownPivots, Pattern};
 
 /// Columns by which a front may exceed what its pivots need, and the part of its size.
@@ -18,13 +19,15 @@ pub(super) struct Plan {
     /// Row and column of each unknown.
     pub rows: Vec<usize>,
     pub columns: Vec<usize>,
-    /// Fronts, children before parents, each after its subtree.
+    /// Fronts, children before parents, each after its subtree. The last one has no pivots if the border is sparse.
     pub fronts: Vec<Front>,
     /// Parts of the fronts that are eliminated side by side, ascending.
     pub branches: Vec<Branch>,
     /// The other fronts, and the short rows beside the branches.
     pub trunk: Vec<usize>,
     pub trunk_short: Vec<usize>,
+    /// The border, if it is sparse.
+    pub border: Option<Border>,
 }
 
 impl Plan {
@@ -80,28 +83,7 @@ impl Plan {
                 }
             }
         }
-        let touching = |f: &mut dyn FnMut(usize, usize)| {
-            entries.iter().for_each(|&(r, c, _)| f(r, c));
-            for own in &short {
-                for &[row, _] in &own.below {
-                    for &[column, _] in &own.beside {
-                        f(row as usize, column_of[column as usize]);
-                    }
-                }
-            }
-        };
-        let mut later = vec![Vec::new(); inner];
-        touching(&mut |r, c| {
-            let (low, high) = (r.min(c), r.max(c));
-            if low < inner && low < high {
-                later[low].push(high);
-                // Many entries stand at one place.
-                if later[low].len() > 2000 {
-                    later[low].sort_unstable();
-                    later[low].dedup();
-                }
-            }
-        });
+        let later = later(inner, &column_of, &short, &entries);
         let order = postorder(&later);
         if !order.is_sorted() {
             let again = KnownPivots {
@@ -111,14 +93,25 @@ impl Plan {
             return Self::new(pattern, &again);
         }
         let mut fronts = fronts(later, rows.len());
-        let mut front_of = vec![fronts.len() - 1; rows.len()];
+        let end = fronts.len() - 1;
+        let own = (&short[..], &column_of[..]);
+        let border = Border::new((inner, rows.len()), &entries, own, &fronts[end].children);
+        if border.is_some() {
+            fronts[end].pivots = inner..inner;
+            entries.retain(|&(r, c, _)| r.min(c) < inner);
+        }
+        let mut front_of = vec![end; rows.len()];
         for (k, front) in fronts.iter().enumerate() {
             front.pivots.clone().for_each(|i| front_of[i] = k);
         }
+        let mut last = [0; 2];
         for (r, c, slot) in &entries {
             let front = &mut fronts[front_of[*r.min(c)]];
-            let (part, place) = front.place(*r, *c);
-            front.entries[part].push([*slot as u32, place]);
+            let (part, place) = front.place(*r, *c, &mut last);
+            let (all, next) = (&mut front.entries[part], Run::one(*slot, place));
+            if !all.last_mut().is_some_and(|last| last.join(next)) {
+                all.push(next);
+            }
         }
         let mut beside = Vec::new();
         for (k, own) in short.iter().enumerate() {
@@ -127,9 +120,16 @@ impl Plan {
                 beside.push([k as u32, slot]);
                 for &[row, below] in &own.below {
                     let (r, c) = (row as usize, column_of[column as usize]);
+                    if border.is_some() && r.min(c) >= inner {
+                        continue;
+                    }
                     let front = &mut fronts[front_of[r.min(c)]];
-                    let (part, place) = front.place(r, c);
-                    front.products[part].push([below, number, place]);
+                    let (part, place) = front.place(r, c, &mut last);
+                    let (all, next) = (&mut front.products[part], Run::one(below as usize, place));
+                    let last = all.last_mut().filter(|(own, _)| *own == number);
+                    if !last.is_some_and(|(_, last)| last.join(next)) {
+                        all.push((number, next));
+                    }
                 }
             }
         }
@@ -148,7 +148,8 @@ impl Plan {
         }
         let branches = divide(&mut fronts, &mut short);
         let in_trunk = |k: &usize| !branches.iter().any(|own| own.fronts.contains(k));
-        let trunk = (0..fronts.len()).filter(in_trunk).collect();
+        let count = fronts.len() - usize::from(border.is_some());
+        let trunk = (0..count).filter(in_trunk).collect();
         let in_trunk = |k: &usize| {
             !branches
                 .iter()
@@ -164,8 +165,57 @@ impl Plan {
             branches,
             trunk,
             trunk_short,
+            border,
         }
     }
+}
+
+impl Plan {
+    /// The first unknown whose pivot is searched.
+    pub(super) fn first_of_border(&self) -> usize {
+        self.fronts.last().map_or(0, |front| front.pivots.start)
+    }
+
+    /// Whether a front is the last of a branch.
+    pub(super) fn ends_branch(&self, k: usize) -> bool {
+        self.branches.iter().any(|own| own.fronts.end == k + 1)
+    }
+}
+
+/// By inner unknown: the later unknowns that it touches, through an entry or a short row; some are there twice.
+fn later(
+    inner: usize,
+    column_of: &[usize],
+    short: &[Short],
+    entries: &[(usize, usize, usize)],
+) -> Vec<Vec<usize>> {
+    let mut out = vec![Vec::new(); inner];
+    let mut add = |r: usize, c: usize| {
+        let (low, high) = (r.min(c), r.max(c));
+        if low < inner && low < high {
+            out[low].push(high);
+        }
+    };
+    // By unknown: the short rows beside which its column stands.
+    let mut beside = vec![Vec::new(); column_of.len()];
+    for (k, own) in short.iter().enumerate() {
+        for &[column, _] in &own.beside {
+            beside[column_of[column as usize]].push(k);
+        }
+    }
+    // Many products stand at one place.
+    let mut seen = vec![usize::MAX; column_of.len()];
+    for &(r, c, _) in entries {
+        add(r, c);
+    }
+    for (c, rows) in beside.iter().enumerate() {
+        for &[r, _] in rows.iter().flat_map(|&k| &short[k].below) {
+            if std::mem::replace(&mut seen[r as usize], c) != c {
+                add(r as usize, c);
+            }
+        }
+    }
+    out
 }
 
 /// Fronts of the inner unknowns, each with the `later` ones that it touches, and the last front of all
@@ -223,14 +273,18 @@ fn fronts(mut later: Vec<Vec<usize>>, count: usize) -> Vec<Front> {
             continue;
         };
         let to = if first < inner { front_of[first] } else { last };
-        let places = (all[k].rest.iter()).map(|&i| all[to].number(i) as u32);
-        let places: Vec<u32> = places.collect();
-        let own = all[to].pivots.len();
-        all[to].children.push(Child {
+        let places: Vec<u32> = (all[k].rest.iter())
+            .map(|&i| all[to].number(i) as u32)
+            .collect();
+        let own = all[to].pivots.len() as u32;
+        let (inside, outside) = places.split_at(places.partition_point(|&place| place < own));
+        let child = Child {
             front: k,
-            pivots: places.partition_point(|&place| (place as usize) < own),
-            places,
-        });
+            order: places.len(),
+            inside: Run::of(inside.iter().copied()),
+            outside: Run::of(outside.iter().map(|place| place - own)),
+        };
+        all[to].children.push(child);
     }
     all
 }

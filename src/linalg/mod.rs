@@ -1,5 +1,6 @@
 //! Sparse linear algebra: static patterns, LU and Cholesky factorisation.
 
+mod border;
 mod branches;
 pub(crate) mod cholesky;
 mod eliminated;

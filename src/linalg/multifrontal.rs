@@ -4,6 +4,7 @@
 //! Each front is a dense matrix. Its pivots are eliminated with a search among their own rows; the rest goes
 //! to the parent (Duff & Reid 1983).
 
+use super::border::{EliminatedBorder, Left};
 use super::branches::work;
 use super::eliminated::{Eliminated, usable};
 use super::fronts::Plan;
@@ -30,6 +31,8 @@ pub(super) struct Multifrontal<S> {
     /// Workspace of the branches, and of the trunk.
     pub(super) of_branches: Vec<Workspace<S>>,
     pub(super) of_trunk: Workspace<S>,
+    /// The factors of a sparse border.
+    pub(super) border: Option<EliminatedBorder<S>>,
 }
 
 /// Workspace of a branch or of the trunk.
@@ -73,8 +76,7 @@ impl<S: SolveScalar> Shared<'_, S> {
     ) -> Result<(), SingularMatrix> {
         let front = &self.plan.fronts[k];
         let done = &mut done[k - first];
-        let ends = |k: usize| self.plan.branches.iter().any(|own| own.fronts.end == k + 1);
-        let mut rest = match ends(k) {
+        let mut rest = match self.plan.ends_branch(k) {
             true => std::mem::take(&mut remainders[k - first]),
             false => free.pop().unwrap_or_default(),
         };
@@ -86,18 +88,24 @@ impl<S: SolveScalar> Shared<'_, S> {
         for ((part, entries), products) in
             (parts.into_iter().zip(&front.entries)).zip(&front.products)
         {
-            for &[slot, place] in entries {
-                part[place as usize] += self.scaled[slot as usize];
+            for run in entries {
+                let values = &self.scaled[run.from as usize..][..run.length as usize];
+                let into = &mut part[run.to as usize..][..run.length as usize];
+                into.iter_mut().zip(values).for_each(|(x, &own)| *x += own);
             }
-            for &[below, beside, place] in products {
-                let by = self.scaled[below as usize] * self.beside[beside as usize];
-                part[place as usize] -= by;
+            for (beside, run) in products {
+                let by = self.beside[*beside as usize];
+                let values = &self.scaled[run.from as usize..][..run.length as usize];
+                let into = &mut part[run.to as usize..][..run.length as usize];
+                into.iter_mut()
+                    .zip(values)
+                    .for_each(|(x, &own)| *x -= own * by);
             }
         }
         for child in &front.children {
             let own = &mut remainders[child.front - first];
             done.extend(&mut rest, front, child, own);
-            if !ends(child.front) {
+            if !self.plan.ends_branch(child.front) {
                 free.push(std::mem::take(own));
             }
         }
@@ -140,17 +148,14 @@ impl<S: SolveScalar> Multifrontal<S> {
             remainders: plan.fronts.iter().map(|_| Vec::new()).collect(),
             of_branches: plan.branches.iter().map(|_| space()).collect(),
             of_trunk: space(),
+            border: plan.border.as_ref().map(EliminatedBorder::new),
             plan,
         }
     }
 
     pub(super) fn factorise(&mut self, matrix: &SparseMatrix<S>) -> Result<(), SingularMatrix> {
         let plan = &self.plan;
-        self.scaling.fit(matrix);
-        let scales = matrix.values.iter().zip(&self.scaling.entries);
-        for (scaled, (&x, &by)) in self.scaled.iter_mut().zip(scales) {
-            *scaled = x * by;
-        }
+        self.scaling.fit(matrix, &mut self.scaled);
         for (inverse, own) in self.inverse.iter_mut().zip(&plan.short) {
             let pivot = self.scaled[own.pivot];
             if !usable(pivot) {
@@ -187,23 +192,43 @@ impl<S: SolveScalar> Multifrontal<S> {
             let own = (&mut self.done[..], &mut self.remainders[..]);
             shared.eliminate((k, 0), own, free)?;
         }
+        if let (Some(border), Some(own)) = (&plan.border, &mut self.border) {
+            let left = Left {
+                scaled: &self.scaled,
+                beside: &self.beside,
+                remainders: &self.remainders,
+            };
+            let first = plan.first_of_border();
+            own.factorise(border, &left)
+                .map_err(|singular| SingularMatrix {
+                    column: plan.columns[first + singular.column],
+                })?;
+            for k in border.children().filter(|&k| !plan.ends_branch(k)) {
+                free.push(std::mem::take(&mut self.remainders[k]));
+            }
+        }
         Ok(())
     }
 
     /// Entries of the factors, and operations.
-    pub(super) fn cost(&self) -> (usize, usize) {
-        self.plan
-            .fronts
-            .iter()
-            .fold((0, 0), |(entries, all), front| {
-                let (p, r) = (front.pivots.len(), front.rest.len());
-                (entries + p * (p + 2 * r), all + work(front))
-            })
+    pub(super) fn cost(&mut self) -> (usize, usize) {
+        let of_border = self.border.as_mut().map_or((0, 0), EliminatedBorder::cost);
+        let fronts = self.plan.fronts.iter();
+        fronts.fold(of_border, |(entries, all), front| {
+            let (p, r) = (front.pivots.len(), front.rest.len());
+            (entries + p * (p + 2 * r), all + work(front))
+        })
     }
 
     /// Smallest pivot of the columns from `first` on that are not known.
-    pub(super) fn smallest_pivot(&self, first: usize) -> (f64, usize) {
+    pub(super) fn smallest_pivot(&mut self, first: usize) -> (f64, usize) {
         let none = (f64::INFINITY, first);
+        if let Some(border) = &mut self.border {
+            let columns = &self.plan.columns[self.plan.first_of_border()..];
+            let from = columns.partition_point(|&column| column < first);
+            let (pivot, at) = border.smallest_pivot(from);
+            return columns.get(at).map_or(none, |&column| (pivot, column));
+        }
         let (Some(front), Some(done)) = (self.plan.fronts.last(), self.done.last()) else {
             return none;
         };
@@ -218,10 +243,13 @@ impl<S: SolveScalar> Multifrontal<S> {
 #[cfg(test)]
 mod tests {
     use super::super::factors::SparseLu;
+    use super::super::front::System;
     use super::super::matrix::SparseMatrix;
     use super::super::pattern::{Emit, KnownPivots, Pattern};
+    use super::Multifrontal;
     use crate::math::Complex64;
     use nalgebra::{DMatrix, DVector};
+    use std::ops::Range;
 
     /// Positions and velocities of chains of masses that constraints couple, for some seeds.
     fn sample(seed: usize, n: usize, border: usize, emit: &mut dyn Emit<Complex64>) {
@@ -285,5 +313,87 @@ mod tests {
                 assert!(rest < 1e-12 * (b.camax() + 10.0 * size), "{seed}: {rest}");
             }
         }
+    }
+
+    /// A grid of n × n nodes with three unknowns each, coupled with their neighbours, and a border.
+    fn grid(n: usize, border: usize, emit: &mut dyn Emit<f64>) {
+        let number = |k: usize| ((k * 7919) as f64 * 0.618_033_988_7).fract() - 0.5;
+        let order = 3 * n * n;
+        for node in 0..n * n {
+            let (x, y) = (node % n, node / n);
+            let near = (y.saturating_sub(1)..(y + 2).min(n))
+                .flat_map(|y| (x.saturating_sub(1)..(x + 2).min(n)).map(move |x| n * y + x));
+            for other in near {
+                for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
+                    let (row, column) = (3 * node + i, 3 * other + j);
+                    let on = if row == column { 12.0 } else { 0.0 };
+                    emit.add(row, column, on + number(row * order + column));
+                }
+            }
+            for k in 0..border {
+                emit.add(3 * node, order + k, number(node + 31 * k));
+                emit.add(order + k, 3 * node + 1, number(node + 17 * k));
+            }
+        }
+    }
+
+    /// The nodes of a part of the grid, separators last (George 1973).
+    fn dissected(n: usize, x: Range<usize>, y: Range<usize>) -> Vec<usize> {
+        if x.len().min(y.len()) < 3 {
+            let node = |y: usize| x.clone().map(move |x| n * y + x);
+            return y.flat_map(node).collect();
+        }
+        let (middle_x, middle_y) = ((x.start + x.end) / 2, (y.start + y.end) / 2);
+        let (low, high, on) = match x.len() > y.len() {
+            true => {
+                let on = y.clone().map(|y| n * y + middle_x).collect();
+                let low = dissected(n, x.start..middle_x, y.clone());
+                (low, dissected(n, middle_x + 1..x.end, y), on)
+            }
+            false => {
+                let on = x.clone().map(|x| n * middle_y + x).collect();
+                let low = dissected(n, x.clone(), y.start..middle_y);
+                (low, dissected(n, x, middle_y + 1..y.end), on)
+            }
+        };
+        [low, high, on].concat()
+    }
+
+    #[test]
+    fn divided_eliminations_solve_on_any_number_of_processors() {
+        let (n, border) = (40, 5);
+        let order = 3 * n * n + border;
+        let known = KnownPivots {
+            short: Vec::new(),
+            inner: (dissected(n, 0..n, 0..n).into_iter())
+                .flat_map(|node| (0..3).map(move |i| (3 * node + i, 3 * node + i)))
+                .collect(),
+        };
+        let pattern = Pattern::record(order, |e| grid(n, border, e)).with_pivots(known);
+        let mut matrix = SparseMatrix::new(pattern);
+        matrix.assemble(|e| grid(n, border, e));
+        let b: Vec<f64> = (0..order).map(|i| 1.0 + (i as f64).sin()).collect();
+        let solved = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.expect("threads").install(|| {
+                let known = matrix.pattern.known_pivots().expect("known pivots");
+                let mut lu = Multifrontal::new(&matrix.pattern, known);
+                assert!(lu.plan.branches.len() > 1);
+                lu.factorise(&matrix).expect("regular");
+                let [mut x, mut y] = [b.clone(), b.clone()];
+                lu.solve(System::Plain, &mut [&mut x]);
+                lu.solve(System::Transposed, &mut [&mut y]);
+                [x, y]
+            })
+        };
+        let [x, y] = solved(1);
+        let mut by_y = vec![0.0; order];
+        matrix.multiply_transposed(&y, &mut by_y);
+        for product in [matrix.multiply(&x), by_y] {
+            let all = product.iter().zip(&b);
+            let rest = all.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+            assert!(rest < 1e-11, "{rest}");
+        }
+        assert_eq!([x, y], solved(3));
     }
 }

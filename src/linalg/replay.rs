@@ -71,6 +71,8 @@ pub(super) struct Replay<S> {
     pivot_rows: Vec<usize>,
     /// By entry of the matrix: its row in pivot order.
     entry_rows: Vec<u32>,
+    /// By entry of the matrix: its scale.
+    scales: Vec<f64>,
     scaling: Equilibration,
     lower: Triangle<S>,
     upper: Triangle<S>,
@@ -92,6 +94,7 @@ impl<S: Scalar> Replay<S> {
             columns: columns.to_vec(),
             pivot_rows: vec![0; n],
             entry_rows: vec![0; pattern.entries()],
+            scales: vec![1.0; pattern.entries()],
             scaling: Equilibration::new(pattern),
             lower: Triangle::new(),
             upper: Triangle::new(),
@@ -117,6 +120,12 @@ impl<S: Scalar> Replay<S> {
         }
         for (own, &row) in self.entry_rows.iter_mut().zip(pattern.rows()) {
             *own = self.place[row];
+        }
+        let starts = pattern.column_starts().windows(2);
+        for (own, &by) in starts.zip(&scaling.columns) {
+            for k in own[0]..own[1] {
+                self.scales[k] = scaling.rows[pattern.rows()[k]] * by;
+            }
         }
         let Self {
             lower,
@@ -193,7 +202,7 @@ impl<S: Scalar> Replay<S> {
         let x = &mut self.work;
         for (j, &column) in self.columns.iter().enumerate() {
             for k in starts[column]..starts[column + 1] {
-                x[self.entry_rows[k] as usize] = matrix.values[k] * self.scaling.entries[k];
+                x[self.entry_rows[k] as usize] = matrix.values[k] * self.scales[k];
             }
             let at = self.upper.starts[j]..self.upper.starts[j + 1];
             for (&k, value) in self.upper.rows[at.clone()]

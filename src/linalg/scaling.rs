@@ -5,8 +5,8 @@ use super::pattern::Pattern;
 use crate::math::Scalar;
 
 /// Largest exponent of a scale, and largest exponent that needs no scale.
-const MOST: f64 = 500.0;
-const MODERATE: f64 = 8.0;
+const MOST: i64 = 500;
+const MODERATE: i64 = 8;
 
 /// Diagonal matrices R and C of powers of two. R A C has rows and columns with similar largest
 /// entries, so pivoting does not depend on units (Golub & Van Loan 2013, section 3.5.2). Powers of
@@ -18,8 +18,6 @@ pub(super) struct Equilibration {
     pub rows: Vec<f64>,
     /// C.
     pub columns: Vec<f64>,
-    /// Factor of each entry.
-    pub entries: Vec<f64>,
 }
 
 impl Equilibration {
@@ -28,7 +26,6 @@ impl Equilibration {
         Self {
             rows: vec![1.0; pattern.order()],
             columns: vec![1.0; pattern.order()],
-            entries: vec![1.0; pattern.entries()],
         }
     }
 
@@ -36,11 +33,10 @@ impl Equilibration {
     pub(crate) fn set(&mut self, other: &Self) {
         self.rows.copy_from_slice(&other.rows);
         self.columns.copy_from_slice(&other.columns);
-        self.entries.copy_from_slice(&other.entries);
     }
 
-    /// Scales for a matrix: first its rows, then the columns of the result.
-    pub(crate) fn fit<S: Scalar>(&mut self, matrix: &SparseMatrix<S>) {
+    /// Scales for a matrix: first its rows, then the columns of the result. `scaled` becomes the values of R A C.
+    pub(crate) fn fit<S: Scalar>(&mut self, matrix: &SparseMatrix<S>, scaled: &mut [S]) {
         let pattern = &matrix.pattern;
         self.rows.fill(0.0);
         for (&row, &value) in pattern.rows().iter().zip(&matrix.values) {
@@ -53,13 +49,17 @@ impl Equilibration {
         for (column, own) in self.columns.iter_mut().zip(starts) {
             let own = own[0]..own[1];
             let mut largest = 0.0_f64;
-            for k in own.clone() {
-                self.entries[k] = self.rows[pattern.rows()[k]];
-                largest = largest.max(size(matrix.values[k]) * self.entries[k]);
+            let entries = pattern.rows()[own.clone()]
+                .iter()
+                .zip(&matrix.values[own.clone()]);
+            let scaled = &mut scaled[own];
+            for ((&row, &value), scaled) in entries.zip(&mut *scaled) {
+                *scaled = value * self.rows[row];
+                largest = largest.max(size(*scaled));
             }
             *column = scale(largest);
-            for entry in &mut self.entries[own] {
-                *entry *= *column;
+            if *column != 1.0 {
+                scaled.iter_mut().for_each(|x| *x *= S::from(*column));
             }
         }
     }
@@ -75,10 +75,11 @@ fn scale(largest: f64) -> f64 {
     if !(largest > 0.0 && largest.is_finite()) {
         return 1.0;
     }
-    let exponent = largest.log2().floor() + 1.0;
+    // A double is 2^(its exponent bits − 1023) times a number from 1 to 2.
+    let exponent = (largest.to_bits() >> 52) as i64 - 1022;
     if exponent.abs() <= MODERATE {
-        1.0
-    } else {
-        (-exponent).clamp(-MOST, MOST).exp2()
+        return 1.0;
     }
+    let scale = (-exponent).clamp(-MOST, MOST);
+    f64::from_bits(((1023 + scale) as u64) << 52)
 }

@@ -73,11 +73,7 @@ impl<S: SolveScalar> Pivoting<S> {
         matrix: &SparseMatrix<S>,
         symbolic: &SymbolicLu<usize>,
     ) -> Result<(), SingularMatrix> {
-        self.scaling.fit(matrix);
-        let scales = matrix.values.iter().zip(&self.scaling.entries);
-        for (scaled, (&x, &by)) in self.scaled.iter_mut().zip(scales) {
-            *scaled = x * by;
-        }
+        self.scaling.fit(matrix, &mut self.scaled);
         simplicial::factorize_simplicial_numeric_lu(
             &mut self.rows,
             &mut self.inverse,

@@ -101,6 +101,12 @@ impl<S: SolveScalar> Multifrontal<S> {
     fn backward(&mut self, system: System) {
         let (plan, done, scaled) = (&self.plan, &self.done, &self.scaled);
         let trunk = &mut self.of_trunk;
+        if let Some(border) = &mut self.border {
+            let first = plan.first_of_border();
+            for x in &mut trunk.x {
+                border.solve(system, &mut x[first..]);
+            }
+        }
         for &k in plan.trunk.iter().rev() {
             for x in &mut trunk.x {
                 done[k].backward(system, &plan.fronts[k], x, &mut trunk.beside);

@@ -3,6 +3,13 @@
 use super::Scalar;
 use std::ops::Mul;
 
+/// Runs `work` with the widest vector instructions of the processor. Sums are the same on every processor: no product
+/// is fused with an addition.
+#[inline(always)]
+pub(crate) fn vectorised<T>(work: impl FnOnce() -> T) -> T {
+    pulp::Arch::new().dispatch(work)
+}
+
 /// Σ a_i b_i over the common indices.
 pub(crate) fn dot<S: Scalar>(a: &[S], b: &[S]) -> S {
     let products = a.iter().zip(b);
@@ -10,6 +17,7 @@ pub(crate) fn dot<S: Scalar>(a: &[S], b: &[S]) -> S {
 }
 
 /// Σ a_i b_i by four sums, because an addition waits for the one before.
+#[inline(always)]
 pub(crate) fn dot_by_four<S, T, const N: usize>(a: &[S; N], b: &[T; N]) -> S
 where
     S: Scalar + Mul<T, Output = S>,

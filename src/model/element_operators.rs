@@ -2,7 +2,7 @@
 //! plate has none for deflections, its bending none for displacements in the plane.
 
 use crate::math::Scalar;
-use crate::math::slices::dot_by_four;
+use crate::math::slices::{dot_by_four, vectorised};
 
 /// Unknowns of an element at most: six of each of nine nodes.
 pub(crate) const UNKNOWNS: usize = 54;
@@ -40,21 +40,31 @@ impl<const N: usize> Columns<N> {
 
     /// A x.
     pub(crate) fn times<S: Scalar>(&self, x: &[S]) -> [S; N] {
-        let mut out = [S::zero(); N];
-        for (i, column) in self.iter() {
-            let x = x[i];
-            for (out, &a) in out.iter_mut().zip(column) {
-                *out += x * a;
-            }
-        }
-        out
+        vectorised(
+            #[inline(always)]
+            || {
+                let mut out = [S::zero(); N];
+                for (i, column) in self.iter() {
+                    let x = x[i];
+                    for (out, &a) in out.iter_mut().zip(column) {
+                        *out += x * a;
+                    }
+                }
+                out
+            },
+        )
     }
 
     /// Adds Aᵀ y.
     pub(crate) fn add_transposed<S: Scalar>(&self, y: &[S; N], out: &mut [S]) {
-        for (i, column) in self.iter() {
-            out[i] += dot_by_four(y, column);
-        }
+        vectorised(
+            #[inline(always)]
+            || {
+                for (i, column) in self.iter() {
+                    out[i] += dot_by_four(y, column);
+                }
+            },
+        );
     }
 }
 
@@ -88,20 +98,25 @@ impl Symmetric {
         // Rows are columns. Four at a time read and write the sum once.
         let sum = &mut sum[..n];
         let (fours, rest) = own[..n].as_chunks::<4>();
-        for (x, rows) in fours.iter().zip(self.entries.chunks_exact(4 * n.max(1))) {
-            let (a, others) = rows.split_at(n);
-            let (b, others) = others.split_at(n);
-            let (c, d) = others.split_at(n);
-            for k in 0..n {
-                sum[k] += (x[0] * a[k] + x[1] * b[k]) + (x[2] * c[k] + x[3] * d[k]);
-            }
-        }
-        let last = self.entries[4 * fours.len() * n..].chunks_exact(n.max(1));
-        for (&x, row) in rest.iter().zip(last) {
-            for (sum, &a) in sum.iter_mut().zip(row) {
-                *sum += x * a;
-            }
-        }
+        vectorised(
+            #[inline(always)]
+            || {
+                for (x, rows) in fours.iter().zip(self.entries.chunks_exact(4 * n.max(1))) {
+                    let (a, others) = rows.split_at(n);
+                    let (b, others) = others.split_at(n);
+                    let (c, d) = others.split_at(n);
+                    for k in 0..n {
+                        sum[k] += (x[0] * a[k] + x[1] * b[k]) + (x[2] * c[k] + x[3] * d[k]);
+                    }
+                }
+                let last = self.entries[4 * fours.len() * n..].chunks_exact(n.max(1));
+                for (&x, row) in rest.iter().zip(last) {
+                    for (sum, &a) in sum.iter_mut().zip(row) {
+                        *sum += x * a;
+                    }
+                }
+            },
+        );
         for (&i, &sum) in self.unknowns.iter().zip(&*sum) {
             out[i] += sum;
         }

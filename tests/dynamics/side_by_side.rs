@@ -1,7 +1,11 @@
-//! Parallel simulations do not change the results of a run.
+//! Parallel simulations, elements and fronts do not change the results of a run.
 
+use crate::tests::files::finite_elements::plates;
+use crate::tests::reference::documents::problem as parsed;
+use flexbody::Analysis;
 use flexbody::driver::{KnownEvaluations, optimise, second_order};
 use flexbody::problem::Problem;
+use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -50,5 +54,37 @@ fn runs_do_not_depend_on_the_number_of_processors() {
         let [one, three] = [1, 3].map(|threads| run(file, threads, curvature));
         assert_eq!(one.0 > 0, fails, "{file}: {} failures", one.0);
         assert!(one == three, "{file}:\n{}\n{}", one.1, three.1);
+    }
+}
+
+/// Values and gradients of all functions of a scene on this number of processors, to the last bit.
+fn analysed(file: &Value, threads: usize) -> Vec<u64> {
+    let problem = parsed(file);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.expect("threads").install(|| {
+        let at = Analysis::new(&problem).at(&problem.start());
+        let at = at.unwrap_or_else(|failure| panic!("{failure}"));
+        let which: Vec<usize> = (0..problem.function_names.len()).collect();
+        let gradients = at.gradients(&which);
+        let gradients = gradients.unwrap_or_else(|failure| panic!("{failure}"));
+        let all = (at.values().into_iter()).chain(gradients.into_iter().flatten());
+        all.map(f64::to_bits).collect()
+    })
+}
+
+/// 52 elements a plate, more than one processor takes together; the fronts are divided, too.
+#[test]
+fn elements_in_motion_do_not_depend_on_the_number_of_processors() {
+    for method in [
+        json!({"bdf": {"order": 2}}),
+        json!({"radau": {"stages": 2}}),
+    ] {
+        let mut file = plates([13, 4], 0.002, 2, &method);
+        file["variables"] = json!({"h": {
+            "path": "/bodies/second/elements/structure/thickness",
+            "lower": 0.001, "upper": 0.01
+        }});
+        let [one, three] = [1, 3].map(|threads| analysed(&file, threads));
+        assert_eq!(one, three, "{method}");
     }
 }

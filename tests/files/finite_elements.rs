@@ -15,7 +15,7 @@ fn read(name: &str) -> Value {
 }
 
 /// The double plate with this mesh, duration, number of steps and method.
-pub(super) fn plates(elements: [usize; 2], duration: f64, steps: usize, method: &Value) -> Value {
+pub fn plates(elements: [usize; 2], duration: f64, steps: usize, method: &Value) -> Value {
     let mut document = read("problems/flexible/double_plate.json");
     for body in ["first", "second"] {
         document["bodies"][body]["elements"]["structure"]["mesh"]["plate"]["elements"] =

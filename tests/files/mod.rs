@@ -10,7 +10,7 @@ mod element_sections;
 mod element_steps;
 mod equilibrium;
 mod faults;
-mod finite_elements;
+pub mod finite_elements;
 mod flexible_families;
 mod flexible_scenes;
 mod layers;

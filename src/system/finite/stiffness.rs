@@ -4,7 +4,7 @@ use super::each::each;
 use super::element::{Local, gather, scatter};
 use super::parts;
 use crate::math::Scalar;
-use crate::math::slices::{add_scaled, dot, dot_by_four};
+use crate::math::slices::{add_scaled, dot, dot_by_four, vectorised};
 use crate::model::finite::{
     DISPLACEMENTS, FiniteElements, QUADRATIC, SLOPES, STRAINS, ShellElement, UNKNOWNS, other_slope,
 };
@@ -109,6 +109,7 @@ where
 }
 
 /// P e.
+#[inline(always)]
 pub(super) fn stresses<S: Scalar>(element: &ShellElement, e: &[S; STRAINS]) -> [S; STRAINS] {
     // P is symmetric: its rows are its columns.
     let mut out = [S::zero(); STRAINS];
@@ -256,16 +257,21 @@ pub(super) fn add_products<S: Scalar>(
     n: usize,
     out: &mut [S],
 ) {
-    for (k, left) in left.iter().enumerate() {
-        let end = if symmetric { k + 1 } else { DISPLACEMENTS };
-        for (l, right) in right.iter().enumerate().take(end) {
-            let x = dot_by_four(left, right);
-            out[k * n + l] += x;
-            if symmetric && l < k {
-                out[l * n + k] += x;
+    vectorised(
+        #[inline(always)]
+        || {
+            for (k, left) in left.iter().enumerate() {
+                let end = if symmetric { k + 1 } else { DISPLACEMENTS };
+                for (l, right) in right.iter().enumerate().take(end) {
+                    let x = dot_by_four(left, right);
+                    out[k * n + l] += x;
+                    if symmetric && l < k {
+                        out[l * n + k] += x;
+                    }
+                }
             }
-        }
-    }
+        },
+    );
 }
 
 /// Adds ½ Σ n_p (r_p s_pᵀ + s_p r_pᵀ) to the displacements' part of a matrix of order n.
@@ -300,7 +306,10 @@ pub(crate) fn tangent<S: Scalar>(
     shear.add_to(thin, n, out);
     let strained = Strained::of(element, x);
     let own = strained.gradients(element);
-    let scaled = own.map(|column| stresses(element, &column).map(|n| n * thin));
+    let scaled = vectorised(
+        #[inline(always)]
+        || own.map(|column| stresses(element, &column).map(|n| n * thin)),
+    );
     add_products((&own, &scaled), true, n, out);
     let stress = stresses(element, &strained.strain).map(|n| n * thin);
     add_curvature(element, &stress, n, out);
