@@ -89,8 +89,8 @@ impl<S: SolveScalar> Pivoting<S> {
 impl<S: SolveScalar> PivotedLu<S> {
     /// Analyses a pattern.
     ///
+    /// # Panics
     /// Memory is exhausted.
-    /// If memory is exhausted.
     pub(crate) fn new(pattern: &Pattern) -> Self {
         let symbolic = factorize_symbolic_lu(structure(pattern), LuSymbolicParams::default())
             .expect("the analysis fails only when memory is exhausted");
@@ -191,7 +191,6 @@ impl<S: SolveScalar> PivotedLu<S> {
     ///
     /// # Panics
     /// No matrix has been factorised.
-    /// If no matrix was factorised.
     pub(crate) fn smallest_pivot(&mut self, first: usize) -> (f64, usize) {
         self.factors().smallest_pivot(first)
     }
