@@ -12,7 +12,7 @@ const GRADIENT: f64 = 1e-10;
 
 /// Cases with a larger difference by round-off, and its bound; `docs/stability.md` gives the
 /// reasons.
-const SPOILT: [(&str, f64); 27] = [
+const SPOILT: [(&str, f64); 26] = [
     // ε k l / (m g): the force of a spring of l = 1 m has the round-off ε k l.
     ("stiffness/10/", 2.3e-9),
     ("stiffness/100/", 2.3e-7),
@@ -39,11 +39,11 @@ const SPOILT: [(&str, f64); 27] = [
     ("tolerance/2 to 1e-5/", 1e-8),
     ("tolerance/2 to 1e-6/", 1e-9),
     // Stretch of thin shells is stiffer than their bending by the square of length by thickness.
+    // About 1e-14 (length / thickness)²; plates under loads have 1/100.
     ("thickness/1e-4/", 1e-6),
     ("thickness/1e-3/", 1e-8),
     ("thickness/1e-2/", 1e-9),
-    ("load/0.1/", 1e-9),
-    ("load/1/", 1e-9),
+    ("load/", 1e-9),
     // Near the speed at which the stretch has no bound, and beyond it.
     ("spin/1.3/", 1e-9),
     ("spin/1.5/", 1e-7),
