@@ -152,9 +152,14 @@ fn main() -> Result<(), SimulationError> {
         let (size, steps) = (count(size), count(steps));
         return match kind {
             "chain" => line(size, [8, 2], method, steps),
-            _ => line(2, [size, size / 4], method, steps),
+            "mesh" => line(2, [size, size / 4], method, steps),
+            _ => panic!("expected chain or mesh, found {kind}"),
         };
     }
+    assert!(
+        arguments.is_empty(),
+        "expected chain|mesh N bdf|radau STEPS"
+    );
     for method in ["bdf", "radau"] {
         for plates in [1, 2, 4, 8, 16] {
             line(plates, [8, 2], method, STEPS)?;

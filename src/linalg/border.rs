@@ -230,13 +230,8 @@ mod tests {
             let [mut x, mut y] = [b.clone(), b.clone()];
             lu.solve(&mut x);
             lu.solve_transposed(&mut y);
-            let mut by_y = vec![0.0; order];
-            matrix.multiply_transposed(&y, &mut by_y);
-            for product in [matrix.multiply(&x), by_y] {
-                let all = product.iter().zip(&b);
-                let rest = all.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
-                assert!(rest < 1e-12 * order as f64, "{bodies}: {rest}");
-            }
+            let rest = matrix.remainder([&x, &y], &b);
+            assert!(rest < 1e-12 * order as f64, "{bodies}: {rest}");
         }
         lu.cost()
     }

@@ -43,11 +43,10 @@ pub(super) fn usable<S: SolveScalar>(pivot: S) -> bool {
 }
 
 /// Adds runs of numbers to their places.
-fn add_runs<S: SolveScalar>(out: &mut [S], own: &[S], runs: &[Run]) {
+pub(super) fn add_runs<S: SolveScalar>(out: &mut [S], own: &[S], runs: &[Run]) {
     for run in runs {
-        let (from, to, length) = (run.from as usize, run.to as usize, run.length as usize);
-        let out = &mut out[to..to + length];
-        let own = &own[from..from + length];
+        let own = &own[run.from as usize..][..run.length as usize];
+        let out = &mut out[run.targets()];
         out.iter_mut().zip(own).for_each(|(x, &own)| *x += own);
     }
 }

@@ -70,6 +70,13 @@ impl Run {
         }
     }
 
+    /// Adds a run to some, joined with the last one if it continues that.
+    pub(super) fn push(self, all: &mut Vec<Self>) {
+        if !all.last_mut().is_some_and(|last| last.join(self)) {
+            all.push(self);
+        }
+    }
+
     /// Joins a run that continues this one; returns whether it does.
     pub(super) fn join(&mut self, next: Self) -> bool {
         let continues = next.from == self.from + self.length && next.to == self.to + self.length;
@@ -88,10 +95,7 @@ impl Run {
     pub(super) fn of(places: impl IntoIterator<Item = u32>) -> Vec<Self> {
         let mut out: Vec<Self> = Vec::new();
         for (from, to) in places.into_iter().enumerate() {
-            let next = Self::one(from, to);
-            if !out.last_mut().is_some_and(|last| last.join(next)) {
-                out.push(next);
-            }
+            Self::one(from, to).push(&mut out);
         }
         out
     }

@@ -108,10 +108,7 @@ impl Plan {
         for (r, c, slot) in &entries {
             let front = &mut fronts[front_of[*r.min(c)]];
             let (part, place) = front.place(*r, *c, &mut last);
-            let (all, next) = (&mut front.entries[part], Run::one(*slot, place));
-            if !all.last_mut().is_some_and(|last| last.join(next)) {
-                all.push(next);
-            }
+            Run::one(*slot, place).push(&mut front.entries[part]);
         }
         let mut beside = Vec::new();
         for (k, own) in short.iter().enumerate() {

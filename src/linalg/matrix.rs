@@ -146,6 +146,21 @@ impl<S: Scalar> SparseMatrix<S> {
 }
 
 #[cfg(test)]
+impl SparseMatrix<f64> {
+    /// The largest remainder of A x = b and of Aᵀ y = b.
+    pub fn remainder(&self, [x, y]: [&[f64]; 2], b: &[f64]) -> f64 {
+        let mut by_y = vec![0.0; y.len()];
+        self.multiply_transposed(y, &mut by_y);
+        let products = [self.multiply(x), by_y];
+        let all = products.iter().flat_map(|product| product.iter().zip(b));
+        all.fold(0.0, |most, (a, b)| match (a - b).abs() {
+            rest if rest.is_nan() => f64::INFINITY,
+            rest => most.max(rest),
+        })
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::math::Vec3;

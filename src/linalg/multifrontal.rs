@@ -6,7 +6,7 @@
 
 use super::border::{EliminatedBorder, Left};
 use super::branches::work;
-use super::eliminated::{Eliminated, usable};
+use super::eliminated::{Eliminated, add_runs, usable};
 use super::fronts::Plan;
 use super::matrix::SparseMatrix;
 use super::pattern::{KnownPivots, Pattern};
@@ -88,15 +88,11 @@ impl<S: SolveScalar> Shared<'_, S> {
         for ((part, entries), products) in
             (parts.into_iter().zip(&front.entries)).zip(&front.products)
         {
-            for run in entries {
-                let values = &self.scaled[run.from as usize..][..run.length as usize];
-                let into = &mut part[run.to as usize..][..run.length as usize];
-                into.iter_mut().zip(values).for_each(|(x, &own)| *x += own);
-            }
+            add_runs(part, self.scaled, entries);
             for (beside, run) in products {
                 let by = self.beside[*beside as usize];
                 let values = &self.scaled[run.from as usize..][..run.length as usize];
-                let into = &mut part[run.to as usize..][..run.length as usize];
+                let into = &mut part[run.targets()];
                 into.iter_mut()
                     .zip(values)
                     .for_each(|(x, &own)| *x -= own * by);
@@ -387,13 +383,8 @@ mod tests {
             })
         };
         let [x, y] = solved(1);
-        let mut by_y = vec![0.0; order];
-        matrix.multiply_transposed(&y, &mut by_y);
-        for product in [matrix.multiply(&x), by_y] {
-            let all = product.iter().zip(&b);
-            let rest = all.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
-            assert!(rest < 1e-11, "{rest}");
-        }
+        let rest = matrix.remainder([&x, &y], &b);
+        assert!(rest < 1e-11, "{rest}");
         assert_eq!([x, y], solved(3));
     }
 }

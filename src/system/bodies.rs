@@ -338,7 +338,7 @@ pub(crate) fn torque_by_omega<S: Scalar>(body: &RigidBody<S>, omega: &Vec3<S>) -
 
 /// Pulls the cotangent ψ = (ψ_r, ψ_θ) of [`force_balance`] back to ω (returned) and to the
 /// parameters (`cot` and `gravity_cot`).
-pub(crate) fn pull_force_balance(
+fn pull_force_balance(
     body: &RigidBody<f64>,
     gravity: &Vec3<f64>,
     omega: &Vec3<f64>,

@@ -225,29 +225,13 @@ pub(crate) fn pull_back(
         .map_err(singular)?;
     if a_bar.iter().any(|&x| x != 0.0) {
         let (psi, chi) = transposed(saddle, a_bar);
-        for (i, body) in model.bodies.iter().enumerate() {
-            let o = numbering.velocity(i);
-            let (a, alpha) = velocities_of(&state.a[o..]);
-            let (psi_r, psi_theta) = velocities_of(&psi[o..]);
-            let by_omega = bodies::pull_force_balance(
-                body,
-                &model.gravity,
-                &motions[i].omega,
-                (&a, &alpha),
-                (&psi_r, &psi_theta),
-                &mut cot.bodies[i],
-                &mut cot.gravity,
-            );
-            for k in 0..3 {
-                v_bar[o + 3 + k] += by_omega[k];
-            }
-        }
+        let (of, here) = ((model, numbering), (&motions[..], &state.a[..]));
+        bodies::pull_force_balances(of, here, &psi, Some(&mut v_bar), cot);
         let mut bars = StateCotangent {
             y: Some(&mut y_bar),
             v: Some(&mut v_bar),
         };
-        let here = (&motions[..], &state.a[..]);
-        flexible::pull_force_balances((model, numbering), here, &psi, &mut bars, cot);
+        flexible::pull_force_balances(of, here, &psi, &mut bars, cot);
         let minus: Vec<f64> = psi.iter().map(|x| -x).collect();
         let mut out = LoadCotangent {
             y: Some(&mut y_bar),
