@@ -11,8 +11,6 @@ use nalgebra::{DMatrix, DVector};
 
 /// Largest number of stages.
 const MOST: usize = 3;
-/// Number of stages of the method that makes the first steps of a multistep formula.
-const STARTING_STAGES: usize = 3;
 
 /// Coefficients of a method.
 #[derive(Clone, Debug)]
@@ -46,14 +44,14 @@ impl Mode {
 }
 
 impl Scheme {
-    /// The scheme of a method, or that of the first steps of a multistep formula.
+    /// The scheme of a method, or that of the first steps of a multistep formula: the smallest one whose error in a step
+    /// is below that of the formula.
     pub(crate) fn of(method: Method) -> Self {
-        match method {
-            Method::Radau { stages } => Self::new(stages),
-            Method::Dop853 | Method::Bdf { .. } | Method::GeneralisedAlpha { .. } => {
-                Self::new(STARTING_STAGES)
-            }
-        }
+        Self::new(match method {
+            Method::Radau { stages } => stages,
+            Method::Bdf { order: ..=2, .. } | Method::GeneralisedAlpha { .. } => 2,
+            Method::Bdf { .. } | Method::Dop853 => 3,
+        })
     }
 
     /// The method of 2 or 3 stages.
