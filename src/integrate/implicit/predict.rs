@@ -3,10 +3,12 @@
 use super::Stage;
 use super::radau::Scheme;
 use crate::linalg::SolveScalar;
+use crate::math::Scalar;
 use crate::system::{Numbering, bodies};
 
-/// Number of steps whose ends the guess of a formula extrapolates.
-pub(super) const RECENT: usize = 3;
+/// Largest number of steps whose ends the guess of a formula extrapolates, and the number with which it begins.
+pub(super) const RECENT: usize = 8;
+const FEW: usize = 3;
 
 /// The history before the next step.
 #[derive(Clone, Debug)]
@@ -116,26 +118,51 @@ impl<S: SolveScalar> Past<S> {
         }
     }
 
-    /// Initial guess of a formula with equal steps: cubic extrapolation of q and v, quadratic of λ
-    /// and μ. Before three increments are known: a Taylor polynomial.
+    /// Initial guess of a formula with equal steps: extrapolation of the increments of q and v and of λ and μ. Before three
+    /// increments are known: a Taylor polynomial.
     pub(crate) fn predict(&mut self, numbering: &Numbering, h: S, out: &mut Stage<S>) {
-        if self.known < RECENT {
+        if self.known < FEW {
             return self.taylor(numbering, h, out);
         }
         out.set(&self.from);
-        let [one, two, three] = &self.recent;
-        let extrapolate = |out: &mut [S], pick: fn(&Stage<S>) -> &Vec<S>| {
-            for (j, out) in out.iter_mut().enumerate() {
-                *out = (pick(one)[j] - pick(two)[j]) * 3.0 + pick(three)[j];
-            }
-        };
-        extrapolate(&mut out.dq, |stage| &stage.dq);
-        extrapolate(&mut out.dv, |stage| &stage.dv);
-        extrapolate(&mut out.lambda, |stage| &stage.lambda);
-        extrapolate(&mut out.mu, |stage| &stage.mu);
+        let recent = &self.recent[..self.known];
+        extrapolate(recent, |stage| &stage.dq, &mut out.dq);
+        extrapolate(recent, |stage| &stage.dv, &mut out.dv);
+        extrapolate(recent, |stage| &stage.lambda, &mut out.lambda);
+        extrapolate(recent, |stage| &stage.mu, &mut out.mu);
         out.q.iter_mut().zip(&out.dq).for_each(|(q, &d)| *q += d);
         out.v.iter_mut().zip(&out.dv).for_each(|(v, &d)| *v += d);
         bodies::normalise(numbering, &mut out.q, &mut out.dq);
+    }
+}
+
+/// Extrapolates a part x of the recent stages, newest first, by one step.
+///
+/// The polynomial through k values gives x_0 + ∇x + … + ∇ᵏ⁻¹x = Σ_i (−1)ⁱ C(k, i+1) x_i. Its error in the newest value was
+/// ∇ᵏx. The guess takes the k with the smallest sum of squares of it.
+fn extrapolate<S: Scalar>(recent: &[Stage<S>], part: fn(&Stage<S>) -> &Vec<S>, out: &mut [S]) {
+    let mut errors = [0.0; RECENT];
+    for j in 0..out.len() {
+        let mut differences = [0.0; RECENT];
+        for (x, stage) in differences.iter_mut().zip(recent) {
+            *x = part(stage)[j].re();
+        }
+        for k in 1..recent.len() {
+            for i in 0..recent.len() - k {
+                differences[i] -= differences[i + 1];
+            }
+            errors[k] += differences[0] * differences[0];
+        }
+    }
+    let least = |a: &usize, b: &usize| errors[*a].total_cmp(&errors[*b]);
+    let count = (1..recent.len()).min_by(least).unwrap_or(1);
+    let mut weight = 1.0;
+    out.fill(S::zero());
+    for (i, stage) in recent[..count].iter().enumerate() {
+        weight *= -((count - i) as f64) / (i + 1) as f64;
+        for (out, &x) in out.iter_mut().zip(part(stage)) {
+            *out -= x * weight;
+        }
     }
 }
 
