@@ -135,6 +135,7 @@ fn as_json(
             "conserved": simulation.at.scene.model.conserves_energy(),
         },
         "constraint_drift": {"position": position, "velocity": velocity},
+        "start": driver::start::notes(problem, &simulation.at.x),
         "warnings": warnings,
     });
     let text = serde_json::to_string_pretty(&all).map_err(Failure::numerical)?;

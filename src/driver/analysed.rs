@@ -6,6 +6,7 @@ use super::simulate::{Simulation, simulate, simulate_with};
 use super::statics::{StaticDesign, StaticsFailure};
 use super::{error, not_finite, start, statics};
 use crate::functions::evaluate::ungated_maximum;
+use crate::functions::instant::Instant;
 use crate::functions::{Bound, Function, Reduction};
 use crate::integrate::{IntegrationFailure, WorkCounts};
 use crate::problem::{Asked, Problem};
@@ -275,16 +276,20 @@ impl Simulated {
             Self::Motion(end) => {
                 let function = &end.at.scene.functions[f];
                 let maximum = end.at.function(f).maximum?;
-                let above = matches!(
-                    function,
-                    Function::Reduced {
-                        reduction: Reduction::Ks {
-                            bound: Bound::Above,
-                            ..
-                        },
+                let Function::Reduced { instant, reduction } = function else {
+                    return None;
+                };
+                let above = match reduction {
+                    Reduction::Ks {
+                        bound: Bound::Above,
                         ..
+                    } => true,
+                    // The sum over points lies above their maximum, the mean over time below.
+                    _ if matches!(instant, Instant::ShellStress { .. }) => {
+                        end.at.function(f).value >= maximum.value
                     }
-                );
+                    _ => false,
+                };
                 Some(Aggregate {
                     lies: if above { Lies::Above } else { Lies::Below },
                     true_maximum: maximum.value,

@@ -174,6 +174,9 @@ fn changed(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>)
         speed = speed.max(v.norm()).max(v_start.norm());
         spin = spin.max(omega.norm()).max(omega_start.norm());
     }
+    // Round-off of a scene that only turns is no speed, and no spin of one that only moves.
+    let length = length_scale(model);
+    (speed, spin) = (speed.max(spin * length), spin.max(speed / length));
     let one = |(i, (given, start)): (usize, (Velocities, Velocities))| {
         let ((v, omega), (v_start, omega_start)) = (given, start);
         if v.norm() == 0.0 && omega.norm() == 0.0 || model.is_internal(i) {
@@ -192,8 +195,9 @@ fn changed(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>)
 }
 
 fn short(x: f64) -> String {
-    match x < 1e-12 {
-        true => "0".into(),
-        false => format!("{x:.4}"),
+    match x {
+        ..1e-12 => "0".into(),
+        ..1e-3 => format!("{x:.1e}"),
+        _ => format!("{x:.4}"),
     }
 }

@@ -19,7 +19,7 @@ use std::ops::RangeInclusive;
 pub(crate) struct Evaluated<S> {
     /// The value.
     pub value: S,
-    /// For an aggregate: the largest value over the motion.
+    /// For an aggregate: the largest value over the motion, and over the points of the quantity if it has some.
     pub maximum: Option<Maximum>,
     /// For an aggregate over equally spaced samples: ρ κ h², with the curvature κ at the peak and
     /// the distance h of the samples. Above about one the samples do not resolve the peak.
@@ -91,7 +91,9 @@ fn reduce<S: SolveScalar>(
             plain(mean * run.time(run.last()))
         }
         Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
-            let values = sample(instant, &turns, model, run);
+            let both = |at: &Snapshot<S>, turns| instant.value_and_largest(at, turns);
+            let all = sample_with(instant, &turns, (model, run), 0..=run.last(), both);
+            let (values, largest): (Vec<S>, Vec<S>) = all.into_iter().unzip();
             let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), rho);
             let value = match reduction {
                 Reduction::Ks { bound, .. } => match bound {
@@ -108,7 +110,7 @@ fn reduce<S: SolveScalar>(
             });
             Evaluated {
                 value,
-                maximum: Some(peak::maximum(run, &values)),
+                maximum: Some(peak::maximum(run, &largest)),
                 peak_sharpness: rho * bend,
             }
         }
@@ -178,7 +180,7 @@ pub(crate) fn sample<S: SolveScalar>(
     sample_at(instant, turns, model, run, 0..=run.last())
 }
 
-/// Values of an instant quantity at some instants of a run. Multipliers are computed if it needs them.
+/// Values of an instant quantity at some instants of a run.
 fn sample_at<S: SolveScalar>(
     instant: &Instant<S>,
     turns: &Option<Vec<f64>>,
@@ -186,6 +188,18 @@ fn sample_at<S: SolveScalar>(
     run: &Trajectory<S>,
     instants: RangeInclusive<usize>,
 ) -> Vec<S> {
+    let value = |at: &Snapshot<S>, turns| instant.value(at, turns);
+    sample_with(instant, turns, (model, run), instants, value)
+}
+
+/// What `of` takes from some instants of a run. Multipliers are computed if the quantity needs them.
+fn sample_with<S: SolveScalar, T>(
+    instant: &Instant<S>,
+    turns: &Option<Vec<f64>>,
+    (model, run): (&Model<S>, &Trajectory<S>),
+    instants: RangeInclusive<usize>,
+    of: impl Fn(&Snapshot<S>, f64) -> T,
+) -> Vec<T> {
     // The model may have rows that were left out of the run.
     let numbering = instant.reacting_joint().map(|_| Numbering::new(model));
     let joint = numbering.as_ref().zip(instant.reacting_joint());
@@ -195,7 +209,7 @@ fn sample_at<S: SolveScalar>(
             joint: (joint.as_mut()).map_or(Rows::none(), |joint| joint.at(run, k)),
             ..Snapshot::of(model, run, k)
         };
-        instant.value(&at, turn(turns, k))
+        of(&at, turn(turns, k))
     };
     instants.map(value).collect()
 }

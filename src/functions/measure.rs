@@ -15,6 +15,16 @@ use crate::system::{flexible, measures};
 /// A point is at rest below this speed \[m/s\]. There the derivative of its speed is set to zero.
 const REST: f64 = 1e-25;
 
+/// The von Mises stresses of elements of a flexible body, relative to the yield stress, aggregated with ρ.
+fn stress<S: Scalar>(
+    at: &Snapshot<S>,
+    (body, elements, rho): (usize, &[usize], f64),
+) -> SoftMax<S> {
+    let body = &at.model.flexible[body];
+    let ratios = flexible::stress_ratios(body, &at.motions(), elements);
+    SoftMax::new(&ratios, |_| 1.0, rho)
+}
+
 impl<S: Scalar> Instant<S> {
     /// The rotation whose whole turns must be counted, if any.
     pub(crate) fn watched_rotation(&self) -> Option<&Rotation<S>> {
@@ -24,6 +34,24 @@ impl<S: Scalar> Instant<S> {
                 gate: Some(gate), ..
             } => Some(&gate.rotation),
             _ => None,
+        }
+    }
+
+    /// Value in a snapshot, and without aggregation over points: their largest value. See [`Instant::value`].
+    pub(crate) fn value_and_largest(&self, at: &Snapshot<S>, turns: f64) -> (S, S) {
+        match self {
+            Instant::ShellStress {
+                flexible,
+                elements,
+                rho,
+            } => {
+                let soft = stress(at, (*flexible, elements, *rho));
+                (soft.ks, S::from(soft.maximum))
+            }
+            _ => {
+                let value = self.value(at, turns);
+                (value, value)
+            }
         }
     }
 
@@ -68,14 +96,10 @@ impl<S: Scalar> Instant<S> {
                 flexible::strain_energy(&at.model.flexible[*body], &at.motions())
             }
             Instant::ShellStress {
-                flexible: body,
+                flexible,
                 elements,
                 rho,
-            } => {
-                let body = &at.model.flexible[*body];
-                let ratios = flexible::stress_ratios(body, &at.motions(), elements);
-                SoftMax::new(&ratios, |_| 1.0, *rho).ks
-            }
+            } => stress(at, (*flexible, elements, *rho)).ks,
             Instant::Deformation {
                 flexible: body,
                 unknowns,

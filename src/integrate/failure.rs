@@ -11,7 +11,8 @@ pub(crate) enum IntegrationFailure {
     /// Newton's method did not converge.
     #[error(
         "Newton's method stalled at t = {time:.6e} s (step {step}) after {iterations} iterations: \
-         scaled residual {residual:.3e}, worst in {worst}"
+         scaled residual {residual:.3e}, worst in {worst} \
+         (smaller steps may help: more \"steps\", or a \"tolerance\")"
     )]
     NewtonStalled {
         /// Time of the step's end \[s\].
@@ -26,7 +27,10 @@ pub(crate) enum IntegrationFailure {
         worst: String,
     },
     /// The iteration matrix is singular.
-    #[error("the equations became singular at t = {time:.6e} s (step {step}), at {place}")]
+    #[error(
+        "the equations became singular at t = {time:.6e} s (step {step}), at {place}: the mechanism is at a \
+         singular position, or the step is too large"
+    )]
     Singular {
         /// Time of the step's end \[s\].
         time: f64,
@@ -157,7 +161,9 @@ pub(crate) enum IntegrationFailure {
         step: usize,
     },
     /// A value overflowed or became NaN.
-    #[error("the motion is not finite at t = {time:.6e} s (step {step}), in {worst}")]
+    #[error(
+        "the motion is not finite at t = {time:.6e} s (step {step}), in {worst}: the step may be too large"
+    )]
     NotFinite {
         /// Time of the step's end \[s\].
         time: f64,

@@ -348,7 +348,7 @@ impl Problem {
     }
 
     /// By body: velocity [m/s] and angular velocity [rad/s] in ground axes, if the file gives them
-    /// for this body.
+    /// for this body and starts of joints may replace them.
     pub(crate) fn own_velocities(&self, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
         scene::own_velocities(&self.written, x)
     }

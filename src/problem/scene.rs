@@ -161,10 +161,15 @@ fn written_velocity<S: Scalar>(
     }
 }
 
-/// By body: its own velocities, if the file gives them; see [`written_velocity`].
+/// By body: its own velocities, if the file gives them and starts of joints may replace them; see
+/// [`written_velocity`].
 pub(crate) fn own_velocities(document: &Document, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
+    let started = document
+        .joints
+        .values()
+        .any(|joint| joint.start().is_some());
     let own = |body: &Body| {
-        body.velocity.as_ref()?;
+        body.velocity.as_ref().filter(|_| started)?;
         Some(written_velocity(document, body, &Vec3::zeros(), x))
     };
     document.bodies.values().map(own).collect()

@@ -179,7 +179,8 @@ pub(crate) struct ConstraintValue {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Aggregate {
-    /// The side of the largest value on which the aggregate always lies.
+    /// The side of the largest value on which the aggregate always lies; of one over time and points, on which it lies
+    /// here.
     pub lies: Lies,
     /// The largest value over time, gate included.
     pub true_maximum: f64,

@@ -40,6 +40,24 @@ pub(crate) fn spans(nodes: &[Vec3<f64>], [o, b, c]: [usize; 3]) -> bool {
     b.cross(&c).norm() > ON_LINE * b.norm() * c.norm()
 }
 
+/// An edge is straight if its nodes are off their line by less than this part of its length.
+const STRAIGHT: f64 = 1e-4;
+
+/// Whether the nodes of an edge lie on a line.
+pub(crate) fn is_straight(nodes: &[Vec3<f64>], edges: &[[usize; 3]]) -> bool {
+    let all = || edges.iter().flatten().map(|&node| nodes[node]);
+    let far = |from: Vec3<f64>| {
+        let distance = |x: &Vec3<f64>| (x - from).norm();
+        all().max_by(|a, b| distance(a).total_cmp(&distance(b)))
+    };
+    let Some(start) = all().next().and_then(far) else {
+        return true;
+    };
+    let along = far(start).map_or(Vec3::zeros(), |end| end - start);
+    let off = |x: Vec3<f64>| (x - start).cross(&along).norm();
+    all().all(|x| off(x) <= STRAIGHT * along.norm_squared())
+}
+
 /// The normal of the surface of shells at a node, not of length one; zero at nodes without shells.
 pub(crate) fn normal(mesh: &Mesh, nodes: &[Vec3<f64>], node: usize) -> Vec3<f64> {
     let mut sum = Vec3::zeros();

@@ -59,6 +59,30 @@ impl Mesh {
         shells.chain(self.beams.iter().map(|nodes| nodes.as_slice()))
     }
 
+    /// Number of parts of the elements that share no node.
+    pub(crate) fn parts(&self) -> usize {
+        // By node: another one of its part, itself for one of them.
+        let mut same: Vec<usize> = (0..self.nodes).collect();
+        let root = |same: &mut Vec<usize>, mut node: usize| {
+            while same[node] != node {
+                same[node] = same[same[node]];
+                node = same[node];
+            }
+            node
+        };
+        let mut used = vec![false; self.nodes];
+        for nodes in self.elements() {
+            for &node in nodes {
+                used[node] = true;
+                let [a, b] = [nodes[0], node].map(|node| root(&mut same, node));
+                same[b] = a;
+            }
+        }
+        (0..self.nodes)
+            .filter(|&node| used[node] && same[node] == node)
+            .count()
+    }
+
     /// Which nodes belong to beams.
     pub(crate) fn on_beams(&self) -> Vec<bool> {
         let mut all = vec![false; self.nodes];

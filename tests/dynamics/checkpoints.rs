@@ -224,7 +224,7 @@ fn durations_and_events_are_differentiated_alike() {
 }
 
 /// The data do not exceed the memory. A thirtieth of the memory costs one more run of the explicit
-/// method, whose checkpoints are small relative to its stages.
+/// method, whose checkpoints are small relative to its stages, and up to three of Radau IIA; an eighth costs one.
 #[test]
 fn memory_is_not_exceeded() {
     let scene = scene("problems/triple_pendulum.json");
@@ -237,7 +237,12 @@ fn memory_is_not_exceeded() {
             let (_, recomputed, run) = found((&scene, 1.0), &settings, (memory, 1));
             assert!(run.bytes()[1] <= memory, "{method:?}, 1/{part}");
             assert_eq!(recomputed, schedule(&run).recomputed());
-            assert_eq!(recomputed < 2000, method == Method::Dop853, "{recomputed}");
+            let runs = match (method, part) {
+                (Method::Radau { .. }, 30) => 3,
+                _ => 1,
+            };
+            let most = 2000 * runs;
+            assert!((most - 2000..most).contains(&recomputed), "{recomputed}");
         }
     }
 }

@@ -134,10 +134,11 @@ fn constraints_hold_at_coarse_steps() {
 /// %. A change that makes a run more expensive or less accurate fails.
 #[test]
 fn work_is_as_counted() {
+    let mut other = Vec::new();
     for (name, duration, newton, factorisations) in [
-        ("trebuchet", 2.0, 10784, 305),
-        ("triple_pendulum", 3.0, 15482, 390),
-        ("chain_16", 1.0, 5174, 96),
+        ("trebuchet", 2.0, 6699, 540),
+        ("triple_pendulum", 3.0, 8359, 342),
+        ("chain_16", 1.0, 2924, 87),
     ] {
         let (model, _) = reference::load(name);
         let counts = bdf(&model, duration, 1e-3, 2).counts;
@@ -146,13 +147,12 @@ fn work_is_as_counted() {
             ("factorisations", counts.factorisations, factorisations),
         ] {
             let off = found as f64 / f64::from(expected) - 1.0;
-            assert!(
-                off.abs() <= 0.05,
-                "{name}: {found} {what}, counted {expected} ({:+.1} %)",
-                100.0 * off
-            );
+            if off.abs() > 0.05 {
+                other.push(format!("{name}: {found} {what}, counted {expected}"));
+            }
         }
     }
+    assert_eq!(other, [""; 0]);
 }
 
 /// Observed orders of all methods on the trebuchet over 2 s, from the errors with so many steps and

@@ -1,9 +1,10 @@
 //! Shells that move, from files: two hinged plates against an independent code of geometrically exact shells;
 //! derivatives of all functions by the complex step; what files may not say.
 
-use crate::tests::reference::documents::problem as parsed;
+use crate::tests::reference::documents::{problem as parsed, run};
 use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
 use flexbody::driver::simulate;
+use flexbody::driver::start::notes;
 use flexbody::problem::Problem;
 use serde_json::Value;
 use std::path::Path;
@@ -69,7 +70,7 @@ fn kept_factors_serve_plates_that_turn() {
     let counts = motion.at.run.counts;
     assert!(counts.factorisations <= 30, "{}", counts.factorisations);
     let iterations = counts.newton_iterations;
-    assert!(10 * iterations <= 56 * steps, "{iterations}");
+    assert!(10 * iterations <= 53 * steps, "{iterations}");
 }
 
 /// A strip of thin shells bends far. Its forces have more round-off than Newton's method asks of other scenes:
@@ -82,7 +83,7 @@ fn iterations_of_thin_shells_end_at_round_off() {
     let problem = parsed(&document);
     let motion = simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
     let iterations = motion.at.run.counts.newton_iterations;
-    assert!(iterations <= 5 * 400, "{iterations}");
+    assert!(iterations <= 3 * 400, "{iterations}");
 }
 
 /// Derivatives of positions, energies and stresses by thickness of bands, modulus and density, by the methods
@@ -165,4 +166,86 @@ fn what_a_file_may_not_say() {
         let text = faulty(change);
         assert!(text.contains(expected), "{expected}: {text}");
     }
+}
+
+/// The largest stress beside an aggregate depends neither on its ρ nor on the number of points: bodies without stress
+/// have none.
+#[test]
+fn the_largest_stress_is_not_aggregated() {
+    let largest = |rho: f64, basis: &str| {
+        let mut document = plates([2, 1], 0.02, 10, &json!({"bdf": {"order": 2}}));
+        document["functions"]["stress 1"]["ks"]["of"]["von_mises"]["rho"] = json!(rho);
+        document["bodies"]["first"]["elements"]["basis"] = json!(basis);
+        let motion = run(&document);
+        let names = parsed(&document).function_names;
+        let f = names.iter().position(|name| name == "stress 1");
+        let maximum = motion.at.function(f.expect("a function")).maximum;
+        maximum.expect("an aggregate").value
+    };
+    let [soft, hard] = [50.0, 2e5].map(|rho| largest(rho, "full"));
+    assert!(hard > 0.005 && (soft - hard).abs() < 1e-14, "{soft} {hard}");
+    assert_eq!(largest(200.0, "rigid"), 0.0);
+}
+
+/// Parts of a mesh that share no node would fly apart; a curved edge has no line that turns.
+#[test]
+fn loose_parts_and_curved_edges_are_refused() {
+    let faults = |mesh: &Value, sets: &Value, elements: &Value| {
+        let mut body = json!({"elements": {
+            "structure": {"mesh": mesh, "material": "aluminium", "thickness": 0.005, "sets": sets}}});
+        for (key, value) in elements.as_object().expect("keys") {
+            body["elements"][key] = value.clone();
+        }
+        if mesh.get("frame").is_some() {
+            let structure = &mut body["elements"]["structure"];
+            structure.as_object_mut().expect("keys").remove("thickness");
+            structure["section"] = json!({"rectangle": {"width": 0.02, "height": 0.01}});
+        }
+        let document = json!({
+            "version": 1, "name": "one", "bodies": {"body": body},
+            "materials": {"aluminium": {"young": 7e10, "poisson": 0.3, "density": 2700}},
+            "simulation": {"duration": 0.01, "steps": 10, "method": {"bdf": {"order": 2}}},
+            "functions": {"energy": {"final": {"energy": "total"}}}
+        });
+        let faults = Problem::parse(&document.to_string(), "one", &[]).err();
+        faults.map_or_else(String::new, |faults| faults.to_string())
+    };
+    let frame = |to: [i32; 3]| {
+        let member = |between: [&str; 2]| json!({"between": between, "orientation": [0, 0, 1], "elements": 2});
+        json!({"frame": {
+            "points": {"a": [0, 0, 0], "b": [1, 0, 0], "c": [1, 1, 0], "d": to},
+            "members": {"u": member(["a", "b"]), "v": member(["c", "d"])}
+        }})
+    };
+    let clamped = json!({"frame": {"clamped": "a"}, "points": {"p": {"node": "b"}}});
+    let mut one = frame([5, 5, 0]);
+    one["frame"]["members"]["w"] = one["frame"]["members"]["u"].clone();
+    one["frame"]["members"]["w"]["between"] = json!(["b", "c"]);
+    assert_eq!(faults(&one, &json!({}), &clamped), "");
+    let text = faults(&frame([5, 5, 0]), &json!({}), &clamped);
+    assert!(text.contains("2 parts that share no node"), "{text}");
+    let panel =
+        json!({"curved_panel": {"radius": 1, "length": 1, "angles": [0, 1], "elements": [2, 2]}});
+    let corners = json!({
+        "p": {"node": {"at": [0, 0]}}, "q": {"node": {"at": [1, 0]}}, "r": {"node": {"at": [0, 1]}}});
+    let at =
+        |edge: &str| json!({"frame": {"chord": ["p", "q", "r"]}, "points": {"a": {"edge": edge}}});
+    let mut told = ["x0", "x1", "y0", "y1"].map(|edge| faults(&panel, &corners, &at(edge)));
+    told.sort();
+    for (k, text) in told.iter().enumerate() {
+        assert_eq!(text.contains("which is curved"), k > 1, "{text}");
+    }
+}
+
+/// Bodies whose start in equilibrium is that of the file are not said to be moved by starts of joints.
+#[test]
+fn a_start_in_equilibrium_is_no_start_of_a_joint() {
+    let mut document = plates([2, 1], 0.02, 10, &json!({"bdf": {"order": 2}}));
+    document["start"] = json!("equilibrium");
+    let problem = parsed(&document);
+    let told = notes(&problem, &problem.start());
+    assert!(
+        told.iter().all(|note| !note.contains("starts of joints")),
+        "{told:?}"
+    );
 }

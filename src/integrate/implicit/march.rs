@@ -113,7 +113,7 @@ fn march_until<S: SolveScalar>(
     let first = starting_stage(numbering, &start);
     let models = (model, &real);
     let mut solver = Solver::new(method, models, (numbering, &scheme), estimates);
-    let mut past = Past::new(numbering, first.clone(), scheme.stages());
+    let mut past = Past::new(numbering, first.clone(), (method, scheme.stages()));
     let mut inside = Stage::zero(numbering);
     let block = Block::new(numbering, first, scheme.stages());
     let memory = (settings.memory, block.room(method));

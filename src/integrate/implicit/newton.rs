@@ -222,6 +222,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         if let Some(backward) = &mut self.backward {
             backward.begin();
         }
+        let mut made_here = false;
         for iteration in 1..=ITERATIONS {
             history.rates(x);
             let at = x.instant();
@@ -238,6 +239,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 }
             }
             if fresh {
+                made_here = true;
                 self.pace = Pace::default();
                 let (equations, matrix) = (&mut self.equations, &mut self.matrix);
                 matrix.assemble(|emit| equations.jacobian(&at, h, history.c, emit));
@@ -283,7 +285,8 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             self.residual = update;
 
             let contraction = match iteration {
-                1 => self.contraction,
+                // One iteration shows no contraction: that of factors about to be renewed.
+                1 => self.contraction.max(RENEW),
                 // A change after a zero one is round-off or an infinitesimal part: no contraction.
                 _ if previous == 0.0 => 0.0,
                 _ => size / previous,
@@ -296,8 +299,10 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 .backward
                 .as_ref()
                 .is_some_and(BackwardError::is_standing);
+            // Old factors contract slowly without round-off.
+            let slowest = if made_here { RENEW } else { SLOW };
             let stagnant = iteration > 2
-                && contraction > RENEW
+                && contraction > slowest
                 && (size <= scales.round_off.max(STAGNANT) || residual <= round_off || standing);
             let solved = self
                 .backward

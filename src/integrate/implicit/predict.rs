@@ -2,13 +2,23 @@
 
 use super::Stage;
 use super::radau::Scheme;
+use crate::integrate::settings::Method;
 use crate::linalg::SolveScalar;
 use crate::math::Scalar;
+use crate::math::slices::add_scaled;
 use crate::system::{Numbering, bodies};
 
 /// Largest number of steps whose ends the guess of a formula extrapolates, and the number with which it begins.
-pub(super) const RECENT: usize = 8;
+const RECENT: usize = 8;
 const FEW: usize = 3;
+
+/// Number of steps whose ends a method keeps for its guesses.
+pub(super) fn recent(method: Method) -> usize {
+    match method {
+        Method::Radau { .. } => 0,
+        Method::Dop853 | Method::Bdf { .. } | Method::GeneralisedAlpha { .. } => RECENT,
+    }
+}
 
 /// The history before the next step.
 #[derive(Clone, Debug)]
@@ -18,22 +28,26 @@ pub(crate) struct Past<S> {
     /// Size of the last step, if it was one of Radau IIA.
     before: Option<S>,
     stages: Vec<Stage<S>>,
-    /// Ends of the latest steps, newest first, and their number.
-    recent: [Stage<S>; RECENT],
+    /// Ends of the latest steps, newest first, and their number; none for Radau IIA.
+    recent: Vec<Stage<S>>,
     known: usize,
     /// A tangent step of the positions.
     tangent: Vec<S>,
 }
 
 impl<S: SolveScalar> Past<S> {
-    /// The history at the first step, which starts at `from`. A step has at most `stages` stages.
-    pub(crate) fn new(numbering: &Numbering, from: Stage<S>, stages: usize) -> Self {
+    /// The history of a method at the first step, which starts at `from`. A step has at most `stages` stages.
+    pub(crate) fn new(
+        numbering: &Numbering,
+        from: Stage<S>,
+        (method, stages): (Method, usize),
+    ) -> Self {
         let zero = Stage::zero(numbering);
         Self {
             from,
             before: None,
             stages: vec![zero.clone(); stages],
-            recent: std::array::from_fn(|_| zero.clone()),
+            recent: vec![zero.clone(); recent(method)],
             known: 0,
             tangent: zero.v,
         }
@@ -43,9 +57,11 @@ impl<S: SolveScalar> Past<S> {
     /// workspace for the next step.
     pub(crate) fn advance(&mut self, h: S, stages: &mut Vec<Stage<S>>, count: usize) {
         self.from.set(&stages[count - 1]);
-        self.recent.rotate_right(1);
-        self.recent[0].set(&self.from);
-        self.known = (self.known + 1).min(RECENT);
+        if let Some(oldest) = self.recent.last_mut() {
+            oldest.set(&self.from);
+            self.recent.rotate_right(1);
+            self.known = (self.known + 1).min(RECENT);
+        }
         self.before = (count == stages.len()).then_some(h);
         std::mem::swap(&mut self.stages, stages);
     }
@@ -125,27 +141,31 @@ impl<S: SolveScalar> Past<S> {
             return self.taylor(numbering, h, out);
         }
         out.set(&self.from);
-        let recent = &self.recent[..self.known];
-        extrapolate(recent, |stage| &stage.dq, &mut out.dq);
-        extrapolate(recent, |stage| &stage.dv, &mut out.dv);
-        extrapolate(recent, |stage| &stage.lambda, &mut out.lambda);
-        extrapolate(recent, |stage| &stage.mu, &mut out.mu);
+        let recent = &self.recent;
+        let go_on = |part: fn(&Stage<S>) -> &Vec<S>, out: &mut [S]| {
+            let all: [&[S]; RECENT] = std::array::from_fn(|i| &part(&recent[i])[..]);
+            extrapolate(&all[..self.known], out);
+        };
+        go_on(|stage| &stage.dq, &mut out.dq);
+        go_on(|stage| &stage.dv, &mut out.dv);
+        go_on(|stage| &stage.lambda, &mut out.lambda);
+        go_on(|stage| &stage.mu, &mut out.mu);
         out.q.iter_mut().zip(&out.dq).for_each(|(q, &d)| *q += d);
         out.v.iter_mut().zip(&out.dv).for_each(|(v, &d)| *v += d);
         bodies::normalise(numbering, &mut out.q, &mut out.dq);
     }
 }
 
-/// Extrapolates a part x of the recent stages, newest first, by one step.
+/// Extrapolates vectors x_i at equal steps, newest first, by one step.
 ///
-/// The polynomial through k values gives x_0 + ∇x + … + ∇ᵏ⁻¹x = Σ_i (−1)ⁱ C(k, i+1) x_i. Its error in the newest value was
-/// ∇ᵏx. The guess takes the k with the smallest sum of squares of it.
-fn extrapolate<S: Scalar>(recent: &[Stage<S>], part: fn(&Stage<S>) -> &Vec<S>, out: &mut [S]) {
+/// The polynomial through k of them gives x_0 + ∇x + … + ∇ᵏ⁻¹x = Σ_i (−1)ⁱ C(k, i+1) x_i. Its error in the newest one
+/// was ∇ᵏx. The k with the smallest sum of squares of it is taken, below the number of vectors.
+fn extrapolate<S: Scalar>(recent: &[&[S]], out: &mut [S]) {
     let mut errors = [0.0; RECENT];
     for j in 0..out.len() {
         let mut differences = [0.0; RECENT];
-        for (x, stage) in differences.iter_mut().zip(recent) {
-            *x = part(stage)[j].re();
+        for (difference, x) in differences.iter_mut().zip(recent) {
+            *difference = x[j].re();
         }
         for k in 1..recent.len() {
             for i in 0..recent.len() - k {
@@ -156,13 +176,11 @@ fn extrapolate<S: Scalar>(recent: &[Stage<S>], part: fn(&Stage<S>) -> &Vec<S>, o
     }
     let least = |a: &usize, b: &usize| errors[*a].total_cmp(&errors[*b]);
     let count = (1..recent.len()).min_by(least).unwrap_or(1);
-    let mut weight = 1.0;
+    let mut weight = -1.0;
     out.fill(S::zero());
-    for (i, stage) in recent[..count].iter().enumerate() {
+    for (i, x) in recent[..count].iter().enumerate() {
         weight *= -((count - i) as f64) / (i + 1) as f64;
-        for (out, &x) in out.iter_mut().zip(part(stage)) {
-            *out -= x * weight;
-        }
+        add_scaled(out, S::from(weight), x);
     }
 }
 
@@ -201,5 +219,28 @@ pub(crate) fn dense<S: SolveScalar>(
         add(&mut out.vdot, S::from(rate[i]) / h, &stage.dv);
         add(&mut out.lambda, S::from(plain[i]), &stage.lambda);
         add(&mut out.mu, S::from(plain[i]), &stage.mu);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The increments of a cubic are a parabola, and extrapolated exactly. Those that alternate are best
+    /// extrapolated by the last one of all guesses, the polynomial through one value.
+    #[test]
+    fn extrapolation_takes_the_best_polynomial() {
+        let next = |x: &dyn Fn(f64) -> f64, count: usize| {
+            let values: Vec<[f64; 1]> = (1..=count).map(|i| [x(-(i as f64))]).collect();
+            let recent: Vec<&[f64]> = values.iter().map(|x| &x[..]).collect();
+            let mut out = [0.0];
+            extrapolate(&recent, &mut out);
+            out[0]
+        };
+        let parabola = |t: f64| 2.0 - 0.5 * t + 0.25 * t * t;
+        for count in 4..=RECENT {
+            assert!((next(&parabola, count) - 2.0).abs() < 1e-13);
+        }
+        assert_eq!(next(&|t: f64| (t.abs() % 2.0) * 2.0 - 1.0, RECENT), 1.0);
     }
 }

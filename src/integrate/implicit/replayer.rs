@@ -28,7 +28,7 @@ impl<'a> Replayer<'a> {
         Self {
             run,
             solver: Solver::new(run.method, (model, model), system, false),
-            past: Past::new(numbering, first, scheme.stages()),
+            past: Past::new(numbering, first, (run.method, scheme.stages())),
             counts: WorkCounts::default(),
         }
     }

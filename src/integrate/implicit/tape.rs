@@ -2,7 +2,7 @@
 
 use super::Stage;
 use super::formula::memory_size;
-use super::predict::{Past, RECENT};
+use super::predict::{Past, recent};
 use super::solver::Memory;
 use crate::integrate::replay;
 use crate::integrate::rows::Rows;
@@ -52,7 +52,7 @@ impl<S: Scalar> Block<S> {
         };
         // A checkpoint holds the state, the stages of the last step, the ends of the latest steps,
         // and the stage of the factors.
-        let states = 2 + self.most + RECENT;
+        let states = 2 + self.most + recent(method);
         MemoryOfBlock {
             step: (stages * width + 1) * number,
             checkpoint: (states * width + memory_size(method) * (nq + nv) + 32) * number,

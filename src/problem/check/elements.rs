@@ -11,7 +11,7 @@ use crate::problem::schema::functions::ShellStress;
 use crate::problem::schema::mechanics::Body;
 use crate::problem::schema::structures::Structure;
 use crate::problem::statics::mesh::part;
-use crate::structures::floating::{FrameNodes, spans};
+use crate::structures::floating::{FrameNodes, is_straight, spans};
 use crate::structures::quality::{faults, orientation_faults};
 use std::collections::BTreeMap;
 
@@ -77,6 +77,13 @@ impl Checker<'_> {
             self.fault(Finding::new(place, fault.to_string(), expected).of_key());
             return;
         }
+        let parts = part.mesh.parts();
+        if parts > 1 {
+            let found = format!("a mesh of {parts} parts that share no node");
+            let expected = "one part; a body of its own for each, and joints between them";
+            self.fault(Finding::new(join(&own, "mesh"), found, expected).of_key());
+            return;
+        }
         let nodes = part.mesh.node_sets.keys().map(String::as_str);
         let edges = part.mesh.edge_sets.keys().map(String::as_str);
         let all: Vec<&str> = nodes.chain(edges.clone()).collect();
@@ -119,13 +126,21 @@ impl Checker<'_> {
             self.fault(Finding::new(place, found, expected).hint(hint));
         }
         for (name, held) in &elements.points {
-            if let Held::Edge(set) = held
-                && !part.mesh.edge_sets.contains_key(set)
-            {
-                let place = join(&join(&join(&pointer, "points"), name), "edge");
-                let hint = advice(set, "edges", edges.clone());
-                let found = format!("\"{set}\"");
-                self.fault(Finding::new(place, found, "the name of an edge").hint(hint));
+            let Held::Edge(set) = held else {
+                continue;
+            };
+            let place = join(&join(&join(&pointer, "points"), name), "edge");
+            match part.mesh.edge_sets.get(set) {
+                None => {
+                    let hint = advice(set, "edges", edges.clone());
+                    let found = format!("\"{set}\"");
+                    self.fault(Finding::new(place, found, "the name of an edge").hint(hint));
+                }
+                Some(edges) if !is_straight(&part.nodes, edges) => {
+                    let found = format!("\"{set}\", which is curved");
+                    self.fault(Finding::new(place, found, "a straight edge, or a node"));
+                }
+                Some(_) => {}
             }
         }
         if self.findings.len() > before {
