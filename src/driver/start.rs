@@ -4,6 +4,7 @@
 use crate::math::{Vec3, rotation};
 use crate::model::{Model, RigidBody};
 use crate::problem::Problem;
+use crate::system::flexible::strain_energy;
 use crate::system::initial::{self, InitialState};
 use crate::system::kkt::SaddlePoint;
 use crate::system::placement::{guess, length_scale};
@@ -50,6 +51,7 @@ pub(crate) fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
     }
     let moved = moved(&model, &numbering, &start);
     tell(&mut notes, moved);
+    tell(&mut notes, deformed(&model, &numbering, &start));
     let changed = changed(&model, &numbering, &start);
     tell(&mut notes, changed);
     notes
@@ -150,6 +152,32 @@ fn moved(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>) -
     let of_the_file = |(i, _): &(usize, &RigidBody<f64>)| !model.is_internal(*i);
     let bodies = model.bodies.iter().enumerate().filter(of_the_file);
     bodies.filter_map(one).collect()
+}
+
+/// Flexible bodies that were deformed: their coordinates are among the masses that move least.
+fn deformed(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>) -> Vec<String> {
+    let least = TOLD * length_scale(model);
+    let placed = guess(model).0;
+    let energies = |q: &[f64]| -> Vec<f64> {
+        let mut motions = Vec::new();
+        BodyMotion::all(numbering, q, &start.v, &mut motions);
+        let all = model.flexible.iter();
+        all.map(|body| strain_energy(body, &motions)).collect()
+    };
+    let all = model.flexible.iter();
+    let both = energies(&placed).into_iter().zip(energies(&start.q));
+    let told = all.zip(both).filter(|(body, _)| {
+        let mut places = (body.places()).map(|(carrier, k)| numbering.position(carrier) + k);
+        places.any(|i| (start.q[i] - placed[i]).abs() > least)
+    });
+    told.map(|(body, (before, after))| {
+        format!(
+            "closing the joints deforms body \"{}\": its strain energy is {after:.3e} J instead of {before:.3e} J; \
+             place the bodies so that the joints fit",
+            body.name
+        )
+    })
+    .collect()
 }
 
 fn turn_angle(turn: &crate::math::Mat3<f64>) -> f64 {

@@ -249,3 +249,17 @@ fn a_start_in_equilibrium_is_no_start_of_a_joint() {
         "{told:?}"
     );
 }
+
+/// A gap between plates is closed by their light edges: the strain energy of that is told.
+#[test]
+fn plates_that_are_bent_to_fit_are_told() {
+    let told = |gap: f64| {
+        let mut document = plates([2, 1], 0.02, 10, &json!({"bdf": {"order": 2}}));
+        document["bodies"]["second"]["place"]["at"] = json!([1.0 + gap, 0, 0]);
+        let problem = parsed(&document);
+        let all = notes(&problem, &problem.start());
+        all.iter().filter(|note| note.contains("deforms")).count()
+    };
+    assert_eq!(told(0.0), 0);
+    assert!(told(1e-4) > 0);
+}

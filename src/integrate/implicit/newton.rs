@@ -301,9 +301,9 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 .is_some_and(BackwardError::is_standing);
             // Old factors contract slowly without round-off.
             let slowest = if made_here { RENEW } else { SLOW };
+            let small = size <= scales.round_off.max(STAGNANT) || residual <= round_off;
             let stagnant = iteration > 2
-                && contraction > slowest
-                && (size <= scales.round_off.max(STAGNANT) || residual <= round_off || standing);
+                && (standing && contraction > RENEW || small && contraction > slowest);
             let solved = self
                 .backward
                 .as_ref()
