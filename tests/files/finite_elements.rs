@@ -256,6 +256,7 @@ fn plates_that_are_bent_to_fit_are_told() {
     let told = |gap: f64| {
         let mut document = plates([2, 1], 0.02, 10, &json!({"bdf": {"order": 2}}));
         document["bodies"]["second"]["place"]["at"] = json!([1.0 + gap, 0, 0]);
+        document["joints"]["hinge"]["revolute"]["at"] = json!({"a": "hinge", "b": "hinge"});
         let problem = parsed(&document);
         let all = notes(&problem, &problem.start());
         all.iter().filter(|note| note.contains("deforms")).count()
