@@ -52,15 +52,15 @@ fn relative(error: f64, value: f64) -> String {
     }
 }
 
-/// The table of the estimated errors of reduced bases; empty if there are none.
+/// The table of the errors of reduced bases; empty if there are none.
 pub(crate) fn of_bases(problem: &Problem, found: &[bases::BasisError]) -> String {
     if found.is_empty() {
         return String::new();
     }
     let width = width(problem.function_names.iter());
     let mut text = format!(
-        "estimated errors of reduced bases, by richer ones of this design\n{:width$}  {:>16}  {:>16}  {:>9}  {:>9}\n",
-        "function", "value", "richer basis", "error", "relative"
+        "errors of reduced bases, against all nodes\n{:width$}  {:>16}  {:>16}  {:>9}  {:>9}\n",
+        "function", "value", "all nodes", "error", "relative"
     );
     for found in found {
         let name = &problem.function_names[found.function];
@@ -69,7 +69,7 @@ pub(crate) fn of_bases(problem: &Problem, found: &[bases::BasisError]) -> String
             text,
             "{name:width$}  {:>16.9e}  {:>16.9e}  {:>9.1e}  {relative:>9}",
             found.value,
-            found.richer,
+            found.other,
             found.error()
         );
     }

@@ -238,7 +238,7 @@ pub(crate) fn errors(problem: &Problem, at: &Simulated) -> Result<String, Failur
     })
 }
 
-/// A table of the estimated errors of reduced bases, if there are any.
+/// A table of the errors of reduced bases, if there are any.
 fn of_bases(problem: &Problem, at: &Evaluated) -> Result<String, Failure> {
     let found = driver::bases::errors(problem, at, &all(problem));
     let found = found.map_err(Failure::numerical)?;

@@ -275,7 +275,8 @@ impl Simulated {
         match self {
             Self::Motion(end) => {
                 let function = &end.at.scene.functions[f];
-                let maximum = end.at.function(f).maximum?;
+                let found = end.at.function(f);
+                let maximum = found.maximum?;
                 let Function::Reduced { instant, reduction } = function else {
                     return None;
                 };
@@ -286,7 +287,7 @@ impl Simulated {
                     } => true,
                     // The sum over points lies above their maximum, the mean over time below.
                     _ if matches!(instant, Instant::ShellStress { .. }) => {
-                        end.at.function(f).value >= maximum.value
+                        found.value >= maximum.value
                     }
                     _ => false,
                 };

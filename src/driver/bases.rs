@@ -1,8 +1,9 @@
-//! The error of reduced bases: the same run with richer ones, made at the design itself.
+//! The error of reduced bases: the same run with all nodes, or with richer bases.
 //!
-//! A richer basis has more fixed-interface modes and vectors of smaller amplitudes; rigid shells
-//! get a basis. The change of a function estimates the error by truncation, and the error of a
-//! basis that was made for the design in the file.
+//! All nodes give the error of a basis itself, be it by truncation or because the basis was made for the
+//! design in the file. They may be dear. Richer bases have more fixed-interface modes and vectors of
+//! smaller amplitudes, and rigid shells get a basis: cheaper, but of a poor basis they tell the order of
+//! magnitude at best.
 
 use super::evaluate::Evaluated;
 use super::integration::Integration;
@@ -16,36 +17,74 @@ pub(crate) struct BasisError {
     pub function: usize,
     /// Its value.
     pub value: f64,
-    /// Its value with richer bases.
-    pub richer: f64,
+    /// Its value with the other basis.
+    pub other: f64,
 }
 
 impl BasisError {
-    /// The estimated error, absolute.
+    /// The error, absolute, if the other basis is exact.
     pub(crate) fn error(&self) -> f64 {
-        (self.value - self.richer).abs()
+        (self.value - self.other).abs()
     }
 }
 
-/// Functions of a simulated design with richer bases. None if no body has a reduced basis.
+/// Functions of a simulated design with all nodes. Empty if no body has a reduced basis.
 ///
 /// # Errors
-/// If the other simulation fails.
+/// If the simulation with all nodes fails.
 pub(crate) fn errors(
     problem: &Problem,
     at: &Evaluated,
     which: &[usize],
 ) -> Result<Vec<BasisError>, IntegrationFailure> {
-    let Some(richer) = problem.with_richer_bases(&at.x) else {
-        return Ok(Vec::new());
-    };
-    let scene = richer.scene(&at.x);
-    let mut integration = Integration::new(&richer, &scene, Some(which), false);
-    let (other, _) = Evaluated::with(&mut integration, &richer, &at.x)?;
-    let one = |&function: &usize| BasisError {
+    match problem.with_all_nodes(&at.x) {
+        Some(other) => compare(at, &other, which),
+        None => Ok(Vec::new()),
+    }
+}
+
+/// Functions of a simulated design with richer bases. Empty if no body has a reduced basis.
+///
+/// # Errors
+/// If the simulation with richer bases fails.
+pub(crate) fn changes(
+    problem: &Problem,
+    at: &Evaluated,
+    which: &[usize],
+) -> Result<Vec<BasisError>, IntegrationFailure> {
+    match problem.with_richer_bases(&at.x) {
+        Some(other) => compare(at, &other, which),
+        None => Ok(Vec::new()),
+    }
+}
+
+/// Functions of a simulated design, and those of another problem at the same design.
+fn compare(
+    at: &Evaluated,
+    other: &Problem,
+    which: &[usize],
+) -> Result<Vec<BasisError>, IntegrationFailure> {
+    let values = values(other, &at.x, which)?;
+    let pairs = which.iter().zip(values);
+    let one = |(&function, other): (&usize, f64)| BasisError {
         function,
         value: at.function(function).value,
-        richer: other.function(function).value,
+        other,
     };
-    Ok(which.iter().map(one).collect())
+    Ok(pairs.map(one).collect())
+}
+
+/// Functions of a problem at a design.
+///
+/// # Errors
+/// If the simulation fails.
+pub(crate) fn values(
+    problem: &Problem,
+    x: &[f64],
+    which: &[usize],
+) -> Result<Vec<f64>, IntegrationFailure> {
+    let scene = problem.scene(x);
+    let mut integration = Integration::new(problem, &scene, Some(which), false);
+    let (at, _) = Evaluated::with(&mut integration, problem, x)?;
+    Ok(which.iter().map(|&f| at.function(f).value).collect())
 }

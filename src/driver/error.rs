@@ -303,31 +303,31 @@ pub(crate) fn reach(
     })
 }
 
-/// Makes reduced bases richer until their estimated error is below `accuracy`, relative to the function; the
-/// error, and the changes. The steps are those of the problem.
-fn reach_bases(
+/// Makes reduced bases richer until their error against all nodes is below `accuracy`, relative to the
+/// function; the error, and the changes. Takes all nodes if no basis does. The steps are those of the problem.
+pub(crate) fn reach_bases(
     problem: &mut Problem,
     which: usize,
     accuracy: f64,
 ) -> Result<(f64, Vec<String>), IntegrationFailure> {
     let x = problem.start();
-    let mut changes = Vec::new();
-    for attempt in 0..BASES {
-        let Some(richer) = problem.with_richer_bases(&x) else {
-            break;
-        };
-        let scene = problem.scene(&x);
-        let mut integration = Integration::new(problem, &scene, Some(&[which]), false);
-        let (at, _) = Evaluated::with(&mut integration, problem, &x)?;
-        let found = bases::errors(problem, &at, &[which])?[0];
-        let error = found.error() / found.value.abs().max(f64::MIN_POSITIVE);
-        if error <= accuracy || attempt + 1 == BASES {
-            return Ok((error, changes));
+    let Some(all_nodes) = problem.with_all_nodes(&x) else {
+        return Ok((0.0, Vec::new()));
+    };
+    let exact = bases::values(&all_nodes, &x, &[which])?[0];
+    let asked = problem.clone();
+    for _ in 0..BASES {
+        let value = bases::values(problem, &x, &[which])?[0];
+        let error = (value - exact).abs() / exact.abs().max(f64::MIN_POSITIVE);
+        if error <= accuracy {
+            return Ok((error, problem.basis_overrides(&asked)));
         }
-        changes = richer.basis_overrides();
-        *problem = richer;
+        if let Some(richer) = problem.with_richer_bases(&x) {
+            *problem = richer;
+        }
     }
-    Ok((0.0, changes))
+    *problem = all_nodes;
+    Ok((0.0, problem.basis_overrides(&asked)))
 }
 
 /// Refines steps and samples by the factors by which their errors exceed the allowed ones. `false`

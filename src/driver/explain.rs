@@ -78,6 +78,8 @@ impl MotionExplanation {
                 None => tape_bytes,
                 Some(_) => foreseen,
             },
+            factorisations: run.counts.factorisations,
+            newton_iterations: run.counts.newton_iterations,
             recomputed: schedule.recomputed(),
             stretch: self.part,
         }
@@ -208,7 +210,7 @@ fn of_bases(problem: &Problem, motion: &MotionExplanation, which: &[usize]) -> V
         return Vec::new();
     }
     let name = |f: usize| &problem.function_names[f];
-    match bases::errors(problem, &motion.at, which) {
+    match bases::changes(problem, &motion.at, which) {
         Ok(found) => (found.iter())
             .map(|own| {
                 let value = own.value;

@@ -76,7 +76,7 @@ fn large_rotation(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
 
 /// The body with the largest strain, if it is too large.
 fn large_strain(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
-    let mut most: (f64, usize, &str) = (0.0, 0, "");
+    let mut most: Option<(f64, usize, &FlexibleBody<f64>)> = None;
     let mut motions = Vec::new();
     let every = run.last().div_ceil(LOOKS).max(1);
     for k in 0..=run.last() {
@@ -84,19 +84,22 @@ fn large_strain(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
         for body in &model.flexible {
             let looked = k % every == 0 || k == run.last();
             let strain = strain(body, &motions, looked);
-            if strain > most.0 {
-                most = (strain, k, &body.name);
+            if most.is_none_or(|most| strain > most.0) {
+                most = Some((strain, k, body));
             }
         }
     }
-    let (strain, k, name) = most;
-    (strain > LARGE_STRAIN).then(|| {
-        format!(
-            "\"{name}\" is strained by {strain:.2} at t = {:.4} s; above {LARGE_STRAIN} strains are not small, \
-             and stress is not proportional to them",
-            run.time(k)
-        )
-    })
+    let (strain, k, body) = most.filter(|most| most.0 > LARGE_STRAIN)?;
+    BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
+    let inverted = flexible::inside_out(body, &motions).map_or_else(String::new, |element| {
+        format!("; element {element} is even turned inside out: the results mean nothing")
+    });
+    Some(format!(
+        "\"{}\" is strained by {strain:.2} at t = {:.4} s; above {LARGE_STRAIN} strains are not small, \
+         and stress is not proportional to them{inverted}",
+        body.name,
+        run.time(k)
+    ))
 }
 
 /// The largest strain of a beam along its axis or, if `looked`, von Mises stress of shells by

@@ -10,7 +10,7 @@ use crate::system::bodies::add6;
 use crate::system::joints::JointCotangent;
 use crate::system::loads::springs;
 use crate::system::marker::{self, MarkerKinematics};
-use crate::system::{flexible, measures};
+use crate::system::{BodyMotion, flexible, measures};
 
 /// A point is at rest below this speed \[m/s\]. There the derivative of its speed is set to zero.
 const REST: f64 = 1e-25;
@@ -18,10 +18,11 @@ const REST: f64 = 1e-25;
 /// The von Mises stresses of elements of a flexible body, relative to the yield stress, aggregated with ρ.
 fn stress<S: Scalar>(
     at: &Snapshot<S>,
+    motions: &[BodyMotion<S>],
     (body, elements, rho): (usize, &[usize], f64),
 ) -> SoftMax<S> {
     let body = &at.model.flexible[body];
-    let ratios = flexible::stress_ratios(body, &at.motions(), elements);
+    let ratios = flexible::stress_ratios(body, motions, elements);
     SoftMax::new(&ratios, |_| 1.0, rho)
 }
 
@@ -45,7 +46,7 @@ impl<S: Scalar> Instant<S> {
                 elements,
                 rho,
             } => {
-                let soft = stress(at, (*flexible, elements, *rho));
+                let soft = stress(at, &at.motions(), (*flexible, elements, *rho));
                 (soft.ks, S::from(soft.maximum))
             }
             _ => {
@@ -99,7 +100,7 @@ impl<S: Scalar> Instant<S> {
                 flexible,
                 elements,
                 rho,
-            } => stress(at, (*flexible, elements, *rho)).ks,
+            } => stress(at, &at.motions(), (*flexible, elements, *rho)).ks,
             Instant::Deformation {
                 flexible: body,
                 unknowns,
@@ -249,8 +250,7 @@ impl Instant<f64> {
                 _,
             ) => {
                 let motions = at.motions();
-                let ratios = flexible::stress_ratios(&at.model.flexible[*body], &motions, elements);
-                let mut bar = SoftMax::new(&ratios, |_| 1.0, *rho).weights;
+                let mut bar = stress(at, &motions, (*body, elements, *rho)).weights;
                 bar.iter_mut().for_each(|bar| *bar *= weight);
                 let of = (at.model, at.numbering);
                 flexible::pull_stress_ratios(

@@ -379,24 +379,34 @@ impl Problem {
     /// The problem with richer reduced bases, made at the design `x`, and with shells that are not rigid.
     /// `None` if no body has such a basis, or parts of the scene are left out for some functions.
     pub(crate) fn with_richer_bases(&self, x: &[f64]) -> Option<Self> {
+        self.with_bases(x, reduced::enrich)
+    }
+
+    /// The problem with all nodes of bodies that are reduced or rigid. `None` as of
+    /// [`Self::with_richer_bases`].
+    pub(crate) fn with_all_nodes(&self, x: &[f64]) -> Option<Self> {
+        self.with_bases(x, reduced::keep_all_nodes)
+    }
+
+    /// The problem with bases that `change` has changed, made at the design `x`.
+    fn with_bases(&self, x: &[f64], change: fn(&mut Document) -> bool) -> Option<Self> {
         if self.focus.is_some() {
             return None;
         }
         let mut written = self.written.clone();
-        let changed = reduced::enrich(&mut written);
-        for elements in written
-            .bodies
-            .values_mut()
-            .filter_map(|body| body.elements.as_mut())
-        {
+        if !change(&mut written) {
+            return None;
+        }
+        let bodies = written.bodies.values_mut();
+        for elements in bodies.filter_map(|body| body.elements.as_mut()) {
             elements.design = Some(x.to_vec());
         }
-        changed.then(|| read::remade(self, written))
+        Some(read::remade(self, written))
     }
 
-    /// The bases of its bodies as changes of the problem file, path=value.
-    pub(crate) fn basis_overrides(&self) -> Vec<String> {
-        reduced::overrides(&self.written)
+    /// Bases that differ from those of `before`, as changes of the problem file, path=value.
+    pub(crate) fn basis_overrides(&self, before: &Self) -> Vec<String> {
+        reduced::overrides(&self.written, &before.written)
     }
 
     /// The axes to the right and up in pictures of structures: those of the file, else x and z.

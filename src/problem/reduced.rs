@@ -48,14 +48,36 @@ pub(super) fn enrich(document: &mut Document) -> bool {
     changed
 }
 
-/// The reduced bases of a document as path=value.
-pub(super) fn overrides(document: &Document) -> Vec<String> {
-    let one = |(name, body): (&String, &Body)| match &body.elements.as_ref()?.basis {
-        ElementBasis::Full | ElementBasis::Rigid => None,
-        ElementBasis::Reduced(keys) => {
-            let path = join(&join(&join("/bodies", name), "elements"), "basis");
-            Some(format!("{path}={}", json!({ "reduced": keys })))
+/// Keeps all nodes of bodies that are reduced or rigid. False if there are none.
+pub(super) fn keep_all_nodes(document: &mut Document) -> bool {
+    let mut changed = false;
+    for elements in (document.bodies.values_mut()).filter_map(|body| body.elements.as_mut()) {
+        if elements.basis != ElementBasis::Full {
+            elements.basis = ElementBasis::Full;
+            elements.prepared = OnceLock::new();
+            changed = true;
         }
+    }
+    changed
+}
+
+/// Bases that differ from those of `before`, as path=value.
+pub(super) fn overrides(document: &Document, before: &Document) -> Vec<String> {
+    let basis = |body: &Body| {
+        body.elements
+            .as_ref()
+            .map(|elements| elements.basis.clone())
+    };
+    let one = |(name, body): (&String, &Body)| {
+        let now = basis(body)?;
+        let value = match &now {
+            _ if before.bodies.get(name).and_then(basis).as_ref() == Some(&now) => return None,
+            ElementBasis::Full => json!("full"),
+            ElementBasis::Rigid => json!("rigid"),
+            ElementBasis::Reduced(keys) => json!({ "reduced": keys }),
+        };
+        let path = join(&join(&join("/bodies", name), "elements"), "basis");
+        Some(format!("{path}={value}"))
     };
     document.bodies.iter().filter_map(one).collect()
 }

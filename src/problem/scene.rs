@@ -36,9 +36,9 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
         loads: super::loads::loads(document, &assembly),
         flexible: Vec::new(),
     };
-    let beams = FlexibleBodies::weigh(document, &mut model, x);
+    let numbers = FlexibleBodies::weigh(document, &mut model, x);
     let mut unstarted = start(document, &assembly, &mut model, x).err();
-    let mut flexible = FlexibleBodies::add(document, &assembly, &mut model, beams, x);
+    let mut flexible = FlexibleBodies::add(document, &assembly, &mut model, numbers, x);
     if document.start == Start::Equilibrium && unstarted.is_none() {
         unstarted = settle(&mut model, &document.known_starts).err();
     }

@@ -5,6 +5,10 @@ use super::table::render;
 use serde::Serialize;
 use std::fmt::Write;
 
+/// What stands above the changes by richer bases.
+const RICHER: &str =
+    "with richer reduced bases, an order of magnitude (--error compares with all nodes)";
+
 /// The explanation of `optimize explain`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Explanation {
@@ -61,6 +65,10 @@ pub(crate) struct IntegrationUse {
     pub samples_bytes: usize,
     /// See above.
     pub tape_bytes: usize,
+    /// Matrices that were factorised, and Newton iterations of an implicit method, in the simulated part.
+    pub factorisations: usize,
+    /// See above.
+    pub newton_iterations: usize,
     /// Steps that a gradient repeats because memory is limited.
     pub recomputed: usize,
     /// The simulated part of the motion, if the whole takes long. The number of steps, the memory
@@ -114,7 +122,7 @@ impl Explanation {
         );
         for (title, lines) in [
             ("flexible bodies", &self.flexible),
-            ("with richer reduced bases", &self.bases),
+            (RICHER, &self.bases),
             ("left out", &self.left_out),
             ("not left out", &self.kept),
             ("start", &self.start),
@@ -173,6 +181,13 @@ impl Explanation {
                 size(found.samples_bytes),
                 size(found.tape_bytes)
             );
+            if found.newton_iterations > 0 && found.stretch.is_none() {
+                let _ = writeln!(
+                    text,
+                    "  linear systems: direct, {} factorisations for {} Newton iterations",
+                    found.factorisations, found.newton_iterations
+                );
+            }
             if found.recomputed > 0 {
                 let part = found.recomputed as f64 / found.steps as f64;
                 let _ = writeln!(

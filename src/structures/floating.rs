@@ -45,17 +45,27 @@ const STRAIGHT: f64 = 1e-4;
 
 /// Whether the nodes of an edge lie on a line.
 pub(crate) fn is_straight(nodes: &[Vec3<f64>], edges: &[[usize; 3]]) -> bool {
-    let all = || edges.iter().flatten().map(|&node| nodes[node]);
-    let far = |from: Vec3<f64>| {
-        let distance = |x: &Vec3<f64>| (x - from).norm();
-        all().max_by(|a, b| distance(a).total_cmp(&distance(b)))
-    };
-    let Some(start) = all().next().and_then(far) else {
+    let all: Vec<Vec3<f64>> = edges.iter().flatten().map(|&node| nodes[node]).collect();
+    let Some(&first) = all.first() else {
         return true;
     };
-    let along = far(start).map_or(Vec3::zeros(), |end| end - start);
-    let off = |x: Vec3<f64>| (x - start).cross(&along).norm();
-    all().all(|x| off(x) <= STRAIGHT * along.norm_squared())
+    let [start, end] = ends(&all, first);
+    let along = end - start;
+    let off = |x: &Vec3<f64>| (x - start).cross(&along).norm();
+    all.iter()
+        .all(|x| off(x) <= STRAIGHT * along.norm_squared())
+}
+
+/// The point farthest from `from`, and the one farthest from that.
+fn ends(points: &[Vec3<f64>], from: Vec3<f64>) -> [Vec3<f64>; 2] {
+    let far = |from: Vec3<f64>| {
+        let distance = |x: &Vec3<f64>| (x - from).norm();
+        let far = points.iter().copied();
+        far.max_by(|a, b| distance(a).total_cmp(&distance(b)))
+            .unwrap_or(from)
+    };
+    let start = far(from);
+    [start, far(start)]
 }
 
 /// The normal of the surface of shells at a node, not of length one; zero at nodes without shells.
@@ -342,14 +352,9 @@ impl Surface {
         let place = (all.iter()).fold(Vec3::zeros(), |sum: Vec3<f64>, &(node, w)| {
             sum + self.nodes[node] * w
         });
-        let far = |from: Vec3<f64>| {
-            let distance = |node: usize| (self.nodes[node] - from).norm();
-            let nodes = all.iter().map(|(node, _)| *node);
-            let far = nodes.max_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-            far.map_or(from, |node| self.nodes[node])
-        };
-        let start = far(place);
-        let along = (far(start) - start).normalize();
+        let nodes: Vec<Vec3<f64>> = all.iter().map(|&(node, _)| self.nodes[node]).collect();
+        let [start, end] = ends(&nodes, place);
+        let along = (end - start).normalize();
         let arm = |node: usize| (self.nodes[node] - place).dot(&along);
         let square: f64 = all.iter().map(|&(node, w)| w * arm(node).powi(2)).sum();
         let mut sum = Sum::default();

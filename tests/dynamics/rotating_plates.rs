@@ -139,3 +139,22 @@ fn rotation_stiffens_a_plate() {
         );
     }
 }
+
+/// A plate is turned inside out where it is shortened by more than its length, and not where it is stretched.
+#[test]
+fn inverted_elements_are_found() {
+    let plate = plate([4, 1]);
+    for (strain, inverted) in [(0.0, false), (0.5, false), (-0.99, false), (-1.01, true)] {
+        let mut q = vec![0.0; plate.mesh.coordinates];
+        for (place, unknowns) in plate.mesh.nodes.iter().zip(&plate.mesh.displacements) {
+            if let Some(i) = unknowns[0] {
+                q[i] = strain * place[0];
+            }
+        }
+        assert_eq!(
+            finite::inside_out(&plate, &q).is_some(),
+            inverted,
+            "{strain}"
+        );
+    }
+}

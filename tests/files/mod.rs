@@ -7,6 +7,7 @@ mod circles;
 mod distributed_loads;
 mod element_parts;
 mod element_sections;
+mod element_starts;
 mod element_steps;
 mod equilibrium;
 mod faults;

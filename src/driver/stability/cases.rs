@@ -35,6 +35,7 @@ pub(super) fn all() -> Vec<Case> {
         loops::units(),
         flexible::thicknesses(),
         flexible::loads(),
+        flexible::squeezes(),
         flexible::stiffnesses(),
         flexible::long_times(),
         flexible::spins(),

@@ -11,6 +11,8 @@ pub(super) const THIN: f64 = 0.01;
 pub(super) const DEFLECTION: f64 = 1e-3;
 /// Points of the quadrature of the elastica.
 const POINTS: usize = 20_000;
+/// Strain from which on stress is not proportional to it.
+const HOOKE: f64 = 0.1;
 /// From this load on the elastica is asymptotic to 1e-6.
 const ASYMPTOTIC: f64 = 200.0;
 
@@ -21,6 +23,8 @@ pub(super) enum Elastic {
     Plate { thickness: f64 },
     /// A thin cantilever with the load P L² / EI at its end.
     Elastica { load: f64 },
+    /// A plate of 1 m that is shortened by this part; small strains only.
+    Squeezed { strain: f64 },
     /// A bar of 1 m that turns about its end with 10 rad/s = `turn` √(E/ρ) / L. It has a steady
     /// state below π/2 only.
     Bar { turn: f64, time: f64 },
@@ -34,6 +38,7 @@ impl Elastic {
         match self {
             Elastic::Plate { .. } => "Timoshenko's beam",
             Elastic::Elastica { .. } => "the elastica by quadrature",
+            Elastic::Squeezed { .. } => "Hooke's law",
             Elastic::Bar { .. } | Elastic::Chain { .. } => "closed form",
         }
     }
@@ -54,6 +59,11 @@ impl Elastic {
                 let energy = 0.5 * load * bending(THIN);
                 (vec![elastica(load), 0.0], vec![1.0, energy])
             }
+            Elastic::Squeezed { strain } if strain >= HOOKE => (vec![f64::NAN; 2], vec![1.0; 2]),
+            Elastic::Squeezed { strain } => {
+                let energy = 0.5 * strain * squeeze(strain);
+                (vec![strain, 0.0], vec![strain, energy])
+            }
             Elastic::Bar { turn, .. } if turn >= FRAC_PI_2 => (vec![f64::NAN; 2], vec![1.0; 2]),
             Elastic::Bar { turn, time } => {
                 let (length, angle) = (turn.tan() / turn, 10.0 * time);
@@ -66,6 +76,11 @@ impl Elastic {
             }
         }
     }
+}
+
+/// The force that shortens a plate of 1 m thickness by this part \[N\].
+pub(super) fn squeeze(strain: f64) -> f64 {
+    strain * YOUNG * WIDTH
 }
 
 /// Bending stiffness of the plate \[N m²\].

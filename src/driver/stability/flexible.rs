@@ -1,10 +1,11 @@
 //! Cases of flexible bodies.
 
 use super::case::{Case, Judge, Steps, TOLERANCE, Way, decade, order_two, usual};
-use super::elastic::{Elastic, force, force_of};
+use super::elastic::{Elastic, force, force_of, squeeze};
 use super::exact::Exact;
 use super::scenes::{
-    CANTILEVER_PLATE, FALLING_CHAIN_10, FALLING_CHAIN_100, FLEXIBLE_PENDULUM, TURNING_BAR,
+    CANTILEVER_PLATE, FALLING_CHAIN_10, FALLING_CHAIN_100, FALLING_CHAIN_1000, FLEXIBLE_PENDULUM,
+    TURNING_BAR,
 };
 use crate::integrate::Method;
 
@@ -64,6 +65,31 @@ pub(super) fn loads() -> Vec<Case> {
                 bound: 2e-3,
                 conservative: false,
                 ..case.set("/loads/push/force/magnitude", force_of(load))
+            });
+        }
+    }
+    all
+}
+
+pub(super) fn squeezes() -> Vec<Case> {
+    let mut all = Vec::new();
+    for strain in [1e-6, 1e-3, 0.03, 0.3, 0.9, 1.1, 2.0, 10.0, 1e3] {
+        for way in implicit(10) {
+            let exact = Exact::Elastic(Elastic::Squeezed { strain });
+            let name = ("squeeze", decade(strain));
+            let case = Case::known(name, CANTILEVER_PLATE, (way, 0.1), exact)
+                .set("/bodies/plate/elements/structure/thickness", 1)
+                .set("/loads/push/force/direction", "[-1, 0, 0]")
+                .set("/loads/push/force/magnitude", squeeze(strain))
+                .set(
+                    "/functions/deflection/final/elastic_displacement/direction",
+                    "[-1, 0, 0]",
+                );
+            // Measures of strain differ by this.
+            all.push(Case {
+                bound: strain.max(1e-6),
+                conservative: false,
+                ..case
             });
         }
     }
@@ -140,8 +166,13 @@ pub(super) fn spins() -> Vec<Case> {
 pub(super) fn chains() -> Vec<Case> {
     let mut all = Vec::new();
     let [bdf, alpha] = order_two();
-    for (beams, scene) in [(10, FALLING_CHAIN_10), (100, FALLING_CHAIN_100)] {
-        for method in [bdf, alpha, Method::Radau { stages: 3 }] {
+    let methods = [bdf, alpha, Method::Radau { stages: 3 }];
+    for (beams, scene, methods) in [
+        (10, FALLING_CHAIN_10, &methods[..]),
+        (100, FALLING_CHAIN_100, &methods),
+        (1000, FALLING_CHAIN_1000, &methods[..1]),
+    ] {
+        for &method in methods {
             let way = Way {
                 method: Some(method),
                 steps: Steps::Equal(10),

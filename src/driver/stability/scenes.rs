@@ -40,6 +40,7 @@ pub(super) const FLEXIBLE_PENDULUM: SceneFile = scene!("flexible_pendulum");
 pub(super) const TURNING_BAR: SceneFile = scene!("turning_bar");
 pub(super) const FALLING_CHAIN_10: SceneFile = scene!("falling_chain_10");
 pub(super) const FALLING_CHAIN_100: SceneFile = scene!("falling_chain_100");
+pub(super) const FALLING_CHAIN_1000: SceneFile = scene!("falling_chain_1000");
 pub(super) const PARALLELOGRAM: SceneFile = scene!("parallelogram");
 pub(super) const FOUR_BARS_1: SceneFile = scene!("benchmarks", "four_bars_1");
 pub(super) const FOUR_BARS_2: SceneFile = scene!("benchmarks", "four_bars_2");
@@ -50,7 +51,7 @@ pub(super) const SLIDER_CRANK: SceneFile = scene!("benchmarks", "balanced_slider
 pub(super) const GOVERNOR: SceneFile = scene!("benchmarks", "flyball_governor");
 
 /// The families with their descriptions.
-pub(super) const FAMILIES: [(&str, &str); 25] = [
+pub(super) const FAMILIES: [(&str, &str); 26] = [
     (
         "mass-ratio",
         "Two hinged rods swing for 2 s; the lower one has this many times the mass of the upper one.",
@@ -140,6 +141,11 @@ pub(super) const FAMILIES: [(&str, &str); 25] = [
     (
         "load",
         "A cantilever plate of shells of 10 mm, in equilibrium with this load P L² / EI at its end.",
+    ),
+    (
+        "squeeze",
+        "A cantilever plate of shells of 1 m that a force shortens by this part of its length. Its elements are \
+         inverted above 1.",
     ),
     (
         "elasticity",

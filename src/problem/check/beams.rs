@@ -180,12 +180,6 @@ impl Checker<'_> {
         }
     }
 
-    /// Whether the body of this name is a beam.
-    pub(super) fn is_beam(&self, name: &str) -> bool {
-        let body = self.document.bodies.get(name);
-        body.is_some_and(|body| body.beam.is_some())
-    }
-
     /// Checks where a joint holds a beam, if the file says it in the beam's own axes.
     pub(super) fn held(&mut self, pointer: &str, between: &[String; 2], pair: &PointPair) {
         for (key, name, point) in [("a", &between[0], &pair.a), ("b", &between[1], &pair.b)] {

@@ -62,11 +62,6 @@ impl Checker<'_> {
                 let expected = "one of them: joints are started with undeformed bodies";
                 self.fault(Finding::new(&pointer, found, expected).of_key());
             }
-            if (document.bodies.values()).any(|body| body.elements.is_some()) {
-                let found = "a start of a joint in a scene with finite elements";
-                let expected = "bodies that are placed, with their velocities";
-                self.fault(Finding::new(&pointer, found, expected).of_key());
-            }
             self.start(&pointer, (name, joint), start);
         }
     }

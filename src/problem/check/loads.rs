@@ -40,29 +40,39 @@ impl Checker<'_> {
             Load::Torque(torque) => {
                 self.moving(pointer, &torque.body, &torque.point);
                 let body = self.document.bodies.get(&torque.body);
-                let shells = body.is_some_and(|body| body.elements.is_some());
-                if shells {
-                    let found = format!("a torque on the shells \"{}\"", torque.body);
-                    let expected = "a torque on a rigid body, which may be welded to a point of it";
-                    self.fault(Finding::new(join(pointer, "body"), found, expected));
-                }
-                let modal = body.is_some_and(|body| body.modal.is_some());
-                let (kind, turned) = match modal {
-                    true => ("body of files", "\"point\", the interface that it turns"),
-                    false => ("beam", "\"point\", the point whose section it turns"),
-                };
-                match (self.is_beam(&torque.body) || modal, &torque.point) {
-                    (true, None) => {
+                let turned = body.and_then(|body| {
+                    let kinds = [
+                        (
+                            body.elements.is_some(),
+                            "elements",
+                            "the named point that it turns",
+                        ),
+                        (
+                            body.modal.is_some(),
+                            "body of files",
+                            "the interface that it turns",
+                        ),
+                        (
+                            body.beam.is_some(),
+                            "beam",
+                            "the point whose section it turns",
+                        ),
+                    ];
+                    let own = kinds.into_iter().find(|(own, ..)| *own);
+                    own.map(|(_, kind, turned)| (kind, turned))
+                });
+                match (turned, &torque.point) {
+                    (Some((kind, turned)), None) => {
                         let found = format!("a torque on the {kind} \"{}\"", torque.body);
-                        let expected = turned;
+                        let expected = format!("\"point\", {turned}");
                         self.fault(Finding::new(pointer, found, expected).of_key());
                     }
-                    (false, Some(_)) if !shells => {
+                    (None, Some(_)) => {
                         let found = "the point of a torque on a rigid body";
                         let expected = "none, as it acts on the body as a whole";
                         self.fault(Finding::new(join(pointer, "point"), found, expected).of_key());
                     }
-                    (true, Some(_)) | (false, _) => {}
+                    (Some(_), Some(_)) | (None, None) => {}
                 }
                 self.direction(&join(pointer, "direction"), &torque.direction);
                 self.course(&join(pointer, "magnitude"), torque.magnitude.parts());

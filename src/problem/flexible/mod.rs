@@ -7,7 +7,6 @@ mod shapes;
 
 pub(crate) use described::described;
 pub(crate) use measures::{END, START, Sections, station, stations};
-pub(crate) use shapes::Weighed;
 
 use super::elements;
 use super::placement::Assembly;
@@ -18,10 +17,11 @@ use super::schema::loads::Load;
 use crate::functions::{Function, TerminalEvent};
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
+use crate::model::finite::FiniteElements;
 use crate::model::flexible::{Form, Inertia, Modal};
 use crate::model::{LoadKind, Model};
 use crate::structures::floating::PointMotion;
-use shapes::{Shapes, start, weighed};
+use shapes::{Shapes, Weighed, start, weighed};
 use std::sync::Arc;
 
 /// A body with elastic coordinates.
@@ -72,18 +72,28 @@ pub(crate) struct FlexibleBodies<S> {
     interfaces: Vec<Interface<S>>,
 }
 
+/// The numbers of the flexible bodies of a document, each kind in the order of the bodies.
+pub(crate) struct Numbers<S> {
+    /// Beams and bodies of files.
+    shapes: Vec<Weighed<S>>,
+    finite: Vec<FiniteElements<S>>,
+}
+
 impl<S: Scalar> FlexibleBodies<S> {
-    /// The beams and bodies of files of a document with their numbers; gives their frames mass and inertia.
-    pub(crate) fn weigh(document: &Document, model: &mut Model<S>, x: &[S]) -> Vec<Weighed<S>> {
-        let mut all = Vec::new();
-        for (frame, body) in document.bodies.values().enumerate() {
-            if let Some((shapes, numbers)) = weighed(body, x) {
-                model.bodies[frame].mass = numbers.mass;
-                model.bodies[frame].inertia = numbers.inertia;
-                all.push((shapes, numbers));
+    /// The numbers of the flexible bodies of a document; gives their frames mass and inertia.
+    pub(crate) fn weigh(document: &Document, model: &mut Model<S>, x: &[S]) -> Numbers<S> {
+        let (mut shapes, mut finite) = (Vec::new(), Vec::new());
+        for (own, body) in model.bodies.iter_mut().zip(document.bodies.values()) {
+            if let Some(elements) = &body.elements {
+                let numbers = elements::finite(document, elements, x);
+                (own.mass, own.inertia) = numbers.rigid();
+                finite.push(numbers);
+            } else if let Some((of, numbers)) = weighed(body, x) {
+                (own.mass, own.inertia) = (numbers.mass, numbers.inertia);
+                shapes.push((of, numbers));
             }
         }
-        all
+        Numbers { shapes, finite }
     }
 
     /// Gives the flexible bodies of a document their elastic coordinates, and moves joints and loads from them to
@@ -92,7 +102,7 @@ impl<S: Scalar> FlexibleBodies<S> {
         document: &Document,
         assembly: &Assembly<S>,
         model: &mut Model<S>,
-        bodies_with_shapes: Vec<Weighed<S>>,
+        numbers: Numbers<S>,
         x: &[S],
     ) -> Self {
         let mut all = Self {
@@ -100,14 +110,9 @@ impl<S: Scalar> FlexibleBodies<S> {
             shells: Vec::new(),
             interfaces: Vec::new(),
         };
-        for (frame, body) in document.bodies.values().enumerate() {
-            let Some(elements) = &body.elements else {
-                continue;
-            };
-            let finite = elements::finite(document, elements, x);
-            let (mass, inertia) = finite.rigid();
-            model.bodies[frame].mass = mass;
-            model.bodies[frame].inertia = inertia;
+        let bodies = document.bodies.values().enumerate();
+        let meshed = bodies.filter_map(|(frame, body)| Some((frame, body.elements.as_ref()?)));
+        for ((frame, elements), finite) in meshed.zip(numbers.finite) {
             let prepared = elements::prepared(document, elements);
             let still = vec![S::zero(); prepared.coordinates()];
             let form = match &prepared.reduced {
@@ -127,7 +132,7 @@ impl<S: Scalar> FlexibleBodies<S> {
         }
         let bodies = document.bodies.values().enumerate();
         let weighed = bodies.filter(|(_, body)| body.beam.is_some() || body.modal.is_some());
-        for ((frame, body), (shapes, numbers)) in weighed.zip(bodies_with_shapes) {
+        for ((frame, body), (shapes, numbers)) in weighed.zip(numbers.shapes) {
             let [elastic, rates] = start(body, numbers.modes(), x);
             let flexible = model.add_flexible(
                 frame,

@@ -103,7 +103,7 @@ pub(crate) enum ElementInertia {
 }
 
 /// Which coordinates shells have.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum ElementBasis {
     /// Displacements and rotations of all nodes.
@@ -116,7 +116,7 @@ pub(crate) enum ElementBasis {
 }
 
 /// What a reduced basis is made of.
-#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ReducedKeys {
     /// Points that get boundary modes, as joints and loads hold them; default: all points.

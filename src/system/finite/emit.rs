@@ -197,10 +197,11 @@ pub(crate) fn emit_mass<S: Scalar>(
     parts::emit_mass(finite, (rotation, q), slots, at, scale, emit);
 }
 
-/// Emits the diagonal of [`super::weights`], in the order of the mass matrix.
+/// Emits `scale` times the diagonal of [`super::weights`], in the order of the mass matrix.
 pub(crate) fn emit_weights<S: Scalar>(
     finite: &FiniteElements<S>,
     slots: &[usize],
+    scale: S,
     emit: &mut dyn Emit<S>,
 ) {
     for (i, element) in finite.mesh.elements.iter().enumerate() {
@@ -217,10 +218,10 @@ pub(crate) fn emit_weights<S: Scalar>(
             directors[k * (moves.len() + 1)] = weights[1] * square;
         }
         let masses = (&positions[..], &directors[..]);
-        emit_masses((element, slots), (0, 0), S::one(), masses, emit);
+        emit_masses((element, slots), (0, 0), scale, masses, emit);
     }
     Frame::zero(finite.mesh.coordinates).emit(slots, (0, 0), S::one(), emit);
-    parts::emit_weights(finite, slots, emit);
+    parts::emit_weights(finite, slots, scale, emit);
 }
 
 /// Emits the derivatives of inertial and elastic forces, the accelerations held: in tangent positions

@@ -6,6 +6,7 @@ mod each;
 mod element;
 mod emit;
 mod inertia;
+mod orientation;
 mod parts;
 mod stiffness;
 mod stress;
@@ -18,6 +19,7 @@ pub(crate) use inertia::{
     first_moment, inertial, moving, pull_back, pull_first_moment, pull_kinetic, pull_weights,
     weights,
 };
+pub(crate) use orientation::inside_out;
 pub(crate) use parts::part_tangent;
 pub(crate) use stiffness::{
     add_forces, diagonal, energy, factors, pull_energy, pull_forces, tangent,

@@ -256,10 +256,11 @@ pub(super) fn emit_mass<S: Scalar>(
     }
 }
 
-/// Emits the diagonal of [`add_weights`], in the order of the mass matrices.
+/// Emits `scale` times the diagonal of [`add_weights`], in the order of the mass matrices.
 pub(super) fn emit_weights<S: Scalar>(
     finite: &FiniteElements<S>,
     slots: &[usize],
+    scale: S,
     emit: &mut dyn Emit<S>,
 ) {
     for (part, coordinates) in all(finite) {
@@ -268,7 +269,7 @@ pub(super) fn emit_weights<S: Scalar>(
             block.add(6 + k, 6 + k, weight);
         }
         let slots = own_slots(slots, coordinates);
-        block.emit(&slots, (0, 0), S::one(), emit);
+        block.emit(&slots, (0, 0), scale, emit);
     }
 }
 

@@ -10,6 +10,10 @@ use crate::system::finite;
 use crate::system::flexing::Block;
 use crate::system::numbering::Numbering;
 
+/// Weight of deformations beside motions of bodies, so that joints are closed by motions where these can.
+/// Derivatives keep their digits.
+const DEFORMATION: f64 = 1e6;
+
 /// The mean square of the displacement of a body over its mass, as a quadratic form of its elastic coordinates:
 /// ∫ |Σ x_I N_I|² dm / m of modes, and the part of its diagonal of finite elements.
 #[derive(Clone, Debug)]
@@ -71,7 +75,8 @@ impl MeanSquare {
     }
 }
 
-/// Adds the gradient of ½ Σ w_I (q_I − q_I')², q' the start, to tangent positions; `q` are positions.
+/// Adds the gradient of ½ w Σ w_I (q_I − q_I')², q' the start and w the weight of deformations, to tangent
+/// positions; `q` are positions.
 pub(crate) fn add_displacement<S: Scalar>(
     model: &Model<S>,
     numbering: &Numbering,
@@ -81,7 +86,7 @@ pub(crate) fn add_displacement<S: Scalar>(
     for body in &model.flexible {
         for ((carrier, k), weight) in body.places().zip(weights(&body.form)) {
             let moved = q[numbering.position(carrier) + k] - model.bodies[carrier].position[k];
-            out[numbering.velocity(carrier) + k] += weight * moved;
+            out[numbering.velocity(carrier) + k] += weight * moved * S::from(DEFORMATION);
         }
     }
 }
@@ -101,9 +106,9 @@ pub(crate) fn emit_displacement<S: Scalar>(
                 for (i, weight) in weights(&body.form).into_iter().enumerate() {
                     block.add(6 + i, 6 + i, weight);
                 }
-                block.emit(&slots, (0, 0), S::one(), emit);
+                block.emit(&slots, (0, 0), S::from(DEFORMATION), emit);
             }
-            Form::Finite(own) => finite::emit_weights(own, &slots, emit),
+            Form::Finite(own) => finite::emit_weights(own, &slots, S::from(DEFORMATION), emit),
         }
     }
 }
@@ -119,7 +124,7 @@ pub(crate) fn pull_displacement(
         let mut by = Vec::with_capacity(body.modes());
         for ((carrier, k), weight) in body.places().zip(weights(&body.form)) {
             let moved = q[numbering.position(carrier) + k] - model.bodies[carrier].position[k];
-            let psi = psi[numbering.velocity(carrier) + k];
+            let psi = psi[numbering.velocity(carrier) + k] * DEFORMATION;
             by.push(psi * moved);
             cot.bodies[carrier].position[k] -= psi * weight;
         }

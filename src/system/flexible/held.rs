@@ -77,6 +77,21 @@ pub(crate) fn pull_strain_energy(
     add_part(numbering, body, (&still, &still), &by_q, y);
 }
 
+/// The first element of a body of shells that is turned inside out.
+pub(crate) fn inside_out<S: Scalar>(
+    body: &FlexibleBody<S>,
+    motions: &[BodyMotion<S>],
+) -> Option<usize> {
+    let q = coordinates(body, motions);
+    match &body.form {
+        Form::Modal(modal) => {
+            let own = modal.shells.as_ref()?;
+            finite::inside_out(&own.elements, &own.unknowns(&q))
+        }
+        Form::Finite(own) => finite::inside_out(own, &q),
+    }
+}
+
 /// Von Mises stress by yield stress at the points of some elements of a body of shells; none of others.
 pub(crate) fn stress_ratios<S: Scalar>(
     body: &FlexibleBody<S>,
