@@ -1,7 +1,7 @@
 //! Where the equations of flexible bodies are no longer accurate: sections that turn far from the axes of their
 //! body, large strains, bodies of linear strain that spin fast, and inertia that depends on the observer.
 
-use crate::integrate::Trajectory;
+use crate::integrate::{IntegrationFailure, Trajectory};
 use crate::model::{FlexibleBody, Form, Inertia, Model};
 use crate::structures::modal::ModalNumbers;
 use crate::structures::modal::frequencies::{Held, frequencies};
@@ -78,11 +78,10 @@ fn large_rotation(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
 fn large_strain(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
     let mut most: Option<(f64, usize, &FlexibleBody<f64>)> = None;
     let mut motions = Vec::new();
-    let every = run.last().div_ceil(LOOKS).max(1);
     for k in 0..=run.last() {
         BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
         for body in &model.flexible {
-            let looked = k % every == 0 || k == run.last();
+            let looked = is_looked_at(run, k);
             let strain = strain(body, &motions, looked);
             if most.is_none_or(|most| strain > most.0) {
                 most = Some((strain, k, body));
@@ -90,16 +89,59 @@ fn large_strain(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
         }
     }
     let (strain, k, body) = most.filter(|most| most.0 > LARGE_STRAIN)?;
-    BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
-    let inverted = flexible::inside_out(body, &motions).map_or_else(String::new, |element| {
-        format!("; element {element} is even turned inside out: the results mean nothing")
-    });
     Some(format!(
         "\"{}\" is strained by {strain:.2} at t = {:.4} s; above {LARGE_STRAIN} strains are not small, \
-         and stress is not proportional to them{inverted}",
+         and stress is not proportional to them",
         body.name,
         run.time(k)
     ))
+}
+
+/// Whether sample `k` is one at which strains of shells are evaluated.
+fn is_looked_at(run: &Trajectory<f64>, k: usize) -> bool {
+    let every = run.last().div_ceil(LOOKS).max(1);
+    k.is_multiple_of(every) || k == run.last()
+}
+
+/// Refuses a motion in which shells are turned inside out, or a beam is shortened by its length or more.
+///
+/// # Errors
+/// [`IntegrationFailure::InsideOut`].
+pub(super) fn refuse_inside_out(
+    model: &Model<f64>,
+    run: &Trajectory<f64>,
+) -> Result<(), IntegrationFailure> {
+    if model.flexible.is_empty() {
+        return Ok(());
+    }
+    let mut motions = Vec::new();
+    for k in (0..=run.last()).filter(|&k| is_looked_at(run, k)) {
+        BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
+        for body in &model.flexible {
+            if let Some(place) = inside_out(body, &motions) {
+                return Err(IntegrationFailure::InsideOut {
+                    body: body.name.clone(),
+                    place,
+                    time: run.time(k),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The first part of a body that is turned inside out.
+fn inside_out(body: &FlexibleBody<f64>, motions: &[BodyMotion<f64>]) -> Option<String> {
+    if let Some(element) = flexible::inside_out(body, motions) {
+        return Some(format!("element {element}"));
+    }
+    let Form::Modal(modal) = &body.form else {
+        return None;
+    };
+    let q = flexible::coordinates(body, motions);
+    let mut strains = modal.stiffness.strains.iter();
+    let shortened = strains.any(|own| own.strain.value(&q) <= -1.0);
+    shortened.then(|| "it is shortened by more than its length".into())
 }
 
 /// The largest strain of a beam along its axis or, if `looked`, von Mises stress of shells by

@@ -219,8 +219,17 @@ impl Integration {
     /// Sets the duration of a scene that ends at an event.
     ///
     /// # Errors
-    /// If the simulation fails.
+    /// If the simulation fails, or a flexible body is turned inside out.
     pub(crate) fn simulate(
+        &mut self,
+        scene: &mut Scene<f64>,
+    ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {
+        let found = self.by_steps_in_use(scene)?;
+        flexible_limits::refuse_inside_out(&scene.model, &found.0)?;
+        Ok(found)
+    }
+
+    fn by_steps_in_use(
         &mut self,
         scene: &mut Scene<f64>,
     ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {

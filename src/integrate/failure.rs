@@ -246,6 +246,19 @@ pub(crate) enum IntegrationFailure {
         /// Waiting time \[s\].
         waited: f64,
     },
+    /// A flexible body passes through itself.
+    #[error(
+        "\"{body}\" is turned inside out at t = {time:.6e} s ({place}): it is loaded beyond what it can bear, \
+         or its steps are too large"
+    )]
+    InsideOut {
+        /// The body.
+        body: String,
+        /// The first such part.
+        place: String,
+        /// Time \[s\].
+        time: f64,
+    },
     /// The motion needs more memory than is available.
     #[error(
         "the motion takes {needed} of memory, and {available} are available: {samples} samples of \

@@ -92,7 +92,9 @@ pub(super) fn off_points(problem: &Problem) -> Option<Finding> {
     if twice.is_some() {
         return twice;
     }
-    let mut scene = problem.scene(&problem.start());
+    let x = problem.start();
+    let mut scene = problem.scene(&x);
+    let assembly = Assembly::new(document, &problem.order, &x);
     let mut places = Vec::new();
     for joint in scene
         .model
@@ -104,7 +106,7 @@ pub(super) fn off_points(problem: &Problem) -> Option<Finding> {
         places.push((at.clone(), joint.body_a, joint.frame_a.point));
         places.extend(joint.body_b.map(|body| (at, body, joint.frame_b.point)));
     }
-    for load in &scene.model.loads {
+    for (load, written) in scene.model.loads.iter().zip(document.loads.values()) {
         let at = join("/loads", &load.name);
         match &load.kind {
             LoadKind::Force { body, point, .. } => places.push((at, *body, *point)),
@@ -118,8 +120,14 @@ pub(super) fn off_points(problem: &Problem) -> Option<Finding> {
                 places.push((at.clone(), *body_a, *point_a));
                 places.extend(body_b.map(|body| (at, body, *point_b)));
             }
-            LoadKind::Torque { .. }
-            | LoadKind::TorsionSpring { .. }
+            LoadKind::Torque { body, .. } => {
+                if let Load::Torque(torque) = written
+                    && let Some(point) = &torque.point
+                {
+                    places.push((at, *body, assembly.in_body(&torque.body, point)));
+                }
+            }
+            LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
             | LoadKind::Friction { .. }
@@ -145,7 +153,11 @@ pub(super) fn off_points(problem: &Problem) -> Option<Finding> {
         let [x, y, z] = [point.x, point.y, point.z].map(|x| (x * 1e6).round() / 1e6);
         (!known).then(|| {
             let found = format!("the place [{x}, {y}, {z}] of \"{name}\"");
-            let expected = "a point that the \"elements\" of the body name";
+            let names: Vec<&str> = prepared.points.keys().map(String::as_str).collect();
+            let expected = format!(
+                "a point that the \"elements\" of the body name: {}",
+                names.join(", ")
+            );
             Finding::new(pointer, found, expected)
         })
     })

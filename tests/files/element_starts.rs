@@ -86,7 +86,7 @@ fn a_loop_of_plates_starts_with_one_joint() {
 fn a_torque_bends_a_plate() {
     let text = include_str!("../../problems/extreme/cantilever_plate.json");
     let mut document: Value = serde_json::from_str(text).expect("valid JSON");
-    let (thickness, moment) = (0.1, 1.0);
+    let (thickness, moment) = (1.0, 1.0);
     document["bodies"]["plate"]["elements"]["structure"]["thickness"] = json!(thickness);
     document["loads"] = json!({"turn": {"torque": {
         "body": "plate", "point": "end", "direction": [0, -1, 0], "magnitude": moment

@@ -295,3 +295,21 @@ fn plates_that_are_bent_to_fit_are_told() {
     assert_eq!(told(0.0), 0);
     assert!(told(1e-4) > 0);
 }
+
+/// A plate that is pushed by more than its stiffness is refused, and is a failure that an optimiser backs off from.
+#[test]
+fn elements_that_are_turned_inside_out_are_refused() {
+    let text = include_str!("../../problems/extreme/cantilever_plate.json");
+    let mut document: Value = serde_json::from_str(text).expect("valid JSON");
+    document["bodies"]["plate"]["elements"]["structure"]["thickness"] = json!(1);
+    document["loads"]["push"]["force"]["direction"] = json!([-1, 0, 0]);
+    for (strain, refused) in [(0.5, false), (1.5, true)] {
+        document["loads"]["push"]["force"]["magnitude"] = json!(strain * 1e9 * 0.25);
+        let problem = parsed(&document);
+        let told = match simulate(&problem, &problem.start()) {
+            Ok(motion) => motion.warning.expect("a warning"),
+            Err(failure) => failure.to_string(),
+        };
+        assert_eq!(told.contains("turned inside out"), refused, "{told}");
+    }
+}
