@@ -62,16 +62,23 @@ pub(crate) fn of_bases(problem: &Problem, found: &[bases::BasisError]) -> String
         "errors of reduced bases, against all nodes\n{:width$}  {:>16}  {:>16}  {:>9}  {:>9}\n",
         "function", "value", "all nodes", "error", "relative"
     );
-    for found in found {
-        let name = &problem.function_names[found.function];
-        let relative = relative(found.error(), found.value);
+    let mut line = |name: &str, value: f64, other: f64| {
+        let error = (value - other).abs();
+        let relative = relative(error, value);
         let _ = writeln!(
             text,
-            "{name:width$}  {:>16.9e}  {:>16.9e}  {:>9.1e}  {relative:>9}",
+            "{name:width$}  {value:>16.9e}  {other:>16.9e}  {error:>9.1e}  {relative:>9}",
+        );
+    };
+    for found in found {
+        line(
+            &problem.function_names[found.function],
             found.value,
             found.other,
-            found.error()
         );
+        if let Some([value, other]) = found.maximum {
+            line("(maximum)", value, other);
+        }
     }
     text
 }

@@ -110,7 +110,11 @@ fn as_json(
         }
         let found = driver::bases::errors(problem, &simulation.at, &all);
         for found in found.map_err(Failure::numerical)? {
-            functions[&names[found.function]]["basis_error"] = json!(found.error());
+            let own = &mut functions[&names[found.function]];
+            own["basis_error"] = json!(found.error());
+            if let Some([value, other]) = found.maximum {
+                own["true_maximum"]["basis_error"] = json!((value - other).abs());
+            }
         }
     }
     let mut warnings: Vec<String> = simulation.warning.iter().cloned().collect();

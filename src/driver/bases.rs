@@ -19,6 +19,8 @@ pub(crate) struct BasisError {
     pub value: f64,
     /// Its value with the other basis.
     pub other: f64,
+    /// The largest value over the motion with both, if it is an aggregate.
+    pub maximum: Option<[f64; 2]>,
 }
 
 impl BasisError {
@@ -64,27 +66,31 @@ fn compare(
     other: &Problem,
     which: &[usize],
 ) -> Result<Vec<BasisError>, IntegrationFailure> {
-    let values = values(other, &at.x, which)?;
-    let pairs = which.iter().zip(values);
-    let one = |(&function, other): (&usize, f64)| BasisError {
-        function,
-        value: at.function(function).value,
-        other,
+    let other = run(other, &at.x, which)?;
+    let one = |&function: &usize| {
+        let [own, other] = [at, &other].map(|of| of.function(function));
+        let maxima = own.maximum.zip(other.maximum);
+        BasisError {
+            function,
+            value: own.value,
+            other: other.value,
+            maximum: maxima.map(|(own, other)| [own.value, other.value]),
+        }
     };
-    Ok(pairs.map(one).collect())
+    Ok(which.iter().map(one).collect())
 }
 
-/// Functions of a problem at a design.
+/// A problem at a design, simulated for the functions `which`.
 ///
 /// # Errors
 /// If the simulation fails.
-pub(crate) fn values(
+pub(crate) fn run(
     problem: &Problem,
     x: &[f64],
     which: &[usize],
-) -> Result<Vec<f64>, IntegrationFailure> {
+) -> Result<Evaluated, IntegrationFailure> {
     let scene = problem.scene(x);
     let mut integration = Integration::new(problem, &scene, Some(which), false);
     let (at, _) = Evaluated::with(&mut integration, problem, x)?;
-    Ok(which.iter().map(|&f| at.function(f).value).collect())
+    Ok(at)
 }

@@ -15,7 +15,7 @@
 use super::bases;
 use super::evaluate::Evaluated;
 use super::event::{self, Admit};
-use super::integration::{Integration, looks_at_the_whole};
+use super::integration::looks_at_the_whole;
 use crate::integrate::{
     IntegrationFailure, Limits, Samples, Settings, Spacing, Trajectory, quadrature, simulate,
 };
@@ -25,6 +25,8 @@ use crate::problem::{Problem, Simulation};
 const ATTEMPTS: usize = 12;
 /// Largest number of richer bases.
 const BASES: usize = 5;
+/// Largest number of times that bases are judged, each time at finer steps.
+const ROUNDS: usize = 4;
 /// Smallest tolerance and largest number of steps to try.
 const FINEST: (f64, usize) = (1e-14, 10_000_000);
 
@@ -248,10 +250,9 @@ impl Accuracy {
         let samples = self
             .samples
             .map_or_else(String::new, |samples| format!(", {samples} samples"));
-        let bases = match self.bases.len() {
-            0 => "",
-            _ => ", richer bases",
-        };
+        let bases: String = (self.bases.iter())
+            .map(|change| format!(", {change}"))
+            .collect();
         format!(
             "accuracy {asked:.1e}: {} steps{refined}{samples}{bases}; estimated relative error of the \
              objective at the start {:.1e}{missed}",
@@ -271,63 +272,90 @@ pub(crate) fn reach(
     which: usize,
     accuracy: f64,
 ) -> Result<Accuracy, IntegrationFailure> {
+    let asked = problem.clone();
+    let reduced = problem.with_all_nodes(&problem.start()).is_some();
+    // Bases and steps may each have half of the allowed error.
+    let part = if reduced { 0.5 * accuracy } else { accuracy };
+    let (mut of_steps, mut steps) = reach_steps(problem, which, part)?;
+    let mut of_bases = 0.0;
+    for _ in 0..ROUNDS {
+        // Bases are judged at the steps that are taken in the end.
+        let changed;
+        (of_bases, changed) = reach_bases(problem, which, part)?;
+        if !changed {
+            break;
+        }
+        let before = problem.simulation.clone();
+        (of_steps, steps) = reach_steps(problem, which, part)?;
+        if problem.simulation == before {
+            break;
+        }
+    }
+    let (now, asked_steps) = (&problem.simulation, &asked.simulation);
+    Ok(Accuracy {
+        steps,
+        spacing: (now.spacing != asked_steps.spacing).then(|| now.spacing.clone()),
+        samples: now.samples.filter(|_| now.samples != asked_steps.samples),
+        bases: problem.basis_overrides(&asked),
+        error: of_steps + of_bases,
+    })
+}
+
+/// Refines steps and samples until their estimated error is below `accuracy`, relative to the function; the error,
+/// and the number of steps.
+fn reach_steps(
+    problem: &mut Problem,
+    which: usize,
+    accuracy: f64,
+) -> Result<(f64, usize), IntegrationFailure> {
     let x = problem.start();
-    let asked = problem.simulation.clone();
-    let (of_bases, bases) = reach_bases(problem, which, accuracy)?;
     let mut attempts = ATTEMPTS;
-    let (error, steps) = loop {
-        let scene = problem.scene(&x);
-        let mut integration = Integration::new(problem, &scene, Some(&[which]), false);
-        let (at, _) = Evaluated::with(&mut integration, problem, &x)?;
+    loop {
+        let at = bases::run(problem, &x, &[which])?;
         let value = estimate(problem, &at, &[which], false)?[0].value;
         let size = value.value.abs().max(f64::MIN_POSITIVE);
         let reached = value.error / size;
+        let steps = at.run.grid.steps();
         attempts -= 1;
         if reached <= accuracy || attempts == 0 {
-            break (reached, at.run.grid.steps());
+            return Ok((reached, steps));
         }
         // Each part may have half of the allowed error.
         let excess = |part: f64| 2.0 * part.abs() / (accuracy * size);
         let (of_steps, of_samples) = (excess(value.of_steps), excess(value.of_samples));
         if !refine(&mut problem.simulation, &at.run, of_steps, of_samples) {
-            break (reached, at.run.grid.steps());
+            return Ok((reached, steps));
         }
-    };
-    let now = &problem.simulation;
-    Ok(Accuracy {
-        steps,
-        spacing: (now.spacing != asked.spacing).then(|| now.spacing.clone()),
-        samples: now.samples.filter(|_| now.samples != asked.samples),
-        bases,
-        error: error.max(of_bases),
-    })
+    }
 }
 
-/// Makes reduced bases richer until their error against all nodes is below `accuracy`, relative to the
-/// function; the error, and the changes. Takes all nodes if no basis does. The steps are those of the problem.
+/// Makes reduced bases richer until their error against all nodes is below `accuracy`, relative to the function; the
+/// error, and whether bases were changed. Takes all nodes if no basis does. The steps are those of the problem.
 pub(crate) fn reach_bases(
     problem: &mut Problem,
     which: usize,
     accuracy: f64,
-) -> Result<(f64, Vec<String>), IntegrationFailure> {
+) -> Result<(f64, bool), IntegrationFailure> {
     let x = problem.start();
     let Some(all_nodes) = problem.with_all_nodes(&x) else {
-        return Ok((0.0, Vec::new()));
+        return Ok((0.0, false));
     };
-    let exact = bases::values(&all_nodes, &x, &[which])?[0];
-    let asked = problem.clone();
-    for _ in 0..BASES {
-        let value = bases::values(problem, &x, &[which])?[0];
-        let error = (value - exact).abs() / exact.abs().max(f64::MIN_POSITIVE);
+    let value = |problem: &Problem| {
+        let at = bases::run(problem, &x, &[which])?;
+        Ok::<f64, IntegrationFailure>(at.function(which).value)
+    };
+    let exact = value(&all_nodes)?;
+    for attempt in 0..BASES {
+        let error = (value(problem)? - exact).abs() / exact.abs().max(f64::MIN_POSITIVE);
         if error <= accuracy {
-            return Ok((error, problem.basis_overrides(&asked)));
+            return Ok((error, attempt > 0));
         }
         if let Some(richer) = problem.with_richer_bases(&x) {
             *problem = richer;
         }
     }
     *problem = all_nodes;
-    Ok((0.0, problem.basis_overrides(&asked)))
+    Ok((0.0, true))
 }
 
 /// Refines steps and samples by the factors by which their errors exceed the allowed ones. `false`

@@ -1,11 +1,13 @@
 //! Where the equations of flexible bodies are no longer accurate: sections that turn far from the axes of their
-//! body, large strains, bodies of linear strain that spin fast, and inertia that depends on the observer.
+//! body, large strains, bodies of linear strain that spin fast, inertia that depends on the observer, and reduced
+//! bases that lock.
 
 use crate::integrate::{IntegrationFailure, Trajectory};
 use crate::model::{FlexibleBody, Form, Inertia, Model};
 use crate::structures::modal::ModalNumbers;
 use crate::structures::modal::frequencies::{Held, frequencies};
 use crate::system::attachment::section_rotation;
+use crate::system::reduction::locked_part;
 use crate::system::{BodyMotion, flexible};
 use std::f64::consts::TAU;
 
@@ -15,6 +17,8 @@ const LARGE_ROTATION: f64 = 0.15;
 
 /// Strain above which stress is no longer proportional to it.
 const LARGE_STRAIN: f64 = 0.1;
+/// Part of the strain energy of reduced shells that is locked above which a run warns.
+const LOCKED: f64 = 0.02;
 /// Number of instants, besides the start, at which the strains of shells are evaluated.
 const LOOKS: usize = 8;
 
@@ -27,11 +31,53 @@ pub(super) fn warning(model: &Model<f64>, run: &Trajectory<f64>) -> Option<Strin
     if model.flexible.is_empty() {
         return None;
     }
-    let other = large_rotation(model, run)
-        .or_else(|| large_strain(model, run))
-        .or_else(|| fast_spin(model, run));
-    let all: Vec<String> = truncated_inertia(model).into_iter().chain(other).collect();
+    let all = [
+        truncated_inertia(model),
+        large_rotation(model, run),
+        large_strain(model, run),
+        fast_spin(model, run),
+        locked(model, run),
+    ];
+    let all: Vec<String> = all.into_iter().flatten().collect();
     (!all.is_empty()).then(|| all.join("; "))
+}
+
+/// The reduced basis that locks most, where the strain energy of its body is largest, if it locks much.
+fn locked(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
+    let mut most: Option<(f64, String)> = None;
+    let mut motions = Vec::new();
+    for body in &model.flexible {
+        let Form::Modal(modal) = &body.form else {
+            continue;
+        };
+        let Some(shells) = &modal.shells else {
+            continue;
+        };
+        let mut bent: Option<(f64, usize, Vec<f64>)> = None;
+        for k in (0..=run.last()).filter(|&k| is_looked_at(run, k)) {
+            BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
+            let energy = flexible::strain_energy(body, &motions);
+            if bent.as_ref().is_none_or(|(before, ..)| energy > *before) {
+                bent = Some((energy, k, flexible::coordinates(body, &motions)));
+            }
+        }
+        let Some((_, k, q)) = bent else { continue };
+        let Ok(part) = locked_part(shells, &q) else {
+            continue;
+        };
+        if part > LOCKED && most.as_ref().is_none_or(|(before, _)| part > *before) {
+            let told = format!(
+                "the reduced basis of \"{}\" locks: at t = {:.4} s {:.0} % of its strain energy is of stretch that \
+                 all nodes would relieve; a smaller \"tolerance\" or \"clamped\" axes may help, and --error \
+                 compares with all nodes",
+                body.name,
+                run.time(k),
+                100.0 * part
+            );
+            most = Some((part, told));
+        }
+    }
+    most.map(|(_, told)| told)
 }
 
 /// The bodies whose inertia leaves out how they are deformed.

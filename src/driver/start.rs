@@ -2,7 +2,7 @@
 //! projected onto the joints; and notes on joints without degrees of freedom.
 
 use crate::math::{Vec3, rotation};
-use crate::model::{Model, RigidBody};
+use crate::model::{FlexibleBody, Model, RigidBody};
 use crate::problem::Problem;
 use crate::system::flexible::strain_energy;
 use crate::system::initial::{self, InitialState};
@@ -12,6 +12,8 @@ use crate::system::{BodyMotion, InMotion, Numbering, joints, redundancy};
 
 /// Changes of a position or velocity above this, relative to the largest one, are reported.
 const TOLD: f64 = 1e-6;
+/// Part of the speeds of a scene that a told strain energy gives to the mass of its body.
+const SLOW: f64 = 1e-3;
 /// Largest number of bodies that are reported.
 const MOST: usize = 5;
 /// A ratio of the smallest to the largest singular value of the unit rows below this is reported.
@@ -154,22 +156,38 @@ fn moved(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>) -
     bodies.filter_map(one).collect()
 }
 
-/// Flexible bodies that were deformed: their coordinates are among the masses that move least.
+/// Flexible bodies that were deformed: by their places, or by a strain energy that moves their mass with a part of the
+/// speeds of the scene.
 fn deformed(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>) -> Vec<String> {
-    let least = TOLD * length_scale(model);
-    let placed = guess(model).0;
+    let length = length_scale(model);
+    let (placed, _) = guess(model);
     let energies = |q: &[f64]| -> Vec<f64> {
         let mut motions = Vec::new();
         BodyMotion::all(numbering, q, &start.v, &mut motions);
         let all = model.flexible.iter();
         all.map(|body| strain_energy(body, &motions)).collect()
     };
-    let all = model.flexible.iter();
-    let both = energies(&placed).into_iter().zip(energies(&start.q));
-    let told = all.zip(both).filter(|(body, _)| {
-        let mut places = (body.places()).map(|(carrier, k)| numbering.position(carrier) + k);
-        places.any(|i| (start.q[i] - placed[i]).abs() > least)
+    let both: Vec<(f64, f64)> = (energies(&placed).into_iter().zip(energies(&start.q))).collect();
+    let most = (both.iter()).fold(0.0, |most: f64, (before, after)| most.max(after - before));
+    let fall = (model.gravity.norm() * length).sqrt();
+    let speed = model.bodies.iter().fold(fall, |speed, body| {
+        speed
+            .max(body.velocity.norm())
+            .max(body.angular_velocity.norm() * length)
     });
+    let moved = |body: &FlexibleBody<f64>| {
+        let mut places = (body.places()).map(|(carrier, k)| numbering.position(carrier) + k);
+        places.any(|i| (start.q[i] - placed[i]).abs() > TOLD * length)
+    };
+    let is_told = |(body, (before, after)): (&FlexibleBody<f64>, &(f64, f64))| {
+        let kinetic = 0.5 * model.bodies[body.frame].mass * (SLOW * speed).powi(2);
+        moved(body) || speed > 0.0 && after - before > kinetic
+    };
+    let all = model.flexible.iter().zip(&both);
+    if !all.clone().any(is_told) {
+        return Vec::new();
+    }
+    let told = all.filter(|&(body, both)| is_told((body, both)) || both.1 - both.0 > TOLD * most);
     told.map(|(body, (before, after))| {
         format!(
             "closing the joints deforms body \"{}\": its strain energy is {after:.3e} J instead of {before:.3e} J; \

@@ -102,7 +102,7 @@ fn motion(row: &mut StabilityRow, case: &Case, problem: &Problem) {
     };
     let relative = |(f, value): (usize, &f64)| (value - exact[f]).abs() / sizes[f];
     let error = largest(values.iter().enumerate().map(relative));
-    row.error = Some(error);
+    row.error = Some(error).filter(|error| error.is_finite());
     let (position, velocity) = seen.constraint_drift();
     (row.position_drift, row.velocity_drift) = (Some(position), Some(velocity));
     if case.conservative {

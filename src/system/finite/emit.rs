@@ -197,31 +197,33 @@ pub(crate) fn emit_mass<S: Scalar>(
     parts::emit_mass(finite, (rotation, q), slots, at, scale, emit);
 }
 
-/// Emits `scale` times the diagonal of [`super::weights`], in the order of the mass matrix.
-pub(crate) fn emit_weights<S: Scalar>(
+/// Emits a diagonal of the coordinates, in the order of the mass matrix. An entry is that of the first element or part
+/// that has its coordinate.
+pub(crate) fn emit_diagonal<S: Scalar>(
     finite: &FiniteElements<S>,
     slots: &[usize],
-    scale: S,
+    mut left: Vec<S>,
     emit: &mut dyn Emit<S>,
 ) {
-    for (i, element) in finite.mesh.elements.iter().enumerate() {
-        let weights = per_area(finite, i);
-        let mut positions = [S::zero(); NODES * NODES];
-        for a in 0..NODES {
-            positions[a * (NODES + 1)] = weights[0] * element.shares[a][a];
+    for element in &finite.mesh.elements {
+        let mut emit_some = |which: &[usize]| {
+            let count = which.len();
+            let mut block = vec![S::zero(); count * count];
+            for (k, &unknown) in which.iter().enumerate() {
+                if let Some(i) = element.coordinates[unknown] {
+                    block[k * (count + 1)] = std::mem::replace(&mut left[i], S::zero());
+                }
+            }
+            emit_element((element, slots), which, (0, 0), S::one(), &block, emit);
+        };
+        for axis in 0..3 {
+            emit_some(&std::array::from_fn::<_, NODES, _>(|a| 3 * a + axis));
         }
-        let moves = &element.moves[DISPLACEMENTS..];
-        let mut directors = vec![S::zero(); moves.len() * moves.len()];
-        for (k, (point, along)) in moves.iter().enumerate() {
-            let a = point - NODES;
-            let square = along.norm_squared() * element.shares[a][a];
-            directors[k * (moves.len() + 1)] = weights[1] * square;
-        }
-        let masses = (&positions[..], &directors[..]);
-        emit_masses((element, slots), (0, 0), scale, masses, emit);
+        let turning: Vec<usize> = (DISPLACEMENTS..element.moves.len()).collect();
+        emit_some(&turning);
     }
     Frame::zero(finite.mesh.coordinates).emit(slots, (0, 0), S::one(), emit);
-    parts::emit_weights(finite, slots, scale, emit);
+    parts::emit_diagonal(finite, slots, &mut left, emit);
 }
 
 /// Emits the derivatives of inertial and elastic forces, the accelerations held: in tangent positions

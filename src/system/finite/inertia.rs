@@ -332,22 +332,3 @@ pub(crate) fn weights<S: Scalar>(finite: &FiniteElements<S>) -> Vec<S> {
     parts::add_weights(finite, &mut out);
     out
 }
-
-/// Transpose of the derivative of [`weights`].
-pub(crate) fn pull_weights(
-    finite: &FiniteElements<f64>,
-    by: &[f64],
-    cot: &mut FiniteElements<f64>,
-) {
-    for (i, element) in finite.mesh.elements.iter().enumerate() {
-        let mut by_weight = [0.0; 2];
-        for (coordinate, (point, along)) in element.coordinates.iter().zip(&element.moves) {
-            if let Some(j) = coordinate {
-                let a = point % NODES;
-                by_weight[point / NODES] += by[*j] * along.norm_squared() * element.shares[a][a];
-            }
-        }
-        pull_per_area(finite, i, by_weight, cot);
-    }
-    parts::pull_weights(finite, by, cot);
-}

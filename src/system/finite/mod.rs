@@ -14,10 +14,9 @@ mod stress;
 pub(crate) use damping::{add_damping, pull_damping};
 pub(crate) use each::SIDE_BY_SIDE;
 pub(crate) use element::{gather, per_area};
-pub(crate) use emit::{emit_jacobian, emit_mass, emit_weights};
+pub(crate) use emit::{emit_diagonal, emit_jacobian, emit_mass};
 pub(crate) use inertia::{
-    first_moment, inertial, moving, pull_back, pull_first_moment, pull_kinetic, pull_weights,
-    weights,
+    first_moment, inertial, moving, pull_back, pull_first_moment, pull_kinetic, weights,
 };
 pub(crate) use orientation::inside_out;
 pub(crate) use parts::part_tangent;

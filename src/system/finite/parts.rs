@@ -160,22 +160,6 @@ fn own_weights<S: Scalar>(part: &Part<S>) -> Vec<S> {
     (0..inertia.static_moments.len()).map(trace).collect()
 }
 
-/// Transpose of the derivative of [`add_weights`].
-pub(super) fn pull_weights(
-    finite: &FiniteElements<f64>,
-    by: &[f64],
-    cot: &mut FiniteElements<f64>,
-) {
-    for (cot, coordinates) in cot.parts.iter_mut().zip(&finite.mesh.parts) {
-        for (k, &i) in coordinates.iter().enumerate() {
-            let place = cot.inertia.place(k, k).0;
-            for d in 0..3 {
-                cot.inertia.products[place][(d, d)] += by[i];
-            }
-        }
-    }
-}
-
 /// Adds the strain energy \[J\].
 pub(super) fn energy<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> S {
     all(finite).fold(S::zero(), |sum, (part, coordinates)| {
@@ -256,20 +240,20 @@ pub(super) fn emit_mass<S: Scalar>(
     }
 }
 
-/// Emits `scale` times the diagonal of [`add_weights`], in the order of the mass matrices.
-pub(super) fn emit_weights<S: Scalar>(
+/// Emits the entries of a diagonal that are left, and takes them from it.
+pub(super) fn emit_diagonal<S: Scalar>(
     finite: &FiniteElements<S>,
     slots: &[usize],
-    scale: S,
+    left: &mut [S],
     emit: &mut dyn Emit<S>,
 ) {
-    for (part, coordinates) in all(finite) {
+    for (_, coordinates) in all(finite) {
         let mut block = Block::zero(coordinates.len());
-        for (k, weight) in own_weights(part).into_iter().enumerate() {
-            block.add(6 + k, 6 + k, weight);
+        for (k, &i) in coordinates.iter().enumerate() {
+            block.add(6 + k, 6 + k, std::mem::replace(&mut left[i], S::zero()));
         }
         let slots = own_slots(slots, coordinates);
-        block.emit(&slots, (0, 0), scale, emit);
+        block.emit(&slots, (0, 0), S::one(), emit);
     }
 }
 

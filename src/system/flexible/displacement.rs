@@ -3,8 +3,10 @@
 use super::coordinates::slots;
 use super::form::{pull_weights, weights};
 use crate::linalg::Emit;
-use crate::math::Scalar;
+use crate::math::slices::dot;
+use crate::math::{Scalar, Vec3};
 use crate::model::Model;
+use crate::model::finite::ElementMesh;
 use crate::model::flexible::{FlexibleBody, Form};
 use crate::system::finite;
 use crate::system::flexing::Block;
@@ -12,7 +14,7 @@ use crate::system::numbering::Numbering;
 
 /// Weight of deformations beside motions of bodies, so that joints are closed by motions where these can.
 /// Derivatives keep their digits.
-const DEFORMATION: f64 = 1e6;
+const DEFORMATION: f64 = 1e7;
 
 /// The mean square of the displacement of a body over its mass, as a quadratic form of its elastic coordinates:
 /// ∫ |Σ x_I N_I|² dm / m of modes, and the part of its diagonal of finite elements.
@@ -75,7 +77,35 @@ impl MeanSquare {
     }
 }
 
-/// Adds the gradient of ½ w Σ w_I (q_I − q_I')², q' the start and w the weight of deformations, to tangent
+/// Weights of the elastic coordinates of a body in the displacement that the assembly makes least \[kg\]: of modes the
+/// diagonal of their mass matrix, of nodes equal parts of the mass of the body, for rotations times the mean square
+/// of their distance from the centre. A director has so little mass that its rotation would close the joints.
+fn start_weights<S: Scalar>(model: &Model<S>, body: &FlexibleBody<S>) -> Vec<S> {
+    match &body.form {
+        Form::Modal(_) => {
+            let all = weights(&body.form).into_iter();
+            all.map(|weight| weight * S::from(DEFORMATION)).collect()
+        }
+        Form::Finite(own) => {
+            let mass = model.bodies[body.frame].mass;
+            let all = parts_of_mass(&own.mesh).into_iter();
+            all.map(|part| mass * S::from(part * DEFORMATION)).collect()
+        }
+    }
+}
+
+/// The weights of nodes over the mass of the body: 1, in m² for rotations.
+fn parts_of_mass(mesh: &ElementMesh) -> Vec<f64> {
+    let part = 1.0 / mesh.nodes.len() as f64;
+    let centre = mesh.nodes.iter().sum::<Vec3<f64>>() * part;
+    let squares = mesh.nodes.iter().map(|x| (x - centre).norm_squared());
+    let mut out = vec![squares.sum::<f64>() * part * part; mesh.coordinates];
+    let displacements = mesh.displacements.iter().flatten().flatten();
+    displacements.for_each(|&i| out[i] = part);
+    out
+}
+
+/// Adds the gradient of ½ Σ w_I (q_I − q_I')², q' the start and w the weights of deformations, to tangent
 /// positions; `q` are positions.
 pub(crate) fn add_displacement<S: Scalar>(
     model: &Model<S>,
@@ -84,9 +114,9 @@ pub(crate) fn add_displacement<S: Scalar>(
     out: &mut [S],
 ) {
     for body in &model.flexible {
-        for ((carrier, k), weight) in body.places().zip(weights(&body.form)) {
+        for ((carrier, k), weight) in body.places().zip(start_weights(model, body)) {
             let moved = q[numbering.position(carrier) + k] - model.bodies[carrier].position[k];
-            out[numbering.velocity(carrier) + k] += weight * moved * S::from(DEFORMATION);
+            out[numbering.velocity(carrier) + k] += weight * moved;
         }
     }
 }
@@ -99,16 +129,17 @@ pub(crate) fn emit_displacement<S: Scalar>(
 ) {
     for body in &model.flexible {
         let slots = slots(numbering, body);
+        let weights = start_weights(model, body);
         match &body.form {
             Form::Modal(_) => {
                 // Entries come in the order of those of the mass matrix.
                 let mut block = Block::zero(body.modes());
-                for (i, weight) in weights(&body.form).into_iter().enumerate() {
+                for (i, weight) in weights.into_iter().enumerate() {
                     block.add(6 + i, 6 + i, weight);
                 }
-                block.emit(&slots, (0, 0), S::from(DEFORMATION), emit);
+                block.emit(&slots, (0, 0), S::one(), emit);
             }
-            Form::Finite(own) => finite::emit_weights(own, &slots, S::from(DEFORMATION), emit),
+            Form::Finite(own) => finite::emit_diagonal(own, &slots, weights, emit),
         }
     }
 }
@@ -120,14 +151,19 @@ pub(crate) fn pull_displacement(
     (q, psi): (&[f64], &[f64]),
     cot: &mut Model<f64>,
 ) {
-    for (body, own) in model.flexible.iter().zip(&mut cot.flexible) {
+    for (f, body) in model.flexible.iter().enumerate() {
         let mut by = Vec::with_capacity(body.modes());
-        for ((carrier, k), weight) in body.places().zip(weights(&body.form)) {
+        for ((carrier, k), weight) in body.places().zip(start_weights(model, body)) {
             let moved = q[numbering.position(carrier) + k] - model.bodies[carrier].position[k];
-            let psi = psi[numbering.velocity(carrier) + k] * DEFORMATION;
-            by.push(psi * moved);
+            let psi = psi[numbering.velocity(carrier) + k];
+            by.push(psi * moved * DEFORMATION);
             cot.bodies[carrier].position[k] -= psi * weight;
         }
-        pull_weights(&body.form, &by, &mut own.form);
+        match &body.form {
+            Form::Modal(_) => pull_weights(&by, &mut cot.flexible[f].form),
+            Form::Finite(own) => {
+                cot.bodies[body.frame].mass += dot(&by, &parts_of_mass(&own.mesh));
+            }
+        }
     }
 }

@@ -125,8 +125,7 @@ pub(super) fn emit_mass_of<S: Scalar>(
     }
 }
 
-/// Weights of the elastic coordinates in the displacement that the assembly makes least: the diagonal of
-/// ∫ N_Iᵀ N_J dm.
+/// The diagonal of ∫ N_Iᵀ N_J dm, the mass matrix of the elastic coordinates.
 pub(super) fn weights<S: Scalar>(form: &Form<S>) -> Vec<S> {
     match form {
         Form::Modal(modal) => {
@@ -138,19 +137,14 @@ pub(super) fn weights<S: Scalar>(form: &Form<S>) -> Vec<S> {
     }
 }
 
-/// Transpose of the derivative of [`weights`].
-pub(super) fn pull_weights(form: &Form<f64>, by: &[f64], cot: &mut Form<f64>) {
-    match (form, cot) {
-        (Form::Modal(_), Form::Modal(own)) => {
-            for (i, by) in by.iter().enumerate() {
-                let place = own.inertia.place(i, i).0;
-                for d in 0..3 {
-                    own.inertia.products[place][(d, d)] += by;
-                }
-            }
+/// Adds the cotangents `by` of the [`weights`] of modes.
+pub(super) fn pull_weights(by: &[f64], cot: &mut Form<f64>) {
+    let Form::Modal(own) = cot else { unlike() };
+    for (i, by) in by.iter().enumerate() {
+        let place = own.inertia.place(i, i).0;
+        for d in 0..3 {
+            own.inertia.products[place][(d, d)] += by;
         }
-        (Form::Finite(own), Form::Finite(cot)) => finite::pull_weights(own, by, cot),
-        (Form::Modal(_), Form::Finite(_)) | (Form::Finite(_), Form::Modal(_)) => unlike(),
     }
 }
 

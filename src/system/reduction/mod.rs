@@ -12,10 +12,12 @@
 
 mod basis;
 mod loads;
+mod locking;
 mod matrices;
 mod project;
 mod spaces;
 mod subspace;
 
 pub(crate) use basis::{ModeChoice, ReducedBasis, Request, reduced_basis};
+pub(crate) use locking::locked_part;
 pub(crate) use project::{ProjectedShells, project};
