@@ -309,23 +309,28 @@ pub(crate) fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
         } else {
             worst.max(difference)
         };
+        let verdict = if nothing {
+            "  zero but for round-off".to_string()
+        } else if round_off {
+            "  differs by round-off of larger terms".to_string()
+        } else if passed {
+            String::new()
+        } else if problem.statics.is_some() {
+            "  exceeds the tolerance".to_string()
+        } else {
+            format!(
+                "  exceeds the tolerance; where Newton's method stops moves it by {:.1e}",
+                d.noise()
+            )
+        };
         let _ = writeln!(
             text,
-            "{:f_width$}  {:v_width$}  {:>23.15e}  {:>23.15e}  {:>10.1e}{}",
+            "{:f_width$}  {:v_width$}  {:>23.15e}  {:>23.15e}  {:>10.1e}{verdict}",
             problem.function_names[d.function],
             problem.variables[d.variable].name,
             d.adjoint,
             d.complex_step,
             difference,
-            if nothing {
-                "  zero but for round-off"
-            } else if round_off {
-                "  differs by round-off of larger terms"
-            } else if passed {
-                ""
-            } else {
-                "  exceeds the tolerance"
-            }
         );
     }
     let _ = writeln!(
