@@ -91,14 +91,14 @@ pub(crate) struct Job {
     #[arg(long)]
     pub no_lowering: bool,
     /// Reports the estimated discretisation error of every function and of its gradient, by a
-    /// second simulation with steps of half the size.
+    /// second simulation with steps of half the size; and that of reduced and rigid bases, by one with all nodes.
     #[arg(long)]
     pub error: bool,
     /// Writes the fields of structures to fields.vtu beside the results, for ParaView and meshio. Of shells that
     /// move it writes fields_0000.vtu and so on, at most 101 instants, and their list fields.pvd.
     #[arg(long)]
     pub vtu: bool,
-    /// Refines steps or samples until the estimated relative error of the objective at the start is
+    /// Refines steps, samples and reduced bases until the estimated relative error of the objective at the start is
     /// below this value. They are never coarser than in the file.
     #[arg(long, value_name = "ERROR", value_parser = positive)]
     pub accuracy: Option<f64>,

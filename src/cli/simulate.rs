@@ -109,7 +109,7 @@ fn as_json(
             own["gradient"] = Value::Object(gradient.collect());
         }
         let found = driver::bases::errors(problem, &simulation.at, &all);
-        for found in found.map_err(Failure::numerical)? {
+        for found in found.map_err(of_all_nodes)? {
             let own = &mut functions[&names[found.function]];
             own["basis_error"] = json!(found.error());
             if let Some([value, other]) = found.maximum {
@@ -245,8 +245,13 @@ pub(crate) fn errors(problem: &Problem, at: &Simulated) -> Result<String, Failur
 /// A table of the errors of reduced bases, if there are any.
 fn of_bases(problem: &Problem, at: &Evaluated) -> Result<String, Failure> {
     let found = driver::bases::errors(problem, at, &all(problem));
-    let found = found.map_err(Failure::numerical)?;
+    let found = found.map_err(of_all_nodes)?;
     Ok(error_table::of_bases(problem, &found))
+}
+
+/// The failure of the run that bases are compared with.
+fn of_all_nodes(failure: impl std::fmt::Display) -> Failure {
+    Failure::numerical(format!("the run with all nodes fails: {failure}"))
 }
 
 /// A warning of a motion that magnifies round-off.

@@ -13,6 +13,7 @@
 //! sample of the finer run is used instead.
 
 use super::bases;
+use super::check::own_size;
 use super::evaluate::Evaluated;
 use super::event::{self, Admit};
 use super::integration::looks_at_the_whole;
@@ -27,6 +28,8 @@ const ATTEMPTS: usize = 12;
 const BASES: usize = 5;
 /// Largest number of times that bases are judged, each time at finer steps.
 const ROUNDS: usize = 4;
+/// Part of the size of its kind below which a function is round-off, so that no error relative to it can be reached.
+const ROUND_OFF: f64 = 1e-13;
 /// Smallest tolerance and largest number of steps to try.
 const FINEST: (f64, usize) = (1e-14, 10_000_000);
 
@@ -317,7 +320,8 @@ fn reach_steps(
         let reached = value.error / size;
         let steps = at.run.grid.steps();
         attempts -= 1;
-        if reached <= accuracy || attempts == 0 {
+        let round_off = value.value.abs() <= ROUND_OFF * own_size(&at, which);
+        if reached <= accuracy || attempts == 0 || round_off {
             return Ok((reached, steps));
         }
         // Each part may have half of the allowed error.
@@ -340,19 +344,24 @@ pub(crate) fn reach_bases(
     let Some(all_nodes) = problem.with_all_nodes(&x) else {
         return Ok((0.0, false));
     };
-    let value = |problem: &Problem| {
-        let at = bases::run(problem, &x, &[which])?;
-        Ok::<f64, IntegrationFailure>(at.function(which).value)
-    };
-    let exact = value(&all_nodes)?;
+    let exact = bases::run(&all_nodes, &x, &[which])?.function(which).value;
+    let relative = |value: f64| (value - exact).abs() / exact.abs().max(f64::MIN_POSITIVE);
     for attempt in 0..BASES {
-        let error = (value(problem)? - exact).abs() / exact.abs().max(f64::MIN_POSITIVE);
-        if error <= accuracy {
+        let at = bases::run(problem, &x, &[which])?;
+        let value = at.function(which).value;
+        let error = relative(value);
+        let round_off = (value - exact).abs() <= ROUND_OFF * own_size(&at, which);
+        if error <= accuracy || round_off {
             return Ok((error, attempt > 0));
         }
         if let Some(richer) = problem.with_richer_bases(&x) {
             *problem = richer;
         }
+    }
+    if problem.simulation.method.is_none() {
+        // Bodies with all nodes need a method.
+        let at = bases::run(problem, &x, &[which])?;
+        return Ok((relative(at.function(which).value), true));
     }
     *problem = all_nodes;
     Ok((0.0, true))

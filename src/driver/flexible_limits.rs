@@ -18,8 +18,9 @@ const LARGE_ROTATION: f64 = 0.15;
 /// Strain above which stress is no longer proportional to it.
 const LARGE_STRAIN: f64 = 0.1;
 /// Part of the strain energy of reduced shells that is locked above which a run warns.
-const LOCKED: f64 = 0.02;
-/// Number of instants, besides the start, at which the strains of shells are evaluated.
+const LOCKED: f64 = 0.06;
+/// Number of instants, besides the start and that of the largest strain energy, at which the strains of shells are
+/// evaluated.
 const LOOKS: usize = 8;
 
 /// Part of the lowest angular frequency above which a body of linear strain spins fast. A beam that turns with Ω
@@ -31,45 +32,61 @@ pub(super) fn warning(model: &Model<f64>, run: &Trajectory<f64>) -> Option<Strin
     if model.flexible.is_empty() {
         return None;
     }
+    let peaks = peaks(model, run);
     let all = [
         truncated_inertia(model),
         large_rotation(model, run),
-        large_strain(model, run),
+        large_strain(model, run, &peaks),
         fast_spin(model, run),
-        locked(model, run),
+        locked(model, run, &peaks),
     ];
     let all: Vec<String> = all.into_iter().flatten().collect();
     (!all.is_empty()).then(|| all.join("; "))
 }
 
+/// By flexible body: the sample with the largest strain energy; none of bodies without shells.
+fn peaks(model: &Model<f64>, run: &Trajectory<f64>) -> Vec<Option<usize>> {
+    let has_shells = |body: &FlexibleBody<f64>| body.form.shells().is_some();
+    let mut most: Vec<(f64, Option<usize>)> = vec![(-1.0, None); model.flexible.len()];
+    if !model.flexible.iter().any(has_shells) {
+        return vec![None; most.len()];
+    }
+    let mut motions = Vec::new();
+    for k in 0..=run.last() {
+        BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
+        for (body, most) in model.flexible.iter().zip(&mut most) {
+            if has_shells(body) {
+                let energy = flexible::strain_energy(body, &motions);
+                if energy > most.0 {
+                    *most = (energy, Some(k));
+                }
+            }
+        }
+    }
+    most.into_iter().map(|(_, k)| k).collect()
+}
+
 /// The reduced basis that locks most, where the strain energy of its body is largest, if it locks much.
-fn locked(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
+fn locked(model: &Model<f64>, run: &Trajectory<f64>, peaks: &[Option<usize>]) -> Option<String> {
     let mut most: Option<(f64, String)> = None;
     let mut motions = Vec::new();
-    for body in &model.flexible {
-        let Form::Modal(modal) = &body.form else {
+    for (body, peak) in model.flexible.iter().zip(peaks) {
+        let (Form::Modal(modal), &Some(k)) = (&body.form, peak) else {
             continue;
         };
         let Some(shells) = &modal.shells else {
             continue;
         };
-        let mut bent: Option<(f64, usize, Vec<f64>)> = None;
-        for k in (0..=run.last()).filter(|&k| is_looked_at(run, k)) {
-            BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
-            let energy = flexible::strain_energy(body, &motions);
-            if bent.as_ref().is_none_or(|(before, ..)| energy > *before) {
-                bent = Some((energy, k, flexible::coordinates(body, &motions)));
-            }
-        }
-        let Some((_, k, q)) = bent else { continue };
-        let Ok(part) = locked_part(shells, &q) else {
+        BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
+        let q = flexible::coordinates(body, &motions);
+        let Ok(Some(part)) = locked_part(shells, &q) else {
             continue;
         };
         if part > LOCKED && most.as_ref().is_none_or(|(before, _)| part > *before) {
             let told = format!(
                 "the reduced basis of \"{}\" locks: at t = {:.4} s {:.0} % of its strain energy is of stretch that \
-                 all nodes would relieve; a smaller \"tolerance\" or \"clamped\" axes may help, and --error \
-                 compares with all nodes",
+                 all nodes would relieve; \"companions\", a smaller \"tolerance\" or \"clamped\" axes may help, and \
+                 --error compares with all nodes",
                 body.name,
                 run.time(k),
                 100.0 * part
@@ -121,13 +138,17 @@ fn large_rotation(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
 }
 
 /// The body with the largest strain, if it is too large.
-fn large_strain(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
+fn large_strain(
+    model: &Model<f64>,
+    run: &Trajectory<f64>,
+    peaks: &[Option<usize>],
+) -> Option<String> {
     let mut most: Option<(f64, usize, &FlexibleBody<f64>)> = None;
     let mut motions = Vec::new();
     for k in 0..=run.last() {
         BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
-        for body in &model.flexible {
-            let looked = is_looked_at(run, k);
+        for (body, peak) in model.flexible.iter().zip(peaks) {
+            let looked = is_looked_at(run, k) || *peak == Some(k);
             let strain = strain(body, &motions, looked);
             if most.is_none_or(|most| strain > most.0) {
                 most = Some((strain, k, body));
@@ -143,7 +164,7 @@ fn large_strain(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
     ))
 }
 
-/// Whether sample `k` is one at which strains of shells are evaluated.
+/// Whether sample `k` is one at which strains of all shells are evaluated.
 fn is_looked_at(run: &Trajectory<f64>, k: usize) -> bool {
     let every = run.last().div_ceil(LOOKS).max(1);
     k.is_multiple_of(every) || k == run.last()
@@ -161,7 +182,7 @@ pub(super) fn refuse_inside_out(
         return Ok(());
     }
     let mut motions = Vec::new();
-    for k in (0..=run.last()).filter(|&k| is_looked_at(run, k)) {
+    for k in 0..=run.last() {
         BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
         for body in &model.flexible {
             if let Some(place) = inside_out(body, &motions) {

@@ -200,8 +200,10 @@ impl Integration {
     pub(crate) fn warning(&self, scene: &Scene<f64>, run: &Trajectory<f64>) -> Option<String> {
         let widest = (1..=run.grid.steps()).map(|k| run.grid.width(k));
         let h = run.duration * widest.fold(0.0, f64::max);
-        let inaccurate = || flexible_limits::warning(&scene.model, run);
-        choice::warning(&scene.model, run.method, h).or_else(inaccurate)
+        let of_method = choice::warning(&scene.model, run.method, h);
+        let of_bodies = flexible_limits::warning(&scene.model, run);
+        let all: Vec<String> = of_method.into_iter().chain(of_bodies).collect();
+        (!all.is_empty()).then(|| all.join("; "))
     }
 
     /// Settings of the first run, or of one that chooses its steps anew.

@@ -2,9 +2,9 @@
 //! projected onto the joints; and notes on joints without degrees of freedom.
 
 use crate::math::{Vec3, rotation};
-use crate::model::{FlexibleBody, Model, RigidBody};
+use crate::model::{Model, RigidBody};
 use crate::problem::Problem;
-use crate::system::flexible::strain_energy;
+use crate::system::flexible::{MeanSquare, strain_energy};
 use crate::system::initial::{self, InitialState};
 use crate::system::kkt::SaddlePoint;
 use crate::system::placement::{guess, length_scale};
@@ -22,6 +22,14 @@ const NEARLY: f64 = 1e-4;
 /// Notes on the start at the design `x`, one sentence each; empty if the start is as given, or if
 /// there is none.
 pub(crate) fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
+    match problem.without_equilibrium() {
+        Some(placed) => of_placement(&placed, x, " before equilibrium is sought"),
+        None => of_placement(problem, x, ""),
+    }
+}
+
+/// Notes on a start without equilibrium; `when` says when bodies are deformed.
+fn of_placement(problem: &Problem, x: &[f64], when: &str) -> Vec<String> {
     let model = problem.unlowered_scene(x).model;
     let numbering = Numbering::new(&model);
     let mut notes = Vec::new();
@@ -53,7 +61,7 @@ pub(crate) fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
     }
     let moved = moved(&model, &numbering, &start);
     tell(&mut notes, moved);
-    tell(&mut notes, deformed(&model, &numbering, &start));
+    tell(&mut notes, deformed(&model, &numbering, &start, when));
     let changed = changed(&model, &numbering, &start);
     tell(&mut notes, changed);
     notes
@@ -158,7 +166,12 @@ fn moved(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>) -
 
 /// Flexible bodies that were deformed: by their places, or by a strain energy that moves their mass with a part of the
 /// speeds of the scene.
-fn deformed(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>) -> Vec<String> {
+fn deformed(
+    model: &Model<f64>,
+    numbering: &Numbering,
+    start: &InitialState<f64>,
+    when: &str,
+) -> Vec<String> {
     let length = length_scale(model);
     let (placed, _) = guess(model);
     let energies = |q: &[f64]| -> Vec<f64> {
@@ -175,22 +188,27 @@ fn deformed(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>
             .max(body.velocity.norm())
             .max(body.angular_velocity.norm() * length)
     });
-    let moved = |body: &FlexibleBody<f64>| {
-        let mut places = (body.places()).map(|(carrier, k)| numbering.position(carrier) + k);
-        places.any(|i| (start.q[i] - placed[i]).abs() > TOLD * length)
+    let change = |carrier: usize, k: usize| {
+        let i = numbering.position(carrier) + k;
+        start.q[i] - placed[i]
     };
-    let is_told = |(body, (before, after)): (&FlexibleBody<f64>, &(f64, f64))| {
-        let kinetic = 0.5 * model.bodies[body.frame].mass * (SLOW * speed).powi(2);
-        moved(body) || speed > 0.0 && after - before > kinetic
+    let displacements = MeanSquare::all(model).into_iter();
+    let moved: Vec<bool> = displacements
+        .map(|own| own.value(change).sqrt() > TOLD * length)
+        .collect();
+    let is_told = |i: usize| {
+        let mass = model.bodies[model.flexible[i].frame].mass;
+        let kinetic = 0.5 * mass * (SLOW * speed).powi(2);
+        moved[i] || speed > 0.0 && both[i].1 - both[i].0 > kinetic
     };
-    let all = model.flexible.iter().zip(&both);
-    if !all.clone().any(is_told) {
+    if !(0..both.len()).any(is_told) {
         return Vec::new();
     }
-    let told = all.filter(|&(body, both)| is_told((body, both)) || both.1 - both.0 > TOLD * most);
-    told.map(|(body, (before, after))| {
+    let all = model.flexible.iter().zip(&both).enumerate();
+    let told = all.filter(|&(i, (_, both))| is_told(i) || both.1 - both.0 > TOLD * most);
+    told.map(|(_, (body, (before, after)))| {
         format!(
-            "closing the joints deforms body \"{}\": its strain energy is {after:.3e} J instead of {before:.3e} J; \
+            "closing the joints deforms body \"{}\": its strain energy is {after:.3e} J instead of {before:.3e} J{when}; \
              place the bodies so that the joints fit",
             body.name
         )

@@ -327,6 +327,16 @@ impl Problem {
         lowering.is_none_or(|lowering| lowering.apply(scene))
     }
 
+    /// The problem whose scene starts as its bodies are placed; `None` if this one does.
+    pub(crate) fn without_equilibrium(&self) -> Option<Self> {
+        let settles = self.written.start == schema::flexible::Start::Equilibrium;
+        settles.then(|| {
+            let mut other = self.clone();
+            other.written.start = schema::flexible::Start::Given;
+            other
+        })
+    }
+
     /// The scene at the design `x` without reductions. Redundant rows are left out, and the parts
     /// on which no function of a [focused](Problem::focused) problem depends.
     pub(crate) fn unlowered_scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {

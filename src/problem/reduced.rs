@@ -37,7 +37,7 @@ pub(super) fn enrich(document: &mut Document) -> bool {
                 ElementBasis::Reduced(ReducedKeys {
                     modes: keys.highest_frequency.is_none().then_some(more),
                     highest_frequency: keys.highest_frequency.map(|f| RICHER * f),
-                    tolerance: Some(FINER * keys.tolerance.unwrap_or(TOLERANCE)),
+                    tolerance: Some(two_digits(FINER * keys.tolerance.unwrap_or(TOLERANCE))),
                     ..keys.clone()
                 })
             }
@@ -46,6 +46,11 @@ pub(super) fn enrich(document: &mut Document) -> bool {
         changed = true;
     }
     changed
+}
+
+/// A number with two significant digits.
+fn two_digits(x: f64) -> f64 {
+    format!("{x:.1e}").parse().unwrap_or(x)
 }
 
 /// Keeps all nodes of bodies that are reduced or rigid. False if there are none.

@@ -77,25 +77,38 @@ impl MeanSquare {
     }
 }
 
-/// Weights of the elastic coordinates of a body in the displacement that the assembly makes least \[kg\]: of modes the
-/// diagonal of their mass matrix, of nodes equal parts of the mass of the body, for rotations times the mean square
-/// of their distance from the centre. A director has so little mass that its rotation would close the joints.
+/// Weights of the elastic coordinates of a body in the displacement that the assembly makes least \[kg\]: of shells
+/// those of nodes, of other shapes the diagonal of their mass matrix.
 fn start_weights<S: Scalar>(model: &Model<S>, body: &FlexibleBody<S>) -> Vec<S> {
-    match &body.form {
-        Form::Modal(_) => {
+    match parts_of_mass(&body.form) {
+        Some(parts) => {
+            let mass = model.bodies[body.frame].mass;
+            let all = parts.into_iter();
+            all.map(|part| mass * S::from(part * DEFORMATION)).collect()
+        }
+        None => {
             let all = weights(&body.form).into_iter();
             all.map(|weight| weight * S::from(DEFORMATION)).collect()
-        }
-        Form::Finite(own) => {
-            let mass = model.bodies[body.frame].mass;
-            let all = parts_of_mass(&own.mesh).into_iter();
-            all.map(|part| mass * S::from(part * DEFORMATION)).collect()
         }
     }
 }
 
-/// The weights of nodes over the mass of the body: 1, in m² for rotations.
-fn parts_of_mass(mesh: &ElementMesh) -> Vec<f64> {
+/// The weights of the coordinates of shells over the mass of the body, \[1\] or \[m²\] by the unit of the coordinate:
+/// equal parts for nodes, for rotations times the mean square of their distance from the centre. Directors have so
+/// little mass that their rotation would close the joints. `None` of other shapes.
+fn parts_of_mass<S: Scalar>(form: &Form<S>) -> Option<Vec<f64>> {
+    match form {
+        Form::Finite(own) => Some(parts_of_nodes(&own.mesh)),
+        Form::Modal(modal) => {
+            let shells = modal.shells.as_ref()?;
+            let parts = parts_of_nodes(&shells.elements.mesh);
+            let square = |v: &Vec<f64>| v.iter().zip(&parts).map(|(v, part)| part * v * v).sum();
+            Some(shells.basis.vectors.iter().map(square).collect())
+        }
+    }
+}
+
+fn parts_of_nodes(mesh: &ElementMesh) -> Vec<f64> {
     let part = 1.0 / mesh.nodes.len() as f64;
     let centre = mesh.nodes.iter().sum::<Vec3<f64>>() * part;
     let squares = mesh.nodes.iter().map(|x| (x - centre).norm_squared());
@@ -159,11 +172,9 @@ pub(crate) fn pull_displacement(
             by.push(psi * moved * DEFORMATION);
             cot.bodies[carrier].position[k] -= psi * weight;
         }
-        match &body.form {
-            Form::Modal(_) => pull_weights(&by, &mut cot.flexible[f].form),
-            Form::Finite(own) => {
-                cot.bodies[body.frame].mass += dot(&by, &parts_of_mass(&own.mesh));
-            }
+        match parts_of_mass(&body.form) {
+            Some(parts) => cot.bodies[body.frame].mass += dot(&by, &parts),
+            None => pull_weights(&by, &mut cot.flexible[f].form),
         }
     }
 }

@@ -13,7 +13,7 @@ const FLAT: f64 = 1e-12;
 const ROUND_OFF: f64 = 1e-7;
 
 /// The unknowns that bend a flat shell, if the others stretch it alone; `None` of other shells.
-fn bending_unknowns(shells: &FiniteElements<f64>) -> Option<Vec<bool>> {
+pub(super) fn bending_unknowns(shells: &FiniteElements<f64>) -> Option<Vec<bool>> {
     // Beams beside shells bend and stretch at once.
     if shells
         .parts
