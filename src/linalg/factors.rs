@@ -16,7 +16,7 @@ pub(crate) const REFINED_SOLVES: usize = 1 + REFINEMENTS;
 
 /// Where pivots are known, a correction below this part of each entry is the last: the next one would be its
 /// square. Entries below [`NEGLIGIBLE`] of the largest one do not count.
-const LAST: f64 = 1e-7;
+pub(crate) const LAST: f64 = 1e-7;
 const NEGLIGIBLE: f64 = 1e-12;
 
 /// LU factors of a sparse matrix.
@@ -114,8 +114,7 @@ impl<S: SolveScalar> SparseLu<S> {
     ///
     /// # Panics
     /// No matrix has been factorised.
-    #[cfg(test)]
-    pub fn solve_transposed(&mut self, b: &mut [S]) {
+    pub(crate) fn solve_transposed(&mut self, b: &mut [S]) {
         match &mut self.kind {
             Kind::Pivoted(own) => own.solve_transposed(b),
             Kind::Fronts(own) => own.solve(System::Transposed, &mut [b]),
@@ -199,7 +198,7 @@ impl<S: SolveScalar> SparseLu<S> {
 }
 
 /// Whether a correction is so small that the next one changes round-off alone.
-fn is_last<S: SolveScalar>(x: &[S], correction: &[S]) -> bool {
+pub(crate) fn is_last<S: SolveScalar>(x: &[S], correction: &[S]) -> bool {
     let largest = x.iter().fold(0.0_f64, |m, &x| m.max(size(x)));
     let mut pairs = x.iter().zip(correction);
     pairs.all(|(&x, &d)| size(d) <= LAST * size(x).max(NEGLIGIBLE * largest))

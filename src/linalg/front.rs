@@ -4,21 +4,11 @@ use std::ops::Range;
 
 /// Which of two systems is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum System {
+pub(crate) enum System {
     /// A x = b.
     Plain,
     /// Aᵀ x = b.
     Transposed,
-}
-
-impl System {
-    /// Where a short row stands: its right-hand side and its unknown.
-    pub(super) fn places(self, short: &Short) -> (usize, usize) {
-        match self {
-            System::Plain => (short.row, short.column),
-            System::Transposed => (short.column, short.row),
-        }
-    }
 }
 
 /// A short row that is eliminated first: its pivot, the other entries of its column and of its row.
@@ -29,7 +19,7 @@ pub(super) struct Short {
     pub pivot: usize,
     /// The first unknown in its row; the unknowns if there is none.
     pub first: usize,
-    /// (unknown of the row, slot), the unknown numbered in the branch of the first.
+    /// (unknown of the row, slot), the unknown numbered in the branch of the first once there are branches.
     pub below: Vec<[u32; 2]>,
     /// (column, slot).
     pub beside: Vec<[u32; 2]>,

@@ -5,6 +5,7 @@ use super::border::Border;
 use super::branches::{Branch, divide, postorder};
 use super::front::{Child, Front, Run, Short};
 use super::pattern::{KnownPivots, Pattern};
+use super::short_rows::ShortRows;
 
 /// Columns by which a front may exceed what its pivots need, and the part of its size.
 const EXCESS: usize = 12;
@@ -13,9 +14,7 @@ const EXCESS_PART: usize = 8;
 /// The plan of an elimination. Unknowns are numbered: known pivots in their order, then the others, which
 /// the last front has all.
 pub(super) struct Plan {
-    pub short: Vec<Short>,
-    /// All entries beside short pivots: the number of the short row, and the slot.
-    pub beside: Vec<[u32; 2]>,
+    pub short: ShortRows,
     /// Row and column of each unknown.
     pub rows: Vec<usize>,
     pub columns: Vec<usize>,
@@ -110,11 +109,10 @@ impl Plan {
             let (part, place) = front.place(*r, *c, &mut last);
             Run::one(*slot, place).push(&mut front.entries[part]);
         }
-        let mut beside = Vec::new();
-        for (k, own) in short.iter().enumerate() {
-            for &[column, slot] in &own.beside {
-                let number = beside.len() as u32;
-                beside.push([k as u32, slot]);
+        // Entries beside short pivots, numbered as in [`ShortRows`].
+        let mut number = 0;
+        for own in &short {
+            for &[column, _] in &own.beside {
                 for &[row, below] in &own.below {
                     let (r, c) = (row as usize, column_of[column as usize]);
                     if border.is_some() && r.min(c) >= inner {
@@ -128,6 +126,7 @@ impl Plan {
                         all.push((number, next));
                     }
                 }
+                number += 1;
             }
         }
         for front in &mut fronts {
@@ -135,7 +134,6 @@ impl Plan {
             front.products.iter_mut().for_each(Vec::shrink_to_fit);
         }
         for own in &mut short {
-            own.below.shrink_to_fit();
             let columns = own
                 .beside
                 .iter()
@@ -154,8 +152,7 @@ impl Plan {
         };
         let trunk_short = (0..short.len()).filter(in_trunk).collect();
         Self {
-            short,
-            beside,
+            short: ShortRows::new(&short),
             rows,
             columns,
             fronts,

@@ -1,79 +1,159 @@
-//! Generalised minimal residuals (Saad & Schultz 1986), for a matrix that is given by its products
-//! with vectors.
+//! Flexible generalised minimal residuals (Saad & Schultz 1986; Saad 1993), for a matrix that is given by its
+//! products with vectors, with any preconditioner on the right.
 
+use crate::math::Scalar;
 use crate::math::slices::{add_scaled, dot};
 
 /// A vector lies in the space of those before if orthogonalisation leaves less than this part of
 /// it.
 const DEPENDENT: f64 = 1e-15;
 
-/// The x with the smallest |b − A x| in the Krylov space of at most `most` products.
-///
-/// It ends when |b − A x| ≤ `tolerance` |b|, or when the space grows no more.
+/// The Krylov space of a solution. Its memory is kept.
+#[derive(Debug)]
+pub(crate) struct Gmres<S> {
+    /// Orthonormal vectors, and the parts of the solution that they give.
+    basis: Vec<Vec<S>>,
+    parts: Vec<Vec<S>>,
+    /// The columns of R, the rotations that made it, and the right side in their basis.
+    columns: Vec<Vec<f64>>,
+    rotations: Vec<(f64, f64)>,
+    rest: Vec<f64>,
+}
+
+/// The work of a solution, and what it reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Reached {
+    /// Products with the matrix.
+    pub products: usize,
+    /// Whether |b − A x| is within the tolerance.
+    pub solved: bool,
+}
+
+impl<S: Scalar> Gmres<S> {
+    /// No space yet.
+    pub(crate) fn new() -> Self {
+        Self {
+            basis: Vec::new(),
+            parts: Vec::new(),
+            columns: Vec::new(),
+            rotations: Vec::new(),
+            rest: Vec::new(),
+        }
+    }
+
+    /// Sets `x` to that with the smallest |b − A x| in the Krylov space of at most `most` products.
+    /// `apply(v, z, w)` sets z = P v with a preconditioner P ≈ A⁻¹, and w = A z. The numbers have no infinitesimal
+    /// parts.
+    ///
+    /// It ends when |b − A x| ≤ `tolerance` |b|, or when the space grows no more.
+    pub(crate) fn solve(
+        &mut self,
+        mut apply: impl FnMut(&[S], &mut [S], &mut [S]),
+        (b, x): (&[S], &mut [S]),
+        tolerance: f64,
+        most: usize,
+    ) -> Reached {
+        debug_assert!(!S::INFINITESIMAL);
+        x.fill(S::zero());
+        let size = norm(b);
+        if size == 0.0 || !size.is_finite() {
+            return Reached {
+                products: 0,
+                solved: size == 0.0,
+            };
+        }
+        self.rotations.clear();
+        self.rest.clear();
+        self.rest.push(size);
+        reserve(&mut self.basis, 1, b.len());
+        for (v, &b) in self.basis[0].iter_mut().zip(b) {
+            *v = b / size;
+        }
+        let mut products = 0;
+        for k in 0..most {
+            reserve(&mut self.basis, k + 2, b.len());
+            reserve(&mut self.parts, k + 1, b.len());
+            reserve(&mut self.columns, k + 1, 0);
+            let (basis, next) = self.basis.split_at_mut(k + 1);
+            let w = &mut next[0];
+            apply(&basis[k], &mut self.parts[k], w);
+            products += 1;
+            let whole = norm(w);
+            let column = &mut self.columns[k];
+            column.clear();
+            column.resize(k + 1, 0.0);
+            // Twice, so that round-off of the first pass goes.
+            for _ in 0..2 {
+                for (h, v) in column.iter_mut().zip(&*basis) {
+                    let along = dot(v, w).re();
+                    add_scaled(w, S::from(-along), v);
+                    *h += along;
+                }
+            }
+            let mut last = norm(w);
+            for (i, &(c, s)) in self.rotations.iter().enumerate() {
+                let (x, y) = (column[i], column[i + 1]);
+                (column[i], column[i + 1]) = (c * x + s * y, c * y - s * x);
+            }
+            let ended = last <= DEPENDENT * whole;
+            if ended {
+                last = 0.0;
+            }
+            let length = column[k].hypot(last);
+            if length == 0.0 || !length.is_finite() {
+                break;
+            }
+            let (c, s) = (column[k] / length, last / length);
+            column[k] = length;
+            let left = self.rest[k];
+            self.rest[k] = c * left;
+            self.rest.push(-s * left);
+            self.rotations.push((c, s));
+            if ended || (s * left).abs() <= tolerance * size {
+                break;
+            }
+            w.iter_mut().for_each(|x| *x = *x / last);
+        }
+        let count = self.rotations.len();
+        let solved = self.rest[count].abs() <= tolerance * size;
+        let y = &mut self.rest[..count];
+        for i in (0..count).rev() {
+            for j in i + 1..count {
+                y[i] -= self.columns[j][i] * y[j];
+            }
+            y[i] /= self.columns[i][i];
+        }
+        for (&y, part) in y.iter().zip(&self.parts) {
+            add_scaled(x, S::from(y), part);
+        }
+        Reached { products, solved }
+    }
+}
+
+/// Grows a list to `count` vectors of this length at least.
+fn reserve<S: Scalar>(all: &mut Vec<Vec<S>>, count: usize, length: usize) {
+    while all.len() < count {
+        all.push(vec![S::zero(); length]);
+    }
+}
+
+fn norm<S: Scalar>(x: &[S]) -> f64 {
+    dot(x, x).re().sqrt()
+}
+
+/// The x with the smallest |b − A x| in the Krylov space of at most `most` products, without a preconditioner.
 pub(crate) fn gmres(
     mut product: impl FnMut(&[f64]) -> Vec<f64>,
     b: &[f64],
     tolerance: f64,
     most: usize,
 ) -> Vec<f64> {
-    let norm = |x: &[f64]| dot(x, x).sqrt();
-    let size = norm(b);
-    if size == 0.0 || !size.is_finite() {
-        return vec![0.0; b.len()];
-    }
-    let mut basis = vec![b.iter().map(|x| x / size).collect::<Vec<f64>>()];
-    // The columns of R, the rotations that made it, and the right side in their basis.
-    let (mut columns, mut rotations): (Vec<Vec<f64>>, Vec<(f64, f64)>) = Default::default();
-    let mut rest = vec![size];
-    for k in 0..most {
-        let mut w = product(&basis[k]);
-        let whole = norm(&w);
-        let mut column = vec![0.0; k + 1];
-        // Twice, so that round-off of the first pass goes.
-        for _ in 0..2 {
-            for (h, v) in column.iter_mut().zip(&basis) {
-                let along = dot(v, &w);
-                add_scaled(&mut w, -along, v);
-                *h += along;
-            }
-        }
-        let mut last = norm(&w);
-        for (i, &(c, s)) in rotations.iter().enumerate() {
-            let (x, y) = (column[i], column[i + 1]);
-            (column[i], column[i + 1]) = (c * x + s * y, c * y - s * x);
-        }
-        let ended = last <= DEPENDENT * whole;
-        if ended {
-            last = 0.0;
-        }
-        let length = column[k].hypot(last);
-        if length == 0.0 || !length.is_finite() {
-            break;
-        }
-        let (c, s) = (column[k] / length, last / length);
-        column[k] = length;
-        let left = rest[k];
-        rest[k] = c * left;
-        rest.push(-s * left);
-        rotations.push((c, s));
-        columns.push(column);
-        if ended || (s * left).abs() <= tolerance * size {
-            break;
-        }
-        basis.push(w.iter().map(|x| x / last).collect());
-    }
-    let count = columns.len();
-    let mut y = rest[..count].to_vec();
-    for i in (0..count).rev() {
-        for j in i + 1..count {
-            y[i] -= columns[j][i] * y[j];
-        }
-        y[i] /= columns[i][i];
-    }
     let mut x = vec![0.0; b.len()];
-    for (y, v) in y.iter().zip(&basis) {
-        add_scaled(&mut x, *y, v);
-    }
+    let apply = |v: &[f64], z: &mut [f64], w: &mut [f64]| {
+        z.copy_from_slice(v);
+        w.copy_from_slice(&product(v));
+    };
+    Gmres::new().solve(apply, (b, &mut x), tolerance, most);
     x
 }
 

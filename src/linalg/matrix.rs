@@ -133,14 +133,23 @@ impl<S: Scalar> SparseMatrix<S> {
     }
 
     /// The product A x.
+    pub(crate) fn multiply_into(&self, x: &[S], out: &mut [S]) {
+        out.fill(S::zero());
+        let starts = self.pattern.column_starts();
+        for (j, &x) in x.iter().enumerate() {
+            let own = starts[j]..starts[j + 1];
+            let entries = self.values[own.clone()].iter();
+            for (&value, &row) in entries.zip(&self.pattern.rows()[own]) {
+                out[row] += value * x;
+            }
+        }
+    }
+
+    /// The product A x.
     #[cfg(test)]
     pub fn multiply(&self, x: &[S]) -> Vec<S> {
         let mut y = vec![S::zero(); x.len()];
-        for j in 0..x.len() {
-            for k in self.pattern.column_starts()[j]..self.pattern.column_starts()[j + 1] {
-                y[self.pattern.rows()[k]] += self.values[k] * x[j];
-            }
-        }
+        self.multiply_into(x, &mut y);
         y
     }
 }

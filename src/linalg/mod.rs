@@ -13,10 +13,12 @@ mod multifrontal;
 pub(crate) mod pattern;
 mod replay;
 mod scaling;
-pub(crate) mod sparse_lu;
+pub(crate) mod short_rows;
+mod sparse_lu;
 mod substitution;
 
-pub(crate) use factors::{REFINED_SOLVES, SparseLu};
+pub(crate) use factors::{LAST, REFINED_SOLVES, SparseLu, is_last};
+pub(crate) use front::System;
 pub(crate) use matrix::SparseMatrix;
 pub(crate) use pattern::{Emit, KnownPivots, Pattern};
 pub(crate) use sparse_lu::{Pivots, SingularMatrix, SolveScalar};

@@ -24,7 +24,7 @@ pub(super) struct Multifrontal<S> {
     /// Inverse pivots of the short rows.
     pub(super) inverse: Vec<S>,
     /// Entries beside short pivots by the pivots.
-    beside: Vec<S>,
+    pub(super) beside: Vec<S>,
     pub(super) done: Vec<Eliminated<S>>,
     /// Remainders of the fronts.
     remainders: Vec<Vec<S>>,
@@ -139,7 +139,7 @@ impl<S: SolveScalar> Multifrontal<S> {
             scaling: Equilibration::new(pattern),
             scaled: vec![S::zero(); pattern.entries()],
             inverse: vec![S::zero(); plan.short.len()],
-            beside: vec![S::zero(); plan.beside.len()],
+            beside: vec![S::zero(); plan.short.beside.len()],
             done: plan.fronts.iter().map(Eliminated::new).collect(),
             remainders: plan.fronts.iter().map(|_| Vec::new()).collect(),
             of_branches: plan.branches.iter().map(|_| space()).collect(),
@@ -152,14 +152,15 @@ impl<S: SolveScalar> Multifrontal<S> {
     pub(super) fn factorise(&mut self, matrix: &SparseMatrix<S>) -> Result<(), SingularMatrix> {
         let plan = &self.plan;
         self.scaling.fit(matrix, &mut self.scaled);
-        for (inverse, own) in self.inverse.iter_mut().zip(&plan.short) {
-            let pivot = self.scaled[own.pivot];
+        for (k, inverse) in self.inverse.iter_mut().enumerate() {
+            let pivot = self.scaled[plan.short.pivots[k]];
             if !usable(pivot) {
-                return Err(SingularMatrix { column: own.column });
+                let column = plan.short.column(k);
+                return Err(SingularMatrix { column });
             }
             *inverse = S::one() / pivot;
         }
-        for (by, &[k, slot]) in self.beside.iter_mut().zip(&plan.beside) {
+        for (by, &[k, slot, _]) in self.beside.iter_mut().zip(&plan.short.beside) {
             *by = self.scaled[slot as usize] * self.inverse[k as usize];
         }
         let shared = Shared {

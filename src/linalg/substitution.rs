@@ -1,7 +1,7 @@
 //! Solutions with the factors of a multifrontal elimination, for several right-hand sides: each front is read once.
 
 use super::branches::Branch;
-use super::front::{Short, System};
+use super::front::System;
 use super::multifrontal::{Multifrontal, Workspace};
 use super::sparse_lu::SolveScalar;
 use rayon::prelude::*;
@@ -35,14 +35,8 @@ impl<S: SolveScalar> Multifrontal<S> {
     fn enter(&mut self, system: System, b: &mut [S], i: usize) {
         let (plan, space) = (&self.plan, &mut self.of_trunk);
         let (x, t) = (&mut space.x[i], &mut space.short[i]);
-        for ((t, own), &inverse) in t.iter_mut().zip(&plan.short).zip(&self.inverse) {
-            *t = b[system.places(own).0] * inverse;
-            if system == System::Transposed {
-                for &[column, slot] in &own.beside {
-                    b[column as usize] -= self.scaled[slot as usize] * *t;
-                }
-            }
-        }
+        let by = (&self.inverse[..], &self.beside[..]);
+        plan.short.enter(system, by, (&mut *b, &mut *t));
         let places = match system {
             System::Plain => &plan.rows,
             System::Transposed => &plan.columns,
@@ -51,9 +45,8 @@ impl<S: SolveScalar> Multifrontal<S> {
             *x = b[place];
         }
         if system == System::Plain {
-            for &k in &plan.trunk_short {
-                subtract_below(&plan.short[k], &self.scaled, t[k], x);
-            }
+            let own = &plan.trunk_short;
+            plan.short.subtract_below(own, &self.scaled, t, x);
         }
     }
 
@@ -67,9 +60,7 @@ impl<S: SolveScalar> Multifrontal<S> {
                 own.copy_from_slice(&all[branch.own.clone()]);
                 outside.fill(S::zero());
                 if system == System::Plain {
-                    for &k in &branch.short {
-                        subtract_below(&plan.short[k], scaled, t[k], x);
-                    }
+                    plan.short.subtract_below(&branch.short, scaled, t, x);
                 }
             }
             for k in branch.fronts.clone() {
@@ -125,9 +116,8 @@ impl<S: SolveScalar> Multifrontal<S> {
             }
             if system == System::Transposed {
                 for (x, sums) in space.x.iter().zip(&mut space.short) {
-                    for (sum, &k) in sums.iter_mut().zip(&branch.short) {
-                        *sum = below(&plan.short[k], scaled, x);
-                    }
+                    let take = |i: usize, sum| sums[i] = sum;
+                    plan.short.sums_below(&branch.short, scaled, x, take);
                 }
             }
         };
@@ -139,9 +129,9 @@ impl<S: SolveScalar> Multifrontal<S> {
         }
         if system == System::Transposed {
             for (x, t) in trunk.x.iter().zip(&mut trunk.short) {
-                for &k in &plan.trunk_short {
-                    t[k] -= below(&plan.short[k], scaled, x) * self.inverse[k];
-                }
+                let own = &plan.trunk_short;
+                let take = |i: usize, sum| t[own[i]] -= sum * self.inverse[own[i]];
+                plan.short.sums_below(own, scaled, x, take);
             }
         }
         for (branch, space) in plan.branches.iter().zip(&self.of_branches) {
@@ -166,18 +156,8 @@ impl<S: SolveScalar> Multifrontal<S> {
         for (&x, &place) in space.x[i].iter().zip(places) {
             b[place] = x;
         }
-        for ((&t, own), &inverse) in space.short[i].iter().zip(&plan.short).zip(&self.inverse) {
-            b[system.places(own).1] = match system {
-                System::Plain => {
-                    let beside = own.beside.iter();
-                    let sum = beside.fold(S::zero(), |sum, &[column, slot]| {
-                        sum + self.scaled[slot as usize] * b[column as usize]
-                    });
-                    t - sum * inverse
-                }
-                System::Transposed => t,
-            };
-        }
+        let t = &space.short[i];
+        plan.short.leave(system, &self.beside, t, b);
     }
 }
 
@@ -187,21 +167,6 @@ impl<S: SolveScalar> Workspace<S> {
         self.x.resize_with(count, || vec![S::zero(); unknowns]);
         self.short.resize_with(count, || vec![S::zero(); short]);
     }
-}
-
-/// Subtracts the entries below a short row times its unknown.
-fn subtract_below<S: SolveScalar>(own: &Short, scaled: &[S], t: S, x: &mut [S]) {
-    for &[row, slot] in &own.below {
-        x[row as usize] -= scaled[slot as usize] * t;
-    }
-}
-
-/// The sum of the entries below a short row, each times its unknown.
-fn below<S: SolveScalar>(own: &Short, scaled: &[S], x: &[S]) -> S {
-    let entries = own.below.iter();
-    entries.fold(S::zero(), |sum, &[row, slot]| {
-        sum + scaled[slot as usize] * x[row as usize]
-    })
 }
 
 fn scale<S: SolveScalar>(b: &mut [S], by: &[f64]) {

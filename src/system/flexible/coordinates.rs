@@ -10,6 +10,9 @@ use crate::system::finite;
 use crate::system::flexing::{Flexing, Generalised};
 use crate::system::numbering::Numbering;
 
+/// A difference of velocities below this is round-off, relative to the velocities.
+const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
 /// Places of the coordinates of a flexible body among the velocities: six of the frame, then the
 /// elastic ones.
 pub(super) fn slots<S: Scalar>(numbering: &Numbering, body: &FlexibleBody<S>) -> Vec<usize> {
@@ -49,6 +52,31 @@ pub(crate) fn nodal_unknowns<S: Scalar>(model: &Model<S>, numbering: &Numbering)
         all.extend((body.places()).map(|(carrier, k)| numbering.unknown(carrier) + k));
     }
     all
+}
+
+/// Sets q̇ − v of nodes to zero where it is round-off, relative to the largest velocity of a body's nodes. The
+/// kinematics of nodes are linear, so they hold after one iteration and need no more of its work.
+pub(crate) fn clear_kinematics<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    v: &[S],
+    kinematics: &mut [S],
+) {
+    if S::INFINITESIMAL {
+        return;
+    }
+    for body in model.flexible.iter().filter(|body| is_of_shells(body)) {
+        let places = body.places();
+        let places = places.map(|(carrier, k)| numbering.velocity(carrier) + k);
+        let largest = places
+            .clone()
+            .fold(0.0, |most: f64, i| most.max(v[i].re().abs()));
+        for i in places {
+            if kinematics[i].re().abs() <= ROUND_OFF * largest {
+                kinematics[i] = S::zero();
+            }
+        }
+    }
 }
 
 /// Elastic components of a vector in velocity numbering.

@@ -9,8 +9,8 @@ mod held;
 mod truncated;
 
 pub(crate) use coordinates::{
-    add_coordinates, add_unknown, add_unknowns, basis_of, coordinates, has_shells, is_divided,
-    nodal_unknowns, rates, unknown_of,
+    add_coordinates, add_unknown, add_unknowns, basis_of, clear_kinematics, coordinates,
+    has_shells, is_divided, nodal_unknowns, rates, unknown_of,
 };
 pub(crate) use displacement::{MeanSquare, add_displacement, emit_displacement, pull_displacement};
 pub(crate) use form::alone;
