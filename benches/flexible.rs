@@ -1,7 +1,7 @@
 //! Time steps of bodies of finite elements: chains of N hinged plates, and two plates of more and more elements.
 //!
-//! `cargo bench --bench flexible` prints the tables; `cargo bench --bench flexible -- chain 4 bdf 20` or
-//! `… -- mesh 32 radau 100` one line of a run of so many steps, with the peak resident set of that run alone. Times are
+//! `cargo bench --bench flexible` prints the tables; `cargo bench --bench flexible -- chain 4 bdf 20`,
+//! `… -- mesh 32 krylov 100` (BDF2 by the Krylov solver) or `… -- mesh 32 radau 100` one line of a run of so many steps, with the peak resident set of that run alone. Times are
 //! wall times, the least of some, with the plans of the matrices; `RAYON_NUM_THREADS` sets the number of threads.
 //!
 //! Plates of 1 m by 0.25 m and 5 mm start flat, turn with 8 rad/s about z and hang on hinges along their
@@ -9,7 +9,7 @@
 //! changes.
 
 use flexbody::{Analysis, Problem, SimulationError};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, json};
 use std::time::Instant;
 
 /// Steps of a run in the tables.
@@ -18,7 +18,7 @@ const STEPS: usize = 100;
 const STEP: f64 = 1e-3;
 
 /// Plates with so many elements along and across.
-fn problem(plates: usize, elements: [usize; 2], method: &Value, steps: usize) -> Problem {
+fn problem(plates: usize, elements: [usize; 2], method: &str, steps: usize) -> Problem {
     let (mut bodies, mut joints, mut variables) = (Map::new(), Map::new(), Map::new());
     for i in 0..plates {
         let name = format!("plate {i}");
@@ -62,6 +62,11 @@ fn problem(plates: usize, elements: [usize; 2], method: &Value, steps: usize) ->
                    "lower": 0.001, "upper": 0.01}),
         );
     }
+    let (choice, solver) = match method {
+        "radau" => (json!({"radau": {"stages": 3}}), "direct"),
+        "krylov" => (json!({"bdf": {"order": 2}}), "krylov"),
+        _ => (json!({"bdf": {"order": 2}}), "direct"),
+    };
     let position = |k: usize| {
         let direction: [usize; 3] = std::array::from_fn(|i| usize::from(i == k));
         let body = format!("plate {}", plates - 1);
@@ -70,7 +75,9 @@ fn problem(plates: usize, elements: [usize; 2], method: &Value, steps: usize) ->
     let file = json!({
         "version": 1, "name": "plates", "bodies": bodies, "joints": joints,
         "materials": {"aluminium": {"young": 70e9, "poisson": 0.3, "density": 2700, "yield_stress": 2e8}},
-        "simulation": {"duration": STEP * steps as f64, "steps": steps, "method": method},
+        "simulation": {
+            "duration": STEP * steps as f64, "steps": steps, "method": choice, "linear_solver": solver
+        },
         "functions": {"x": position(0), "y": position(1)},
         "variables": variables
     });
@@ -105,11 +112,7 @@ fn line(
     method: &str,
     steps: usize,
 ) -> Result<(), SimulationError> {
-    let choice = match method {
-        "radau" => json!({"radau": {"stages": 3}}),
-        _ => json!({"bdf": {"order": 2}}),
-    };
-    let problem = problem(plates, elements, &choice, steps);
+    let problem = problem(plates, elements, method, steps);
     let x = problem.start();
     let repeats = if plates * elements[0] * elements[1] > 500 {
         1
@@ -122,16 +125,23 @@ fn line(
     let [one, two] =
         [&[0][..], &[0, 1]].map(|which| fastest(repeats, || at.gradients(which)).0 / seconds);
     let nodes = (2 * elements[0] + 1) * (2 * elements[1] + 1);
+    let backwards = at.gradients_and_work(&[0])?.1;
     let each = |count: usize| count as f64 / steps as f64;
     println!(
-        "{plates:6} {:5} x {:2} {:8} {method:6} {:9.2} {:12.2} {:10.2} {:13.2} {:16.3} {:8.0}",
+        "{plates:6} {:5} x {:2} {:8} {method:6} {:9.2} {:12.2} {:10.2} {:8.2} {:13.2} {:>16} {:16.3} {:8.0}",
         elements[0],
         elements[1],
         plates * (5 * nodes - 6),
         1e3 * seconds / steps as f64,
         each(work.factorisations),
         each(work.newton_iterations),
+        each(work.products),
         one,
+        format!(
+            "{:.2} {:.1}",
+            each(backwards.factorisations),
+            each(backwards.products)
+        ),
         two - one,
         peak_memory(),
     );
@@ -141,7 +151,7 @@ fn line(
 fn main() -> Result<(), SimulationError> {
     println!("{} threads", rayon::current_num_threads());
     println!(
-        "plates   elements unknowns method   ms/step factors/step  iterations gradient/run second gradient       MB"
+        "plates   elements unknowns method   ms/step factors/step  iterations products gradient/run factors products second gradient       MB"
     );
     let arguments: Vec<String> = (std::env::args().skip(1))
         .filter(|a| a != "--bench")
@@ -158,7 +168,7 @@ fn main() -> Result<(), SimulationError> {
     }
     assert!(
         arguments.is_empty(),
-        "expected chain|mesh N bdf|radau STEPS"
+        "expected chain|mesh N bdf|krylov|radau STEPS"
     );
     for method in ["bdf", "radau"] {
         for plates in [1, 2, 4, 8, 16] {

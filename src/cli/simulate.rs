@@ -121,7 +121,7 @@ fn as_json(
     warnings.extend(simulation.at.kinks(problem, 0..names.len()));
     let first = &simulation.observations[0];
     let (position, velocity) = simulation.constraint_drift();
-    let all = json!({
+    let mut all = json!({
         "name": problem.name,
         "duration": run.duration,
         "method": run.method.name(),
@@ -142,6 +142,9 @@ fn as_json(
         "start": driver::start::notes(problem, &simulation.at.x),
         "warnings": warnings,
     });
+    if counts.products > 0 {
+        all["work"]["krylov_products"] = json!(counts.products);
+    }
     let text = serde_json::to_string_pretty(&all).map_err(Failure::numerical)?;
     Ok(text + "\n")
 }
@@ -149,8 +152,12 @@ fn as_json(
 fn summary(problem: &Problem, simulation: &Simulation) -> String {
     let run = &simulation.at.run;
     let counts = run.counts;
+    let products = match counts.products {
+        0 => String::new(),
+        products => format!(", {products} Krylov products"),
+    };
     let mut text = format!(
-        "{}: {} s by {} in {} steps ({} evaluations, {} Newton iterations, {} factorisations)\n  \
+        "{}: {} s by {} in {} steps ({} evaluations, {} Newton iterations, {} factorisations{products})\n  \
          method: {}\n",
         problem.name,
         (run.duration * 1e9).round() / 1e9,

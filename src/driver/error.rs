@@ -182,6 +182,7 @@ fn halved(run: &Trajectory<f64>, (cells, summed): (bool, bool), limits: Limits) 
     };
     Settings {
         method: run.method,
+        solver: run.solver,
         spacing: Spacing::Frozen(run.grid.halved()),
         samples,
         limits,

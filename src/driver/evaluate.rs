@@ -88,6 +88,7 @@ impl Evaluated {
                 false => Samples::Uniform(self.run.last()),
             },
             limits: whole.simulation.limits.clone(),
+            solver: whole.simulation.solver,
             ..Settings::steps(self.run.method, 1)
         };
         let method = whole.simulation.method;

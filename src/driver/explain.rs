@@ -4,10 +4,12 @@ use super::bases;
 use super::evaluate::{Derivative, Evaluated};
 use super::integration::{Integration, looks_at_the_whole};
 use super::{memory, stretch};
-use crate::integrate::{IntegrationFailure, Method, Trajectory};
+use crate::integrate::implicit::cost::factor_cost;
+use crate::integrate::implicit::krylov::FACTORS;
+use crate::integrate::{IntegrationFailure, LinearSolver, Method, Trajectory};
 use crate::model::{Mobility, Model};
 use crate::problem::Problem;
-use crate::report::{Explanation, FunctionUse, IntegrationUse, SystemSize};
+use crate::report::{Explanation, FunctionUse, IntegrationUse, LinearUse, SystemSize};
 use crate::system::accelerations::{Accelerations, FallbackReason};
 use crate::system::{Numbering, placement};
 
@@ -78,12 +80,44 @@ impl MotionExplanation {
                 None => tape_bytes,
                 Some(_) => foreseen,
             },
+            linear: linear(&self.at),
             factorisations: run.counts.factorisations,
             newton_iterations: run.counts.newton_iterations,
             recomputed: schedule.recomputed(),
             stretch: self.part,
         }
     }
+}
+
+/// How the linear systems of a motion with finite elements are solved.
+fn linear(at: &Evaluated) -> Option<LinearUse> {
+    let (model, run) = (&at.scene.model, &at.run);
+    let cost = factor_cost(model, run)?;
+    let (solver, reason) = match (run.solver, run.method) {
+        (LinearSolver::Krylov, _) => (
+            "Krylov with kept factors",
+            format!("as the problem says; new factors cost {FACTORS} products"),
+        ),
+        (LinearSolver::Direct, Method::Radau { .. }) => (
+            "direct",
+            "the stages are coupled; the cost is that of a stage alone".into(),
+        ),
+        (LinearSolver::Direct, _) => (
+            "direct",
+            format!(
+                "new factors cost about {FACTORS} Krylov products, and kept factors serve several steps"
+            ),
+        ),
+    };
+    Some(LinearUse {
+        solver: solver.into(),
+        reason,
+        unknowns: cost.unknowns,
+        entries: cost.entries,
+        factors: cost.factors,
+        operations: cost.operations,
+        products: run.counts.products,
+    })
 }
 
 /// Explains the start of `problem`. The start is simulated with its gradients if possible. Parts

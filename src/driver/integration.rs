@@ -7,8 +7,8 @@ use super::memory;
 use crate::functions::resolution::{Resolution, resolution};
 use crate::functions::{Function, Reduction, Scene};
 use crate::integrate::{
-    Chosen, Grid, IntegrationFailure, Limits, Method, Samples, Settings, Spacing, Trajectory,
-    choice, simulate, simulate_by,
+    Chosen, Grid, IntegrationFailure, Limits, LinearSolver, Method, Samples, Settings, Spacing,
+    Trajectory, choice, simulate, simulate_by,
 };
 use crate::problem::Problem;
 
@@ -34,6 +34,7 @@ pub(crate) const FIRST_DESIGN: &str = "first design";
 #[derive(Clone, Debug)]
 pub(crate) struct Integration {
     method: Option<Method>,
+    solver: LinearSolver,
     spacing: Spacing,
     samples: Samples,
     limits: Limits,
@@ -105,6 +106,7 @@ impl Integration {
         };
         Self {
             method: simulation.method,
+            solver: simulation.solver,
             spacing: simulation.spacing.clone(),
             samples,
             limits: simulation.limits.clone(),
@@ -129,6 +131,7 @@ impl Integration {
         }
         Self {
             method: None,
+            solver: problem.simulation.solver,
             spacing: problem.simulation.spacing.clone(),
             samples: Samples::Uniform(1),
             limits: problem.simulation.limits.clone(),
@@ -210,6 +213,7 @@ impl Integration {
     pub(super) fn wanted(&self) -> Settings {
         Settings {
             method: self.method.unwrap_or(Method::Dop853),
+            solver: self.solver,
             spacing: self.spacing.clone(),
             samples: self.samples,
             limits: self.limits.clone(),

@@ -29,7 +29,7 @@ pub(crate) use multipliers::Multipliers;
 pub(crate) use quadrature::Samples;
 #[cfg(test)]
 pub(crate) use settings::MEMORY;
-pub(crate) use settings::{Method, Settings, Spacing, Start};
+pub(crate) use settings::{LinearSolver, Method, Settings, Spacing, Start};
 pub(crate) use trajectory::{Tape, Trajectory};
 pub(crate) use work::WorkCounts;
 

@@ -33,6 +33,17 @@ pub(crate) enum Method {
     },
 }
 
+/// How the linear systems of implicit steps of finite elements are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum LinearSolver {
+    /// By the factors of a matrix, which are kept while they converge.
+    #[default]
+    Direct,
+    /// By FGMRES with kept factors as preconditioner (Kennedy & Boopathy, section IV). It serves one-stage
+    /// formulas; Radau IIA is solved directly.
+    Krylov,
+}
+
 /// Method of the first m − 1 steps of a multistep formula of order m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Start {
@@ -129,6 +140,8 @@ pub(crate) const MEMORY: usize = 1 << 28;
 pub(crate) struct Settings {
     /// Method.
     pub method: Method,
+    /// Solver of linear systems.
+    pub solver: LinearSolver,
     /// Ends of the steps.
     pub spacing: Spacing,
     /// Samples of the motion.
@@ -159,6 +172,7 @@ impl Settings {
     pub(crate) fn steps(method: Method, steps: usize) -> Self {
         Self {
             method,
+            solver: LinearSolver::Direct,
             spacing: Spacing::Steps(steps),
             samples: Samples::StepEnds,
             limits: Limits::default(),

@@ -5,7 +5,7 @@ use super::quadrature::Samples;
 use super::quadrature::{Due, Step};
 use super::rows::real;
 use super::schedule::Schedule;
-use super::settings::{Method, Spacing};
+use super::settings::{LinearSolver, Method, Spacing};
 use super::work::WorkCounts;
 use super::{explicit, implicit};
 use crate::math::{Complex64, Scalar};
@@ -19,6 +19,8 @@ pub(crate) struct Trajectory<S: Scalar> {
     pub numbering: Numbering,
     /// The integration method.
     pub method: Method,
+    /// Solver of its linear systems.
+    pub solver: LinearSolver,
     /// Duration T \[s\].
     pub duration: S,
     /// Ends of the steps.
@@ -73,6 +75,7 @@ impl<S: Scalar> Trajectory<S> {
     ) -> Self {
         Self {
             method,
+            solver: LinearSolver::Direct,
             duration,
             grid: Grid::growing(),
             instants: vec![0.0],
@@ -202,6 +205,7 @@ impl Trajectory<f64> {
     pub(crate) fn with_states(&self, numbering: Numbering, [q, v, a]: [Vec<f64>; 3]) -> Self {
         Self {
             method: self.method,
+            solver: self.solver,
             duration: self.duration,
             grid: self.grid.clone(),
             instants: self.instants.clone(),
@@ -228,6 +232,7 @@ impl Trajectory<Complex64> {
         Trajectory {
             numbering: self.numbering.clone(),
             method: self.method,
+            solver: self.solver,
             duration: self.duration.re,
             grid: self.grid.clone(),
             instants: self.instants.clone(),

@@ -17,6 +17,8 @@ pub struct WorkCounts {
     pub factorisations: usize,
     /// Linear systems that were solved.
     pub solves: usize,
+    /// Products with a matrix and kept factors by the Krylov solver.
+    pub products: usize,
 }
 
 impl WorkCounts {
@@ -37,5 +39,6 @@ impl std::ops::AddAssign for WorkCounts {
         self.newton_iterations += other.newton_iterations;
         self.factorisations += other.factorisations;
         self.solves += other.solves;
+        self.products += other.products;
     }
 }

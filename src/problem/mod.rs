@@ -127,6 +127,8 @@ pub(crate) struct OptimiserSettings {
 pub(crate) struct Simulation {
     /// The method; `None` if it is chosen for the scene.
     pub method: Option<integrate::Method>,
+    /// Solver of the linear systems of implicit steps.
+    pub solver: integrate::LinearSolver,
     /// Steps or tolerance.
     pub spacing: Spacing,
     /// Number of equal intervals at whose ends the motion is sampled, if the file gives it.

@@ -374,8 +374,16 @@ fn simulation(written: Option<&schema::Simulation>) -> Simulation {
             integrate::Method::GeneralisedAlpha { radius }
         }
     });
+    let krylov = matches!(
+        written.and_then(|written| written.linear_solver),
+        Some(schema::LinearSolver::Krylov)
+    );
     Simulation {
         method,
+        solver: match krylov {
+            true => integrate::LinearSolver::Krylov,
+            false => integrate::LinearSolver::Direct,
+        },
         spacing: match written.map_or((None, None), |written| (written.steps, written.tolerance)) {
             (Some(steps), _) => Spacing::Steps(steps),
             (None, tolerance) => Spacing::Tolerance(tolerance.unwrap_or(TOLERANCE)),

@@ -65,6 +65,9 @@ pub(crate) struct IntegrationUse {
     pub samples_bytes: usize,
     /// See above.
     pub tape_bytes: usize,
+    /// How linear systems of finite elements are solved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub linear: Option<LinearUse>,
     /// Matrices that were factorised, and Newton iterations of an implicit method, in the simulated part.
     pub factorisations: usize,
     /// See above.
@@ -75,6 +78,40 @@ pub(crate) struct IntegrationUse {
     /// and the dependences of functions are estimated from it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stretch: Option<f64>,
+}
+
+/// How the linear systems of steps of finite elements are solved.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct LinearUse {
+    /// The solver, and why it was chosen.
+    pub solver: String,
+    /// See above.
+    pub reason: String,
+    /// Unknowns and entries of the matrix of a step, or of a stage.
+    pub unknowns: usize,
+    /// See above.
+    pub entries: usize,
+    /// Entries of its factors, and floating-point operations of a factorisation.
+    pub factors: usize,
+    /// See above.
+    pub operations: usize,
+    /// Products with a matrix and kept factors in the simulated part.
+    pub products: usize,
+}
+
+impl LinearUse {
+    fn text(&self) -> String {
+        format!(
+            "  linear systems: {}: {}\n  a matrix: {} unknowns, {:.1e} entries, {:.1e} with fill, {:.1e} operations \
+             to factorise\n",
+            self.solver,
+            self.reason,
+            self.unknowns,
+            self.entries as f64,
+            self.factors as f64,
+            self.operations as f64
+        )
+    }
 }
 
 /// Size of the equations of a scene, and how they are eliminated.
@@ -181,10 +218,23 @@ impl Explanation {
                 size(found.samples_bytes),
                 size(found.tape_bytes)
             );
+            let title = match &found.linear {
+                Some(linear) => {
+                    text += &linear.text();
+                    ""
+                }
+                None => "linear systems: direct, ",
+            };
             if found.newton_iterations > 0 && found.stretch.is_none() {
+                let products = match &found.linear {
+                    Some(LinearUse { products, .. }) if *products > 0 => {
+                        format!(" and {products} products")
+                    }
+                    _ => String::new(),
+                };
                 let _ = writeln!(
                     text,
-                    "  linear systems: direct, {} factorisations for {} Newton iterations",
+                    "  {title}{} factorisations{products} for {} Newton iterations",
                     found.factorisations, found.newton_iterations
                 );
             }

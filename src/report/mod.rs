@@ -47,7 +47,7 @@ pub(crate) mod work_precision;
 pub(crate) use compare::{Tolerances, compare};
 pub(crate) use csv::csv_table;
 pub(crate) use error::ReportError;
-pub(crate) use explain::{Explanation, FunctionUse, IntegrationUse, SystemSize, size};
+pub(crate) use explain::{Explanation, FunctionUse, IntegrationUse, LinearUse, SystemSize, size};
 pub(crate) use files::{atomic_write, path_between, prepare_directory, read_text, write_all};
 pub(crate) use history::{History, HistoryRow};
 pub(crate) use history_log::HistoryLog;

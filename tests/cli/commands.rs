@@ -488,6 +488,61 @@ fn an_assembly_that_cannot_be_closed_is_told_with_its_joint() {
     assert!(ran.err.contains("/joints/wall"), "{}", ran.err);
 }
 
+/// Products are told where the Krylov solver makes some; rigid scenes say nothing of it.
+#[test]
+fn the_solver_of_finite_elements_is_told() {
+    let at = scratch();
+    let plates = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/problems/flexible/double_plate.json"
+    );
+    let all = |command: &'static str, solver: &str| {
+        let sets = [
+            "/bodies/first/elements/structure/mesh/plate/elements=[2,1]".to_owned(),
+            "/bodies/second/elements/structure/mesh/plate/elements=[2,1]".to_owned(),
+            "/simulation/steps=8".to_owned(),
+            "/simulation/duration=0.008".to_owned(),
+            format!("/simulation/linear_solver=\"{solver}\""),
+        ];
+        let mut arguments = vec![command, plates];
+        for set in &sets {
+            arguments.extend(["--set", set]);
+        }
+        let text = expect(0, at.path(), &arguments).out;
+        arguments.push("--json");
+        (text, json(&expect(0, at.path(), &arguments).out))
+    };
+    let (text, found) = all("explain", "krylov");
+    assert!(
+        text.contains("linear systems: Krylov with kept factors: as the problem says"),
+        "{text}"
+    );
+    assert!(text.contains(" products for "), "{text}");
+    assert!(found["linear"]["products"].as_u64() > Some(8), "{found}");
+    let (text, found) = all("explain", "direct");
+    assert!(
+        text.contains("linear systems: direct: new factors cost 6 Krylov products"),
+        "{text}"
+    );
+    assert_eq!(found["linear"]["products"], 0);
+    for key in ["unknowns", "entries", "factors", "operations"] {
+        assert!(found["linear"][key].as_u64() > Some(100), "{found}");
+    }
+    let (text, found) = all("simulate", "krylov");
+    assert!(text.contains(" Krylov products)"), "{text}");
+    assert!(
+        found["work"]["krylov_products"].as_u64() > Some(8),
+        "{found}"
+    );
+    let (text, found) = all("simulate", "direct");
+    assert!(
+        !text.contains("Krylov") && found["work"]["krylov_products"].is_null(),
+        "{text}"
+    );
+    let rigid = expect(0, at.path(), &["explain", HAMMER, "--json"]).out;
+    assert!(json(&rigid)["linear"].is_null(), "{rigid}");
+}
+
 #[test]
 fn explain_says_what_is_left_out_and_what_is_not() {
     let at = scratch();

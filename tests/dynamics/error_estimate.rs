@@ -7,7 +7,9 @@
 use crate::tests::reference::documents::problem;
 use flexbody::driver::Evaluated;
 use flexbody::driver::error::{estimate, reach};
-use flexbody::integrate::{MEMORY, Method, Samples, Settings, Spacing, Start, simulate};
+use flexbody::integrate::{
+    LinearSolver, MEMORY, Method, Samples, Settings, Spacing, Start, simulate,
+};
 use flexbody::problem::Problem;
 use serde_json::Value;
 use std::path::Path;
@@ -63,6 +65,7 @@ fn exact(problem: &Problem) -> Vec<Vec<Exact>> {
     let (model, duration) = (&scene.model, scene.duration);
     let settings = |spacing, samples| Settings {
         method: Method::Dop853,
+        solver: LinearSolver::Direct,
         spacing,
         samples: Samples::Uniform(samples),
         limits: Default::default(),

@@ -7,7 +7,9 @@
 
 use crate::tests::reference;
 
-use flexbody::integrate::{Method, Samples, Settings, Spacing, Start, Trajectory, simulate};
+use flexbody::integrate::{
+    LinearSolver, Method, Samples, Settings, Spacing, Start, Trajectory, simulate,
+};
 use flexbody::model::Model;
 use flexbody::system::observe::observe;
 use reference::{Instant, bdf, motion_error, observed_order, reaction_error, rising};
@@ -231,6 +233,7 @@ fn steps_follow_the_tolerance_at_the_work_that_was_counted() {
         let (model, instants) = reference::load(name);
         let settings = Settings {
             method,
+            solver: LinearSolver::Direct,
             spacing: Spacing::Tolerance(tolerance),
             samples: Samples::Uniform(1),
             limits: Default::default(),
@@ -262,6 +265,7 @@ fn energy_of_a_chaotic_motion() {
     let (model, _) = reference::load("triple_pendulum");
     let settings = Settings {
         method: Method::Dop853,
+        solver: LinearSolver::Direct,
         spacing: Spacing::Tolerance(1e-9),
         samples: Samples::StepEnds,
         limits: Default::default(),

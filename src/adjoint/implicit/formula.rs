@@ -1,16 +1,19 @@
 //! A backward step of a one-stage formula.
 
 use super::sweep::{Pair, Sweep, add, add_state, clear, move_back, pair, rates_of, work};
-use crate::integrate::WorkCounts;
 use crate::integrate::implicit::Stage;
+use crate::integrate::implicit::broyden::Pace;
 use crate::integrate::implicit::formula::Formula;
 use crate::integrate::implicit::ggl::Equations;
+use crate::integrate::implicit::krylov::{FACTORS, Kept, Krylov};
 use crate::integrate::implicit::split::SplitMatrix;
+use crate::integrate::implicit::turned::Turned;
+use crate::integrate::{LinearSolver, WorkCounts};
 use crate::linalg::{SparseLu, SparseMatrix};
 use crate::math::slices::add_scaled;
 use crate::model::Model;
 use crate::system::RedundantRows;
-use crate::system::{Numbering, bodies};
+use crate::system::{Numbering, bodies, flexible};
 
 /// The iteration matrix of the present step, and workspace that all functions share.
 pub(super) struct BackwardStage<'a> {
@@ -20,6 +23,8 @@ pub(super) struct BackwardStage<'a> {
     matrix: SparseMatrix<f64>,
     split: SplitMatrix,
     factors: SparseLu<f64>,
+    /// With finite elements, if the Krylov solver is chosen.
+    kept: Option<KeptFactors>,
     /// By function: the cotangent of the whole stage, and the adjoint.
     totals: Vec<Pair>,
     adjoints: Vec<Vec<f64>>,
@@ -28,13 +33,48 @@ pub(super) struct BackwardStage<'a> {
     change: Vec<f64>,
 }
 
+/// Longest pause between attempts with kept factors, in steps.
+const LONGEST: usize = 63;
+
+/// Factors of a later step that precondition the earlier ones.
+struct KeptFactors {
+    krylov: Krylov<f64>,
+    turned: Turned,
+    /// The positions where they were made.
+    made: Vec<f64>,
+    /// h and the lead coefficient for which they serve; none if they serve no longer.
+    by: Option<[f64; 2]>,
+    pace: Pace,
+    /// Solutions with new factors in their own step.
+    solves: usize,
+    /// Steps until kept factors are tried again, and the latest pause. It grows while kept factors cost more than
+    /// new ones.
+    wait: usize,
+    pause: usize,
+}
+
 impl<'a> BackwardStage<'a> {
-    pub(crate) fn new(model: &'a Model<f64>, numbering: &'a Numbering) -> Self {
+    pub(crate) fn new(
+        model: &'a Model<f64>,
+        numbering: &'a Numbering,
+        solver: LinearSolver,
+    ) -> Self {
         let mut equations = Equations::new(model, numbering);
         let split = SplitMatrix::new(&mut equations, &Stage::zero(numbering));
         let matrix = split.held.clone();
         let length = equations.length();
+        let krylov = solver == LinearSolver::Krylov && flexible::has_shells(model);
         Self {
+            kept: krylov.then(|| KeptFactors {
+                krylov: Krylov::new(&equations, numbering),
+                turned: Turned::new(model, numbering),
+                made: Vec::new(),
+                by: None,
+                pace: Pace::default(),
+                solves: 0,
+                wait: 0,
+                pause: 0,
+            }),
             model,
             numbering,
             equations,
@@ -50,8 +90,11 @@ impl<'a> BackwardStage<'a> {
 
     /// The plan without these rows, if any.
     pub(crate) fn leaving_out(&mut self, rows: Option<&RedundantRows>) -> &mut Self {
-        if let Some(rows) = rows {
-            self.equations.leave_out(rows);
+        if let Some(rows) = rows
+            && self.equations.leave_out(rows)
+            && let Some(kept) = &mut self.kept
+        {
+            kept.by = None;
         }
         self
     }
@@ -75,10 +118,6 @@ impl<'a> BackwardStage<'a> {
         let equations = &mut self.equations;
         self.split.assemble(equations, &at, h);
         self.split.fill(formula.lead, &mut self.matrix);
-        self.factors
-            .factorise(&self.matrix)
-            .map_err(|singular| equations.describe_reduced(singular.column))?;
-        counts.factorisations += 1;
         let (length, order) = (equations.length(), equations.order());
         let (totals, adjoints) = (&mut self.totals, &mut self.adjoints);
         totals.resize_with(sweeps.len(), || pair(numbering));
@@ -100,7 +139,9 @@ impl<'a> BackwardStage<'a> {
             equations.scale_columns(h, psi);
             equations.compress(psi);
         }
-        counts.solves += (self.factors).solve_transposed_refined(&self.matrix, adjoints);
+        self.solve(&stage.q, [h, formula.lead], counts)?;
+        let (equations, totals, adjoints) =
+            (&mut self.equations, &mut self.totals, &mut self.adjoints);
         for ((sweep, total), psi) in sweeps.iter_mut().zip(totals).zip(adjoints) {
             let (held, change) = (&self.split.held, &mut self.change);
             change.fill(0.0);
@@ -126,6 +167,52 @@ impl<'a> BackwardStage<'a> {
                 }
             }
             clear(&mut sweep.rates);
+        }
+        Ok(())
+    }
+
+    /// Solves the transposed equations of a step with this h and lead coefficient, which ends at q.
+    fn solve(&mut self, q: &[f64], by: [f64; 2], counts: &mut WorkCounts) -> Result<(), String> {
+        let (equations, adjoints) = (&self.equations, &mut self.adjoints);
+        if let Some(own) = &mut self.kept
+            && own.by.take() == Some(by)
+        {
+            (own.turned).set(self.numbering, (&own.made, q), equations.left_out());
+            let mut kept = Kept {
+                factors: &mut self.factors,
+                turned: &own.turned,
+                matrix: &self.matrix,
+                equations,
+            };
+            let reached = own.krylov.solve_transposed(&mut kept, adjoints);
+            counts.products += reached.products;
+            counts.solves += reached.products;
+            let lost = own.pace.is_lost(reached.products, FACTORS);
+            let dear = !reached.solved || reached.products > FACTORS + own.solves;
+            own.pause = match dear {
+                true => LONGEST.min(2 * own.pause + 1),
+                false => 0,
+            };
+            own.wait = own.pause;
+            if reached.solved {
+                own.by = (!lost && !dear).then_some(by);
+                return Ok(());
+            }
+        }
+        (self.factors)
+            .factorise(&self.matrix)
+            .map_err(|singular| equations.describe_reduced(singular.column))?;
+        counts.factorisations += 1;
+        let solves = (self.factors).solve_transposed_refined(&self.matrix, adjoints);
+        counts.solves += solves;
+        if let Some(own) = &mut self.kept {
+            own.krylov.fit(&self.matrix);
+            q.clone_into(&mut own.made);
+            own.by = (own.wait == 0).then_some(by);
+            own.wait = own.wait.saturating_sub(1);
+            own.solves = solves;
+            own.pace = Pace::default();
+            own.pace.is_lost(solves, FACTORS);
         }
         Ok(())
     }

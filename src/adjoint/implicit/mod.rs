@@ -79,7 +79,7 @@ pub(super) fn gradients(
         }
         let found = match Formula::of_step(run.method, k) {
             Some(formula) => one
-                .get_or_insert_with(|| formula::BackwardStage::new(model, numbering))
+                .get_or_insert_with(|| formula::BackwardStage::new(model, numbering, run.solver))
                 .leaving_out(run.grid.left_out(k))
                 .step(
                     &formula,

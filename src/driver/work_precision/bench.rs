@@ -72,6 +72,7 @@ impl<'a> Bench<'a> {
     ) -> Result<PrecisionRow, IntegrationFailure> {
         let settings = |samples, memory| Settings {
             method,
+            solver: self.problem.simulation.solver,
             spacing: spacing.clone(),
             samples,
             limits: self.limits(),

@@ -4,7 +4,9 @@ use super::Campaign;
 use super::bench::Bench;
 use super::exact::{Reference, distance, gradient_error, positions};
 use crate::integrate::choice::{NON_STIFF, STIFF};
-use crate::integrate::{IntegrationFailure, Method, Samples, Settings, Spacing, simulate};
+use crate::integrate::{
+    IntegrationFailure, LinearSolver, Method, Samples, Settings, Spacing, simulate,
+};
 
 /// Tolerance of the explicit reference.
 const EXPLICIT: f64 = 1e-13;
@@ -96,6 +98,7 @@ fn candidate(
 ) -> Result<Candidate, IntegrationFailure> {
     let settings = Settings {
         method,
+        solver: LinearSolver::Direct,
         spacing: Spacing::Tolerance(tolerance),
         samples: match bench.sums() {
             true => Samples::Uniform(SAMPLES),

@@ -164,6 +164,7 @@ impl Stiffness {
         };
         let settings = Settings {
             method: Method::Radau { stages: 3 },
+            solver: settings.solver,
             spacing: settings.spacing.clone(),
             samples: Samples::Uniform(1),
             memory: 0,

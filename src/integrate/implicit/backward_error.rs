@@ -21,6 +21,38 @@ const SOLVED: f64 = 2.0 * f64::EPSILON;
 /// Below this iterates that approach no further are solutions.
 const STANDING: f64 = 64.0 * f64::EPSILON;
 
+/// Number of steps for which a floor holds, and the part of it that is negligible.
+const STEPS: usize = 8;
+const NEGLIGIBLE: f64 = 0.5;
+
+/// The size of updates that are round-off, from a step whose iterations stood still.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Floor {
+    size: f64,
+    /// Number of steps for which it holds.
+    steps: usize,
+}
+
+impl Floor {
+    /// Takes the last update of a step that stood still.
+    pub(super) fn set(&mut self, size: f64) {
+        *self = Self { size, steps: STEPS };
+    }
+
+    /// Counts another step.
+    pub(super) fn count(&mut self) {
+        self.steps = self.steps.saturating_sub(1);
+    }
+
+    /// The error of an update that round-off hides.
+    pub(super) fn hidden(self) -> f64 {
+        match self.steps {
+            0 => 0.0,
+            _ => NEGLIGIBLE * self.size,
+        }
+    }
+}
+
 /// The backward errors of an iteration.
 #[derive(Debug)]
 pub(super) struct BackwardError {
@@ -134,6 +166,11 @@ impl BackwardError {
         };
         self.declines = [decline, self.declines[0]];
         self.latest = largest;
+    }
+
+    /// The part of the latest residual at which the iterate would be a solution.
+    pub(super) fn part(&self) -> f64 {
+        SOLVED / self.latest
     }
 
     /// Whether the latest iterate is a solution.

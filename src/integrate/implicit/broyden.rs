@@ -71,7 +71,7 @@ impl<S: Scalar> Broyden<S> {
 
 /// The work since the factors were made, by which they are renewed when that is cheaper.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pace {
+pub(crate) struct Pace {
     /// Number of steps.
     steps: usize,
     /// Iterations of these steps.
@@ -81,7 +81,7 @@ pub(super) struct Pace {
 impl Pace {
     /// Counts a step. Returns whether its iterations were more than the mean cost of a step, with that of the
     /// factors, which is that of `factors` iterations: then the next steps are cheaper with new ones.
-    pub(super) fn is_lost(&mut self, iterations: usize, factors: usize) -> bool {
+    pub(crate) fn is_lost(&mut self, iterations: usize, factors: usize) -> bool {
         self.steps += 1;
         self.iterations += iterations;
         iterations * self.steps > factors + self.iterations

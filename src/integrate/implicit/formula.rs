@@ -9,8 +9,10 @@
 //! With increments instead of values, rates have no round-off of values divided by the step, and
 //! one backward march suffices for all formulas.
 
+use super::Stage;
 use crate::integrate::settings::{Method, Start};
 use crate::math::Scalar;
+use crate::system::Numbering;
 
 /// Largest number of memory vectors of a formula.
 const MOST: usize = 5;
@@ -151,6 +153,51 @@ pub(crate) fn remembers_start(method: Method) -> bool {
 
 fn binomial(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
+}
+
+/// Rates as functions of the increments in this step: q̇ = c dq + `qdot`, v̇ = c dv + `vdot`.
+#[derive(Clone, Debug)]
+pub(crate) struct History<S> {
+    /// c, the formula's lead coefficient divided by h.
+    pub c: S,
+    /// Part of q̇ from the memory.
+    pub qdot: Vec<S>,
+    /// Part of v̇ from the memory.
+    pub vdot: Vec<S>,
+}
+
+impl<S: Scalar> History<S> {
+    /// A history without memory.
+    pub(crate) fn new(numbering: &Numbering) -> Self {
+        Self {
+            c: S::zero(),
+            qdot: vec![S::zero(); numbering.positions()],
+            vdot: vec![S::zero(); numbering.velocities()],
+        }
+    }
+
+    /// Sets the history of a formula in a step of size h, from its memory of q and of v:
+    /// h ẏ = c Δ + Σ e_j m_j.
+    pub(crate) fn set(&mut self, formula: &Formula, memory: &[Vec<Vec<S>>; 2], h: S) {
+        self.c = S::from(formula.lead) / h;
+        for (rates, memory) in [&mut self.qdot, &mut self.vdot].into_iter().zip(memory) {
+            rates.fill(S::zero());
+            for (e, m) in formula.past().iter().zip(memory) {
+                let e = S::from(*e) / h;
+                rates.iter_mut().zip(m).for_each(|(out, &m)| *out += e * m);
+            }
+        }
+    }
+
+    /// Sets q̇ and v̇ from the increments.
+    pub(super) fn rates(&self, x: &mut Stage<S>) {
+        for (out, (&d, &past)) in x.qdot.iter_mut().zip(x.dq.iter().zip(&self.qdot)) {
+            *out = self.c * d + past;
+        }
+        for (out, (&d, &past)) in x.vdot.iter_mut().zip(x.dv.iter().zip(&self.vdot)) {
+            *out = self.c * d + past;
+        }
+    }
 }
 
 #[cfg(test)]

@@ -112,7 +112,12 @@ fn march_until<S: SolveScalar>(
     let estimates = controller.estimates() && method.is_adaptive();
     let first = starting_stage(numbering, &start);
     let models = (model, &real);
-    let mut solver = Solver::new(method, models, (numbering, &scheme), estimates);
+    let mut solver = Solver::new(
+        (method, settings.solver),
+        models,
+        (numbering, &scheme),
+        estimates,
+    );
     let mut past = Past::new(numbering, first.clone(), (method, scheme.stages()));
     let mut inside = Stage::zero(numbering);
     let block = Block::new(numbering, first, scheme.stages());
@@ -121,6 +126,7 @@ fn march_until<S: SolveScalar>(
     let lambda = start.lambda.clone();
     let mut run = Trajectory::start(numbering.clone(), method, duration, start, tape);
     run.lambda = lambda;
+    run.solver = settings.solver;
     run.grid = match &stretch {
         Some(stretch) => Grid::growing_from(stretch.from),
         None => controller.growing(),

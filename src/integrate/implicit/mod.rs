@@ -2,10 +2,12 @@
 //! memory (BDF, generalised-α).
 
 mod backward_error;
-mod broyden;
+pub(crate) mod broyden;
+pub(crate) mod cost;
 mod estimate;
 pub(crate) mod formula;
 pub(crate) mod ggl;
+pub(crate) mod krylov;
 pub(crate) mod march;
 pub(crate) mod newton;
 pub(crate) mod predict;

@@ -1,13 +1,15 @@
 //! Newton's method for one implicit step. The iteration matrix is kept while the method converges.
 
 use super::Stage;
-use super::backward_error::BackwardError;
+use super::backward_error::{BackwardError, Floor};
 use super::broyden::{Broyden, Pace};
-use super::formula::Formula;
-use super::ggl::Equations;
+use super::formula::History;
+use super::ggl::{Equations, StepState};
+use super::krylov::{self, Kept, Krylov};
 use super::scales::SceneScale;
 use super::turned::Turned;
 use crate::integrate::failure::IntegrationFailure;
+use crate::integrate::settings::LinearSolver;
 use crate::integrate::work::WorkCounts;
 use crate::linalg::{Pivots, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::Scalar;
@@ -33,51 +35,6 @@ const SLOW: f64 = 0.5;
 /// Their assembly and factorisation cost as much as so many iterations.
 const FACTORS: usize = 4;
 
-/// Rates as functions of the increments in this step: q̇ = c dq + `qdot`, v̇ = c dv + `vdot`.
-#[derive(Clone, Debug)]
-pub(crate) struct History<S> {
-    /// c, the formula's lead coefficient divided by h.
-    pub c: S,
-    /// Part of q̇ from the memory.
-    pub qdot: Vec<S>,
-    /// Part of v̇ from the memory.
-    pub vdot: Vec<S>,
-}
-
-impl<S: Scalar> History<S> {
-    /// A history without memory.
-    pub(crate) fn new(numbering: &Numbering) -> Self {
-        Self {
-            c: S::zero(),
-            qdot: vec![S::zero(); numbering.positions()],
-            vdot: vec![S::zero(); numbering.velocities()],
-        }
-    }
-
-    /// Sets the history of a formula in a step of size h, from its memory of q and of v:
-    /// h ẏ = c Δ + Σ e_j m_j.
-    pub(crate) fn set(&mut self, formula: &Formula, memory: &[Vec<Vec<S>>; 2], h: S) {
-        self.c = S::from(formula.lead) / h;
-        for (rates, memory) in [&mut self.qdot, &mut self.vdot].into_iter().zip(memory) {
-            rates.fill(S::zero());
-            for (e, m) in formula.past().iter().zip(memory) {
-                let e = S::from(*e) / h;
-                rates.iter_mut().zip(m).for_each(|(out, &m)| *out += e * m);
-            }
-        }
-    }
-
-    /// Sets q̇ and v̇ from the increments.
-    fn rates(&self, x: &mut Stage<S>) {
-        for (out, (&d, &past)) in x.qdot.iter_mut().zip(x.dq.iter().zip(&self.qdot)) {
-            *out = self.c * d + past;
-        }
-        for (out, (&d, &past)) in x.vdot.iter_mut().zip(x.dv.iter().zip(&self.vdot)) {
-            *out = self.c * d + past;
-        }
-    }
-}
-
 /// Data that Newton's method keeps from step to step.
 #[derive(Clone, Debug)]
 pub(crate) struct Memory<S> {
@@ -86,7 +43,18 @@ pub(crate) struct Memory<S> {
     contraction: f64,
     unseen: usize,
     pace: Pace,
+    floor: Floor,
     pivots: Option<Arc<Pivots>>,
+}
+
+/// What corrects kept factors.
+enum Correction<S> {
+    /// Nothing.
+    Nothing,
+    /// The steps so far.
+    Broyden(Broyden<S>),
+    /// The present matrix.
+    Krylov(Box<Krylov<S>>),
 }
 
 /// Newton's method with its workspace.
@@ -105,23 +73,31 @@ pub(crate) struct Newton<'a, S> {
     unseen: usize,
     /// With finite elements: corrections of the kept factors, the turns since they were made, and the work
     /// with them.
-    broyden: Option<Broyden<S>>,
+    correction: Correction<S>,
     turned: Turned,
     pace: Pace,
     /// With finite elements.
     backward: Option<BackwardError>,
+    floor: Floor,
     scale: SceneScale,
     residual: Vec<S>,
 }
 
 impl<'a, S: SolveScalar> Newton<'a, S> {
     /// Plans the solution of the model's equations.
-    pub(crate) fn new(model: &'a Model<S>, numbering: &'a Numbering) -> Self {
+    pub(crate) fn new(model: &'a Model<S>, numbering: &'a Numbering, solver: LinearSolver) -> Self {
         let mut equations = Equations::new(model, numbering);
         let length = equations.length();
         let pattern = equations.pattern(&Stage::zero(numbering).instant());
         let shells = flexible::has_shells(model);
         Self {
+            correction: match solver {
+                _ if S::INFINITESIMAL || !shells => Correction::Nothing,
+                LinearSolver::Direct => Correction::Broyden(Broyden::new()),
+                LinearSolver::Krylov => {
+                    Correction::Krylov(Box::new(Krylov::new(&equations, numbering)))
+                }
+            },
             equations,
             numbering,
             factors: SparseLu::new(&pattern),
@@ -130,12 +106,12 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             made: (Stage::zero(numbering), [S::zero(); 2]),
             contraction: 1.0,
             unseen: 0,
-            broyden: (!S::INFINITESIMAL && shells).then(Broyden::new),
             turned: match shells {
                 true => Turned::new(model, numbering),
                 false => Turned::default(),
             },
             pace: Pace::default(),
+            floor: Floor::default(),
             backward: shells.then(|| BackwardError::new(length)),
             scale: SceneScale::of(model),
             residual: vec![S::zero(); length],
@@ -149,6 +125,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             contraction: self.contraction,
             unseen: self.unseen,
             pace: self.pace,
+            floor: self.floor,
             pivots: self.factors.pivots(),
         }
     }
@@ -158,6 +135,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         self.contraction = kept.contraction;
         self.unseen = kept.unseen;
         self.pace = kept.pace;
+        self.floor = kept.floor;
         self.factors
             .set_pivots(&self.matrix.pattern, kept.pivots.as_ref());
         self.factored = None;
@@ -175,8 +153,11 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         }
     }
 
-    /// Sets the terms of the backward error where the factors were made.
+    /// Sets the terms of the backward error, and the scales of rows, where the factors were made.
     fn fit(&mut self) {
+        if let Correction::Krylov(krylov) = &mut self.correction {
+            krylov.fit(&self.matrix);
+        }
         if let Some(backward) = &mut self.backward {
             let at = (&self.made.0, self.made.1[0].re());
             backward.fit(&self.equations, self.numbering, at, &[(1.0, &self.matrix)]);
@@ -218,7 +199,14 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         let round_off = ROUND_OFF * scales.place().max(1.0);
         let mut previous = f64::INFINITY;
         let (mut polish, mut before) = (false, 0.0_f64);
-        let renew = if self.broyden.is_some() { SLOW } else { RENEW };
+        let renew = match &mut self.correction {
+            Correction::Nothing => RENEW,
+            Correction::Broyden(_) => SLOW,
+            Correction::Krylov(krylov) => {
+                krylov.begin();
+                SLOW
+            }
+        };
         if let Some(backward) = &mut self.backward {
             backward.begin();
         }
@@ -230,8 +218,10 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             // An infinitesimal part converges only with the exact matrix.
             let residual = (self.residual.iter()).fold(0.0, |m: f64, x| m.max(x.re().abs()));
             let fresh = S::INFINITESIMAL || self.factored != Some(history.c * h);
-            if let (true, Some(broyden)) = (fresh || iteration == 1, &mut self.broyden) {
-                broyden.clear();
+            if fresh || iteration == 1 {
+                if let Correction::Broyden(broyden) = &mut self.correction {
+                    broyden.clear();
+                }
                 let turn = (&self.made.0.q[..], &x.q[..]);
                 match fresh {
                     true => self.turned.clear(),
@@ -265,14 +255,8 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 }
             }
             counts.newton_iterations += 1;
-            counts.solves += 1;
             let mut update = std::mem::take(&mut self.residual);
-            let factors = &mut self.factors;
-            let turned = &self.turned;
-            turned.through(&self.equations, &mut update, |x| factors.solve(x));
-            if let Some(broyden) = &mut self.broyden {
-                broyden.correct(std::slice::from_mut(&mut update));
-            }
+            let suffices = self.apply_inverse((&at, [h, history.c], fresh), &mut update, counts);
             let size = scales.size(&update[..2 * nv], h.re());
             if !size.is_finite() {
                 self.residual = update;
@@ -308,7 +292,8 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 .backward
                 .as_ref()
                 .is_some_and(BackwardError::will_be_solved);
-            if polish || remaining <= TOLERANCE || stagnant || solved {
+            let tolerance = TOLERANCE.max(self.floor.hidden());
+            if polish || remaining <= tolerance || stagnant || solved {
                 if S::INFINITESIMAL && !polish {
                     polish = true;
                     previous = size;
@@ -317,11 +302,16 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 if iteration > 1 && !stagnant {
                     self.contraction = contraction.clamp(1e-3, 1.0);
                 }
+                if stagnant && standing {
+                    self.floor.set(size);
+                } else {
+                    self.floor.count();
+                }
                 self.end_step(iteration);
                 history.rates(x);
                 return Ok(());
             }
-            if iteration > 1 && contraction > renew {
+            if !suffices || iteration > 1 && contraction > renew {
                 self.factored = None;
             }
             if fresh {
@@ -332,6 +322,41 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         Err(self.stalled(x, history, h, (step, time)))
     }
 
+    /// Applies the inverse of the matrix to a residual at an instant of a step with these h and c, by new or by kept
+    /// factors. Returns whether these may serve longer.
+    fn apply_inverse(
+        &mut self,
+        (at, [h, c], fresh): (&StepState<S>, [S; 2], bool),
+        residual: &mut Vec<S>,
+        counts: &mut WorkCounts,
+    ) -> bool {
+        let (factors, turned) = (&mut self.factors, &self.turned);
+        if let Correction::Krylov(krylov) = &mut self.correction {
+            let least = self.backward.as_ref().map_or(0.0, BackwardError::part);
+            let forcing = krylov.force(&self.equations, residual, least);
+            if !fresh {
+                let (equations, matrix) = (&mut self.equations, &mut self.matrix);
+                matrix.assemble(|emit| equations.jacobian(at, h, c, emit));
+                let mut kept = Kept {
+                    factors,
+                    turned,
+                    matrix,
+                    equations,
+                };
+                let reached = krylov.solve(&mut kept, residual, forcing);
+                counts.products += reached.products;
+                counts.solves += reached.products;
+                return reached.solved;
+            }
+        }
+        counts.solves += 1;
+        turned.through(&self.equations, residual, |x| factors.solve(x));
+        if let Correction::Broyden(broyden) = &mut self.correction {
+            broyden.correct(std::slice::from_mut(residual));
+        }
+        true
+    }
+
     /// Judges the kept factors after a step of so many iterations.
     fn end_step(&mut self, iterations: usize) {
         // Kept factors whose convergence is unknown are not used for long.
@@ -340,7 +365,12 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             self.factored = None;
             self.unseen = 0;
         }
-        if self.broyden.is_some() && self.pace.is_lost(iterations, FACTORS) {
+        let lost = match &self.correction {
+            Correction::Nothing => false,
+            Correction::Broyden(_) => self.pace.is_lost(iterations, FACTORS),
+            Correction::Krylov(krylov) => self.pace.is_lost(krylov.products, krylov::FACTORS),
+        };
+        if lost {
             self.factored = None;
         }
     }

@@ -8,15 +8,42 @@ use crate::math::Scalar;
 use crate::math::slices::add_scaled;
 use crate::system::{Numbering, bodies};
 
-/// Largest number of steps whose ends the guess of a formula extrapolates, and the number with which it begins.
+/// Largest number of steps that the guess of a formula extrapolates, and the number with which it begins.
 const RECENT: usize = 8;
 const FEW: usize = 3;
 
-/// Number of steps whose ends a method keeps for its guesses.
+/// Number of steps that a method keeps for its guesses.
 pub(super) fn recent(method: Method) -> usize {
     match method {
         Method::Radau { .. } => 0,
         Method::Dop853 | Method::Bdf { .. } | Method::GeneralisedAlpha { .. } => RECENT,
+    }
+}
+
+/// What the guess of a formula extrapolates: the increments of a step, and the multipliers at its end.
+#[derive(Clone, Debug)]
+struct Recent<S> {
+    dq: Vec<S>,
+    dv: Vec<S>,
+    lambda: Vec<S>,
+    mu: Vec<S>,
+}
+
+impl<S: Scalar> Recent<S> {
+    fn of(stage: &Stage<S>) -> Self {
+        Self {
+            dq: stage.dq.clone(),
+            dv: stage.dv.clone(),
+            lambda: stage.lambda.clone(),
+            mu: stage.mu.clone(),
+        }
+    }
+
+    fn set(&mut self, stage: &Stage<S>) {
+        self.dq.copy_from_slice(&stage.dq);
+        self.dv.copy_from_slice(&stage.dv);
+        self.lambda.copy_from_slice(&stage.lambda);
+        self.mu.copy_from_slice(&stage.mu);
     }
 }
 
@@ -28,8 +55,8 @@ pub(crate) struct Past<S> {
     /// Size of the last step, if it was one of Radau IIA.
     before: Option<S>,
     stages: Vec<Stage<S>>,
-    /// Ends of the latest steps, newest first, and their number; none for Radau IIA.
-    recent: Vec<Stage<S>>,
+    /// The latest steps, newest first, and their number; none for Radau IIA.
+    recent: Vec<Recent<S>>,
     known: usize,
     /// A tangent step of the positions.
     tangent: Vec<S>,
@@ -47,7 +74,7 @@ impl<S: SolveScalar> Past<S> {
             from,
             before: None,
             stages: vec![zero.clone(); stages],
-            recent: vec![zero.clone(); recent(method)],
+            recent: vec![Recent::of(&zero); recent(method)],
             known: 0,
             tangent: zero.v,
         }
@@ -142,14 +169,14 @@ impl<S: SolveScalar> Past<S> {
         }
         out.set(&self.from);
         let recent = &self.recent;
-        let go_on = |part: fn(&Stage<S>) -> &Vec<S>, out: &mut [S]| {
+        let go_on = |part: fn(&Recent<S>) -> &Vec<S>, out: &mut [S]| {
             let all: [&[S]; RECENT] = std::array::from_fn(|i| &part(&recent[i])[..]);
             extrapolate(&all[..self.known], out);
         };
-        go_on(|stage| &stage.dq, &mut out.dq);
-        go_on(|stage| &stage.dv, &mut out.dv);
-        go_on(|stage| &stage.lambda, &mut out.lambda);
-        go_on(|stage| &stage.mu, &mut out.mu);
+        go_on(|recent| &recent.dq, &mut out.dq);
+        go_on(|recent| &recent.dv, &mut out.dv);
+        go_on(|recent| &recent.lambda, &mut out.lambda);
+        go_on(|recent| &recent.mu, &mut out.mu);
         out.q.iter_mut().zip(&out.dq).for_each(|(q, &d)| *q += d);
         out.v.iter_mut().zip(&out.dv).for_each(|(v, &d)| *v += d);
         bodies::normalise(numbering, &mut out.q, &mut out.dq);

@@ -27,7 +27,7 @@ impl<'a> Replayer<'a> {
         let first: Stage<f64> = starting_stage(numbering, &run.initial);
         Self {
             run,
-            solver: Solver::new(run.method, (model, model), system, false),
+            solver: Solver::new((run.method, run.solver), (model, model), system, false),
             past: Past::new(numbering, first, (run.method, scheme.stages())),
             counts: WorkCounts::default(),
         }

@@ -2,14 +2,14 @@
 
 use super::Stage;
 use super::estimate::Estimate;
-use super::formula::{Formula, memory_size, remembers_start};
-use super::newton::{self, History, Newton};
+use super::formula::{Formula, History, memory_size, remembers_start};
+use super::newton::{self, Newton};
 use super::predict::Past;
 use super::radau::Scheme;
 use super::stage_newton::{self, StageNewton};
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::scale::Scale;
-use crate::integrate::settings::Method;
+use crate::integrate::settings::{LinearSolver, Method};
 use crate::integrate::work::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
@@ -44,6 +44,7 @@ type Guess<S> = fn(&mut Past<S>, &Numbering, S, &mut Stage<S>);
 /// Makes the steps of a method.
 pub(super) struct Solver<'a, S> {
     method: Method,
+    linear: LinearSolver,
     model: &'a Model<S>,
     real: &'a Model<f64>,
     numbering: &'a Numbering,
@@ -68,7 +69,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
     /// A solver of `method` for a model with the real part `real`. `estimates` states whether
     /// errors will be needed.
     pub(crate) fn new(
-        method: Method,
+        (method, linear): (Method, LinearSolver),
         (model, real): (&'a Model<S>, &'a Model<f64>),
         (numbering, scheme): (&'a Numbering, &'a Scheme),
         estimates: bool,
@@ -76,6 +77,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         let lengths = [numbering.positions(), numbering.velocities()];
         Self {
             method,
+            linear,
             model,
             real,
             numbering,
@@ -106,8 +108,9 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         match &newton.one {
             None => self.one = None,
             Some(kept) => {
-                let (model, numbering) = (self.model, self.numbering);
-                let newton = (self.one).get_or_insert_with(|| Newton::new(model, numbering));
+                let (model, numbering, linear) = (self.model, self.numbering, self.linear);
+                let newton =
+                    (self.one).get_or_insert_with(|| Newton::new(model, numbering, linear));
                 newton.leave_out(&self.left_out);
                 newton.restore(kept, counts);
             }
@@ -203,9 +206,10 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         stage.time = start + h;
         self.history.set(&formula, &self.memory, h);
         let history = &self.history;
+        let linear = self.linear;
         let newton = self
             .one
-            .get_or_insert_with(|| Newton::new(model, numbering));
+            .get_or_insert_with(|| Newton::new(model, numbering, linear));
         newton.leave_out(&self.left_out);
         let found = newton.solve(stage, history, h, at, counts);
         // The extrapolation over large steps may be a bad guess, and so are accelerations of light parts.

@@ -44,18 +44,18 @@ impl<S: Scalar> Block<S> {
 
     /// Memory of a step and of a checkpoint of a method.
     pub(crate) fn room(&self, method: Method) -> MemoryOfBlock {
-        let [nq, nv, ..] = self.stages.lengths();
+        let [nq, nv, _, _, nc, ..] = self.stages.lengths();
         let (width, number) = (self.stages.width(), size_of::<S>());
         let stages = match method {
             Method::Radau { .. } => self.most,
             Method::Dop853 | Method::Bdf { .. } | Method::GeneralisedAlpha { .. } => 1,
         };
-        // A checkpoint holds the state, the stages of the last step, the ends of the latest steps,
-        // and the stage of the factors.
-        let states = 2 + self.most + recent(method);
+        // A checkpoint holds the state, the stages of the last step, what guesses extrapolate, the memory of a
+        // formula, and the stage of the factors.
+        let states = (2 + self.most) * width + recent(method) * (nq + nv + 2 * nc);
         MemoryOfBlock {
             step: (stages * width + 1) * number,
-            checkpoint: (states * width + memory_size(method) * (nq + nv) + 32) * number,
+            checkpoint: (states + memory_size(method) * (nq + nv) + 32) * number,
         }
     }
 

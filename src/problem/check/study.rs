@@ -14,7 +14,7 @@ use crate::problem::schema::functions::{
     Clearance, Component, Function, Gate, Instant, OfMotion, Range,
 };
 use crate::problem::schema::mechanics::Point;
-use crate::problem::schema::{Method, Objective};
+use crate::problem::schema::{LinearSolver, Method, Objective};
 
 /// A direction is horizontal up to this cosine with gravity.
 const HORIZONTAL: f64 = 1e-9;
@@ -111,6 +111,25 @@ impl Checker<'_> {
             let expected =
                 "\"method\" radau, bdf or generalised_alpha, as finite elements are stiff";
             self.fault(Finding::new(place, found, expected).of_key());
+        }
+        if let Some(LinearSolver::Krylov) = simulation.linear_solver {
+            let (found, expected, hint) = match (equal, shells) {
+                (true, true) => ("", "", ""),
+                (false, _) => (
+                    "the Krylov solver without bdf or generalised_alpha",
+                    "the method bdf or generalised_alpha",
+                    "dop853 has no linear systems of steps, and the coupled stages of radau are solved directly",
+                ),
+                (true, false) => (
+                    "the Krylov solver without a body of finite elements with all its nodes",
+                    "a body with \"elements\" and no \"basis\"",
+                    "the matrices of other bodies are small, and their factors cheap",
+                ),
+            };
+            if !found.is_empty() {
+                let finding = Finding::new("/simulation/linear_solver", found, expected);
+                self.fault(finding.hint(Some(hint.into())));
+            }
         }
         if let (true, Some(samples)) = (equal, simulation.samples) {
             let found = format!("{samples} samples with the method {name}");

@@ -153,6 +153,18 @@ pub(crate) struct Simulation {
     pub seconds: Option<f64>,
     /// Integration method. Default: chosen for the scene, dop853 unless it is stiff, else radau.
     pub method: Option<Method>,
+    /// How the linear systems of bodies of finite elements are solved, default direct.
+    pub linear_solver: Option<LinearSolver>,
+}
+
+/// How linear systems are solved.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum LinearSolver {
+    /// By factors, which are kept from step to step while they converge.
+    Direct,
+    /// By Krylov's method with kept factors as preconditioner, for bdf and generalised_alpha.
+    Krylov,
 }
 
 /// An event that ends the run.

@@ -11,7 +11,7 @@ mod unseen;
 mod welds;
 
 use flexbody::driver::Evaluated;
-use flexbody::integrate::{MEMORY, Method, Samples, Settings, Spacing, simulate};
+use flexbody::integrate::{LinearSolver, MEMORY, Method, Samples, Settings, Spacing, simulate};
 use flexbody::lower::ViolatedCondition;
 use flexbody::problem::{Override, Problem};
 use serde_json::Value;
@@ -67,6 +67,7 @@ fn obstacle(problem: &Problem) -> ViolatedCondition {
 fn settings(method: Method, spacing: Spacing) -> Settings {
     Settings {
         method,
+        solver: LinearSolver::Direct,
         spacing,
         samples: Samples::Uniform(50),
         limits: Default::default(),

@@ -177,6 +177,7 @@ impl<'a, S: Scalar> Equations<'a, S> {
             *f -= v;
         }
         joints::add_reactions(model, numbering, &self.gradients, at.mu, out1);
+        flexible::clear_kinematics(model, numbering, at.v, out1);
         all_force_balances(model, numbering, &self.motions, at.vdot, out2);
         flexible::add_force_balances(model, numbering, &self.motions, at.vdot, out2);
         joints::add_reactions(model, numbering, &self.gradients, at.lambda, out2);
