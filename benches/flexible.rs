@@ -1,8 +1,9 @@
 //! Time steps of bodies of finite elements: chains of N hinged plates, and two plates of more and more elements.
 //!
 //! `cargo bench --bench flexible` prints the tables; `cargo bench --bench flexible -- chain 4 bdf 20`,
-//! `… -- mesh 32 krylov 100` (BDF2 by the Krylov solver) or `… -- mesh 32 radau 100` one line of a run of so many steps, with the peak resident set of that run alone. Times are
-//! wall times, the least of some, with the plans of the matrices; `RAYON_NUM_THREADS` sets the number of threads.
+//! `… -- mesh 32 krylov 100` (BDF2 by the Krylov solver) or `… -- mesh 32 radau 100` one line of a run of so
+//! many steps, with the peak resident set of that run alone. Times are wall times, the least of some, with the
+//! plans of the matrices; `RAYON_NUM_THREADS` sets the number of threads.
 //!
 //! Plates of 1 m by 0.25 m and 5 mm start flat, turn with 8 rad/s about z and hang on hinges along their
 //! edges, as in `problems/flexible/double_plate.json`. Each has a thickness for each element along it, which a design
