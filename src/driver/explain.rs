@@ -5,7 +5,7 @@ use super::evaluate::{Derivative, Evaluated};
 use super::integration::{Integration, looks_at_the_whole};
 use super::{memory, stretch};
 use crate::integrate::implicit::cost::factor_cost;
-use crate::integrate::implicit::krylov::FACTORS;
+use crate::integrate::implicit::krylov::PRODUCTS_OF_FACTORS;
 use crate::integrate::{IntegrationFailure, LinearSolver, Method, Trajectory};
 use crate::model::{Mobility, Model};
 use crate::problem::Problem;
@@ -89,14 +89,17 @@ impl MotionExplanation {
     }
 }
 
-/// How the linear systems of a motion with finite elements are solved.
+/// How the linear systems of a motion with finite elements are solved, if it has any.
 fn linear(at: &Evaluated) -> Option<LinearUse> {
     let (model, run) = (&at.scene.model, &at.run);
+    if let Method::Dop853 = run.method {
+        return None;
+    }
     let cost = factor_cost(model, run)?;
     let (solver, reason) = match (run.solver, run.method) {
         (LinearSolver::Krylov, _) => (
             "Krylov with kept factors",
-            format!("as the problem says; new factors cost {FACTORS} products"),
+            format!("as the problem says; new factors count as {PRODUCTS_OF_FACTORS} products"),
         ),
         (LinearSolver::Direct, Method::Radau { .. }) => (
             "direct",
@@ -105,7 +108,8 @@ fn linear(at: &Evaluated) -> Option<LinearUse> {
         (LinearSolver::Direct, _) => (
             "direct",
             format!(
-                "new factors cost about {FACTORS} Krylov products, and kept factors serve several steps"
+                "new factors cost about {PRODUCTS_OF_FACTORS} Krylov products, as measured for plates, and kept \
+                 factors serve several steps"
             ),
         ),
     };
@@ -116,7 +120,7 @@ fn linear(at: &Evaluated) -> Option<LinearUse> {
         entries: cost.entries,
         factors: cost.factors,
         operations: cost.operations,
-        products: run.counts.products,
+        krylov_products: run.counts.products,
     })
 }
 

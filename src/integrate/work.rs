@@ -15,7 +15,7 @@ pub struct WorkCounts {
     pub newton_iterations: usize,
     /// Matrices that were assembled and factorised.
     pub factorisations: usize,
-    /// Linear systems that were solved.
+    /// Solutions with factors, those of Krylov products included.
     pub solves: usize,
     /// Products with a matrix and kept factors by the Krylov solver.
     pub products: usize,

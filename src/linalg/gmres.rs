@@ -159,7 +159,7 @@ pub(crate) fn gmres(
 
 #[cfg(test)]
 mod tests {
-    use super::gmres;
+    use super::{Gmres, gmres};
 
     /// A matrix that differs from unity in three rows takes four products.
     #[test]
@@ -190,5 +190,19 @@ mod tests {
         );
         assert!(products <= 5, "{products}");
         assert!(x.iter().zip(&exact).all(|(x, e)| (x - e).abs() < 1e-13));
+    }
+
+    /// Products that are zero or no numbers solve nothing.
+    #[test]
+    fn useless_products_do_not_pass_as_solutions() {
+        for value in [0.0, f64::NAN, f64::INFINITY] {
+            let mut x = [0.0_f64; 3];
+            let apply = |v: &[f64], z: &mut [f64], w: &mut [f64]| {
+                z.copy_from_slice(v);
+                w.fill(value);
+            };
+            let found = Gmres::new().solve(apply, (&[1.0, 2.0, 3.0], &mut x), 0.1, 5);
+            assert!(!found.solved, "{value} {x:?}");
+        }
     }
 }

@@ -13,7 +13,7 @@ mod multifrontal;
 pub(crate) mod pattern;
 mod replay;
 mod scaling;
-pub(crate) mod short_rows;
+mod short_rows;
 mod sparse_lu;
 mod substitution;
 

@@ -52,8 +52,9 @@ impl ShortRows {
         self.places[k][1]
     }
 
-    /// Takes the right-hand sides b by the pivots to t. `by` are inverse pivots, and entries beside pivots by the pivots.
-    pub(super) fn enter<S: SolveScalar>(
+    /// Divides the right-hand sides b by the pivots, into t. `inverse` are the inverse pivots, `beside` the entries
+    /// beside pivots divided by them.
+    pub(super) fn eliminate<S: SolveScalar>(
         &self,
         system: System,
         (inverse, beside): (&[S], &[S]),
@@ -72,7 +73,13 @@ impl ShortRows {
     }
 
     /// Writes the unknowns of the rows from t and the other unknowns in b.
-    pub(super) fn leave<S: SolveScalar>(&self, system: System, beside: &[S], t: &[S], b: &mut [S]) {
+    pub(super) fn substitute_back<S: SolveScalar>(
+        &self,
+        system: System,
+        beside: &[S],
+        t: &[S],
+        b: &mut [S],
+    ) {
         let (_, side) = sides(system);
         for (&t, places) in t.iter().zip(&self.places) {
             b[places[side]] = t;

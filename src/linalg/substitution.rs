@@ -36,7 +36,7 @@ impl<S: SolveScalar> Multifrontal<S> {
         let (plan, space) = (&self.plan, &mut self.of_trunk);
         let (x, t) = (&mut space.x[i], &mut space.short[i]);
         let by = (&self.inverse[..], &self.beside[..]);
-        plan.short.enter(system, by, (&mut *b, &mut *t));
+        plan.short.eliminate(system, by, (&mut *b, &mut *t));
         let places = match system {
             System::Plain => &plan.rows,
             System::Transposed => &plan.columns,
@@ -157,7 +157,7 @@ impl<S: SolveScalar> Multifrontal<S> {
             b[place] = x;
         }
         let t = &space.short[i];
-        plan.short.leave(system, &self.beside, t, b);
+        plan.short.substitute_back(system, &self.beside, t, b);
     }
 }
 

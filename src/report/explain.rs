@@ -96,7 +96,7 @@ pub(crate) struct LinearUse {
     /// See above.
     pub operations: usize,
     /// Products with a matrix and kept factors in the simulated part.
-    pub products: usize,
+    pub krylov_products: usize,
 }
 
 impl LinearUse {
@@ -227,9 +227,10 @@ impl Explanation {
             };
             if found.newton_iterations > 0 && found.stretch.is_none() {
                 let products = match &found.linear {
-                    Some(LinearUse { products, .. }) if *products > 0 => {
-                        format!(" and {products} products")
-                    }
+                    Some(LinearUse {
+                        krylov_products: products,
+                        ..
+                    }) if *products > 0 => format!(" and {products} products"),
                     _ => String::new(),
                 };
                 let _ = writeln!(

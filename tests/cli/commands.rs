@@ -518,13 +518,16 @@ fn the_solver_of_finite_elements_is_told() {
         "{text}"
     );
     assert!(text.contains(" products for "), "{text}");
-    assert!(found["linear"]["products"].as_u64() > Some(8), "{found}");
+    assert!(
+        found["linear"]["krylov_products"].as_u64() > Some(8),
+        "{found}"
+    );
     let (text, found) = all("explain", "direct");
     assert!(
         text.contains("linear systems: direct: new factors cost about 6 Krylov products"),
         "{text}"
     );
-    assert_eq!(found["linear"]["products"], 0);
+    assert_eq!(found["linear"]["krylov_products"], 0);
     for key in ["unknowns", "entries", "factors", "operations"] {
         assert!(found["linear"][key].as_u64() > Some(100), "{found}");
     }

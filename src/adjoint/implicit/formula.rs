@@ -5,7 +5,7 @@ use crate::integrate::implicit::Stage;
 use crate::integrate::implicit::broyden::Pace;
 use crate::integrate::implicit::formula::Formula;
 use crate::integrate::implicit::ggl::Equations;
-use crate::integrate::implicit::krylov::{FACTORS, Kept, Krylov};
+use crate::integrate::implicit::krylov::{Kept, Krylov, PRODUCTS_OF_FACTORS};
 use crate::integrate::implicit::split::SplitMatrix;
 use crate::integrate::implicit::turned::Turned;
 use crate::integrate::{LinearSolver, WorkCounts};
@@ -41,9 +41,9 @@ struct KeptFactors {
     krylov: Krylov<f64>,
     turned: Turned,
     /// The positions where they were made.
-    made: Vec<f64>,
+    made_at: Vec<f64>,
     /// h and the lead coefficient for which they serve; none if they serve no longer.
-    by: Option<[f64; 2]>,
+    valid_for: Option<[f64; 2]>,
     pace: Pace,
     /// Solutions with new factors in their own step.
     solves: usize,
@@ -68,8 +68,8 @@ impl<'a> BackwardStage<'a> {
             kept: krylov.then(|| KeptFactors {
                 krylov: Krylov::new(&equations, numbering),
                 turned: Turned::new(model, numbering),
-                made: Vec::new(),
-                by: None,
+                made_at: Vec::new(),
+                valid_for: None,
                 pace: Pace::default(),
                 solves: 0,
                 wait: 0,
@@ -94,7 +94,7 @@ impl<'a> BackwardStage<'a> {
             && self.equations.leave_out(rows)
             && let Some(kept) = &mut self.kept
         {
-            kept.by = None;
+            kept.valid_for = None;
         }
         self
     }
@@ -175,9 +175,9 @@ impl<'a> BackwardStage<'a> {
     fn solve(&mut self, q: &[f64], by: [f64; 2], counts: &mut WorkCounts) -> Result<(), String> {
         let (equations, adjoints) = (&self.equations, &mut self.adjoints);
         if let Some(own) = &mut self.kept
-            && own.by.take() == Some(by)
+            && own.valid_for.take() == Some(by)
         {
-            (own.turned).set(self.numbering, (&own.made, q), equations.left_out());
+            (own.turned).set(self.numbering, (&own.made_at, q), equations.left_out());
             let mut kept = Kept {
                 factors: &mut self.factors,
                 turned: &own.turned,
@@ -187,15 +187,15 @@ impl<'a> BackwardStage<'a> {
             let reached = own.krylov.solve_transposed(&mut kept, adjoints);
             counts.products += reached.products;
             counts.solves += reached.products;
-            let lost = own.pace.is_lost(reached.products, FACTORS);
-            let dear = !reached.solved || reached.products > FACTORS + own.solves;
-            own.pause = match dear {
+            let lost = own.pace.is_lost(reached.products, PRODUCTS_OF_FACTORS);
+            let costly = !reached.solved || reached.products > PRODUCTS_OF_FACTORS + own.solves;
+            own.pause = match costly {
                 true => LONGEST.min(2 * own.pause + 1),
                 false => 0,
             };
             own.wait = own.pause;
             if reached.solved {
-                own.by = (!lost && !dear).then_some(by);
+                own.valid_for = (!lost && !costly).then_some(by);
                 return Ok(());
             }
         }
@@ -207,12 +207,12 @@ impl<'a> BackwardStage<'a> {
         counts.solves += solves;
         if let Some(own) = &mut self.kept {
             own.krylov.fit(&self.matrix);
-            q.clone_into(&mut own.made);
-            own.by = (own.wait == 0).then_some(by);
+            q.clone_into(&mut own.made_at);
+            own.valid_for = (own.wait == 0).then_some(by);
             own.wait = own.wait.saturating_sub(1);
             own.solves = solves;
             own.pace = Pace::default();
-            own.pace.is_lost(solves, FACTORS);
+            own.pace.count(solves);
         }
         Ok(())
     }

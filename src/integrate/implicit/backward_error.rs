@@ -21,34 +21,35 @@ const SOLVED: f64 = 2.0 * f64::EPSILON;
 /// Below this iterates that approach no further are solutions.
 const STANDING: f64 = 64.0 * f64::EPSILON;
 
-/// Number of steps for which a floor holds, and the part of it that is negligible.
+/// Number of steps for which a noise floor holds, the part of it that is negligible, and the largest error that is.
 const STEPS: usize = 8;
 const NEGLIGIBLE: f64 = 0.5;
+const LARGEST: f64 = 1e-9;
 
 /// The size of updates that are round-off, from a step whose iterations stood still.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Floor {
+pub(super) struct NoiseFloor {
     size: f64,
-    /// Number of steps for which it holds.
+    /// Number of steps for which it holds, the present one included.
     steps: usize,
 }
 
-impl Floor {
-    /// Takes the last update of a step that stood still.
+impl NoiseFloor {
+    /// Takes the last update of a step that stood still. It holds for the next steps.
     pub(super) fn set(&mut self, size: f64) {
-        *self = Self { size, steps: STEPS };
+        (self.size, self.steps) = (size, STEPS + 1);
     }
 
-    /// Counts another step.
-    pub(super) fn count(&mut self) {
+    /// Begins a step.
+    pub(super) fn begin(&mut self) {
         self.steps = self.steps.saturating_sub(1);
     }
 
-    /// The error of an update that round-off hides.
-    pub(super) fn hidden(self) -> f64 {
+    /// The largest error of an update that is negligible beside round-off.
+    pub(super) fn negligible(self) -> f64 {
         match self.steps {
             0 => 0.0,
-            _ => NEGLIGIBLE * self.size,
+            _ => (NEGLIGIBLE * self.size).min(LARGEST),
         }
     }
 }
@@ -155,9 +156,7 @@ impl BackwardError {
             }
             equations.compress(&mut self.all);
             for (x, &terms) in self.all.iter().zip(&self.terms) {
-                if *x != 0.0 {
-                    largest = largest.max(x.abs() / terms);
-                }
+                largest = largest.max(relative(*x, terms));
             }
         }
         let decline = match self.latest.is_finite() {
@@ -178,14 +177,33 @@ impl BackwardError {
         self.latest <= SOLVED
     }
 
-    /// Whether the next one will be, if ω declines by the slower of the latest two rates.
-    pub(super) fn will_be_solved(&self) -> bool {
-        self.latest * self.declines[0].max(self.declines[1]) <= SOLVED
+    /// ω of the next iterate, if it declines by the slower of the latest two rates.
+    fn next(&self) -> f64 {
+        self.latest * self.declines[0].max(self.declines[1])
     }
 
-    /// Whether it is one if the iterates approach no further.
+    /// Whether the next iterate will be a solution.
+    pub(super) fn will_be_solved(&self) -> bool {
+        self.next() <= SOLVED
+    }
+
+    /// Whether the next iterate will be a solution if it approaches no further.
+    pub(super) fn will_stand(&self) -> bool {
+        self.next() <= STANDING
+    }
+
+    /// Whether the latest iterate is a solution if the iterates approach no further.
     pub(super) fn is_standing(&self) -> bool {
         self.latest <= STANDING
+    }
+}
+
+/// A residual relative to its terms; infinite if it is no number.
+fn relative(residual: f64, terms: f64) -> f64 {
+    match residual.abs() / terms {
+        _ if residual == 0.0 => 0.0,
+        part if part.is_nan() => f64::INFINITY,
+        part => part,
     }
 }
 
@@ -197,5 +215,34 @@ fn add_sizes<S: Scalar>(matrix: &SparseMatrix<S>, scale: f64, x: &[f64], out: &m
             let size = matrix.values[slot].re().abs();
             out[matrix.pattern.rows()[slot]] += scale * size * x.abs();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_noise_floor_holds_for_eight_steps_and_is_small() {
+        let mut floor = NoiseFloor::default();
+        floor.begin();
+        assert_eq!(floor.negligible(), 0.0);
+        floor.set(1e-11);
+        for _ in 0..8 {
+            floor.begin();
+            assert_eq!(floor.negligible(), 5e-12);
+        }
+        floor.begin();
+        assert_eq!(floor.negligible(), 0.0);
+        floor.set(1.0);
+        floor.begin();
+        assert_eq!(floor.negligible(), 1e-9);
+    }
+
+    #[test]
+    fn a_residual_that_is_no_number_is_no_solution() {
+        assert_eq!(relative(f64::NAN, 1.0), f64::INFINITY);
+        assert_eq!(relative(1.0, f64::NAN), f64::INFINITY);
+        assert_eq!((relative(0.0, 0.0), relative(-1.0, 4.0)), (0.0, 0.25));
     }
 }

@@ -79,11 +79,16 @@ pub(crate) struct Pace {
 }
 
 impl Pace {
+    /// Counts a step.
+    pub(crate) fn count(&mut self, iterations: usize) {
+        self.steps += 1;
+        self.iterations += iterations;
+    }
+
     /// Counts a step. Returns whether its iterations were more than the mean cost of a step, with that of the
     /// factors, which is that of `factors` iterations: then the next steps are cheaper with new ones.
     pub(crate) fn is_lost(&mut self, iterations: usize, factors: usize) -> bool {
-        self.steps += 1;
-        self.iterations += iterations;
+        self.count(iterations);
         iterations * self.steps > factors + self.iterations
     }
 }

@@ -30,16 +30,16 @@ use crate::model::{Form, Model};
 use crate::system::{Numbering, placement};
 use std::mem::take;
 
-/// New factors cost as many products with the matrix and the preconditioner, at all sizes that were measured.
-pub(crate) const FACTORS: usize = 6;
+/// New factors of plates cost as much as six products with the matrix and the preconditioner.
+pub(crate) const PRODUCTS_OF_FACTORS: usize = 6;
 /// Products of one solution; after them the factors are renewed.
-const MOST: usize = 2 * FACTORS;
+const MOST: usize = 2 * PRODUCTS_OF_FACTORS;
 /// The first forcing term of a step, and the largest one. Those from 0.5 to 1e-3 take as many products. At a third or
 /// less, the safeguard of choice 2 is never active.
 const FIRST: f64 = 0.1;
 /// γ of choice 2 of Eisenstat & Walker (1996): the forcing term is γ times the square of the last decline.
 const GAMMA: f64 = 0.9;
-/// The last residual is below this part of what is asked of it.
+/// Safety factor of the last forcing term.
 const SPARE: f64 = 0.5;
 /// Solutions of the transposed equations that refine each other.
 const CYCLES: usize = 4;

@@ -1,7 +1,7 @@
 //! Newton's method for one implicit step. The iteration matrix is kept while the method converges.
 
 use super::Stage;
-use super::backward_error::{BackwardError, Floor};
+use super::backward_error::{BackwardError, NoiseFloor};
 use super::broyden::{Broyden, Pace};
 use super::formula::History;
 use super::ggl::{Equations, StepState};
@@ -33,7 +33,7 @@ const ITERATIONS: usize = 25;
 /// are renewed within a step above this contraction.
 const SLOW: f64 = 0.5;
 /// Their assembly and factorisation cost as much as so many iterations.
-const FACTORS: usize = 4;
+const ITERATIONS_OF_FACTORS: usize = 4;
 
 /// Data that Newton's method keeps from step to step.
 #[derive(Clone, Debug)]
@@ -43,7 +43,7 @@ pub(crate) struct Memory<S> {
     contraction: f64,
     unseen: usize,
     pace: Pace,
-    floor: Floor,
+    floor: NoiseFloor,
     pivots: Option<Arc<Pivots>>,
 }
 
@@ -78,7 +78,7 @@ pub(crate) struct Newton<'a, S> {
     pace: Pace,
     /// With finite elements.
     backward: Option<BackwardError>,
-    floor: Floor,
+    floor: NoiseFloor,
     scale: SceneScale,
     residual: Vec<S>,
 }
@@ -111,7 +111,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 false => Turned::default(),
             },
             pace: Pace::default(),
-            floor: Floor::default(),
+            floor: NoiseFloor::default(),
             backward: shells.then(|| BackwardError::new(length)),
             scale: SceneScale::of(model),
             residual: vec![S::zero(); length],
@@ -210,6 +210,10 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         if let Some(backward) = &mut self.backward {
             backward.begin();
         }
+        self.floor.begin();
+        // Inexact solutions contract no faster than their forcing terms, which is no round-off.
+        let inexact = matches!(self.correction, Correction::Krylov(_));
+        let still = if inexact { SLOW } else { RENEW };
         let mut made_here = false;
         for iteration in 1..=ITERATIONS {
             history.rates(x);
@@ -279,21 +283,18 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             let slow = contraction.max(before);
             let remaining = size * (slow / (1.0 - slow.min(0.9))).min(1.0);
             before = contraction;
-            let standing = self
-                .backward
-                .as_ref()
-                .is_some_and(BackwardError::is_standing);
+            let told =
+                |holds: fn(&BackwardError) -> bool| self.backward.as_ref().is_some_and(holds);
+            let standing = told(BackwardError::is_standing);
             // Old factors contract slowly without round-off.
-            let slowest = if made_here { RENEW } else { SLOW };
+            let slowest = if made_here { still } else { SLOW };
             let small = size <= scales.round_off.max(STAGNANT) || residual <= round_off;
             let stagnant = iteration > 2
-                && (standing && contraction > RENEW || small && contraction > slowest);
-            let solved = self
-                .backward
-                .as_ref()
-                .is_some_and(BackwardError::will_be_solved);
-            let tolerance = TOLERANCE.max(self.floor.hidden());
-            if polish || remaining <= tolerance || stagnant || solved {
+                && (standing && contraction > still || small && contraction > slowest);
+            let converged = remaining <= TOLERANCE
+                || told(BackwardError::will_be_solved)
+                || remaining <= self.floor.negligible() && told(BackwardError::will_stand);
+            if suffices && (polish || converged || stagnant) {
                 if S::INFINITESIMAL && !polish {
                     polish = true;
                     previous = size;
@@ -304,8 +305,6 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 }
                 if stagnant && standing {
                     self.floor.set(size);
-                } else {
-                    self.floor.count();
                 }
                 self.end_step(iteration);
                 history.rates(x);
@@ -367,8 +366,10 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
         }
         let lost = match &self.correction {
             Correction::Nothing => false,
-            Correction::Broyden(_) => self.pace.is_lost(iterations, FACTORS),
-            Correction::Krylov(krylov) => self.pace.is_lost(krylov.products, krylov::FACTORS),
+            Correction::Broyden(_) => self.pace.is_lost(iterations, ITERATIONS_OF_FACTORS),
+            Correction::Krylov(krylov) => self
+                .pace
+                .is_lost(krylov.products, krylov::PRODUCTS_OF_FACTORS),
         };
         if lost {
             self.factored = None;

@@ -43,7 +43,7 @@ const SLOW: f64 = 0.5;
 const SLOW_INFINITESIMAL: f64 = 0.25;
 const RENEWALS: usize = 6;
 /// Their assembly and factorisation cost as much as so many iterations.
-const FACTORS: usize = 4;
+const ITERATIONS_OF_FACTORS: usize = 4;
 /// Iterations of their infinitesimal parts.
 const RENEWED_INFINITESIMAL_ITERATIONS: usize = 40;
 /// A pivot of a multiplier below this indicates a singular position.
@@ -245,7 +245,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                     }
                 }
                 let lost = match self.broyden {
-                    Some(_) => self.pace.is_lost(iteration, FACTORS),
+                    Some(_) => self.pace.is_lost(iteration, ITERATIONS_OF_FACTORS),
                     None => slowest > RENEW,
                 };
                 if lost {

@@ -113,20 +113,20 @@ impl Checker<'_> {
             self.fault(Finding::new(place, found, expected).of_key());
         }
         if let Some(LinearSolver::Krylov) = simulation.linear_solver {
-            let (found, expected, hint) = match (equal, shells) {
-                (true, true) => ("", "", ""),
-                (false, _) => (
+            let fault = match (equal, shells) {
+                (true, true) => None,
+                (false, _) => Some((
                     "the Krylov solver without bdf or generalised_alpha",
                     "the method bdf or generalised_alpha",
                     "dop853 has no linear systems of steps, and the coupled stages of radau are solved directly",
-                ),
-                (true, false) => (
+                )),
+                (true, false) => Some((
                     "the Krylov solver without a body of finite elements with all its nodes",
                     "a body with \"elements\" and no \"basis\"",
                     "the matrices of other bodies are small, and their factors cheap",
-                ),
+                )),
             };
-            if !found.is_empty() {
+            if let Some((found, expected, hint)) = fault {
                 let finding = Finding::new("/simulation/linear_solver", found, expected);
                 self.fault(finding.hint(Some(hint.into())));
             }

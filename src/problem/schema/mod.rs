@@ -163,7 +163,7 @@ pub(crate) struct Simulation {
 pub(crate) enum LinearSolver {
     /// By factors, which are kept from step to step while they converge.
     Direct,
-    /// By Krylov's method with kept factors as preconditioner, for bdf and generalised_alpha.
+    /// By FGMRES, a Krylov method, with kept factors as preconditioner, for bdf and generalised_alpha.
     Krylov,
 }
 
