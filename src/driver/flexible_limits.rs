@@ -202,27 +202,16 @@ fn inside_out(body: &FlexibleBody<f64>, motions: &[BodyMotion<f64>]) -> Option<S
     if let Some(element) = flexible::inside_out(body, motions) {
         return Some(format!("element {element}"));
     }
-    let Form::Modal(modal) = &body.form else {
-        return None;
-    };
-    let q = flexible::coordinates(body, motions);
-    let mut strains = modal.stiffness.strains.iter();
-    let shortened = strains.any(|own| own.strain.value(&q) <= -1.0);
+    let strains = flexible::axial_strains(body, motions);
+    let shortened = strains.into_iter().any(|strain| strain <= -1.0);
     shortened.then(|| "it is shortened by more than its length".into())
 }
 
 /// The largest strain of a beam along its axis or, if `looked`, von Mises stress of shells by
 /// Young's modulus.
 fn strain(body: &FlexibleBody<f64>, motions: &[BodyMotion<f64>], looked: bool) -> f64 {
-    let mut most = 0.0_f64;
-    if let Form::Modal(modal) = &body.form
-        && !modal.stiffness.strains.is_empty()
-    {
-        let q = flexible::coordinates(body, motions);
-        for own in &modal.stiffness.strains {
-            most = most.max(own.strain.value(&q).abs());
-        }
-    }
+    let strains = flexible::axial_strains(body, motions);
+    let mut most = (strains.iter()).fold(0.0_f64, |most, strain| most.max(strain.abs()));
     if let (Some(shells), true) = (body.form.shells(), looked) {
         for (i, element) in shells.mesh.elements.iter().enumerate() {
             let ratios = flexible::stress_ratios(body, motions, &[i]);

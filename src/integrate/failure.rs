@@ -128,7 +128,8 @@ pub(crate) enum IntegrationFailure {
         "the motion makes no headway at t = {time:.6e} s of {duration} s (step {step}): the latest \
          {tries} steps that were tried, {rejected} of them rejected, advanced it by {advance:.1e} s; \
          such small steps are needed where a mechanism is nearly locked, a load is very stiff or very \
-         fast, or the tolerance is below what rounding allows; with \"seconds\" in \"simulation\" it \
+         fast, or the tolerance is below what rounding allows, and where a small tolerance follows the fast \
+         vibrations of flexible bodies; with \"seconds\" in \"simulation\" it \
          may take that long"
     )]
     NoHeadway {

@@ -31,6 +31,8 @@ struct Refined<S> {
     corrections: Vec<Vec<S>>,
     /// Which need no further correction.
     done: Vec<bool>,
+    /// By column, whether a solution leaves more than round-off there; all if empty.
+    remaining: Vec<bool>,
 }
 
 /// How the matrix is eliminated.
@@ -44,16 +46,21 @@ enum Kind<S> {
 impl<S: SolveScalar> SparseLu<S> {
     /// Analyses a pattern.
     pub(crate) fn new(pattern: &Pattern) -> Self {
+        let kind = match pattern.known_pivots() {
+            Some(known) => Kind::Fronts(Box::new(Multifrontal::new(pattern, known))),
+            None => Kind::Pivoted(Box::new(PivotedLu::new(pattern))),
+        };
         Self {
-            kind: match pattern.known_pivots() {
-                Some(known) => Kind::Fronts(Box::new(Multifrontal::new(pattern, known))),
-                None => Kind::Pivoted(Box::new(PivotedLu::new(pattern))),
-            },
             refined: Refined {
                 rhs: Vec::new(),
                 corrections: Vec::new(),
                 done: Vec::new(),
+                remaining: match &kind {
+                    Kind::Pivoted(_) => Vec::new(),
+                    Kind::Fronts(own) => own.remaining(),
+                },
             },
+            kind,
         }
     }
 
@@ -145,6 +152,7 @@ impl<S: SolveScalar> SparseLu<S> {
         let own = &mut self.refined;
         let (mut rhs, mut corrections) = (take(&mut own.rhs), take(&mut own.corrections));
         let (mut done, n) = (take(&mut own.done), matrix.pattern.order());
+        let remaining = take(&mut own.remaining);
         for all in [&mut rhs, &mut corrections] {
             all.resize_with(b.len(), || vec![S::zero(); n]);
         }
@@ -158,10 +166,7 @@ impl<S: SolveScalar> SparseLu<S> {
         let mut solves = b.len();
         for _ in 0..REFINEMENTS {
             for ((correction, rhs), b) in corrections.iter_mut().zip(&rhs).zip(&*b) {
-                matrix.multiply_transposed(b.as_ref(), correction);
-                for (r, &b) in correction.iter_mut().zip(rhs) {
-                    *r = b - *r;
-                }
+                matrix.remain_transposed(b.as_ref(), rhs, &remaining, correction);
             }
             self.solve_all_transposed(n, &mut corrections);
             let all = corrections.iter().zip(&mut *b).zip(&mut done);
@@ -181,6 +186,7 @@ impl<S: SolveScalar> SparseLu<S> {
             rhs,
             corrections,
             done,
+            remaining,
         };
         solves
     }

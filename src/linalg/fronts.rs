@@ -152,7 +152,7 @@ impl Plan {
         };
         let trunk_short = (0..short.len()).filter(in_trunk).collect();
         Self {
-            short: ShortRows::new(&short),
+            short: ShortRows::new(&short, pattern),
             rows,
             columns,
             fronts,

@@ -111,24 +111,44 @@ impl<S: Scalar> SparseMatrix<S> {
         }
     }
 
+    /// The inner product of column j with x.
+    fn along(&self, j: usize, x: &[S]) -> S {
+        let starts = self.pattern.column_starts();
+        let own = starts[j]..starts[j + 1];
+        let (values, rest) = self.values[own.clone()].as_chunks::<4>();
+        let (rows, last) = self.pattern.rows()[own].as_chunks::<4>();
+        // Four sums, because an addition waits for the one before.
+        let mut sums = [S::zero(); 4];
+        for (values, rows) in values.iter().zip(rows) {
+            (0..4).for_each(|k| sums[k] += values[k] * x[rows[k]]);
+        }
+        for (sum, (&value, &row)) in sums.iter_mut().zip(rest.iter().zip(last)) {
+            *sum += value * x[row];
+        }
+        (sums[0] + sums[1]) + (sums[2] + sums[3])
+    }
+
     /// The product Aᵀ x, side by side for large matrices.
     pub(crate) fn multiply_transposed(&self, x: &[S], out: &mut [S]) {
-        let starts = self.pattern.column_starts();
-        let column = |j: usize| {
-            let own = starts[j]..starts[j + 1];
-            let entries = self.values[own.clone()]
-                .iter()
-                .zip(&self.pattern.rows()[own]);
-            entries.fold(S::zero(), |sum, (&value, &row)| sum + value * x[row])
-        };
+        self.each_column(out, |j| self.along(j, x));
+    }
+
+    /// What is left of Aᵀ x = b, b − Aᵀ x; zero in columns that do not count.
+    pub(crate) fn remain_transposed(&self, x: &[S], b: &[S], counts: &[bool], out: &mut [S]) {
+        self.each_column(out, |j| match counts.get(j) {
+            Some(false) => S::zero(),
+            _ => b[j] - self.along(j, x),
+        });
+    }
+
+    /// Sets an entry for each column, side by side for large matrices.
+    fn each_column(&self, out: &mut [S], entry: impl Fn(usize) -> S + Sync) {
         let out = &mut out[..self.pattern.order()];
         if self.values.len() < SIDE_BY_SIDE {
-            out.iter_mut()
-                .enumerate()
-                .for_each(|(j, out)| *out = column(j));
+            (out.iter_mut().enumerate()).for_each(|(j, out)| *out = entry(j));
         } else {
             let all = out.par_iter_mut().with_min_len(COLUMNS).enumerate();
-            all.for_each(|(j, out)| *out = column(j));
+            all.for_each(|(j, out)| *out = entry(j));
         }
     }
 

@@ -11,6 +11,7 @@ pub(crate) mod gmres;
 mod matrix;
 mod multifrontal;
 pub(crate) mod pattern;
+mod plans;
 mod replay;
 mod scaling;
 mod short_rows;

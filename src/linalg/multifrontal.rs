@@ -10,14 +10,16 @@ use super::eliminated::{Eliminated, add_runs, usable};
 use super::fronts::Plan;
 use super::matrix::SparseMatrix;
 use super::pattern::{KnownPivots, Pattern};
+use super::plans::plan;
 use super::scaling::{Equilibration, size};
 use super::sparse_lu::{SingularMatrix, SolveScalar};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// The elimination of matrices of one pattern.
 pub(super) struct Multifrontal<S> {
-    pub(super) plan: Plan,
+    pub(super) plan: Arc<Plan>,
     pub(super) scaling: Equilibration,
     /// The entries of the scaled matrix.
     pub(super) scaled: Vec<S>,
@@ -126,7 +128,7 @@ impl<S: SolveScalar> Shared<'_, S> {
 
 impl<S: SolveScalar> Multifrontal<S> {
     pub(super) fn new(pattern: &Pattern, known: &KnownPivots) -> Self {
-        let plan = Plan::new(pattern, known);
+        let plan = plan(pattern, known);
         let widths = plan.fronts.iter().map(|front| front.rest.len());
         let widest = widths.max().unwrap_or(0);
         let space = || Workspace {
@@ -205,6 +207,15 @@ impl<S: SolveScalar> Multifrontal<S> {
             }
         }
         Ok(())
+    }
+
+    /// By column, whether a transposed solution may leave more than round-off there: the unknowns of short rows come
+    /// from the columns of their pivots.
+    pub(super) fn remaining(&self) -> Vec<bool> {
+        let columns = &self.plan.columns;
+        let mut out = vec![false; columns.len() + self.plan.short.len()];
+        columns.iter().for_each(|&column| out[column] = true);
+        out
     }
 
     /// Entries of the factors, and operations.

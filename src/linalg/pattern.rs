@@ -68,7 +68,7 @@ pub(crate) struct Pattern {
 
 /// Pivots (row, column) that are known before the values, in the order of their elimination: those
 /// of structures with many elastic coordinates, whose matrices are nearly symmetric and definite.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct KnownPivots {
     /// Rows with few entries, eliminated first; no two of their rows and columns share an entry.
     pub short: Vec<(usize, usize)>,
@@ -97,21 +97,15 @@ impl<S: Scalar> Emit<S> for Recorder {
     }
 }
 
-impl Pattern {
-    /// Records the pattern of order `n` of an assembly.
-    pub(crate) fn record<S: Scalar>(n: usize, assemble: impl FnOnce(&mut dyn Emit<S>)) -> Self {
-        let mut recorder = Recorder(Vec::new());
-        assemble(&mut recorder);
-        let mut pattern = Self::of(n, &recorder.0);
-        let slots = recorder.0.iter().map(|place| pattern.slot(place));
-        pattern.record = Record::Whole(slots.collect());
-        pattern
-    }
+/// Entries of a reduced assembly: where those of each entry begin, their places and weights.
+struct Shares {
+    starts: Vec<u32>,
+    places: Vec<[u32; 2]>,
+    weights: Vec<f64>,
+}
 
-    /// Records the pattern of order `n` of Bᵀ A B for an assembly of A. `shares` gives a row of B:
-    /// the columns and values of its non-zeros (a zero value is ignored).
-    pub(crate) fn record_reduced<S: Scalar>(
-        n: usize,
+impl Shares {
+    fn of<S: Scalar>(
         shares: impl Fn(usize) -> [(usize, f64); 2],
         assemble: impl FnOnce(&mut dyn Emit<S>),
     ) -> Self {
@@ -129,12 +123,72 @@ impl Pattern {
             }
             starts.push(u32::try_from(places.len()).expect("fewer than 2^32 entries"));
         }
-        drop(recorder);
-        let mut pattern = Self::of(n, &places);
-        let slots = places.iter().map(|place| pattern.slot(place));
+        Self {
+            starts,
+            places,
+            weights,
+        }
+    }
+}
+
+impl Pattern {
+    /// Records the pattern of order `n` of an assembly.
+    pub(crate) fn record<S: Scalar>(n: usize, assemble: impl FnOnce(&mut dyn Emit<S>)) -> Self {
+        let mut recorder = Recorder(Vec::new());
+        assemble(&mut recorder);
+        let mut pattern = Self::of(n, &recorder.0);
+        pattern.record_places(&recorder.0);
+        pattern
+    }
+
+    /// Records the pattern of order `n` of Bᵀ A B for an assembly of A. `shares` gives a row of B:
+    /// the columns and values of its non-zeros (a zero value is ignored).
+    pub(crate) fn record_reduced<S: Scalar>(
+        n: usize,
+        shares: impl Fn(usize) -> [(usize, f64); 2],
+        assemble: impl FnOnce(&mut dyn Emit<S>),
+    ) -> Self {
+        let all = Shares::of(shares, assemble);
+        let mut pattern = Self::of(n, &all.places);
+        pattern.record_shares(all);
+        pattern
+    }
+
+    /// The same pattern for another assembly, of some of its entries.
+    pub(crate) fn for_assembly<S: Scalar>(&self, assemble: impl FnOnce(&mut dyn Emit<S>)) -> Self {
+        let mut recorder = Recorder(Vec::new());
+        assemble(&mut recorder);
+        let mut pattern = self.clone();
+        pattern.record_places(&recorder.0);
+        pattern
+    }
+
+    /// As [`Pattern::for_assembly`], reduced.
+    pub(crate) fn for_reduced<S: Scalar>(
+        &self,
+        shares: impl Fn(usize) -> [(usize, f64); 2],
+        assemble: impl FnOnce(&mut dyn Emit<S>),
+    ) -> Self {
+        let mut pattern = self.clone();
+        pattern.record_shares(Shares::of(shares, assemble));
+        pattern
+    }
+
+    fn record_places(&mut self, places: &[[u32; 2]]) {
+        let slots = places.iter().map(|place| self.slot(place));
+        self.record = Record::Whole(slots.collect());
+    }
+
+    fn record_shares(&mut self, all: Shares) {
+        let Shares {
+            starts,
+            places,
+            weights,
+        } = all;
+        let slots = places.iter().map(|place| self.slot(place));
         // An entry that stays as it is, or is left out, needs no weight.
         let single = starts.windows(2).all(|own| own[1] - own[0] <= 1);
-        pattern.record = if single && weights.iter().all(|&weight| weight == 1.0) {
+        self.record = if single && weights.iter().all(|&weight| weight == 1.0) {
             let mut slots = slots;
             let own = starts.windows(2).map(|own| match own[1] > own[0] {
                 true => slots.next().unwrap_or(NONE),
@@ -145,7 +199,6 @@ impl Pattern {
             let shares = slots.zip(weights).collect();
             Record::Shared { starts, shares }
         };
-        pattern
     }
 
     /// The pattern of order `n` of places (column, row), without a record.

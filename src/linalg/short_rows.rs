@@ -1,8 +1,15 @@
 //! Rows of few entries that are eliminated before all fronts: their part of a solution.
 
 use super::front::{Run, Short, System};
+use super::pattern::Pattern;
 use super::sparse_lu::SolveScalar;
 use crate::math::slices::vectorised;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Entries from which on sums are divided among processors, and the rows that are one piece of them.
+const SIDE_BY_SIDE: usize = 1 << 16;
+const PIECE: usize = 512;
 
 /// Short rows, in the order of their elimination.
 pub(super) struct ShortRows {
@@ -16,12 +23,21 @@ pub(super) struct ShortRows {
     starts: Vec<usize>,
     /// Entries below the pivots: from slots to unknowns. Those of a branch have the numbers of the branch.
     below: Vec<Run>,
+    /// Slots of the column of each pivot, where their rows begin among all, and the rows.
+    columns: Vec<Range<usize>>,
+    row_starts: Vec<usize>,
+    rows: Vec<u32>,
 }
 
 impl ShortRows {
     /// The rows of an analysis.
-    pub(super) fn new(rows: &[Short]) -> Self {
+    pub(super) fn new(rows: &[Short], pattern: &Pattern) -> Self {
+        let starts = pattern.column_starts();
+        let column = |row: &Short| starts[row.column]..starts[row.column + 1];
         let mut own = Self {
+            columns: rows.iter().map(column).collect(),
+            row_starts: Vec::new(),
+            rows: Vec::new(),
             places: rows.iter().map(|row| [row.row, row.column]).collect(),
             pivots: rows.iter().map(|row| row.pivot).collect(),
             beside: Vec::new(),
@@ -38,6 +54,9 @@ impl ShortRows {
             }
             own.below.extend(runs);
             own.starts.push(own.below.len());
+            own.row_starts.push(own.rows.len());
+            let all = pattern.rows()[column(row)].iter();
+            own.rows.extend(all.map(|&row| row as u32));
         }
         own
     }
@@ -123,35 +142,41 @@ impl ShortRows {
         );
     }
 
-    /// Passes the sums of the entries below some pivots, each times its unknown.
-    pub(super) fn sums_below<S: SolveScalar>(
+    /// Subtracts from each t the sum of the entries below its pivot, each times its place in b, over the pivot. The
+    /// places of the pivots in b become zero.
+    pub(super) fn subtract_sums<S: SolveScalar>(
         &self,
-        rows: &[usize],
-        scaled: &[S],
-        x: &[S],
-        mut take: impl FnMut(usize, S),
+        (inverse, scaled): (&[S], &[S]),
+        b: &mut [S],
+        t: &mut [S],
     ) {
-        vectorised(
-            #[inline(always)]
-            || {
-                for (i, &k) in rows.iter().enumerate() {
-                    // Four sums, because an addition waits for the one before.
-                    let mut sums = [S::zero(); 4];
-                    for run in self.runs(k) {
-                        let own = &scaled[run.from as usize..][..run.length as usize];
-                        let (fours, rest) = own.as_chunks::<4>();
-                        let (x4, x) = x[run.targets()].as_chunks::<4>();
-                        for (own, x) in fours.iter().zip(x4) {
-                            (0..4).for_each(|j| sums[j] += own[j] * x[j]);
-                        }
-                        let rest = rest.iter().zip(x);
-                        let sums = sums.iter_mut();
-                        sums.zip(rest).for_each(|(sum, (&a, &x))| *sum += a * x);
-                    }
-                    take(i, (sums[0] + sums[1]) + (sums[2] + sums[3]));
-                }
-            },
-        );
+        for places in &self.places {
+            b[places[0]] = S::zero();
+        }
+        let b = &*b;
+        let one = |(k, (t, &inverse)): (usize, (&mut S, &S))| {
+            let own = self.columns[k].clone();
+            let rows = &self.rows[self.row_starts[k]..][..own.len()];
+            let (entries, rest) = scaled[own].as_chunks::<4>();
+            let (rows4, rows) = rows.as_chunks::<4>();
+            // Four sums, because an addition waits for the one before.
+            let mut sums = [S::zero(); 4];
+            for (entries, rows) in entries.iter().zip(rows4) {
+                (0..4).for_each(|j| sums[j] += entries[j] * b[rows[j] as usize]);
+            }
+            let rest = rest.iter().zip(rows);
+            for (sum, (&entry, &row)) in sums.iter_mut().zip(rest) {
+                *sum += entry * b[row as usize];
+            }
+            *t -= ((sums[0] + sums[1]) + (sums[2] + sums[3])) * inverse;
+        };
+        match self.rows.len() < SIDE_BY_SIDE {
+            true => t.iter_mut().zip(inverse).enumerate().for_each(one),
+            false => {
+                let all = t.par_iter_mut().zip(inverse).with_min_len(PIECE);
+                all.enumerate().for_each(one);
+            }
+        }
     }
 }
 

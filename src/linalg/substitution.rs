@@ -54,7 +54,7 @@ impl<S: SolveScalar> Multifrontal<S> {
         let (plan, done, scaled) = (&self.plan, &self.done, &self.scaled);
         let trunk = &mut self.of_trunk;
         let start = |branch: &Branch, space: &mut Workspace<S>, trunk: &Workspace<S>| {
-            space.resize(trunk.x.len(), (branch.order(), branch.short.len()));
+            space.resize(trunk.x.len(), (branch.order(), 0));
             for ((x, all), t) in space.x.iter_mut().zip(&trunk.x).zip(&trunk.short) {
                 let (own, outside) = x.split_at_mut(branch.own.len());
                 own.copy_from_slice(&all[branch.own.clone()]);
@@ -90,7 +90,7 @@ impl<S: SolveScalar> Multifrontal<S> {
     }
 
     fn backward(&mut self, system: System) {
-        let (plan, done, scaled) = (&self.plan, &self.done, &self.scaled);
+        let (plan, done) = (&self.plan, &self.done);
         let trunk = &mut self.of_trunk;
         if let Some(border) = &mut self.border {
             let first = plan.first_of_border();
@@ -114,12 +114,6 @@ impl<S: SolveScalar> Multifrontal<S> {
                     done[k].backward(system, &plan.fronts[k], x, &mut space.beside);
                 }
             }
-            if system == System::Transposed {
-                for (x, sums) in space.x.iter().zip(&mut space.short) {
-                    let take = |i: usize, sum| sums[i] = sum;
-                    plan.short.sums_below(&branch.short, scaled, x, take);
-                }
-            }
         };
         if !plan.branches.is_empty() {
             let trunk = &*trunk;
@@ -127,28 +121,16 @@ impl<S: SolveScalar> Multifrontal<S> {
             all.with_max_len(1)
                 .for_each(|(branch, space)| finish(branch, space, trunk));
         }
-        if system == System::Transposed {
-            for (x, t) in trunk.x.iter().zip(&mut trunk.short) {
-                let own = &plan.trunk_short;
-                let take = |i: usize, sum| t[own[i]] -= sum * self.inverse[own[i]];
-                plan.short.sums_below(own, scaled, x, take);
-            }
-        }
         for (branch, space) in plan.branches.iter().zip(&self.of_branches) {
-            for (i, own) in space.x.iter().enumerate() {
-                trunk.x[i][branch.own.clone()].copy_from_slice(&own[..branch.own.len()]);
-                if system == System::Transposed {
-                    for (&k, &sum) in branch.short.iter().zip(&space.short[i]) {
-                        trunk.short[i][k] -= sum * self.inverse[k];
-                    }
-                }
+            for (all, own) in trunk.x.iter_mut().zip(&space.x) {
+                all[branch.own.clone()].copy_from_slice(&own[..branch.own.len()]);
             }
         }
     }
 
     /// Writes solution i, with the unknowns of the short rows.
-    fn leave(&self, system: System, b: &mut [S], i: usize) {
-        let (plan, space) = (&self.plan, &self.of_trunk);
+    fn leave(&mut self, system: System, b: &mut [S], i: usize) {
+        let (plan, space) = (&self.plan, &mut self.of_trunk);
         let places = match system {
             System::Plain => &plan.columns,
             System::Transposed => &plan.rows,
@@ -156,7 +138,11 @@ impl<S: SolveScalar> Multifrontal<S> {
         for (&x, &place) in space.x[i].iter().zip(places) {
             b[place] = x;
         }
-        let t = &space.short[i];
+        let t = &mut space.short[i];
+        if system == System::Transposed {
+            let by = (&self.inverse[..], &self.scaled[..]);
+            plan.short.subtract_sums(by, b, t);
+        }
         plan.short.substitute_back(system, &self.beside, t, b);
     }
 }

@@ -5,7 +5,7 @@ use super::prepared::Prepared;
 use super::quantity::Quantity;
 use super::reduced;
 use super::schema::Document;
-use super::schema::elements::{ElementFrame, Elements, Held};
+use super::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
 use super::schema::structures::{Mesh as WrittenMesh, Structure as WrittenStructure};
 use super::statics::mesh::{Part, part};
 use super::statics::properties::{slots, thickness};
@@ -36,6 +36,13 @@ pub(crate) fn frame_nodes(mesh: &Mesh, frame: &ElementFrame) -> Option<FrameNode
             nodes.map(FrameNodes::Clamped)
         }
     }
+}
+
+/// Whether bodies of elements have all their nodes as coordinates.
+pub(crate) fn has_all_nodes(document: &Document) -> bool {
+    let bodies = document.bodies.values();
+    let mut elements = bodies.filter_map(|body| body.elements.as_ref());
+    elements.any(|own| own.basis == ElementBasis::Full)
 }
 
 /// The numbers of a mesh.

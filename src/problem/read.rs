@@ -36,6 +36,8 @@ use std::sync::Arc;
 
 /// Default error per step, if the file gives neither steps nor a tolerance.
 const TOLERANCE: f64 = 1e-9;
+/// That with finite elements, whose fast vibrations would set the steps. Positions are then accurate to about 1e-9.
+const TOLERANCE_OF_ELEMENTS: f64 = 1e-5;
 
 /// Name of the objective if the nearest feasible design is sought.
 const NEAREST: &str = "squared distance from the start";
@@ -324,7 +326,10 @@ fn problem(
     });
     Problem {
         name: written.name.clone(),
-        simulation: simulation(written.simulation.as_ref()),
+        simulation: simulation(
+            written.simulation.as_ref(),
+            elements::has_all_nodes(&written),
+        ),
         variables,
         objective: objective.or(nearest),
         nearest_to,
@@ -358,7 +363,12 @@ fn problem(
     }
 }
 
-fn simulation(written: Option<&schema::Simulation>) -> Simulation {
+/// The settings of the integration; `elements` says whether there are finite elements of all nodes.
+fn simulation(written: Option<&schema::Simulation>, elements: bool) -> Simulation {
+    let usual = match elements {
+        true => TOLERANCE_OF_ELEMENTS,
+        false => TOLERANCE,
+    };
     let method = written.and_then(|written| written.method.as_ref());
     let method = method.map(|method| match *method {
         schema::Method::Dop853 => integrate::Method::Dop853,
@@ -386,7 +396,7 @@ fn simulation(written: Option<&schema::Simulation>) -> Simulation {
         },
         spacing: match written.map_or((None, None), |written| (written.steps, written.tolerance)) {
             (Some(steps), _) => Spacing::Steps(steps),
-            (None, tolerance) => Spacing::Tolerance(tolerance.unwrap_or(TOLERANCE)),
+            (None, tolerance) => Spacing::Tolerance(tolerance.unwrap_or(usual)),
         },
         memory: None,
         samples: written.and_then(|written| written.samples),

@@ -17,7 +17,7 @@ const MODES: u32 = 6;
 /// Deflection of static solutions, as a part of the size of the body: none.
 const DEFLECTION: f64 = 0.0;
 /// Amplitude below which vectors are left out.
-const TOLERANCE: f64 = 0.03;
+const TOLERANCE: f64 = 1e-4;
 
 /// Growth of the number of modes, or of their highest frequency, of a richer basis.
 const RICHER: f64 = 1.5;

@@ -279,6 +279,7 @@ impl<'a> Walker<'a> {
                 let count = schema["minItems"].as_u64().map(|n| format!(" of {n}"));
                 let what = match items["type"].as_str() {
                     Some("number") => format!("numbers{}", limits(items)),
+                    Some("integer") => format!("whole numbers{}", limits(items)),
                     Some("string") => "texts".into(),
                     _ => "objects".into(),
                 };

@@ -8,7 +8,7 @@ use flexbody::problem::Problem;
 use serde_json::Value;
 
 /// Two soft plates, the first with two stiffeners and masses, both damped.
-fn stiffened(elements: [usize; 2], duration: f64, steps: usize, method: &Value) -> Value {
+pub fn stiffened(elements: [usize; 2], duration: f64, steps: usize, method: &Value) -> Value {
     let mut document = plates(elements, duration, steps, method);
     thick_and_soft(&mut document);
     let first = &mut document["bodies"]["first"]["elements"];

@@ -5,7 +5,7 @@ mod beams;
 mod benchmarks;
 mod circles;
 mod distributed_loads;
-mod element_parts;
+pub mod element_parts;
 mod element_sections;
 mod element_starts;
 mod element_steps;

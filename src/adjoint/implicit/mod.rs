@@ -23,6 +23,7 @@
 
 mod formula;
 mod radau;
+mod step;
 mod sweep;
 
 use super::AdjointRun;
@@ -31,11 +32,13 @@ use crate::functions::Scene;
 use crate::integrate::implicit::formula::{Formula, remembers_start};
 use crate::integrate::implicit::radau::Scheme;
 use crate::integrate::implicit::solver::starting_stage;
-use crate::integrate::implicit::{Replayer, Stage, Tape};
+use crate::integrate::implicit::{Replayer, Tape};
 use crate::integrate::replay::Replay;
 use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
 use crate::system::flexible;
 use crate::system::kkt::SaddlePoint;
+use rayon::prelude::*;
+use step::Step;
 use sweep::Sweep;
 
 /// See [`super::gradients`].
@@ -55,39 +58,40 @@ pub(super) fn gradients(
     let mut sweeps: Vec<Sweep> = which.iter().map(new).collect();
     let mut one = None;
     let mut coupled = None;
-    let shells = flexible::has_shells(model);
+    let (shells, divided) = (flexible::has_shells(model), flexible::is_divided(model));
     let mut counts = WorkCounts::default();
     let mut replay = Replay::new(tape, run.grid.steps(), || {
         Replayer::new(model, run, &scheme)
     });
     let start = starting_stage(numbering, &run.initial);
     let mut sample = run.last();
-    let mut from = Stage::zero(numbering);
-    let mut stages = vec![from.clone(); stages];
+    let [mut step, mut before] = [0, 1].map(|_| Step::new(numbering, stages));
     for k in (1..=run.grid.steps()).rev() {
-        let (width, end) = (run.grid.width(k), run.grid.ends()[k]);
-        let h = run.duration * width;
-        let block = replay.block(k)?;
-        block.read_end(k - 1, &mut from);
-        let count = block.read(k, &mut stages);
-        let step = &stages[..count];
+        if before.number == k {
+            std::mem::swap(&mut step, &mut before);
+        } else {
+            step.read(run, replay.block(k)?, k);
+        }
         while run.places[sample].step() == k {
-            for sweep in &mut sweeps {
-                sweep.sample(scene, run, sample, (&scheme, &from, step), width);
+            let own = (&scheme, &step.from, step.stages());
+            let add = |sweep: &mut Sweep| sweep.sample(scene, run, sample, own, step.width);
+            match divided {
+                true => sweeps.par_iter_mut().for_each(add),
+                false => sweeps.iter_mut().for_each(add),
             }
             sample -= 1;
         }
         let found = match Formula::of_step(run.method, k) {
-            Some(formula) => one
-                .get_or_insert_with(|| formula::BackwardStage::new(model, numbering, run.solver))
-                .leaving_out(run.grid.left_out(k))
-                .step(
-                    &formula,
-                    &step[0],
-                    (h, width, end),
-                    &mut sweeps,
-                    &mut counts,
-                ),
+            Some(formula) => {
+                let known = divided && k > 1;
+                let ahead = known.then(|| Formula::of_step(run.method, k - 1)).flatten();
+                if ahead.is_some() {
+                    before.read(run, replay.block(k - 1)?, k - 1);
+                }
+                let ahead = ahead.as_ref().map(|formula| (formula, &before));
+                one.get_or_insert_with(|| formula::BackwardStage::new(model, numbering, run.solver))
+                    .step((&formula, &step), ahead, &mut sweeps, &mut counts)
+            }
             None => {
                 // Matrices of shells are large, and the first steps of a formula are the last ones here.
                 if shells {
@@ -95,8 +99,7 @@ pub(super) fn gradients(
                 }
                 coupled
                     .get_or_insert_with(|| radau::BackwardStage::new(model, numbering, &scheme))
-                    .leaving_out(run.grid.left_out(k))
-                    .step(step, (h, width, end), &mut sweeps, &mut counts)
+                    .step(&step, &mut sweeps, &mut counts)
             }
         };
         found.map_err(|place| IntegrationFailure::Singular {
@@ -106,7 +109,7 @@ pub(super) fn gradients(
         })?;
         if k == 1 && remembers_start(run.method) {
             for sweep in &mut sweeps {
-                sweep.starting_memory(&start, h, width);
+                sweep.starting_memory(&start, step.size, step.width);
             }
         }
         counts.steps += 1;

@@ -1,5 +1,6 @@
 //! A backward step of Radau IIA: the coupled system of all stages.
 
+use super::step::Step;
 use super::sweep::{Pair, Sweep, add, add_state, clear, copy, move_back, pair, rates_of, work};
 use crate::integrate::WorkCounts;
 use crate::integrate::implicit::Stage;
@@ -9,7 +10,6 @@ use crate::integrate::implicit::split::SplitMatrix;
 use crate::linalg::{Emit, KnownPivots, Pattern, SparseLu, SparseMatrix};
 use crate::math::slices::add_scaled;
 use crate::model::Model;
-use crate::system::RedundantRows;
 use crate::system::{Numbering, bodies};
 
 /// The coupled matrix of the present step, and workspace that all functions share.
@@ -113,28 +113,23 @@ impl<'a> BackwardStage<'a> {
         }
     }
 
-    /// The plan without these rows, if any.
-    pub(crate) fn leaving_out(&mut self, rows: Option<&RedundantRows>) -> &mut Self {
-        if let Some(rows) = rows {
-            self.equations.leave_out(rows);
-        }
-        self
-    }
-
     /// Moves all functions from the end of the step to its start.
     ///
     /// # Errors
     /// The equation with a singular matrix.
     pub(crate) fn step(
         &mut self,
-        stages: &[Stage<f64>],
-        (h, width, end): (f64, f64, f64),
+        step: &Step,
         sweeps: &mut [Sweep],
         counts: &mut WorkCounts,
     ) -> Result<(), String> {
         let (model, numbering, scheme) = (self.model, self.numbering, self.scheme);
         let (nv, n) = (numbering.velocities(), self.equations.order());
+        let (stages, h, width) = (step.stages(), step.size, step.width);
         let equations = &mut self.equations;
+        if let Some(rows) = step.left_out {
+            equations.leave_out(rows);
+        }
         self.blocks.assemble(equations, stages, h);
         let blocks = &self.blocks;
         self.matrix.assemble(|emit| blocks.emit(scheme, emit));
@@ -194,7 +189,7 @@ impl<'a> BackwardStage<'a> {
                 let cot = &mut sweep.of.cot.model;
                 let held = &mut change[..nv];
                 let by_time = equations.pull_back_projected(&stage.instant(), part, cot, held);
-                sweep.of.by_duration += (end - width * (1.0 - scheme.nodes[i])) * by_time;
+                sweep.of.by_duration += (step.end - width * (1.0 - scheme.nodes[i])) * by_time;
                 let own = &mut self.own;
                 rates_of(model, numbering, &stage.q, part, own);
                 spread(scheme, i, own, h, by);

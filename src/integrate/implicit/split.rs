@@ -22,7 +22,8 @@ pub(crate) struct SplitMatrix {
 impl SplitMatrix {
     /// Plans the matrix of `equations`; `zero` is any of their stages.
     pub(crate) fn new(equations: &mut Equations<f64>, zero: &Stage<f64>) -> Self {
-        let held = SparseMatrix::new(equations.pattern(&zero.instant()));
+        let whole = equations.pattern(&zero.instant());
+        let held = SparseMatrix::new(equations.pattern_of_held(&whole, &zero.instant()));
         let mut rates = SparseMatrix::new(equations.pattern_of_rates(&zero.q));
         rates.assemble(|emit| equations.emit_own_rates(&zero.q, emit));
         Self {
@@ -35,7 +36,7 @@ impl SplitMatrix {
     /// Assembles H at an instant in a step of size h.
     pub(crate) fn assemble(&mut self, equations: &mut Equations<f64>, at: &StepState<f64>, h: f64) {
         self.held
-            .assemble(|emit| equations.jacobian(at, h, 0.0, emit));
+            .assemble(|emit| equations.held_jacobian(at, h, emit));
         if equations.mass_varies() {
             self.rates
                 .assemble(|emit| equations.emit_own_rates(at.q, emit));

@@ -5,15 +5,17 @@ use crate::problem::elements::{frame_nodes, nodes_of, prepare};
 use crate::problem::finding::Finding;
 use crate::problem::parts::beams;
 use crate::problem::placement::GROUND;
-use crate::problem::pointer::{advice, join};
+use crate::problem::pointer::{advice, join, keys};
+use crate::problem::schema::Objective;
 use crate::problem::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
 use crate::problem::schema::functions::ShellStress;
 use crate::problem::schema::mechanics::Body;
 use crate::problem::schema::structures::Structure;
 use crate::problem::statics::mesh::part;
 use crate::structures::floating::{FrameNodes, is_straight, spans};
+use crate::structures::mesh::Mesh;
 use crate::structures::quality::{faults, orientation_faults};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The names of the sets that have something.
 fn filled<T>(sets: &BTreeMap<String, Vec<T>>) -> Vec<&String> {
@@ -59,7 +61,10 @@ impl Checker<'_> {
         if self.findings.len() > before {
             return;
         }
-        let material = &self.document.materials[&structure.material];
+        // A faulty material has been told.
+        let Some(material) = self.document.materials.get(&structure.material) else {
+            return;
+        };
         if material.density.is_none_or(|density| density.value <= 0.0) {
             let place = join(&join("/materials", &structure.material), "density");
             let found = "no density of a material of elements that move";
@@ -86,7 +91,7 @@ impl Checker<'_> {
         }
         let nodes = part.mesh.node_sets.keys().map(String::as_str);
         let edges = part.mesh.edge_sets.keys().map(String::as_str);
-        let all: Vec<&str> = nodes.chain(edges.clone()).collect();
+        let all: BTreeSet<&str> = nodes.chain(edges.clone()).collect();
         let frame = join(&pointer, "frame");
         let wanted = match &elements.frame {
             ElementFrame::Chord(sets) => {
@@ -131,6 +136,8 @@ impl Checker<'_> {
             };
             let place = join(&join(&join(&pointer, "points"), name), "edge");
             match part.mesh.edge_sets.get(set) {
+                // A set that is not there has been told.
+                None if !all.contains(set.as_str()) => {}
                 None => {
                     let hint = advice(set, "edges", edges.clone());
                     let found = format!("\"{set}\"");
@@ -146,12 +153,20 @@ impl Checker<'_> {
         if self.findings.len() > before {
             return;
         }
-        if let Some(FrameNodes::Chord(chord)) = frame_nodes(&part.mesh, &elements.frame)
-            && !spans(&part.nodes, chord)
-        {
-            let found = "three nodes on a line";
-            let expected = "three nodes that span a plane";
-            self.fault(Finding::new(join(&frame, "chord"), found, expected));
+        let wrong = match frame_nodes(&part.mesh, &elements.frame) {
+            Some(FrameNodes::Chord(chord)) if !spans(&part.nodes, chord) => Some((
+                "chord",
+                "three nodes on a line",
+                "three nodes that span a plane",
+            )),
+            Some(FrameNodes::Chord(_)) => None,
+            Some(FrameNodes::Clamped(nodes)) => {
+                clamped_fault(&part.mesh, &nodes).map(|(found, wanted)| ("clamped", found, wanted))
+            }
+            None => Some(("clamped", "a set without nodes", "a set of some nodes")),
+        };
+        if let Some((key, found, expected)) = wrong {
+            self.fault(Finding::new(join(&frame, key), found, expected));
             return;
         }
         self.basis(&join(&pointer, "basis"), elements);
@@ -263,6 +278,25 @@ impl Checker<'_> {
         }
     }
 
+    /// Refuses a stress of a rigid body as objective or constraint: it is zero, so every design is strong enough.
+    pub(super) fn stress_of_rigid(&mut self, pointer: &str, (name, elements): (&str, &Elements)) {
+        if elements.basis != ElementBasis::Rigid {
+            return;
+        }
+        let keys = keys(pointer);
+        let [_, function, ..] = &keys[..] else { return };
+        let wanted = match &self.document.objective {
+            Some(Objective::Minimise(own) | Objective::Maximise(own)) => own == function,
+            None => false,
+        };
+        let mut constraints = self.document.constraints.values();
+        if wanted || constraints.any(|own| own.function == *function) {
+            let found = format!("\"{name}\", whose \"basis\" is \"rigid\"");
+            let expected = "a body that deforms, as the stress of a rigid one is not known";
+            self.fault(Finding::new(join(pointer, "body"), found, expected));
+        }
+    }
+
     pub(super) fn shell_stress(&mut self, pointer: &str, of: &ShellStress) {
         let body = self.document.bodies.get(&of.body);
         let Some(elements) = body.and_then(|body| body.elements.as_ref()) else {
@@ -281,6 +315,7 @@ impl Checker<'_> {
             }
             return;
         };
+        self.stress_of_rigid(pointer, (&of.body, elements));
         let structure = &elements.structure;
         if structure.mesh.is_of_beams() {
             let found = "a body of beams";
@@ -306,4 +341,24 @@ impl Checker<'_> {
             }
         }
     }
+}
+
+/// What is wrong with nodes that hold the axes, and what is expected.
+fn clamped_fault(mesh: &Mesh, nodes: &[usize]) -> Option<(&'static str, &'static str)> {
+    let all: BTreeSet<usize> = nodes.iter().copied().collect();
+    let meshed: BTreeSet<usize> = (mesh.shells.iter().flatten())
+        .chain(mesh.beams.iter().flatten())
+        .copied()
+        .collect();
+    if meshed.is_subset(&all) {
+        let found = "a set of all nodes";
+        return Some((found, "some nodes, or \"basis\": \"rigid\" if none moves"));
+    }
+    // A node of a shell has no rotation about the normal.
+    let on_beams = mesh.on_beams();
+    let turns = all.len() == 1 && all.iter().all(|&node| !on_beams[node]);
+    turns.then_some((
+        "one node of a shell, about whose normal the body turns",
+        "two nodes or more, such as an edge",
+    ))
 }

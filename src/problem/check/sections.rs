@@ -49,6 +49,7 @@ impl Checker<'_> {
         (name, elements): (&str, &Elements),
         set: Option<&String>,
     ) -> bool {
+        self.stress_of_rigid(pointer, (name, elements));
         // A faulty structure has no mesh to look into.
         if !self.findings.is_empty() {
             return false;

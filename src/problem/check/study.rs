@@ -3,13 +3,13 @@
 use super::Checker;
 use crate::math::Vec3;
 use crate::model::JointKind;
+use crate::problem::elements::has_all_nodes;
 use crate::problem::finding::Finding;
 use crate::problem::functions::released;
 use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join};
 use crate::problem::quantity::values;
 use crate::problem::scene::GRAVITY;
-use crate::problem::schema::elements::ElementBasis;
 use crate::problem::schema::functions::{
     Clearance, Component, Function, Gate, Instant, OfMotion, Range,
 };
@@ -74,6 +74,10 @@ impl Checker<'_> {
         let Some(simulation) = &self.document.simulation else {
             return;
         };
+        // A faulty one has been replaced.
+        if self.damage.touches("simulation") {
+            return;
+        }
         if let Some(until) = &simulation.until {
             self.instant("/simulation/until/measure", &until.measure);
         }
@@ -94,12 +98,7 @@ impl Checker<'_> {
             self.fault(Finding::new("/simulation/method", found, expected).hint(Some(hint.into())));
         }
         let explicit = matches!(simulation.method, Some(Method::Dop853) | None);
-        let shells = self
-            .document
-            .bodies
-            .values()
-            .filter_map(|body| body.elements.as_ref())
-            .any(|elements| matches!(elements.basis, ElementBasis::Full));
+        let shells = has_all_nodes(self.document);
         if explicit && shells {
             let (place, found) = match &simulation.method {
                 Some(_) => (

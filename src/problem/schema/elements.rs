@@ -152,7 +152,7 @@ pub(crate) struct ReducedKeys {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deflection: Option<f64>,
     /// Part of the amplitude of the first below which companions and static solutions are left out, default
-    /// 0.03.
+    /// 1e-4.
     #[schemars(extend(
         "unit" = "1",
         "exclusiveMinimum" = 0,

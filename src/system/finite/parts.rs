@@ -29,6 +29,18 @@ pub(super) fn all<S: Scalar>(
     finite.parts.iter().zip(coordinates)
 }
 
+/// Strains of the beams along their axes. They alone are quadratic; the others are shears and curvatures.
+pub(crate) fn axial_strains<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> Vec<S> {
+    let mut out = Vec::new();
+    for (part, coordinates) in all(finite) {
+        let own = gather(coordinates, q);
+        let strains = part.stiffness.strains.iter();
+        let along = strains.filter(|own| !own.strain.squares.is_empty());
+        out.extend(along.map(|strain| strain.strain.value(&own)));
+    }
+    out
+}
+
 /// The motion of a part.
 fn own_motion<S: Scalar>(coordinates: &[usize], at: &Flexing<S>) -> Flexing<S> {
     Flexing {

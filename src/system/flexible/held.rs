@@ -77,6 +77,24 @@ pub(crate) fn pull_strain_energy(
     add_part(numbering, body, (&still, &still), &by_q, y);
 }
 
+/// Strains of the beams of a body along their axes, where they are quadratic.
+pub(crate) fn axial_strains<S: Scalar>(
+    body: &FlexibleBody<S>,
+    motions: &[BodyMotion<S>],
+) -> Vec<S> {
+    let q = coordinates(body, motions);
+    match &body.form {
+        Form::Modal(modal) => match &modal.shells {
+            Some(own) => finite::axial_strains(&own.elements, &own.unknowns(&q)),
+            None => {
+                let strains = modal.stiffness.strains.iter();
+                strains.map(|own| own.strain.value(&q)).collect()
+            }
+        },
+        Form::Finite(own) => finite::axial_strains(own, &q),
+    }
+}
+
 /// The first element of a body of shells that is turned inside out.
 pub(crate) fn inside_out<S: Scalar>(
     body: &FlexibleBody<S>,

@@ -83,6 +83,7 @@ macro_rules! faults {
 }
 
 mod beams;
+mod elements;
 mod loads;
 mod modal;
 mod starts;

@@ -206,8 +206,22 @@ impl<'a, S: Scalar> Equations<'a, S> {
     pub(crate) fn pattern(&mut self, at: &StepState<S>) -> Pattern {
         self.visit(at);
         let this = &*self;
-        let pattern = this.record(|emit| this.emit(at, S::one(), S::one(), emit));
+        let pattern = this.record(|emit| {
+            this.emit(at, S::one(), S::one(), emit);
+            this.emit_mass(S::one(), emit);
+        });
         pattern.with_pivots(this.known_pivots())
+    }
+
+    /// The pattern of the iteration matrix for the assembly of [`Equations::held_jacobian`].
+    pub(crate) fn pattern_of_held(&mut self, whole: &Pattern, at: &StepState<S>) -> Pattern {
+        self.visit(at);
+        let this = &*self;
+        let assemble = |emit: &mut dyn Emit<S>| this.emit(at, S::one(), S::zero(), emit);
+        match this.numbering.is_reduced() {
+            true => whole.for_reduced(|i| reduce::shares(this.numbering, PARTS, i), assemble),
+            false => whole.for_assembly(assemble),
+        }
     }
 
     /// Pivots of the nodes of finite elements: their velocities by the kinematics, their positions by
@@ -239,8 +253,24 @@ impl<'a, S: Scalar> Equations<'a, S> {
     pub(crate) fn jacobian(&mut self, at: &StepState<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
         self.visit(at);
         self.emit(at, h, c, emit);
+        self.emit_mass(c * h, emit);
     }
 
+    /// As [`Equations::jacobian`] with rates that do not change, c = 0: without the masses of flexible bodies.
+    pub(crate) fn held_jacobian(&mut self, at: &StepState<S>, h: S, emit: &mut dyn Emit<S>) {
+        self.visit(at);
+        self.emit(at, h, S::zero(), emit);
+    }
+
+    /// Emits the masses of flexible bodies, times c h.
+    fn emit_mass(&self, ch: S, emit: &mut dyn Emit<S>) {
+        let [_, v, ..] = self.starts();
+        let by_mass = &mut Times(emit, S::from(1.0 / self.mass));
+        let of = (self.model, self.numbering);
+        flexible::emit_mass(of, &self.motions, (v, v), ch, by_mass);
+    }
+
+    /// Emits all but the masses of flexible bodies.
     fn emit(&self, at: &StepState<S>, h: S, c: S, emit: &mut dyn Emit<S>) {
         let (model, numbering, motions) = (self.model, self.numbering, &self.motions);
         let [y, v, lambda, mu] = self.starts();
@@ -252,7 +282,6 @@ impl<'a, S: Scalar> Equations<'a, S> {
         let by_mass = &mut Times(emit, S::from(1.0 / self.mass));
         emit_force_balance(&here, (f2, v), rates, by_mass);
         let of = (model, numbering);
-        flexible::emit_mass(of, motions, (f2, v), c * h, by_mass);
         let (here_at, by) = ((&motions[..], at.vdot), (h * h, h));
         flexible::emit_force_balances(of, here_at, (f2, y, v), by, by_mass);
         let to = LoadEntries {
