@@ -32,7 +32,7 @@ pub(crate) fn gradients(
 ) -> Result<AdjointRun, IntegrationFailure> {
     match &run.tape {
         Tape::Explicit(tape) => explicit::gradients(scene, run, tape, which),
-        Tape::Implicit(tape) if flexible::is_divided(&scene.model) => {
+        Tape::Implicit(tape) if flexible::has_shells(&scene.model) => {
             rayon::scope(|_| implicit::gradients(scene, run, tape, which))
         }
         Tape::Implicit(tape) => implicit::gradients(scene, run, tape, which),

@@ -25,7 +25,7 @@ pub(super) struct BackwardStage<'a> {
     numbering: &'a Numbering,
     /// The matrix of a step of even number, or of each step.
     even: StepMatrix<'a>,
-    /// That of a step of odd number, if the work is divided among processors.
+    /// That of a step of odd number, with finite elements.
     odd: Option<StepMatrix<'a>>,
     /// With finite elements, if the Krylov solver is chosen.
     kept: Option<KeptFactors>,
@@ -94,7 +94,7 @@ impl<'a> BackwardStage<'a> {
         Self {
             model,
             numbering,
-            odd: flexible::is_divided(model).then(|| matrix(split.clone())),
+            odd: flexible::has_shells(model).then(|| matrix(split.clone())),
             kept: krylov.then(|| KeptFactors {
                 factors: SparseLu::new(&split.held.pattern),
                 krylov: Krylov::new(&equations, numbering),

@@ -58,7 +58,7 @@ pub(super) fn gradients(
     let mut sweeps: Vec<Sweep> = which.iter().map(new).collect();
     let mut one = None;
     let mut coupled = None;
-    let (shells, divided) = (flexible::has_shells(model), flexible::is_divided(model));
+    let shells = flexible::has_shells(model);
     let mut counts = WorkCounts::default();
     let mut replay = Replay::new(tape, run.grid.steps(), || {
         Replayer::new(model, run, &scheme)
@@ -75,7 +75,7 @@ pub(super) fn gradients(
         while run.places[sample].step() == k {
             let own = (&scheme, &step.from, step.stages());
             let add = |sweep: &mut Sweep| sweep.sample(scene, run, sample, own, step.width);
-            match divided {
+            match shells {
                 true => sweeps.par_iter_mut().for_each(add),
                 false => sweeps.iter_mut().for_each(add),
             }
@@ -83,7 +83,7 @@ pub(super) fn gradients(
         }
         let found = match Formula::of_step(run.method, k) {
             Some(formula) => {
-                let known = divided && k > 1;
+                let known = shells && k > 1;
                 let ahead = known.then(|| Formula::of_step(run.method, k - 1)).flatten();
                 if ahead.is_some() {
                     before.read(run, replay.block(k - 1)?, k - 1);
