@@ -145,7 +145,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
             write_all(&[(directory.join("fields.vtu"), fields)])?;
         }
         (Some(driver::Simulated::Motion(end)), true) => {
-            write_all(&driver::shell_fields::series(&directory, end))?;
+            write_all(&driver::shell_fields::series(&directory, &problem, end))?;
         }
         (_, false) | (None, true) => {}
     }

@@ -55,7 +55,11 @@ pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Fa
             .collect();
         write_all(&tables)?;
         if job.vtu {
-            write_all(&driver::shell_fields::series(directory, &simulation))?;
+            write_all(&driver::shell_fields::series(
+                directory,
+                &problem,
+                &simulation,
+            ))?;
         }
         draw(directory, figures::of_simulation(&problem, &simulation));
         if !job.quiet {

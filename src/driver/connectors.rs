@@ -31,7 +31,8 @@ pub(super) fn connectors(
         });
     };
     // Points that a joint, spring or arm uses, by body.
-    let mut held: Vec<(usize, Vec3<f64>)> = drawing.traces.clone();
+    let traces = drawing.traces.iter();
+    let mut held: Vec<(usize, Vec3<f64>)> = traces.map(|own| (own.body, own.point)).collect();
     for load in &model.loads {
         if let LoadKind::Spring {
             body_a,

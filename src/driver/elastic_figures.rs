@@ -5,15 +5,16 @@ use super::simulate::Simulation;
 use crate::functions::instant::DeformationKind;
 use crate::functions::snapshot::Snapshot;
 use crate::functions::{Function, Instant, Reduction};
+use crate::integrate::Trajectory;
 use crate::math::Vec3;
 use crate::model::Model;
-use crate::problem::{DeformedLine, Drawing, ElasticPoint, Outline, Problem};
-use crate::report::plots::{History as Curves, Patch};
+use crate::problem::{BeamFibres, DeformedLine, Drawing, ElasticPoint, Outline, Problem, larger};
+use crate::report::plots::{Coloured, History as Curves, Limit, Patch};
 
-/// Layers across a beam in which its stress is drawn.
-const LAYERS: usize = 6;
 /// Curves that stay below this part of the largest value are not drawn.
 const SEEN: f64 = 1e-2;
+/// Limits are the same up to this part.
+const SAME: f64 = 1e-9;
 
 /// Elastic coordinates of a body; none of a rigid one.
 pub(super) fn elastic(model: &Model<f64>, at: &Snapshot<f64>, body: usize) -> Vec<f64> {
@@ -27,68 +28,65 @@ pub(super) fn elastic(model: &Model<f64>, at: &Snapshot<f64>, body: usize) -> Ve
         .collect()
 }
 
+/// Whether stresses of a body are known: of its shells, and of its beams.
+fn known(model: &Model<f64>, body: usize, drawing: &Drawing) -> [bool; 2] {
+    let finite = shells::of(model, body);
+    [
+        finite.is_some_and(|finite| !finite.mesh.elements.is_empty()),
+        drawing.fibres[body].iter().any(BeamFibres::are_known),
+    ]
+}
+
 /// Whether stresses of a body are known.
-pub(super) fn has_stress(outline: &Outline) -> bool {
-    match outline {
-        Outline::Deformed(line) => !line.stresses.is_empty(),
-        Outline::Shells(_) => true,
-        Outline::Hull(_) | Outline::Sphere(_) | Outline::Spokes(_) => false,
-    }
+pub(super) fn has_stress(model: &Model<f64>, body: usize, drawing: &Drawing) -> bool {
+    known(model, body, drawing).contains(&true)
 }
 
 /// Coloured parts of a body; none of a body whose stresses are not known.
 pub(super) fn patches(at: &Snapshot<f64>, body: usize, drawing: &Drawing) -> Vec<Patch> {
     let motion = at.motion(body);
     let place = |p: &Vec3<f64>| motion.point(p);
-    match &drawing.outlines[body] {
-        Outline::Deformed(line) if !line.stresses.is_empty() => {
-            bent(line, &elastic(at.model, at, body), |p| {
+    match (&drawing.outlines[body], &drawing.fibres[body][..]) {
+        (Outline::Deformed(line), [beam]) if beam.are_known() => {
+            bent(line, beam, &elastic(at.model, at, body), |p| {
                 drawing.flat(&place(p))
             })
         }
-        Outline::Shells(_) => match shells::of(at.model, body) {
+        (Outline::Shells(_), fibres) => match shells::of(at.model, body) {
             Some(finite) => {
                 let q = shells::unknowns(at.model, body, elastic(at.model, at, body));
-                shells::patches(finite, &q, place, drawing)
+                shells::patches((finite, fibres), &q, place, drawing)
             }
             None => Vec::new(),
         },
-        Outline::Deformed(_) | Outline::Hull(_) | Outline::Sphere(_) | Outline::Spokes(_) => {
-            Vec::new()
-        }
+        _ => Vec::new(),
     }
 }
 
-/// Coloured parts of a bent beam: slices along it, in layers across it.
-fn bent(line: &DeformedLine, q: &[f64], place: impl Fn(&Vec3<f64>) -> [f64; 2]) -> Vec<Patch> {
-    let moved = |(point, modes): &(Vec3<f64>, Vec<Vec3<f64>>)| {
-        let moved = modes.iter().zip(q).fold(*point, |sum, (n, &q)| sum + n * q);
-        place(&moved)
-    };
+/// Coloured parts of a bent beam: slices along it, with the larger stress of the sections at their ends.
+fn bent(
+    line: &DeformedLine,
+    beam: &BeamFibres,
+    q: &[f64],
+    place: impl Fn(&Vec3<f64>) -> [f64; 2],
+) -> Vec<Patch> {
+    let moved = |(point, modes): &(Vec3<f64>, Vec<Vec3<f64>>)| place(&displaced(point, modes, q));
     let border: Vec<[f64; 2]> = line.points.iter().map(moved).collect();
     let last = border.len() - 1;
-    let between = |k: usize, part: f64| {
-        let (a, b) = (border[k], border[last - k]);
-        [0, 1].map(|i| a[i] + part * (b[i] - a[i]))
+    let largest = beam.largest(q);
+    let slices = largest.windows(2).enumerate();
+    let patch = |(k, ends): (usize, &[f64])| Patch {
+        corners: [k, k + 1, last - k - 1, last - k]
+            .map(|i| border[i])
+            .to_vec(),
+        value: larger(ends[0], ends[1]),
     };
-    let mut all = Vec::new();
-    for (k, stresses) in line.stresses.iter().enumerate() {
-        let [first, second] = stresses.each_ref().map(|form| form.value(q));
-        for layer in 0..LAYERS {
-            let [from, to] = [layer, layer + 1].map(|i| i as f64 / LAYERS as f64);
-            let middle = 0.5 * (from + to);
-            all.push(Patch {
-                corners: vec![
-                    between(k, from),
-                    between(k + 1, from),
-                    between(k + 1, to),
-                    between(k, to),
-                ],
-                value: first + middle * (second - first),
-            });
-        }
-    }
-    all
+    slices.map(patch).collect()
+}
+
+/// Where a point is at elastic coordinates `q`.
+pub(super) fn displaced(point: &Vec3<f64>, modes: &[Vec3<f64>], q: &[f64]) -> Vec3<f64> {
+    modes.iter().zip(q).fold(*point, |sum, (n, &q)| sum + n * q)
 }
 
 /// The displacements of points of flexible bodies against time.
@@ -110,57 +108,102 @@ pub(crate) fn deflections(title: &str, simulation: &Simulation, drawing: &Drawin
             of = Some((*body, q));
         }
     }
+    curves_of(title, run, curves)
+}
+
+/// Curves with a value for each sample of a run.
+pub(super) fn curves_of(
+    title: &str,
+    run: &Trajectory<f64>,
+    curves: Vec<(String, Vec<f64>)>,
+) -> Curves {
     Curves {
         title: title.to_string(),
         time: (0..=run.last()).map(|k| run.time(k)).collect(),
-        curves: seen(curves),
+        curves,
+        limits: Vec::new(),
     }
 }
 
-/// The curves whose largest value is not far below that of the others.
-fn seen(mut curves: Vec<(String, Vec<f64>)>) -> Vec<(String, Vec<f64>)> {
+/// Leaves out the curves whose largest value in all designs is far below that of the others.
+pub(super) fn leave_out_small(designs: &mut [Curves]) {
     let peak = |values: &[f64]| values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let largest = curves
-        .iter()
-        .map(|curve| peak(&curve.1))
-        .fold(0.0, f64::max);
-    curves.retain(|curve| peak(&curve.1) >= SEEN * largest);
-    curves
+    let count = designs.iter().map(|design| design.curves.len()).min();
+    let peaks = (0..count.unwrap_or(0)).map(|i| {
+        let own = designs.iter().map(|design| peak(&design.curves[i].1));
+        own.fold(0.0, f64::max)
+    });
+    let peaks: Vec<f64> = peaks.collect();
+    let largest = peaks.iter().copied().fold(0.0, f64::max);
+    for design in designs {
+        let mut peaks = peaks.iter();
+        let seen =
+            |_: &(String, Vec<f64>)| peaks.next().is_some_and(|peak| *peak >= SEEN * largest);
+        design.curves.retain(seen);
+    }
 }
 
-/// The largest stress of each body whose stresses are known against time: von Mises stress of shells, the
-/// size of that along the fibres of beams.
+/// The largest stress of each body whose stresses are known against time \[Pa\]: von Mises stress of shells at
+/// their Gauss points, size of the stress along all outer fibres of beams. A body of shells and beams has both.
 pub(crate) fn stresses(title: &str, simulation: &Simulation, drawing: &Drawing) -> Curves {
     let (model, run) = (&simulation.written.model, simulation.motion());
-    let largest = |body: usize, k: usize| {
-        let q = elastic(model, &Snapshot::of(model, run, k), body);
-        let q = shells::unknowns(model, body, q);
-        match (&drawing.outlines[body], shells::of(model, body)) {
-            (Outline::Deformed(line), _) => {
-                let both = line.stresses.iter().flatten();
-                both.map(|form| form.value(&q).abs()).fold(0.0, f64::max)
-            }
-            (_, Some(finite)) => shells::stresses(finite, &q).flatten().fold(0.0, f64::max),
-            _ => 0.0,
+    let mut curves = Vec::new();
+    for (body, rigid) in model.bodies.iter().enumerate() {
+        let known = known(model, body, drawing);
+        if known == [false; 2] {
+            continue;
         }
-    };
-    let bodies = drawing.outlines.iter().enumerate();
-    let known = bodies.filter(|(_, outline)| has_stress(outline));
-    let curve = |(body, _): (usize, &Outline)| {
-        let values = (0..=run.last()).map(|k| largest(body, k));
-        (model.bodies[body].name.clone(), values.collect())
-    };
-    Curves {
-        title: title.to_string(),
-        time: (0..=run.last()).map(|k| run.time(k)).collect(),
-        curves: known.map(curve).collect(),
+        let mut both = [Vec::new(), Vec::new()];
+        for k in 0..=run.last() {
+            let q = elastic(model, &Snapshot::of(model, run, k), body);
+            let q = shells::unknowns(model, body, q);
+            if let (true, Some(finite)) = (known[0], shells::of(model, body)) {
+                let all = shells::stresses(finite, &q).flatten();
+                both[0].push(all.fold(0.0, larger));
+            }
+            let beams = drawing.fibres[body].iter();
+            let all = beams.flat_map(|beam| beam.largest(&q));
+            both[1].push(all.fold(0.0, larger));
+        }
+        let names = match known {
+            [true, true] => ["shells", "beams"].map(|kind| format!("{}: {kind}", rigid.name)),
+            _ => [0, 1].map(|_| rigid.name.clone()),
+        };
+        let curve = names.into_iter().zip(both).zip(known);
+        curves.extend(curve.filter_map(|(curve, known)| known.then_some(curve)));
     }
+    curves_of(title, run, curves)
 }
 
-/// The limits that constraints put on stresses of bodies, as constant curves \[Pa\].
-pub(crate) fn limits(problem: &Problem, simulation: &Simulation) -> Vec<(String, Vec<f64>)> {
+/// What the colours of bodies mean: the largest of `stresses`, and the kinds of stress.
+pub(super) fn colours(
+    model: &Model<f64>,
+    drawing: &Drawing,
+    stresses: &[Curves],
+) -> Option<Coloured> {
+    let all = stresses.iter().flat_map(|design| &design.curves);
+    let values = all.flat_map(|(_, values)| values).copied();
+    let largest = values.filter(|value| value.is_finite()).reduce(f64::max)?;
+    let each = (0..model.bodies.len()).map(|body| known(model, body, drawing));
+    let any = each.fold([false; 2], |any, own| [0, 1].map(|k| any[k] || own[k]));
+    let notes = [
+        "von Mises stress of shells",
+        "largest along the fibres of a beam's section",
+    ];
+    let kinds = notes.into_iter().zip(any);
+    Some(Coloured {
+        largest,
+        notes: kinds
+            .filter(|(_, any)| *any)
+            .map(|(note, _)| note.to_string())
+            .collect(),
+    })
+}
+
+/// The limits that constraints put on stresses of bodies \[Pa\]: one for each value, with all whose limit it is.
+pub(crate) fn limits(problem: &Problem, simulation: &Simulation) -> Vec<Limit> {
     let scene = &simulation.at.scene;
-    let count = simulation.motion().last() + 1;
+    let model = &scene.model;
     let limit = |function: &Function<f64>, upper: f64| {
         let Function::Reduced {
             instant,
@@ -171,27 +214,45 @@ pub(crate) fn limits(problem: &Problem, simulation: &Simulation) -> Vec<(String,
         };
         match instant {
             Instant::ShellStress { flexible, .. } => {
-                let shells = scene.model.flexible.get(*flexible)?.form.shells()?;
-                Some(upper * shells.mesh.elements.first()?.yield_stress)
+                let shells = model.flexible.get(*flexible)?.form.shells()?;
+                Some((
+                    *flexible,
+                    upper * shells.mesh.elements.first()?.yield_stress,
+                ))
             }
             Instant::Deformation {
+                flexible,
                 kind: DeformationKind::Stress,
                 ..
             }
             | Instant::LargestDeformation {
+                flexible,
                 kind: DeformationKind::Stress,
                 ..
-            } => Some(upper),
+            } => Some((*flexible, upper)),
             _ => None,
         }
     };
-    let of = |constraint: &crate::problem::Constraint| {
-        let upper = Some(constraint.upper).filter(|upper| upper.is_finite())?;
-        let value = limit(scene.functions.get(constraint.function)?, upper)?;
-        Some((
-            format!("limit of \"{}\"", constraint.name),
-            vec![value; count],
-        ))
-    };
-    problem.constraints.iter().filter_map(of).collect()
+    let mut all: Vec<Limit> = Vec::new();
+    for constraint in &problem.constraints {
+        let function = scene.functions.get(constraint.function);
+        let upper = Some(constraint.upper).filter(|upper| upper.is_finite());
+        let found = function.zip(upper);
+        let Some((flexible, value)) = found.and_then(|(function, upper)| limit(function, upper))
+        else {
+            continue;
+        };
+        let body = &model.bodies[model.flexible[flexible].frame].name;
+        let of = format!("{body} (\"{}\")", constraint.name);
+        let same = |known: &&mut Limit| (known.value - value).abs() <= SAME * value.abs();
+        match all.iter_mut().find(same) {
+            Some(known) => known.of.push(of),
+            None => all.push(Limit {
+                value,
+                unit: "Pa",
+                of: vec![of],
+            }),
+        }
+    }
+    all
 }

@@ -2,17 +2,21 @@
 
 use super::analysed::Simulated;
 use super::connectors::connectors;
-use super::elastic_figures::{deflections, elastic, has_stress, limits, patches, stresses};
+use super::elastic_figures::{
+    colours, deflections, displaced, elastic, has_stress, leave_out_small, limits, patches,
+    stresses,
+};
 use super::optimise::Optimisation;
 use super::shells;
 use super::simulate::Simulation;
 use super::statics::figures as of_structures;
+use super::traces;
 use crate::functions::evaluate::sample;
 use crate::functions::snapshot::Snapshot;
 use crate::functions::turning::turns;
 use crate::functions::{Function, Instant, Reduction};
 use crate::math::Vec3;
-use crate::problem::{Drawing, Outline, Problem};
+use crate::problem::{Drawing, Outline, Problem, Trace};
 use crate::report::plots::{
     Barrier, BodyMotion, EnergyRun, Flight, History as Curves, Motion, Scenery, convergence,
     energy, histories, motion,
@@ -120,6 +124,9 @@ fn figures(
     if let Some(history) = history {
         all.push(("convergence.svg", convergence(history)));
     }
+    let pairs = || designs.iter().zip(&drawings);
+    let curves = pairs().map(|((title, design), drawing)| stresses(title, design, drawing));
+    let mut stressed: Vec<Curves> = curves.collect();
     let lapses: Vec<Motion> = designs
         .iter()
         .zip(&drawings)
@@ -129,6 +136,7 @@ fn figures(
                 design,
                 drawing,
                 problem.stated_objective().map(|o| o.function),
+                &stressed,
             )
         })
         .collect();
@@ -142,17 +150,30 @@ fn figures(
     all.push(("energy.svg", energy(&energies)));
     let deforms = |drawing: &Drawing| !drawing.elastic_points.is_empty();
     if drawings.iter().any(deforms) {
-        let pairs = || designs.iter().zip(&drawings);
         let curves = pairs().map(|((title, design), drawing)| deflections(title, design, drawing));
-        let label = "displacement against the body's axes [m]";
-        let curves: Vec<Curves> = curves.collect();
-        all.push(("deflection.svg", histories(&curves, label)));
-        let curves = pairs().map(|((title, design), drawing)| stresses(title, design, drawing));
         let mut curves: Vec<Curves> = curves.collect();
-        for (own, (_, design)) in curves.iter_mut().zip(designs) {
-            own.curves.extend(limits(problem, design));
+        leave_out_small(&mut curves);
+        let label = "displacement in the body's axes [m]";
+        all.push(("deflection.svg", histories(&[(label, curves)])));
+    }
+    let flexible = |(_, design): &(&str, &Simulation)| !design.written.model.flexible.is_empty();
+    let traced = |drawing: &Drawing| !drawing.traces.is_empty();
+    if designs.iter().any(flexible) && drawings.iter().any(traced) {
+        let mut rows = ["x [m]", "y [m]", "z [m]"].map(|label| (label, Vec::new()));
+        for ((title, design), drawing) in pairs() {
+            let positions = traces::positions(title, design, drawing);
+            for (row, curves) in rows.iter_mut().zip(positions) {
+                row.1.push(curves);
+            }
         }
-        all.push(("stress.svg", histories(&curves, "largest stress [Pa]")));
+        all.push(("trace.svg", histories(&rows)));
+    }
+    if stressed.iter().any(|own| !own.curves.is_empty()) {
+        for (own, (_, design)) in stressed.iter_mut().zip(designs) {
+            own.limits = limits(problem, design);
+        }
+        let rows = [("largest stress [Pa]", stressed)];
+        all.push(("stress.svg", histories(&rows)));
     }
     all.into_iter()
         .filter_map(|(name, svg)| Some((name, svg.ok()?.into_bytes())))
@@ -219,6 +240,7 @@ fn lapse(
     simulation: &Simulation,
     drawing: &Drawing,
     objective: Option<usize>,
+    stresses: &[Curves],
 ) -> Motion {
     let run = simulation.motion();
     let model = &simulation.written.model;
@@ -255,7 +277,7 @@ fn lapse(
                 .collect(),
             patches: instants
                 .iter()
-                .filter(|_| has_stress(&drawing.outlines[body]))
+                .filter(|_| has_stress(model, body, drawing))
                 .map(|&k| {
                     let at = Snapshot::of(model, run, k);
                     patches(&at, body, drawing)
@@ -268,18 +290,20 @@ fn lapse(
                 .collect(),
         })
         .collect();
-    let thrown = release.map(|(_, p)| (p.body, p.point));
-    let same =
-        |a: &(usize, Vec3<f64>), b: &(usize, Vec3<f64>)| a.0 == b.0 && (a.1 - b.1).norm() < 1e-9;
-    let others = drawing.traces.iter().copied();
-    let others = others.filter(|trace| !thrown.is_some_and(|thrown| same(trace, &thrown)));
-    let followed = thrown.into_iter().chain(others);
-    let trace = |(body, point): (usize, Vec3<f64>)| {
-        (0..=end)
-            .map(|k| flat(&Snapshot::of(model, run, k).motion(body).point(&point)))
-            .collect()
+    let thrown = release.map(|(_, p)| Trace {
+        name: String::new(),
+        body: p.body,
+        point: p.point,
+        by: Vec::new(),
+    });
+    let same = |a: &Trace, b: &Trace| a.body == b.body && (a.point - b.point).norm() < 1e-9;
+    let others = drawing.traces.iter();
+    let others = others.filter(|trace| !thrown.iter().any(|thrown| same(trace, thrown)));
+    let trace = |trace: &Trace| {
+        let place = |k: usize| flat(&traces::place(&Snapshot::of(model, run, k), trace));
+        (0..=end).map(place).collect()
     };
-    let traces = followed.map(trace).collect();
+    let traces = thrown.iter().chain(others).map(trace).collect();
     let flight = release.map(|(k, p)| {
         let motion = Snapshot::of(model, run, k).motion(p.body);
         Flight {
@@ -294,6 +318,7 @@ fn lapse(
         connectors: connectors((model, run), drawing, &instants),
         traces,
         flight,
+        coloured: colours(model, drawing, stresses),
     }
 }
 
@@ -301,10 +326,7 @@ fn lapse(
 fn outline(outline: &Outline, q: &[f64], place: impl Fn(&Vec3<f64>) -> [f64; 2]) -> Vec<[f64; 2]> {
     match outline {
         Outline::Deformed(line) => (line.points.iter())
-            .map(|(point, modes)| {
-                let moved = modes.iter().zip(q).fold(*point, |sum, (n, &q)| sum + n * q);
-                place(&moved)
-            })
+            .map(|(point, modes)| place(&displaced(point, modes, q)))
             .collect(),
         Outline::Shells(line) => {
             let nodes = shells::places(&line.mesh, q);

@@ -33,6 +33,7 @@ pub(crate) mod start;
 pub(crate) mod statics;
 mod stretch;
 pub(crate) mod tables;
+pub(crate) mod traces;
 pub(crate) mod warm_start;
 pub(crate) mod work_precision;
 

@@ -1,10 +1,11 @@
-//! Shells in motion as files for ParaView: one for each of some instants, and their list.
+//! Shells and beams of elements in motion as files for ParaView: one for each of some instants, and their list.
 
 use super::shells;
 use super::simulate::Simulation;
 use crate::functions::snapshot::Snapshot;
 use crate::math::Vec3;
 use crate::model::flexible::FlexibleBody;
+use crate::problem::{BeamFibres, Problem, larger};
 use crate::report::vtu::{Fields, pvd, vtu};
 use crate::system::flexible::{coordinates, rates};
 use std::path::{Path, PathBuf};
@@ -13,8 +14,12 @@ use std::path::{Path, PathBuf};
 const INSTANTS: usize = 101;
 
 /// `fields_0000.vtu` … and `fields.pvd`; nothing if no body has finite elements. The instants have equal
-/// numbers of samples between them. All shells are one mesh in ground axes.
-pub(crate) fn series(directory: &Path, simulation: &Simulation) -> Vec<(PathBuf, Vec<u8>)> {
+/// numbers of samples between them. All shells and beams are one mesh in ground axes.
+pub(crate) fn series(
+    directory: &Path,
+    problem: &Problem,
+    simulation: &Simulation,
+) -> Vec<(PathBuf, Vec<u8>)> {
     let (model, run) = (&simulation.written.model, simulation.motion());
     if model
         .bodies
@@ -24,6 +29,7 @@ pub(crate) fn series(directory: &Path, simulation: &Simulation) -> Vec<(PathBuf,
     {
         return Vec::new();
     }
+    let fibres = problem.fibres(&simulation.at.x);
     let shown = run.shown();
     let last = shown.len() - 1;
     let count = INSTANTS.min(shown.len());
@@ -36,7 +42,7 @@ pub(crate) fn series(directory: &Path, simulation: &Simulation) -> Vec<(PathBuf,
         let name = format!("fields_{i:04}.vtu");
         files.push((
             directory.join(&name),
-            vtu(&fields(&Snapshot::of(model, run, k))).into_bytes(),
+            vtu(&fields(&Snapshot::of(model, run, k), &fibres)).into_bytes(),
         ));
         list.push((run.time(k), name));
     }
@@ -44,12 +50,15 @@ pub(crate) fn series(directory: &Path, simulation: &Simulation) -> Vec<(PathBuf,
     files
 }
 
-/// The fields of all shells at an instant.
-fn fields(at: &Snapshot<f64>) -> Fields {
+/// The value of a stress that is not known: a section without size has none.
+const UNKNOWN: f64 = -1.0;
+
+/// The fields of all shells and beams at an instant; `fibres` are those of the beams of each body.
+fn fields(at: &Snapshot<f64>, fibres: &[Vec<BeamFibres>]) -> Fields {
     let mut fields = Fields::default();
     let (mut displacements, mut velocities) = (Vec::new(), Vec::new());
     let (mut thickness, mut stress, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
-    let mut of_beams = Vec::new();
+    let (mut along, mut of_beams) = (Vec::new(), Vec::new());
     let motions = at.motions();
     let bodies = at.model.flexible.iter().enumerate();
     let finite = bodies
@@ -76,17 +85,32 @@ fn fields(at: &Snapshot<f64>) -> Fields {
         fields
             .beams
             .extend(beams.map(|beam| beam.map(|node| first + node)));
+        along.extend(fibres[body.frame].iter().map(|beam| {
+            let largest = beam.largest(&q).into_iter();
+            largest.reduce(larger).unwrap_or(UNKNOWN)
+        }));
         of_beams.extend(mesh.beams.iter().map(|_| (i + 1) as f64));
         thickness.extend(&finite.thickness);
         let largest = shells::stresses(finite, &q);
         stress.extend(largest.map(|all| all.into_iter().fold(0.0, f64::max)));
         numbers.extend(mesh.elements.iter().map(|_| (i + 1) as f64));
     }
-    // Shells come first; stress and thickness are theirs.
-    for own in [&mut stress, &mut thickness] {
-        own.resize(fields.shells.len() + fields.beams.len(), 0.0);
-    }
+    // Shells come first.
+    let name = name_of_stress(fields.shells.is_empty(), &along);
+    stress.extend(along);
     numbers.extend(of_beams);
+    fields.of_elements = vec![
+        (name, stress),
+        ("number of the flexible body".to_owned(), numbers),
+    ];
+    if !fields.shells.is_empty() {
+        let name = match fields.beams.is_empty() {
+            true => "thickness [m]",
+            false => "thickness of shells [m], 0 of beams",
+        };
+        thickness.resize(fields.shells.len() + fields.beams.len(), 0.0);
+        fields.of_elements.insert(1, (name.to_owned(), thickness));
+    }
     fields.vectors = vec![
         (
             "displacement against the body's axes [m]".to_owned(),
@@ -94,10 +118,18 @@ fn fields(at: &Snapshot<f64>) -> Fields {
         ),
         ("velocity [m/s]".to_owned(), velocities),
     ];
-    fields.of_elements = vec![
-        ("largest von Mises stress [Pa]".to_owned(), stress),
-        ("thickness [m]".to_owned(), thickness),
-        ("number of the flexible body".to_owned(), numbers),
-    ];
     fields
+}
+
+/// The name of the field of stress: what it is on the shells and on the beams of the mesh.
+fn name_of_stress(no_shells: bool, along: &[f64]) -> String {
+    let kinds = match (no_shells, along.is_empty()) {
+        (_, true) => "largest von Mises stress [Pa]",
+        (true, false) => "largest stress along fibres [Pa]",
+        (false, false) => "largest stress [Pa], von Mises of shells and along fibres of beams",
+    };
+    match along.contains(&UNKNOWN) {
+        true => format!("{kinds}, -1 where unknown"),
+        false => kinds.to_owned(),
+    }
 }

@@ -3,7 +3,7 @@
 use crate::math::Vec3;
 use crate::model::Model;
 use crate::model::finite::{ElementMesh, FiniteElements};
-use crate::problem::Drawing;
+use crate::problem::{BeamFibres, Drawing, larger};
 use crate::report::plots::Patch;
 use crate::system::finite::stress_ratios;
 
@@ -47,10 +47,11 @@ pub(super) fn stresses<'a>(
     })
 }
 
-/// Coloured parts of the surface, those that are far first. A colour is the mean over the Gauss points of
-/// the part. `place` takes points of the body to ground.
+/// Coloured parts of the surface and halves of beams, those that are far first. A colour of shells is the mean over
+/// the Gauss points of the part, of beams the larger stress of the sections at both ends. `place` takes points of the
+/// body to ground.
 pub(super) fn patches(
-    finite: &FiniteElements<f64>,
+    (finite, fibres): (&FiniteElements<f64>, &[BeamFibres]),
     q: &[f64],
     place: impl Fn(&Vec3<f64>) -> Vec3<f64>,
     drawing: &Drawing,
@@ -76,6 +77,19 @@ pub(super) fn patches(
                 &corners.map(|local| element.nodes[local]),
                 mean(&corners.map(|g| stress[g])),
             );
+        }
+    }
+    for (ends, beam) in finite.mesh.beams.iter().zip(fibres) {
+        let (halves, largest) = (ends.windows(2), beam.largest(q));
+        for (half, stresses) in halves.zip(largest.windows(2)) {
+            let (a, b) = (&nodes[half[0]], &nodes[half[1]]);
+            // A beam is drawn on top of the shells that it stiffens.
+            let depth = 0.5 * sight.dot(&(a + b)) + (b - a).norm();
+            let patch = Patch {
+                corners: vec![drawing.flat(a), drawing.flat(b)],
+                value: larger(stresses[0], stresses[1]),
+            };
+            all.push((depth, patch));
         }
     }
     all.sort_by(|a, b| a.0.total_cmp(&b.0));

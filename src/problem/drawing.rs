@@ -1,10 +1,11 @@
 //! Data of a plot of the motion: outlines of the bodies, the view, ground and barrier.
 
 use super::elastic_drawing::{
-    DeformedLine, ElasticPoint, ShellLine, beam_outline, beam_points, line_of_points, shell_line,
-    shell_points,
+    DeformedLine, ElasticPoint, ShellLine, Trace, beam_outline, beam_points, line_of_points,
+    shell_line, shell_points, traces,
 };
-use super::placement::{Assembly, split_location};
+use super::fibres::{BeamFibres, fibres};
+use super::placement::Assembly;
 use super::quantity::vector;
 use super::schema::functions::Function;
 use super::schema::mechanics::{Body, Shape};
@@ -58,8 +59,10 @@ pub(crate) struct Drawing {
     pub outlines: Vec<Outline>,
     /// Points of flexible bodies whose displacements are drawn against time.
     pub elastic_points: Vec<ElasticPoint>,
-    /// Points whose paths are drawn: body, and point from its centre of mass in body axes \[m\].
-    pub traces: Vec<(usize, Vec3<f64>)>,
+    /// Points whose paths are drawn.
+    pub traces: Vec<Trace>,
+    /// In the order of the bodies: stresses along fibres of their beams.
+    pub fibres: Vec<Vec<BeamFibres>>,
     /// Height of the ground on which a range is measured \[m\].
     pub ground: Option<f64>,
     /// The barrier of a clearance.
@@ -108,14 +111,8 @@ pub(crate) fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawin
             }),
             _ => None,
         });
-    let traces = document.plot.trace.iter().filter_map(|text| {
-        let body = split_location(text).0;
-        let index = assembly.index(body)?;
-        Some((
-            index,
-            assembly.named_in_body(text) - assembly.poses[index].centre,
-        ))
-    });
+    let mut fibres = fibres(document, x);
+    fibres.resize(scene.model.bodies.len(), Vec::new());
     let mut elastic_points = beam_points(document, x);
     elastic_points.extend(shell_points(document));
     // Shells seen along their surface are lines, so the view is from above and beside.
@@ -127,7 +124,8 @@ pub(crate) fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawin
         snapshots: document.plot.snapshots.unwrap_or(SNAPSHOTS),
         outlines: outlines(document, &assembly, &scene.model, towards, x),
         elastic_points,
-        traces: traces.collect(),
+        traces: traces(document, &assembly, x),
+        fibres,
         // Heights appear only if gravity points down in the view.
         ground: ground.filter(|_| falls),
         barrier: barrier.filter(|_| falls),

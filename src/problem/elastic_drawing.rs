@@ -1,29 +1,26 @@
 //! Drawing of bodies that deform: their outlines, and displacements of their points.
 
 use super::elements::{nodes_of, prepared};
+use super::fibres::SLICES;
+use super::placement::{Assembly, split_location};
 use super::schema::Document;
 use super::schema::elements::Held;
 use super::schema::modal::Modal;
 use crate::math::Vec3;
 use crate::model::finite::{ElementMesh, NODES, ShellElement};
-use crate::model::flexible::Quadratic;
 use crate::structures::modal::{BeamFrame, FlexibleBeam};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Straight pieces of a side of a beam.
-const SLICES: usize = 24;
 /// Nodes along the edges of an element, counter-clockwise.
 const EDGES: [[usize; 3]; 4] = [[0, 1, 2], [2, 5, 8], [8, 7, 6], [6, 3, 0]];
 
 /// A closed line of points that move on their body.
 #[derive(Clone, Debug)]
 pub(crate) struct DeformedLine {
-    /// Its points: where they are in the undeformed body \[m\], and their displacements by each coordinate.
+    /// Its points: where they are in the undeformed body \[m\], and their displacements by each coordinate. Of a
+    /// beam those of one side come first, those of the other side follow in opposite order.
     pub points: Vec<(Vec3<f64>, Vec<Vec3<f64>>)>,
-    /// Between each pair of neighbouring points on one side and the next: the stress along both sides \[Pa\].
-    /// Empty for a section without size. The points of the other side follow in opposite order.
-    pub stresses: Vec<[Quadratic<f64>; 2]>,
 }
 
 /// A displacement of a point of a flexible body against its axes, in its axes \[m\].
@@ -35,6 +32,19 @@ pub(crate) struct ElasticPoint {
     pub body: usize,
     /// Coordinates that move it, and the displacement by each.
     pub by: Vec<(usize, f64)>,
+}
+
+/// A point whose path is drawn.
+#[derive(Clone, Debug)]
+pub(crate) struct Trace {
+    /// As the file names it.
+    pub name: String,
+    /// The body.
+    pub body: usize,
+    /// Where it is in the undeformed body, from its centre of mass in its axes \[m\].
+    pub point: Vec3<f64>,
+    /// Elastic coordinates that move it, and the displacement by each in the axes of the body.
+    pub by: Vec<(usize, Vec3<f64>)>,
 }
 
 /// A closed line of nodes of shells.
@@ -125,7 +135,8 @@ impl Beams {
     }
 }
 
-/// Displacements of the named points of shells along the axis of the body that is nearest to their normal.
+/// Displacements of the named points of shells along the axis of the body that is nearest to their normal, of
+/// those of beams along the two axes across the beam.
 pub(super) fn shell_points(document: &Document) -> Vec<ElasticPoint> {
     let mut all = Vec::new();
     for (body, (name, written)) in document.bodies.iter().enumerate() {
@@ -136,20 +147,27 @@ pub(super) fn shell_points(document: &Document) -> Vec<ElasticPoint> {
         for (point, held) in &elements.points {
             let (Held::Node(set) | Held::Edge(set)) = held;
             let nodes = nodes_of(&known.sets, set).unwrap_or_default();
+            let mesh = &known.mesh;
             let of = |element: &ShellElement| {
                 let local = element.nodes.iter().position(|node| nodes.contains(node))?;
-                Some(element.points[NODES + local].iamax())
+                Some(vec![element.points[NODES + local].iamax()])
             };
-            let Some(axis) = known.mesh.elements.iter().find_map(of) else {
-                continue;
+            let of_beam = |beam: &[usize; 3]| {
+                beam.iter().find(|node| nodes.contains(node))?;
+                let along = (mesh.nodes[beam[2]] - mesh.nodes[beam[0]]).iamax();
+                Some((0..3).filter(|axis| *axis != along).collect())
             };
-            let motion = &known.points[point];
-            let by = motion.coordinates.iter().zip(&motion.displacement);
-            let by = by.map(|(coordinate, n)| (*coordinate, n[axis]));
-            let by: Vec<(usize, f64)> = by.filter(|(_, n)| *n != 0.0).collect();
-            if !by.is_empty() {
-                let name = format!("{name}: {point} along {}", ["x", "y", "z"][axis]);
-                all.push(ElasticPoint { name, body, by });
+            let axes = mesh.elements.iter().find_map(of);
+            let axes = axes.or_else(|| mesh.beams.iter().find_map(of_beam));
+            for axis in axes.unwrap_or_default() {
+                let motion = &known.points[point];
+                let by = motion.coordinates.iter().zip(&motion.displacement);
+                let by = by.map(|(coordinate, n)| (*coordinate, n[axis]));
+                let by: Vec<(usize, f64)> = by.filter(|(_, n)| *n != 0.0).collect();
+                if !by.is_empty() {
+                    let name = format!("{name}: {point} along {}", ["x", "y", "z"][axis]);
+                    all.push(ElasticPoint { name, body, by });
+                }
             }
         }
     }
@@ -168,15 +186,8 @@ pub(super) fn beam_outline(beam: &FlexibleBeam<f64>, sight: &Vec3<f64>) -> Defor
     };
     let there = (0..=SLICES).map(|k| at(k, 1.0));
     let back = (0..=SLICES).rev().map(|k| at(k, -1.0));
-    let middle = |k: usize| (k as f64 + 0.5) / SLICES as f64;
-    let stress = |k: usize| {
-        let along = |sign: f64| beam.fibre_stress(middle(k), side.map(|x| x * sign));
-        [along(1.0), along(-1.0)]
-    };
-    let sized = beam.half_sizes().is_some();
     DeformedLine {
         points: there.chain(back).collect(),
-        stresses: (0..SLICES).filter(|_| sized).map(stress).collect(),
     }
 }
 
@@ -206,6 +217,43 @@ pub(super) fn beam_points(document: &Document, x: &[f64]) -> Vec<ElasticPoint> {
     all
 }
 
+/// The points whose paths are drawn.
+pub(super) fn traces(document: &Document, assembly: &Assembly<f64>, x: &[f64]) -> Vec<Trace> {
+    let of = |text: &String| {
+        let (name, named) = split_location(text);
+        let body = assembly.index(name)?;
+        let point = assembly.named_in_body(text) - assembly.poses[body].centre;
+        let written = &document.bodies[body];
+        let by: Vec<(usize, Vec3<f64>)> = match (&written.beam, &written.elements, &written.modal) {
+            (Some(beam), _, _) => {
+                let beam = super::beam::beam(beam, x);
+                let modes = beam.point(point.x / beam.length, [point.y, point.z]);
+                modes.displacement.into_iter().enumerate().collect()
+            }
+            (None, Some(elements), _) => {
+                let known = prepared(document, elements);
+                let motion = named.and_then(|named| known.points.get(named));
+                motion.map_or_else(Vec::new, |motion| {
+                    let all = motion.coordinates.iter().copied();
+                    all.zip(motion.displacement.iter().copied()).collect()
+                })
+            }
+            (None, None, Some(modal)) => {
+                let modes = modal.body().point(&point, super::modal::scale(modal, x));
+                modes.displacement.into_iter().enumerate().collect()
+            }
+            (None, None, None) => Vec::new(),
+        };
+        Some(Trace {
+            name: text.clone(),
+            body,
+            point,
+            by,
+        })
+    };
+    document.plot.trace.iter().filter_map(of).collect()
+}
+
 /// Lines between the points of a body of files, in their order and back.
 pub(super) fn line_of_points(modal: &Modal, x: &[f64]) -> DeformedLine {
     let scale = super::modal::scale(modal, x);
@@ -215,8 +263,5 @@ pub(super) fn line_of_points(modal: &Modal, x: &[f64]) -> DeformedLine {
         .collect();
     let back: Vec<_> = points.iter().rev().skip(1).cloned().collect();
     points.extend(back);
-    DeformedLine {
-        points,
-        stresses: Vec::new(),
-    }
+    DeformedLine { points }
 }

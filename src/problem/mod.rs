@@ -12,6 +12,7 @@ mod drawing;
 mod elastic_drawing;
 pub(crate) mod elements;
 mod fault;
+mod fibres;
 mod finding;
 mod first_scene;
 mod flexible;
@@ -48,8 +49,9 @@ mod text;
 mod variables;
 
 pub(crate) use drawing::{Drawing, Outline};
-pub(crate) use elastic_drawing::{DeformedLine, ElasticPoint};
+pub(crate) use elastic_drawing::{DeformedLine, ElasticPoint, Trace};
 pub use fault::{Fault, Faults};
+pub(crate) use fibres::{BeamFibres, larger};
 pub(crate) use focus::Focus;
 pub(crate) use memory::available as available_memory;
 pub use overrides::{Override, OverrideError};
@@ -434,5 +436,10 @@ impl Problem {
     /// The data of a plot of the motion at the design `x`.
     pub(crate) fn drawing(&self, x: &[f64]) -> Drawing {
         drawing::drawing(&self.written, &self.order, x)
+    }
+
+    /// Stresses along fibres of the beams of each body of the file at the design `x`.
+    pub(crate) fn fibres(&self, x: &[f64]) -> Vec<Vec<BeamFibres>> {
+        fibres::fibres(&self.written, x)
     }
 }

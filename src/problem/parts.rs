@@ -175,6 +175,20 @@ pub(crate) fn chosen(
     }
 }
 
+/// Each beam of a body as a line of its own at the design `x`, in the order of the mesh.
+pub(super) fn lines(
+    document: &Document,
+    elements: &Elements,
+    prepared: &Prepared,
+    x: &[f64],
+) -> Vec<BeamLine<f64>> {
+    let parts = prepared.parts.iter();
+    parts
+        .filter_map(|part| beam(document, elements, part, |quantity| quantity.get(x)))
+        .map(|beam| BeamLine::new(&[beam]))
+        .collect()
+}
+
 /// The sections of these beams at the design `x`.
 pub(crate) fn line_of<S: Scalar>(
     document: &Document,

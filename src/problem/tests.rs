@@ -437,10 +437,10 @@ fn the_drawing_follows_the_design() {
         other => panic!("{other:?}"),
     }
     let trebuchet = committed("trebuchet.json");
-    assert_eq!(
-        trebuchet.drawing(&trebuchet.start()).traces,
-        [(4, Vec3::zeros())]
-    );
+    let traces = trebuchet.drawing(&trebuchet.start()).traces;
+    let found: Vec<_> = traces.iter().map(|own| (own.body, own.point)).collect();
+    assert_eq!(found, [(4, Vec3::zeros())]);
+    assert!(traces[0].name == "stone" && traces[0].by.is_empty());
 }
 
 #[test]

@@ -111,6 +111,12 @@ impl<S: Scalar> BeamLine<S> {
         beam.sum(&parts)
     }
 
+    /// Whether all sections have a size, which stresses need.
+    pub(crate) fn has_sizes(&self) -> bool {
+        let mut sections = self.beams.iter().map(|beam| &beam.section);
+        sections.all(|section| half_sizes(section).is_some())
+    }
+
     /// Whether the section at a fraction of the line is round.
     pub(crate) fn is_round(&self, fraction: S) -> bool {
         match self.at(fraction).0.section {

@@ -29,5 +29,6 @@ mod shell_pictures;
 mod stability;
 mod static_faults;
 mod statics;
+mod stress_pictures;
 mod thickness_sheet;
 mod trebuchets;

@@ -216,6 +216,7 @@ fn thrower(title: &str, speed: f64) -> Motion {
             velocity: [speed, speed],
             gravity: 10.0,
         }),
+        coloured: None,
     }
 }
 
@@ -334,6 +335,7 @@ fn flat_steep_and_broken_motions_stay_inside() {
         connectors: Vec::new(),
         traces: Vec::new(),
         flight: None,
+        coloured: None,
         title: "still".into(),
     };
     for design in [flat, steep, broken, point] {

@@ -48,8 +48,8 @@ fn histories_are_those_of_the_functions() {
     );
     let limit = limits(&problem, &motion);
     assert_eq!(limit.len(), 1);
-    assert_eq!(limit[0].0, "limit of \"strong\"");
-    assert!(limit[0].1.iter().all(|value| (value - 1e8).abs() < 1e-3));
+    assert_eq!(limit[0].of, ["first (\"strong\")"]);
+    assert!((limit[0].value - 1e8).abs() < 1e-3);
     let bent = deflections("", &motion, &drawing);
     assert!(
         bent.curves
@@ -77,7 +77,13 @@ fn pictures_are_coloured() {
     let names: Vec<&str> = pictures.iter().map(|(name, _)| *name).collect();
     assert_eq!(
         names,
-        ["motion.svg", "energy.svg", "deflection.svg", "stress.svg"]
+        [
+            "motion.svg",
+            "energy.svg",
+            "deflection.svg",
+            "trace.svg",
+            "stress.svg"
+        ]
     );
     let lapse = std::str::from_utf8(&pictures[0].1).expect("text");
     // Two bodies of two elements in four parts at nine instants; the legend has more polygons.
@@ -90,7 +96,7 @@ fn pictures_are_coloured() {
 fn shells_are_written_for_paraview() {
     let problem = parsed(&short());
     let motion = simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
-    let files = shell_fields::series(Path::new("out"), &motion);
+    let files = shell_fields::series(Path::new("out"), &problem, &motion);
     assert_eq!(files.len(), 9 + 1);
     let text = |k: usize| String::from_utf8(files[k].1.clone()).expect("text");
     let list = text(9);

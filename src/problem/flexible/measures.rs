@@ -154,7 +154,7 @@ impl<S: Scalar> Sections<'_, S> {
             Self::OfBeam(own) => matches!(own.shapes.beam().section, Section::Tube { .. }),
             Self::OfElements(_, line) => line.is_round(station),
         };
-        if round { &ROUND } else { &CORNERS }
+        outer_fibres(round)
     }
 
     /// The largest section force or moment of several sections.
@@ -215,6 +215,11 @@ const ROUND: [[f64; 2]; 8] = {
         [HALF, -HALF],
     ]
 };
+
+/// The outer fibres of a section, round or not, in parts of half its size.
+pub(crate) fn outer_fibres(round: bool) -> &'static [[f64; 2]] {
+    if round { &ROUND } else { &CORNERS }
+}
 
 /// The largest of several measures of one beam.
 fn largest<S: Scalar>(

@@ -6,7 +6,7 @@ mod measures;
 mod shapes;
 
 pub(crate) use described::described;
-pub(crate) use measures::{END, START, Sections, station, stations};
+pub(crate) use measures::{END, START, Sections, outer_fibres, station, stations};
 
 use super::elements;
 use super::placement::Assembly;

@@ -44,6 +44,17 @@ pub(super) const PALETTE: [RGBColor; 7] = [
     RGBColor(110, 110, 110),
 ];
 
+/// More colours, for what is not told apart by dashes (Tol 2021, muted).
+pub(super) const MORE: [RGBColor; 5] = [
+    RGBColor(51, 34, 136),
+    RGBColor(136, 34, 85),
+    RGBColor(153, 153, 51),
+    RGBColor(68, 170, 153),
+    RGBColor(221, 204, 119),
+];
+/// Length and distance of the dashes of patterns \[px\]: dashes, dots, long dashes.
+const DASHES: [[f64; 2]; 3] = [[6.0, 3.5], [1.0, 3.5], [14.0, 5.0]];
+
 /// A point of the picture \[px\], y downwards.
 pub(super) type Pixel = (f64, f64);
 
@@ -92,6 +103,19 @@ impl Canvas {
     pub(crate) fn dashes(&mut self, points: &[Pixel], color: RGBColor, width: f64) {
         for dash in dashes(points, 6.0, 3.5) {
             self.path(&dash, color, width, 1.0);
+        }
+    }
+
+    /// A line of one of several patterns; the first is solid.
+    pub(crate) fn pattern(&mut self, points: &[Pixel], color: RGBColor, width: f64, number: usize) {
+        match number % (DASHES.len() + 1) {
+            0 => self.path(points, color, width, 1.0),
+            k => {
+                let [length, gap] = DASHES[k - 1];
+                for dash in dashes(points, length, gap) {
+                    self.path(&dash, color, width, 1.0);
+                }
+            }
         }
     }
 

@@ -1,61 +1,12 @@
 //! Designs in motion: time lapses side by side, and flights of projectiles.
 
 use super::axis::{Axis, range};
-use super::canvas::{Anchor, BLACK, Canvas, GROUND, INK, PALETTE};
-use super::colours::colour;
-use super::connectors::{self, Connector, ConnectorKind, Point};
+use super::canvas::{Anchor, BLACK, Canvas, GROUND, PALETTE};
+use super::connectors::{ConnectorKind, Point};
+use super::lapse::{Motion, draw_lapse, lapse_legend, stress_range};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
 use crate::report::ReportError;
-use crate::report::number::significant;
 use plotters::style::RGBColor;
-
-/// A body at the instants of a time lapse.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct BodyMotion {
-    /// Name of the body.
-    pub name: String,
-    /// Its outline at each instant, early to late: a polygon, or a line of two points.
-    pub outlines: Vec<Vec<Point>>,
-    /// Coloured patches of a body that deforms, at each instant; else empty.
-    pub patches: Vec<Vec<Patch>>,
-    /// How near it is to the viewer at each instant; empty if all bodies are drawn in their order.
-    pub depths: Vec<f64>,
-}
-
-/// A polygon with the colour of a value, a stress \[Pa\].
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Patch {
-    /// Its corners.
-    pub corners: Vec<Point>,
-    /// The value.
-    pub value: f64,
-}
-
-/// A projectile at the instant of its release; from here it falls freely.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Flight {
-    /// Place of the release \[m\].
-    pub position: Point,
-    /// Velocity at the release \[m/s\].
-    pub velocity: Point,
-    /// Gravity, downwards positive \[m/s²\].
-    pub gravity: f64,
-}
-
-/// One design in motion.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Motion {
-    /// What it is, such as `optimal design`.
-    pub title: String,
-    /// Bodies in the order of the problem file; the same for all designs.
-    pub bodies: Vec<BodyMotion>,
-    /// Joints, rods, springs and arms.
-    pub connectors: Vec<Connector>,
-    /// Paths of the points of interest (until the release, if there is one); may be empty.
-    pub traces: Vec<Vec<Point>>,
-    /// Release of the projectile, if there is one.
-    pub flight: Option<Flight>,
-}
 
 /// A barrier that the projectile must clear.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,27 +33,6 @@ pub(crate) struct Scenery {
 const WIDTH: f64 = 880.0;
 const RIGHT: f64 = 16.0;
 const GAP: f64 = 20.0;
-/// Points of a drawn flight.
-const FLIGHT_POINTS: usize = 200;
-
-impl Flight {
-    /// The path until the projectile reaches the ground. `None` if it starts below it or gravity
-    /// does not point down.
-    ///
-    /// r(t) = r₀ + v₀ t − ½ g t² e_y for t from 0 to (v_y + √(v_y² + 2 g (y − y_g))) / g.
-    pub(crate) fn path(&self, ground: f64) -> Option<Vec<Point>> {
-        let ([x, y], [vx, vy], g) = (self.position, self.velocity, self.gravity);
-        let landing = (vy + (vy * vy + 2.0 * g * (y - ground)).sqrt()) / g;
-        if !(g > 0.0 && y >= ground && landing.is_finite()) {
-            return None;
-        }
-        let at = |i: usize| {
-            let t = landing * i as f64 / FLIGHT_POINTS as f64;
-            [x + vx * t, y + vy * t - 0.5 * g * t * t]
-        };
-        Some((0..=FLIGHT_POINTS).map(at).collect())
-    }
-}
 
 /// Time lapses of all designs side by side at one scale, early instants pale and late ones full,
 /// and below, if anything is thrown, the flights until they land with barrier and ground. An SVG
@@ -256,52 +186,8 @@ fn equal_axes(points: &[Point], scenery: &Scenery, widths: [f64; 2], heights: [f
     }
 }
 
-fn body_color(index: usize) -> RGBColor {
-    PALETTE[index % PALETTE.len()]
-}
-
 fn flight_color(index: usize) -> RGBColor {
     PALETTE[index % PALETTE.len()]
-}
-
-/// The lowest and highest value of all patches, if there are any.
-fn stress_range(designs: &[Motion]) -> Option<[f64; 2]> {
-    let bodies = designs.iter().flat_map(|design| &design.bodies);
-    let patches = bodies.flat_map(|body| body.patches.iter().flatten());
-    let mut values = patches.map(|patch| patch.value).peekable();
-    values.peek()?;
-    let (low, high) = range(values);
-    Some([low, high])
-}
-
-fn lapse_legend(designs: &[Motion], width: f64, values: Option<[f64; 2]>) -> Legend {
-    let mut entries = Vec::new();
-    for (i, body) in designs[0].bodies.iter().enumerate() {
-        if body.patches.is_empty() {
-            entries.push((Key::Area(body_color(i)), body.name.clone()));
-        }
-    }
-    if let Some(values) = values {
-        let coloured = designs[0].bodies.iter();
-        let coloured = coloured.filter(|body| !body.patches.is_empty());
-        let names: Vec<&str> = coloured.map(|body| body.name.as_str()).collect();
-        let [low, high] = values.map(|value| significant(value, 3));
-        let text = format!("{}: stress from {low} to {high} Pa", names.join(", "));
-        entries.push((Key::Scale, text));
-    }
-    entries.extend(connectors::legend(&designs[0].connectors));
-    let long = |design: &Motion| design.traces.iter().any(|trace| trace.len() > 1);
-    if designs.iter().any(long) {
-        entries.push((Key::Line(INK), "path".to_owned()));
-    }
-    if designs.iter().any(|design| design.flight.is_some()) {
-        entries.push((Key::Disc(BLACK), "release".to_owned()));
-    }
-    let moves = designs[0].bodies.iter().any(|body| body.outlines.len() > 1);
-    if moves {
-        entries.push((Key::Note, "(pale: early, full: late)".to_owned()));
-    }
-    Legend::new(entries, width)
 }
 
 fn flight_legend(
@@ -354,58 +240,6 @@ fn draw_scenery(canvas: &mut Canvas, panel: &Panel, scenery: &Scenery) {
         let wall = [(barrier.distance, foot), (barrier.distance, barrier.top)];
         for part in panel.within(wall.into_iter()) {
             canvas.path(&part, BLACK, 3.0, 1.0);
-        }
-    }
-}
-
-fn draw_lapse(canvas: &mut Canvas, panel: &Panel, design: &Motion, values: Option<[f64; 2]>) {
-    let frames = design.bodies.iter().map(|body| body.outlines.len()).max();
-    let frames = frames.unwrap_or(0);
-    for frame in 0..frames {
-        let late = (frame + 1) as f64 / frames as f64;
-        // What is far is drawn first.
-        let depth = |body: &BodyMotion| body.depths.get(frame).copied().unwrap_or(0.0);
-        let mut order: Vec<(usize, &BodyMotion)> = design.bodies.iter().enumerate().collect();
-        order.sort_by(|a, b| depth(a.1).total_cmp(&depth(b.1)));
-        for (i, body) in order {
-            let Some(outline) = body.outlines.get(frame) else {
-                continue;
-            };
-            let finite = outline.iter().all(|[x, y]| x.is_finite() && y.is_finite());
-            if !finite {
-                continue;
-            }
-            let place = |&[x, y]: &Point| panel.pixel(x, y);
-            let mut pixels: Vec<_> = outline.iter().map(place).collect();
-            if let (Some(patches), Some(values)) = (body.patches.get(frame), values) {
-                for patch in patches {
-                    let corners: Vec<_> = patch.corners.iter().map(place).collect();
-                    let own = colour(patch.value, values);
-                    canvas.area(&corners, own, 0.2 + 0.8 * late);
-                }
-                pixels.extend(pixels.first().copied());
-                canvas.path(&pixels, INK, 0.5, 0.2 + 0.5 * late);
-                continue;
-            }
-            if pixels.len() > 2 {
-                canvas.area(&pixels, body_color(i), 0.06 + 0.44 * late * late);
-                pixels.extend(pixels.first().copied());
-            }
-            canvas.path(&pixels, body_color(i), 1.2, 0.25 + 0.75 * late);
-        }
-        for connector in &design.connectors {
-            connectors::draw(canvas, panel, connector, (frame, late), body_color);
-        }
-    }
-    for trace in &design.traces {
-        for part in panel.within(trace.iter().map(|&[x, y]| (x, y))) {
-            canvas.path(&part, INK, 1.2, 1.0);
-        }
-    }
-    if let Some(flight) = &design.flight {
-        let [x, y] = flight.position;
-        for point in panel.within([(x, y)].into_iter()) {
-            canvas.disc(point[0], 4.0, BLACK);
         }
     }
 }

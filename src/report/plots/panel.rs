@@ -63,11 +63,15 @@ impl Panel {
         canvas.path(&frame, INK, 1.0, 1.0);
         if number_x {
             let middle = (left + self.width / 2.0, bottom + 31.0);
-            canvas.text(middle, &fitted(&self.x.label, self.width), Anchor::Centre);
+            canvas.text(
+                middle,
+                &fitted_label(&self.x.label, self.width),
+                Anchor::Centre,
+            );
         }
         if number_y {
             let x = left - room_left([&self.y]) + 12.0;
-            let label = fitted(&self.y.label, self.height + 10.0);
+            let label = fitted_label(&self.y.label, self.height + 10.0);
             canvas.text((x, top + self.height / 2.0), &label, Anchor::Upwards);
         }
     }
@@ -161,11 +165,24 @@ fn fitted(text: &str, length: f64) -> String {
     kept + "…"
 }
 
+/// A label, whose name is cut where it would be longer than the given length \[px\]; its unit is kept.
+fn fitted_label(label: &str, length: f64) -> String {
+    match label.rfind(" [") {
+        Some(at) if text_width(label) > length => {
+            let (name, unit) = label.split_at(at);
+            fitted(name, length - text_width(unit)) + unit
+        }
+        _ => fitted(label, length),
+    }
+}
+
 /// How an entry of a legend is shown.
 #[derive(Clone, Copy)]
 pub(super) enum Key {
     Line(RGBColor),
     Dashes(RGBColor),
+    /// A line of the pattern of this number.
+    Pattern(RGBColor, usize),
     Area(RGBColor),
     Disc(RGBColor),
     Below(RGBColor),
@@ -195,7 +212,7 @@ impl Legend {
             let shown = match key {
                 Key::Note => 0.0,
                 Key::Disc(_) | Key::Below(_) | Key::Area(_) => 18.0,
-                Key::Line(_) | Key::Dashes(_) => 32.0,
+                Key::Line(_) | Key::Dashes(_) | Key::Pattern(..) => 32.0,
                 Key::Scale => SCALE + 6.0,
             };
             let text = fitted(&text, width - shown);
@@ -232,6 +249,10 @@ impl Legend {
                         canvas.dashes(&line, color, 2.0);
                         32.0
                     }
+                    Key::Pattern(color, number) => {
+                        canvas.pattern(&line, color, 2.0, number);
+                        32.0
+                    }
                     Key::Area(color) => {
                         let (a, b) = (y - 6.0, y + 6.0);
                         let square = [(x, a), (x + 12.0, a), (x + 12.0, b), (x, b)];
@@ -263,5 +284,20 @@ impl Legend {
                 canvas.text((x + shown, y), text, Anchor::Left);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_that_are_cut_keep_their_unit() {
+        let label = "the displacement of a point of a body against its axes [m]";
+        let cut = fitted_label(label, 150.0);
+        assert!(cut.ends_with("… [m]") && text_width(&cut) <= 150.0, "{cut}");
+        assert!(cut.starts_with("the displace"), "{cut}");
+        assert_eq!(fitted_label(label, 1000.0), label);
+        assert_eq!(fitted_label("energy [J]", 100.0), "energy [J]");
     }
 }
