@@ -216,8 +216,10 @@ impl<'a> Moving<'_, 'a> {
         let (h, nv) = (step.size, numbering.velocities());
         let c = formula.lead / h;
         if let Some(rows) = step.left_out {
-            let all = self.functions.iter_mut();
-            let changed = all.fold(false, |any, own| own.equations.leave_out(rows) || any);
+            let mut changed = false;
+            for own in &mut *self.functions {
+                changed |= own.equations.leave_out(rows);
+            }
             if let Some(kept) = self.kept.as_mut().filter(|_| changed) {
                 kept.valid_for = None;
             }
