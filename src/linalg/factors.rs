@@ -46,10 +46,23 @@ enum Kind<S> {
 impl<S: SolveScalar> SparseLu<S> {
     /// Analyses a pattern.
     pub(crate) fn new(pattern: &Pattern) -> Self {
-        let kind = match pattern.known_pivots() {
+        Self::of(match pattern.known_pivots() {
             Some(known) => Kind::Fronts(Box::new(Multifrontal::new(pattern, known))),
             None => Kind::Pivoted(Box::new(PivotedLu::new(pattern))),
-        };
+        })
+    }
+
+    /// Factors of other matrices of the same pattern, without another analysis if its pivots are known.
+    pub(crate) fn another(&self, pattern: &Pattern) -> Self {
+        Self::of(match &self.kind {
+            Kind::Fronts(own) => {
+                Kind::Fronts(Box::new(Multifrontal::by(own.plan.clone(), pattern)))
+            }
+            Kind::Pivoted(_) => Kind::Pivoted(Box::new(PivotedLu::new(pattern))),
+        })
+    }
+
+    fn of(kind: Kind<S>) -> Self {
         Self {
             refined: Refined {
                 rhs: Vec::new(),

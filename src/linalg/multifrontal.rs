@@ -128,7 +128,11 @@ impl<S: SolveScalar> Shared<'_, S> {
 
 impl<S: SolveScalar> Multifrontal<S> {
     pub(super) fn new(pattern: &Pattern, known: &KnownPivots) -> Self {
-        let plan = plan(pattern, known);
+        Self::by(plan(pattern, known), pattern)
+    }
+
+    /// The elimination of matrices of a pattern by its plan.
+    pub(super) fn by(plan: Arc<Plan>, pattern: &Pattern) -> Self {
         let widths = plan.fronts.iter().map(|front| front.rest.len());
         let widest = widths.max().unwrap_or(0);
         let space = || Workspace {

@@ -84,19 +84,25 @@ impl<'a> BackwardStage<'a> {
         let krylov = solver == LinearSolver::Krylov && flexible::has_shells(model);
         let mut equations = Equations::new(model, numbering);
         let split = SplitMatrix::new(&mut equations, &Stage::zero(numbering));
-        let matrix = |split: SplitMatrix| StepMatrix {
+        let pattern = split.held.pattern.clone();
+        let matrix = |split: SplitMatrix, factors: Option<SparseLu<f64>>| StepMatrix {
             equations: Equations::new(model, numbering),
             matrix: split.held.clone(),
-            factors: (!krylov).then(|| SparseLu::new(&split.held.pattern)),
+            factors,
             split,
             made: (0, Ok(())),
         };
+        let factors = (!krylov).then(|| SparseLu::new(&pattern));
+        let odd = flexible::has_shells(model).then(|| {
+            let others = factors.as_ref().map(|factors| factors.another(&pattern));
+            matrix(split.clone(), others)
+        });
         Self {
             model,
             numbering,
-            odd: flexible::has_shells(model).then(|| matrix(split.clone())),
+            odd,
             kept: krylov.then(|| KeptFactors {
-                factors: SparseLu::new(&split.held.pattern),
+                factors: SparseLu::new(&pattern),
                 krylov: Krylov::new(&equations, numbering),
                 turned: Turned::new(model, numbering),
                 made_at: Vec::new(),
@@ -106,7 +112,7 @@ impl<'a> BackwardStage<'a> {
                 wait: 0,
                 pause: 0,
             }),
-            even: matrix(split),
+            even: matrix(split, factors),
             functions: Vec::new(),
             adjoints: Vec::new(),
         }
