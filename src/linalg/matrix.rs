@@ -2,6 +2,7 @@
 
 use super::pattern::{Emit, NONE, Pattern, Record};
 use crate::math::Scalar;
+use crate::math::slices::dot_at;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -115,17 +116,7 @@ impl<S: Scalar> SparseMatrix<S> {
     fn along(&self, j: usize, x: &[S]) -> S {
         let starts = self.pattern.column_starts();
         let own = starts[j]..starts[j + 1];
-        let (values, rest) = self.values[own.clone()].as_chunks::<4>();
-        let (rows, last) = self.pattern.rows()[own].as_chunks::<4>();
-        // Four sums, because an addition waits for the one before.
-        let mut sums = [S::zero(); 4];
-        for (values, rows) in values.iter().zip(rows) {
-            (0..4).for_each(|k| sums[k] += values[k] * x[rows[k]]);
-        }
-        for (sum, (&value, &row)) in sums.iter_mut().zip(rest.iter().zip(last)) {
-            *sum += value * x[row];
-        }
-        (sums[0] + sums[1]) + (sums[2] + sums[3])
+        dot_at(&self.values[own.clone()], &self.pattern.rows()[own], x)
     }
 
     /// The product Aᵀ x, side by side for large matrices.

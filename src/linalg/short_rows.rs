@@ -3,7 +3,7 @@
 use super::front::{Run, Short, System};
 use super::pattern::Pattern;
 use super::sparse_lu::SolveScalar;
-use crate::math::slices::vectorised;
+use crate::math::slices::{dot_at, vectorised};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -26,7 +26,7 @@ pub(super) struct ShortRows {
     /// Slots of the column of each pivot, where their rows begin among all, and the rows.
     columns: Vec<Range<usize>>,
     row_starts: Vec<usize>,
-    rows: Vec<u32>,
+    rows: Vec<usize>,
 }
 
 impl ShortRows {
@@ -55,8 +55,7 @@ impl ShortRows {
             own.below.extend(runs);
             own.starts.push(own.below.len());
             own.row_starts.push(own.rows.len());
-            let all = pattern.rows()[column(row)].iter();
-            own.rows.extend(all.map(|&row| row as u32));
+            own.rows.extend_from_slice(&pattern.rows()[column(row)]);
         }
         own
     }
@@ -157,18 +156,7 @@ impl ShortRows {
         let one = |(k, (t, &inverse)): (usize, (&mut S, &S))| {
             let own = self.columns[k].clone();
             let rows = &self.rows[self.row_starts[k]..][..own.len()];
-            let (entries, rest) = scaled[own].as_chunks::<4>();
-            let (rows4, rows) = rows.as_chunks::<4>();
-            // Four sums, because an addition waits for the one before.
-            let mut sums = [S::zero(); 4];
-            for (entries, rows) in entries.iter().zip(rows4) {
-                (0..4).for_each(|j| sums[j] += entries[j] * b[rows[j] as usize]);
-            }
-            let rest = rest.iter().zip(rows);
-            for (sum, (&entry, &row)) in sums.iter_mut().zip(rest) {
-                *sum += entry * b[row as usize];
-            }
-            *t -= ((sums[0] + sums[1]) + (sums[2] + sums[3])) * inverse;
+            *t -= dot_at(&scaled[own], rows, b) * inverse;
         };
         match self.rows.len() < SIDE_BY_SIDE {
             true => t.iter_mut().zip(inverse).enumerate().for_each(one),

@@ -82,16 +82,14 @@ pub(crate) fn axial_strains<S: Scalar>(
     body: &FlexibleBody<S>,
     motions: &[BodyMotion<S>],
 ) -> Vec<S> {
-    let q = coordinates(body, motions);
-    match &body.form {
-        Form::Modal(modal) => match &modal.shells {
-            Some(own) => finite::axial_strains(&own.elements, &own.unknowns(&q)),
-            None => {
-                let strains = modal.stiffness.strains.iter();
-                strains.map(|own| own.strain.value(&q)).collect()
-            }
-        },
-        Form::Finite(own) => finite::axial_strains(own, &q),
+    match (&body.form, body.form.shells()) {
+        (_, Some(own)) if own.parts.is_empty() => Vec::new(),
+        (_, Some(own)) => finite::axial_strains(own, &unknowns(body, motions)),
+        (Form::Modal(modal), None) => {
+            let (strains, q) = (modal.stiffness.strains.iter(), coordinates(body, motions));
+            strains.map(|own| own.strain.value(&q)).collect()
+        }
+        (Form::Finite(_), None) => Vec::new(),
     }
 }
 
@@ -100,14 +98,8 @@ pub(crate) fn inside_out<S: Scalar>(
     body: &FlexibleBody<S>,
     motions: &[BodyMotion<S>],
 ) -> Option<usize> {
-    let q = coordinates(body, motions);
-    match &body.form {
-        Form::Modal(modal) => {
-            let own = modal.shells.as_ref()?;
-            finite::inside_out(&own.elements, &own.unknowns(&q))
-        }
-        Form::Finite(own) => finite::inside_out(own, &q),
-    }
+    let own = body.form.shells()?;
+    finite::inside_out(own, &unknowns(body, motions))
 }
 
 /// Von Mises stress by yield stress at the points of some elements of a body of shells; none of others.
@@ -116,13 +108,15 @@ pub(crate) fn stress_ratios<S: Scalar>(
     motions: &[BodyMotion<S>],
     elements: &[usize],
 ) -> Vec<S> {
-    match &body.form {
-        Form::Modal(modal) => modal.shells.as_ref().map_or_else(Vec::new, |own| {
-            let unknowns = own.unknowns(&coordinates(body, motions));
-            finite::stress_ratios(&own.elements, &unknowns, elements)
-        }),
-        Form::Finite(own) => finite::stress_ratios(own, &coordinates(body, motions), elements),
+    match body.form.shells() {
+        Some(own) => finite::stress_ratios(own, &unknowns(body, motions), elements),
+        None => Vec::new(),
     }
+}
+
+/// The unknowns of the nodes of a body of shells.
+fn unknowns<S: Scalar>(body: &FlexibleBody<S>, motions: &[BodyMotion<S>]) -> Vec<S> {
+    body.form.unknowns(coordinates(body, motions))
 }
 
 /// Transpose of the derivative of [`stress_ratios`] of flexible body `i`, for the cotangents `bar`.
