@@ -16,7 +16,7 @@ mod starts;
 mod statics;
 mod work_precision;
 
-use crate::driver::{error, figures};
+use crate::driver::{accuracy, figures};
 use crate::problem::{Override, Problem, visible, visible_lines};
 use crate::report::{Optimum, ReportError, atomic_write, read_text};
 use arguments::{Arguments, Command, Job};
@@ -237,7 +237,7 @@ fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
 
 /// Refines the steps of a problem to the accuracy of the job.
 fn refine(job: &Job, problem: Problem) -> Result<Problem, Failure> {
-    let Some(accuracy) = job.accuracy else {
+    let Some(asked) = job.accuracy else {
         return Ok(problem);
     };
     if problem.statics.is_some() {
@@ -255,10 +255,10 @@ fn refine(job: &Job, problem: Problem) -> Result<Problem, Failure> {
         )));
     };
     let mut problem = problem;
-    let reached =
-        error::reach(&mut problem, objective.function, accuracy).map_err(Failure::numerical)?;
+    let (which, of) = accuracy::judged(&problem, objective.function);
+    let reached = accuracy::reach(&mut problem, (&which, of), asked).map_err(Failure::numerical)?;
     if !job.quiet {
-        tell(&format!("{}\n", reached.describe(accuracy)));
+        tell(&format!("{}\n", reached.describe(asked)));
     }
     let mut overrides = overrides(job)?;
     for text in reached.overrides() {

@@ -1,6 +1,7 @@
 //! What the program does with a problem: simulate it, check its gradients, optimise it, measure the
 //! methods on it, and test extreme scenes.
 
+pub(crate) mod accuracy;
 pub(crate) mod analysed;
 pub(crate) mod bases;
 pub(crate) mod certificate;

@@ -51,7 +51,7 @@ pub(crate) fn series(
 }
 
 /// The value of a stress that is not known: a section without size has none.
-const UNKNOWN: f64 = -1.0;
+pub(super) const UNKNOWN: f64 = -1.0;
 
 /// The fields of all shells and beams at an instant; `fibres` are those of the beams of each body.
 fn fields(at: &Snapshot<f64>, fibres: &[Vec<BeamFibres>]) -> Fields {
@@ -96,7 +96,7 @@ fn fields(at: &Snapshot<f64>, fibres: &[Vec<BeamFibres>]) -> Fields {
         numbers.extend(mesh.elements.iter().map(|_| (i + 1) as f64));
     }
     // Shells come first.
-    let name = name_of_stress(fields.shells.is_empty(), &along);
+    let name = name_of_stress(fields.shells.is_empty(), &along, "");
     stress.extend(along);
     numbers.extend(of_beams);
     fields.of_elements = vec![
@@ -104,10 +104,7 @@ fn fields(at: &Snapshot<f64>, fibres: &[Vec<BeamFibres>]) -> Fields {
         ("number of the flexible body".to_owned(), numbers),
     ];
     if !fields.shells.is_empty() {
-        let name = match fields.beams.is_empty() {
-            true => "thickness [m]",
-            false => "thickness of shells [m], 0 of beams",
-        };
+        let name = name_of_thickness(fields.beams.is_empty());
         thickness.resize(fields.shells.len() + fields.beams.len(), 0.0);
         fields.of_elements.insert(1, (name.to_owned(), thickness));
     }
@@ -121,15 +118,25 @@ fn fields(at: &Snapshot<f64>, fibres: &[Vec<BeamFibres>]) -> Fields {
     fields
 }
 
-/// The name of the field of stress: what it is on the shells and on the beams of the mesh.
-fn name_of_stress(no_shells: bool, along: &[f64]) -> String {
+/// The name of the field of stress: what it is on the shells and on the beams of the mesh. `of` says where it is.
+pub(super) fn name_of_stress(no_shells: bool, along: &[f64], of: &str) -> String {
     let kinds = match (no_shells, along.is_empty()) {
-        (_, true) => "largest von Mises stress [Pa]",
-        (true, false) => "largest stress along fibres [Pa]",
-        (false, false) => "largest stress [Pa], von Mises of shells and along fibres of beams",
+        (_, true) => format!("largest von Mises stress{of} [Pa]"),
+        (true, false) => format!("largest stress along fibres{of} [Pa]"),
+        (false, false) => {
+            format!("largest stress{of} [Pa], von Mises of shells and along fibres of beams")
+        }
     };
     match along.contains(&UNKNOWN) {
         true => format!("{kinds}, -1 where unknown"),
-        false => kinds.to_owned(),
+        false => kinds,
+    }
+}
+
+/// The name of the field of thickness.
+pub(super) fn name_of_thickness(no_beams: bool) -> &'static str {
+    match no_beams {
+        true => "thickness [m]",
+        false => "thickness of shells [m], 0 of beams",
     }
 }

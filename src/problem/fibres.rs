@@ -7,7 +7,7 @@ use super::parts::lines;
 use super::schema::Document;
 use super::schema::elements::Elements;
 use crate::model::flexible::Quadratic;
-use crate::structures::beam::Section;
+use crate::structures::beam::{Beam, Section};
 use crate::structures::beam_sections::BeamLine;
 use crate::structures::modal::FlexibleBeam;
 use std::sync::Arc;
@@ -30,6 +30,32 @@ impl BeamFibres {
     /// Whether stresses are known: the section has a size.
     pub(crate) fn are_known(&self) -> bool {
         !self.sections.is_empty()
+    }
+
+    /// Those of a beam among elements.
+    fn of_line(line: BeamLine<f64>) -> Self {
+        let along = |&at: &f64| {
+            let places = outer_fibres(line.is_round(at)).iter();
+            places.map(|&part| line.stress(part, at)).collect()
+        };
+        Self {
+            sections: match line.has_sizes() {
+                true => OF_ELEMENT.iter().map(along).collect(),
+                false => Vec::new(),
+            },
+            unknowns: Some(line.unknowns),
+        }
+    }
+
+    /// Those of a beam of a structure at rest, over the displacements and rotations of its nodes
+    /// ([`BeamLine::at_rest`]); without the squares of displacements unless `von_karman`.
+    pub(crate) fn at_rest(beam: Beam<f64>, von_karman: bool) -> Self {
+        let mut all = Self::of_line(BeamLine::at_rest(beam));
+        if !von_karman {
+            let forms = all.sections.iter_mut().flatten();
+            forms.for_each(|form| form.squares.clear());
+        }
+        all
     }
 
     /// The largest |σ| along the outer fibres of each section \[Pa\], at the elastic coordinates or unknowns of
@@ -86,19 +112,6 @@ fn of_beam(beam: &FlexibleBeam<f64>) -> BeamFibres {
 }
 
 fn of_elements(document: &Document, elements: &Elements, x: &[f64]) -> Vec<BeamFibres> {
-    let of = |line: BeamLine<f64>| {
-        let along = |&at: &f64| {
-            let places = outer_fibres(line.is_round(at)).iter();
-            places.map(|&part| line.stress(part, at)).collect()
-        };
-        BeamFibres {
-            sections: match line.has_sizes() {
-                true => OF_ELEMENT.iter().map(along).collect(),
-                false => Vec::new(),
-            },
-            unknowns: Some(line.unknowns),
-        }
-    };
     let lines = lines(document, elements, &prepared(document, elements), x);
-    lines.into_iter().map(of).collect()
+    lines.into_iter().map(BeamFibres::of_line).collect()
 }

@@ -14,7 +14,7 @@
 use super::beam::{Beam, Section};
 use super::floating::NodeMotion;
 use super::parts::{coordinates, strains};
-use crate::math::Scalar;
+use crate::math::{Scalar, Vec3};
 use crate::model::shapes::Quadratic;
 use std::sync::Arc;
 
@@ -75,6 +75,23 @@ impl<S: Scalar> BeamLine<S> {
             beams: beams.iter().zip(&own).map(one).collect(),
             unknowns: unknowns.into(),
         }
+    }
+
+    /// A beam at rest in its structure. Unknown 6 a + k is the displacement (k < 3) or the rotation of node a along an axis.
+    pub(crate) fn at_rest(beam: Beam<S>) -> Self {
+        let node = |a: usize| NodeMotion {
+            place: beam.points[a].map(|x| x.re()),
+            displacements: [0, 1, 2].map(|k| Some(6 * a + k)),
+            rotations: (0..3)
+                .map(|k| {
+                    (
+                        6 * a + 3 + k,
+                        Vec3::from_fn(|i, _| f64::from(u8::from(i == k))),
+                    )
+                })
+                .collect(),
+        };
+        Self::new(&[([node(0), node(1), node(2)], beam)])
     }
 
     /// The beam at a fraction of the line, and the weights of the strains of its two points.

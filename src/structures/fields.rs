@@ -1,5 +1,6 @@
 //! Fields of solutions over the elements, for pictures and files.
 
+use super::beam::{BEAM_NODES, Beam};
 use super::functions::Solved;
 use super::shell::STRESS_POINTS;
 
@@ -15,5 +16,19 @@ impl Solved<'_, f64> {
                 configuration.shell(index).stress_ratios(&v, self.terms)
             })
             .collect()
+    }
+    /// Each beam in a load case, with the displacement and the rotation of each of its nodes in turn.
+    pub(crate) fn beam_fields(&self, case: usize) -> Vec<(Beam<f64>, [f64; 6 * BEAM_NODES])> {
+        let configuration = self.configuration();
+        let motion = configuration.spread(&self.solutions[case]);
+        let one = |(index, element): (usize, &[usize; BEAM_NODES])| {
+            let own = motion.of_beam(element);
+            let q = std::array::from_fn(|i| match i % 6 {
+                k @ 0..3 => own.displacement[i / 6][k],
+                k => own.rotation[i / 6][k - 3],
+            });
+            (configuration.beam(index), q)
+        };
+        configuration.beams().map(one).collect()
     }
 }

@@ -307,6 +307,46 @@ fn a_run_that_stalls_says_why_designs_have_no_values() {
     assert!((web - 0.06).abs() < 1e-6, "{web}");
 }
 
+/// The root of a cantilever has 6 F L/(b h²), which files of fields say; sections without size have no stress.
+#[test]
+fn fields_have_the_stress_of_beams() {
+    let scratch = scratch();
+    let directory = scratch.path();
+    let rectangle = r#"{"rectangle": {"width": 0.05, "height": 0.1}}"#;
+    let given = r#"{"given": {"axial_and_shear": [1e8, 4e7, 4e7], "torsion_and_bending": [1e5, 1e5, 2e5],
+                             "mass": 10, "inertia": [0.1, 0.1]}}"#;
+    let of = |section: &str| {
+        let problem = format!(
+            r#"{{"version": 1, "name": "arm", "materials": {{"metal": {{"young": 70e9, "poisson": 0.3}}}},
+            "structures": {{"arm": {{
+                "mesh": {{"straight_beam": {{"from": [0, 0, 0], "to": [1, 0, 0], "orientation": [0, 1, 0],
+                                           "elements": 4}}}},
+                "material": "metal", "section": {section},
+                "supports": {{"root": {{"nodes": ["start"]}}}}
+            }}}},
+            "load_cases": {{"push": {{"p": {{"point": {{"nodes": "end", "force": [0, 0, -1000]}}}}}}}},
+            "functions": {{
+                "sag": {{"displacement": {{"case": "push", "nodes": "end", "direction": [0, 0, -1]}}}}
+            }}}}"#
+        );
+        std::fs::write(directory.join("arm.json"), problem).expect("is written");
+        let arguments = ["simulate", "arm.json", "--output", "out", "--vtu"];
+        expect(0, directory, &arguments);
+        let text = std::fs::read_to_string(directory.join("out/fields.vtu")).expect("fields");
+        let (_, rest) = text
+            .split_once("stress along fibres, push")
+            .expect("a field");
+        let (_, rest) = rest.split_once('\n').expect("numbers");
+        let lines = rest.lines().map_while(|line| line.parse::<f64>().ok());
+        lines.collect::<Vec<f64>>()
+    };
+    let found = of(rectangle);
+    assert_eq!(found.len(), 4);
+    let root = found[0];
+    assert!((root / 1.2e7 - 1.0).abs() < 1e-6, "{root:e}");
+    assert!(of(given).iter().all(|&stress| stress == -1.0));
+}
+
 /// The same of a beam in motion, whose momentum grows with its mass.
 #[test]
 fn beams_in_motion_that_cannot_be_built_have_no_values() {

@@ -2,7 +2,7 @@
 
 use crate::tests::reference::documents::{problem as parsed, values};
 use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
-use flexbody::driver::{bases, error, explain, simulate};
+use flexbody::driver::{accuracy, bases, explain, simulate};
 use flexbody::problem::{Override, Problem};
 use serde_json::Value;
 use std::path::Path;
@@ -109,7 +109,8 @@ fn an_accuracy_makes_bases_rich_enough() {
     for part in [0.3, 0.0] {
         let mut problem = parsed(&document);
         let accuracy = part * before / exact.abs();
-        let reached = error::reach_bases(&mut problem, 0, accuracy).expect("runs");
+        let reached = accuracy::reach_bases(&mut problem, &[accuracy::Judged::alone(0)], accuracy)
+            .expect("runs");
         let x = problem.start();
         let value = bases::run(&problem, &x, &[0])
             .expect("runs")
@@ -164,9 +165,39 @@ fn an_accuracy_of_round_off_ends() {
     let method = json!({"bdf": {"order": 2}});
     let document = cantilever((&mesh, &axes), &basis, (&method, "given"));
     let mut problem = parsed(&document);
-    let reached = error::reach(&mut problem, 0, 1e-2).expect("runs");
+    let reached = accuracy::reach(
+        &mut problem,
+        (&[accuracy::Judged::alone(0)], "objective"),
+        1e-2,
+    )
+    .expect("runs");
     assert_eq!(reached.steps, 2);
     assert!(reached.overrides().is_empty(), "{:?}", reached.overrides());
+}
+
+/// The motion does not change a mass. Its accuracy is that of the constraints, relative to their bounds.
+#[test]
+fn an_accuracy_of_a_mass_is_that_of_the_constraints() {
+    let mut document = plates(
+        [2, 1],
+        &json!({"reduced": {"modes": 1, "tolerance": 0.3}}),
+        0.1,
+        10,
+    );
+    document["functions"]["mass"] = json!("mass");
+    document["variables"] = json!({"h": {
+        "path": "/bodies/first/elements/structure/thickness", "lower": 0.002, "upper": 0.02
+    }});
+    document["objective"] = json!({"minimise": "mass"});
+    document["constraints"] = json!({"height": {"function": "hinge y", "lower": -2.0}});
+    let mut problem = parsed(&document);
+    let objective = problem.stated_objective().expect("one").function;
+    let (which, of) = accuracy::judged(&problem, objective);
+    assert_eq!((which.len(), which[0].bound, of), (1, 2.0, "constraints"));
+    let asked = 1e-6;
+    let reached = accuracy::reach(&mut problem, (&which, of), asked).expect("runs");
+    assert!(reached.error <= asked, "{:e}", reached.error);
+    assert!(reached.steps > 10 && !reached.overrides().is_empty());
 }
 
 /// The text of `explain` says what a basis is made of, and what richer ones change.

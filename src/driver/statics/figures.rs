@@ -1,11 +1,14 @@
 //! Pictures of structures: thickness, deformed shape with stress, mode shapes; and their fields for files.
 
 use super::StaticDesign;
+use crate::driver::shell_fields::{UNKNOWN, name_of_stress, name_of_thickness};
 use crate::math::Vec3;
-use crate::problem::Problem;
+use crate::problem::{BeamFibres, Problem, larger};
 use crate::report::History;
 use crate::report::plots::{Camera, StructureView, convergence, structure};
 use crate::report::vtu::{Fields, vtu};
+use crate::structures::beam::{BEAM_NODES, Beam};
+use crate::structures::functions::Solved;
 use crate::structures::mesh::Mesh;
 use std::f64::consts::PI;
 
@@ -187,7 +190,8 @@ fn magnified(design: &StaticDesign, u: &[Vec3<f64>]) -> (Vec<Vec3<f64>>, f64) {
     (pairs.map(|(x, u)| x + u * factor).collect(), factor)
 }
 
-/// The deformed shape of the first load cases, with the stress of shells in colour.
+/// The deformed shape of the first load cases, in colours of stress: von Mises of shells, largest along fibres of
+/// beams.
 fn deformed(title: &str, design: &StaticDesign) -> Vec<StructureView> {
     let mesh = &design.scene.structure.topology.mesh;
     let solved = design
@@ -197,11 +201,13 @@ fn deformed(title: &str, design: &StaticDesign) -> Vec<StructureView> {
         .filter(|(_, x)| !x.is_empty());
     let cases = solved.map(|(case, _)| case).take(MOST_CASES);
     let one = |case: usize| {
-        let (motion, stress) = design.with_solved(|solved| {
+        let (motion, stress, along) = design.with_solved(|solved| {
             let x = &solved.solutions[case];
             let motion = solved.problem.motion(solved.structure, x);
-            (motion, solved.stress_field(case))
+            let along = beam_stresses(design, solved, case);
+            (motion, solved.stress_field(case), along)
         })?;
+        let known = along.iter().any(|&stress| stress != UNKNOWN);
         let (places, factor) = magnified(design, &motion.displacement);
         let yields = yield_stresses(design);
         // The larger of both faces at the four Gauss points of a quarter, in MPa.
@@ -223,14 +229,28 @@ fn deformed(title: &str, design: &StaticDesign) -> Vec<StructureView> {
             format!("{title}: ")
         };
         let text = format!("{own}{name}, displacements × {factor:.3}");
-        let label = if mesh.shells.is_empty() {
-            ""
-        } else {
-            "σ_v [MPa]"
+        let label = match (mesh.shells.is_empty(), known) {
+            (true, false) => "",
+            (true, true) => "|σ| [MPa]",
+            (false, false) => "σ_v [MPa]",
+            (false, true) => "σ_v, |σ| [MPa]",
         };
-        Some(view(mesh, &places, (text, label), of_shell, |_| 0.0))
+        // Beams of unknown stress have the colour of none.
+        let of_beam = |index: usize| along[index].max(0.0) * 1e-6;
+        Some(view(mesh, &places, (text, label), of_shell, of_beam))
     };
     cases.filter_map(one).collect()
+}
+
+/// The largest |σ| along the outer fibres of each beam in a load case \[Pa\]; [`UNKNOWN`] of sections without size.
+fn beam_stresses(design: &StaticDesign, solved: &Solved<f64>, case: usize) -> Vec<f64> {
+    let von_karman = design.statics.terms.von_karman;
+    let one = |(beam, q): (Beam<f64>, [f64; 6 * BEAM_NODES])| {
+        let fibres = BeamFibres::at_rest(beam, von_karman);
+        let largest = fibres.largest(&q).into_iter().reduce(larger);
+        largest.unwrap_or(UNKNOWN)
+    };
+    solved.beam_fields(case).into_iter().map(one).collect()
 }
 
 /// Yield stress of each shell \[Pa\], which stresses are relative to.
@@ -292,7 +312,8 @@ pub(crate) fn fields(design: &StaticDesign) -> String {
         of_shells.into_iter().chain(beams).collect::<Vec<f64>>()
     };
     let thickness = with_beams(structure.thickness.clone());
-    fields.of_elements.push(("thickness [m]".into(), thickness));
+    let name = name_of_thickness(mesh.beams.is_empty());
+    fields.of_elements.push((name.to_owned(), thickness));
     for (case, name) in design.statics.cases.iter().enumerate() {
         if design.solutions[case].is_empty() {
             continue;
@@ -301,9 +322,10 @@ pub(crate) fn fields(design: &StaticDesign) -> String {
             let motion = solved
                 .problem
                 .motion(solved.structure, &solved.solutions[case]);
-            (motion, solved.stress_field(case))
+            let along = beam_stresses(design, solved, case);
+            (motion, solved.stress_field(case), along)
         });
-        let Some((motion, stress)) = found else {
+        let Some((motion, stress, along)) = found else {
             continue;
         };
         let displacement = list(&motion.displacement);
@@ -316,10 +338,11 @@ pub(crate) fn fields(design: &StaticDesign) -> String {
             .push((format!("rotation, {name} [rad]"), rotation));
         let pairs = stress.iter().zip(yield_stresses(design));
         let largest = pairs.map(|(all, y)| y * all.iter().copied().fold(0.0, f64::max));
-        let largest = with_beams(largest.collect());
+        let of = format!(", {name}");
+        let name = name_of_stress(mesh.shells.is_empty(), &along, &of);
         fields
             .of_elements
-            .push((format!("largest von Mises stress, {name} [Pa]"), largest));
+            .push((name, largest.chain(along).collect()));
     }
     if let Some(found) = design.some_modes() {
         for (k, x) in found.vectors.iter().enumerate() {
