@@ -6,7 +6,8 @@
 
 use crate::tests::reference::documents::problem;
 use flexbody::driver::Evaluated;
-use flexbody::driver::error::{estimate, reach};
+use flexbody::driver::accuracy::{Judged, reach};
+use flexbody::driver::error::estimate;
 use flexbody::integrate::{
     LinearSolver, MEMORY, Method, Samples, Settings, Spacing, Start, simulate,
 };
@@ -251,7 +252,12 @@ fn an_accuracy_is_reached_by_what_lacks_it() {
         let mut problem = load(file, |_| {});
         change(&mut problem);
         let which = problem.objective.expect("an objective").function;
-        let found = reach(&mut problem, which, accuracy).expect("runs");
+        let found = reach(
+            &mut problem,
+            (&[Judged::alone(which)], "objective"),
+            accuracy,
+        )
+        .expect("runs");
         assert!(found.error <= accuracy, "{found:?}");
         // The estimate is that of the refined problem.
         let at = Evaluated::new(&problem, &problem.start()).expect("runs");
