@@ -256,9 +256,9 @@ fn refine(job: &Job, problem: Problem) -> Result<Problem, Failure> {
     };
     let mut problem = problem;
     let (which, of) = accuracy::judged(&problem, objective.function);
-    let reached = accuracy::reach(&mut problem, (&which, of), asked).map_err(Failure::numerical)?;
+    let reached = accuracy::reach(&mut problem, &which, asked).map_err(Failure::numerical)?;
     if !job.quiet {
-        tell(&format!("{}\n", reached.describe(asked)));
+        tell(&format!("{}\n", reached.describe(asked, of)));
     }
     let mut overrides = overrides(job)?;
     for text in reached.overrides() {

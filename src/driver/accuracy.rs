@@ -22,8 +22,6 @@ const FINEST: (f64, usize) = (1e-14, 10_000_000);
 /// Steps that reach an accuracy, and their cost.
 #[derive(Clone, Debug)]
 pub(crate) struct Accuracy {
-    /// Which functions were judged: the objective or the constraints.
-    pub of: &'static str,
     /// Number of steps.
     pub steps: usize,
     /// Number of steps of equal size or tolerance, if it was refined.
@@ -51,8 +49,8 @@ impl Accuracy {
         all
     }
 
-    /// The reached accuracy and the requested one.
-    pub(crate) fn describe(&self, asked: f64) -> String {
+    /// The reached accuracy and the requested one; `of` names the functions.
+    pub(crate) fn describe(&self, asked: f64, of: &str) -> String {
         let missed = match self.error <= asked {
             true => "",
             false => ", which is all that can be reached",
@@ -69,8 +67,8 @@ impl Accuracy {
             .collect();
         format!(
             "accuracy {asked:.1e}: {} steps{refined}{samples}{bases}; estimated relative error of the \
-             {} at the start {:.1e}{missed}",
-            self.steps, self.of, self.error
+             {of} at the start {:.1e}{missed}",
+            self.steps, self.error
         )
     }
 }
@@ -101,7 +99,8 @@ impl Judged {
     }
 }
 
-/// What an accuracy looks at: the objective, or the constraints that depend on the motion if the objective does not.
+/// What an accuracy looks at, and its name: the objective, or the constraints that depend on the motion if the objective
+/// does not.
 pub(crate) fn judged(problem: &Problem, objective: usize) -> (Vec<Judged>, &'static str) {
     let functions = problem.scene(&problem.start()).functions;
     let moves = |f: usize| !matches!(functions[f], Function::OfDesign { .. });
@@ -127,13 +126,13 @@ fn indices(which: &[Judged]) -> Vec<usize> {
 
 /// Refines the steps or the samples of `problem`, whichever have too large an error, until the
 /// estimated errors of the functions `which` at the start are below `accuracy`, relative to their
-/// sizes. They never become coarser than the problem requests. The second part of `which` is their name.
+/// sizes. They never become coarser than the problem requests.
 ///
 /// # Errors
 /// If a simulation fails.
 pub(crate) fn reach(
     problem: &mut Problem,
-    (which, of): (&[Judged], &'static str),
+    which: &[Judged],
     accuracy: f64,
 ) -> Result<Accuracy, IntegrationFailure> {
     let asked = problem.clone();
@@ -157,7 +156,6 @@ pub(crate) fn reach(
     }
     let (now, asked_steps) = (&problem.simulation, &asked.simulation);
     Ok(Accuracy {
-        of,
         steps,
         spacing: (now.spacing != asked_steps.spacing).then(|| now.spacing.clone()),
         samples: now.samples.filter(|_| now.samples != asked_steps.samples),

@@ -82,14 +82,7 @@ impl<S: Scalar> BeamLine<S> {
         let node = |a: usize| NodeMotion {
             place: beam.points[a].map(|x| x.re()),
             displacements: [0, 1, 2].map(|k| Some(6 * a + k)),
-            rotations: (0..3)
-                .map(|k| {
-                    (
-                        6 * a + 3 + k,
-                        Vec3::from_fn(|i, _| f64::from(u8::from(i == k))),
-                    )
-                })
-                .collect(),
+            rotations: (0..3).map(|k| (6 * a + 3 + k, Vec3::ith(k, 1.0))).collect(),
         };
         Self::new(&[([node(0), node(1), node(2)], beam)])
     }

@@ -17,6 +17,7 @@ impl Solved<'_, f64> {
             })
             .collect()
     }
+
     /// Each beam in a load case, with the displacement and the rotation of each of its nodes in turn.
     pub(crate) fn beam_fields(&self, case: usize) -> Vec<(Beam<f64>, [f64; 6 * BEAM_NODES])> {
         let configuration = self.configuration();

@@ -153,7 +153,7 @@ fn element(configuration: &Configuration<f64>, index: usize) -> ShellElement {
             .enumerate()
         {
             coordinates.push(*displacement);
-            moves.push((a, Vec3::from_fn(|i, _| f64::from(u8::from(i == k)))));
+            moves.push((a, Vec3::ith(k, 1.0)));
         }
     }
     for (a, &node) in nodes.iter().enumerate() {
@@ -363,7 +363,7 @@ impl Surface {
             let lever = w * arm(node) / square;
             for (k, coordinate) in self.displacements[node].iter().enumerate() {
                 if let Some(coordinate) = coordinate {
-                    let unit = Vec3::from_fn(|i, _| f64::from(u8::from(i == k)));
+                    let unit = Vec3::ith(k, 1.0);
                     sum.at(*coordinate).1 += along.cross(&unit) * lever;
                 }
             }

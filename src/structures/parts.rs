@@ -62,8 +62,7 @@ impl<S: Scalar> Points<S> {
         let kinds = vectors.len() + 1;
         let shape = |(a, own): (usize, Move)| match own {
             Move::Along(k) => {
-                let along = Vec3::from_fn(|i, _| S::from(f64::from(u8::from(i == k))));
-                vec![(a, along)]
+                vec![(a, Vec3::ith(k, S::one()))]
             }
             Move::About(axis) => {
                 let axis = lift3::<S>(&axis);
@@ -181,7 +180,7 @@ pub(crate) fn strains<S: Scalar>(
 
 /// A mass at a node. Its second moments are Σ s_ij e_i e_jᵀ with s = ½ tr(J) 1 − J.
 pub(crate) fn of_mass<S: Scalar>(node: &NodeMotion, own: &LumpedMass<S>) -> Part<S> {
-    let axes = [0, 1, 2].map(|k| Vec3::from_fn(|i, _| S::from(f64::from(u8::from(i == k)))));
+    let axes = [0, 1, 2].map(|k| Vec3::ith(k, S::one()));
     let points = Points::new(std::slice::from_ref(node), &axes.map(|axis| vec![axis]));
     let [xx, yy, zz, xy, yz, zx] = own.inertia;
     let inertia = Mat3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);

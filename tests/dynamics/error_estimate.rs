@@ -252,12 +252,7 @@ fn an_accuracy_is_reached_by_what_lacks_it() {
         let mut problem = load(file, |_| {});
         change(&mut problem);
         let which = problem.objective.expect("an objective").function;
-        let found = reach(
-            &mut problem,
-            (&[Judged::alone(which)], "objective"),
-            accuracy,
-        )
-        .expect("runs");
+        let found = reach(&mut problem, &[Judged::alone(which)], accuracy).expect("runs");
         assert!(found.error <= accuracy, "{found:?}");
         // The estimate is that of the refined problem.
         let at = Evaluated::new(&problem, &problem.start()).expect("runs");

@@ -165,12 +165,7 @@ fn an_accuracy_of_round_off_ends() {
     let method = json!({"bdf": {"order": 2}});
     let document = cantilever((&mesh, &axes), &basis, (&method, "given"));
     let mut problem = parsed(&document);
-    let reached = accuracy::reach(
-        &mut problem,
-        (&[accuracy::Judged::alone(0)], "objective"),
-        1e-2,
-    )
-    .expect("runs");
+    let reached = accuracy::reach(&mut problem, &[accuracy::Judged::alone(0)], 1e-2).expect("runs");
     assert_eq!(reached.steps, 2);
     assert!(reached.overrides().is_empty(), "{:?}", reached.overrides());
 }
@@ -195,7 +190,7 @@ fn an_accuracy_of_a_mass_is_that_of_the_constraints() {
     let (which, of) = accuracy::judged(&problem, objective);
     assert_eq!((which.len(), which[0].bound, of), (1, 2.0, "constraints"));
     let asked = 1e-6;
-    let reached = accuracy::reach(&mut problem, (&which, of), asked).expect("runs");
+    let reached = accuracy::reach(&mut problem, &which, asked).expect("runs");
     assert!(reached.error <= asked, "{:e}", reached.error);
     assert!(reached.steps > 10 && !reached.overrides().is_empty());
 }

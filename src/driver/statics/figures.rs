@@ -10,6 +10,8 @@ use crate::report::vtu::{Fields, vtu};
 use crate::structures::beam::{BEAM_NODES, Beam};
 use crate::structures::functions::Solved;
 use crate::structures::mesh::Mesh;
+use crate::structures::shell::STRESS_POINTS;
+use crate::structures::state::NodalMotion;
 use std::f64::consts::PI;
 
 /// Largest displacement in a picture, relative to the size of the structure.
@@ -201,12 +203,11 @@ fn deformed(title: &str, design: &StaticDesign) -> Vec<StructureView> {
         .filter(|(_, x)| !x.is_empty());
     let cases = solved.map(|(case, _)| case).take(MOST_CASES);
     let one = |case: usize| {
-        let (motion, stress, along) = design.with_solved(|solved| {
-            let x = &solved.solutions[case];
-            let motion = solved.problem.motion(solved.structure, x);
-            let along = beam_stresses(design, solved, case);
-            (motion, solved.stress_field(case), along)
-        })?;
+        let OfCase {
+            motion,
+            stress,
+            along,
+        } = of_case(design, case)?;
         let known = along.iter().any(|&stress| stress != UNKNOWN);
         let (places, factor) = magnified(design, &motion.displacement);
         let yields = yield_stresses(design);
@@ -242,9 +243,25 @@ fn deformed(title: &str, design: &StaticDesign) -> Vec<StructureView> {
     cases.filter_map(one).collect()
 }
 
-/// The largest |σ| along the outer fibres of each beam in a load case \[Pa\]; [`UNKNOWN`] of sections without size.
-fn beam_stresses(design: &StaticDesign, solved: &Solved<f64>, case: usize) -> Vec<f64> {
-    let von_karman = design.statics.terms.von_karman;
+/// What a load case makes.
+struct OfCase {
+    motion: NodalMotion<f64>,
+    /// σ_v / σ_yield of each shell at its points.
+    stress: Vec<[f64; STRESS_POINTS]>,
+    /// The largest |σ| along the outer fibres of each beam \[Pa\]; [`UNKNOWN`] of sections without size.
+    along: Vec<f64>,
+}
+
+fn of_case(design: &StaticDesign, case: usize) -> Option<OfCase> {
+    design.with_solved(|solved| OfCase {
+        motion: (solved.problem).motion(solved.structure, &solved.solutions[case]),
+        stress: solved.stress_field(case),
+        along: beam_stresses(solved, case),
+    })
+}
+
+fn beam_stresses(solved: &Solved<f64>, case: usize) -> Vec<f64> {
+    let von_karman = solved.terms.von_karman;
     let one = |(beam, q): (Beam<f64>, [f64; 6 * BEAM_NODES])| {
         let fibres = BeamFibres::at_rest(beam, von_karman);
         let largest = fibres.largest(&q).into_iter().reduce(larger);
@@ -307,25 +324,20 @@ pub(crate) fn fields(design: &StaticDesign) -> String {
         beams: mesh.beams.clone(),
         ..Fields::default()
     };
-    let with_beams = |of_shells: Vec<f64>| {
-        let beams = std::iter::repeat_n(0.0, mesh.beams.len());
-        of_shells.into_iter().chain(beams).collect::<Vec<f64>>()
-    };
-    let thickness = with_beams(structure.thickness.clone());
+    let mut thickness = structure.thickness.clone();
+    thickness.resize(mesh.shells.len() + mesh.beams.len(), 0.0);
     let name = name_of_thickness(mesh.beams.is_empty());
     fields.of_elements.push((name.to_owned(), thickness));
     for (case, name) in design.statics.cases.iter().enumerate() {
         if design.solutions[case].is_empty() {
             continue;
         }
-        let found = design.with_solved(|solved| {
-            let motion = solved
-                .problem
-                .motion(solved.structure, &solved.solutions[case]);
-            let along = beam_stresses(design, solved, case);
-            (motion, solved.stress_field(case), along)
-        });
-        let Some((motion, stress, along)) = found else {
+        let Some(OfCase {
+            motion,
+            stress,
+            along,
+        }) = of_case(design, case)
+        else {
             continue;
         };
         let displacement = list(&motion.displacement);

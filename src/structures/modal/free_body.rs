@@ -165,7 +165,7 @@ impl FreeBody {
     /// The six rigid motions: displacements, and rotations about an axis through `about`.
     pub(crate) fn rigid_motions(&self, about: &Vec3<f64>) -> [Vec<f64>; 6] {
         std::array::from_fn(|k| {
-            let axis = Vec3::from_fn(|i, _| f64::from(u8::from(i == k % 3)));
+            let axis = Vec3::ith(k % 3, 1.0);
             match k {
                 0..3 => self.rigid(&axis, &Vec3::zeros()),
                 _ => self.rigid(&-axis.cross(about), &axis),
@@ -222,7 +222,7 @@ impl FreeBody {
             }
         }
         let masses: [f64; 3] = std::array::from_fn(|k| {
-            let axis = Vec3::from_fn(|i, _| f64::from(u8::from(i == k)));
+            let axis = Vec3::ith(k, 1.0);
             let motion = self.rigid(&axis, &Vec3::zeros());
             let mut product = vec![0.0; order];
             self.pattern.multiply(&self.mass, &motion, &mut product);

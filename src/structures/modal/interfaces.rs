@@ -148,7 +148,7 @@ pub(super) fn columns(
             None => Ok(()),
         }
     };
-    let unit = |k: usize| Vec3::from_fn(|i, _| f64::from(u8::from(i == k)));
+    let unit = |k: usize| Vec3::ith(k, 1.0);
     let mut all = Vec::new();
     let mut add = |interface: usize, turn: bool, axis: Vec3<f64>, name: String| {
         let (displacement, rotation) = match turn {

@@ -45,7 +45,7 @@ fn parts(configuration: &Configuration<f64>) -> Vec<Vec<usize>> {
 
 /// A rigid motion k < 6 at a place: displacement and rotation; lengths are measured in `size`.
 fn rigid(k: usize, place: &Vec3<f64>, size: f64) -> (Vec3<f64>, Vec3<f64>) {
-    let axis = Vec3::from_fn(|i, _| f64::from(u8::from(i == k % 3)));
+    let axis = Vec3::ith(k % 3, 1.0);
     if k < 3 {
         (axis, Vec3::zeros())
     } else {
