@@ -35,7 +35,7 @@ pub(super) fn warning(model: &Model<f64>, run: &Trajectory<f64>) -> Option<Strin
     let peaks = peaks(model, run);
     let all = [
         truncated_inertia(model),
-        large_rotation(model, run),
+        large_rotation(model, run, &peaks),
         large_strain(model, run, &peaks),
         fast_spin(model, run),
         locked(model, run, &peaks),
@@ -113,9 +113,15 @@ fn truncated_inertia(model: &Model<f64>) -> Option<String> {
     })
 }
 
-/// The section that turns farthest, if it turns too far.
-fn large_rotation(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
+/// The section, or the surface of shells or axis of beams, that turns farthest, if it turns too far.
+fn large_rotation(
+    model: &Model<f64>,
+    run: &Trajectory<f64>,
+    peaks: &[Option<usize>],
+) -> Option<String> {
     let mut most: (f64, usize, &str) = (0.0, 0, "");
+    // Inside bodies: the angle, the sample, the body and the element.
+    let mut inside: (f64, usize, &str, Option<usize>) = (0.0, 0, "", None);
     let mut motions = Vec::new();
     for k in 0..=run.last() {
         BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
@@ -126,11 +132,30 @@ fn large_rotation(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
                 most = (angle, k, &joint.name);
             }
         }
+        for (body, peak) in model.flexible.iter().zip(peaks) {
+            let slope = flexible::axial_slope(body, &motions);
+            if slope > inside.0 {
+                inside = (slope, k, &body.name, None);
+            }
+            if (is_looked_at(run, k) || *peak == Some(k))
+                && let Some((angle, element)) = flexible::turn(body, &motions)
+                && angle > inside.0
+            {
+                inside = (angle, k, &body.name, Some(element));
+            }
+        }
     }
-    let (angle, k, name) = most;
+    let (angle, k, what) = if most.0 > LARGE_ROTATION {
+        let (angle, k, name) = most;
+        (angle, k, format!("the section \"{name}\""))
+    } else {
+        let (angle, k, name, element) = inside;
+        let place = element.map_or("an axis".into(), |element| format!("element {element}"));
+        (angle, k, format!("{place} of \"{name}\""))
+    };
     (angle > LARGE_ROTATION).then(|| {
         format!(
-            "the section \"{name}\" turns by {angle:.2} rad relative to its body's frame at \
+            "{what} turns by {angle:.2} rad relative to its body's frame at \
              t = {:.4} s; above {LARGE_ROTATION} rad its strains are inaccurate: divide the body",
             run.time(k)
         )

@@ -73,6 +73,15 @@ impl<S: Scalar> Quadratic<S> {
         squares.fold(dot(&self.linear, q), |sum, x| sum + x)
     }
 
+    /// Root of the sum of its squares Σ c_s (g_s · q)²: of a strain along an axis, the slope of the axis.
+    pub(crate) fn slope(&self, q: &[S]) -> f64 {
+        let squares = self.squares.iter().map(|(c, g)| {
+            let w = dot(g, q);
+            (*c * w * w).re()
+        });
+        squares.sum::<f64>().sqrt()
+    }
+
     /// Adds `scale` times its gradient b + Σ c_s (g_s · q) g_s to `out`.
     pub(crate) fn add_gradient(&self, q: &[S], scale: S, out: &mut [S]) {
         add_scaled(out, scale, &self.linear);

@@ -158,3 +158,30 @@ fn inverted_elements_are_found() {
         );
     }
 }
+
+/// A small rotation of all nodes about the origin is that of the surface, about its normal too.
+#[test]
+fn turns_of_the_surface_are_found() {
+    let plate = plate([4, 1]);
+    // The clamped edge does not move, so this is that of the elements that do not have it.
+    for theta in [[0.1, 0.2, 0.3], [0.0, 0.0, -0.4], [0.0, 0.2, 0.0]] {
+        let theta = Vec3::from(theta);
+        let mut q = vec![0.0; plate.mesh.coordinates];
+        for (place, unknowns) in plate.mesh.nodes.iter().zip(&plate.mesh.displacements) {
+            let moved = theta.cross(&(place - Vec3::x() * 0.5));
+            for (k, unknown) in unknowns.iter().enumerate() {
+                if let Some(i) = unknown.filter(|_| place[0] > 0.2) {
+                    q[i] = moved[k];
+                }
+            }
+        }
+        let mut far = plate.clone();
+        let mut mesh = (*far.mesh).clone();
+        mesh.elements
+            .retain(|own| own.nodes.iter().all(|&n| mesh.nodes[n][0] > 0.2));
+        far.mesh = mesh.into();
+        let (angle, _) = finite::turn(&far, &q);
+        assert!((angle - theta.norm()).abs() < 1e-13, "{angle}");
+        assert!(finite::turn(&plate, &q).0 >= angle);
+    }
+}

@@ -161,3 +161,39 @@ fn beams_are_drawn_bent_and_coloured() {
     let figures = of_simulation(&parsed(&rigid), &motion);
     assert!(figures.iter().all(|(name, _)| *name != "deflection.svg"));
 }
+
+/// Bodies that are bent far are told where no point is observed that turns: a plate under a load on its area, and a
+/// beam under its weight. Ends turn by p / 6, p = q L³ / EI.
+#[test]
+fn bodies_that_turn_far_inside_are_told() {
+    let bent = |document: &Value, turn: f64| {
+        let warning = run(document).warning.unwrap_or_default();
+        let told = warning.contains("turns by") && warning.contains("divide the body");
+        assert_eq!(told, turn > 0.16, "{turn}: {warning}");
+    };
+    let text = include_str!("../../problems/extreme/covered_plate.json");
+    let mut plate: Value = serde_json::from_str(text).expect("valid JSON");
+    let mut beam = json!({
+        "version": 1, "name": "beam", "start": "equilibrium",
+        "bodies": {"beam": {
+            "beam": {
+                "length": 1, "section": {"rectangle": {"width": 0.25, "height": 0.01}},
+                "material": {"young": 1e9, "density": 1000}, "frame": "clamped",
+                "modes": {"bending_y": 4, "bending_z": 0, "torsion": 0}
+            },
+            "place": {"put": "start", "at": [0, 0, 0]}
+        }},
+        "joints": {"wall": {"weld": {"between": ["beam", "ground"], "at": "beam.start"}}},
+        "simulation": {"duration": 0.1, "steps": 10, "method": {"radau": {"stages": 3}}},
+        "functions": {"strain energy": {"final": {"strain_energy": {"body": "beam"}}}},
+        "variables": {"young": {"path": "/bodies/beam/beam/material/young"}}
+    });
+    for turn in [0.1, 0.13, 0.18, 0.4] {
+        let stiffness = 1e9 * 0.01_f64.powi(3) / 12.0;
+        plate["loads"]["push"]["area"]["magnitude"] = json!(6.0 * turn * stiffness);
+        bent(&plate, turn);
+        let weight = 6.0 * turn * stiffness / (1000.0 * 0.01);
+        beam["gravity"] = json!([0, -weight, 0]);
+        bent(&beam, turn);
+    }
+}

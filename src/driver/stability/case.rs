@@ -51,6 +51,9 @@ pub(super) enum Judge {
     /// A run by a method of the other family with a much smaller tolerance and only the first
     /// `kept` changes. Its error is relative to `size` \[m\].
     OtherMethod { kept: usize, size: f64 },
+    /// A run of the same scene by the other family of implicit methods with many more steps. Its error is relative
+    /// to `size` \[m\].
+    SmallSteps { size: f64 },
     /// The least or largest value of the objective of an optimisation (NaN if there is none); its
     /// error is relative to `size`.
     Optimum { value: f64, size: f64 },
@@ -232,7 +235,7 @@ impl Case {
     /// The command that runs the case.
     pub(crate) fn command(&self) -> String {
         let verb = match self.judge {
-            Judge::Exact(_) | Judge::OtherMethod { .. } => "simulate ",
+            Judge::Exact(_) | Judge::OtherMethod { .. } | Judge::SmallSteps { .. } => "simulate ",
             Judge::Optimum { .. } => "",
         };
         let SceneFile { folder, name, .. } = self.scene;

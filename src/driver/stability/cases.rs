@@ -8,6 +8,7 @@ use super::scenes::{
     AGGREGATE, DOOR, DOUBLE_PENDULUM, DUMBBELL, INFEASIBLE, LOCKING, OPEN_JOINT, OSCILLATOR,
     PENDULUM, SPRING_PENDULUM, TOP, UNBOUNDED, WHEEL,
 };
+use super::shells;
 use crate::integrate::Method;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -33,13 +34,8 @@ pub(super) fn all() -> Vec<Case> {
         loops::orders(),
         loops::rotations(),
         loops::units(),
-        flexible::thicknesses(),
-        flexible::loads(),
-        flexible::squeezes(),
-        flexible::stiffnesses(),
-        flexible::long_times(),
-        flexible::spins(),
-        flexible::chains(),
+        flexible::all(),
+        shells::all(),
     ];
     families.concat()
 }

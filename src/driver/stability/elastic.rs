@@ -1,5 +1,6 @@
 //! Motions and deflections of flexible bodies that are known independently of the program.
 
+use super::reference::integrate;
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 /// Young's modulus \[Pa\], width and length \[m\] of the plate of `cantilever_plate.json`.
@@ -23,22 +24,35 @@ pub(super) enum Elastic {
     Plate { thickness: f64 },
     /// A thin cantilever with the load P L² / EI at its end.
     Elastica { load: f64 },
+    /// The thin cantilever, bent by a moment at its end to an arc of this angle \[rad\].
+    Arc { angle: f64 },
+    /// The thin cantilever with the load q L³ / EI along its length.
+    Covered { load: f64 },
     /// A plate of 1 m that is shortened by this part; small strains only.
     Squeezed { strain: f64 },
+    /// The same of its width.
+    Across { strain: f64 },
+    /// A plate of 1 m and 1 m thickness that a force bends in its plane by this; small deflections only.
+    Sideways { deflection: f64 },
+    /// A free plate of 1 × 0.25 × 0.02 m that is thrown with 1 m/s along z and (1, 4, 2) rad/s.
+    Tumbling,
     /// A bar of 1 m that turns about its end with 10 rad/s = `turn` √(E/ρ) / L. It has a steady
     /// state below π/2 only.
     Bar { turn: f64, time: f64 },
-    /// The end of a chain of this many beams of 1 m that falls with the velocity (1, 2) m/s.
-    Chain { beams: usize, time: f64 },
+    /// The end of a chain of this many bodies of 1 m that falls with the velocity (1, 2) m/s.
+    Chain { bodies: usize, time: f64 },
 }
 
 impl Elastic {
     /// Description for the table.
     pub(super) fn source(self) -> &'static str {
         match self {
-            Elastic::Plate { .. } => "Timoshenko's beam",
+            Elastic::Plate { .. } | Elastic::Sideways { .. } => "Timoshenko's beam",
             Elastic::Elastica { .. } => "the elastica by quadrature",
-            Elastic::Squeezed { .. } => "Hooke's law",
+            Elastic::Arc { .. } => "an arc",
+            Elastic::Covered { .. } => "the elastica by extrapolation",
+            Elastic::Squeezed { .. } | Elastic::Across { .. } => "Hooke's law",
+            Elastic::Tumbling => "energy and momenta of the start",
             Elastic::Bar { .. } | Elastic::Chain { .. } => "closed form",
         }
     }
@@ -59,7 +73,29 @@ impl Elastic {
                 let energy = 0.5 * load * bending(THIN);
                 (vec![elastica(load), 0.0], vec![1.0, energy])
             }
-            Elastic::Squeezed { strain } if strain >= HOOKE => (vec![f64::NAN; 2], vec![1.0; 2]),
+            Elastic::Arc { angle } => {
+                let energy = 0.5 * angle * bending(THIN);
+                (vec![(1.0 - angle.cos()) / angle, 0.0], vec![1.0, energy])
+            }
+            Elastic::Covered { load } => {
+                let work = 0.5 * load * bending(THIN);
+                (vec![covered(load) * bending(THIN), 0.0], vec![work; 2])
+            }
+            Elastic::Squeezed { strain } | Elastic::Across { strain } if strain >= HOOKE => {
+                (vec![f64::NAN; 2], vec![1.0; 2])
+            }
+            Elastic::Across { strain } => {
+                let energy = 0.5 * strain * squeeze(strain);
+                (vec![WIDTH * strain, 0.0], vec![WIDTH * strain, energy])
+            }
+            Elastic::Sideways { deflection } if deflection > HOOKE => {
+                (vec![f64::NAN; 2], vec![1.0; 2])
+            }
+            Elastic::Sideways { deflection } => {
+                let energy = 0.5 * deflection * sideways(deflection);
+                (vec![deflection, 0.0], vec![deflection, energy])
+            }
+            Elastic::Tumbling => tumbling(),
             Elastic::Squeezed { strain } => {
                 let energy = 0.5 * strain * squeeze(strain);
                 (vec![strain, 0.0], vec![strain, energy])
@@ -70,9 +106,9 @@ impl Elastic {
                 let values = vec![length * angle.cos(), length * angle.sin()];
                 (values, vec![length.abs(); 2])
             }
-            Elastic::Chain { beams, time } => {
+            Elastic::Chain { bodies, time } => {
                 let fall = -0.5 * 9.81 * time * time;
-                (vec![beams as f64 + time, 2.0 * time + fall], vec![1.0; 2])
+                (vec![bodies as f64 + time, 2.0 * time + fall], vec![1.0; 2])
             }
         }
     }
@@ -96,6 +132,56 @@ pub(super) fn force(thickness: f64) -> f64 {
 /// The force of the load P L² / EI of the elastica \[N\].
 pub(super) fn force_of(load: f64) -> f64 {
     load * bending(THIN)
+}
+
+/// The moment that bends the plate to an arc of this angle \[N m\].
+pub(super) fn moment(angle: f64) -> f64 {
+    angle * bending(THIN)
+}
+
+/// The load on each area for the load q L³ / EI \[Pa\].
+pub(super) fn cover(load: f64) -> f64 {
+    load * bending(THIN) / WIDTH
+}
+
+/// The force that bends a plate of 1 m thickness in its plane by this deflection \[N\].
+pub(super) fn sideways(deflection: f64) -> f64 {
+    let stiffness = YOUNG * WIDTH.powi(3) / 12.0;
+    let shear = 5.0 / 6.0 * 0.5 * YOUNG * WIDTH;
+    deflection / (1.0 / (3.0 * stiffness) + 1.0 / shear)
+}
+
+/// Energy, momentum along z and angular momenta of the free plate, and their sizes.
+fn tumbling() -> (Vec<f64>, Vec<f64>) {
+    let (mass, sides, speed, spin) = (5.0, [1.0_f64, 0.25, 0.02], 1.0, [1.0, 4.0, 2.0]);
+    let squares: f64 = sides.iter().map(|side| side * side).sum();
+    let inertia = sides.map(|side| mass / 12.0 * (squares - side * side));
+    let angular: [f64; 3] = std::array::from_fn(|k| inertia[k] * spin[k]);
+    let turning: f64 = (0..3).map(|k| 0.5 * angular[k] * spin[k]).sum();
+    let energy = 0.5 * mass * speed * speed + turning;
+    let size = angular.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let values = [vec![energy, mass * speed], angular.to_vec()].concat();
+    (values, vec![energy, mass * speed, size, size, size])
+}
+
+/// Strain energy of a cantilever without stretch under a load along its length, by EI / L: θ'' = −p (1 − s) cos θ,
+/// θ(0) = θ'(1) = 0.
+fn covered(p: f64) -> f64 {
+    // θ, θ', energy and s at the end, for a curvature at the root.
+    let shot = |curvature: f64| {
+        let f = |y: &[f64; 4]| [y[1], -p * (1.0 - y[3]) * y[0].cos(), 0.5 * y[1] * y[1], 1.0];
+        integrate(f, [0.0, curvature, 0.0, 0.0], 1.0)
+    };
+    // The end turns by less than a right angle, so the curvature at the end grows with that at the root.
+    let (mut low, mut high) = (0.0, 0.5 * p);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        match shot(middle)[1] < 0.0 {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    shot(0.5 * (low + high))[2]
 }
 
 /// Deflection of the end of a cantilever without stretch, by its length: θ'' = −p cos θ, θ(0) = θ'(1) = 0.
@@ -135,7 +221,7 @@ fn elastica(p: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::elastica;
+    use super::{covered, elastica};
 
     /// Small loads give p / 3; p = 1 and 10 the tabulated 0.30172 and 0.81061 (Bisshopp & Drucker 1945; Mattiasson 1981).
     #[test]
@@ -144,5 +230,13 @@ mod tests {
         assert!((elastica(1.0) - 0.30172).abs() < 1e-5);
         assert!((elastica(10.0) - 0.81061).abs() < 1e-5);
         assert!((elastica(199.0) - elastica(201.0)).abs() < 3e-4);
+    }
+
+    /// Small loads give p² / 40. The end turns by p / 6 then.
+    #[test]
+    fn the_elastica_under_a_distributed_load_has_its_known_values() {
+        assert!((covered(1e-3) * 4e7 - 1.0).abs() < 1e-6);
+        assert!(covered(1.0) < 1.0 / 40.0 && covered(1.0) > 0.95 / 40.0);
+        assert!(covered(10.0) < covered(100.0));
     }
 }

@@ -1,16 +1,20 @@
-//! Cases of flexible bodies.
+//! Cases of beams.
 
 use super::case::{Case, Judge, Steps, TOLERANCE, Way, decade, order_two, usual};
-use super::elastic::{Elastic, force, force_of, squeeze};
+use super::elastic::Elastic;
 use super::exact::Exact;
 use super::scenes::{
-    CANTILEVER_PLATE, FALLING_CHAIN_10, FALLING_CHAIN_100, FALLING_CHAIN_1000, FLEXIBLE_PENDULUM,
-    TURNING_BAR,
+    FALLING_CHAIN_10, FALLING_CHAIN_100, FALLING_CHAIN_1000, FLEXIBLE_PENDULUM, TURNING_BAR,
 };
 use crate::integrate::Method;
 
 /// Height of the section of the pendulum \[m\].
 const HEIGHT: f64 = 0.05;
+
+/// All cases in the order of the table.
+pub(super) fn all() -> Vec<Case> {
+    [stiffnesses(), long_times(), spins(), chains()].concat()
+}
 
 /// The chosen method, Radau IIA of order 5 by tolerance, and BDF2 with equal steps.
 fn three(steps: usize) -> Vec<Way> {
@@ -21,82 +25,7 @@ fn three(steps: usize) -> Vec<Way> {
     all
 }
 
-/// Radau IIA and the methods of order 2 with equal steps.
-fn implicit(steps: usize) -> Vec<Way> {
-    let radau = [2, 3].map(|stages| Method::Radau { stages });
-    let way = |method| Way {
-        method: Some(method),
-        steps: Steps::Equal(steps),
-    };
-    radau.into_iter().chain(order_two()).map(way).collect()
-}
-
-pub(super) fn thicknesses() -> Vec<Case> {
-    let mut all = Vec::new();
-    for thickness in [1e-4, 1e-3, 1e-2, 0.1, 1.0] {
-        for way in implicit(10) {
-            let exact = Exact::Elastic(Elastic::Plate { thickness });
-            let name = ("thickness", decade(thickness));
-            let case = Case::known(name, CANTILEVER_PLATE, (way, 0.1), exact)
-                .set("/bodies/plate/elements/structure/thickness", thickness)
-                .set("/loads/push/force/magnitude", force(thickness));
-            // The error of the mesh. Nothing moves, so there is no kinetic energy to compare with.
-            all.push(Case {
-                bound: 1e-3,
-                conservative: false,
-                ..case
-            });
-        }
-    }
-    all
-}
-
-pub(super) fn loads() -> Vec<Case> {
-    let mut all = Vec::new();
-    for load in [1e-3, 1e-2, 0.1, 0.3, 1.0, 10.0, 1e3, 1e6, 1e9] {
-        let mut ways = implicit(10);
-        ways.retain(|way| way.method != Some(Method::Radau { stages: 2 }));
-        for way in ways {
-            let exact = Exact::Elastic(Elastic::Elastica { load });
-            let name = ("load", decade(load));
-            let case = Case::known(name, CANTILEVER_PLATE, (way, 0.1), exact);
-            // Error at rotations of 0.15 rad, above which a run warns.
-            all.push(Case {
-                bound: 2e-3,
-                conservative: false,
-                ..case.set("/loads/push/force/magnitude", force_of(load))
-            });
-        }
-    }
-    all
-}
-
-pub(super) fn squeezes() -> Vec<Case> {
-    let mut all = Vec::new();
-    for strain in [1e-6, 1e-3, 0.03, 0.3, 0.9, 1.1, 2.0, 10.0, 1e3] {
-        for way in implicit(10) {
-            let exact = Exact::Elastic(Elastic::Squeezed { strain });
-            let name = ("squeeze", decade(strain));
-            let case = Case::known(name, CANTILEVER_PLATE, (way, 0.1), exact)
-                .set("/bodies/plate/elements/structure/thickness", 1)
-                .set("/loads/push/force/direction", "[-1, 0, 0]")
-                .set("/loads/push/force/magnitude", squeeze(strain))
-                .set(
-                    "/functions/deflection/final/elastic_displacement/direction",
-                    "[-1, 0, 0]",
-                );
-            // Measures of strain differ by this.
-            all.push(Case {
-                bound: strain.max(1e-6),
-                conservative: false,
-                ..case
-            });
-        }
-    }
-    all
-}
-
-pub(super) fn stiffnesses() -> Vec<Case> {
+fn stiffnesses() -> Vec<Case> {
     let mut all = Vec::new();
     for decade_of in 6..=16 {
         let young = 10.0_f64.powi(decade_of);
@@ -130,7 +59,7 @@ pub(super) fn stiffnesses() -> Vec<Case> {
     all
 }
 
-pub(super) fn long_times() -> Vec<Case> {
+fn long_times() -> Vec<Case> {
     let mut all = Vec::new();
     for time in [1.0, 10.0] {
         let mut ways = three((1000.0 * time) as usize);
@@ -149,7 +78,7 @@ pub(super) fn long_times() -> Vec<Case> {
     all
 }
 
-pub(super) fn spins() -> Vec<Case> {
+fn spins() -> Vec<Case> {
     let mut all = Vec::new();
     for turn in [1e-3, 1e-2, 0.1, 0.3, 1.0, 1.3, 1.5, 1.6, 3.0] {
         for way in three(1000) {
@@ -163,7 +92,7 @@ pub(super) fn spins() -> Vec<Case> {
     all
 }
 
-pub(super) fn chains() -> Vec<Case> {
+fn chains() -> Vec<Case> {
     let mut all = Vec::new();
     let [bdf, alpha] = order_two();
     let methods = [bdf, alpha, Method::Radau { stages: 3 }];
@@ -177,7 +106,10 @@ pub(super) fn chains() -> Vec<Case> {
                 method: Some(method),
                 steps: Steps::Equal(10),
             };
-            let exact = Exact::Elastic(Elastic::Chain { beams, time: 0.1 });
+            let exact = Exact::Elastic(Elastic::Chain {
+                bodies: beams,
+                time: 0.1,
+            });
             let name = ("chain", format!("{beams}"));
             all.push(Case {
                 slow: beams > 10,

@@ -15,6 +15,7 @@ mod loops;
 mod reference;
 mod run;
 mod scenes;
+mod shells;
 
 use crate::report::{StabilityFamily, StabilityOutcome, StabilityRow, StabilityTable};
 use case::Case;

@@ -16,6 +16,8 @@ const TELLING: f64 = 0.1;
 const MOST_STEPS: usize = 100_000;
 /// Tolerances of the runs that judge runs of the other family: explicit, implicit.
 const TIGHT: (f64, f64) = (1e-13, 1e-11);
+/// Number of equal steps of runs that judge bodies of finite elements.
+const SMALL_STEPS: usize = 10_000;
 
 /// Runs a case and judges it.
 pub(super) fn run(case: &Case) -> StabilityRow {
@@ -29,7 +31,9 @@ pub(super) fn run(case: &Case) -> StabilityRow {
     };
     match case.judge {
         Judge::Optimum { value, size } => optimisation(&mut row, case, &problem, (value, size)),
-        Judge::Exact(_) | Judge::OtherMethod { .. } => motion(&mut row, case, &problem),
+        Judge::Exact(_) | Judge::OtherMethod { .. } | Judge::SmallSteps { .. } => {
+            motion(&mut row, case, &problem)
+        }
     }
     row
 }
@@ -51,6 +55,7 @@ pub(super) fn blank(case: &Case) -> StabilityRow {
             "the file as it is by the other family at 1e-13 or 1e-11".into()
         }
         Judge::OtherMethod { .. } => "explicit against implicit at 1e-13 or 1e-11".into(),
+        Judge::SmallSteps { .. } => format!("the other implicit family in {SMALL_STEPS} steps"),
         Judge::Optimum { value, .. } if value.is_nan() => "there is no optimum".into(),
         Judge::Optimum { .. } => "the least that can be in closed form".into(),
     };
@@ -154,6 +159,15 @@ fn known(case: &Case) -> Result<(Vec<f64>, Vec<f64>), String> {
             let numbers = exact.numbers();
             (numbers.values, numbers.sizes)
         }
+        Judge::SmallSteps { size } => {
+            let mut other = read(case, usize::MAX)?;
+            other.simulation.method = Some(match other.simulation.method {
+                Some(Method::Radau { .. }) => Method::GeneralisedAlpha { radius: 0.8 },
+                _ => Method::Radau { stages: 3 },
+            });
+            other.simulation.spacing = Spacing::Steps(SMALL_STEPS);
+            values_of(&other, size)?
+        }
         Judge::OtherMethod { size, .. } | Judge::Optimum { size, .. } => {
             let kept = match case.judge {
                 Judge::OtherMethod { kept, .. } => kept,
@@ -167,14 +181,19 @@ fn known(case: &Case) -> Result<(Vec<f64>, Vec<f64>), String> {
             };
             other.simulation.method = Some(method);
             other.simulation.spacing = Spacing::Tolerance(tolerance);
-            let seen = simulate(&other, &other.start()).map_err(|failure| failure.to_string())?;
-            let count = other.function_names.len();
-            let values = (0..count).map(|f| seen.at.function(f).value).collect();
-            (values, vec![size; count])
+            values_of(&other, size)?
         }
     };
     let scaled = |all: Vec<f64>| all.iter().map(|x| x * case.length).collect();
     Ok((scaled(values), scaled(sizes)))
+}
+
+/// Values of the functions of another run, and their `size`.
+fn values_of(other: &Problem, size: f64) -> Result<(Vec<f64>, Vec<f64>), String> {
+    let seen = simulate(other, &other.start()).map_err(|failure| failure.to_string())?;
+    let count = other.function_names.len();
+    let values = (0..count).map(|f| seen.at.function(f).value).collect();
+    Ok((values, vec![size; count]))
 }
 
 /// How the program reports that a motion has the error `error`: a warning, the printed energy

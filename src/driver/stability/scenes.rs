@@ -41,6 +41,13 @@ pub(super) const TURNING_BAR: SceneFile = scene!("turning_bar");
 pub(super) const FALLING_CHAIN_10: SceneFile = scene!("falling_chain_10");
 pub(super) const FALLING_CHAIN_100: SceneFile = scene!("falling_chain_100");
 pub(super) const FALLING_CHAIN_1000: SceneFile = scene!("falling_chain_1000");
+pub(super) const COVERED_PLATE: SceneFile = scene!("covered_plate");
+pub(super) const SWINGING_PLATE: SceneFile = scene!("swinging_plate");
+pub(super) const TUMBLING_PLATE: SceneFile = scene!("tumbling_plate");
+pub(super) const TURNING_PLATE: SceneFile = scene!("turning_plate");
+pub(super) const FALLING_PLATES_10: SceneFile = scene!("falling_plates_10");
+pub(super) const FALLING_PLATES_100: SceneFile = scene!("falling_plates_100");
+pub(super) const FALLING_PLATES_1000: SceneFile = scene!("falling_plates_1000");
 pub(super) const PARALLELOGRAM: SceneFile = scene!("parallelogram");
 pub(super) const FOUR_BARS_1: SceneFile = scene!("benchmarks", "four_bars_1");
 pub(super) const FOUR_BARS_2: SceneFile = scene!("benchmarks", "four_bars_2");
@@ -51,7 +58,7 @@ pub(super) const SLIDER_CRANK: SceneFile = scene!("benchmarks", "balanced_slider
 pub(super) const GOVERNOR: SceneFile = scene!("benchmarks", "flyball_governor");
 
 /// The families with their descriptions.
-pub(super) const FAMILIES: [(&str, &str); 26] = [
+pub(super) const FAMILIES: [(&str, &str); 34] = [
     (
         "mass-ratio",
         "Two hinged rods swing for 2 s; the lower one has this many times the mass of the upper one.",
@@ -134,20 +141,6 @@ pub(super) const FAMILIES: [(&str, &str); 26] = [
         "Scenes with closed loops, lengths and masses multiplied by these numbers.",
     ),
     (
-        "thickness",
-        "A cantilever plate of shells of 1 m with this thickness [m], in equilibrium with a force that deflects \
-         it by 1 mm.",
-    ),
-    (
-        "load",
-        "A cantilever plate of shells of 10 mm, in equilibrium with this load P L² / EI at its end.",
-    ),
-    (
-        "squeeze",
-        "A cantilever plate of shells of 1 m that a force shortens by this part of its length. Its elements are \
-         inverted above 1.",
-    ),
-    (
         "elasticity",
         "A beam on a hinge swings for 1 s; this is its Young's modulus [Pa].",
     ),
@@ -163,5 +156,53 @@ pub(super) const FAMILIES: [(&str, &str); 26] = [
     (
         "chain",
         "A straight chain of this many hinged beams that falls freely.",
+    ),
+    (
+        "thickness",
+        "A cantilever plate of shells of 1 m with this thickness [m], in equilibrium with a force that deflects \
+         it by 1 mm.",
+    ),
+    (
+        "load",
+        "A cantilever plate of shells of 10 mm, in equilibrium with this load P L² / EI at its end.",
+    ),
+    (
+        "bend",
+        "A cantilever plate of shells of 10 mm, bent by a moment at its end to an arc of this angle [rad].",
+    ),
+    (
+        "cover",
+        "A cantilever plate of shells of 10 mm, in equilibrium with this load q L³ / EI along its length. No point \
+         but its root is observed.",
+    ),
+    (
+        "squeeze",
+        "A cantilever plate of shells of 1 m that a force shortens by this part of its length. Its elements are \
+         inverted above 1.",
+    ),
+    (
+        "across",
+        "The same, shortened by this part of its width of 0.25 m.",
+    ),
+    (
+        "sideways",
+        "The same, bent in its own plane by this deflection [m].",
+    ),
+    (
+        "shell-elasticity",
+        "A plate of shells on a hinge swings for 1 s; this is its Young's modulus [Pa].",
+    ),
+    (
+        "shell-undamped",
+        "A free plate of shells tumbles and vibrates for so long [s] without damping.",
+    ),
+    (
+        "shell-spin",
+        "A plate of shells turns with a drive and is stretched; this is its angular velocity by √(E/ρ) / L. At π/2 \
+         it has no steady state.",
+    ),
+    (
+        "shell-chain",
+        "A straight chain of this many hinged plates of one or two shells that falls freely.",
     ),
 ];

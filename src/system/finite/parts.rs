@@ -41,6 +41,17 @@ pub(crate) fn axial_strains<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> V
     out
 }
 
+/// Slopes of the axes of the beams where they are integrated \[rad\].
+pub(crate) fn axial_slopes<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> Vec<f64> {
+    let mut out = Vec::new();
+    for (part, coordinates) in all(finite) {
+        let own = gather(coordinates, q);
+        let strains = part.stiffness.strains.iter();
+        out.extend(strains.map(|strain| strain.strain.slope(&own)));
+    }
+    out
+}
+
 /// The motion of a part.
 fn own_motion<S: Scalar>(coordinates: &[usize], at: &Flexing<S>) -> Flexing<S> {
     Flexing {

@@ -93,6 +93,30 @@ pub(crate) fn axial_strains<S: Scalar>(
     }
 }
 
+/// The largest slope of the axes of the beams of a body where they are integrated, if their strains are quadratic
+/// \[rad\].
+pub(crate) fn axial_slope<S: Scalar>(body: &FlexibleBody<S>, motions: &[BodyMotion<S>]) -> f64 {
+    let slopes = match (&body.form, body.form.shells()) {
+        (_, Some(own)) if own.parts.is_empty() => Vec::new(),
+        (_, Some(own)) => finite::axial_slopes(own, &unknowns(body, motions)),
+        (Form::Modal(modal), None) => {
+            let (strains, q) = (modal.stiffness.strains.iter(), coordinates(body, motions));
+            strains.map(|own| own.strain.slope(&q)).collect()
+        }
+        (Form::Finite(_), None) => Vec::new(),
+    };
+    slopes.into_iter().fold(0.0, f64::max)
+}
+
+/// The largest rotation of the surface of shells relative to the frame of their body \[rad\], and the element.
+pub(crate) fn turn<S: Scalar>(
+    body: &FlexibleBody<S>,
+    motions: &[BodyMotion<S>],
+) -> Option<(f64, usize)> {
+    let own = body.form.shells()?;
+    Some(finite::turn(own, &unknowns(body, motions)))
+}
+
 /// The first element of a body of shells that is turned inside out.
 pub(crate) fn inside_out<S: Scalar>(
     body: &FlexibleBody<S>,
