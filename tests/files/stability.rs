@@ -46,8 +46,8 @@ const SPOILT: [(&str, f64); 29] = [
     ("load/", 1e-9),
     ("bend/", 1e-9),
     ("cover/", 1e-9),
-    // Thousands of steps of a thin plate.
-    ("shell-undamped/100/", 1e-9),
+    // The same round-off over thousands of steps: 5e-12 after 10 s, 3e-9 after 100 s.
+    ("shell-undamped/100/", 1e-8),
     // Near the speed at which the stretch has no bound, and beyond it.
     ("spin/1.3/", 1e-9),
     ("spin/1.5/", 1e-7),
