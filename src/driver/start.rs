@@ -23,9 +23,23 @@ const NEARLY: f64 = 1e-4;
 /// there is none.
 pub(crate) fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
     match problem.without_equilibrium() {
-        Some(placed) => of_placement(&placed, x, " before equilibrium is sought"),
+        Some(placed) => {
+            let mut notes = of_placement(&placed, x, " before equilibrium is sought");
+            notes.extend(unstable(problem, x));
+            notes
+        }
         None => of_placement(problem, x, ""),
     }
+}
+
+/// A start in equilibrium from which a disturbance grows, as that of a column that buckles.
+pub(crate) fn unstable(problem: &Problem, x: &[f64]) -> Option<String> {
+    let growth = problem.growth_at_equilibrium(x)?;
+    Some(format!(
+        "the start in equilibrium is not stable: a disturbance grows by a factor of e in {:.1e} s, unless rotation \
+         holds it",
+        1.0 / growth
+    ))
 }
 
 /// Notes on a start without equilibrium; `when` says when bodies are deformed.

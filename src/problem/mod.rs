@@ -69,6 +69,7 @@ use crate::optimiser::Method;
 use crate::structures::loads::Load;
 use crate::structures::quality::MeshFault;
 use crate::structures::structure::Structure;
+use crate::system::equilibrium;
 use crate::system::redundancy::Redundancy;
 use schema::{Document, View};
 use std::path::Path;
@@ -339,6 +340,15 @@ impl Problem {
             other.written.start = schema::flexible::Start::Given;
             other
         })
+    }
+
+    /// The fastest growth \[1/s\] of a deformation at the start in equilibrium; `None` if none grows, or
+    /// if there is no such start.
+    pub(crate) fn growth_at_equilibrium(&self, x: &[f64]) -> Option<f64> {
+        let placed = self.without_equilibrium()?;
+        let model = scene::scene(&placed.written, &placed.order, x).model;
+        let found = equilibrium::growth(&model, &self.written.known_starts);
+        found.ok().flatten()
     }
 
     /// The scene at the design `x` without reductions. Redundant rows are left out, and the parts

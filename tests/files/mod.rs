@@ -3,6 +3,7 @@
 mod beam_scenes;
 mod beams;
 mod benchmarks;
+mod buckling;
 mod circles;
 mod distributed_loads;
 pub mod element_parts;

@@ -14,6 +14,8 @@ pub(super) const DEFLECTION: f64 = 1e-3;
 const POINTS: usize = 20_000;
 /// Strain from which on stress is not proportional to it.
 const HOOKE: f64 = 0.1;
+/// ρ A Ω² L⁴ / EI at which a plate that points inward buckles.
+const BUCKLING: f64 = 32.201_906_99;
 /// From this load on the elastica is asymptotic to 1e-6.
 const ASYMPTOTIC: f64 = 200.0;
 
@@ -39,6 +41,9 @@ pub(super) enum Elastic {
     /// A bar of 1 m that turns about its end with 10 rad/s = `turn` √(E/ρ) / L. It has a steady
     /// state below π/2 only.
     Bar { turn: f64, time: f64 },
+    /// A plate of 1 m that points from a ring of radius 1 m to its axis and is compressed by turning with `turn` times
+    /// the angular velocity at which it buckles, under a small weight.
+    Inward { turn: f64 },
     /// The end of a chain of this many bodies of 1 m that falls with the velocity (1, 2) m/s.
     Chain { bodies: usize, time: f64 },
 }
@@ -53,6 +58,7 @@ impl Elastic {
             Elastic::Covered { .. } => "the elastica by extrapolation",
             Elastic::Squeezed { .. } | Elastic::Across { .. } => "Hooke's law",
             Elastic::Tumbling => "energy and momenta of the start",
+            Elastic::Inward { .. } => "the beam-column by extrapolation",
             Elastic::Bar { .. } | Elastic::Chain { .. } => "closed form",
         }
     }
@@ -101,6 +107,15 @@ impl Elastic {
                 (vec![strain, 0.0], vec![strain, energy])
             }
             Elastic::Bar { turn, .. } if turn >= FRAC_PI_2 => (vec![f64::NAN; 2], vec![1.0; 2]),
+            Elastic::Inward { turn } => {
+                let load = BUCKLING * turn * turn;
+                // q L³ / EI, of the weight 2e-5 N/kg at 10 rad/s.
+                let tip = -2e-7 * load * inward(load);
+                (
+                    vec![if turn < 1.0 { tip } else { f64::NAN }],
+                    vec![tip.abs()],
+                )
+            }
             Elastic::Bar { turn, time } => {
                 let (length, angle) = (turn.tan() / turn, 10.0 * time);
                 let values = vec![length * angle.cos(), length * angle.sin()];
@@ -184,6 +199,35 @@ fn covered(p: f64) -> f64 {
     shot(0.5 * (low + high))[2]
 }
 
+/// Young's modulus of the plate that points inward \[Pa\].
+pub(super) fn inward_young(turn: f64) -> f64 {
+    let (density, ratio) = (1000.0, 10.0_f64 / 0.01);
+    12.0 * density * ratio.powi(2) / (BUCKLING * turn * turn)
+}
+
+/// Deflection of the end of a beam that points from a ring to its axis, by its length and by q L³ / EI, for the load
+/// β = ρ A Ω² L⁴ / EI: w'''' + (β ½ (1 − s)² w')' = 1, w(0) = w'(0) = w''(1) = w'''(1) = 0.
+fn inward(load: f64) -> f64 {
+    // w, w', w'', w''' and s at the end.
+    let shot = |curvature: f64, shear: f64, q: f64| {
+        let f = |y: &[f64; 5]| {
+            let rest = 1.0 - y[4];
+            let pressed = load * (0.5 * rest * rest * y[2] - rest * y[1]);
+            [y[1], y[2], y[3], q - pressed, 1.0]
+        };
+        integrate(f, [0.0, 0.0, curvature, shear, 0.0], 1.0)
+    };
+    let (a, b, own) = (
+        shot(1.0, 0.0, 0.0),
+        shot(0.0, 1.0, 0.0),
+        shot(0.0, 0.0, 1.0),
+    );
+    let determinant = a[2] * b[3] - a[3] * b[2];
+    let by_a = (own[3] * b[2] - own[2] * b[3]) / determinant;
+    let by_b = (own[2] * a[3] - own[3] * a[2]) / determinant;
+    own[0] + by_a * a[0] + by_b * b[0]
+}
+
 /// Deflection of the end of a cantilever without stretch, by its length: θ'' = −p cos θ, θ(0) = θ'(1) = 0.
 ///
 /// With sin θ = (1 − t²) sin θ₁, ds = √(2 sin θ₁ / p) dt / cos θ. For large loads θ₁ is a right angle.
@@ -221,7 +265,7 @@ fn elastica(p: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{covered, elastica};
+    use super::{BUCKLING, covered, elastica, inward};
 
     /// Small loads give p / 3; p = 1 and 10 the tabulated 0.30172 and 0.81061 (Bisshopp & Drucker 1945; Mattiasson 1981).
     #[test]
@@ -238,5 +282,13 @@ mod tests {
         assert!((covered(1e-3) * 4e7 - 1.0).abs() < 1e-6);
         assert!(covered(1.0) < 1.0 / 40.0 && covered(1.0) > 0.95 / 40.0);
         assert!(covered(10.0) < covered(100.0));
+    }
+
+    /// Without rotation it is q L⁴ / 8 EI. It has no bound at the buckling load.
+    #[test]
+    fn the_beam_that_points_inward_buckles_at_its_load() {
+        assert!((inward(1e-9) - 0.125).abs() < 1e-9);
+        let [below, above] = [-1e-6, 1e-6].map(|part| inward(BUCKLING * (1.0 + part)));
+        assert!(below > 1e5 && above < -1e5, "{below} {above}");
     }
 }

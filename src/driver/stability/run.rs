@@ -3,7 +3,7 @@
 use super::case::{Case, Judge};
 use crate::driver::analysed::Simulated;
 use crate::driver::check::{CheckedDerivative, check};
-use crate::driver::{KnownEvaluations, Simulation, error, optimise, simulate};
+use crate::driver::{KnownEvaluations, Simulation, error, optimise, simulate, start};
 use crate::integrate::{Method, Spacing};
 use crate::optimiser::Status;
 use crate::problem::{Override, Problem};
@@ -207,6 +207,9 @@ fn told(
 ) -> Option<String> {
     if let Some(warning) = &seen.warning {
         return Some(format!("warning: {warning}"));
+    }
+    if let Some(note) = start::unstable(problem, &seen.at.x) {
+        return Some(format!("note: {note}"));
     }
     if row
         .energy_drift

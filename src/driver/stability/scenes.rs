@@ -45,6 +45,7 @@ pub(super) const COVERED_PLATE: SceneFile = scene!("covered_plate");
 pub(super) const SWINGING_PLATE: SceneFile = scene!("swinging_plate");
 pub(super) const TUMBLING_PLATE: SceneFile = scene!("tumbling_plate");
 pub(super) const TURNING_PLATE: SceneFile = scene!("turning_plate");
+pub(super) const INWARD_PLATE: SceneFile = scene!("inward_plate");
 pub(super) const FALLING_PLATES_10: SceneFile = scene!("falling_plates_10");
 pub(super) const FALLING_PLATES_100: SceneFile = scene!("falling_plates_100");
 pub(super) const FALLING_PLATES_1000: SceneFile = scene!("falling_plates_1000");
@@ -58,7 +59,7 @@ pub(super) const SLIDER_CRANK: SceneFile = scene!("benchmarks", "balanced_slider
 pub(super) const GOVERNOR: SceneFile = scene!("benchmarks", "flyball_governor");
 
 /// The families with their descriptions.
-pub(super) const FAMILIES: [(&str, &str); 34] = [
+pub(super) const FAMILIES: [(&str, &str); 35] = [
     (
         "mass-ratio",
         "Two hinged rods swing for 2 s; the lower one has this many times the mass of the upper one.",
@@ -200,6 +201,11 @@ pub(super) const FAMILIES: [(&str, &str); 34] = [
         "shell-spin",
         "A plate of shells turns with a drive and is stretched; this is its angular velocity by √(E/ρ) / L. At π/2 \
          it has no steady state.",
+    ),
+    (
+        "shell-buckling",
+        "A plate of shells points from a turning ring to its axis and is compressed; this is its angular velocity by \
+         that at which it buckles.",
     ),
     (
         "shell-chain",

@@ -1,11 +1,11 @@
 //! Cases of shells.
 
 use super::case::{Case, Judge, Steps, Way, decade, order_two};
-use super::elastic::{Elastic, cover, force, force_of, moment, sideways, squeeze};
+use super::elastic::{Elastic, cover, force, force_of, inward_young, moment, sideways, squeeze};
 use super::exact::Exact;
 use super::scenes::{
     CANTILEVER_PLATE, COVERED_PLATE, FALLING_PLATES_10, FALLING_PLATES_100, FALLING_PLATES_1000,
-    SWINGING_PLATE, TUMBLING_PLATE, TURNING_PLATE,
+    INWARD_PLATE, SWINGING_PLATE, TUMBLING_PLATE, TURNING_PLATE,
 };
 use crate::integrate::Method;
 
@@ -27,6 +27,7 @@ pub(super) fn all() -> Vec<Case> {
         stiffnesses(),
         long_times(),
         spins(),
+        buckles(),
         chains(),
     ];
     families.concat()
@@ -273,6 +274,28 @@ fn spins() -> Vec<Case> {
                 conservative: false,
                 slow: turn != 0.1,
                 ..case.set("/materials/elastic/young", format!("{young:e}"))
+            });
+        }
+    }
+    all
+}
+
+fn buckles() -> Vec<Case> {
+    let mut all = Vec::new();
+    for turn in [0.1, 0.3, 0.9, 0.99, 1.01, 1.1, 1.5, 3.0, 10.0] {
+        for way in some(200) {
+            let exact = Exact::Elastic(Elastic::Inward { turn });
+            let name = ("shell-buckling", decade(turn));
+            let case = Case::known(name, INWARD_PLATE, (way, 1.0), exact);
+            all.push(Case {
+                // An error of the load grows as the deflection.
+                bound: 1e-3 / f64::abs(1.0 - turn * turn),
+                conservative: false,
+                slow: turn != 0.9,
+                ..case.set(
+                    "/materials/elastic/young",
+                    format!("{:e}", inward_young(turn)),
+                )
             });
         }
     }

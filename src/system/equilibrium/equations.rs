@@ -19,6 +19,8 @@ use std::ops::Range;
 const INDEPENDENT: f64 = 1e-8;
 /// Smallest scale of a group of unknowns, relative to the largest.
 const LEAST_SCALE: f64 = 1e-30;
+/// Part of the size that the other groups give to a group, below which it is round-off.
+const NEGLIGIBLE: f64 = 1e-6;
 
 /// Positions; accelerations and velocities of the rigid unknowns; reactions; multipliers of placement and velocities.
 #[derive(Clone, Debug)]
@@ -118,13 +120,23 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// The size of each unknown in a change, by groups.
-    pub(super) fn scales(&self, change: &[f64]) -> Vec<f64> {
+    /// The size of each unknown in a change, by groups; `mass` is that of all bodies.
+    ///
+    /// A group may be round-off of the others, such as accelerations where the joints allow none. It counts by their
+    /// sizes then: accelerations by λ / m, velocities by the root of accelerations times positions, multipliers by
+    /// the mass.
+    pub(super) fn scales(&self, change: &[f64], mass: f64) -> Vec<f64> {
         let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let floor = LEAST_SCALE * largest(change);
+        let [y, a, v, lambda, sigma, tau] = self.groups().map(|group| largest(&change[group]));
+        let a = a.max(NEGLIGIBLE * lambda / mass);
+        let v = v.max(NEGLIGIBLE * (a * y).sqrt());
+        let lambda = lambda.max(NEGLIGIBLE * mass * a);
+        let sigma = sigma.max(NEGLIGIBLE * mass * y);
+        let tau = tau.max(NEGLIGIBLE * mass * v);
         let mut out = vec![1.0; change.len()];
-        for group in self.groups() {
-            let size = largest(&change[group.clone()]).max(floor);
+        for (group, size) in self.groups().into_iter().zip([y, a, v, lambda, sigma, tau]) {
+            let size = size.max(floor);
             if size > 0.0 && size.is_finite() {
                 out[group].fill(size);
             }
@@ -217,9 +229,7 @@ impl<'a> Layout<'a> {
         let mut out = self.compressed(balance);
 
         let mut metric = |by: &[S], multipliers: &[S]| {
-            let mut moved = still.clone();
-            bodies::mass_product(model, numbering, by, &mut moved);
-            flexible::add_mass_product(model, numbering, &motions, by, &mut moved);
+            let mut moved = mass_product(model, numbering, &motions, by);
             let rows = self.of_kept(multipliers);
             joints::add_reactions(model, numbering, &gradients, &rows, &mut moved);
             out.extend(picked(&self.rigid, &self.compressed(moved)));
@@ -243,6 +253,20 @@ impl<'a> Layout<'a> {
         joints::rates(&at, &mut rows);
         out.extend(picked(&self.kept, &rows));
         out
+    }
+
+    /// M(q) y, both for unknowns of velocity.
+    pub(super) fn mass_product(&self, model: &Model<f64>, q: &[f64], y: &[f64]) -> Vec<f64> {
+        let numbering = self.numbering;
+        let mut motions = Vec::new();
+        BodyMotion::all(
+            numbering,
+            q,
+            &vec![0.0; numbering.velocities()],
+            &mut motions,
+        );
+        let y = self.expanded(y.to_vec());
+        self.compressed(mass_product(model, numbering, &motions, &y))
     }
 
     /// Products with the derivative of the residual.
@@ -299,6 +323,19 @@ impl<'a> Layout<'a> {
             }
         }
     }
+}
+
+/// The mass matrix times velocities.
+fn mass_product<S: Scalar>(
+    model: &Model<S>,
+    numbering: &Numbering,
+    motions: &[BodyMotion<S>],
+    by: &[S],
+) -> Vec<S> {
+    let mut out = vec![S::zero(); numbering.velocities()];
+    bodies::mass_product(model, numbering, by, &mut out);
+    flexible::add_mass_product(model, numbering, motions, by, &mut out);
+    out
 }
 
 /// Products with the derivative of the residual at a state, by dual numbers.

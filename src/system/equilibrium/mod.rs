@@ -20,6 +20,7 @@
 
 mod equations;
 mod matrix;
+mod stability;
 
 use super::bodies::{positions_of, velocities_of};
 use super::failure::AssemblyFailure;
@@ -34,6 +35,7 @@ use crate::math::{Parameters, Scalar};
 use crate::model::{Mobility, Model};
 use equations::{Layout, State};
 use matrix::Factors;
+pub(crate) use stability::growth;
 use std::sync::{Arc, Mutex};
 
 const ITERATIONS: usize = 60;
@@ -101,14 +103,50 @@ pub(crate) fn settle<S: Scalar>(
     model: &mut Model<S>,
     known: &KnownStarts,
 ) -> Result<(), AssemblyFailure> {
+    let (state, v) = with_solution(model, known, |own, given, solver, found| {
+        let layout = solver.layout;
+        let mut state: State<S> = found.map(S::from);
+        if S::INFINITESIMAL {
+            let residual = layout.residual(own, given, &state);
+            let right: Vec<f64> = residual.iter().map(|x| -x.infinitesimal()).collect();
+            let factors = Factors::new(layout, solver.model, found);
+            let mut factors = factors.ok_or(AssemblyFailure::Singular)?;
+            let change = solver.change(&mut factors, found, &right, FINE);
+            let change: Vec<S> = change.into_iter().map(S::of_infinitesimal).collect();
+            layout.advance(&mut state, &change);
+        }
+        let v = layout.of_rigid(&state.v);
+        Ok((state, v))
+    })?;
+    let numbering = Numbering::new(&without_spin(model));
+    for (i, body) in model.bodies.iter_mut().enumerate() {
+        (body.position, body.orientation) = positions_of(&state.q[numbering.position(i)..]);
+        if numbering.mobility(i).unknowns() > 0 {
+            (body.velocity, body.angular_velocity) = velocities_of(&v[numbering.velocity(i)..]);
+        }
+    }
+    Ok(())
+}
+
+/// The model with point masses that do not rotate.
+fn without_spin<S: Scalar>(model: &Model<S>) -> Model<S> {
     let mut own = model.clone();
-    // Point masses do not rotate.
     for body in 0..own.bodies.len() {
         let without = own.bodies[body].inertia.iter().all(|x| x.re() == 0.0);
         if without && !own.is_of_flexible(body) {
             own.bodies[body].mobility = Mobility::point();
         }
     }
+    own
+}
+
+/// What `of` makes of the real solution for `model`, whose bodies are placed and undeformed.
+fn with_solution<S: Scalar, T>(
+    model: &Model<S>,
+    known: &KnownStarts,
+    of: impl FnOnce(&Model<S>, &Given<S>, &Solver, &State<f64>) -> Result<T, AssemblyFailure>,
+) -> Result<T, AssemblyFailure> {
+    let own = without_spin(model);
     let placed = nearest(&own)?.q;
     let numbering = Numbering::new(&own);
     let given = Given::of(&own, &numbering, placed);
@@ -126,25 +164,10 @@ pub(crate) fn settle<S: Scalar>(
         model: &real,
         given: &start,
         scale: length_scale(&real),
+        mass: real.bodies.iter().map(|body| body.mass).sum(),
     };
     let found = known.get(numbers, || solver.solve())?;
-    let mut state: State<S> = found.map(S::from);
-    if S::INFINITESIMAL {
-        let residual = layout.residual(&own, &given, &state);
-        let right: Vec<f64> = residual.iter().map(|x| -x.infinitesimal()).collect();
-        let mut factors = Factors::new(&layout, &real, &found).ok_or(AssemblyFailure::Singular)?;
-        let change = solver.change(&mut factors, &found, &right, FINE);
-        let change: Vec<S> = change.into_iter().map(S::of_infinitesimal).collect();
-        layout.advance(&mut state, &change);
-    }
-    let v = layout.of_rigid(&state.v);
-    for (i, body) in model.bodies.iter_mut().enumerate() {
-        (body.position, body.orientation) = positions_of(&state.q[numbering.position(i)..]);
-        if numbering.mobility(i).unknowns() > 0 {
-            (body.velocity, body.angular_velocity) = velocities_of(&v[numbering.velocity(i)..]);
-        }
-    }
-    Ok(())
+    of(&own, &given, &solver, &found)
 }
 
 /// The placement of the bodies, and their given velocities.
@@ -174,7 +197,9 @@ struct Solver<'a> {
     layout: &'a Layout<'a>,
     model: &'a Model<f64>,
     given: &'a Given<f64>,
+    /// Length of the scene \[m\] and mass of all bodies \[kg\].
     scale: f64,
+    mass: f64,
 }
 
 impl Solver<'_> {
@@ -215,7 +240,7 @@ impl Solver<'_> {
         let along = self.layout.along(self.model, self.given, at);
         let mut first = right.to_vec();
         factors.solve(&mut first);
-        let scales = self.layout.scales(&first);
+        let scales = self.layout.scales(&first, self.mass);
         let mut out = vec![0.0; right.len()];
         let mut rest = right.to_vec();
         for _ in 0..REFINEMENTS {

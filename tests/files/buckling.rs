@@ -1,0 +1,98 @@
+//! Starts in equilibrium from which a disturbance grows: columns and plates that turn, above the load at which they
+//! buckle.
+
+use crate::tests::reference::documents::{problem as parsed, run};
+use crate::tests::reference::gradients::gradients_are_exact;
+use flexbody::driver::start;
+use serde_json::Value;
+
+/// β = ρ A Ω² L⁴ / EI at which a plate that points from a ring of radius L to its axis buckles.
+const INWARD: f64 = 32.201_906_99;
+
+/// The plate that points inward, turning with `turn` times the angular velocity at which it buckles.
+fn inward(turn: f64, thickness: f64) -> Value {
+    let text = include_str!("../../problems/extreme/inward_plate.json");
+    let mut document: Value = serde_json::from_str(text).expect("valid JSON");
+    let young = 12.0 * 1000.0 * (10.0 / thickness).powi(2) / (INWARD * turn * turn);
+    document["materials"]["elastic"]["young"] = json!(young);
+    document["bodies"]["plate"]["elements"]["structure"]["thickness"] = json!(thickness);
+    document
+}
+
+/// Seconds in which a disturbance grows by e, as the note on the start says.
+fn growth_time(document: &Value) -> Option<f64> {
+    let problem = parsed(document);
+    let notes = start::notes(&problem, &problem.start());
+    let note = notes.iter().find(|note| note.contains("is not stable"))?;
+    let (_, rest) = note.split_once("a factor of e in ").expect("a time");
+    let (time, _) = rest.split_once(" s").expect("a unit");
+    Some(time.parse().expect("a number"))
+}
+
+/// Euler's column: a cantilever with a force against its end buckles at π² EI / 4 L², by each frame, whether beam or
+/// shells. A force that pulls is told nowhere.
+#[test]
+fn columns_that_buckle_are_told() {
+    let (width, height, young) = (0.1_f64, 0.02_f64, 1e9);
+    let euler = (std::f64::consts::PI / 2.0).powi(2) * young * width * height.powi(3) / 12.0;
+    let beam = |frame: &str| {
+        json!({"beam": {
+            "length": 1, "section": {"rectangle": {"width": width, "height": height}},
+            "material": {"young": young, "poisson": 0, "density": 1000}, "frame": frame,
+            "modes": {"bending_y": 4, "bending_z": 3, "torsion": 0, "stretch": 2}
+        }, "place": {"put": "start", "at": [0, 0, 0]}})
+    };
+    let shells = json!({"elements": {
+        "structure": {"mesh": {"plate": {"length": 1, "width": width, "elements": [6, 1]}},
+                      "material": "soft", "thickness": height},
+        "frame": {"clamped": "x0"}, "points": {"start": {"edge": "x0"}, "end": {"edge": "x1"}}
+    }, "place": {"put": "start", "at": [0, 0, 0]}});
+    for body in [beam("clamped"), beam("chord"), shells] {
+        let mut document = json!({
+            "version": 1, "name": "column", "start": "equilibrium", "gravity": [0, 0, 0],
+            "bodies": {"column": body}, "materials": {"soft": {"young": young, "poisson": 0, "density": 1000}},
+            "joints": {"wall": {"weld": {"between": ["column", "ground"], "at": "column.start"}}},
+            "loads": {"push": {"force": {"body": "column", "point": "end", "direction": [-1, 0, 0], "magnitude": 1}}},
+            "simulation": {"duration": 0.01, "steps": 4, "method": {"radau": {"stages": 3}}},
+            "functions": {"x": {"final": {"position": {"body": "column", "point": "end", "direction": [1, 0, 0]}}}}
+        });
+        for part in [-2.0, 0.1, 0.97, 1.03, 2.0, 20.0] {
+            document["loads"]["push"]["force"]["magnitude"] = json!(part * euler);
+            let told = growth_time(&document);
+            assert_eq!(told.is_some(), part > 1.0, "{part}: {told:?} {document}");
+        }
+    }
+}
+
+/// What points to the axis about which it turns is compressed. Above its angular velocity it is told, and departs as
+/// fast as the note says.
+#[test]
+fn disturbances_grow_as_told() {
+    for turn in [0.1, 0.5, 0.98, 1.02, 3.0] {
+        assert_eq!(growth_time(&inward(turn, 0.01)).is_some(), turn > 1.0);
+    }
+    let mut document = inward(1.5, 0.01);
+    let told = growth_time(&document).expect("a note");
+    // It starts undeformed, so the small weight disturbs it.
+    document["start"] = json!("given");
+    let mut at = |duration: f64| {
+        document["simulation"]["duration"] = json!(duration);
+        document["simulation"]["steps"] = json!((500.0 * duration).round() as usize);
+        run(&document).at.function(0).value
+    };
+    let (early, late) = (at(1.2), at(1.6));
+    let seen = 0.4 / (late / early).ln();
+    assert!((told / seen - 1.0).abs() < 0.05, "{told} {seen}");
+}
+
+/// Derivatives of the start of a plate on a ring that a drive turns: accelerations and velocities are given, so their
+/// changes are round-off.
+#[test]
+fn driven_starts_have_exact_derivatives() {
+    for turn in [0.5, 1.5] {
+        let mut document = inward(turn, 0.1);
+        document["simulation"]["duration"] = json!(0.02);
+        document["simulation"]["steps"] = json!(4);
+        gradients_are_exact(&parsed(&document), &json!(turn));
+    }
+}
