@@ -10,6 +10,9 @@ use crate::problem::{Problem, Simulation, larger};
 
 /// Largest number of attempts to reach an accuracy.
 const ATTEMPTS: usize = 12;
+/// Finer steps that do not reduce the error to this part of the least one are in vain, and so many in turn are the last.
+const PROGRESS: f64 = 0.7;
+const IN_VAIN: usize = 2;
 /// Largest number of richer bases.
 const BASES: usize = 5;
 /// Largest number of times that bases are judged, each time at finer steps.
@@ -174,6 +177,7 @@ fn reach_steps(
     let x = problem.start();
     let functions = indices(which);
     let mut attempts = ATTEMPTS;
+    let (mut least, mut in_vain) = (f64::INFINITY, 0);
     loop {
         let at = bases::run(problem, &x, &functions)?;
         let all = estimate(problem, &at, &functions, false)?;
@@ -193,9 +197,16 @@ fn reach_steps(
         }
         let steps = at.run.grid.steps();
         attempts -= 1;
+        in_vain = if reached < PROGRESS * least {
+            0
+        } else {
+            in_vain + 1
+        };
+        least = least.min(reached);
         let [of_steps, of_samples] = excess;
         if is_done
             || attempts == 0
+            || in_vain == IN_VAIN
             || !refine(&mut problem.simulation, &at.run, of_steps, of_samples)
         {
             return Ok((reached, steps));

@@ -2,6 +2,13 @@
 
 use crate::system::failure::AssemblyFailure;
 
+fn size(residual: f64) -> String {
+    match residual.is_finite() {
+        true => format!("scaled residual {residual:.3e}"),
+        false => "residual not finite".into(),
+    }
+}
+
 /// The reason why a simulation did not reach its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum IntegrationFailure {
@@ -11,8 +18,9 @@ pub(crate) enum IntegrationFailure {
     /// Newton's method did not converge.
     #[error(
         "Newton's method stalled at t = {time:.6e} s (step {step}) after {iterations} iterations: \
-         scaled residual {residual:.3e}, worst in {worst} \
-         (smaller steps may help: more \"steps\", or a \"tolerance\")"
+         {}, worst in {worst} \
+         (smaller steps may help: more \"steps\", or a \"tolerance\")",
+        size(*residual)
     )]
     NewtonStalled {
         /// Time of the step's end \[s\].

@@ -12,7 +12,7 @@ const GRADIENT: f64 = 1e-10;
 
 /// Cases with a larger difference by round-off, and its bound; `docs/stability.md` gives the
 /// reasons.
-const SPOILT: [(&str, f64); 29] = [
+const SPOILT: [(&str, f64); 30] = [
     // ε k l / (m g): the force of a spring of l = 1 m has the round-off ε k l.
     ("stiffness/10/", 2.3e-9),
     ("stiffness/100/", 2.3e-7),
@@ -48,6 +48,8 @@ const SPOILT: [(&str, f64); 29] = [
     ("cover/", 1e-9),
     // The same round-off over thousands of steps: 5e-12 after 10 s, 3e-9 after 100 s.
     ("shell-undamped/100/", 1e-8),
+    // Of a plate of 1/100 thickness; near the load at which it buckles and beyond it errors grow with the deflection.
+    ("shell-buckling/", 1e-8),
     // Near the speed at which the stretch has no bound, and beyond it.
     ("spin/1.3/", 1e-9),
     ("spin/1.5/", 1e-7),
@@ -120,6 +122,7 @@ fn is_fast(case: &str) -> bool {
         "shell-elasticity/1e12/",
         "shell-undamped/1/",
         "shell-spin/0.1/bdf",
+        "shell-buckling/0.9/",
         "shell-chain/10/bdf",
     ];
     case.contains("/chosen to") || families.iter().any(|family| case.starts_with(family))
