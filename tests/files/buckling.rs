@@ -30,7 +30,7 @@ fn growth_time(document: &Value) -> Option<f64> {
 }
 
 /// Euler's column: a cantilever with a force against its end buckles at π² EI / 4 L², by each frame, whether beam or
-/// shells. A force that pulls is told nowhere.
+/// shells. A pulling force is never told as unstable.
 #[test]
 fn columns_that_buckle_are_told() {
     let (width, height, young) = (0.1_f64, 0.02_f64, 1e9);
@@ -73,6 +73,13 @@ fn disturbances_grow_as_told() {
     }
     let mut document = inward(1.5, 0.01);
     let told = growth_time(&document).expect("a note");
+    for angle in [0.0, 0.8, 2.0, 4.0] {
+        let mut turned = document.clone();
+        let (c, s) = (f64::cos(angle), f64::sin(angle));
+        turned["bodies"]["plate"]["place"]["at"] = json!([-c, -s, 0]);
+        turned["bodies"]["plate"]["place"]["turn"]["angle"] = json!(angle);
+        assert_eq!(growth_time(&turned), Some(told), "{angle}");
+    }
     // It starts undeformed, so the small weight disturbs it.
     document["start"] = json!("given");
     let mut at = |duration: f64| {
@@ -83,6 +90,65 @@ fn disturbances_grow_as_told() {
     let (early, late) = (at(1.2), at(1.6));
     let seen = 0.4 / (late / early).ln();
     assert!((told / seen - 1.0).abs() < 0.05, "{told} {seen}");
+}
+
+/// What points outward from a hub that a drive turns is stretched, so no start is told as unstable: beams in each frame and
+/// shells, soft and stiff, in any axes, with hubs of any mass, about the origin or not.
+#[test]
+fn what_rotation_stretches_is_stable() {
+    let section = json!({"rectangle": {"width": 0.1, "height": 0.02}});
+    let beam = |frame: &str| {
+        json!({"beam": {
+            "length": 1, "section": section, "material": {"young": 1e9, "poisson": 0, "density": 1000},
+            "frame": frame, "modes": {"bending_y": 4, "bending_z": 4, "torsion": 0, "stretch": 2}
+        }})
+    };
+    let shells = json!({"elements": {
+        "structure": {"mesh": {"plate": {"length": 1, "width": 0.1, "elements": [4, 1]}},
+                      "material": "soft", "thickness": 0.02},
+        "frame": {"clamped": "x0"}, "points": {"start": {"edge": "x0"}, "end": {"edge": "x1"}}
+    }});
+    for body in [beam("clamped"), beam("chord"), shells] {
+        for (young, mass, place) in [
+            (1e7, 0.01, -1.0),
+            (1e9, 10.0, -1.0),
+            (1e9, 10.0, 0.0),
+            (1e9, 100.0, -1.0),
+            (1e13, 1.0, 0.0),
+        ] {
+            let spin = 0.3 * f64::sqrt(young / 1e9) * 10.0;
+            // The hub is at `place` along the body and turns about its z axis.
+            for (axis, angle) in [([0.0, 0.0, 1.0], 0.0), ([0.3, -1.0, 0.7], 1.1)] {
+                let axis = nalgebra::Unit::new_normalize(nalgebra::Vector3::from(axis));
+                let turn = nalgebra::Rotation3::from_axis_angle(&axis, angle);
+                let at = |x: [f64; 3]| json!((turn * nalgebra::Vector3::from(x)).as_slice());
+                let mut body = body.clone();
+                if let Some(own) = body.pointer_mut("/beam/material/young") {
+                    *own = json!(young);
+                }
+                body["place"] = json!({"put": "start", "at": [0, 0, 0], "turn": {"axis": axis.as_slice(), "angle": angle}});
+                let document = json!({
+                    "version": 1, "name": "blade", "start": "equilibrium", "gravity": [0, 0, 0],
+                    "bodies": {
+                        "blade": body,
+                        "hub": {"shape": {"cylinder": {"radius": 0.1, "length": 0.2}}, "mass": mass,
+                                "points": {"centre": [0, 0, 0]}, "place": {"put": "centre", "at": at([place, 0.0, 0.0])}}
+                    },
+                    "materials": {"soft": {"young": young, "poisson": 0, "density": 1000}},
+                    "joints": {
+                        "axle": {"revolute": {"between": ["hub", "ground"], "at": at([place, 0.0, 0.0]), "axis": at([0.0, 0.0, 1.0])}},
+                        "root": {"weld": {"between": ["blade", "hub"], "at": "blade.start"}}
+                    },
+                    "drives": {"motor": {"joint": "axle", "turn": {"polynomial": [0, spin]}}},
+                    "initial_velocity": {"angular": at([0.0, 0.0, spin])},
+                    "simulation": {"duration": 0.001, "steps": 2, "method": {"radau": {"stages": 2}}},
+                    "functions": {"x": {"final": {"position": {"body": "blade", "point": "end", "direction": at([1.0, 0.0, 0.0])}}}}
+                });
+                let told = growth_time(&document);
+                assert_eq!(told, None, "{document}");
+            }
+        }
+    }
 }
 
 /// Derivatives of the start of a plate on a ring that a drive turns: accelerations and velocities are given, so their

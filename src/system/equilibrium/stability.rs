@@ -12,7 +12,7 @@
 //! deformations are positive and gather at zero. Oscillations that grow (flutter) are not found.
 
 use super::matrix::Factors;
-use super::{KnownStarts, ROUGH, Solver, State, with_solution};
+use super::{FINE, KnownStarts, Solver, State, with_solution};
 use crate::math::slices::{add_scaled, dot};
 use crate::model::Model;
 use crate::system::failure::AssemblyFailure;
@@ -21,8 +21,8 @@ use nalgebra::DMatrix;
 /// Largest dimension of the Krylov space.
 const DIMENSION: usize = 24;
 /// A negative eigenvalue counts if it is larger than this, relative to the largest one.
-const COUNTS: f64 = 1e-8;
-/// Largest residual of an eigenvalue, relative to it.
+const COUNTS: f64 = 1e-7;
+/// Largest residual |S⁻¹ M y − μ y| of an eigenvalue μ, relative to it, for |y| = 1 in the metric of the mass.
 const CONVERGED: f64 = 1e-2;
 /// A vector lies in the space of those before if this part of it is left.
 const DEPENDENT: f64 = 1e-8;
@@ -44,11 +44,12 @@ impl Solver<'_> {
         let factors = Factors::new(self.layout, self.model, found);
         let mut factors = factors.ok_or(AssemblyFailure::Singular)?;
         let n = self.layout.numbering.unknowns();
+        let elastic = n - self.layout.rigid.len();
         let weighted = |y: &[f64]| self.layout.mass_product(self.model, &found.q, y);
-        let softened = |mass: &[f64], factors: &mut Factors| {
-            let mut right = mass.to_vec();
+        let mut softened = |y: &[f64]| {
+            let mut right = weighted(y);
             right.resize(self.layout.order(), 0.0);
-            let mut y = self.change(factors, found, &right, ROUGH);
+            let mut y = self.change(&mut factors, found, &right, FINE);
             y.truncate(n);
             y
         };
@@ -56,13 +57,12 @@ impl Solver<'_> {
         let any: Vec<f64> = (0..n)
             .map(|i| (1.0 + i as f64).sqrt().fract() - 0.5)
             .collect();
-        let mut next = softened(&weighted(&any), &mut factors);
+        let mut next = softened(&any);
         let mut basis: Vec<[Vec<f64>; 2]> = Vec::new();
         let mut columns: Vec<Vec<f64>> = Vec::new();
         loop {
             // Orthogonal in the metric of the mass.
-            let mut mass = weighted(&next);
-            let before = dot(&next, &mass).sqrt();
+            let before = dot(&next, &weighted(&next)).sqrt();
             let mut column = vec![0.0; basis.len()];
             for _ in 0..2 {
                 for (part, [y, with_mass]) in column.iter_mut().zip(&basis) {
@@ -71,7 +71,7 @@ impl Solver<'_> {
                     add_scaled(&mut next, -along, y);
                 }
             }
-            mass.copy_from_slice(&weighted(&next));
+            let mut mass = weighted(&next);
             let rest = dot(&next, &mass).sqrt();
             if !rest.is_finite() {
                 return Err(AssemblyFailure::Singular);
@@ -80,39 +80,49 @@ impl Solver<'_> {
             if !basis.is_empty() {
                 columns.push(column);
             }
-            let ends = rest <= DEPENDENT * before || basis.len() == DIMENSION.min(n);
-            if ends {
-                return Ok(fastest(&columns));
+            if rest <= DEPENDENT * before || basis.len() == DIMENSION.min(elastic) {
+                break;
             }
             next.iter_mut().for_each(|x| *x /= rest);
             mass.iter_mut().for_each(|x| *x /= rest);
             let y = next;
-            next = softened(&mass, &mut factors);
+            next = softened(&y);
             basis.push([y, mass]);
         }
+        let mut fastest: Option<f64> = None;
+        for (value, parts) in negative(&columns) {
+            let mut y = vec![0.0; n];
+            for (part, [own, _]) in parts.iter().zip(&basis) {
+                add_scaled(&mut y, *part, own);
+            }
+            // A space of errors of solutions has eigenvalues, too.
+            let mut rest = softened(&y);
+            add_scaled(&mut rest, -value, &y);
+            if dot(&rest, &weighted(&rest)).sqrt() <= CONVERGED * value.abs() {
+                let sigma = (-1.0 / value).sqrt();
+                fastest = Some(fastest.map_or(sigma, |other| other.max(sigma)));
+            }
+        }
+        Ok(fastest)
     }
 }
 
-/// σ of the negative eigenvalue of least size in the columns of a Hessenberg matrix.
-fn fastest(columns: &[Vec<f64>]) -> Option<f64> {
-    let beyond = columns.last()?.last()?.abs();
+/// Negative eigenvalues of the columns of a Hessenberg matrix, with unit eigenvectors.
+fn negative(columns: &[Vec<f64>]) -> Vec<(f64, Vec<f64>)> {
     let k = columns.len();
+    if k == 0 {
+        return Vec::new();
+    }
     let h = DMatrix::from_fn(k, k, |i, j| columns[j].get(i).copied().unwrap_or(0.0));
     let values = h.clone().schur().complex_eigenvalues();
     let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.norm()));
-    let mut out: Option<f64> = None;
-    for value in values
-        .iter()
-        .filter(|x| x.im == 0.0 && x.re < -COUNTS * largest)
-    {
-        let shifted = &h - DMatrix::identity(k, k) * value.re;
-        let decomposed = shifted.svd(false, true);
-        // The residual is the last part of the eigenvector times the next column's length.
-        let last = decomposed.v_t.map_or(1.0, |v| v[(k - 1, k - 1)].abs());
-        if beyond * last <= CONVERGED * value.re.abs() {
-            let sigma = (-1.0 / value.re).sqrt();
-            out = Some(out.map_or(sigma, |other| other.max(sigma)));
-        }
-    }
-    out
+    let counts = |x: &f64| *x < -COUNTS * largest;
+    let real = values.iter().filter(|x| x.im == 0.0).map(|x| x.re);
+    real.filter(counts)
+        .filter_map(|value| {
+            let shifted = &h - DMatrix::identity(k, k) * value;
+            let v = shifted.svd(false, true).v_t?;
+            Some((value, v.row(k - 1).iter().copied().collect()))
+        })
+        .collect()
 }
