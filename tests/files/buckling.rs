@@ -92,23 +92,65 @@ fn disturbances_grow_as_told() {
     assert!((told / seen - 1.0).abs() < 0.05, "{told} {seen}");
 }
 
-/// What points outward from a hub that a drive turns is stretched, so no start is told as unstable: beams in each frame and
-/// shells, soft and stiff, in any axes, with hubs of any mass, about the origin or not.
+/// A blade of 1 m with its root at the origin, on a hub that a drive turns: a beam in a frame, or shells.
+fn blade(frame: &str, young: f64) -> Value {
+    match frame {
+        "shells" => json!({"elements": {
+            "structure": {"mesh": {"plate": {"length": 1, "width": 0.1, "elements": [4, 1]}},
+                          "material": "soft", "thickness": 0.02},
+            "frame": {"clamped": "x0"}, "points": {"start": {"edge": "x0"}, "end": {"edge": "x1"}}
+        }}),
+        _ => json!({"beam": {
+            "length": 1, "section": {"rectangle": {"width": 0.1, "height": 0.02}},
+            "material": {"young": young, "poisson": 0, "density": 1000}, "frame": frame,
+            "modes": {"bending_y": 4, "bending_z": 4, "torsion": 0, "stretch": 2}
+        }}),
+    }
+}
+
+/// The blade on a hub of this mass at `place` along it. The hub turns about its z axis with `part` of the lowest angular
+/// frequency of the blade; the whole is turned by an angle about an axis.
+fn turning(
+    frame: &str,
+    young: f64,
+    (mass, place): (f64, f64),
+    part: f64,
+    (axis, angle): ([f64; 3], f64),
+) -> Value {
+    let spin = part * 3.516 * f64::sqrt(young * 0.02 * 0.02 / (12.0 * 1000.0));
+    let axis = nalgebra::Unit::new_normalize(nalgebra::Vector3::from(axis));
+    let turn = nalgebra::Rotation3::from_axis_angle(&axis, angle);
+    let at = |x: [f64; 3]| json!((turn * nalgebra::Vector3::from(x)).as_slice());
+    let (centre, up) = (at([place, 0.0, 0.0]), at([0.0, 0.0, 1.0]));
+    let mut body = blade(frame, young);
+    body["place"] =
+        json!({"put": "start", "at": [0, 0, 0], "turn": {"axis": axis.as_slice(), "angle": angle}});
+    json!({
+        "version": 1, "name": "blade", "start": "equilibrium", "gravity": [0, 0, 0],
+        "bodies": {
+            "blade": body,
+            "hub": {"shape": {"cylinder": {"radius": 0.1, "length": 0.2}}, "mass": mass,
+                    "points": {"centre": [0, 0, 0]}, "place": {"put": "centre", "at": centre}}
+        },
+        "materials": {"soft": {"young": young, "poisson": 0, "density": 1000}},
+        "joints": {
+            "axle": {"revolute": {"between": ["hub", "ground"], "at": centre, "axis": up}},
+            "root": {"weld": {"between": ["blade", "hub"], "at": "blade.start"}}
+        },
+        "drives": {"motor": {"joint": "axle", "turn": {"polynomial": [0, spin]}}},
+        "initial_velocity": {"angular": at([0.0, 0.0, spin])},
+        "simulation": {"duration": 0.001, "steps": 2, "method": {"radau": {"stages": 2}}},
+        "functions": {"x": {"final": {"position": {"body": "blade", "point": "end", "direction": at([1.0, 0.0, 0.0])}}}}
+    })
+}
+
+const TURNS: [([f64; 3], f64); 2] = [([0.0, 0.0, 1.0], 0.0), ([0.3, -1.0, 0.7], 1.1)];
+
+/// What points outward from a hub that a drive turns is stretched, so no start is told as unstable: soft and stiff, in any
+/// axes, with hubs of any mass, about the origin or not.
 #[test]
 fn what_rotation_stretches_is_stable() {
-    let section = json!({"rectangle": {"width": 0.1, "height": 0.02}});
-    let beam = |frame: &str| {
-        json!({"beam": {
-            "length": 1, "section": section, "material": {"young": 1e9, "poisson": 0, "density": 1000},
-            "frame": frame, "modes": {"bending_y": 4, "bending_z": 4, "torsion": 0, "stretch": 2}
-        }})
-    };
-    let shells = json!({"elements": {
-        "structure": {"mesh": {"plate": {"length": 1, "width": 0.1, "elements": [4, 1]}},
-                      "material": "soft", "thickness": 0.02},
-        "frame": {"clamped": "x0"}, "points": {"start": {"edge": "x0"}, "end": {"edge": "x1"}}
-    }});
-    for body in [beam("clamped"), beam("chord"), shells] {
+    for frame in ["clamped", "chord", "shells"] {
         for (young, mass, place) in [
             (1e7, 0.01, -1.0),
             (1e9, 10.0, -1.0),
@@ -116,37 +158,29 @@ fn what_rotation_stretches_is_stable() {
             (1e9, 100.0, -1.0),
             (1e13, 1.0, 0.0),
         ] {
-            let spin = 0.3 * f64::sqrt(young / 1e9) * 10.0;
-            // The hub is at `place` along the body and turns about its z axis.
-            for (axis, angle) in [([0.0, 0.0, 1.0], 0.0), ([0.3, -1.0, 0.7], 1.1)] {
-                let axis = nalgebra::Unit::new_normalize(nalgebra::Vector3::from(axis));
-                let turn = nalgebra::Rotation3::from_axis_angle(&axis, angle);
-                let at = |x: [f64; 3]| json!((turn * nalgebra::Vector3::from(x)).as_slice());
-                let mut body = body.clone();
-                if let Some(own) = body.pointer_mut("/beam/material/young") {
-                    *own = json!(young);
-                }
-                body["place"] = json!({"put": "start", "at": [0, 0, 0], "turn": {"axis": axis.as_slice(), "angle": angle}});
-                let document = json!({
-                    "version": 1, "name": "blade", "start": "equilibrium", "gravity": [0, 0, 0],
-                    "bodies": {
-                        "blade": body,
-                        "hub": {"shape": {"cylinder": {"radius": 0.1, "length": 0.2}}, "mass": mass,
-                                "points": {"centre": [0, 0, 0]}, "place": {"put": "centre", "at": at([place, 0.0, 0.0])}}
-                    },
-                    "materials": {"soft": {"young": young, "poisson": 0, "density": 1000}},
-                    "joints": {
-                        "axle": {"revolute": {"between": ["hub", "ground"], "at": at([place, 0.0, 0.0]), "axis": at([0.0, 0.0, 1.0])}},
-                        "root": {"weld": {"between": ["blade", "hub"], "at": "blade.start"}}
-                    },
-                    "drives": {"motor": {"joint": "axle", "turn": {"polynomial": [0, spin]}}},
-                    "initial_velocity": {"angular": at([0.0, 0.0, spin])},
-                    "simulation": {"duration": 0.001, "steps": 2, "method": {"radau": {"stages": 2}}},
-                    "functions": {"x": {"final": {"position": {"body": "blade", "point": "end", "direction": at([1.0, 0.0, 0.0])}}}}
-                });
-                let told = growth_time(&document);
-                assert_eq!(told, None, "{document}");
+            for (part, turn) in [(0.3, TURNS[0]), (0.3, TURNS[1]), (1.5, TURNS[0])] {
+                let document = turning(frame, young, (mass, place), part, turn);
+                assert_eq!(growth_time(&document), None, "{document}");
             }
+        }
+    }
+}
+
+/// What points inward is told from the same speed on in any axes, and its growth has the units of its stiffness.
+#[test]
+fn what_rotation_compresses_is_told() {
+    for frame in ["clamped", "chord", "shells"] {
+        for part in [0.5, 2.0, 3.0] {
+            let mut all = Vec::new();
+            for (young, turn) in [(1e9, TURNS[0]), (1e9, TURNS[1]), (1e7, TURNS[1])] {
+                let document = turning(frame, young, (10.0, 1.0), part, turn);
+                let told = growth_time(&document);
+                assert_eq!(told.is_some(), part > 1.0, "{document}");
+                all.extend(told.map(|time| time * f64::sqrt(young)));
+            }
+            let mean = all.iter().sum::<f64>() / all.len() as f64;
+            // The note has two digits.
+            assert!(all.iter().all(|x| (x / mean - 1.0).abs() < 0.06), "{all:?}");
         }
     }
 }

@@ -129,11 +129,13 @@ impl<'a> Layout<'a> {
         let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let floor = LEAST_SCALE * largest(change);
         let [y, a, v, lambda, sigma, tau] = self.groups().map(|group| largest(&change[group]));
-        let a = a.max(NEGLIGIBLE * lambda / mass);
-        let v = v.max(NEGLIGIBLE * (a * y).sqrt());
-        let lambda = lambda.max(NEGLIGIBLE * mass * a);
+        let acceleration = a.max(lambda / mass);
+        let speed = v.max((acceleration * y).sqrt());
+        let a = a.max(NEGLIGIBLE * acceleration);
+        let v = v.max(NEGLIGIBLE * speed);
+        let lambda = lambda.max(NEGLIGIBLE * mass * acceleration);
         let sigma = sigma.max(NEGLIGIBLE * mass * y);
-        let tau = tau.max(NEGLIGIBLE * mass * v);
+        let tau = tau.max(NEGLIGIBLE * mass * speed);
         let mut out = vec![1.0; change.len()];
         for (group, size) in self.groups().into_iter().zip([y, a, v, lambda, sigma, tau]) {
             let size = size.max(floor);
