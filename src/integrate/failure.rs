@@ -2,13 +2,6 @@
 
 use crate::system::failure::AssemblyFailure;
 
-fn size(residual: f64) -> String {
-    match residual.is_finite() {
-        true => format!("scaled residual {residual:.3e}"),
-        false => "residual not finite".into(),
-    }
-}
-
 /// The reason why a simulation did not reach its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum IntegrationFailure {
@@ -294,4 +287,12 @@ pub(crate) enum IntegrationFailure {
         /// The duration \[s\].
         duration: f64,
     },
+}
+
+/// The size of a residual in a message.
+fn size(residual: f64) -> String {
+    match residual.is_finite() {
+        true => format!("scaled residual {residual:.3e}"),
+        false => "residual not finite".into(),
+    }
 }

@@ -149,6 +149,13 @@ pub(super) fn equal(steps: usize) -> Vec<Way> {
     methods.map(way).collect()
 }
 
+/// A case for each value of what is extreme, by each way.
+pub(super) fn each<T: Copy>(values: &[T], ways: &[Way], of: impl Fn(T, Way) -> Case) -> Vec<Case> {
+    let by_ways = |&value: &T| ways.iter().map(move |&way| (value, way));
+    let all = values.iter().flat_map(by_ways);
+    all.map(|(value, way)| of(value, way)).collect()
+}
+
 impl Way {
     /// Name for the table.
     pub(crate) fn name(self) -> String {
@@ -210,6 +217,20 @@ impl Case {
     pub(crate) fn set(mut self, path: &str, value: impl std::fmt::Display) -> Self {
         self.changes.push(format!("{path}={value}"));
         self
+    }
+
+    /// The case with another largest error.
+    pub(super) fn within(self, bound: f64) -> Self {
+        Self { bound, ..self }
+    }
+
+    /// The case without a look at its energy: nothing moves, or a drive does work.
+    pub(super) fn without_energy(self) -> Self {
+        let conservative = false;
+        Self {
+            conservative,
+            ..self
+        }
     }
 
     /// Method and steps for the table.

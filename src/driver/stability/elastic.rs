@@ -90,6 +90,10 @@ impl Elastic {
             Elastic::Squeezed { strain } | Elastic::Across { strain } if strain >= HOOKE => {
                 (vec![f64::NAN; 2], vec![1.0; 2])
             }
+            Elastic::Squeezed { strain } => {
+                let energy = 0.5 * strain * squeeze(strain);
+                (vec![strain, 0.0], vec![strain, energy])
+            }
             Elastic::Across { strain } => {
                 let energy = 0.5 * strain * squeeze(strain);
                 (vec![WIDTH * strain, 0.0], vec![WIDTH * strain, energy])
@@ -102,11 +106,12 @@ impl Elastic {
                 (vec![deflection, 0.0], vec![deflection, energy])
             }
             Elastic::Tumbling => tumbling(),
-            Elastic::Squeezed { strain } => {
-                let energy = 0.5 * strain * squeeze(strain);
-                (vec![strain, 0.0], vec![strain, energy])
-            }
             Elastic::Bar { turn, .. } if turn >= FRAC_PI_2 => (vec![f64::NAN; 2], vec![1.0; 2]),
+            Elastic::Bar { turn, time } => {
+                let (length, angle) = (turn.tan() / turn, 10.0 * time);
+                let values = vec![length * angle.cos(), length * angle.sin()];
+                (values, vec![length.abs(); 2])
+            }
             Elastic::Inward { turn } => {
                 let load = BUCKLING * turn * turn;
                 // q L³ / EI, of the weight 2e-5 N/kg at 10 rad/s.
@@ -115,11 +120,6 @@ impl Elastic {
                     vec![if turn < 1.0 { tip } else { f64::NAN }],
                     vec![tip.abs()],
                 )
-            }
-            Elastic::Bar { turn, time } => {
-                let (length, angle) = (turn.tan() / turn, 10.0 * time);
-                let values = vec![length * angle.cos(), length * angle.sin()];
-                (values, vec![length.abs(); 2])
             }
             Elastic::Chain { bodies, time } => {
                 let fall = -0.5 * 9.81 * time * time;

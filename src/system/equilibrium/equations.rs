@@ -257,18 +257,23 @@ impl<'a> Layout<'a> {
         out
     }
 
-    /// M(q) y, both for unknowns of velocity.
-    pub(super) fn mass_product(&self, model: &Model<f64>, q: &[f64], y: &[f64]) -> Vec<f64> {
-        let numbering = self.numbering;
+    /// The bodies at positions q, without velocity.
+    pub(super) fn at_rest(&self, q: &[f64]) -> Vec<BodyMotion<f64>> {
         let mut motions = Vec::new();
-        BodyMotion::all(
-            numbering,
-            q,
-            &vec![0.0; numbering.velocities()],
-            &mut motions,
-        );
+        let still = vec![0.0; self.numbering.velocities()];
+        BodyMotion::all(self.numbering, q, &still, &mut motions);
+        motions
+    }
+
+    /// M(q) y, both for unknowns of velocity.
+    pub(super) fn mass_product(
+        &self,
+        model: &Model<f64>,
+        motions: &[BodyMotion<f64>],
+        y: &[f64],
+    ) -> Vec<f64> {
         let y = self.expanded(y.to_vec());
-        self.compressed(mass_product(model, numbering, &motions, &y))
+        self.compressed(mass_product(model, self.numbering, motions, &y))
     }
 
     /// Products with the derivative of the residual.

@@ -103,11 +103,13 @@ pub(crate) fn settle<S: Scalar>(
     model: &mut Model<S>,
     known: &KnownStarts,
 ) -> Result<(), AssemblyFailure> {
-    let (state, v) = with_solution(model, known, |own, given, solver, found| {
+    let own = without_spin(model);
+    let numbering = Numbering::new(&own);
+    let (state, v) = with_solution((&own, &numbering), known, |given, solver, found| {
         let layout = solver.layout;
         let mut state: State<S> = found.map(S::from);
         if S::INFINITESIMAL {
-            let residual = layout.residual(own, given, &state);
+            let residual = layout.residual(&own, given, &state);
             let right: Vec<f64> = residual.iter().map(|x| -x.infinitesimal()).collect();
             let factors = Factors::new(layout, solver.model, found);
             let mut factors = factors.ok_or(AssemblyFailure::Singular)?;
@@ -118,7 +120,6 @@ pub(crate) fn settle<S: Scalar>(
         let v = layout.of_rigid(&state.v);
         Ok((state, v))
     })?;
-    let numbering = Numbering::new(&without_spin(model));
     for (i, body) in model.bodies.iter_mut().enumerate() {
         (body.position, body.orientation) = positions_of(&state.q[numbering.position(i)..]);
         if numbering.mobility(i).unknowns() > 0 {
@@ -140,25 +141,23 @@ fn without_spin<S: Scalar>(model: &Model<S>) -> Model<S> {
     own
 }
 
-/// What `of` makes of the real solution for `model`, whose bodies are placed and undeformed.
+/// What `of` makes of the real solution for a model [`without_spin`], whose bodies are placed and undeformed.
 fn with_solution<S: Scalar, T>(
-    model: &Model<S>,
+    (own, numbering): (&Model<S>, &Numbering),
     known: &KnownStarts,
-    of: impl FnOnce(&Model<S>, &Given<S>, &Solver, &State<f64>) -> Result<T, AssemblyFailure>,
+    of: impl FnOnce(&Given<S>, &Solver, &State<f64>) -> Result<T, AssemblyFailure>,
 ) -> Result<T, AssemblyFailure> {
-    let own = without_spin(model);
-    let placed = nearest(&own)?.q;
-    let numbering = Numbering::new(&own);
-    let given = Given::of(&own, &numbering, placed);
+    let placed = nearest(own)?.q;
+    let given = Given::of(own, numbering, placed);
     let mut numbers = vec![numbering.unknowns() as f64, numbering.constraints() as f64];
     let mut real = own.map(&mut |x| {
         numbers.push(x.re());
         x.re()
     });
     redundancy::leave_out(&mut real);
-    let left_out = RedundantRows::of(&real, &numbering);
+    let left_out = RedundantRows::of(&real, numbering);
     let start = given.map(|x| x.re());
-    let layout = Layout::new(&real, &numbering, &left_out, &start.q);
+    let layout = Layout::new(&real, numbering, &left_out, &start.q);
     let solver = Solver {
         layout: &layout,
         model: &real,
@@ -167,7 +166,7 @@ fn with_solution<S: Scalar, T>(
         mass: real.bodies.iter().map(|body| body.mass).sum(),
     };
     let found = known.get(numbers, || solver.solve())?;
-    of(&own, &given, &solver, &found)
+    of(&given, &solver, &found)
 }
 
 /// The placement of the bodies, and their given velocities.

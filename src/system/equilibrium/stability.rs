@@ -12,10 +12,11 @@
 //! deformations are positive and gather at zero. Oscillations that grow (flutter) are not found.
 
 use super::matrix::Factors;
-use super::{FINE, KnownStarts, Solver, State, with_solution};
+use super::{FINE, KnownStarts, Solver, State, with_solution, without_spin};
 use crate::math::slices::{add_scaled, dot};
 use crate::model::Model;
 use crate::system::failure::AssemblyFailure;
+use crate::system::numbering::Numbering;
 use nalgebra::DMatrix;
 
 /// Largest dimension of the Krylov space.
@@ -36,7 +37,10 @@ pub(crate) fn growth(
     model: &Model<f64>,
     known: &KnownStarts,
 ) -> Result<Option<f64>, AssemblyFailure> {
-    with_solution(model, known, |_, _, solver, found| solver.growth(found))
+    let own = without_spin(model);
+    let numbering = Numbering::new(&own);
+    let growth = |_: &_, solver: &Solver, found: &_| solver.growth(found);
+    with_solution((&own, &numbering), known, growth)
 }
 
 impl Solver<'_> {
@@ -45,7 +49,8 @@ impl Solver<'_> {
         let mut factors = factors.ok_or(AssemblyFailure::Singular)?;
         let n = self.layout.numbering.unknowns();
         let elastic = n - self.layout.rigid.len();
-        let weighted = |y: &[f64]| self.layout.mass_product(self.model, &found.q, y);
+        let motions = self.layout.at_rest(&found.q);
+        let weighted = |y: &[f64]| self.layout.mass_product(self.model, &motions, y);
         let mut softened = |y: &[f64]| {
             let mut right = weighted(y);
             right.resize(self.layout.order(), 0.0);

@@ -19,7 +19,7 @@ pub(crate) use inertia::{
     first_moment, inertial, moving, pull_back, pull_first_moment, pull_kinetic, weights,
 };
 pub(crate) use orientation::{inside_out, turn};
-pub(crate) use parts::{axial_slopes, axial_strains, part_tangent};
+pub(crate) use parts::{of_axial_strains, part_tangent};
 pub(crate) use stiffness::{
     add_forces, diagonal, energy, factors, pull_energy, pull_forces, tangent,
 };

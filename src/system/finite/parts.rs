@@ -4,6 +4,7 @@
 use crate::linalg::Emit;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::finite::{FiniteElements, Part};
+use crate::model::shapes::Quadratic;
 use crate::system::flexing::{
     self, Block, Flexing, FlexingCotangent, Generalised, Moving, static_moment,
 };
@@ -29,25 +30,19 @@ pub(super) fn all<S: Scalar>(
     finite.parts.iter().zip(coordinates)
 }
 
-/// Strains of the beams along their axes. They alone are quadratic; the others are shears and curvatures.
-pub(crate) fn axial_strains<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> Vec<S> {
+/// A value of each strain of the beams along their axes, by the strain and the coordinates of its part. These strains alone
+/// are quadratic; the others are shears and curvatures.
+pub(crate) fn of_axial_strains<S: Scalar, T>(
+    finite: &FiniteElements<S>,
+    q: &[S],
+    of: impl Fn(&Quadratic<S>, &[S]) -> T,
+) -> Vec<T> {
     let mut out = Vec::new();
     for (part, coordinates) in all(finite) {
         let own = gather(coordinates, q);
-        let strains = part.stiffness.strains.iter();
-        let along = strains.filter(|own| !own.strain.squares.is_empty());
-        out.extend(along.map(|strain| strain.strain.value(&own)));
-    }
-    out
-}
-
-/// Slopes of the axes of the beams where they are integrated \[rad\].
-pub(crate) fn axial_slopes<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> Vec<f64> {
-    let mut out = Vec::new();
-    for (part, coordinates) in all(finite) {
-        let own = gather(coordinates, q);
-        let strains = part.stiffness.strains.iter();
-        out.extend(strains.map(|strain| strain.strain.slope(&own)));
+        let strains = part.stiffness.strains.iter().map(|own| &own.strain);
+        let along = strains.filter(|strain| !strain.squares.is_empty());
+        out.extend(along.map(|strain| of(strain, &own)));
     }
     out
 }

@@ -6,6 +6,7 @@ use super::truncated::{pull_kinetic, weighed};
 use crate::math::{Scalar, Vec3};
 use crate::model::Model;
 use crate::model::flexible::{FlexibleBody, Form, Inertia};
+use crate::model::shapes::Quadratic;
 use crate::system::bodies::BodyMotion;
 use crate::system::numbering::Numbering;
 use crate::system::{elastic, finite};
@@ -77,34 +78,34 @@ pub(crate) fn pull_strain_energy(
     add_part(numbering, body, (&still, &still), &by_q, y);
 }
 
-/// Strains of the beams of a body along their axes, where they are quadratic.
-pub(crate) fn axial_strains<S: Scalar>(
+/// A value of each strain of the beams of a body along their axes, where they are quadratic.
+fn of_axial_strains<S: Scalar, T>(
     body: &FlexibleBody<S>,
     motions: &[BodyMotion<S>],
-) -> Vec<S> {
+    of: impl Fn(&Quadratic<S>, &[S]) -> T,
+) -> Vec<T> {
     match (&body.form, body.form.shells()) {
         (_, Some(own)) if own.parts.is_empty() => Vec::new(),
-        (_, Some(own)) => finite::axial_strains(own, &unknowns(body, motions)),
+        (_, Some(own)) => finite::of_axial_strains(own, &unknowns(body, motions), of),
         (Form::Modal(modal), None) => {
             let (strains, q) = (modal.stiffness.strains.iter(), coordinates(body, motions));
-            strains.map(|own| own.strain.value(&q)).collect()
+            strains.map(|own| of(&own.strain, &q)).collect()
         }
         (Form::Finite(_), None) => Vec::new(),
     }
 }
 
-/// The largest slope of the axes of the beams of a body where they are integrated, if their strains are quadratic
-/// \[rad\].
+/// Strains of the beams of a body along their axes.
+pub(crate) fn axial_strains<S: Scalar>(
+    body: &FlexibleBody<S>,
+    motions: &[BodyMotion<S>],
+) -> Vec<S> {
+    of_axial_strains(body, motions, Quadratic::value)
+}
+
+/// The largest slope of the axes of the beams of a body where they are integrated \[rad\].
 pub(crate) fn axial_slope<S: Scalar>(body: &FlexibleBody<S>, motions: &[BodyMotion<S>]) -> f64 {
-    let slopes = match (&body.form, body.form.shells()) {
-        (_, Some(own)) if own.parts.is_empty() => Vec::new(),
-        (_, Some(own)) => finite::axial_slopes(own, &unknowns(body, motions)),
-        (Form::Modal(modal), None) => {
-            let (strains, q) = (modal.stiffness.strains.iter(), coordinates(body, motions));
-            strains.map(|own| own.strain.slope(&q)).collect()
-        }
-        (Form::Finite(_), None) => Vec::new(),
-    };
+    let slopes = of_axial_strains(body, motions, Quadratic::slope);
     slopes.into_iter().fold(0.0, f64::max)
 }
 
