@@ -111,6 +111,8 @@ pub(crate) struct ShellElement {
     pub points: [Vec3<f64>; POINTS],
     /// The point that each unknown moves, and how: displacements along the axes, node by node, then rotations.
     pub moves: Vec<(usize, Vec3<f64>)>,
+    /// The rotations among them; none if the nodes cannot follow any rotation of the element.
+    pub turns: Vec<Rotation>,
     /// A_ab \[m²\].
     pub shares: [[f64; NODES]; NODES],
     /// ∫ dA \[m²\].
@@ -131,6 +133,17 @@ pub(crate) struct ShellElement {
     pub poisson: f64,
     /// Yield stress \[Pa\].
     pub yield_stress: f64,
+}
+
+/// An unknown rotation of a node. The axes of a node are orthogonal. If they are two, they are tangents.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rotation {
+    /// The node of the element.
+    pub node: usize,
+    /// θ for an unknown of one.
+    pub axis: Vec3<f64>,
+    /// The unknown is its product with θ.
+    pub inverse: Vec3<f64>,
 }
 
 /// Strains and curvatures at the Gauss points of an element, in the frames there.

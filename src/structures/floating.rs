@@ -6,11 +6,11 @@ use super::mesh::{Mesh, UnknownSet};
 use super::shell::basis::TABLES;
 use super::state::Configuration;
 use super::structure::Structure;
-use super::supports::{NodeUnknowns, Support};
+use super::supports::{NodeUnknowns, Rotations, Support};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::element_operators::{Columns, Symmetric};
 use crate::model::finite::{
-    DISPLACEMENTS, ElementMesh, FiniteElements, NODES, QUADRATIC, SQUARES, ShellElement,
+    DISPLACEMENTS, ElementMesh, FiniteElements, NODES, QUADRATIC, Rotation, SQUARES, ShellElement,
 };
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -205,9 +205,28 @@ fn element(configuration: &Configuration<f64>, index: usize) -> ShellElement {
         linear: operators.linear.map(|all| Symmetric::of(&all, moves.len())),
         stress: OnceLock::new(),
         moves,
+        turns: turns(configuration, &nodes),
         poisson: shell.material.poisson,
         yield_stress: shell.material.yield_stress,
     }
+}
+
+/// Node and axis of the rotations of an element, if they can follow any rotation of it.
+fn turns(configuration: &Configuration<f64>, nodes: &[usize; NODES]) -> Vec<Rotation> {
+    let mut all = Vec::new();
+    for (node, &at) in nodes.iter().enumerate() {
+        match configuration.unknowns.nodes[at].rotations {
+            Rotations::Global([true, true, true]) | Rotations::Tangents(_) => {}
+            _ => return Vec::new(),
+        }
+        let (axes, count) = configuration.axes(at);
+        all.extend(axes[..count].iter().map(|&axis| Rotation {
+            node,
+            axis,
+            inverse: axis / axis.dot(&axis),
+        }));
+    }
+    all
 }
 
 impl<S: Scalar> FiniteElements<S> {

@@ -3,10 +3,11 @@
 
 use super::finite_elements::plates;
 use super::modal::modal;
-use crate::tests::reference::documents::{problem as parsed, run};
+use crate::tests::reference::documents::{problem as parsed, read, run};
 use crate::tests::reference::gradients::{
     gradients_are_exact, scaled_gradients_are_exact, thick_and_soft,
 };
+use flexbody::driver::check;
 use flexbody::problem::Problem;
 use flexbody::system::Numbering;
 use flexbody::system::initial;
@@ -263,6 +264,26 @@ fn starts_of_shells_have_exact_derivatives() {
     document["start"] = json!("equilibrium");
     let problem = parsed(&document);
     scaled_gradients_are_exact(&problem, &problem.start(), &method);
+}
+
+/// Plates of 2 mm: round-off of their stiffness against shear is relative to what deforms the elements.
+#[test]
+fn starts_of_thin_shells_have_derivatives_of_ten_digits() {
+    let mut document = read("problems/flexible/double_plate_mass.json");
+    for body in ["first", "second"] {
+        let structure = &mut document["bodies"][body]["elements"]["structure"];
+        structure["mesh"]["plate"]["elements"] = json!([3, 1]);
+        structure["thickness"]["value"] = json!(0.002);
+    }
+    document["simulation"]["duration"] = json!(0.004);
+    document["simulation"]["steps"] = json!(1);
+    let problem = parsed(&document);
+    let found = check(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
+    assert_eq!(found.len(), 18);
+    for derivative in found {
+        let off = derivative.relative_difference();
+        assert!(off < 1e-10, "{derivative:?}: {off:e}");
+    }
 }
 
 /// The message names what cannot start in equilibrium.

@@ -1,17 +1,10 @@
 //! Shells in reduced bases, from files: against all nodes, with exact derivatives; what files may not say.
 
-use crate::tests::reference::documents::{problem as parsed, values};
+use crate::tests::reference::documents::{problem as parsed, read, values};
 use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
 use flexbody::driver::{accuracy, bases, explain, simulate};
 use flexbody::problem::{Override, Problem};
 use serde_json::Value;
-use std::path::Path;
-
-fn read(name: &str) -> Value {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
-    let text = std::fs::read_to_string(path).expect("a file");
-    serde_json::from_str(&text).expect("valid JSON")
-}
 
 /// The double plate with this mesh and basis, simulated by BDF.
 fn plates(elements: [usize; 2], basis: &Value, duration: f64, steps: usize) -> Value {

@@ -50,8 +50,9 @@ const SPOILT: [(&str, f64); 30] = [
     ("shell-undamped/100/", 1e-8),
     // Of a plate of 1/100 thickness; near the load at which it buckles and beyond it errors grow with the deflection.
     ("shell-buckling/", 1e-8),
-    // Near the speed at which the stretch has no bound, and beyond it.
-    ("spin/1.3/", 1e-9),
+    // Near the speed at which the stretch has no bound, and beyond it. At 1.3 the round-off of the motion moves
+    // derivatives by 1.7e-8.
+    ("spin/1.3/", 2e-8),
     ("spin/1.5/", 1e-7),
     ("spin/3/", 1e-9),
 ];

@@ -18,12 +18,16 @@ const SCENE: [&str; 7] = [
     "initial_velocity",
 ];
 
+/// A file by its path in the project.
+pub fn read(name: &str) -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    let text = std::fs::read_to_string(path).expect("a file");
+    serde_json::from_str(&text).expect("valid JSON")
+}
+
 /// A file of `problems/benchmarks`.
 pub fn benchmark(name: &str) -> Value {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let path = path.join(format!("problems/benchmarks/{name}.json"));
-    let text = std::fs::read_to_string(path).expect("a problem file");
-    serde_json::from_str(&text).expect("JSON")
+    read(&format!("problems/benchmarks/{name}.json"))
 }
 
 /// Names of the bodies of a file.

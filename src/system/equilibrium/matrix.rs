@@ -1,7 +1,7 @@
 //! The sparse matrix of the quasi-static start, without derivatives of M and G in the rows of rigid motions.
 
 use super::equations::{Layout, State};
-use crate::linalg::{Emit, KnownPivots, Pattern, SparseLu, SparseMatrix};
+use crate::linalg::{Emit, KnownPivots, Pattern, SingularMatrix, SparseLu, SparseMatrix};
 use crate::model::Model;
 use crate::system::bodies::BodyMotion;
 use crate::system::emit_bodies::{Rates, emit_force_balance};
@@ -15,38 +15,69 @@ use crate::system::reduce::emit_reduced;
 /// Parts of rows and columns in velocity numbering: positions, accelerations, velocities.
 const PARTS: usize = 3;
 
-/// Factors of the matrix.
-pub(super) struct Factors(SparseLu<f64>);
+/// The matrix with its factors.
+pub(super) struct Factors {
+    places: Vec<Option<usize>>,
+    matrix: SparseMatrix<f64>,
+    factors: SparseLu<f64>,
+}
 
 impl Factors {
-    /// The factors at a state; `None` if the matrix is singular.
-    pub(super) fn new(layout: &Layout, model: &Model<f64>, x: &State<f64>) -> Option<Self> {
+    /// Plans the factors of the equations at any state; `x` is one.
+    pub(super) fn plan(layout: &Layout, model: &Model<f64>, x: &State<f64>) -> Self {
         let places = places(layout);
-        let emit_all = |emit: &mut dyn Emit<f64>| {
-            let mut chosen = Chosen {
-                places: &places,
-                emit,
-            };
-            emit_reduced(layout.numbering, PARTS, &mut chosen, |emit| {
-                emit_matrix(layout, model, x, emit);
-            });
-        };
         let nodal = flexible::nodal_unknowns(model, layout.numbering);
-        let pattern = Pattern::record(layout.order(), emit_all).with_pivots(KnownPivots {
+        let pattern = Pattern::record(layout.order(), |emit: &mut dyn Emit<f64>| {
+            emit_chosen(&places, layout, (model, x), emit);
+        });
+        let pattern = pattern.with_pivots(KnownPivots {
             short: Vec::new(),
             inner: nodal.into_iter().map(|i| (i, i)).collect(),
         });
-        let mut factors = SparseLu::new(&pattern);
-        let mut matrix = SparseMatrix::new(pattern);
-        matrix.assemble(emit_all);
-        factors.factorise(&matrix).ok()?;
-        Some(Self(factors))
+        Self {
+            factors: SparseLu::new(&pattern),
+            matrix: SparseMatrix::new(pattern),
+            places,
+        }
+    }
+
+    /// Makes the factors at a state. The layout is that of the plan.
+    ///
+    /// # Errors
+    /// A singular matrix.
+    pub(super) fn make(
+        &mut self,
+        layout: &Layout,
+        model: &Model<f64>,
+        x: &State<f64>,
+    ) -> Result<(), SingularMatrix> {
+        let places = &self.places;
+        (self.matrix).assemble(|emit| emit_chosen(places, layout, (model, x), emit));
+        self.factors.factorise(&self.matrix)
     }
 
     /// Solves in place.
     pub(super) fn solve(&mut self, b: &mut [f64]) {
-        self.0.solve(b);
+        self.factors.solve(b);
     }
+}
+
+impl std::fmt::Debug for Factors {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "factors of order {}", self.places.len())
+    }
+}
+
+fn emit_chosen(
+    places: &[Option<usize>],
+    layout: &Layout,
+    (model, x): (&Model<f64>, &State<f64>),
+    emit: &mut dyn Emit<f64>,
+) {
+    let mut chosen = Chosen { places, emit };
+    emit_reduced(layout.numbering, PARTS, &mut chosen, |emit| {
+        emit_matrix(layout, model, x, emit);
+    });
 }
 
 /// The place of each reduced row or column among the unknowns; `None` of those that are no

@@ -45,52 +45,55 @@ const CLOSE: f64 = 1e-13;
 const STAGNANT: f64 = 1e-8;
 /// Largest change of positions in an iteration, relative to the length scale.
 const LARGEST: f64 = 0.2;
-/// Largest part of the residual that a linear solution leaves in Newton's method, and in derivatives.
-const ROUGH: f64 = 1e-6;
-const FINE: f64 = 1e-15;
-/// Products of a linear solution, and how often one is refined.
+/// Largest part of the residual that a linear solution leaves, and its products.
+const TOLERANCE: f64 = 1e-6;
 const PRODUCTS: usize = 60;
-const REFINEMENTS: usize = 3;
+/// Linear solutions for a change in Newton's method; and for a derivative, which they refine to round-off.
+const ROUGH: usize = 1;
+const FINE: usize = 3;
 
 /// Number of starts that are kept.
 const KEPT: usize = 4;
 
-/// Known real starts, keyed by the numbers of their models. A scene is made repeatedly at one
-/// design, for its values and for each derivative.
+/// Known real starts, keyed by the numbers of their models, and the factors of the latest one. A scene is made
+/// repeatedly at one design, for its values and for each derivative.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct KnownStarts(Arc<Mutex<Vec<Known>>>);
+pub(crate) struct KnownStarts(Arc<Mutex<Known>>);
 
-#[derive(Clone, Debug)]
+#[derive(Debug, Default)]
 struct Known {
-    numbers: Vec<f64>,
-    state: State<f64>,
+    states: Vec<(Vec<f64>, State<f64>)>,
+    factors: Option<(Vec<f64>, Factors)>,
 }
 
 impl KnownStarts {
-    /// The state of these numbers, or a new one.
-    fn get(
-        &self,
-        numbers: Vec<f64>,
-        find: impl FnOnce() -> Result<State<f64>, AssemblyFailure>,
-    ) -> Result<State<f64>, AssemblyFailure> {
-        let known = self.0.lock().ok();
-        let found = known.and_then(|all| {
-            let mut all = all.iter();
-            let same = all.find(|known| known.numbers == numbers);
-            same.map(|known| known.state.clone())
-        });
-        if let Some(state) = found {
-            return Ok(state);
-        }
-        let state = find()?;
-        if let Ok(mut all) = self.0.lock() {
-            if all.len() == KEPT {
-                all.remove(0);
+    /// The state of these numbers.
+    fn state(&self, numbers: &[f64]) -> Option<State<f64>> {
+        let known = self.0.lock().ok()?;
+        let same = known.states.iter().find(|(own, _)| own == numbers);
+        same.map(|(_, state)| state.clone())
+    }
+
+    fn keep(&self, numbers: &[f64], state: &State<f64>) {
+        if let Ok(mut known) = self.0.lock() {
+            if known.states.len() == KEPT {
+                known.states.remove(0);
             }
-            let state = state.clone();
-            all.push(Known { numbers, state });
+            known.states.push((numbers.to_vec(), state.clone()));
         }
-        Ok(state)
+    }
+
+    /// Takes the factors of these numbers. Another thread makes its own.
+    fn take_factors(&self, numbers: &[f64]) -> Option<Factors> {
+        let mut known = self.0.lock().ok()?;
+        let kept = known.factors.take_if(|(own, _)| own == numbers);
+        kept.map(|(_, factors)| factors)
+    }
+
+    fn keep_factors(&self, numbers: Vec<f64>, factors: Factors) {
+        if let Ok(mut known) = self.0.lock() {
+            known.factors = Some((numbers, factors));
+        }
     }
 }
 
@@ -111,9 +114,8 @@ pub(crate) fn settle<S: Scalar>(
         if S::INFINITESIMAL {
             let residual = layout.residual(&own, given, &state);
             let right: Vec<f64> = residual.iter().map(|x| -x.infinitesimal()).collect();
-            let factors = Factors::new(layout, solver.model, found);
-            let mut factors = factors.ok_or(AssemblyFailure::Singular)?;
-            let change = solver.change(&mut factors, found, &right, FINE);
+            let change = solver
+                .with_factors(found, |factors| solver.change(factors, found, &right, FINE))?;
             let change: Vec<S> = change.into_iter().map(S::of_infinitesimal).collect();
             layout.advance(&mut state, &change);
         }
@@ -164,8 +166,13 @@ fn with_solution<S: Scalar, T>(
         given: &start,
         scale: length_scale(&real),
         mass: real.bodies.iter().map(|body| body.mass).sum(),
+        numbers,
+        known,
     };
-    let found = known.get(numbers, || solver.solve())?;
+    let found = match known.state(&solver.numbers) {
+        Some(found) => found,
+        None => solver.solve()?,
+    };
     of(&given, &solver, &found)
 }
 
@@ -199,19 +206,43 @@ struct Solver<'a> {
     /// Length of the scene \[m\] and mass of all bodies \[kg\].
     scale: f64,
     mass: f64,
+    /// All numbers of the model, and the starts that are known.
+    numbers: Vec<f64>,
+    known: &'a KnownStarts,
 }
 
 impl Solver<'_> {
-    /// Newton's method from the placement.
+    /// What `of` makes of factors at the solution.
+    fn with_factors<T>(
+        &self,
+        found: &State<f64>,
+        of: impl FnOnce(&mut Factors) -> T,
+    ) -> Result<T, AssemblyFailure> {
+        let mut factors = match self.known.take_factors(&self.numbers) {
+            Some(factors) => factors,
+            None => {
+                let mut factors = Factors::plan(self.layout, self.model, found);
+                let made = factors.make(self.layout, self.model, found);
+                made.map_err(|_| AssemblyFailure::Singular)?;
+                factors
+            }
+        };
+        let out = of(&mut factors);
+        self.known.keep_factors(self.numbers.clone(), factors);
+        Ok(out)
+    }
+
+    /// Newton's method from the placement. The solution becomes known, with the factors of the last iteration.
     fn solve(&self) -> Result<State<f64>, AssemblyFailure> {
         let mut x = self.layout.start(self.given);
         let none = |iterations| AssemblyFailure::NoEquilibrium { iterations };
         let mut before = f64::INFINITY;
+        let mut factors = Factors::plan(self.layout, self.model, &x);
         for iteration in 1..=ITERATIONS {
             let residual = self.layout.residual(self.model, self.given, &x);
             let right: Vec<f64> = residual.iter().map(|x| -x).collect();
-            let factors = Factors::new(self.layout, self.model, &x);
-            let mut factors = factors.ok_or_else(|| none(iteration))?;
+            let made = factors.make(self.layout, self.model, &x);
+            made.map_err(|_| none(iteration))?;
             let change = self.change(&mut factors, &x, &right, ROUGH);
             if !change.iter().all(|x| x.is_finite()) {
                 return Err(none(iteration));
@@ -221,6 +252,8 @@ impl Solver<'_> {
             let step: Vec<f64> = change.iter().map(|x| part * x).collect();
             self.layout.advance(&mut x, &step);
             if size <= CLOSE || size <= STAGNANT && size > 0.3 * before {
+                self.known.keep(&self.numbers, &x);
+                self.known.keep_factors(self.numbers.clone(), factors);
                 return Ok(x);
             }
             before = size;
@@ -228,13 +261,14 @@ impl Solver<'_> {
         Err(none(ITERATIONS))
     }
 
-    /// The change of the unknowns by which the residual changes by `right`, to the part `tolerance`.
+    /// The change of the unknowns by which the residual changes by `right`, from so many linear
+    /// solutions that refine each other.
     fn change(
         &self,
         factors: &mut Factors,
         at: &State<f64>,
         right: &[f64],
-        tolerance: f64,
+        solutions: usize,
     ) -> Vec<f64> {
         let along = self.layout.along(self.model, self.given, at);
         let mut first = right.to_vec();
@@ -242,7 +276,13 @@ impl Solver<'_> {
         let scales = self.layout.scales(&first, self.mass);
         let mut out = vec![0.0; right.len()];
         let mut rest = right.to_vec();
-        for _ in 0..REFINEMENTS {
+        for solution in 0..solutions {
+            if solution > 0 {
+                rest = along.product(&out);
+                for (rest, right) in rest.iter_mut().zip(right) {
+                    *rest = right - *rest;
+                }
+            }
             factors.solve(&mut rest);
             let scaled: Vec<f64> = rest.iter().zip(&scales).map(|(x, s)| x / s).collect();
             let product = |z: &[f64]| {
@@ -252,16 +292,9 @@ impl Solver<'_> {
                 y.iter_mut().zip(&scales).for_each(|(y, s)| *y /= s);
                 y
             };
-            let z = gmres(product, &scaled, tolerance, PRODUCTS);
+            let z = gmres(product, &scaled, TOLERANCE, PRODUCTS);
             for ((out, z), s) in out.iter_mut().zip(&z).zip(&scales) {
                 *out += z * s;
-            }
-            if tolerance > FINE {
-                break;
-            }
-            rest = along.product(&out);
-            for (rest, right) in rest.iter_mut().zip(right) {
-                *rest = right - *rest;
             }
         }
         out

@@ -39,14 +39,18 @@ pub(crate) fn growth(
 ) -> Result<Option<f64>, AssemblyFailure> {
     let own = without_spin(model);
     let numbering = Numbering::new(&own);
-    let growth = |_: &_, solver: &Solver, found: &_| solver.growth(found);
+    let growth = |_: &_, solver: &Solver, found: &_| {
+        solver.with_factors(found, |factors| solver.growth(factors, found))?
+    };
     with_solution((&own, &numbering), known, growth)
 }
 
 impl Solver<'_> {
-    fn growth(&self, found: &State<f64>) -> Result<Option<f64>, AssemblyFailure> {
-        let factors = Factors::new(self.layout, self.model, found);
-        let mut factors = factors.ok_or(AssemblyFailure::Singular)?;
+    fn growth(
+        &self,
+        factors: &mut Factors,
+        found: &State<f64>,
+    ) -> Result<Option<f64>, AssemblyFailure> {
         let n = self.layout.numbering.unknowns();
         let elastic = n - self.layout.rigid.len();
         let motions = self.layout.at_rest(&found.q);
@@ -54,7 +58,7 @@ impl Solver<'_> {
         let mut softened = |y: &[f64]| {
             let mut right = weighted(y);
             right.resize(self.layout.order(), 0.0);
-            let mut y = self.change(&mut factors, found, &right, FINE);
+            let mut y = self.change(factors, found, &right, FINE);
             y.truncate(n);
             y
         };

@@ -13,7 +13,8 @@ use super::element::{
 };
 use super::parts;
 use super::stiffness::{
-    Strained, add_curvature, add_curved, add_linear, add_products, factors, pull_factors, stresses,
+    Strained, add_curvature, add_curved, add_linear, add_products, factors, linear_products,
+    pull_factors, stresses,
 };
 use crate::math::Scalar;
 use crate::math::slices::{add_scaled, dot};
@@ -121,7 +122,7 @@ pub(crate) fn pull_damping(
         let strained = Strained::of(element, &x);
         let [speed, virtually] = [&r, &y].map(|x| strained.along(element, x));
         let [stress, virtual_stress] = [&speed, &virtually].map(|e| stresses(element, e));
-        let [bending, shear] = element.linear.each_ref().map(|own| own.inner(&r, &y));
+        let [bending, shear] = linear_products(element, &r, &y);
         let thin = dot(&virtually, &stress) + shear;
         pull_factors(finite, i, [beta * thin, beta * bending], cot);
         let scale = beta * factors(finite, i)[0];

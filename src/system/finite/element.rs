@@ -8,6 +8,9 @@ pub(crate) type Local<S> = [S; UNKNOWNS];
 /// A vector for each point of an element.
 pub(super) type Points<S> = [Vec3<S>; POINTS];
 
+/// The node in the middle.
+const MIDDLE: usize = 4;
+
 /// A constant vector in another scalar.
 pub(crate) fn lift<S: Scalar>(v: &Vec3<f64>) -> Vec3<S> {
     v.map(S::from)
@@ -20,6 +23,36 @@ pub(crate) fn gather<S: Scalar>(element: &ShellElement, q: &[S]) -> Local<S> {
         if let Some(i) = coordinate {
             *out = q[*i];
         }
+    }
+    out
+}
+
+/// The unknowns without the rigid motion of the node in the middle; without a translation if not all nodes can turn.
+///
+/// Matrices that no rigid motion stresses have the same products with them. Their round-off is smaller, because it is
+/// relative to what deforms the element.
+pub(super) fn deformation<S: Scalar>(element: &ShellElement, x: &Local<S>) -> Local<S> {
+    let mut theta = Vec3::<S>::zeros();
+    for (turn, &x) in element.turns.iter().zip(&x[DISPLACEMENTS..]) {
+        if turn.node == MIDDLE {
+            (0..3).for_each(|k| theta[k] += x * turn.axis[k]);
+        }
+    }
+    let mut out = *x;
+    for (a, place) in element.points[..NODES].iter().enumerate() {
+        let arm = place - element.points[MIDDLE];
+        let moved = [
+            theta[1] * arm[2] - theta[2] * arm[1],
+            theta[2] * arm[0] - theta[0] * arm[2],
+            theta[0] * arm[1] - theta[1] * arm[0],
+        ];
+        for (k, moved) in moved.into_iter().enumerate() {
+            out[3 * a + k] = (x[3 * a + k] - x[3 * MIDDLE + k]) - moved;
+        }
+    }
+    for (turn, out) in element.turns.iter().zip(&mut out[DISPLACEMENTS..]) {
+        let by = &turn.inverse;
+        *out -= theta[0] * by[0] + theta[1] * by[1] + theta[2] * by[2];
     }
     out
 }

@@ -1,7 +1,7 @@
 //! Elastic forces of a body of finite elements, its strain energy, and their derivatives.
 
 use super::each::each;
-use super::element::{Local, gather, scatter};
+use super::element::{Local, deformation, gather, scatter};
 use super::parts;
 use crate::math::Scalar;
 use crate::math::slices::{add_scaled, dot, dot_by_four, vectorised};
@@ -23,7 +23,7 @@ pub(super) struct Strained<S> {
 
 impl<S: Scalar> Strained<S> {
     pub(super) fn of(element: &ShellElement, x: &Local<S>) -> Self {
-        let mut strain = element.membrane.times(x);
+        let mut strain = element.membrane.times(&deformation(element, x));
         let slopes = element.slopes.times(x);
         for (p, e) in strain.iter_mut().enumerate().take(QUADRATIC) {
             *e += slopes[p] * slopes[other_slope(p)] * 0.5;
@@ -33,7 +33,7 @@ impl<S: Scalar> Strained<S> {
 
     /// Derivatives of the strains along y.
     pub(super) fn along(&self, element: &ShellElement, y: &Local<S>) -> [S; STRAINS] {
-        let mut out = element.membrane.times(y);
+        let mut out = element.membrane.times(&deformation(element, y));
         let slopes = element.slopes.times(y);
         for (p, e) in out.iter_mut().enumerate().take(QUADRATIC) {
             let q = other_slope(p);
@@ -128,9 +128,20 @@ pub(super) fn add_linear<S: Scalar>(
     x: &Local<S>,
     out: &mut Local<S>,
 ) {
+    let x = deformation(element, x);
     let [bending, shear] = &element.linear;
-    bending.add_product(thick, x, out);
-    shear.add_product(thin, x, out);
+    bending.add_product(thick, &x, out);
+    shear.add_product(thin, &x, out);
+}
+
+/// Twice the linear energies of E h³ = 1 and E h = 1, for two motions.
+pub(super) fn linear_products<S: Scalar>(
+    element: &ShellElement,
+    x: &Local<S>,
+    y: &Local<S>,
+) -> [S; 2] {
+    let (x, y) = (deformation(element, x), deformation(element, y));
+    element.linear.each_ref().map(|own| own.inner(&x, &y))
 }
 
 /// E h and E h³ of an element.
@@ -164,7 +175,7 @@ pub(crate) fn energy<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> S {
 /// Energies for E h = 1 and E h³ = 1.
 fn energies<S: Scalar>(element: &ShellElement, x: &Local<S>) -> [S; 2] {
     let e = Strained::of(element, x).strain;
-    let [bending, shear] = element.linear.each_ref().map(|own| own.inner(x, x));
+    let [bending, shear] = linear_products(element, x, x);
     [
         (dot(&stresses(element, &e), &e) + shear) * 0.5,
         bending * 0.5,
@@ -224,7 +235,7 @@ pub(crate) fn pull_forces(
         let strained = Strained::of(element, &x);
         let along = strained.along(element, &y);
         let stress = stresses(element, &strained.strain);
-        let [bending, shear] = element.linear.each_ref().map(|own| own.inner(&x, &y));
+        let [bending, shear] = linear_products(element, &x, &y);
         let mut force = [0.0; UNKNOWNS];
         if wanted {
             let by_strain = stresses(element, &along).map(|n| n * both[0]);

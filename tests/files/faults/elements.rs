@@ -3,15 +3,9 @@
 use super::pointers;
 use crate::tests::files::element_parts::stiffened;
 use crate::tests::files::finite_elements::plates;
+use crate::tests::reference::documents::read;
 use flexbody::problem::Problem;
 use serde_json::Value;
-use std::path::Path;
-
-fn read(name: &str) -> Value {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/flexible");
-    let text = std::fs::read_to_string(path.join(name)).expect("a file");
-    serde_json::from_str(&text).expect("valid JSON")
-}
 
 fn two_plates() -> Value {
     plates([2, 1], 0.1, 10, &json!({"bdf": {"order": 2}}))
@@ -86,7 +80,7 @@ fn every_value_of_beams_and_stiffeners_replaced_is_a_fault_or_a_finite_scene() {
 
 #[test]
 fn every_value_of_a_panel_that_deploys_replaced_is_a_fault_or_a_finite_scene() {
-    let mut file = read("solar_panel.json");
+    let mut file = read("problems/flexible/solar_panel.json");
     for (_, body) in file["bodies"].as_object_mut().expect("bodies") {
         if let Some(plate) = body.pointer_mut("/elements/structure/mesh/plate") {
             plate["elements"] = json!([2, 1]);
