@@ -8,6 +8,7 @@ use crate::tests::reference::gradients::{
     gradients_are_exact, scaled_gradients_are_exact, thick_and_soft,
 };
 use flexbody::driver::check;
+use flexbody::math::{Dual, Scalar};
 use flexbody::problem::Problem;
 use flexbody::system::Numbering;
 use flexbody::system::initial;
@@ -264,6 +265,30 @@ fn starts_of_shells_have_exact_derivatives() {
     document["start"] = json!("equilibrium");
     let problem = parsed(&document);
     scaled_gradients_are_exact(&problem, &problem.start(), &method);
+}
+
+/// Derivatives of a start are the same to the last bit, whatever other starts are known: so threads do not change them.
+#[test]
+fn derivatives_of_starts_do_not_depend_on_other_designs() {
+    let mut document = plates([2, 1], 0.02, 8, &json!({"bdf": {"order": 2}}));
+    thick_and_soft(&mut document);
+    document["start"] = json!("equilibrium");
+    let problem = parsed(&document);
+    let derivatives = |x: &[f64]| -> Vec<f64> {
+        let seeded = x.iter().enumerate();
+        let seeded: Vec<Dual> = seeded
+            .map(|(i, &x)| Dual::new(x, if i == 0 { 1.0 } else { 0.0 }))
+            .collect();
+        let bodies = problem.scene::<Dual>(&seeded).model.bodies;
+        let places = bodies.iter().flat_map(|body| &body.position);
+        places.map(|x| x.infinitesimal()).collect()
+    };
+    let x = problem.start();
+    let first = derivatives(&x);
+    assert!(first.iter().any(|&x| x != 0.0));
+    let other: Vec<f64> = x.iter().map(|x| 1.01 * x).collect();
+    assert_ne!(derivatives(&other), first);
+    assert_eq!(derivatives(&x), first);
 }
 
 /// Plates of 2 mm: round-off of their stiffness against shear is relative to what deforms the elements.

@@ -42,6 +42,9 @@ const ITERATIONS: usize = 20;
 const SLOW: f64 = 0.5;
 const SLOW_INFINITESIMAL: f64 = 0.25;
 const RENEWALS: usize = 6;
+/// Without these corrections a run with infinitesimal parts converges more slowly: it may take so many times the
+/// iterations and renewals.
+const UNCORRECTED: usize = 4;
 /// Their assembly and factorisation cost as much as so many iterations.
 const ITERATIONS_OF_FACTORS: usize = 4;
 /// Iterations of their infinitesimal parts.
@@ -191,7 +194,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         let known = [&last.q[..], &last.v, &last.dq, &last.dv];
         let scales = self.scale.step(numbering, known, h.re());
         let (mut previous, mut before, mut slowest) = (f64::INFINITY, 0.0_f64, 0.0_f64);
-        let mut renewals = 0;
+        let (mut renewals, uncorrected) = (0, S::INFINITESIMAL && self.broyden.is_some());
+        let patience = if uncorrected { UNCORRECTED } else { 1 };
+        let iterations = ITERATIONS * patience;
         if let (Some(broyden), Some(backward)) = (&mut self.broyden, &mut self.backward) {
             broyden.clear();
             backward.begin();
@@ -200,7 +205,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                 self.factors.turn_to(&self.here.q);
             }
         }
-        for iteration in 1..=ITERATIONS {
+        for iteration in 1..=iterations {
             let size = self.improve(stages, h, &scales, nv, counts);
             if !size.is_finite() {
                 return Err(self.not_finite(at));
@@ -220,7 +225,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             let mut stagnant = stands && size <= scales.round_off.max(STAGNANT);
             let mut noise = None;
             if stands && !stagnant && remaining > TOLERANCE {
-                let gives_up = iteration == ITERATIONS || slow;
+                let gives_up = iteration == iterations || slow;
                 let known = self.is_round_off(&scales);
                 if known || gives_up {
                     let (change, most) = self.magnified(&scales, h);
@@ -261,7 +266,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                 } else {
                     SLOW
                 };
-                let renews = renewals < RENEWALS && contraction > most;
+                let renews = renewals < RENEWALS * patience && contraction > most;
                 if let (true, Some(broyden)) = (renews, &mut self.broyden) {
                     broyden.clear();
                     self.factorise(stages, h.re(), at, counts)?;

@@ -212,7 +212,7 @@ struct Solver<'a> {
 }
 
 impl Solver<'_> {
-    /// What `of` makes of factors at the solution.
+    /// What `of` makes of factors at the solution. New ones and kept ones are the same, so no thread changes a result.
     fn with_factors<T>(
         &self,
         found: &State<f64>,
@@ -232,7 +232,7 @@ impl Solver<'_> {
         Ok(out)
     }
 
-    /// Newton's method from the placement. The solution becomes known, with the factors of the last iteration.
+    /// Newton's method from the placement. The solution becomes known.
     fn solve(&self) -> Result<State<f64>, AssemblyFailure> {
         let mut x = self.layout.start(self.given);
         let none = |iterations| AssemblyFailure::NoEquilibrium { iterations };
@@ -253,7 +253,6 @@ impl Solver<'_> {
             self.layout.advance(&mut x, &step);
             if size <= CLOSE || size <= STAGNANT && size > 0.3 * before {
                 self.known.keep(&self.numbers, &x);
-                self.known.keep_factors(self.numbers.clone(), factors);
                 return Ok(x);
             }
             before = size;
